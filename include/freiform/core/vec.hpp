@@ -1,0 +1,109 @@
+// Points and displacements of D coordinates. One type serves both: an affine combination and a difference
+// are told apart by the formula, not by the type.
+#pragma once
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+
+namespace freiform {
+
+template <int D>
+struct Vec {
+    static constexpr int kCoords = D;
+    std::array<double, std::size_t(D)> c{};
+
+    constexpr double& operator[](int i) { return c[std::size_t(i)]; }
+    constexpr double operator[](int i) const { return c[std::size_t(i)]; }
+    friend constexpr bool operator==(const Vec&, const Vec&) = default;
+};
+
+// A coefficient is a tuple of doubles with the operations of a real vector space.
+template <class P>
+concept Coefficient = requires(P p) {
+    { P::kCoords } -> std::convertible_to<int>;
+    { p[0] } -> std::convertible_to<double>;
+    p.c;
+};
+
+template <Coefficient P>
+constexpr P& operator+=(P& a, const P& b) {
+    for (int i = 0; i < P::kCoords; ++i) a[i] += b[i];
+    return a;
+}
+template <Coefficient P>
+constexpr P& operator-=(P& a, const P& b) {
+    for (int i = 0; i < P::kCoords; ++i) a[i] -= b[i];
+    return a;
+}
+template <Coefficient P>
+constexpr P& operator*=(P& a, double s) {
+    for (int i = 0; i < P::kCoords; ++i) a[i] *= s;
+    return a;
+}
+template <Coefficient P>
+constexpr P operator+(P a, const P& b) {
+    return a += b;
+}
+template <Coefficient P>
+constexpr P operator-(P a, const P& b) {
+    return a -= b;
+}
+template <Coefficient P>
+constexpr P operator-(P a) {
+    return a *= -1.0;
+}
+template <Coefficient P>
+constexpr P operator*(double s, P a) {
+    return a *= s;
+}
+template <Coefficient P>
+constexpr double dot(const P& a, const P& b) {
+    double s = 0;
+    for (int i = 0; i < P::kCoords; ++i) s += a[i] * b[i];
+    return s;
+}
+template <Coefficient P>
+constexpr double max_abs(const P& a) {
+    double m = 0;
+    for (int i = 0; i < P::kCoords; ++i) m = a[i] > m ? a[i] : -a[i] > m ? -a[i] : m;
+    return m;
+}
+
+// Euclidean length. Neither overflows nor underflows on the way, and scales exactly with powers of two.
+template <Coefficient P>
+double norm(const P& a) {
+    const double s = dot(a, a);
+    if (s > 1e-280 && s < 1e280) return std::sqrt(s);
+    const double m = max_abs(a);
+    if (m == 0 || !std::isfinite(m)) return m;
+    const int e = std::ilogb(m);
+    P b = a;
+    for (int i = 0; i < P::kCoords; ++i) b[i] = std::scalbn(b[i], -e);
+    return std::scalbn(std::sqrt(dot(b, b)), e);
+}
+
+template <Coefficient P>
+constexpr bool is_finite(const P& a) {
+    for (int i = 0; i < P::kCoords; ++i)
+        if (!(a[i] - a[i] == 0)) return false;
+    return true;
+}
+
+constexpr Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
+    return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
+}
+constexpr double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+// The vector of length 1 with the direction of `a`; zero if `a` is zero.
+template <int D>
+Vec<D> unit(const Vec<D>& a) {
+    const double m = max_abs(a);
+    if (m == 0) return a;
+    const int e = std::ilogb(m);
+    Vec<D> b;
+    for (int i = 0; i < D; ++i) b[i] = std::scalbn(a[i], -e);
+    return (1 / std::sqrt(dot(b, b))) * b;
+}
+
+}  // namespace freiform

@@ -1,0 +1,36 @@
+#include <freiform/core/parallel.hpp>
+
+#include <algorithm>
+#include <atomic>
+#if FREIFORM_THREADS
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#endif
+
+namespace freiform {
+
+namespace {
+std::atomic<int> g_max_threads{0};
+}
+
+void set_max_threads(int threads) { g_max_threads = std::max(threads, 0); }
+int max_threads() { return g_max_threads; }
+
+void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t)>& f) {
+    grain = std::max<std::size_t>(grain, 1);
+#if FREIFORM_THREADS
+    if (const int threads = g_max_threads; n >= 2 * grain && threads != 1) {
+        oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+        arena.execute([&] {
+            oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {
+                for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+            });
+        });
+        return;
+    }
+#endif
+    for (std::size_t i = 0; i < n; ++i) f(i);
+}
+
+}  // namespace freiform
