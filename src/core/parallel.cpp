@@ -23,9 +23,10 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
     if (const int threads = g_max_threads; n >= 2 * grain && threads != 1) {
         oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
         arena.execute([&] {
-            oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain), [&](const auto& range) {
-                for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
-            });
+            oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain),
+                                      [&](const auto& range) {
+                                          for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+                                      });
         });
         return;
     }

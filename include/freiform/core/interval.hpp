@@ -1,9 +1,9 @@
 // Closed intervals of the real line and axis-parallel boxes.
 #pragma once
+#include <freiform/core/vec.hpp>
+
 #include <algorithm>
 #include <limits>
-
-#include <freiform/core/vec.hpp>
 
 namespace freiform {
 

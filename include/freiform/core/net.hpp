@@ -1,13 +1,13 @@
 // Control nets: N-dimensional arrays of coefficients, row-major, the last parameter fastest. A NumPy array of
 // shape (n_0, ..., n_{N-1}, D) has the same bytes.
 #pragma once
+#include <freiform/core/result.hpp>
+
 #include <array>
 #include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
-
-#include <freiform/core/result.hpp>
 
 namespace freiform {
 
@@ -51,7 +51,9 @@ struct NetView {
         return {&(*this)(at), extent[std::size_t(axis)], stride[std::size_t(axis)]};
     }
     // The block of extents `size` that begins at `from`.
-    NetView window(const Index<N>& from, const Index<N>& size) const { return {&(*this)(from), size, stride}; }
+    NetView window(const Index<N>& from, const Index<N>& size) const {
+        return {&(*this)(from), size, stride};
+    }
     operator NetView<N, const P>() const { return {data, extent, stride}; }
 };
 
@@ -88,8 +90,9 @@ public:
     }
     static Result<Net> make(const Index<N>& extent, std::vector<P> data) {
         if (count_of(extent) != (long long)(data.size()))
-            return refuse(RefusalKind::invalid, "net",
-                          text("extents ask for ", count_of(extent), " coefficients, ", data.size(), " are given"));
+            return refuse(
+                RefusalKind::invalid, "net",
+                text("extents ask for ", count_of(extent), " coefficients, ", data.size(), " are given"));
         return Net(extent, std::move(data));
     }
 

@@ -10,8 +10,8 @@ namespace freiform {
 inline void append_text(std::string& s, std::string_view part) { s += part; }
 inline void append_text(std::string& s, char part) { s += part; }
 template <class T>
-    requires(std::integral<T> || std::floating_point<T>) && (!std::same_as<T, char>)
-void append_text(std::string& s, T number) {
+requires(std::integral<T> || std::floating_point<T>) &&
+    (!std::same_as<T, char>)void append_text(std::string& s, T number) {
     if constexpr (std::same_as<T, bool>) {
         s += number ? "true" : "false";
     } else {

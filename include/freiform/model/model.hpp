@@ -2,17 +2,17 @@
 //
 //     Body -> Shell -> Face -> Loop -> Coedge -> Edge -> Vertex
 //
-// An edge has one curve in space; every face that uses it has a coedge with a curve in the parameter domain of
-// its surface, over the same parameter interval: surface(coedge.curve(t)) lies within `tolerance` of
+// An edge has one curve in space; every face that uses it has a coedge with a curve in the parameter domain
+// of its surface, over the same parameter interval: surface(coedge.curve(t)) lies within `tolerance` of
 // edge.curve(t) for every t of edge.range. Indices refer to the vectors of Model; -1 means none.
 #pragma once
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <freiform/core/colour.hpp>
 #include <freiform/core/result.hpp>
 #include <freiform/spline/geometry.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace freiform {
 
@@ -22,9 +22,10 @@ struct Vertex {
 };
 
 struct Edge {
-    std::optional<CurveGeometry<3>> curve;  // none: a degenerate edge, all of it is the vertex `start` (a pole)
-    Interval range{0, 1};                   // the part of the curve that the edge is; lo at `start`, hi at `end`
-    int start = -1, end = -1;               // equal for a closed edge
+    std::optional<CurveGeometry<3>>
+        curve;                 // none: a degenerate edge, all of it is the vertex `start` (a pole)
+    Interval range{0, 1};      // the part of the curve that the edge is; lo at `start`, hi at `end`
+    int start = -1, end = -1;  // equal for a closed edge
     double tolerance = 0;
     std::string name;
 };

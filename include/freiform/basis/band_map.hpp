@@ -1,0 +1,60 @@
+// Banded linear maps, and the one operation behind refinement, conversion and grid evaluation: applying a map
+// along one axis of a net.
+#pragma once
+#include <span>
+#include <vector>
+
+#include <freiform/basis/blossom.hpp>
+#include <freiform/core/net.hpp>
+
+namespace freiform {
+
+// Row i has its `width` entries in the columns first[i] .. first[i] + width - 1, taken modulo `cols` (they reach
+// beyond `cols` on closed bases only).
+struct BandMap {
+    int cols = 0, width = 0;
+    std::vector<int> first;
+    std::vector<double> entry;  // rows() x width
+
+    int rows() const { return int(first.size()); }
+    std::span<const double> row(int i) const { return std::span(entry).subspan(std::size_t(i * width), std::size_t(width)); }
+
+    template <class P>
+    void apply(Fibre<const P> in, Fibre<P> out) const {
+        for (int i = 0; i < rows(); ++i) {
+            const double* w = &entry[std::size_t(i) * std::size_t(width)];
+            P sum{};
+            int column = first[std::size_t(i)] % cols;
+            for (int k = 0; k < width; ++k) {
+                if (w[k] != 0) sum += w[k] * in[column];
+                if (++column == cols) column = 0;
+            }
+            out[i] = sum;
+        }
+    }
+};
+
+// (I x .. x map x .. x I) net. REQUIRES net.extent()[axis] == map.cols.
+template <std::size_t N, class P>
+Net<N, P> along(int axis, const BandMap& map, const Net<N, P>& in) {
+    FF_REQUIRE(in.extent()[std::size_t(axis)] == map.cols);
+    Index<N> extent = in.extent();
+    extent[std::size_t(axis)] = map.rows();
+    Net<N, P> out(extent);
+    const NetView<N, const P> from = in.view();
+    const NetView<N, P> to = out.view();
+    each_fibre(axis, extent, [&](const Index<N>& at) { map.apply<P>(from.fibre(axis, at), to.fibre(axis, at)); });
+    return out;
+}
+
+// Row i: the values (order 0) or derivatives of the basis at at[i].
+template <Basis B>
+BandMap collocation(const B& basis, std::span<const double> at, int order = 0) {
+    const int width = basis.degree() + 1;
+    BandMap m{basis.size(), width, std::vector<int>(at.size()), std::vector<double>(at.size() * std::size_t(width))};
+    for (std::size_t i = 0; i < at.size(); ++i)
+        m.first[i] = weights(basis, at[i], order, &m.entry[i * std::size_t(width)]);
+    return m;
+}
+
+}  // namespace freiform

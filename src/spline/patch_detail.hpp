@@ -1,0 +1,288 @@
+// Definitions of the members of Patch; instantiated once per number of parameters in patch_1.cpp .. patch_3.cpp.
+//
+// Accuracy of values. Notation: u = 2^-53, p_d degrees, all parameters inside the domain.
+// Every weight of the recurrence is a sum of products of non-negative factors; one step multiplies relative errors
+// by at most (1+u)^4 (two differences share no cancellation beyond their own rounding, a quotient, a product) and
+// adds one rounding, so a weight of degree p carries at most 5 p roundings, a term of the sum N more products and
+// a sum over p_d + 1 terms p_d more. With k = sum_d (6 p_d + 2) the computed value differs from the exact one by at
+// most k u / (1 - k u) * sum w_i |P_i| <= 1.01 k u max|P_i| (partition of unity). For rational patches numerator and
+// denominator each obey this, and the quotient by at most
+//     (1.01 k u w_max c_max + c_max 1.01 k u w_max) / (w_min (1 - 1.01 k u w_max / w_min)) + u c_max
+// with c_max the largest coordinate of a control point. Underflow aside.
+// References: [Higham 2002, ch. 3] for the counting of roundings.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <freiform/spline/bezier.hpp>
+#include <freiform/spline/patch.hpp>
+
+namespace freiform {
+
+namespace detail {
+
+// Sum over the local (p_0 + 1) x .. block of the weights w[d] times the coefficients.
+template <std::size_t N, class P>
+P contract(const NetView<N, const P>& net, const std::array<const double*, N>& w, const Index<N>& first,
+           const Index<N>& count, Index<N>& at, std::size_t d) {
+    P sum{};
+    int i = first[d];
+    for (int k = 0; k < count[d]; ++k) {
+        at[d] = i;
+        if (d + 1 == N) {
+            const P& p = net(at);
+            const double weight = w[d][k];
+            for (int c = 0; c < P::kCoords; ++c) sum[c] += weight * p[c];
+        } else {
+            const P inner = contract(net, w, first, count, at, d + 1);
+            const double weight = w[d][k];
+            for (int c = 0; c < P::kCoords; ++c) sum[c] += weight * inner[c];
+        }
+        if (++i == net.extent[d]) i = 0;  // closed bases wrap; the others end here
+    }
+    return sum;
+}
+
+inline Result<void> check_parameter(double u, Interval on, bool closed, std::string where) {
+    if (!std::isfinite(u)) return refuse(RefusalKind::nonfinite, std::move(where), text(u, " is not a finite number"));
+    if (!closed && !on.contains(u))
+        return refuse(RefusalKind::out_of_domain, std::move(where),
+                      text(u, " is outside the domain [", on.lo, ", ", on.hi, "]"));
+    return {};
+}
+
+template <Basis B>
+bool is_closed(const B& basis) {
+    if constexpr (requires { basis.is_closed(); })
+        return basis.is_closed();
+    else
+        return false;
+}
+
+}  // namespace detail
+
+template <std::size_t N, Coefficient P, Basis B>
+Result<Patch<N, P, B>> Patch<N, P, B>::make(std::array<B, N> bases, Net<N, P> net) {
+    for (std::size_t d = 0; d < N; ++d)
+        if (net.extent()[d] != bases[d].size())
+            return refuse(RefusalKind::invalid, "points",
+                          text(net.extent()[d], " coefficients along axis ", d, ", the basis has ", bases[d].size()));
+    std::size_t i = 0;
+    for (const P& p : net.flat()) {
+        if (!is_finite(p)) return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "has a coordinate that is not finite");
+        if (Space<P>::kRational && !(Space<P>::weight(p) > 0))
+            return refuse(RefusalKind::invalid, text("weights[", i, "]"),
+                          text("weight ", Space<P>::weight(p), " is not positive"));
+        if (!is_finite(freiform::project(p)))
+            return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "overflows when divided by its weight");
+        ++i;
+    }
+    return Patch(std::move(bases), std::move(net));
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+std::array<Interval, N> Patch<N, P, B>::domain() const {
+    std::array<Interval, N> d;
+    for (std::size_t k = 0; k < N; ++k) d[k] = bases_[k].domain();
+    return d;
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+Result<void> Patch<N, P, B>::check(const Param<N>& u, std::size_t index) const {
+    for (std::size_t d = 0; d < N; ++d)
+        if (auto ok = detail::check_parameter(component<N>(u, d), bases_[d].domain(), detail::is_closed(bases_[d]),
+                                              N == 1 ? text("at[", index, "]") : text("at[", index, "][", d, "]"));
+            !ok)
+            return ok;
+    return {};
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+typename Patch<N, P, B>::Point Patch<N, P, B>::operator()(const Param<N>& u) const {
+    double w[N][kMaxDegree + 1];
+    std::array<const double*, N> row{};
+    Index<N> first{}, count{}, at{};
+    for (std::size_t d = 0; d < N; ++d) {
+        first[d] = freiform::weights(bases_[d], component<N>(u, d), 0, w[d]) % bases_[d].size();
+        count[d] = bases_[d].degree() + 1;
+        row[d] = w[d];
+    }
+    return freiform::project(detail::contract(net_.view(), row, first, count, at, 0));
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+Result<void> Patch<N, P, B>::evaluate(std::span<const Param<N>> at, std::span<Point> out) const {
+    FF_REQUIRE(at.size() == out.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if (auto ok = check(at[i], i); !ok) return ok;
+        out[i] = (*this)(at[i]);
+    }
+    return {};
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+void Patch<N, P, B>::partials(const Param<N>& u, int order, std::span<Point> out) const {
+    // Weights of every order along every axis; on the stack for the orders that are common.
+    constexpr int kStackOrder = 3;
+    double stack[N * (kStackOrder + 1) * (kMaxDegree + 1)];
+    std::vector<double> heap;
+    double* w = stack;
+    const std::size_t per_axis = std::size_t(order + 1) * (kMaxDegree + 1);
+    if (order > kStackOrder) {
+        heap.resize(N * per_axis);
+        w = heap.data();
+    }
+    Index<N> first{}, count{}, extent{};
+    for (std::size_t d = 0; d < N; ++d) {
+        const double x = bases_[d].wrap(component<N>(u, d));
+        const int s = bases_[d].span(x);
+        for (int k = 0; k <= order; ++k)
+            weights_in_span(bases_[d], s, x, k, w + d * per_axis + std::size_t(k) * (kMaxDegree + 1));
+        first[d] = (s - bases_[d].degree()) % bases_[d].size();
+        count[d] = bases_[d].degree() + 1;
+        extent[d] = order + 1;
+    }
+    const std::size_t size = jet_size(N, order);
+    P stack_h[20];  // N = 3, order 3
+    std::vector<P> heap_h;
+    P* h = stack_h;
+    if (size > std::size(stack_h)) {
+        heap_h.resize(size);
+        h = heap_h.data();
+    }
+    each_index(extent, [&](const Index<N>& a) {
+        int sum = 0;
+        for (int x : a) sum += x;
+        if (sum > order) return;
+        std::array<const double*, N> row{};
+        for (std::size_t d = 0; d < N; ++d) row[d] = w + d * per_axis + std::size_t(a[d]) * (kMaxDegree + 1);
+        Index<N> at{};
+        h[jet_slot(a)] = detail::contract(net_.view(), row, first, count, at, 0);
+    });
+    project_jet<N, P>(order, std::span<const P>(h, size), out);
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+std::vector<typename Patch<N, P, B>::Point> Patch<N, P, B>::derivatives(const Param<N>& u, int order) const {
+    std::vector<Point> out(jet_size(N, order));
+    partials(u, order, out);
+    return out;
+}
+
+template <std::size_t N, Coefficient P, Basis B>
+double Patch<N, P, B>::value_error_bound() const {
+    double k = 0;
+    for (const B& b : bases_) k += 6 * b.degree() + 2;
+    const double unit_roundoff = std::numeric_limits<double>::epsilon() / 2, g = 1.01 * k * unit_roundoff;
+    double c_max = 0, w_max = 0, w_min = std::numeric_limits<double>::infinity();
+    for (const P& p : net_.flat()) {
+        c_max = std::max(c_max, max_abs(freiform::project(p)));
+        w_max = std::max(w_max, Space<P>::weight(p));
+        w_min = std::min(w_min, Space<P>::weight(p));
+    }
+    if (!Space<P>::kRational) return g * c_max;
+    const double ratio = w_max / w_min, left = 1 - g * ratio;
+    return left > 0.5 ? (2 * g * ratio / left + 2 * unit_roundoff) * c_max : std::numeric_limits<double>::infinity();
+}
+
+template <std::size_t N, class P, Basis B>
+Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s, const std::array<std::span<const double>, N>& axes) {
+    Index<N> extent{};
+    for (std::size_t d = 0; d < N; ++d) {
+        extent[d] = int(std::min<std::size_t>(axes[d].size(), 0x7fffffff));
+        for (std::size_t i = 0; i < axes[d].size(); ++i)
+            if (auto ok = detail::check_parameter(axes[d][i], s.basis(int(d)).domain(), detail::is_closed(s.basis(int(d))),
+                                                  text("axes[", d, "][", i, "]"));
+                !ok)
+                return std::unexpected(ok.error());
+    }
+    if (count_of(extent) < 0) return refuse(RefusalKind::limit, "axes", "more than 2^31 - 1 grid points");
+    Net<N, P> net = s.net();
+    for (std::size_t d = 0; d < N; ++d) net = along(int(d), collocation(s.basis(int(d)), axes[d]), net);
+    std::vector<PointOf<P>> out;
+    out.reserve(net.flat().size());
+    for (const P& p : net.flat()) out.push_back(freiform::project(p));
+    return Net<N, PointOf<P>>(net.extent(), std::move(out));
+}
+
+template <std::size_t N, class P, Basis B>
+std::vector<PointOf<P>> points(const Patch<N, P, B>& s) {
+    std::vector<PointOf<P>> out;
+    for (const P& p : s.net().flat()) out.push_back(project(p));
+    return out;
+}
+
+template <std::size_t N, class P, Basis B>
+std::vector<double> weights(const Patch<N, P, B>& s) {
+    std::vector<double> out;
+    for (const P& p : s.net().flat()) out.push_back(Space<P>::weight(p));
+    return out;
+}
+
+template <std::size_t N, int D, Basis B>
+Patch<N, Hom<D>, B> to_rational(const Patch<N, Vec<D>, B>& s) {
+    std::vector<Hom<D>> h;
+    for (const auto& p : s.net().flat()) h.push_back(weighted(p, 1));
+    return Patch<N, Hom<D>, B>::trusted(s.bases(), Net<N, Hom<D>>(s.net().extent(), std::move(h)));
+}
+
+template <std::size_t N, class P>
+BezierPieces<N, P>::BezierPieces(const Patch<N, P>& patch) : net_(patch.net()) {
+    for (std::size_t d = 0; d < N; ++d) {
+        const Change<BSplineBasis> change = to_bezier(patch.basis(int(d)));
+        degree_[d] = patch.basis(int(d)).degree();
+        breaks_[d] = patch.basis(int(d)).breaks();
+        net_ = along(int(d), change.map, net_);
+    }
+}
+template <std::size_t N, class P>
+Index<N> BezierPieces<N, P>::extent() const {
+    Index<N> e{};
+    for (std::size_t d = 0; d < N; ++d) e[d] = int(breaks_[d].size()) - 1;
+    return e;
+}
+template <std::size_t N, class P>
+std::array<Interval, N> BezierPieces<N, P>::box(const Index<N>& piece) const {
+    std::array<Interval, N> b;
+    for (std::size_t d = 0; d < N; ++d) b[d] = {breaks_[d][std::size_t(piece[d])], breaks_[d][std::size_t(piece[d]) + 1]};
+    return b;
+}
+template <std::size_t N, class P>
+NetView<N, const P> BezierPieces<N, P>::net(const Index<N>& piece) const {
+    Index<N> from{}, size{};
+    for (std::size_t d = 0; d < N; ++d) {
+        size[d] = degree_[d] + 1;
+        from[d] = piece[d] * size[d];
+    }
+    return net_.view().window(from, size);
+}
+template <std::size_t N, class P>
+Patch<N, P, Bernstein> BezierPieces<N, P>::piece(const Index<N>& index) const {
+    const auto on = box(index);
+    const auto view = net(index);
+    auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
+        return std::array<Bernstein, N>{*Bernstein::make(degree_[I], on[I])...};
+    }(std::make_index_sequence<N>{});
+    Net<N, P> own(view.extent);
+    each_index(view.extent, [&](const Index<N>& at) { own.view()(at) = view(at); });
+    return Patch<N, P, Bernstein>::trusted(std::move(bases), std::move(own));
+}
+
+#define FF_INSTANTIATE_PATCH(N, P, B)                                                       \
+    template class Patch<N, P, B>;                                                          \
+    template Result<Net<N, PointOf<P>>> evaluate_grid<N, P, B>(                             \
+        const Patch<N, P, B>&, const std::array<std::span<const double>, N>&);              \
+    template std::vector<PointOf<P>> points<N, P, B>(const Patch<N, P, B>&);                \
+    template std::vector<double> weights<N, P, B>(const Patch<N, P, B>&);
+#define FF_INSTANTIATE_PATCHES(N, D)                                                        \
+    FF_INSTANTIATE_PATCH(N, Vec<D>, BSplineBasis)                                           \
+    FF_INSTANTIATE_PATCH(N, Hom<D>, BSplineBasis)                                           \
+    FF_INSTANTIATE_PATCH(N, Vec<D>, Bernstein)                                              \
+    FF_INSTANTIATE_PATCH(N, Hom<D>, Bernstein)                                              \
+    template class BezierPieces<N, Vec<D>>;                                                 \
+    template class BezierPieces<N, Hom<D>>;                                                 \
+    template Patch<N, Hom<D>, BSplineBasis> to_rational(const Patch<N, Vec<D>, BSplineBasis>&); \
+    template Patch<N, Hom<D>, Bernstein> to_rational(const Patch<N, Vec<D>, Bernstein>&);
+
+}  // namespace freiform
