@@ -17,7 +17,8 @@ Result<void> check_degree(int degree) {
 Result<void> check_sorted(std::string_view field, std::span<const double> t) {
     for (std::size_t i = 0; i < t.size(); ++i) {
         if (!std::isfinite(t[i]))
-            return refuse(RefusalKind::nonfinite, text(field, "[", i, "]"), text(t[i], " is not a finite number"));
+            return refuse(RefusalKind::nonfinite, text(field, "[", i, "]"),
+                          text(t[i], " is not a finite number"));
         if (i > 0 && t[i] < t[i - 1])
             return refuse(RefusalKind::invalid, text(field, "[", i, "]"),
                           text("decreases: ", t[i - 1], " -> ", t[i]));
@@ -74,7 +75,8 @@ Result<BSplineBasis> BSplineBasis::periodic(int degree, std::vector<double> brea
                           text("a closed spline of degree ", degree, " cannot repeat a break more than ",
                                std::max(degree, 1), " times"));
     const double period = breaks.back() - breaks.front();
-    if (!std::isfinite(breaks.back() + (degree + 1) * period) || !std::isfinite(breaks.front() - (degree + 1) * period))
+    if (!std::isfinite(breaks.back() + (degree + 1) * period) ||
+        !std::isfinite(breaks.front() - (degree + 1) * period))
         return refuse(RefusalKind::nonfinite, "breaks", "the unwound knots overflow");
     std::vector<double> t;
     t.reserve(std::size_t(n + 2 * degree + 1));
@@ -82,7 +84,8 @@ Result<BSplineBasis> BSplineBasis::periodic(int degree, std::vector<double> brea
         const int turns = i >= 0 ? i / n : -((n - 1 - i) / n);
         t.push_back(i == n ? breaks.back() : breaks[std::size_t(i - turns * n)] + turns * period);
     }
-    for (std::size_t i = 1; i < t.size(); ++i) t[i] = std::max(t[i], t[i - 1]);  // rounding of the unwound ones
+    for (std::size_t i = 1; i < t.size(); ++i)
+        t[i] = std::max(t[i], t[i - 1]);  // rounding of the unwound ones
     return checked({degree, std::move(t), degree, degree == 0});
 }
 
@@ -96,7 +99,8 @@ Result<BSplineBasis> BSplineBasis::bezier(int degree, Interval on) {
 Result<BSplineBasis> BSplineBasis::clamped_uniform(int degree, int size) {
     if (auto ok = check_degree(degree); !ok) return std::unexpected(ok.error());
     if (size <= degree)
-        return refuse(RefusalKind::invalid, "size", text(size, " coefficients, degree ", degree, " needs ", degree + 1));
+        return refuse(RefusalKind::invalid, "size",
+                      text(size, " coefficients, degree ", degree, " needs ", degree + 1));
     std::vector<double> t;
     for (int i = -degree; i <= size; ++i) t.push_back(std::clamp(i, 0, size - degree));
     return make(degree, std::move(t));

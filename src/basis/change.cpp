@@ -1,13 +1,13 @@
 // Changes of basis by blossoms.
 //
-// Idea: coefficient j of a spline on knots t' is its blossom at (t'_{j+1}, .., t'_{j+p}) [Ramshaw 1989]. So a new
-// knot vector alone says what the new coefficients are; which map it is (insertion, restriction, Bezier
+// Idea: coefficient j of a spline on knots t' is its blossom at (t'_{j+1}, .., t'_{j+p}) [Ramshaw 1989]. So a
+// new knot vector alone says what the new coefficients are; which map it is (insertion, restriction, Bezier
 // extraction) only depends on how t' was made.
 // Notation: `old` has knots t and degree p, `fresh` has knots t'.
 // Accuracy: for insertion all entries of a row are non-negative and sum to 1 up to rounding (Oslo algorithm
-// [Cohen Lyche Riesenfeld 1980]). For elevation they are means of blossoms whose arguments leave the span, with
-// entries of both signs; tests tally the growth.
-// Why not Boehm's algorithm: it inserts one knot after the other; the rows here are independent of each other.
+// [Cohen Lyche Riesenfeld 1980]). For elevation they are means of blossoms whose arguments leave the span,
+// with entries of both signs; tests tally the growth. Why not Boehm's algorithm: it inserts one knot after
+// the other; the rows here are independent of each other.
 #include <freiform/basis/change.hpp>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ Change<BSplineBasis> change(const BSplineBasis& old, BSplineBasis fresh, F&& row
 }
 
 Change<BSplineBasis> refined(const BSplineBasis& old, BSplineBasis fresh) {
-    return change(old, std::move(fresh), [&](int s, const double* args, double* w) { blossom(old, s, args, w); });
+    return change(old, std::move(fresh),
+                  [&](int s, const double* args, double* w) { blossom(old, s, args, w); });
 }
 
 }  // namespace
@@ -39,10 +40,12 @@ Change<BSplineBasis> refined(const BSplineBasis& old, BSplineBasis fresh) {
 Result<Change<BSplineBasis>> insert_knots(const BSplineBasis& old, std::span<const double> more) {
     for (std::size_t i = 0; i < more.size(); ++i) {
         if (!old.domain().contains(more[i]))
-            return refuse(RefusalKind::out_of_domain, text("knots[", i, "]"),
-                          text(more[i], " is outside the domain [", old.domain().lo, ", ", old.domain().hi, "]"));
+            return refuse(
+                RefusalKind::out_of_domain, text("knots[", i, "]"),
+                text(more[i], " is outside the domain [", old.domain().lo, ", ", old.domain().hi, "]"));
         if (i > 0 && more[i] < more[i - 1])
-            return refuse(RefusalKind::invalid, text("knots[", i, "]"), text("decreases: ", more[i - 1], " -> ", more[i]));
+            return refuse(RefusalKind::invalid, text("knots[", i, "]"),
+                          text("decreases: ", more[i - 1], " -> ", more[i]));
     }
     std::vector<double> t;
     std::merge(old.defining().begin(), old.defining().end(), more.begin(), more.end(), std::back_inserter(t));
@@ -76,8 +79,8 @@ Result<Change<BSplineBasis>> restrict_to(const BSplineBasis& old, Interval on) {
     const int p = old.degree();
     if (!old.domain().contains(on.lo) || !old.domain().contains(on.hi) || !(on.lo < on.hi))
         return refuse(RefusalKind::out_of_domain, "interval",
-                      text("[", on.lo, ", ", on.hi, "] is empty or outside the domain [", old.domain().lo, ", ",
-                           old.domain().hi, "]"));
+                      text("[", on.lo, ", ", on.hi, "] is empty or outside the domain [", old.domain().lo,
+                           ", ", old.domain().hi, "]"));
     std::vector<double> t(std::size_t(p) + 1, on.lo);
     for (double x : old.knots())
         if (on.lo < x && x < on.hi) t.push_back(x);
@@ -101,7 +104,8 @@ Change<BSplineBasis> reverse(const BSplineBasis& old) {
     const int n = old.size(), p = old.degree();
     BandMap m{n, 1, std::vector<int>(std::size_t(n)), std::vector<double>(std::size_t(n), 1.0)};
     // Open: coefficient j comes from n - 1 - j. Closed: coefficient i of the unwound sequence has the support
-    // [t_i, t_{i+p+1}], which is mirrored to that of n - 1 + p - i in the unwound sequence of the reversed basis.
+    // [t_i, t_{i+p+1}], which is mirrored to that of n - 1 + p - i in the unwound sequence of the reversed
+    // basis.
     for (int j = 0; j < n; ++j)
         m.first[std::size_t(j)] = old.is_closed() ? (((n - 1 + p - j) % n) + n) % n : n - 1 - j;
     auto fresh = old.same_kind(p, std::move(t));
@@ -121,7 +125,8 @@ Change<BSplineBasis> differentiate(const BSplineBasis& old) {
     }
     const auto t = old.is_closed() ? old.defining() : old.knots().subspan(1, old.knots().size() - 2);
     auto fresh = old.same_kind(p - 1, {t.begin(), t.end()});
-    if (!fresh) {  // a knot of multiplicity p + 1: the jump there has no derivative, its coefficient drops out
+    if (!fresh) {  // a knot of multiplicity p + 1: the jump there has no derivative, its coefficient drops
+                   // out
         std::vector<double> u;
         std::vector<int> first;
         std::vector<double> entry;

@@ -10,11 +10,14 @@ FF_INSTANTIATE_PATCHES(1, 4)
 template <int D>
 Result<std::vector<Hom<D>>> make_rational(std::span<const Vec<D>> points, std::span<const double> weights) {
     if (points.size() != weights.size())
-        return refuse(RefusalKind::invalid, "weights", text(weights.size(), " weights for ", points.size(), " points"));
+        return refuse(RefusalKind::invalid, "weights",
+                      text(weights.size(), " weights for ", points.size(), " points"));
     std::vector<Hom<D>> out;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!std::isfinite(weights[i]) || !is_finite(points[i]) || !is_finite(weighted(points[i], weights[i])))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "point, weight or their product is not finite");
+        if (!std::isfinite(weights[i]) || !is_finite(points[i]) ||
+            !is_finite(weighted(points[i], weights[i])))
+            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
+                          "point, weight or their product is not finite");
         out.push_back(weighted(points[i], weights[i]));
     }
     return out;

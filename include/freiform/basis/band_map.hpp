@@ -1,23 +1,25 @@
 // Banded linear maps, and the one operation behind refinement, conversion and grid evaluation: applying a map
 // along one axis of a net.
 #pragma once
-#include <span>
-#include <vector>
-
 #include <freiform/basis/blossom.hpp>
 #include <freiform/core/net.hpp>
 
+#include <span>
+#include <vector>
+
 namespace freiform {
 
-// Row i has its `width` entries in the columns first[i] .. first[i] + width - 1, taken modulo `cols` (they reach
-// beyond `cols` on closed bases only).
+// Row i has its `width` entries in the columns first[i] .. first[i] + width - 1, taken modulo `cols` (they
+// reach beyond `cols` on closed bases only).
 struct BandMap {
     int cols = 0, width = 0;
     std::vector<int> first;
     std::vector<double> entry;  // rows() x width
 
     int rows() const { return int(first.size()); }
-    std::span<const double> row(int i) const { return std::span(entry).subspan(std::size_t(i * width), std::size_t(width)); }
+    std::span<const double> row(int i) const {
+        return std::span(entry).subspan(std::size_t(i * width), std::size_t(width));
+    }
 
     template <class P>
     void apply(Fibre<const P> in, Fibre<P> out) const {
@@ -43,7 +45,8 @@ Net<N, P> along(int axis, const BandMap& map, const Net<N, P>& in) {
     Net<N, P> out(extent);
     const NetView<N, const P> from = in.view();
     const NetView<N, P> to = out.view();
-    each_fibre(axis, extent, [&](const Index<N>& at) { map.apply<P>(from.fibre(axis, at), to.fibre(axis, at)); });
+    each_fibre(axis, extent,
+               [&](const Index<N>& at) { map.apply<P>(from.fibre(axis, at), to.fibre(axis, at)); });
     return out;
 }
 
@@ -51,7 +54,8 @@ Net<N, P> along(int axis, const BandMap& map, const Net<N, P>& in) {
 template <Basis B>
 BandMap collocation(const B& basis, std::span<const double> at, int order = 0) {
     const int width = basis.degree() + 1;
-    BandMap m{basis.size(), width, std::vector<int>(at.size()), std::vector<double>(at.size() * std::size_t(width))};
+    BandMap m{basis.size(), width, std::vector<int>(at.size()),
+              std::vector<double>(at.size() * std::size_t(width))};
     for (std::size_t i = 0; i < at.size(); ++i)
         m.first[i] = weights(basis, at[i], order, &m.entry[i * std::size_t(width)]);
     return m;

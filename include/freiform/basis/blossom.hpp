@@ -2,14 +2,13 @@
 // blossoms share.
 //
 // Notation: p degree, s span (t_s <= u < t_{s+1}), b a row vector over the coefficients s - p .. s.
-// Method: with R_k(x) the k x (k+1) bidiagonal matrix of Lyche & Morken, R_1(x_1) R_2(x_2) ... R_p(x_p) holds the
-// weights of the blossom (polar form) at (x_1, .., x_p). All x_k = u: the values of the basis. The last r steps
-// replaced by the derivatives of R_k: derivatives of order r. Different x_k: a row of the matrix of knot
-// insertion, restriction or Bezier extraction; the mean over "all but one" argument: a row of the elevation.
-// Cost: p (p + 1) / 2 pairs of products.
-// Accuracy: for x inside the span all products are of numbers in [0, 1]; two divisions instead of one shared
-// reciprocal keep the step finite for spans as short as a denormal number.
-// References: [Ramshaw 1989], [Lyche & Morken 2018, ch. 2-4], [PT97, A2.2, A2.3].
+// Method: with R_k(x) the k x (k+1) bidiagonal matrix of Lyche & Morken, R_1(x_1) R_2(x_2) ... R_p(x_p) holds
+// the weights of the blossom (polar form) at (x_1, .., x_p). All x_k = u: the values of the basis. The last r
+// steps replaced by the derivatives of R_k: derivatives of order r. Different x_k: a row of the matrix of
+// knot insertion, restriction or Bezier extraction; the mean over "all but one" argument: a row of the
+// elevation. Cost: p (p + 1) / 2 pairs of products. Accuracy: for x inside the span all products are of
+// numbers in [0, 1]; two divisions instead of one shared reciprocal keep the step finite for spans as short
+// as a denormal number. References: [Ramshaw 1989], [Lyche & Morken 2018, ch. 2-4], [PT97, A2.2, A2.3].
 #pragma once
 #include <freiform/basis/bspline.hpp>
 
@@ -63,8 +62,8 @@ void weights_in_span(const B& basis, int span, const T& u, int order, T* w) {
     }
 }
 
-// The same with the span looked up and a closed basis wrapped. Returns the index of the first coefficient; of a
-// closed basis indices count modulo size().
+// The same with the span looked up and a closed basis wrapped. Returns the index of the first coefficient; of
+// a closed basis indices count modulo size().
 template <Basis B>
 int weights(const B& basis, double u, int order, double* w) {
     const double inside = basis.wrap(u);

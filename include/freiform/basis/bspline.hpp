@@ -3,12 +3,12 @@
 // A basis is a degree, a size, a knot sequence and a span search. Everything else about it (values,
 // derivatives, knot insertion, elevation, Bezier extraction) follows from the blossom, see blossom.hpp.
 #pragma once
+#include <freiform/core/interval.hpp>
+#include <freiform/core/result.hpp>
+
 #include <concepts>
 #include <span>
 #include <vector>
-
-#include <freiform/core/interval.hpp>
-#include <freiform/core/result.hpp>
 
 namespace freiform {
 
@@ -47,16 +47,17 @@ private:
 
 // B-splines of one degree p.
 //
-// Open: a non-decreasing knot vector of size() + p + 1 knots t_i; the domain is [t_p, t_size()], and spans are
-// half-open, the last one closed. A knot may have any multiplicity up to p + 1 (there the spline jumps).
+// Open: a non-decreasing knot vector of size() + p + 1 knots t_i; the domain is [t_p, t_size()], and spans
+// are half-open, the last one closed. A knot may have any multiplicity up to p + 1 (there the spline jumps).
 //
 // Closed: the breaks of one period, stored unwound on both sides, so that knots and spans are found as in the
-// open case; coefficient i stands for every i + k size(). One type for both, so that a tube (closed x open) is an
-// ordinary surface. Parameters outside the domain are taken modulo the period.
+// open case; coefficient i stands for every i + k size(). One type for both, so that a tube (closed x open)
+// is an ordinary surface. Parameters outside the domain are taken modulo the period.
 class BSplineBasis {
 public:
     static Result<BSplineBasis> make(int degree, std::vector<double> knots);
-    // `breaks`: size() + 1 non-decreasing numbers; the first and the last are the same place of the closed curve.
+    // `breaks`: size() + 1 non-decreasing numbers; the first and the last are the same place of the closed
+    // curve.
     static Result<BSplineBasis> periodic(int degree, std::vector<double> breaks);
     // The Bezier basis on `on`: degree + 1 equal knots at both ends.
     static Result<BSplineBasis> bezier(int degree, Interval on = {0, 1});
@@ -68,7 +69,8 @@ public:
     double knot(int i) const { return knots_[std::size_t(i)]; }
     Interval domain() const { return {knot(degree_), knot(unwound())}; }
     bool is_closed() const { return wrapped_ > 0 || closed_constant_; }
-    // The index s of the non-empty span with t_s <= u < t_{s+1}; u left or right of the domain: the first, the last.
+    // The index s of the non-empty span with t_s <= u < t_{s+1}; u left or right of the domain: the first,
+    // the last.
     int span(double u) const;
     // Closed: u moved into the domain by a multiple of the period. Open: u itself.
     double wrap(double u) const;
@@ -83,7 +85,8 @@ public:
     Result<BSplineBasis> same_kind(int degree, std::vector<double> defining) const {
         return is_closed() ? periodic(degree, std::move(defining)) : make(degree, std::move(defining));
     }
-    // Number of knots equal to u in the knot vector (of a closed basis: around u, not counted twice at the seam).
+    // Number of knots equal to u in the knot vector (of a closed basis: around u, not counted twice at the
+    // seam).
     int multiplicity(double u) const;
     // The distinct knots inside the domain, both ends included.
     std::vector<double> breaks() const;

@@ -1,9 +1,10 @@
 // Changes of a B-spline basis: a new basis together with the map that carries coefficients to it. Each is
-// written once, for one parameter; curves, surfaces and volumes, polynomial and rational, apply it along an axis.
+// written once, for one parameter; curves, surfaces and volumes, polynomial and rational, apply it along an
+// axis.
 #pragma once
-#include <span>
-
 #include <freiform/basis/band_map.hpp>
+
+#include <span>
 
 namespace freiform {
 
@@ -13,22 +14,22 @@ struct Change {
     BandMap map;
 };
 
-// Insert the knots `more` (sorted, inside the domain; together with the old ones of multiplicity <= p + 1). The
-// function does not change. Oslo algorithm: every new coefficient is a blossom of the old spline.
+// Insert the knots `more` (sorted, inside the domain; together with the old ones of multiplicity <= p + 1).
+// The function does not change. Oslo algorithm: every new coefficient is a blossom of the old spline.
 Result<Change<BSplineBasis>> insert_knots(const BSplineBasis& old, std::span<const double> more);
 
 // The same function with degree p + 1. Refused beyond kMaxDegree.
 Result<Change<BSplineBasis>> elevate(const BSplineBasis& old);
 
-// The part of the function on [on.lo, on.hi], inside the domain, clamped at both ends. A closed basis is opened;
-// restricted to its whole domain it is cut at the seam.
+// The part of the function on [on.lo, on.hi], inside the domain, clamped at both ends. A closed basis is
+// opened; restricted to its whole domain it is cut at the seam.
 Result<Change<BSplineBasis>> restrict_to(const BSplineBasis& old, Interval on);
 
 // The function run through backwards: new(lo + hi - u) = old(u), up to one rounding of each inner knot.
 Change<BSplineBasis> reverse(const BSplineBasis& old);
 
-// The derivative; of degree p - 1. REQUIRES degree >= 1. Only for polynomial coefficients: the derivative of a
-// rational function is not the quotient of derivatives.
+// The derivative; of degree p - 1. REQUIRES degree >= 1. Only for polynomial coefficients: the derivative of
+// a rational function is not the quotient of derivatives.
 Change<BSplineBasis> differentiate(const BSplineBasis& old);
 
 // Every piece between breaks in Bezier form: all knots get multiplicity p + 1, so that piece i has the

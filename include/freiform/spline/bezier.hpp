@@ -1,9 +1,9 @@
 // Bezier pieces of a spline: one net in which every piece is a block of its own, and the algorithms on blocks
 // (de Casteljau) that clipping, bounding and subdivision are made of.
 #pragma once
-#include <vector>
-
 #include <freiform/spline/patch.hpp>
+
+#include <vector>
 
 namespace freiform {
 
@@ -30,8 +30,8 @@ BezierPieces<N, P> decompose(const Patch<N, P>& patch) {
     return BezierPieces<N, P>(patch);
 }
 
-// de Casteljau in place: the coefficients of a Bezier curve on [0, 1] become those of its part on [0, t] (keep
-// left) or [t, 1] (keep right).
+// de Casteljau in place: the coefficients of a Bezier curve on [0, 1] become those of its part on [0, t]
+// (keep left) or [t, 1] (keep right).
 template <class P>
 void keep_left(Fibre<P> b, double t) {
     for (int r = 1; r < b.size; ++r)

@@ -2,13 +2,13 @@
 //
 //     N = 1:  f, f', f'', ...           N = 2:  S, Su, Sv, Suu, Suv, Svv, Suuu, ...
 #pragma once
+#include <freiform/core/hom.hpp>
+#include <freiform/core/net.hpp>
+
 #include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
-
-#include <freiform/core/hom.hpp>
-#include <freiform/core/net.hpp>
 
 namespace freiform {
 
@@ -33,7 +33,9 @@ constexpr double binomial(int n, int k) {
 }
 
 // Number of partial derivatives of N variables up to total order K.
-constexpr std::size_t jet_size(std::size_t n, int order) { return std::size_t(binomial(int(n) + order, int(n)) + 0.5); }
+constexpr std::size_t jet_size(std::size_t n, int order) {
+    return std::size_t(binomial(int(n) + order, int(n)) + 0.5);
+}
 
 // Place of the partial derivative (a_0, .., a_{N-1}) in the graded order.
 template <std::size_t N>
@@ -68,15 +70,15 @@ struct Jet {
     const V& value() const { return d[0]; }
     const V& operator()(const Index<N>& orders) const { return d[jet_slot(orders)]; }
     template <std::convertible_to<int>... I>
-        requires(sizeof...(I) == N)
-    const V& operator()(I... orders) const {
+    requires(sizeof...(I) == N) const V& operator()(I... orders) const {
         return d[jet_slot(Index<N>{int(orders)...})];
     }
 };
 
-// Projects the partial derivatives h (graded order, up to total order `order`) of a homogeneous function to those
-// of the point function: the quotient rule for every order and every N at once,
-//     S_a = (A_a - sum_{0 < b <= a} C(a, b) w_b S_{a-b}) / w_0                               [PT97, eq. 4.8, 4.20]
+// Projects the partial derivatives h (graded order, up to total order `order`) of a homogeneous function to
+// those of the point function: the quotient rule for every order and every N at once,
+//     S_a = (A_a - sum_{0 < b <= a} C(a, b) w_b S_{a-b}) / w_0                               [PT97,
+//     eq. 4.8, 4.20]
 template <std::size_t N, class P>
 void project_jet(int order, std::span<const P> h, std::span<PointOf<P>> out) {
     if constexpr (!Space<P>::kRational) {

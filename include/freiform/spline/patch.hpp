@@ -2,17 +2,17 @@
 //
 //     f(u) = project( sum_i  B^1_{i1}(u1) .. B^N_{iN}(uN)  P_i )
 //
-// The coefficient type P says whether it is polynomial (Vec<D>) or rational (Hom<D>), the basis type B whether it
-// is one Bezier piece (Bernstein) or a spline, open or closed (BSplineBasis). A patch is valid from construction
-// on: finite coefficients, positive weights, as many coefficients as the bases ask for.
+// The coefficient type P says whether it is polynomial (Vec<D>) or rational (Hom<D>), the basis type B
+// whether it is one Bezier piece (Bernstein) or a spline, open or closed (BSplineBasis). A patch is valid
+// from construction on: finite coefficients, positive weights, as many coefficients as the bases ask for.
 #pragma once
+#include <freiform/basis/change.hpp>
+#include <freiform/spline/jet.hpp>
+
 #include <concepts>
 #include <span>
 #include <utility>
 #include <vector>
-
-#include <freiform/basis/change.hpp>
-#include <freiform/spline/jet.hpp>
 
 namespace freiform {
 
@@ -23,7 +23,8 @@ public:
     using Coefficients = P;
     using Point = PointOf<P>;
 
-    // Refuses nets that do not fit the bases, coefficients that are not finite and weights that are not positive.
+    // Refuses nets that do not fit the bases, coefficients that are not finite and weights that are not
+    // positive.
     static Result<Patch> make(std::array<B, N> bases, Net<N, P> net);
     // REQUIRES what `make` checks. For results of operations that keep a valid patch valid.
     static Patch trusted(std::array<B, N> bases, Net<N, P> net) { return {std::move(bases), std::move(net)}; }
@@ -49,8 +50,7 @@ public:
     // Conveniences. REQUIRES finite parameters; outside the domain the first or last piece is continued.
     Point operator()(const Param<N>& u) const;
     template <std::convertible_to<double>... U>
-        requires(sizeof...(U) == N && N > 1)
-    Point operator()(U... u) const {
+    requires(sizeof...(U) == N && N > 1) Point operator()(U... u) const {
         return (*this)(Param<N>{double(u)...});
     }
     template <int K>
@@ -92,9 +92,8 @@ concept Parametric = requires(const S& s, const Param<N>& u) {
 
 // Replace one basis and carry the net along. Every refinement is this function.
 template <std::size_t N, class P, Basis B, Basis C>
-Patch<N, P, C> rebase(const Patch<N, P, B>& patch, int axis, Change<C> change)
-    requires(std::same_as<B, C> || N == 1)
-{
+Patch<N, P, C> rebase(const Patch<N, P, B>& patch, int axis,
+                      Change<C> change) requires(std::same_as<B, C> || N == 1) {
     if constexpr (std::same_as<B, C>) {
         auto bases = patch.bases();
         bases[std::size_t(axis)] = std::move(change.basis);
@@ -130,28 +129,28 @@ Patch<N, P> reverse(const Patch<N, P>& s, int axis) {
 }
 // The partial derivative along `axis`. REQUIRES degree >= 1 there.
 template <std::size_t N, class P>
-    requires(!Space<P>::kRational)
-Patch<N, P> derivative(const Patch<N, P>& s, int axis) {
+requires(!Space<P>::kRational) Patch<N, P> derivative(const Patch<N, P>& s, int axis) {
     return rebase(s, axis, differentiate(s.basis(axis)));
 }
 
-// The patch of one parameter less where parameter `axis` is `at`: an iso-curve of a surface, a face of a volume.
+// The patch of one parameter less where parameter `axis` is `at`: an iso-curve of a surface, a face of a
+// volume.
 template <std::size_t N, class P, Basis B>
-    requires(N >= 2)
-Patch<N - 1, P, B> iso(const Patch<N, P, B>& s, int axis, double at) {
+requires(N >= 2) Patch<N - 1, P, B> iso(const Patch<N, P, B>& s, int axis, double at) {
     const Net<N, P> net = along(axis, collocation(s.basis(axis), std::span(&at, 1)), s.net());
     Index<N - 1> extent{};
     for (std::size_t d = 0, k = 0; d < N; ++d)
         if (int(d) != axis) extent[k++] = net.extent()[d];
     auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
         return std::array<B, N - 1>{s.basis(int(I) + (int(I) >= axis))...};
-    }(std::make_index_sequence<N - 1>{});
-    return Patch<N - 1, P, B>::trusted(std::move(bases), Net<N - 1, P>(extent, {net.flat().begin(), net.flat().end()}));
+    }
+    (std::make_index_sequence<N - 1>{});
+    return Patch<N - 1, P, B>::trusted(std::move(bases),
+                                       Net<N - 1, P>(extent, {net.flat().begin(), net.flat().end()}));
 }
 // The boundary where parameter `axis` is at the lower (side 0) or upper (side 1) end of its domain.
 template <std::size_t N, class P, Basis B>
-    requires(N >= 2)
-Patch<N - 1, P, B> boundary(const Patch<N, P, B>& s, int axis, int side) {
+requires(N >= 2) Patch<N - 1, P, B> boundary(const Patch<N, P, B>& s, int axis, int side) {
     const Interval on = s.basis(axis).domain();
     return iso(s, axis, side == 0 ? on.lo : on.hi);
 }
@@ -159,7 +158,8 @@ Patch<N - 1, P, B> boundary(const Patch<N, P, B>& s, int axis, int side) {
 // Values on a tensor grid, by sum factorisation: collocation maps applied axis by axis, then one projection.
 // Refuses, as "axes[d][i]", parameters that are not finite or outside the domain.
 template <std::size_t N, class P, Basis B>
-Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s, const std::array<std::span<const double>, N>& axes);
+Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
+                                         const std::array<std::span<const double>, N>& axes);
 
 // Points and weights to coefficients and back.
 template <int D>

@@ -1,0 +1,68 @@
+// Proven bounds of first and second derivatives over parameter boxes: what makes a tessellation certain
+// instead of sampled.
+#pragma once
+#include <freiform/spline/bezier.hpp>
+#include <freiform/spline/geometry.hpp>
+
+#include <optional>
+#include <variant>
+
+namespace freiform {
+
+inline constexpr int kBoundOrder = 3;
+
+// d[slot] >= |partial derivative| on the whole box, Euclidean norm, graded order (jet_slot) up to order 3;
+// d[0] is the radius of a ball that contains the values. May be infinite.
+template <std::size_t N>
+struct DerivativeBounds {
+    std::array<double, jet_size(N, kBoundOrder)> d{};
+
+    template <std::convertible_to<int>... I>
+    requires(sizeof...(I) == N) double operator()(I... orders) const {
+        return d[jet_slot(Index<N>{int(orders)...})];
+    }
+    void include(const DerivativeBounds& o) {
+        for (std::size_t i = 0; i < d.size(); ++i) d[i] = d[i] < o.d[i] ? o.d[i] : d[i];
+    }
+};
+
+// Of one Bezier block (coefficients `net` over a box of side lengths `width`), up to total order `order` <=
+// 3; the higher ones are left 0.
+template <std::size_t N, class P>
+DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
+                                      int order = 2);
+
+template <std::size_t N, int D>
+struct GeometryOf;
+template <int D>
+struct GeometryOf<1, D> {
+    using type = CurveGeometry<D>;
+};
+template <>
+struct GeometryOf<2, 3> {
+    using type = SurfaceGeometry;
+};
+
+// Prepared once for a curve (N = 1) or surface (N = 2), asked for many boxes; const and safe to share between
+// threads. The geometry must outlive it.
+template <std::size_t N, int D>
+class DerivativeQuery {
+public:
+    using Geometry = typename GeometryOf<N, D>::type;
+
+    explicit DerivativeQuery(const Geometry& geometry);
+    // Bounds on `box` up to total order `order` <= 3 (of an offset: 2). The part of the box outside the
+    // domain of a spline is ignored. Infinite where no bound exists (at singular points of an offset).
+    DerivativeBounds<N> operator()(const std::array<Interval, N>& box, int order = 2) const;
+    // The knots of a spline along `axis`, ends included: where derivatives may jump. Empty for analytic
+    // geometry.
+    std::vector<double> breaks(int axis) const;
+
+private:
+    const Geometry* geometry_;
+    std::variant<std::monostate, BezierPieces<N, Vec<D>>, BezierPieces<N, Hom<D>>> pieces_;
+    std::shared_ptr<const DerivativeQuery<1, 3>> profile_;  // of an extrusion or revolution
+    std::shared_ptr<const DerivativeQuery<2, 3>> base_;     // of an offset
+};
+
+}  // namespace freiform

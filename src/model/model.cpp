@@ -1,0 +1,180 @@
+#include <freiform/model/model.hpp>
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+Result<void> check_index(int i, std::size_t size, std::string where) {
+    if (i < 0 || std::size_t(i) >= size)
+        return refuse(RefusalKind::invalid, std::move(where),
+                      text("index ", i, " is outside 0..", (long long)(size)-1));
+    return {};
+}
+
+Result<void> check_number(double x, std::string where) {
+    if (!std::isfinite(x))
+        return refuse(RefusalKind::nonfinite, std::move(where), text(x, " is not a finite number"));
+    return {};
+}
+
+Result<void> check_tolerance(double x, std::string where) {
+    if (auto ok = check_number(x, where); !ok) return ok;
+    if (x < 0)
+        return refuse(RefusalKind::invalid, std::move(where), text("the tolerance ", x, " is negative"));
+    return {};
+}
+
+// The interval must lie in the domain of the curve, which for analytic curves is all of the line.
+template <int D>
+Result<void> check_curve(const CurveGeometry<D>& curve, Interval on, std::string_view where) {
+    if (auto ok = check(curve); !ok) return refuse_within(where, ok.error());
+    const bool periodic = std::holds_alternative<Conic<D>>(curve);
+    const Interval d = domain(curve)[0];
+    const double slack =
+        1e-9 * (d.hi - d.lo);  // readers clamp to the domain within the rounding of their files
+    if (!periodic && !(on.lo >= d.lo - slack && on.hi <= d.hi + slack))
+        return refuse(
+            RefusalKind::out_of_domain, std::string(where),
+            text("the range [", on.lo, ", ", on.hi, "] leaves the domain [", d.lo, ", ", d.hi, "]"));
+    return {};
+}
+
+Result<void> check_edge(const Model& m, const Edge& e, std::string_view where) {
+    if (auto ok = check_index(e.start, m.vertices.size(), text(where, ".start")); !ok) return ok;
+    if (auto ok = check_index(e.end, m.vertices.size(), text(where, ".end")); !ok) return ok;
+    if (auto ok = check_tolerance(e.tolerance, text(where, ".tolerance")); !ok) return ok;
+    if (auto ok = check_number(e.range.hi - e.range.lo, text(where, ".range")); !ok) return ok;
+    if (!(e.range.lo < e.range.hi))
+        return refuse(RefusalKind::invalid, text(where, ".range"),
+                      text("[", e.range.lo, ", ", e.range.hi, "] is empty"));
+    if (!e.curve) {
+        if (e.start != e.end)
+            return refuse(RefusalKind::invalid, std::string(where),
+                          "has no curve, but two different vertices");
+        return {};
+    }
+    return check_curve(*e.curve, e.range, text(where, ".curve"));
+}
+
+Result<void> check_face(const Model& m, const Face& f, std::string_view where) {
+    if (auto ok = check(f.surface); !ok) return refuse_within(text(where, ".surface"), ok.error());
+    if (auto ok = check_tolerance(f.tolerance, text(where, ".tolerance")); !ok) return ok;
+    for (std::size_t l = 0; l < f.loops.size(); ++l) {
+        const auto& coedges = f.loops[l].coedges;
+        const std::string loop = text(where, ".loops[", l, "]");
+        if (coedges.empty()) return refuse(RefusalKind::invalid, loop, "has no edges");
+        for (std::size_t c = 0; c < coedges.size(); ++c) {
+            const std::string at = text(loop, "[", c, "]");
+            if (auto ok = check_index(coedges[c].edge, m.edges.size(), text(at, ".edge")); !ok) return ok;
+            const Edge& e = m.edges[std::size_t(coedges[c].edge)];
+            if (auto ok = check_curve(coedges[c].curve, e.range, text(at, ".curve")); !ok) return ok;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<Model> make_model(Model m) {
+    for (std::size_t i = 0; i < m.vertices.size(); ++i) {
+        if (!is_finite(m.vertices[i].point))
+            return refuse(RefusalKind::nonfinite, text("vertices[", i, "]"), "a coordinate is not finite");
+        if (auto ok = check_tolerance(m.vertices[i].tolerance, text("vertices[", i, "].tolerance")); !ok)
+            return std::unexpected(ok.error());
+    }
+    for (std::size_t i = 0; i < m.edges.size(); ++i)
+        if (auto ok = check_edge(m, m.edges[i], text("edges[", i, "]")); !ok)
+            return std::unexpected(ok.error());
+    for (std::size_t i = 0; i < m.faces.size(); ++i)
+        if (auto ok = check_face(m, m.faces[i], text("faces[", i, "]")); !ok)
+            return std::unexpected(ok.error());
+    for (std::size_t i = 0; i < m.shells.size(); ++i)
+        for (std::size_t k = 0; k < m.shells[i].faces.size(); ++k)
+            if (auto ok = check_index(m.shells[i].faces[k].face, m.faces.size(),
+                                      text("shells[", i, "].faces[", k, "]"));
+                !ok)
+                return std::unexpected(ok.error());
+    for (std::size_t i = 0; i < m.bodies.size(); ++i)
+        for (std::size_t k = 0; k < m.bodies[i].shells.size(); ++k)
+            if (auto ok = check_index(m.bodies[i].shells[k], m.shells.size(),
+                                      text("bodies[", i, "].shells[", k, "]"));
+                !ok)
+                return std::unexpected(ok.error());
+    return m;
+}
+
+ModelSummary summary(const Model& m) {
+    ModelSummary s;
+    s.vertices = int(m.vertices.size());
+    s.edges = int(m.edges.size());
+    s.faces = int(m.faces.size());
+    s.shells = int(m.shells.size());
+    s.bodies = int(m.bodies.size());
+    s.solids = int(std::count_if(m.bodies.begin(), m.bodies.end(), [](const Body& b) { return b.solid; }));
+    std::vector<int> uses(m.edges.size());
+    for (const Face& f : m.faces)
+        for (const Loop& l : f.loops)
+            for (std::size_t c = 0; c < l.coedges.size(); ++c) {
+                ++uses[std::size_t(l.coedges[c].edge)];
+                for (std::size_t k = 0; k < c; ++k)
+                    if (l.coedges[k].edge == l.coedges[c].edge) ++s.seams;
+            }
+    for (std::size_t i = 0; i < m.edges.size(); ++i) {
+        const Edge& e = m.edges[i];
+        if (!e.curve)
+            ++s.degenerate_edges;
+        else if (uses[i] < 2)
+            ++s.open_edges;
+    }
+    for (const Vertex& v : m.vertices) s.box.add(v.point);
+    const auto add_hull = [&](const auto& geometry) {
+        std::visit(
+            [&](const auto& g) {
+                if constexpr (requires { g.net(); })
+                    for (const auto& p : points(g)) s.box.add(p);
+            },
+            geometry);
+    };
+    // A ball about the middle that contains the curve, from the bound of its first derivative.
+    for (const Edge& e : m.edges)
+        if (e.curve) {
+            if (const auto* conic = std::get_if<Conic<3>>(&*e.curve)) {
+                const Vec<3> c = jet<0>(*e.curve, e.range.middle()).value();
+                const double r = DerivativeQuery<1, 3>(*e.curve)({e.range}, 1)(1) * e.range.length() / 2;
+                const double whole = conic->kind == ConicKind::ellipse ? norm(conic->x) + norm(conic->y) : r;
+                for (double side : {-1.0, 1.0})
+                    s.box.add((r < whole ? c : conic->centre) + side * Box<3>::filled(std::min(r, whole)));
+            } else {
+                add_hull(*e.curve);
+            }
+        }
+    for (const Face& f : m.faces) {
+        add_hull(f.surface);
+        std::visit(
+            [&](const auto& g) {
+                if constexpr (requires { g.axis; }) {  // a sphere or torus may bulge over its edges
+                    Box<2> uv;
+                    for (const Loop& l : f.loops)
+                        for (const Coedge& c : l.coedges)
+                            for (double t : {m.edges[std::size_t(c.edge)].range.lo,
+                                             m.edges[std::size_t(c.edge)].range.hi})
+                                uv.add(jet<0>(c.curve, t).value());
+                    if (uv.is_empty()) return;
+                    const DerivativeQuery<1, 3> q(g.profile);
+                    const Interval on = uv.side(1);
+                    const Vec<3> c = jet<0>(g.profile, on.middle()).value() - g.origin,
+                                 up = dot(g.axis, c) * g.axis;
+                    const double r = norm(c - up) + q({on}, 1)(0);
+                    for (double side : {-1.0, 1.0}) s.box.add(g.origin + up + side * Box<3>::filled(r));
+                }
+            },
+            f.surface);
+    }
+    return s;
+}
+
+}  // namespace freiform

@@ -1,0 +1,342 @@
+// Bounds of derivatives from control points.
+//
+// Idea: a derivative of a Bezier block is a Bezier block of differences, and a block lies in the convex hull
+// of its coefficients; so the largest difference bounds the derivative. Restricting the block to a smaller
+// box (de Casteljau) makes the bound as tight as wanted, quadratically in the size of the box. Notation: A
+// numerator, w weight, c = A / w the point, c0 any fixed point near the block, A^ = A - c0 w. Then A^ / w = c
+// - c0, |c - c0| <= r = max |A^_i| / w_i, and by Leibniz, for a > 0,
+//     c_a = (A^_a - sum_{0 < b < a} C(a, b) w_b c_{a-b} - w_a (c - c0)) / w,
+// so |c_a| <= (|A^_a| + sum C(a, b) |w_b| |c_{a-b}| + |w_a| r) / w_min. Without the shift to c0 the bound
+// would depend on the distance from the origin. Accuracy: differences carry the rounding of Bezier extraction
+// and restriction. Each coefficient of the block is off by at most e = (sum_d 12 p_d + 8) u max|A_i| (see
+// patch_detail.hpp), a difference of order k by 2^k e; this is added, so that the bound holds for the exact
+// block. Offsets: O = S + d n with n = m / |m|, m = S_u x S_v:   |n_a| <= |m_a| / L,  |n_ab| <= |m_ab| / L +
+// 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the variation by m_u, m_v.
+// References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Largest norm, over the block, of the numerator's difference of order `a` after shifting to c0, and of the
+// weight's.
+template <std::size_t N, class P>
+std::pair<double, double> largest_difference(const NetView<N, const P>& net, const Index<N>& a,
+                                             const PointOf<P>& c0) {
+    constexpr int D = Space<P>::kDim;
+    Index<N> extent = net.extent, terms{};
+    for (std::size_t d = 0; d < N; ++d) {
+        extent[d] -= a[d];
+        if (extent[d] <= 0) return {0, 0};
+        terms[d] = a[d] + 1;
+    }
+    double most = 0, weight_most = 0;
+    each_index(extent, [&](const Index<N>& at) {
+        Vec<D> sum{};
+        double weight_sum = 0;
+        each_index(terms, [&](const Index<N>& k) {
+            double sign = 1;
+            Index<N> from = at;
+            for (std::size_t d = 0; d < N; ++d) {
+                sign *= ((a[d] - k[d]) % 2 == 0 ? 1 : -1) * binomial(a[d], k[d]);
+                from[d] += k[d];
+            }
+            const P& p = net(from);
+            const double w = Space<P>::weight(p);
+            for (int i = 0; i < D; ++i) sum[i] += sign * (p[i] - w * c0[i]);
+            weight_sum += sign * w;
+        });
+        most = std::max(most, dot(sum, sum));
+        weight_most = std::max(weight_most, std::abs(weight_sum));
+    });
+    return {std::sqrt(most) * (1 + 8 * kRoundoff), Space<P>::kRational ? weight_most : 0};
+}
+
+template <std::size_t N>
+int total(const Index<N>& a) {
+    int sum = 0;
+    for (int x : a) sum += x;
+    return sum;
+}
+
+}  // namespace
+
+template <std::size_t N, class P>
+DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
+                                      int order) {
+    constexpr int D = Space<P>::kDim;
+    double steps = 8, largest = 0, weight_min = kInfinity, weight_max = 0;
+    Index<N> middle{};
+    for (std::size_t d = 0; d < N; ++d) {
+        steps += 12 * (net.extent[d] - 1);
+        middle[d] = net.extent[d] / 2;
+    }
+    const PointOf<P> c0 = project(net(middle));
+    double radius = 0;
+    each_index(net.extent, [&](const Index<N>& at) {
+        const P& p = net(at);
+        const double w = Space<P>::weight(p);
+        weight_min = std::min(weight_min, w);
+        weight_max = std::max(weight_max, w);
+        Vec<D> shifted;
+        for (int i = 0; i < D; ++i) {
+            shifted[i] = p[i] - w * c0[i];
+            largest = std::max(largest, std::abs(p[i]));
+        }
+        radius = std::max(radius, norm(shifted) / w);
+    });
+    const double slip = steps * kRoundoff * largest,
+                 weight_slip = Space<P>::kRational ? steps * kRoundoff * weight_max : 0;
+    radius += 2 * slip / weight_min;
+
+    DerivativeBounds<N> out;
+    std::array<double, jet_size(N, kBoundOrder)> weight{};
+    out.d[0] = radius;
+    Index<N> extent{};
+    for (auto& e : extent) e = order + 1;
+    for (int sum = 1; sum <= order; ++sum)
+        each_index(extent, [&](const Index<N>& a) {
+            if (total(a) != sum) return;
+            double factor = 1;
+            for (std::size_t d = 0; d < N; ++d)
+                for (int k = 0; k < a[d]; ++k) factor *= double(net.extent[d] - 1 - k) / width[d];
+            if (!(factor > 0) && Space<P>::kRational == false)
+                return;  // order above the degree: exactly zero
+            const std::size_t slot = jet_slot(a);
+            const auto [numerator, denominator] = largest_difference(net, a, c0);
+            const double rounding = std::ldexp(1.0, sum);
+            double most = std::abs(factor) * (numerator + rounding * 2 * slip);
+            weight[slot] = std::abs(factor) * (denominator + rounding * weight_slip);
+            if constexpr (Space<P>::kRational) {
+                Index<N> below{};
+                for (std::size_t d = 0; d < N; ++d) below[d] = a[d] + 1;
+                each_index(below, [&](const Index<N>& b) {
+                    if (total(b) == 0) return;
+                    double choose = 1;
+                    Index<N> rest{};
+                    for (std::size_t d = 0; d < N; ++d) {
+                        choose *= binomial(a[d], b[d]);
+                        rest[d] = a[d] - b[d];
+                    }
+                    most += choose * weight[jet_slot(b)] * out.d[jet_slot(rest)];
+                });
+                most /= weight_min * (1 - 16 * steps * kRoundoff);
+            }
+            out.d[slot] = most * (1 + 64 * kRoundoff);
+        });
+    return out;
+}
+
+namespace {
+
+// The bound over the pieces of a spline that meet the box, each restricted to its part of it.
+template <std::size_t N, class P>
+DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box,
+                              int order) {
+    Index<N> from{}, count{};
+    for (std::size_t d = 0; d < N; ++d) {
+        const auto& b = pieces.breaks(int(d));
+        const int n = int(b.size()) - 1;
+        const int first =
+            std::clamp(int(std::upper_bound(b.begin(), b.end(), box[d].lo) - b.begin()) - 1, 0, n - 1);
+        const int last =
+            std::clamp(int(std::lower_bound(b.begin(), b.end(), box[d].hi) - b.begin()) - 1, first, n - 1);
+        from[d] = first;
+        count[d] = last - first + 1;
+    }
+    DerivativeBounds<N> out;
+    std::vector<P> block;
+    each_index(count, [&](const Index<N>& k) {
+        Index<N> piece{};
+        for (std::size_t d = 0; d < N; ++d) piece[d] = from[d] + k[d];
+        const NetView<N, const P> whole = pieces.net(piece);
+        block.resize(std::size_t(count_of(whole.extent)));
+        NetView<N, P> own{block.data(), whole.extent, {}};
+        std::ptrdiff_t stride = 1;
+        for (std::size_t d = N; d-- > 0;) {
+            own.stride[d] = stride;
+            stride *= whole.extent[d];
+        }
+        each_index(whole.extent, [&](const Index<N>& at) { own(at) = whole(at); });
+        std::array<double, N> width{};
+        const auto on = pieces.box(piece);
+        for (std::size_t d = 0; d < N; ++d) {
+            const double hi = std::clamp(box[d].hi, on[d].lo, on[d].hi),
+                         lo = std::clamp(box[d].lo, on[d].lo, hi);
+            width[d] = on[d].length();
+            if (lo <= on[d].lo && hi >= on[d].hi) continue;
+            if (!(lo < hi)) continue;  // the box touches the piece only: the whole piece is a bound as well
+            each_fibre(int(d), whole.extent, [&](const Index<N>& at) {
+                if (hi < on[d].hi) keep_left(own.fibre(int(d), at), (hi - on[d].lo) / width[d]);
+                if (lo > on[d].lo) keep_right(own.fibre(int(d), at), (lo - on[d].lo) / (hi - on[d].lo));
+            });
+            width[d] = hi - lo;
+        }
+        out.include(derivative_bounds<N, P>(own, width, order));
+    });
+    return out;
+}
+
+template <int D>
+DerivativeBounds<1> bounds_of(const Line<D>& line, Interval on) {
+    return {{norm(line.direction) * on.length() / 2, norm(line.direction), 0, 0}};
+}
+
+template <int D>
+DerivativeBounds<1> bounds_of(const Conic<D>& c, Interval on) {
+    const double xx = dot(c.x, c.x), yy = dot(c.y, c.y), xy = dot(c.x, c.y),
+                 t = std::max(std::abs(on.lo), std::abs(on.hi));
+    const double grow = 1 + 64 * kRoundoff;
+    DerivativeBounds<1> out;
+    if (c.kind == ConicKind::ellipse) {  // the larger semi-axis: the larger singular value of (x y)
+        const double s = grow * std::sqrt((xx + yy + std::hypot(xx - yy, 2 * xy)) / 2);
+        out.d = {s, s, s, s};
+    } else if (c.kind == ConicKind::hyperbola) {
+        const double s = grow * std::cosh(t) * (std::sqrt(xx) + std::sqrt(yy));
+        out.d = {s, s, s, s};
+    } else {
+        out.d = {0, grow * (2 * t * std::sqrt(xx) + std::sqrt(yy)), grow * 2 * std::sqrt(xx), 0};
+    }
+    out.d[0] = std::min(out.d[0] > 0 ? out.d[0] : kInfinity, out.d[1] * on.length() / 2);
+    return out;
+}
+
+DerivativeBounds<2> bounds_of(const Extrusion& e, const DerivativeQuery<1, 3>& profile,
+                              const std::array<Interval, 2>& box, int order) {
+    const auto c = profile({box[0]}, order);
+    DerivativeBounds<2> out;
+    for (int i = 0; i <= order; ++i) out.d[jet_slot(Index<2>{i, 0})] = c.d[std::size_t(i)];
+    out.d[2] = norm(e.direction);
+    out.d[0] += out.d[2] * box[1].length() / 2;
+    return out;
+}
+
+// Partial (i, j): the j-th derivative of the profile, turned; for i > 0 only its part across the axis counts,
+// which is bounded from the middle of the interval outwards.
+DerivativeBounds<2> bounds_of(const Revolution& r, const DerivativeQuery<1, 3>& profile,
+                              const std::array<Interval, 2>& box, int order) {
+    const auto c = profile({box[1]}, std::min(order + 1, kBoundOrder));
+    auto at = jet<3>(r.profile, box[1].middle());
+    at.d[0] -= r.origin;
+    const double half = box[1].length() / 2, grow = 1 + 64 * kRoundoff;
+    const double slip =
+        value_error_bound(r.profile, {box[1]}) + 8 * kRoundoff * (max_abs(r.origin) + norm(at.d[0]));
+    DerivativeBounds<2> out;
+    for (int j = 0; j <= order; ++j) {
+        double across = c.d[std::size_t(j)];
+        if (j < kBoundOrder) {
+            const double here = norm(cross(r.axis, at.d[std::size_t(j)])) + half * c.d[std::size_t(j) + 1] +
+                                (j == 0 ? slip : 0);
+            across = j == 0 ? here : std::min(across, here);
+        }
+        for (int i = 0; i + j <= order; ++i)
+            out.d[jet_slot(Index<2>{i, j})] = grow * (i == 0 ? c.d[std::size_t(j)] : across);
+    }
+    out.d[0] = out.d[1] * box[0].length() / 2 + c.d[0];
+    return out;
+}
+
+DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3>& base,
+                              const std::array<Interval, 2>& box) {
+    const auto s = base(box, 3);
+    const auto& S = s.d;
+    const double mu = S[3] * S[2] + S[1] * S[4], mv = S[4] * S[2] + S[1] * S[5];
+    const double second[3] = {S[6] * S[2] + 2 * S[3] * S[4] + S[1] * S[7],
+                              S[7] * S[2] + S[3] * S[5] + S[1] * S[8],
+                              S[8] * S[2] + 2 * S[4] * S[5] + S[1] * S[9]};
+    const auto at = jet<1>(*o.base, {box[0].middle(), box[1].middle()});
+    const double least =
+        norm(cross(at.d[1], at.d[2])) * (1 - 1e-12) - mu * box[0].length() / 2 - mv * box[1].length() / 2;
+    DerivativeBounds<2> out;
+    out.d.fill(kInfinity);
+    if (!(least > 0)) return out;
+    const double d = std::abs(o.distance), m[2] = {mu, mv}, grow = 1 + 64 * kRoundoff;
+    out.d[0] = S[0] + 2 * d;
+    for (int a = 0; a < 2; ++a) out.d[std::size_t(1 + a)] = grow * (S[std::size_t(1 + a)] + d * m[a] / least);
+    for (int k = 0; k < 3; ++k)
+        out.d[std::size_t(3 + k)] =
+            grow *
+            (S[std::size_t(3 + k)] + d * (second[k] / least + 3 * m[k == 2] * m[k >= 1] / (least * least)));
+    return out;
+}
+
+}  // namespace
+
+template <std::size_t N, int D>
+DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&geometry) {
+    std::visit(
+        [&](const auto& g) {
+            if constexpr (requires { g.net(); })
+                pieces_ = decompose(g);
+            else if constexpr (requires { g.profile; })
+                profile_ = std::make_shared<const DerivativeQuery<1, 3>>(g.profile);
+            else if constexpr (requires { g.base; })
+                base_ = std::make_shared<const DerivativeQuery<2, 3>>(*g.base);
+        },
+        geometry);
+}
+
+template <std::size_t N, int D>
+DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval, N>& box, int order) const {
+    return std::visit(
+        [&](const auto& g) -> DerivativeBounds<N> {
+            if constexpr (requires { g.net(); })
+                return bounds_of(
+                    std::get<BezierPieces<N, typename std::remove_cvref_t<decltype(g)>::Coefficients>>(
+                        pieces_),
+                    box, order);
+            else if constexpr (requires { g.profile; })
+                return bounds_of(g, *profile_, box, order);
+            else if constexpr (requires { g.base; })
+                return bounds_of(g, *base_, box);
+            else
+                return bounds_of(g, box[0]);
+        },
+        *geometry_);
+}
+
+template <std::size_t N, int D>
+std::vector<double> DerivativeQuery<N, D>::breaks(int axis) const {
+    if (base_) return base_->breaks(axis);
+    if (profile_) {
+        const bool along_profile = std::visit(
+            [&](const auto& g) {
+                if constexpr (requires { g.direction; } && N == 2) return axis == 0;
+                return axis == 1;
+            },
+            *geometry_);
+        return along_profile ? profile_->breaks(0) : std::vector<double>{};
+    }
+    return std::visit(
+        [&](const auto& p) -> std::vector<double> {
+            if constexpr (requires { p.breaks(axis); }) return p.breaks(axis);
+            return {};
+        },
+        pieces_);
+}
+
+template class DerivativeQuery<1, 2>;
+template class DerivativeQuery<1, 3>;
+template class DerivativeQuery<2, 3>;
+template DerivativeBounds<1> derivative_bounds(const NetView<1, const Vec<2>>&, const std::array<double, 1>&,
+                                               int);
+template DerivativeBounds<1> derivative_bounds(const NetView<1, const Hom<2>>&, const std::array<double, 1>&,
+                                               int);
+template DerivativeBounds<1> derivative_bounds(const NetView<1, const Vec<3>>&, const std::array<double, 1>&,
+                                               int);
+template DerivativeBounds<1> derivative_bounds(const NetView<1, const Hom<3>>&, const std::array<double, 1>&,
+                                               int);
+template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
+                                               int);
+template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,
+                                               int);
+
+}  // namespace freiform
