@@ -1,4 +1,16 @@
+# freiform_common(TARGET): the flags that everything of the project is compiled with.
 # freiform_library(NAME FOLDER...): the component NAME from src/FOLDER/*.cpp, as target freiform_NAME = freiform::NAME.
+
+if(FREIFORM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    find_program(FREIFORM_CCACHE_PROGRAM ccache)
+    mark_as_advanced(FREIFORM_CCACHE_PROGRAM)
+    if(FREIFORM_CCACHE_PROGRAM)
+        # What ccache has to be told before it dares to cache files that use a precompiled header.
+        set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+            CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${FREIFORM_CCACHE_PROGRAM})
+    endif()
+endif()
+
 function(freiform_common target)
     target_compile_features(${target} PUBLIC cxx_std_23)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
@@ -10,6 +22,11 @@ function(freiform_common target)
     if(FREIFORM_CHECKED)
         target_compile_definitions(${target} PRIVATE FF_CHECKED=1)
     endif()
+    if(FREIFORM_PCH AND FREIFORM_CCACHE)
+        # ccache looks at what the header contains, not at when it was written.
+        target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
+            $<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>)
+    endif()
 endfunction()
 
 set_property(GLOBAL PROPERTY FREIFORM_COMPONENTS "")
@@ -20,9 +37,14 @@ function(freiform_library name)
         file(GLOB found CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/src/${folder}/*.cpp")
         list(APPEND sources ${found})
     endforeach()
+    if(NOT sources)
+        message(STATUS "freiform::${name}: left out, it has no sources yet")
+        return()
+    endif()
     add_library(freiform_${name} ${sources})
     add_library(freiform::${name} ALIAS freiform_${name})
     freiform_common(freiform_${name})
+    freiform_isa(${sources})
     target_include_directories(freiform_${name}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
         PRIVATE ${PROJECT_SOURCE_DIR}/src)
@@ -35,9 +57,23 @@ function(freiform_library name)
         target_precompile_headers(freiform_${name} PRIVATE <algorithm> <array> <cmath> <expected> <functional> <memory>
             <optional> <span> <string> <variant> <vector>)
     endif()
-    install(TARGETS freiform_${name} EXPORT freiform_${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-    install(EXPORT freiform_${name} NAMESPACE freiform:: FILE freiform-${name}.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/freiform)
     set_property(GLOBAL APPEND PROPERTY FREIFORM_COMPONENTS ${name})
+endfunction()
+
+# src/kernel/*_avx2.cpp and *_avx512.cpp are compiled for the instructions that their name says; the precompiled
+# header is for other flags.
+function(freiform_isa)
+    foreach(file IN LISTS ARGN)
+        set(flags "")
+        if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+            if(file MATCHES "_avx2\\.cpp$")
+                set(flags -mavx2 -mfma)
+            elseif(file MATCHES "_avx512\\.cpp$")
+                set(flags -mavx512f -mavx512dq -mavx512vl -mfma)
+            endif()
+        endif()
+        if(flags)
+            set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}" SKIP_PRECOMPILE_HEADERS ON)
+        endif()
+    endforeach()
 endfunction()
