@@ -51,12 +51,10 @@ Result<void> check_edge(const Model& m, const Edge& e, std::string_view where) {
     if (!(e.range.lo < e.range.hi))
         return refuse(RefusalKind::invalid, text(where, ".range"),
                       text("[", e.range.lo, ", ", e.range.hi, "] is empty"));
-    if (!e.curve) {
-        if (e.start != e.end)
-            return refuse(RefusalKind::invalid, std::string(where),
-                          "has no curve, but two different vertices");
-        return {};
-    }
+    if (e.degenerate && (e.curve || e.start != e.end))
+        return refuse(RefusalKind::invalid, std::string(where),
+                      "is degenerate, but has a curve or two vertices");
+    if (!e.curve) return {};
     return check_curve(*e.curve, e.range, text(where, ".curve"));
 }
 
@@ -125,7 +123,7 @@ ModelSummary summary(const Model& m) {
             }
     for (std::size_t i = 0; i < m.edges.size(); ++i) {
         const Edge& e = m.edges[i];
-        if (!e.curve)
+        if (e.degenerate)
             ++s.degenerate_edges;
         else if (uses[i] < 2)
             ++s.open_edges;

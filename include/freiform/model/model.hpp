@@ -22,8 +22,9 @@ struct Vertex {
 };
 
 struct Edge {
-    std::optional<CurveGeometry<3>>
-        curve;                 // none: a degenerate edge, all of it is the vertex `start` (a pole)
+    // None: degenerate, or the surface along the parameter curve of its first coedge.
+    std::optional<CurveGeometry<3>> curve;
+    bool degenerate = false;   // all of it is the vertex `start`: a pole or apex
     Interval range{0, 1};      // the part of the curve that the edge is; lo at `start`, hi at `end`
     int start = -1, end = -1;  // equal for a closed edge
     double tolerance = 0;
