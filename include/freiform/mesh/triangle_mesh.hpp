@@ -2,6 +2,7 @@
 // mesh; vertices add what differs from face to face: normal and parameters.
 #pragma once
 #include <freiform/core/colour.hpp>
+#include <freiform/core/result.hpp>
 #include <freiform/core/vec.hpp>
 
 #include <array>
@@ -40,6 +41,25 @@ struct TriangleMesh {
     }
 };
 
+// Refuses numbers that are not finite, indices that lead outside, colours outside [0, 1] and parts that do
+// not cover the triangles one after the other. A mesh without any part is allowed.
+Result<void> validate(const TriangleMesh& mesh);
+
+// Unit normal of the plane of one triangle, counter-clockwise; zero if the triangle has no area in double
+// precision. REQUIRES a mesh that `validate` accepts.
+Vec<3> triangle_normal(const TriangleMesh& mesh, std::size_t triangle);
+
+// An edge joins two points, whichever vertices or parts the triangles use there.
+struct MeshEdge {
+    int a = 0, b = 0;                      // points, a < b
+    int forward = 0, backward = 0;         // triangles that run from a to b, from b to a
+    std::array<int, 2> triangles{-1, -1};  // the first two of them
+};
+
+// All edges, sorted by (a, b); those of triangles with two equal point indices are left out.
+// Linear time but for points with very many edges. REQUIRES a mesh that `validate` accepts.
+std::vector<MeshEdge> edges(const TriangleMesh& mesh);
+
 // What the connectivity (equal point indices, not equal coordinates) says.
 struct MeshTopology {
     int open_edges = 0;            // used by one triangle
@@ -47,6 +67,7 @@ struct MeshTopology {
     int misoriented_edges = 0;     // used by two triangles in the same direction
     int degenerate_triangles = 0;  // two equal points, or an area that is exactly zero
 };
+// REQUIRES a mesh that `validate` accepts.
 MeshTopology topology(const TriangleMesh& mesh);
 
 }  // namespace freiform

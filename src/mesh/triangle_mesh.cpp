@@ -1,0 +1,125 @@
+#include <freiform/mesh/triangle_mesh.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace freiform {
+namespace {
+
+constexpr std::size_t kMaxInt = std::size_t(std::numeric_limits<int>::max());
+
+Result<void> validate_parts(const TriangleMesh& mesh) {
+    long long next = 0;
+    for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+        const MeshPart& part = mesh.parts[i];
+        if (part.first != next || part.count < 0)
+            return refuse(RefusalKind::invalid, text("parts[", i, "]"),
+                          text("begins at triangle ", part.first, " and has ", part.count,
+                               " of them; the part before ends at ", next));
+        next += part.count;
+        if (!part.colour) continue;
+        for (double c : {part.colour->r, part.colour->g, part.colour->b, part.colour->a})
+            if (!(c >= 0 && c <= 1))
+                return refuse(RefusalKind::invalid, text("parts[", i, "].colour"),
+                              text(c, " is outside [0, 1]"));
+    }
+    if (!mesh.parts.empty() && next != (long long)(mesh.triangles.size()))
+        return refuse(RefusalKind::invalid, "parts",
+                      text("cover ", next, " triangles of ", mesh.triangles.size()));
+    return {};
+}
+
+// b - a, or half of it where that would overflow.
+Vec<3> direction(const Vec<3>& a, const Vec<3>& b) {
+    const Vec<3> d = b - a;
+    return is_finite(d) ? d : 0.5 * b - 0.5 * a;
+}
+
+Vec<3> scaled_to_one(Vec<3> v) {
+    const double m = max_abs(v);
+    if (m == 0) return v;
+    const int e = std::ilogb(m);
+    for (int i = 0; i < 3; ++i) v[i] = std::scalbn(v[i], -e);
+    return v;
+}
+
+}  // namespace
+
+Result<void> validate(const TriangleMesh& mesh) {
+    if (mesh.points.size() > kMaxInt || mesh.vertices.size() > kMaxInt || mesh.triangles.size() > kMaxInt)
+        return refuse(RefusalKind::limit, "mesh",
+                      text("more than ", kMaxInt, " points, vertices or triangles"));
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        if (!is_finite(mesh.points[i]))
+            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
+                          "a coordinate is not a finite number");
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const MeshVertex& v = mesh.vertices[i];
+        if (v.point < 0 || std::size_t(v.point) >= mesh.points.size())
+            return refuse(RefusalKind::invalid, text("vertices[", i, "]"),
+                          text("point ", v.point, " of ", mesh.points.size()));
+        if (!is_finite(v.normal) || !is_finite(v.uv))
+            return refuse(RefusalKind::nonfinite, text("vertices[", i, "]"),
+                          "the normal or the parameters are not finite numbers");
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (int v : mesh.triangles[i])
+            if (v < 0 || std::size_t(v) >= mesh.vertices.size())
+                return refuse(RefusalKind::invalid, text("triangles[", i, "]"),
+                              text("vertex ", v, " of ", mesh.vertices.size()));
+    return validate_parts(mesh);
+}
+
+// The directions are scaled by powers of two where squares would leave the range of double; that changes no
+// bit of the result, so that scaling the model by a power of two does not either.
+Vec<3> triangle_normal(const TriangleMesh& mesh, std::size_t triangle) {
+    const auto [a, b, c] = mesh.points_of(triangle);
+    const Vec<3> u = direction(mesh.points[std::size_t(a)], mesh.points[std::size_t(b)]);
+    const Vec<3> v = direction(mesh.points[std::size_t(a)], mesh.points[std::size_t(c)]);
+    const Vec<3> n = cross(u, v);
+    const double d = dot(n, n);
+    if (d > 1e-200 && d < 1e200) return (1 / std::sqrt(d)) * n;
+    return unit(cross(scaled_to_one(u), scaled_to_one(v)));
+}
+
+// Method. A counting sort of the directed edges by their lower point, then a small sort at every point; an
+// entry packs the other point, the triangle and the direction into 64 bits.
+std::vector<MeshEdge> edges(const TriangleMesh& mesh) {
+    const std::size_t n = mesh.points.size();
+    std::vector<std::size_t> begin(n + 2, 0);
+    const auto each = [&](auto&& f) {
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            const std::array<int, 3> p = mesh.points_of(t);
+            if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) continue;
+            for (std::size_t i = 0; i < 3; ++i) f(p[i], p[(i + 1) % 3], t);
+        }
+    };
+    each([&](int a, int b, std::size_t) { ++begin[std::size_t(std::min(a, b)) + 2]; });
+    for (std::size_t i = 2; i < begin.size(); ++i) begin[i] += begin[i - 1];
+    std::vector<std::uint64_t> entries(begin.back());
+    each([&](int a, int b, std::size_t t) {
+        const auto other = std::uint64_t(std::max(a, b)), backward = std::uint64_t(a > b);
+        entries[begin[std::size_t(std::min(a, b)) + 1]++] = other << 32 | std::uint64_t(t) << 1 | backward;
+    });
+
+    std::vector<MeshEdge> out;
+    out.reserve(entries.size() / 2);
+    for (std::size_t a = 0; a < n; ++a) {
+        const auto first = entries.begin() + std::ptrdiff_t(begin[a]);
+        const auto last = entries.begin() + std::ptrdiff_t(begin[a + 1]);
+        std::sort(first, last);
+        for (auto it = first; it != last;) {
+            MeshEdge edge{int(a), int(*it >> 32), 0, 0, {-1, -1}};
+            for (; it != last && int(*it >> 32) == edge.b; ++it) {
+                const int uses = edge.forward + edge.backward;
+                if (uses < 2) edge.triangles[std::size_t(uses)] = int((*it & 0xffffffffu) >> 1);
+                ++(*it & 1 ? edge.backward : edge.forward);
+            }
+            out.push_back(edge);
+        }
+    }
+    return out;
+}
+
+}  // namespace freiform
