@@ -13,7 +13,10 @@ endif()
 
 function(freiform_common target)
     target_compile_features(${target} PUBLIC cxx_std_23)
-    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+    if(NOT CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32)
+        set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    endif()
     # No contraction: a sum of products gives the same bits on every machine.
     target_compile_options(${target} PRIVATE -ffp-contract=off -fno-math-errno)
     if(FREIFORM_WARNINGS)

@@ -1,0 +1,44 @@
+# What a person types; CMake does the work (CMakePresets.json). JOBS=n sets how many compilers run at once.
+SHELL := /bin/bash
+JOBS ?= $(shell nproc)
+export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
+.DEFAULT_GOAL := help
+.PHONY: help setup build demo test format clean
+.NOTPARALLEL:
+
+help:
+	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/)"
+	@echo "make test    build everything and run all tests"
+	@echo "make build   build the program: build/bin/freiform"
+	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
+	@echo "make format  format the C++ files"
+	@echo "make clean   remove what was built"
+
+setup:
+	@tools/setup.sh test
+
+build:
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh demo; \
+	step "Configure" cmake --preset release --log-level=WARNING; \
+	step "Build" cmake --build --preset release
+
+demo:
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh demo; \
+	step "Configure" cmake --preset release --log-level=WARNING; \
+	step "Build" cmake --build --preset release; \
+	step "Demo" tools/demo.sh
+
+test:
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh test; \
+	step "Configure" cmake --preset dev --log-level=WARNING; \
+	step "Build" cmake --build --preset dev; \
+	step "Test" ctest --preset dev
+
+format:
+	@tools/format.sh
+
+clean:
+	rm -rf build build-* out

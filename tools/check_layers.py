@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Fails if a file includes what its layer must not see, or calls what the library must not call.
+
+Layers (HACKING.md): a file may include from its own layer and from layers of a lower rank. Private headers in
+src/LAYER are seen by that layer alone; those of src/kernel, which has no public ones, by every layer above it.
+"""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+ORDER = [["core"], ["poly", "kernel"], ["basis"], ["spline"], ["make", "path", "query"],
+         ["intersect", "fit", "animate", "colour"], ["trim"], ["mesh"], ["model"], ["shape"], ["io", "gpu"],
+         ["apps", "bindings"]]
+RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
+
+# Other people's headers, and the only folders that may include them.
+THIRD_PARTY = [
+    (r".*\.hxx", ["apps/occt"]),
+    (r"nlohmann/.*", ["src/io", "apps"]),
+    (r"CLI/.*", ["apps/cli"]),
+    (r"(oneapi/)?tbb/.*", ["src/core"]),
+    (r"(epoxy|EGL|GL)/.*|png\.h", ["src/gpu"]),
+    (r"iostream", ["apps"]),
+]
+
+# In the library: what depends on the locale, throws, dispatches at run time, prints or ends the process.
+BANNED = [
+    (r"\b(strtod|strtof|strtold|strtol|strtoll|strtoul|strtoull|atof|atoi|atol|sscanf|fscanf)\s*\(", "use std::from_chars"),
+    (r"\bsto(d|f|ld|i|l|ll|ul|ull)\s*\(", "use std::from_chars"),
+    (r"\b(std::)?to_string\s*\(", "use text() or std::to_chars"),
+    (r"\bv?(f|s|sn)?printf\s*\(", "use text()"),
+    (r"\bthrow\b", "return a Refusal"),
+    (r"\bvirtual\b", "use a concept or a variant"),
+    (r"\bstd::(cout|cerr|clog)\b", "the library does not print"),
+    (r"\b(exit|_exit|quick_exit|abort|terminate)\s*\(", "return a Refusal"),
+    (r"\bsetlocale\s*\(", "the library leaves the process alone"),
+]
+# The one place that may print and abort: FF_REQUIRE.
+EXEMPT = {"include/freiform/core/result.hpp": r"std::fprintf\(stderr, \"%s:%d: REQUIRES"}
+
+STRIP = re.compile(r'//[^\n]*|/\*.*?\*/|R"([^(\s]*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
+
+
+def layer_of(path):
+    """'basis' for include/freiform/basis/x.hpp and src/basis/x.cpp; None for the header that includes all."""
+    parts = path.parts
+    if parts[0] in ("apps", "bindings"):
+        return parts[0]
+    if parts[:2] == ("include", "freiform"):
+        return parts[2] if len(parts) > 3 else {"shape.hpp": "shape"}.get(parts[2])
+    return parts[1] if parts[0] == "src" and len(parts) > 2 else None
+
+
+def may_see(layer, other):
+    return layer == other or RANK[other] < RANK[layer]
+
+
+def check_include(path, layer, bracket, name):
+    if name.startswith("freiform/"):
+        other = layer_of(pathlib.PurePosixPath("include") / name)
+        if not (ROOT / "include" / name).is_file():
+            return f"includes {name}, which is not there"
+        if layer and (other is None or not may_see(layer, other)):
+            return f"layer {layer} must not see {name}"
+        return None
+    if bracket == '"':
+        beside = (ROOT / path).parent / name
+        target = beside if beside.is_file() else ROOT / "src" / name
+        if not target.is_file():
+            return None
+        other = layer_of(target.resolve().relative_to(ROOT))
+        if layer and other != layer and not (other == "kernel" and may_see(layer, other)):
+            return f"layer {layer} must not see the private header {name}"
+    for pattern, folders in THIRD_PARTY:
+        if re.fullmatch(pattern, name) and not any(path.is_relative_to(f) for f in folders):
+            return f"{name} is for {', '.join(folders)} only"
+    return None
+
+
+def check(path):
+    source = (ROOT / path).read_text()
+    layer = layer_of(path)
+    if layer and layer not in RANK:
+        yield 1, f"folder {layer} is no layer"
+        return
+    if path.suffix == ".hpp" and not re.search(r"^#pragma once$", source, re.M):
+        yield 1, "no #pragma once"
+    for m in INCLUDE.finditer(source):
+        problem = check_include(path, layer, m[1], m[2])
+        if problem:
+            yield source.count("\n", 0, m.start()) + 1, problem
+    if path.parts[0] in ("src", "include"):
+        exempt = EXEMPT.get(str(path))
+        lines = source.split("\n")
+        code = STRIP.sub(lambda m: " " + "\n" * m[0].count("\n"), source)
+        for number, line in enumerate(code.split("\n"), 1):
+            if exempt and re.search(exempt, lines[number - 1]):
+                continue
+            for pattern, instead in BANNED:
+                m = re.search(pattern, line)
+                if m:
+                    yield number, f"`{m[0].strip()}`: {instead}"
+
+
+def main():
+    files = [p.relative_to(ROOT) for top in ("include", "src", "apps", "bindings", "tests")
+             for p in sorted((ROOT / top).rglob("*")) if p.suffix in (".hpp", ".cpp", ".inl")]
+    problems = [f"{path}:{line}: {problem}" for path in files for line, problem in check(path)]
+    print("\n".join(problems) or f"{len(files)} files: layers and calls are in order")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# tools/setup.sh [demo|test|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
+# Does nothing, and takes no time, where all are there.
+set -euo pipefail
+
+build="g++ cmake ninja-build ccache pkg-config"
+library="libtbb-dev nlohmann-json3-dev libcli11-dev"
+occt="libocct-data-exchange-dev"
+gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
+test="libgtest-dev librapidcheck-dev libboost-dev"
+ci="python3 clang-22 libclang-rt-22-dev clang-format"
+wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
+
+purpose=${1:-demo}
+case $purpose in
+    demo) packages="$build $library $occt $gl" ;;
+    test) packages="$build $library $occt $gl $test" ;;
+    ci) packages="$build $library $occt $gl $test $ci" ;;
+    wasm) packages="$build $wasm" ;;
+    *)
+        echo "usage: tools/setup.sh [demo|test|ci|wasm]" >&2
+        exit 2
+        ;;
+esac
+
+what_for() {
+    case $1 in
+        g++) echo "the C++23 compiler (12 or newer)" ;;
+        cmake) echo "configures the build (3.25 or newer)" ;;
+        ninja-build) echo "runs the build" ;;
+        ccache) echo "makes the second build quick" ;;
+        pkg-config) echo "finds epoxy and EGL" ;;
+        libtbb-dev) echo "threads" ;;
+        nlohmann-json3-dev) echo "reads and writes JSON and glTF" ;;
+        libcli11-dev) echo "the options of the command line" ;;
+        libocct-data-exchange-dev) echo "reads STEP, IGES and BREP (the largest: 400 MB)" ;;
+        libegl-dev | libepoxy-dev) echo "OpenGL without a window, for pictures" ;;
+        libegl-mesa0 | libgl1-mesa-dri) echo "OpenGL in software, for pictures without a graphics card" ;;
+        libpng-dev) echo "writes pictures" ;;
+        libgtest-dev | librapidcheck-dev) echo "the tests" ;;
+        libboost-dev) echo "exact arithmetic to test against" ;;
+        python3) echo "the checks of the source" ;;
+        clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
+        clang-format) echo "the format check" ;;
+        *) echo "the WebAssembly build" ;;
+    esac
+}
+
+if ! command -v dpkg-query >/dev/null; then
+    echo "This is not Debian, so nothing is installed. Needed, by their Debian names: $packages"
+    exit 0
+fi
+
+missing=()
+# shellcheck disable=SC2086  # a list of words
+present=" $(dpkg-query -W -f '${db:Status-Status}:${Package}\n' $packages 2>/dev/null | sed -n 's/^installed://p' | tr '\n' ' ' || true)"
+for package in $packages; do
+    [[ $present == *" $package "* ]] || missing+=("$package")
+done
+if [ ${#missing[@]} -eq 0 ]; then
+    exit 0
+fi
+
+echo "Debian packages to install:"
+for package in "${missing[@]}"; do
+    printf '  %-28s %s\n' "$package" "$(what_for "$package")"
+done
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+        echo "They need root, and there is no sudo. As root: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+apt() {
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@"
+}
+install() {
+    apt install -y --no-install-recommends "${missing[@]}" >/dev/null
+}
+# A list of packages that is absent or old is the usual reason to fail: get it and try once more.
+if ! { compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null && install 2>/dev/null; }; then
+    apt update
+    if ! install; then
+        echo "apt-get could not install them. By hand: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+fi
