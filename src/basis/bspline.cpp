@@ -57,7 +57,7 @@ Result<BSplineBasis> BSplineBasis::make(int degree, std::vector<double> knots) {
     if (knots.size() < 2 * (std::size_t(degree) + 1))
         return refuse(RefusalKind::invalid, "knots",
                       text(knots.size(), " knots, degree ", degree, " needs at least ", 2 * (degree + 1)));
-    if (knots.size() > 0x40000000) return refuse(RefusalKind::limit, "knots", "more than 2^30 knots");
+    if (knots.size() > 0x20000000) return refuse(RefusalKind::limit, "knots", "more than 2^29 knots");
     if (auto ok = check_sorted("knots", knots); !ok) return std::unexpected(ok.error());
     return checked({degree, std::move(knots), 0, false});
 }
@@ -66,7 +66,7 @@ Result<BSplineBasis> BSplineBasis::periodic(int degree, std::vector<double> brea
     if (auto ok = check_degree(degree); !ok) return std::unexpected(ok.error());
     if (breaks.size() < 2)
         return refuse(RefusalKind::invalid, "breaks", text(breaks.size(), " breaks, at least 2 are needed"));
-    if (breaks.size() > 0x40000000) return refuse(RefusalKind::limit, "breaks", "more than 2^30 breaks");
+    if (breaks.size() > 0x20000000) return refuse(RefusalKind::limit, "breaks", "more than 2^29 breaks");
     if (auto ok = check_sorted("breaks", breaks); !ok) return std::unexpected(ok.error());
     const int n = int(breaks.size()) - 1;
     for (int i = 0; i + std::max(degree, 1) <= n; ++i)
@@ -78,11 +78,21 @@ Result<BSplineBasis> BSplineBasis::periodic(int degree, std::vector<double> brea
     if (!std::isfinite(breaks.back() + (degree + 1) * period) ||
         !std::isfinite(breaks.front() - (degree + 1) * period))
         return refuse(RefusalKind::nonfinite, "breaks", "the unwound knots overflow");
+    const double front = breaks.front(), back = breaks.back();
+    const auto seam =
+        std::count(breaks.begin(), breaks.end(), front) + std::count(breaks.begin(), breaks.end(), back) - 1;
+    if (front < back && seam > std::max(degree, 1))
+        return refuse(RefusalKind::invalid, "breaks[0]",
+                      text("the seam has ", seam, " knots; a closed spline of degree ", degree,
+                           " cannot have more than ", std::max(degree, 1)));
+    // Breaks equal to an end stay equal to it on every turn, also where front + period rounds away from back.
+    const auto place = [&](int turns) { return turns == 1 ? back : front + turns * period; };
     std::vector<double> t;
-    t.reserve(std::size_t(n + 2 * degree + 1));
+    t.reserve(std::size_t(n) + 2 * std::size_t(degree) + 1);
     for (int i = -degree; i <= n + degree; ++i) {
         const int turns = i >= 0 ? i / n : -((n - 1 - i) / n);
-        t.push_back(i == n ? breaks.back() : breaks[std::size_t(i - turns * n)] + turns * period);
+        const double x = breaks[std::size_t(i - turns * n)];
+        t.push_back(x == front ? place(turns) : x == back ? place(turns + 1) : x + turns * period);
     }
     for (std::size_t i = 1; i < t.size(); ++i)
         t[i] = std::max(t[i], t[i - 1]);  // rounding of the unwound ones
@@ -101,6 +111,7 @@ Result<BSplineBasis> BSplineBasis::clamped_uniform(int degree, int size) {
     if (size <= degree)
         return refuse(RefusalKind::invalid, "size",
                       text(size, " coefficients, degree ", degree, " needs ", degree + 1));
+    if (size > 0x20000000) return refuse(RefusalKind::limit, "size", "more than 2^29 coefficients");
     std::vector<double> t;
     for (int i = -degree; i <= size; ++i) t.push_back(std::clamp(i, 0, size - degree));
     return make(degree, std::move(t));
@@ -120,7 +131,9 @@ int BSplineBasis::span(double u) const {
 double BSplineBasis::wrap(double u) const {
     const Interval on = domain();
     if (!is_closed() || on.contains(u)) return u;
-    const double period = on.length(), r = std::fmod(u - on.lo, period);
+    const double period = on.length(), ahead = u - on.lo;
+    const double r =
+        std::isfinite(ahead) ? std::fmod(ahead, period) : 2 * std::fmod(u / 2 - on.lo / 2, period / 2);
     return std::clamp(r < 0 ? on.hi + r : on.lo + r, on.lo, on.hi);
 }
 

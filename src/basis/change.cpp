@@ -3,42 +3,112 @@
 // Idea: coefficient j of a spline on knots t' is its blossom at (t'_{j+1}, .., t'_{j+p}) [Ramshaw 1989]. So a
 // new knot vector alone says what the new coefficients are; which map it is (insertion, restriction, Bezier
 // extraction) only depends on how t' was made.
-// Notation: `old` has knots t and degree p, `fresh` has knots t'.
-// Accuracy: for insertion all entries of a row are non-negative and sum to 1 up to rounding (Oslo algorithm
-// [Cohen Lyche Riesenfeld 1980]). For elevation they are means of blossoms whose arguments leave the span,
-// with entries of both signs; tests tally the growth. Why not Boehm's algorithm: it inserts one knot after
-// the other; the rows here are independent of each other.
+//
+// Notation: `old` has knots t and degree p, `fresh` has knots t'; s is the span of t where t'_j lies.
+//
+// Method: a blossom is symmetric, so its arguments may be taken in any order; the order decides about
+// rounding. Taken are first those <= t_s, downwards, then the others, upwards. Wherever an argument passes an
+// old knot, that knot itself was an argument before (t' refines t around s), and the step for it has set the
+// weights that the passing step would multiply by a negative factor to an exact zero. So all products are of
+// non-negative numbers: the weights of insertion, restriction and extraction are the discrete B-splines of
+// [Cohen Lyche Riesenfeld 1980], computed without cancellation. For elevation t' still refines t when one of
+// the p + 1 arguments is left out, because every knot of t has got one more in t'; so the means of those
+// blossoms are non-negative, too.
+//
+// Accuracy: an entry carries a relative error of at most 5 p (elevation: 6 p + 3) roundings; every row is a
+// convex combination up to rounding. An insertion of nothing gives the identity to the bit.
+//
+// Why not Boehm's algorithm: it inserts one knot after the other; the rows here are independent of each
+// other. Why not arguments in ascending order throughout: on an unclamped basis the first p rows then begin
+// with extrapolation, and at degree 9 random knots lose all digits.
 #include <freiform/basis/change.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace freiform {
 
 namespace {
 
+// w[0..p] := the blossom of the piece s of `old` at p ascending arguments.
+void blossom_at(const BSplineBasis& old, int s, const double* args, double* w) {
+    const int p = old.degree();
+    double order[kMaxDegree + 1];
+    int below = 0, k = 0;
+    while (below < p && args[below] <= old.knot(s)) ++below;
+    for (int i = below; i-- > 0;) order[k++] = args[i];
+    for (int i = below; i < p; ++i) order[k++] = args[i];
+    blossom(old, s, static_cast<const double*>(order), w);
+}
+
 // The map from `old` to `fresh` whose row j is what `row(span of old, t' + j + 1, w)` adds to w[0..p].
 template <class F>
 Change<BSplineBasis> change(const BSplineBasis& old, BSplineBasis fresh, F&& row) {
-    const int width = old.degree() + 1, rows = fresh.size();
+    const int p = old.degree(), width = p + 1, rows = fresh.size();
+    const Interval on = fresh.domain();
     BandMap m{old.size(), width, std::vector<int>(std::size_t(rows)),
               std::vector<double>(std::size_t(rows) * std::size_t(width))};
-    for (int j = fresh.wrapped(); j < fresh.wrapped() + rows; ++j) {
-        const int s = old.span(fresh.knot(j)), r = j % rows;
-        m.first[std::size_t(r)] = s - old.degree();
-        row(s, fresh.knots().data() + j + 1, &m.entry[std::size_t(r) * std::size_t(width)]);
+    // Of the indices j + k rows() of a closed basis the one whose support begins in the domain, but not at
+    // its end.
+    int start = 0;
+    while (old.is_closed() && fresh.is_closed() && fresh.knot(start) < on.lo) ++start;
+    for (int j = start; j < start + rows; ++j) {
+        const std::size_t r = std::size_t(j % rows);
+        double* w = &m.entry[r * std::size_t(width)];
+        const bool before = fresh.knot(j + fresh.degree() + 1) <= on.lo, after = fresh.knot(j) >= on.hi;
+        if (before || after) {  // no influence inside the domain (unclamped only): any coefficient will do
+            const int from = std::clamp(before ? j : old.size() - rows + j, 0, old.size() - 1);
+            m.first[r] = std::min(from, old.size() - width);
+            w[from - m.first[r]] = 1;
+            continue;
+        }
+        const int s = old.span(fresh.knot(j));
+        m.first[r] = s - p;
+        row(s, fresh.knots().data() + j + 1, w);
     }
     return {std::move(fresh), std::move(m)};
 }
 
 Change<BSplineBasis> refined(const BSplineBasis& old, BSplineBasis fresh) {
     return change(old, std::move(fresh),
-                  [&](int s, const double* args, double* w) { blossom(old, s, args, w); });
+                  [&](int s, const double* args, double* w) { blossom_at(old, s, args, w); });
 }
 
 }  // namespace
 
+BandMap composed(const BandMap& first, const BandMap& second) {
+    FF_REQUIRE(first.rows() == second.cols);
+    BandMap out{first.cols, 0, std::vector<int>(second.first.size()), {}};
+    const auto column = [&](int i, int k) {
+        return std::size_t((second.first[std::size_t(i)] + k) % second.cols);
+    };
+    for (int i = 0; i < second.rows(); ++i) {
+        int lo = first.first[column(i, 0)], hi = lo;
+        for (int k = 1; k < second.width; ++k) {
+            lo = std::min(lo, first.first[column(i, k)]);
+            hi = std::max(hi, first.first[column(i, k)]);
+        }
+        out.first[std::size_t(i)] = lo;
+        out.width = std::max(out.width, hi - lo + first.width);
+    }
+    out.entry.resize(out.first.size() * std::size_t(out.width));
+    for (int i = 0; i < second.rows(); ++i)
+        for (int k = 0; k < second.width; ++k) {
+            const std::size_t c = column(i, k);
+            double* w = &out.entry[std::size_t(i) * std::size_t(out.width)] + first.first[c] -
+                        out.first[std::size_t(i)];
+            for (int l = 0; l < first.width; ++l)
+                w[l] += second.row(i)[std::size_t(k)] * first.row(int(c))[std::size_t(l)];
+        }
+    return out;
+}
+
 Result<Change<BSplineBasis>> insert_knots(const BSplineBasis& old, std::span<const double> more) {
     for (std::size_t i = 0; i < more.size(); ++i) {
+        if (!std::isfinite(more[i]))
+            return refuse(RefusalKind::nonfinite, text("knots[", i, "]"),
+                          text(more[i], " is not a finite number"));
         if (!old.domain().contains(more[i]))
             return refuse(
                 RefusalKind::out_of_domain, text("knots[", i, "]"),
@@ -62,6 +132,16 @@ Result<Change<BSplineBasis>> elevate(const BSplineBasis& old) {
         t.push_back(from[i]);
         if (i + 1 == from.size() ? !old.is_closed() : from[i] != from[i + 1]) t.push_back(from[i]);
     }
+    if (!old.is_closed()) {
+        // Of the knots before and behind the domain as many as degree p + 1 has room for, the nearest ones.
+        int before = 0, behind = 0;
+        for (std::size_t i = 0; i + 1 < from.size(); ++i) {
+            before += from[i] != from[i + 1] && from[i] < old.domain().lo;
+            behind += from[i] != from[i + 1] && from[i + 1] > old.domain().hi;
+        }
+        t.erase(t.end() - behind, t.end());
+        t.erase(t.begin(), t.begin() + before);
+    }
     auto fresh = old.same_kind(p + 1, std::move(t));
     if (!fresh) return std::unexpected(fresh.error());
     // The blossom of degree p + 1 is the mean of the old one over all arguments but one.
@@ -69,7 +149,7 @@ Result<Change<BSplineBasis>> elevate(const BSplineBasis& old) {
         double some[kMaxDegree + 1], v[kMaxDegree + 1];
         for (int skip = 0; skip <= p; ++skip) {
             for (int k = 0; k < p; ++k) some[k] = args[k + (k >= skip)];
-            blossom(old, s, static_cast<const double*>(some), v);
+            blossom_at(old, s, some, v);
             for (int k = 0; k <= p; ++k) w[k] += v[k] / (p + 1);
         }
     });
@@ -77,6 +157,8 @@ Result<Change<BSplineBasis>> elevate(const BSplineBasis& old) {
 
 Result<Change<BSplineBasis>> restrict_to(const BSplineBasis& old, Interval on) {
     const int p = old.degree();
+    if (!std::isfinite(on.lo) || !std::isfinite(on.hi))
+        return refuse(RefusalKind::nonfinite, "interval", text("[", on.lo, ", ", on.hi, "] is not finite"));
     if (!old.domain().contains(on.lo) || !old.domain().contains(on.hi) || !(on.lo < on.hi))
         return refuse(RefusalKind::out_of_domain, "interval",
                       text("[", on.lo, ", ", on.hi, "] is empty or outside the domain [", old.domain().lo,
@@ -97,9 +179,17 @@ Change<BSplineBasis> reverse(const BSplineBasis& old) {
     for (std::size_t i = 0; i < t.size(); ++i) {
         const double x = from[from.size() - 1 - i];
         t[i] = x == on.lo ? on.hi : x == on.hi ? on.lo : on.lo + (on.hi - x);
-        // Rounding must not move an inner knot over the end.
-        if (x > on.lo && x < on.hi) t[i] = std::clamp(t[i], on.lo, on.hi);
-        if (i > 0) t[i] = std::max(t[i], t[i - 1]);
+    }
+    // Where rounding would merge knots, or move one over an end, it is moved to the next number instead.
+    const auto differ = [&](std::size_t i) {
+        return from[t.size() - 1 - i] != from[t.size() - i];
+    };  // t[i-1], t[i]
+    const double inf = std::numeric_limits<double>::infinity();
+    for (std::size_t i = t.size(); --i > 0;)
+        t[i - 1] = std::min(t[i - 1], differ(i) ? std::nextafter(t[i], -inf) : t[i]);
+    for (std::size_t i = 1; i < t.size(); ++i) {
+        if (from[t.size() - i] == on.hi) t[i - 1] = on.lo;
+        t[i] = std::max(t[i], differ(i) ? std::nextafter(t[i - 1], inf) : t[i - 1]);
     }
     const int n = old.size(), p = old.degree();
     BandMap m{n, 1, std::vector<int>(std::size_t(n)), std::vector<double>(std::size_t(n), 1.0)};
@@ -116,32 +206,32 @@ Change<BSplineBasis> reverse(const BSplineBasis& old) {
 Change<BSplineBasis> differentiate(const BSplineBasis& old) {
     FF_REQUIRE(old.degree() >= 1);
     const int p = old.degree(), rows = old.size() - (old.is_closed() ? 0 : 1);
-    BandMap m{old.size(), 2, {}, {}};
-    for (int i = 0; i < rows; ++i) {
-        const double d = old.knot(i + p + 1) - old.knot(i + 1), q = d > 0 ? p / d : 0;
-        m.first.push_back(i);
-        m.entry.push_back(-q);
-        m.entry.push_back(q);
-    }
-    const auto t = old.is_closed() ? old.defining() : old.knots().subspan(1, old.knots().size() - 2);
-    auto fresh = old.same_kind(p - 1, {t.begin(), t.end()});
-    if (!fresh) {  // a knot of multiplicity p + 1: the jump there has no derivative, its coefficient drops
-                   // out
-        std::vector<double> u;
-        std::vector<int> first;
-        std::vector<double> entry;
-        const auto k = old.knots();
-        for (int i = 0; i < rows; ++i)
-            if (old.knot(i + p + 1) > old.knot(i + 1)) {
-                u.push_back(k[std::size_t(i) + 1]);
-                first.push_back(m.first[std::size_t(i)]);
-                entry.insert(entry.end(), {m.entry[std::size_t(2 * i)], m.entry[std::size_t(2 * i) + 1]});
+    if (old.is_closed() && p > 1)
+        for (double x : old.breaks())
+            if (old.multiplicity(x) == p) {  // a kink: the derivative jumps there and cannot be closed
+                auto open = restrict_to(old, old.domain());
+                FF_REQUIRE(open.has_value());
+                auto out = differentiate(open->basis);
+                out.map = composed(open->map, out.map);
+                return out;
             }
-        u.insert(u.end(), k.end() - 1 - p, k.end() - 1);
-        m.first = std::move(first);
-        m.entry = std::move(entry);
-        fresh = BSplineBasis::make(p - 1, std::move(u));
+    BandMap m{old.size(), 2, {}, {}};
+    std::vector<double> t;
+    for (int i = 0; i < rows; ++i) {
+        const double width = old.knot(i + p + 1) - old.knot(i + 1), q = p / width;
+        if (width == 0)
+            continue;  // p + 1 equal knots: the jump there has no derivative, its coefficient drops out
+        t.push_back(old.knot(i + 1));
+        m.first.push_back(i);
+        m.entry.insert(m.entry.end(), {-q, q});
     }
+    if (old.is_closed()) {
+        t.assign(old.defining().begin(), old.defining().end());
+    } else {
+        const auto k = old.knots();
+        t.insert(t.end(), k.end() - 1 - p, k.end() - 1);
+    }
+    auto fresh = old.same_kind(p - 1, std::move(t));
     FF_REQUIRE(fresh.has_value());
     return {std::move(*fresh), std::move(m)};
 }

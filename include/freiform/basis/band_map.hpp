@@ -18,7 +18,7 @@ struct BandMap {
 
     int rows() const { return int(first.size()); }
     std::span<const double> row(int i) const {
-        return std::span(entry).subspan(std::size_t(i * width), std::size_t(width));
+        return std::span(entry).subspan(std::size_t(i) * std::size_t(width), std::size_t(width));
     }
 
     template <class P>
@@ -43,12 +43,16 @@ Net<N, P> along(int axis, const BandMap& map, const Net<N, P>& in) {
     Index<N> extent = in.extent();
     extent[std::size_t(axis)] = map.rows();
     Net<N, P> out(extent);
+    if (map.rows() == 0) return out;
     const NetView<N, const P> from = in.view();
     const NetView<N, P> to = out.view();
     each_fibre(axis, extent,
                [&](const Index<N>& at) { map.apply<P>(from.fibre(axis, at), to.fibre(axis, at)); });
     return out;
 }
+
+// first, then second: row i of the result is row i of second * first. REQUIRES first.rows() == second.cols.
+BandMap composed(const BandMap& first, const BandMap& second);
 
 // Row i: the values (order 0) or derivatives of the basis at at[i].
 template <Basis B>

@@ -25,11 +25,13 @@ Result<Change<BSplineBasis>> elevate(const BSplineBasis& old);
 // opened; restricted to its whole domain it is cut at the seam.
 Result<Change<BSplineBasis>> restrict_to(const BSplineBasis& old, Interval on);
 
-// The function run through backwards: new(lo + hi - u) = old(u), up to one rounding of each inner knot.
+// The function run through backwards: new(lo + hi - u) = old(u), up to the rounding of the inner knots.
+// Distinct knots stay distinct.
 Change<BSplineBasis> reverse(const BSplineBasis& old);
 
-// The derivative; of degree p - 1. REQUIRES degree >= 1. Only for polynomial coefficients: the derivative of
-// a rational function is not the quotient of derivatives.
+// The derivative; of degree p - 1. REQUIRES degree >= 1. Open also for a closed basis with a knot of
+// multiplicity p, where the derivative jumps. Only for polynomial coefficients: the derivative of a rational
+// function is not the quotient of derivatives.
 Change<BSplineBasis> differentiate(const BSplineBasis& old);
 
 // Every piece between breaks in Bezier form: all knots get multiplicity p + 1, so that piece i has the
