@@ -1,22 +1,23 @@
-// Definitions of the members of Patch; instantiated once per number of parameters in patch_1.cpp .. patch_3.cpp.
+// Definitions of the members of Patch; instantiated once per number of parameters in patch_1.cpp ..
+// patch_3.cpp.
 //
 // Accuracy of values. Notation: u = 2^-53, p_d degrees, all parameters inside the domain.
-// Every weight of the recurrence is a sum of products of non-negative factors; one step multiplies relative errors
-// by at most (1+u)^4 (two differences share no cancellation beyond their own rounding, a quotient, a product) and
-// adds one rounding, so a weight of degree p carries at most 5 p roundings, a term of the sum N more products and
-// a sum over p_d + 1 terms p_d more. With k = sum_d (6 p_d + 2) the computed value differs from the exact one by at
-// most k u / (1 - k u) * sum w_i |P_i| <= 1.01 k u max|P_i| (partition of unity). For rational patches numerator and
-// denominator each obey this, and the quotient by at most
+// Every weight of the recurrence is a sum of products of non-negative factors; one step multiplies relative
+// errors by at most (1+u)^4 (two differences share no cancellation beyond their own rounding, a quotient, a
+// product) and adds one rounding, so a weight of degree p carries at most 5 p roundings, a term of the sum N
+// more products and a sum over p_d + 1 terms p_d more. With k = sum_d (6 p_d + 2) the computed value differs
+// from the exact one by at most k u / (1 - k u) * sum w_i |P_i| <= 1.01 k u max|P_i| (partition of unity).
+// For rational patches numerator and denominator each obey this, and the quotient by at most
 //     (1.01 k u w_max c_max + c_max 1.01 k u w_max) / (w_min (1 - 1.01 k u w_max / w_min)) + u c_max
 // with c_max the largest coordinate of a control point. Underflow aside.
 // References: [Higham 2002, ch. 3] for the counting of roundings.
 #pragma once
+#include <freiform/spline/bezier.hpp>
+#include <freiform/spline/patch.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <freiform/spline/bezier.hpp>
-#include <freiform/spline/patch.hpp>
 
 namespace freiform {
 
@@ -45,7 +46,8 @@ P contract(const NetView<N, const P>& net, const std::array<const double*, N>& w
 }
 
 inline Result<void> check_parameter(double u, Interval on, bool closed, std::string where) {
-    if (!std::isfinite(u)) return refuse(RefusalKind::nonfinite, std::move(where), text(u, " is not a finite number"));
+    if (!std::isfinite(u))
+        return refuse(RefusalKind::nonfinite, std::move(where), text(u, " is not a finite number"));
     if (!closed && !on.contains(u))
         return refuse(RefusalKind::out_of_domain, std::move(where),
                       text(u, " is outside the domain [", on.lo, ", ", on.hi, "]"));
@@ -66,16 +68,20 @@ template <std::size_t N, Coefficient P, Basis B>
 Result<Patch<N, P, B>> Patch<N, P, B>::make(std::array<B, N> bases, Net<N, P> net) {
     for (std::size_t d = 0; d < N; ++d)
         if (net.extent()[d] != bases[d].size())
-            return refuse(RefusalKind::invalid, "points",
-                          text(net.extent()[d], " coefficients along axis ", d, ", the basis has ", bases[d].size()));
+            return refuse(
+                RefusalKind::invalid, "points",
+                text(net.extent()[d], " coefficients along axis ", d, ", the basis has ", bases[d].size()));
     std::size_t i = 0;
     for (const P& p : net.flat()) {
-        if (!is_finite(p)) return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "has a coordinate that is not finite");
+        if (!is_finite(p))
+            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
+                          "has a coordinate that is not finite");
         if (Space<P>::kRational && !(Space<P>::weight(p) > 0))
             return refuse(RefusalKind::invalid, text("weights[", i, "]"),
                           text("weight ", Space<P>::weight(p), " is not positive"));
         if (!is_finite(freiform::project(p)))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "overflows when divided by its weight");
+            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
+                          "overflows when divided by its weight");
         ++i;
     }
     return Patch(std::move(bases), std::move(net));
@@ -91,8 +97,9 @@ std::array<Interval, N> Patch<N, P, B>::domain() const {
 template <std::size_t N, Coefficient P, Basis B>
 Result<void> Patch<N, P, B>::check(const Param<N>& u, std::size_t index) const {
     for (std::size_t d = 0; d < N; ++d)
-        if (auto ok = detail::check_parameter(component<N>(u, d), bases_[d].domain(), detail::is_closed(bases_[d]),
-                                              N == 1 ? text("at[", index, "]") : text("at[", index, "][", d, "]"));
+        if (auto ok =
+                detail::check_parameter(component<N>(u, d), bases_[d].domain(), detail::is_closed(bases_[d]),
+                                        N == 1 ? text("at[", index, "]") : text("at[", index, "][", d, "]"));
             !ok)
             return ok;
     return {};
@@ -183,16 +190,19 @@ double Patch<N, P, B>::value_error_bound() const {
     }
     if (!Space<P>::kRational) return g * c_max;
     const double ratio = w_max / w_min, left = 1 - g * ratio;
-    return left > 0.5 ? (2 * g * ratio / left + 2 * unit_roundoff) * c_max : std::numeric_limits<double>::infinity();
+    return left > 0.5 ? (2 * g * ratio / left + 2 * unit_roundoff) * c_max
+                      : std::numeric_limits<double>::infinity();
 }
 
 template <std::size_t N, class P, Basis B>
-Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s, const std::array<std::span<const double>, N>& axes) {
+Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
+                                         const std::array<std::span<const double>, N>& axes) {
     Index<N> extent{};
     for (std::size_t d = 0; d < N; ++d) {
         extent[d] = int(std::min<std::size_t>(axes[d].size(), 0x7fffffff));
         for (std::size_t i = 0; i < axes[d].size(); ++i)
-            if (auto ok = detail::check_parameter(axes[d][i], s.basis(int(d)).domain(), detail::is_closed(s.basis(int(d))),
+            if (auto ok = detail::check_parameter(axes[d][i], s.basis(int(d)).domain(),
+                                                  detail::is_closed(s.basis(int(d))),
                                                   text("axes[", d, "][", i, "]"));
                 !ok)
                 return std::unexpected(ok.error());
@@ -245,7 +255,8 @@ Index<N> BezierPieces<N, P>::extent() const {
 template <std::size_t N, class P>
 std::array<Interval, N> BezierPieces<N, P>::box(const Index<N>& piece) const {
     std::array<Interval, N> b;
-    for (std::size_t d = 0; d < N; ++d) b[d] = {breaks_[d][std::size_t(piece[d])], breaks_[d][std::size_t(piece[d]) + 1]};
+    for (std::size_t d = 0; d < N; ++d)
+        b[d] = {breaks_[d][std::size_t(piece[d])], breaks_[d][std::size_t(piece[d]) + 1]};
     return b;
 }
 template <std::size_t N, class P>
@@ -263,25 +274,26 @@ Patch<N, P, Bernstein> BezierPieces<N, P>::piece(const Index<N>& index) const {
     const auto view = net(index);
     auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
         return std::array<Bernstein, N>{*Bernstein::make(degree_[I], on[I])...};
-    }(std::make_index_sequence<N>{});
+    }
+    (std::make_index_sequence<N>{});
     Net<N, P> own(view.extent);
     each_index(view.extent, [&](const Index<N>& at) { own.view()(at) = view(at); });
     return Patch<N, P, Bernstein>::trusted(std::move(bases), std::move(own));
 }
 
-#define FF_INSTANTIATE_PATCH(N, P, B)                                                       \
-    template class Patch<N, P, B>;                                                          \
-    template Result<Net<N, PointOf<P>>> evaluate_grid<N, P, B>(                             \
-        const Patch<N, P, B>&, const std::array<std::span<const double>, N>&);              \
-    template std::vector<PointOf<P>> points<N, P, B>(const Patch<N, P, B>&);                \
+#define FF_INSTANTIATE_PATCH(N, P, B)                                          \
+    template class Patch<N, P, B>;                                             \
+    template Result<Net<N, PointOf<P>>> evaluate_grid<N, P, B>(                \
+        const Patch<N, P, B>&, const std::array<std::span<const double>, N>&); \
+    template std::vector<PointOf<P>> points<N, P, B>(const Patch<N, P, B>&);   \
     template std::vector<double> weights<N, P, B>(const Patch<N, P, B>&);
-#define FF_INSTANTIATE_PATCHES(N, D)                                                        \
-    FF_INSTANTIATE_PATCH(N, Vec<D>, BSplineBasis)                                           \
-    FF_INSTANTIATE_PATCH(N, Hom<D>, BSplineBasis)                                           \
-    FF_INSTANTIATE_PATCH(N, Vec<D>, Bernstein)                                              \
-    FF_INSTANTIATE_PATCH(N, Hom<D>, Bernstein)                                              \
-    template class BezierPieces<N, Vec<D>>;                                                 \
-    template class BezierPieces<N, Hom<D>>;                                                 \
+#define FF_INSTANTIATE_PATCHES(N, D)                                                            \
+    FF_INSTANTIATE_PATCH(N, Vec<D>, BSplineBasis)                                               \
+    FF_INSTANTIATE_PATCH(N, Hom<D>, BSplineBasis)                                               \
+    FF_INSTANTIATE_PATCH(N, Vec<D>, Bernstein)                                                  \
+    FF_INSTANTIATE_PATCH(N, Hom<D>, Bernstein)                                                  \
+    template class BezierPieces<N, Vec<D>>;                                                     \
+    template class BezierPieces<N, Hom<D>>;                                                     \
     template Patch<N, Hom<D>, BSplineBasis> to_rational(const Patch<N, Vec<D>, BSplineBasis>&); \
     template Patch<N, Hom<D>, Bernstein> to_rational(const Patch<N, Vec<D>, Bernstein>&);
 

@@ -1,5 +1,5 @@
-// What somebody writes who has only the installed headers and libraries: an exact circle, refined, evaluated on
-// several threads, and a refusal.
+// What somebody writes who has only the installed headers and libraries: an exact circle, refined, evaluated
+// on several threads, and a refusal.
 #include <freiform/core/parallel.hpp>
 #include <freiform/spline/patch.hpp>
 
