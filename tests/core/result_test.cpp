@@ -1,6 +1,8 @@
 #include <freiform/core/result.hpp>
 
+#include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -32,6 +34,15 @@ TEST(Refusal, every_kind_has_a_name_of_its_own) {
     for (int k = 0; k <= last; ++k) names.insert(name_of(RefusalKind(k)));
     EXPECT_EQ(int(names.size()), last + 1);
     EXPECT_EQ(name_of(RefusalKind::ill_conditioned), "ill_conditioned");
+}
+
+TEST(Refusal, every_kind_is_in_the_documentation) {
+    std::ifstream file(FREIFORM_SOURCE_DIR "/docs/refusals.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    for (int k = 0; k <= int(RefusalKind::io); ++k) {
+        const std::string row = text("\n| `", name_of(RefusalKind(k)), "` |");
+        EXPECT_NE(page.find(row), std::string::npos) << row;
+    }
 }
 
 TEST(Text, doubles_are_the_shortest_that_read_back) {
