@@ -35,7 +35,7 @@ test:
 	step "Packages" tools/setup.sh test; \
 	step "Configure" cmake --preset dev --log-level=WARNING; \
 	step "Build" cmake --build --preset dev; \
-	step "Test" ctest --preset dev
+	step "Test" tools/run_tests.sh dev
 
 format:
 	@tools/format.sh
