@@ -26,9 +26,10 @@ inline std::optional<std::filesystem::path> corpus(std::string_view name) {
 }  // namespace freiform::test
 
 // Declares `path`, a file of the corpus, or skips the test and says why. For the body of a TEST.
-#define FF_CORPUS_OR_SKIP(path, name)                                                            \
-    const auto path##_found_ = ::freiform::test::corpus(name);                                   \
-    if (!path##_found_)                                                                          \
-        GTEST_SKIP() << "no " << (name) << " below " << ::freiform::test::corpus_root().string() \
-                     << " (FREIFORM_CORPUS names another folder)";                               \
+#define FF_CORPUS_OR_SKIP(path, name)                                               \
+    const auto path##_found_ = ::freiform::test::corpus(name);                      \
+    if (!path##_found_)                                                             \
+        GTEST_SKIP() << "no " << (name) << " below "                                \
+                     << ::freiform::test::corpus_root().lexically_normal().string() \
+                     << " (FREIFORM_CORPUS names another folder)";                  \
     const std::filesystem::path& path = *path##_found_
