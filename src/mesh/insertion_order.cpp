@@ -1,6 +1,6 @@
 // Idea. Randomised insertion has O(log n) expected work per point whatever the points are (a sorted parabola
 // costs O(n) flips per point otherwise), but jumps all over the memory. Sorting along a curve inside rounds
-// that double in size keeps both the bound and the locality [Amenta 2003].
+// that double in size keeps both the bound and the locality [Amenta, Choi & Rote 2003].
 #include "mesh/insertion_order_detail.hpp"
 
 #include <algorithm>

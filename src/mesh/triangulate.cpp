@@ -22,7 +22,7 @@
 // Cost. O(n log n) expected for points. Memory: 32 bytes for each of the 2n triangles, 20 bytes for each
 // point.
 //
-// References. [Shewchuk 1997], [Amenta 2003], [Lawson 1977], [Anglada 1997].
+// References. [Shewchuk 1997], [Amenta, Choi & Rote 2003], [Lawson 1977], [Anglada 1997].
 //
 // Why not a large triangle around everything? Its corners are on the circles of flat hull triangles, so hulls
 // come out wrong, and their coordinates spoil the exactness window of the predicates.
