@@ -26,22 +26,29 @@ namespace {
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Largest norm, over the block, of the numerator's difference of order `a` after shifting to c0, and of the
-// weight's.
+// The net of differences of order `a`, of the numerator after shifting to c0 and of the weight: the largest
+// of them, and their values in the middle of the block.
+template <int D>
+struct Differences {
+    double most = 0, weight_most = 0;
+    Vec<D> middle{};
+    double weight_middle = 0;
+};
 template <std::size_t N, class P>
-std::pair<double, double> largest_difference(const NetView<N, const P>& net, const Index<N>& a,
-                                             const PointOf<P>& c0) {
+Differences<Space<P>::kDim> differences(const NetView<N, const P>& net, const Index<N>& a,
+                                        const PointOf<P>& c0) {
     constexpr int D = Space<P>::kDim;
     Index<N> extent = net.extent, terms{};
+    Differences<D> out;
     for (std::size_t d = 0; d < N; ++d) {
         extent[d] -= a[d];
-        if (extent[d] <= 0) return {0, 0};
+        if (extent[d] <= 0) return out;
         terms[d] = a[d] + 1;
     }
-    double most = 0, weight_most = 0;
+    double most = 0;
     each_index(extent, [&](const Index<N>& at) {
         Vec<D> sum{};
-        double weight_sum = 0;
+        double weight_sum = 0, bernstein = 1;
         each_index(terms, [&](const Index<N>& k) {
             double sign = 1;
             Index<N> from = at;
@@ -54,10 +61,16 @@ std::pair<double, double> largest_difference(const NetView<N, const P>& net, con
             for (int i = 0; i < D; ++i) sum[i] += sign * (p[i] - w * c0[i]);
             weight_sum += sign * w;
         });
+        for (std::size_t d = 0; d < N; ++d)
+            bernstein *= std::ldexp(binomial(extent[d] - 1, at[d]), 1 - extent[d]);
         most = std::max(most, dot(sum, sum));
-        weight_most = std::max(weight_most, std::abs(weight_sum));
+        out.weight_most = std::max(out.weight_most, std::abs(weight_sum));
+        out.middle += bernstein * sum;
+        out.weight_middle += bernstein * weight_sum;
     });
-    return {std::sqrt(most) * (1 + 8 * kRoundoff), Space<P>::kRational ? weight_most : 0};
+    out.most = std::sqrt(most) * (1 + 8 * kRoundoff);
+    if (!Space<P>::kRational) out.weight_most = 0;
+    return out;
 }
 
 template <std::size_t N>
@@ -74,12 +87,12 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                                       int order) {
     constexpr int D = Space<P>::kDim;
     double steps = 8, largest = 0, weight_min = kInfinity, weight_max = 0;
-    Index<N> middle{};
+    Index<N> centre{};
     for (std::size_t d = 0; d < N; ++d) {
         steps += 12 * (net.extent[d] - 1);
-        middle[d] = net.extent[d] / 2;
+        centre[d] = net.extent[d] / 2;
     }
-    const PointOf<P> c0 = project(net(middle));
+    const PointOf<P> c0 = project(net(centre));
     double radius = 0;
     each_index(net.extent, [&](const Index<N>& at) {
         const P& p = net(at);
@@ -98,24 +111,27 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
     radius += 2 * slip / weight_min;
 
     DerivativeBounds<N> out;
-    std::array<double, jet_size(N, kBoundOrder)> weight{};
+    std::array<double, jet_size(N, kBoundOrder)> weight{}, weight_middle{};
+    std::array<Vec<D>, jet_size(N, kBoundOrder)> middle{};
     out.d[0] = radius;
     Index<N> extent{};
-    for (auto& e : extent) e = order + 1;
-    for (int sum = 1; sum <= order; ++sum)
+    const int top = Space<P>::kRational ? std::min(order + 1, kBoundOrder) : order;
+    for (auto& e : extent) e = top + 1;
+    for (int sum = 0; sum <= top; ++sum)
         each_index(extent, [&](const Index<N>& a) {
-            if (total(a) != sum) return;
+            if (total(a) != sum || (sum == 0 && !Space<P>::kRational)) return;
             double factor = 1;
             for (std::size_t d = 0; d < N; ++d)
                 for (int k = 0; k < a[d]; ++k) factor *= double(net.extent[d] - 1 - k) / width[d];
-            if (!(factor > 0) && Space<P>::kRational == false)
-                return;  // order above the degree: exactly zero
+            if (!(factor > 0) && !Space<P>::kRational) return;  // order above the degree: exactly zero
             const std::size_t slot = jet_slot(a);
-            const auto [numerator, denominator] = largest_difference(net, a, c0);
+            const auto found = differences(net, a, c0);
             const double rounding = std::ldexp(1.0, sum);
-            double most = std::abs(factor) * (numerator + rounding * 2 * slip);
-            weight[slot] = std::abs(factor) * (denominator + rounding * weight_slip);
+            double most = std::abs(factor) * (found.most + rounding * 2 * slip);
             if constexpr (Space<P>::kRational) {
+                weight[slot] = std::abs(factor) * (found.weight_most + rounding * weight_slip);
+                weight_middle[slot] = factor * found.weight_middle;
+                middle[slot] = factor * found.middle;
                 Index<N> below{};
                 for (std::size_t d = 0; d < N; ++d) below[d] = a[d] + 1;
                 each_index(below, [&](const Index<N>& b) {
@@ -127,11 +143,32 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                         rest[d] = a[d] - b[d];
                     }
                     most += choose * weight[jet_slot(b)] * out.d[jet_slot(rest)];
+                    middle[slot] -= (choose * weight_middle[jet_slot(b)]) * middle[jet_slot(rest)];
                 });
                 most /= weight_min * (1 - 16 * steps * kRoundoff);
+                middle[slot] *= 1 / weight_middle[0];
             }
-            out.d[slot] = most * (1 + 64 * kRoundoff);
+            if (sum > 0) out.d[slot] = most * (1 + 64 * kRoundoff);
         });
+    if constexpr (Space<P>::kRational) {
+        // The triangle inequality lost the signs; from the middle outwards they are kept.
+        const DerivativeBounds<N> crude = out;
+        for (int sum = top - 1; sum >= 1; --sum)
+            each_index(extent, [&](const Index<N>& a) {
+                if (total(a) != sum) return;
+                const std::size_t slot = jet_slot(a);
+                double here = norm(middle[slot]);
+                for (std::size_t d = 0; d < N; ++d) {
+                    Index<N> more = a;
+                    ++more[d];
+                    here += width[d] / 2 * out.d[jet_slot(more)];
+                }
+                // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
+                here += 64 * steps * kRoundoff * crude.d[slot];
+                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kRoundoff));
+            });
+        for (std::size_t slot = jet_size(N, order); slot < out.d.size(); ++slot) out.d[slot] = 0;
+    }
     return out;
 }
 
@@ -199,9 +236,12 @@ DerivativeBounds<1> bounds_of(const Conic<D>& c, Interval on) {
     if (c.kind == ConicKind::ellipse) {  // the larger semi-axis: the larger singular value of (x y)
         const double s = grow * std::sqrt((xx + yy + std::hypot(xx - yy, 2 * xy)) / 2);
         out.d = {s, s, s, s};
-    } else if (c.kind == ConicKind::hyperbola) {
-        const double s = grow * std::cosh(t) * (std::sqrt(xx) + std::sqrt(yy));
-        out.d = {s, s, s, s};
+    } else if (c.kind == ConicKind::hyperbola) {  // any derivative, from the middle outwards by the next one
+        const double s = std::cosh(t) * (std::sqrt(xx) + std::sqrt(yy)), m = on.middle(),
+                     half = on.length() / 2;
+        const double even = norm(std::cosh(m) * c.x + std::sinh(m) * c.y) + half * s;
+        const double odd = norm(std::sinh(m) * c.x + std::cosh(m) * c.y) + half * s;
+        out.d = {s, std::min(s, odd) * grow, std::min(s, even) * grow, std::min(s, odd) * grow};
     } else {
         out.d = {0, grow * (2 * t * std::sqrt(xx) + std::sqrt(yy)), grow * 2 * std::sqrt(xx), 0};
     }
@@ -270,16 +310,84 @@ DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3
 
 }  // namespace
 
+namespace {
+
+// Bound of the jump of c_d between two neighbouring Bezier pieces, from the jumps of numerator and weight:
+// c_d = (A^_d - w_d (c - c0)) / w on both sides, with A^ and w continuous.
+template <std::size_t N, class P>
+double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
+    constexpr int D = Space<P>::kDim;
+    const std::size_t d = std::size_t(axis);
+    Index<N> right = left;
+    ++right[d];
+    const auto l = pieces.net(left), r = pieces.net(right);
+    const int p = pieces.degree(axis);
+    const double hl = pieces.box(left)[d].length(), hr = pieces.box(right)[d].length();
+    if (p == 0) return kInfinity;
+    const PointOf<P> c0 = project(r(Index<N>{}));
+    double radius = 0, jump = 0, weight_jump = 0, weight_min = kInfinity, largest = 0;
+    bool torn = false;
+    each_fibre(axis, l.extent, [&](const Index<N>& at) {
+        const auto a = l.fibre(axis, at), b = r.fibre(axis, at);
+        const double wl = Space<P>::weight(a[p]), wr = Space<P>::weight(b[0]);
+        const double step =
+            (Space<P>::weight(b[1]) - wr) * (p / hr) - (wl - Space<P>::weight(a[p - 1])) * (p / hl);
+        Vec<D> diff, offset;
+        for (int i = 0; i < D; ++i) {
+            const auto hat = [&](const P& q) { return q[i] - Space<P>::weight(q) * c0[i]; };
+            diff[i] = (hat(b[1]) - hat(b[0])) * (p / hr) - (hat(a[p]) - hat(a[p - 1])) * (p / hl);
+            offset[i] = hat(b[0]);
+            largest = std::max({largest, std::abs(a[p][i]), std::abs(b[0][i])});
+        }
+        radius = std::max(radius, norm(offset) / wr);
+        jump = std::max(jump, norm(diff));
+        weight_jump = std::max(weight_jump, std::abs(step));
+        weight_min = std::min({weight_min, wl, wr});
+        torn =
+            torn || max_abs(a[p] - b[0]) > 64 * (p + 1) * kRoundoff * std::max(max_abs(a[p]), max_abs(b[0]));
+    });
+    if (torn) return kInfinity;
+    const double slip = 64 * (p + 1) * kRoundoff * largest * p * (1 / hl + 1 / hr);
+    return (jump + weight_jump * radius + slip * (1 + (Space<P>::kRational ? 1 : 0))) / weight_min *
+           (1 + 64 * kRoundoff);
+}
+
+template <std::size_t N, class P>
+std::vector<Kink> kinks_of(const Patch<N, P>& patch, const BezierPieces<N, P>& pieces, int axis) {
+    std::vector<Kink> kinks;
+    const auto& breaks = pieces.breaks(axis);
+    for (int k = 1; k + 1 < int(breaks.size()); ++k) {
+        if (patch.basis(axis).multiplicity(breaks[std::size_t(k)]) < patch.basis(axis).degree()) continue;
+        Kink kink{breaks[std::size_t(k)], 0};
+        each_fibre(axis, pieces.extent(), [&](Index<N> at) {
+            at[std::size_t(axis)] = k - 1;
+            kink.jump = std::max(kink.jump, jump_between(pieces, at, axis));
+        });
+        kinks.push_back(kink);
+    }
+    return kinks;
+}
+
+}  // namespace
+
 template <std::size_t N, int D>
 DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&geometry) {
     std::visit(
         [&](const auto& g) {
-            if constexpr (requires { g.net(); })
-                pieces_ = decompose(g);
-            else if constexpr (requires { g.profile; })
+            if constexpr (requires { g.net(); }) {
+                auto pieces = decompose(g);
+                for (std::size_t d = 0; d < N; ++d) kinks_[d] = kinks_of(g, pieces, int(d));
+                pieces_ = std::move(pieces);
+            } else if constexpr (requires { g.profile; }) {
                 profile_ = std::make_shared<const DerivativeQuery<1, 3>>(g.profile);
-            else if constexpr (requires { g.base; })
+                constexpr std::size_t axis = requires { g.direction; }
+                ? 0 : 1;
+                kinks_[axis].assign(profile_->kinks(0).begin(), profile_->kinks(0).end());
+            } else if constexpr (requires { g.base; }) {
                 base_ = std::make_shared<const DerivativeQuery<2, 3>>(*g.base);
+                for (std::size_t d = 0; d < N; ++d)  // where the base has a kink, its offset is torn
+                    for (Kink k : base_->kinks(int(d))) kinks_[d].push_back({k.at, kInfinity});
+            }
         },
         geometry);
 }
@@ -303,26 +411,7 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
         *geometry_);
 }
 
-template <std::size_t N, int D>
-std::vector<double> DerivativeQuery<N, D>::breaks(int axis) const {
-    if (base_) return base_->breaks(axis);
-    if (profile_) {
-        const bool along_profile = std::visit(
-            [&](const auto& g) {
-                if constexpr (requires { g.direction; } && N == 2) return axis == 0;
-                return axis == 1;
-            },
-            *geometry_);
-        return along_profile ? profile_->breaks(0) : std::vector<double>{};
-    }
-    return std::visit(
-        [&](const auto& p) -> std::vector<double> {
-            if constexpr (requires { p.breaks(axis); }) return p.breaks(axis);
-            return {};
-        },
-        pieces_);
-}
-
+template class DerivativeQuery<1, 1>;
 template class DerivativeQuery<1, 2>;
 template class DerivativeQuery<1, 3>;
 template class DerivativeQuery<2, 3>;

@@ -298,6 +298,7 @@ double value_error_bound(const SurfaceGeometry& surface, const std::array<Interv
     template Jet<1, 3, Vec<D>> jet<3, D>(const CurveGeometry<D>&, double); \
     template std::string_view kind_name(const CurveGeometry<D>&);          \
     template double value_error_bound(const CurveGeometry<D>&, const std::array<Interval, 1>&);
+FF_INSTANTIATE_CURVE_GEOMETRY(1)
 FF_INSTANTIATE_CURVE_GEOMETRY(2)
 FF_INSTANTIATE_CURVE_GEOMETRY(3)
 template Jet<2, 0, Vec<3>> jet<0>(const SurfaceGeometry&, const Param<2>&);

@@ -4,7 +4,8 @@
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/geometry.hpp>
 
-#include <optional>
+#include <memory>
+#include <span>
 #include <variant>
 
 namespace freiform {
@@ -32,10 +33,17 @@ template <std::size_t N, class P>
 DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
                                       int order = 2);
 
+// A place where the first derivative along `axis` jumps: a knot of multiplicity >= degree.
+struct Kink {
+    double at = 0;  // parameter
+    double jump =
+        0;  // bound of |f_d(at+) - f_d(at-)| along the whole line; infinite where the value itself jumps
+};
+
 template <std::size_t N, int D>
 struct GeometryOf;
 template <int D>
-struct GeometryOf<1, D> {
+struct GeometryOf<1, D> {  // D = 1, 2, 3
     using type = CurveGeometry<D>;
 };
 template <>
@@ -54,12 +62,12 @@ public:
     // Bounds on `box` up to total order `order` <= 3 (of an offset: 2). The part of the box outside the
     // domain of a spline is ignored. Infinite where no bound exists (at singular points of an offset).
     DerivativeBounds<N> operator()(const std::array<Interval, N>& box, int order = 2) const;
-    // The knots of a spline along `axis`, ends included: where derivatives may jump. Empty for analytic
-    // geometry.
-    std::vector<double> breaks(int axis) const;
+    // Inside the domain, in increasing order. Between kinks the first derivative is continuous.
+    std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
 
 private:
     const Geometry* geometry_;
+    std::array<std::vector<Kink>, N> kinks_;
     std::variant<std::monostate, BezierPieces<N, Vec<D>>, BezierPieces<N, Hom<D>>> pieces_;
     std::shared_ptr<const DerivativeQuery<1, 3>> profile_;  // of an extrusion or revolution
     std::shared_ptr<const DerivativeQuery<2, 3>> base_;     // of an offset

@@ -1,0 +1,100 @@
+#include "shapes.hpp"
+
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace freiform;
+using namespace freiform::test;
+
+namespace {
+
+TEST(DerivativeBounds, hold_at_every_point_of_random_boxes) {
+    std::mt19937 rng(7);
+    for (const auto& [name, surface, on] : surfaces_of_every_kind(3)) {
+        const DerivativeQuery<2, 3> query(surface);
+        double tightest = 0;
+        for (int k = 0; k < 60; ++k) {
+            std::array<Interval, 2> box;
+            const double part = std::pow(0.5, uniform(rng, 0, 9));
+            for (std::size_t d = 0; d < 2; ++d) {
+                const double size = part * on[d].length();
+                box[d].lo = uniform(rng, on[d].lo, on[d].hi - size);
+                box[d].hi = box[d].lo + size;
+            }
+            const auto bound = query(box);
+            for (int i = 0; i < 40; ++i) {
+                const Param<2> at{uniform(rng, box[0].lo, box[0].hi), uniform(rng, box[1].lo, box[1].hi)};
+                const auto j = jet<2>(surface, at);
+                for (std::size_t s = 1; s < 6; ++s) {
+                    ASSERT_LE(norm(j.d[s]), bound.d[s] * (1 + 1e-12) + 1e-12) << name << ", derivative " << s;
+                    if (part < 0.01 && bound.d[s] > 1e-9)
+                        tightest = std::max(tightest, norm(j.d[s]) / bound.d[s]);
+                }
+            }
+        }
+        EXPECT_GT(tightest, 0.5) << name << ": the bound is useless";
+    }
+}
+
+TEST(DerivativeBounds, of_a_small_box_come_near_the_derivatives_there) {
+    std::mt19937 rng(8);
+    for (const auto& [name, surface, on] : surfaces_of_every_kind(4)) {
+        const DerivativeQuery<2, 3> query(surface);
+        for (int k = 0; k < 20; ++k) {
+            const Param<2> at{uniform(rng, on[0].lo + 0.01, on[0].hi - 0.01),
+                              uniform(rng, on[1].lo + 0.01, on[1].hi - 0.01)};
+            const double h = 1e-5;
+            const auto bound = query({{{at[0], at[0] + h}, {at[1], at[1] + h}}});
+            const auto j = jet<2>(surface, {at[0] + h / 2, at[1] + h / 2});
+            double size = 0;
+            for (std::size_t s = 1; s < 6; ++s) size = std::max(size, norm(j.d[s]));
+            for (std::size_t s = 3; s < 6; ++s)
+                EXPECT_LE(bound.d[s], norm(j.d[s]) + 0.1 * size + 1e-2) << name << ", derivative " << s;
+        }
+    }
+}
+
+TEST(DerivativeBounds, scale_exactly_with_powers_of_two) {
+    std::mt19937 rng(9);
+    const auto s = random_patch<2, Hom<3>>(rng, {3, 3}, 3);
+    for (int k = -300; k <= 300; k += 100) {
+        std::vector<Hom<3>> c(s.net().flat().begin(), s.net().flat().end());
+        for (auto& p : c)
+            for (int i = 0; i < 3; ++i) p[i] = std::ldexp(p[i], k);
+        const SurfaceGeometry plain = s,
+                              big = *Surface<Hom<3>>::make(s.bases(), Net<2, Hom<3>>(s.net().extent(), c));
+        const DerivativeQuery<2, 3> a(plain), b(big);
+        const auto x = a(s.domain()), y = b(s.domain());
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(std::ldexp(x.d[i], k), y.d[i]) << k;
+    }
+}
+
+TEST(DerivativeBounds, kinks_are_found_and_their_jumps_bounded) {
+    // z = |x| as a degree 1 spline, and its square where the double knot hides no kink.
+    const auto linear = *BSplineBasis::make(1, {-1, -1, 0, 1, 1});
+    const auto across = *BSplineBasis::bezier(1);
+    const SurfaceGeometry roof = *Surface<Vec<3>>::make(
+        {linear, across},
+        Net<2, Vec<3>>({3, 2},
+                       {{{-1, 0, 1}}, {{-1, 1, 1}}, {{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 1}}, {{1, 1, 1}}}));
+    const DerivativeQuery<2, 3> query(roof);
+    ASSERT_EQ(query.kinks(0).size(), 1u);
+    EXPECT_EQ(query.kinks(0)[0].at, 0);
+    EXPECT_GE(query.kinks(0)[0].jump, 2);
+    EXPECT_LE(query.kinks(0)[0].jump, 2 + 1e-9);
+    EXPECT_TRUE(query.kinks(1).empty());
+
+    // The nine-point circle: double knots, but the same speed on both sides.
+    const double w = std::sqrt(0.5);
+    std::vector<Hom<3>> c;
+    const double xy[9][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
+    for (int i = 0; i < 9; ++i) c.push_back(weighted(Vec<3>{{xy[i][0], xy[i][1], 0}}, i % 2 ? w : 1));
+    const CurveGeometry<3> round = *Curve<Hom<3>>::make(
+        {*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4})}, Net<1, Hom<3>>({9}, c));
+    const DerivativeQuery<1, 3> circle_query(round);
+    ASSERT_EQ(circle_query.kinks(0).size(), 3u);
+    for (const Kink& k : circle_query.kinks(0)) EXPECT_LE(k.jump, 1e-12);
+}
+
+}  // namespace
