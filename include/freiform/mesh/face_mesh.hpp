@@ -1,0 +1,43 @@
+// The triangles of one trimmed surface, given its boundary as polygons in the parameter plane.
+#pragma once
+#include <freiform/core/result.hpp>
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace freiform {
+
+// Closed polygons in the parameter plane. `point` names the place in space that a corner stands for: corners
+// with the same number (the two sides of a seam, the corners of a pole) are the same point of the mesh.
+struct FaceBoundary {
+    std::vector<Vec<2>> uv;
+    std::vector<int> point;
+    std::vector<std::array<int, 2>> segments;
+};
+
+// Two segments (or a segment and a corner, or two corners) that touch where they must not.
+struct BoundaryConflict {
+    int first = -1, second = -1;  // segments; -1 if the conflict is with the corner
+    int corner = -1;
+    std::string message;
+};
+// Nothing if the boundary can be triangulated as it is.
+std::optional<BoundaryConflict> find_conflict(const FaceBoundary& boundary);
+
+struct FaceMesh {
+    std::vector<Vec<2>> uv;  // the corners of the boundary first, in order, then inner points
+    std::vector<std::array<int, 3>>
+        triangles;     // counter-clockwise in the parameter plane, none with two equal points
+    double bound = 0;  // of the interpolation error of all triangles
+};
+
+// Inner points are placed until every triangle's interpolation bound is at most `tolerance`. `extra`: further
+// inner points to begin with. Refuses (invalid) boundaries with a conflict, (limit) more than
+// `max_triangles`.
+Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
+                           double tolerance, long long max_triangles, std::span<const Vec<2>> extra = {});
+
+}  // namespace freiform

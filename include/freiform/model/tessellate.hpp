@@ -1,0 +1,52 @@
+// A model to a watertight triangle mesh within a tolerance, with a proof.
+#pragma once
+#include <freiform/mesh/triangle_mesh.hpp>
+#include <freiform/model/model.hpp>
+
+#include <functional>
+
+namespace freiform {
+
+struct TessellateOptions {
+    double tolerance = 0;                  // distance in model units, > 0
+    long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
+    std::function<bool(double)>
+        progress;  // called with a fraction in [0, 1]; false stops with a refusal (limit)
+};
+
+struct RefusedFace {
+    int face = -1;
+    std::string name;
+    Refusal reason;
+};
+
+struct FaceReport {
+    int face = -1;
+    int triangles = 0;
+    double error_bound = 0;
+    double boundary_gap = 0;
+};
+
+struct Tessellation {
+    TriangleMesh mesh;  // one part per face that was not refused, in order
+    MeshTopology topology;
+    // Every point of a face that is not refused lies within error_bound + boundary_gap of the mesh, and every
+    // point of the mesh within the same distance of the model. Away from the boundaries of faces error_bound
+    // alone is enough. Proven from control points (curvature_tree.cpp, edge_mesh.cpp), rounding included.
+    double error_bound = 0;
+    // How far the model contradicts itself: the largest distance between a mesh point on an edge and the
+    // place where a face's own parameter curve puts it. Not an error of the mesh.
+    double boundary_gap = 0;
+    std::vector<FaceReport> faces;
+    std::vector<RefusedFace> refused;
+    struct {
+        double edges = 0, faces = 0, total = 0;
+    } seconds;
+};
+
+// Every edge is discretised once and shared by its faces, so that a closed shell gives a closed mesh. A face
+// that cannot be meshed is listed in `refused`; the others are delivered. Refuses the whole for a tolerance
+// that is not a positive number, and for limits. Results do not depend on the number of threads.
+Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options);
+
+}  // namespace freiform

@@ -1,0 +1,260 @@
+// Idea: the distance between a surface and a triangle through three of its points is bounded by second
+// derivatives alone. Control points bound those (derivative_bounds.cpp), so the mesh is fine exactly where
+// the proof asks for it.
+//
+// Notation: T triangle in the parameter plane with corners v_i, x in T with barycentric coordinates l_i, L f
+// the linear interpolant, d_i = v_i - x, Q(d) = M_uu du^2 + 2 M_uv |du dv| + M_vv dv^2 >= |D^2 f (d, d)|.
+// Bound: Taylor's formula about x and sum l_i d_i = 0 give f(x) - L f(x) = -1/2 sum l_i D^2 f(x_i)(d_i, d_i)
+// per component, so |f - L f| <= 1/2 sum l_i Q(d_i). For any s > 0, 2 |du dv| <= s du^2 + dv^2 / s, so Q is
+// at most the diagonal form |d|_g^2 = A du^2 + B dv^2, A = M_uu + s M_uv, B = M_vv + M_uv / s. For every
+// point c, sum l_i |v_i - x|_g^2 = sum l_i |v_i - c|_g^2 - |x - c|_g^2 <= R^2, R the radius about c that
+// contains T. With the smallest such circle
+//     |f - L f| <= R^2 / 2,
+// R half the longest side of an obtuse triangle, else its circumradius, both in the metric g. For vectors f
+// the argument is applied to f . e, e any unit vector. Delaunay triangulations in g minimise the largest R.
+// Kinks: where f_u jumps by at most J across u = u0, f has the part J (u - u0)_+ more (in the limit of
+// smoothings of f); its interpolant on a triangle from u0 - a to u0 + b is off by at most J a b / (a + b).
+// References: [Waldron 1998] (min-containment radius), [Filip Magedson Markot 1986] (second derivatives).
+// Why not sampling: a bump between the samples is missed, see the adversarial bump in the tests.
+#include "curvature_tree_detail.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <unordered_set>
+
+namespace freiform {
+
+namespace {
+
+constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
+
+double kink_error(std::span<const Kink> kinks, Interval on) {
+    double sum = 0;
+    for (const Kink& k : kinks)
+        if (on.lo < k.at && k.at < on.hi) sum += k.jump * ((k.at - on.lo) * (on.hi - k.at) / on.length());
+    return sum;
+}
+
+// Half of the squared min-containment radius with the metric diag(A, B).
+double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
+    const auto length2 = [&](const Vec<2>& p, const Vec<2>& q) {
+        const Vec<2> d = q - p;
+        return A * d[0] * d[0] + B * d[1] * d[1];
+    };
+    double s[3] = {length2(a, b), length2(b, c), length2(c, a)};
+    std::sort(s, s + 3);
+    const double longest = s[2] / 8;
+    if (s[0] + s[1] <= s[2]) return longest;
+    const double twice_area = std::abs(cross(b - a, c - a));  // squared circumradius: s0 s1 s2 / (16 area^2)
+    const double sixteen_area2 = 4 * A * B * twice_area * twice_area;
+    // An acute triangle has R <= longest / sqrt(3) of its sides, also where rounding spoils the quotient.
+    const double acute = s[2] / 6;
+    return sixteen_area2 > 0 ? std::min(acute, s[0] * s[1] * s[2] / sixteen_area2 / 2) : acute;
+}
+
+enum class Side { outside, inside, mixed };
+
+// Does the segment meet the box? Conservative: may say yes for near misses.
+bool meets(const Box<2>& box, const Vec<2>& p, const Vec<2>& q) {
+    for (int i = 0; i < 2; ++i)
+        if (std::max(p[i], q[i]) < box.lo[i] || std::min(p[i], q[i]) > box.hi[i]) return false;
+    const Vec<2> d = q - p;
+    int left = 0, right = 0;
+    for (int k = 0; k < 4; ++k) {
+        const Vec<2> corner{{k & 1 ? box.hi[0] : box.lo[0], k & 2 ? box.hi[1] : box.lo[1]}};
+        const double side = cross(d, corner - p),
+                     slack = 1e-12 * (std::abs(d[0]) + std::abs(d[1])) * (max_abs(corner - p) + max_abs(d));
+        left += side >= -slack;
+        right += side <= slack;
+    }
+    return left > 0 && right > 0;
+}
+
+// Odd-even rule for a point that is away from all segments.
+bool is_inside(const Vec<2>& x, std::span<const Vec<2>> polygon,
+               std::span<const std::array<int, 2>> segments) {
+    bool in = false;
+    for (const auto& s : segments) {
+        const Vec<2>&p = polygon[std::size_t(s[0])], &q = polygon[std::size_t(s[1])];
+        if ((p[1] > x[1]) == (q[1] > x[1])) continue;
+        if (x[0] < p[0] + (x[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0])) in = !in;
+    }
+    return in;
+}
+
+}  // namespace
+
+double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d) {
+    const double grow = 1 + 1e-14;  // the roundings of this function
+    if (c.uv == 0) return grow * half_squared_radius(c.uu, c.vv, a, b, d);
+    Box<2> box;
+    for (const Vec<2>& p : {a, b, d}) box.add(p);
+    const Vec<2> size = box.hi - box.lo;
+    double best = std::numeric_limits<double>::infinity();
+    const auto attempt = [&](double s) {
+        if (s > 0 && std::isfinite(s) && 1 / s < std::numeric_limits<double>::infinity())
+            best = std::min(best, half_squared_radius(c.uu + s * c.uv, c.vv + c.uv / s, a, b, d));
+    };
+    attempt(size[1] / size[0]);
+    if (c.uu > 0 && c.vv > 0) attempt(std::sqrt(c.uu / c.vv));
+    return grow * best;
+}
+
+Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
+                                          std::span<const Vec<2>> polygon,
+                                          std::span<const std::array<int, 2>> segments, double tolerance,
+                                          std::size_t max_leaves) {
+    CurvatureTree tree;
+    for (std::size_t d = 0; d < 2; ++d)
+        tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
+    Box<2> root;
+    for (const Vec<2>& p : polygon) root.add(p);
+    struct Item {
+        int node, depth;
+        std::vector<std::array<int, 2>> near;
+    };
+    std::vector<Item> stack;
+    tree.nodes_.push_back({root, {}, -1, false});
+    stack.push_back({0, 0, {segments.begin(), segments.end()}});
+    std::size_t leaves = 1;
+    while (!stack.empty()) {
+        const Item item = std::move(stack.back());
+        stack.pop_back();
+        const Box<2> box = tree.nodes_[std::size_t(item.node)].box;
+        const Vec<2> size = box.hi - box.lo;
+        if (item.near.empty() && !is_inside(0.5 * (box.lo + box.hi), polygon, segments)) {
+            tree.nodes_[std::size_t(item.node)].outside = true;
+            continue;
+        }
+        const auto bounds = surface({box.side(0), box.side(1)});
+        const Curvature c{bounds(2, 0), bounds(1, 1), bounds(0, 2)};
+        tree.nodes_[std::size_t(item.node)].curvature = c;
+        const double kinks =
+            kink_error(tree.kinks_[0], box.side(0)) + kink_error(tree.kinks_[1], box.side(1));
+        const double error = c.along(size[0], size[1]) / 8 + kinks;
+        if (error <= tolerance || !(size[0] > 0) || !(size[1] > 0)) continue;
+        if (item.depth == kMaxDepth) {
+            if (!std::isfinite(error))
+                return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
+                              "the surface has no bounded curvature here");
+            continue;
+        }
+        if (++leaves > max_leaves)
+            return refuse(
+                RefusalKind::limit, "max_triangles",
+                text("the tolerance ", tolerance, " needs more than ", 2 * max_leaves, " triangles"));
+        // Cut at a kink if there is one, else through the direction that contributes more.
+        int axis = c.uu * size[0] * size[0] >= c.vv * size[1] * size[1] ? 0 : 1;
+        if (c.uv * size[0] * size[1] > std::max(c.uu * size[0] * size[0], c.vv * size[1] * size[1]) ||
+            !std::isfinite(error))
+            axis = bounds(1, 0) * size[0] >= bounds(0, 1) * size[1] ? 0 : 1;
+        double at = box.side(axis).middle(), nearest = size[axis];
+        for (int d = 0; d < 2; ++d)
+            for (const Kink& k : tree.kinks_[std::size_t(d)])
+                if (box.lo[d] < k.at && k.at < box.hi[d] && k.jump > 0) {
+                    const double distance = std::abs(k.at - box.side(d).middle()) / size[d] * size[axis];
+                    if (distance < nearest) nearest = distance, axis = d, at = k.at;
+                }
+        if (!(box.lo[axis] < at && at < box.hi[axis])) continue;  // no double between the ends
+        const int child = int(tree.nodes_.size());
+        tree.nodes_[std::size_t(item.node)].child = child;
+        for (int half = 1; half >= 0; --half) {
+            Box<2> part = box;
+            (half == 0 ? part.hi : part.lo)[axis] = at;
+            Item next{child + half, item.depth + 1, {}};
+            for (const auto& s : item.near)
+                if (meets(part, polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]))
+                    next.near.push_back(s);
+            stack.push_back(std::move(next));
+        }
+        Box<2> low = box, high = box;
+        low.hi[axis] = high.lo[axis] = at;
+        tree.nodes_.push_back({low, {}, -1, false});
+        tree.nodes_.push_back({high, {}, -1, false});
+    }
+    for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
+        if (auto& n = tree.nodes_[i]; n.child >= 0) {
+            const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];
+            Curvature both;
+            if (!a.outside) both.include(a.curvature);
+            if (!b.outside) both.include(b.curvature);
+            n.curvature = both;
+            n.outside = a.outside && b.outside;
+        }
+    return tree;
+}
+
+Curvature CurvatureTree::over(const Box<2>& box) const {
+    Curvature c;
+    int stack[2 * kMaxDepth + 4], size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+        const Node& n = nodes_[std::size_t(stack[--size])];
+        if (n.outside || !n.box.side(0).overlaps(box.side(0)) || !n.box.side(1).overlaps(box.side(1)))
+            continue;
+        if (n.curvature.uu <= c.uu && n.curvature.uv <= c.uv && n.curvature.vv <= c.vv) continue;
+        if (n.child < 0 || (box.contains(n.box.lo) && box.contains(n.box.hi))) {
+            c.include(n.curvature);
+            continue;
+        }
+        stack[size++] = n.child;
+        stack[size++] = n.child + 1;
+    }
+    return c;
+}
+
+double CurvatureTree::kink_bound(const Box<2>& box) const {
+    return kink_error(kinks_[0], box.side(0)) + kink_error(kinks_[1], box.side(1));
+}
+
+std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& box) const {
+    std::optional<std::pair<int, double>> worst;
+    double most = 0;
+    for (int d = 0; d < 2; ++d)
+        for (const Kink& k : kinks_[std::size_t(d)])
+            if (const double e = kink_error(std::span(&k, 1), box.side(d)); e > most)
+                most = e, worst = {d, k.at};
+    return worst;
+}
+
+std::vector<CurvatureTree::Corner> CurvatureTree::corners() const {
+    struct Hash {
+        std::size_t operator()(const Vec<2>& p) const {
+            const auto mix = [](double x) {
+                return std::bit_cast<std::uint64_t>(x + 0.0) * 0x9e3779b97f4a7c15u;
+            };
+            return std::size_t(mix(p[0]) ^ (mix(p[1]) >> 17));
+        }
+    };
+    std::unordered_set<Vec<2>, Hash> seen;
+    std::vector<Corner> out;
+    std::vector<int> stack{0};
+    while (!stack.empty()) {
+        const Node& n = nodes_[std::size_t(stack.back())];
+        stack.pop_back();
+        if (n.outside) continue;
+        if (n.child >= 0) {
+            stack.push_back(n.child + 1);
+            stack.push_back(n.child);
+            continue;
+        }
+        for (int k = 0; k < 4; ++k) {
+            const Vec<2> corner{{k & 1 ? n.box.hi[0] : n.box.lo[0], k & 2 ? n.box.hi[1] : n.box.lo[1]}};
+            if (seen.insert(corner).second) out.push_back({corner, n.box.hi - n.box.lo});
+        }
+    }
+    return out;
+}
+
+Vec<2> CurvatureTree::mean_leaf() const {
+    Vec<2> sum{};
+    double count = 0;
+    for (const Node& n : nodes_)
+        if (n.child < 0 && !n.outside) sum += n.box.hi - n.box.lo, count += 1;
+    return (1 / std::max(count, 1.0)) * sum;
+}
+
+}  // namespace freiform

@@ -1,0 +1,145 @@
+#include <freiform/model/assemble.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+using SplineCurve = std::variant<Curve<Vec<3>>, Curve<Hom<3>>>;
+
+// Do two curves have the same control points, and the same knots after scaling to [0, 1]?
+template <class P>
+bool is_same(const Curve<P>& a, const Curve<P>& b) {
+    if (a.basis().degree() != b.basis().degree() || a.net() != b.net()) return false;
+    const auto s = a.basis().knots(), t = b.basis().knots();
+    const Interval on = a.basis().domain(), of = b.basis().domain();
+    for (std::size_t i = 0; i < s.size(); ++i)  // the knots of one are scaled, which rounds
+        if (std::abs((s[i] - on.lo) / on.length() - (t[i] - of.lo) / of.length()) > 1e-12) return false;
+    return true;
+}
+
+template <class P>
+Surface<P> opened(Surface<P> s) {
+    for (int axis = 0; axis < 2; ++axis) {
+        auto cut = restrict_to(s, axis, s.basis(axis).domain());
+        if (cut) s = std::move(*cut);  // a whole domain is never refused
+    }
+    return s;
+}
+
+Line<2> straight(Interval on, const Vec<2>& from, const Vec<2>& to) {
+    const Vec<2> direction = (1 / on.length()) * (to - from);
+    return {from - on.lo * direction, direction};
+}
+
+}  // namespace
+
+int ModelBuilder::vertex_at(const Vec<3>& p) {
+    const auto [it, fresh] =
+        vertices_.try_emplace({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, int(model_.vertices.size()));
+    if (fresh) model_.vertices.push_back({p, 0});
+    return it->second;
+}
+
+// The coedge along a side of a surface; its edge is an old one if that is the same curve.
+Coedge ModelBuilder::coedge_for(const SplineCurve& curve, const Vec<2>& from, const Vec<2>& to) {
+    return std::visit(
+        [&](const auto& c) -> Coedge {
+            using C = std::remove_cvref_t<decltype(c)>;
+            const auto net = c.net().flat();
+            const int start = vertex_at(project(net.front())), end = vertex_at(project(net.back()));
+            auto& known = edges_[std::minmax(start, end)];
+            const bool degenerate = std::all_of(net.begin(), net.end(),
+                                                [&](const auto& p) { return project(p) == project(net[0]); });
+            if (!degenerate)
+                for (int e : known) {
+                    const Edge& old = model_.edges[std::size_t(e)];
+                    const C* other = old.curve ? std::get_if<C>(&*old.curve) : nullptr;
+                    if (other && is_same(*other, c)) return {e, false, straight(old.range, from, to)};
+                    if (other && is_same(*other, reverse(c, 0)))
+                        return {e, true, straight(old.range, to, from)};
+                }
+            Edge edge;
+            edge.range = c.basis().domain();
+            edge.start = start, edge.end = end, edge.degenerate = degenerate;
+            if (!degenerate) edge.curve = c;
+            known.push_back(int(model_.edges.size()));
+            model_.edges.push_back(edge);
+            return {known.back(), false, straight(edge.range, from, to)};
+        },
+        curve);
+}
+
+Result<int> ModelBuilder::add(SplineSurface surface, std::string name, std::optional<Colour> colour) {
+    Face face;
+    face.name = std::move(name), face.colour = colour;
+    std::visit(
+        [&](auto& s) {
+            const bool closed[2] = {s.basis(0).is_closed(), s.basis(1).is_closed()};
+            s = opened(std::move(s));
+            const Interval u = s.basis(0).domain(), v = s.basis(1).domain();
+            // Of a closed direction the two sides are one curve, whatever rounding says.
+            const auto side = [&](int axis, int which) {
+                return boundary(s, axis, closed[axis] ? 0 : which);
+            };
+            Loop loop;
+            const auto add_side = [&](int axis, int which, Vec<2> from, Vec<2> to, bool backwards) {
+                Coedge c = coedge_for(side(axis, which), from, to);
+                if (backwards) c.reversed = !c.reversed;
+                loop.coedges.push_back(std::move(c));
+            };
+            add_side(1, 0, {{u.lo, v.lo}}, {{u.hi, v.lo}}, false);
+            add_side(0, 1, {{u.hi, v.lo}}, {{u.hi, v.hi}}, false);
+            add_side(1, 1, {{u.lo, v.hi}}, {{u.hi, v.hi}}, true);
+            add_side(0, 0, {{u.lo, v.lo}}, {{u.lo, v.hi}}, true);
+            face.loops.push_back(std::move(loop));
+            face.surface = s;
+        },
+        surface);
+    model_.faces.push_back(std::move(face));
+    return int(model_.faces.size()) - 1;
+}
+
+Result<int> ModelBuilder::add_trimmed(SplineSurface surface,
+                                      std::span<const std::vector<CurveGeometry<2>>> loops, std::string name,
+                                      std::optional<Colour> colour) {
+    Face face;
+    face.name = std::move(name), face.colour = colour;
+    std::visit([&](auto& s) { face.surface = opened(std::move(s)); }, surface);
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        if (loops[l].empty()) return refuse(RefusalKind::invalid, text("loops[", l, "]"), "has no curves");
+        Loop loop;
+        const int first = int(model_.vertices.size()), count = int(loops[l].size());
+        for (int c = 0; c < count; ++c) {
+            const CurveGeometry<2>& curve = loops[l][std::size_t(c)];
+            const Interval on = domain(curve)[0];
+            if (!std::isfinite(on.length()))
+                return refuse(RefusalKind::invalid, text("loops[", l, "][", c, "]"), "has no ends");
+            model_.vertices.push_back({jet<0>(face.surface, jet<0>(curve, on.lo).value().c).value(), 0});
+            Edge edge;
+            edge.range = on;
+            edge.start = first + c, edge.end = first + (c + 1) % count;
+            model_.edges.push_back(edge);
+            loop.coedges.push_back({int(model_.edges.size()) - 1, false, curve});
+        }
+        face.loops.push_back(std::move(loop));
+    }
+    model_.faces.push_back(std::move(face));
+    return int(model_.faces.size()) - 1;
+}
+
+Result<Model> ModelBuilder::finish(std::string name) && {
+    Shell shell;
+    for (std::size_t f = 0; f < model_.faces.size(); ++f) shell.faces.push_back({int(f), false});
+    model_.shells = {shell};
+    model_.bodies = {{{0}, false, std::move(name), {}}};
+    auto model = make_model(std::move(model_));
+    if (!model) return model;
+    const bool closed = summary(*model).open_edges == 0 && !model->faces.empty();
+    model->shells[0].closed = model->bodies[0].solid = closed;
+    return model;
+}
+
+}  // namespace freiform

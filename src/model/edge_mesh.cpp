@@ -1,0 +1,179 @@
+// Discretisation of edges.
+//
+// Notation: C curve of the edge, p = (u, v) parameter curve on a face with surface S, chord c(t) linear
+// between p(a) and p(b), L(t) linear between the mesh points at a and b, h = b - a, Q as in
+// curvature_tree.cpp, M over the box that contains p([a, b]). Bounds on [a, b]:
+//   |C(t) - linear|        <= h^2/8 max|C''|
+//   |S(p(t)) - linear|     <= h^2/8 max|(S o p)''|,  (S o p)'' = D^2 S(p', p') + S_u u'' + S_v v''
+//   |S(c(t)) - linear|     <= Q(p(b) - p(a)) / 8
+//   |p(t) - c(t)|          <= h^2/8 max|p''|, component by component: the sliver between chord and curve.
+// A point of the sliver lies on a segment from p(t) to c(t); S along it stays within Q(p(t) - c(t)) / 8 of
+// the chord of its ends, and both ends are near L(t). So the faces' region outside the polygon is within
+//   max(|S o p - L|, |S o c - L|) + Q(sliver) / 8
+// of the mesh edge, not counting the gap between S(p) and the mesh points, which the model brings along.
+// Triangles with the chord as longest side have error at most Q(p(b) - p(a)) / 6 (R^2 <= longest^2 / 3).
+#include "edge_mesh_detail.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
+    return std::visit(
+        [&](const auto& c) -> CurveGeometry<1> {
+            using C = std::remove_cvref_t<decltype(c)>;
+            if constexpr (std::same_as<C, Line<2>>) {
+                return Line<1>{{{c.origin[i]}}, {{c.direction[i]}}};
+            } else if constexpr (std::same_as<C, Conic<2>>) {
+                return Conic<1>{c.kind, {{c.centre[i]}}, {{c.x[i]}}, {{c.y[i]}}};
+            } else if constexpr (std::same_as<C, Curve<Vec<2>>>) {
+                std::vector<Vec<1>> p;
+                for (const auto& q : c.net().flat()) p.push_back({{q[i]}});
+                return Curve<Vec<1>>::trusted(c.bases(), Net<1, Vec<1>>(c.net().extent(), std::move(p)));
+            } else {
+                std::vector<Hom<1>> p;
+                for (const auto& q : c.net().flat()) p.push_back({{q[i], q.weight()}});
+                return Curve<Hom<1>>::trusted(c.bases(), Net<1, Hom<1>>(c.net().extent(), std::move(p)));
+            }
+        },
+        curve);
+}
+
+double kink_error(std::span<const Kink> kinks, Interval on) {
+    double sum = 0;
+    for (const Kink& k : kinks)
+        if (on.lo < k.at && k.at < on.hi) sum += k.jump * ((k.at - on.lo) * (on.hi - k.at) / on.length());
+    return sum;
+}
+
+}  // namespace
+
+EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
+    : model_(model), faces_(faces), edges_(model.edges.size()) {
+    for (std::size_t e = 0; e < model.edges.size(); ++e)
+        if (model.edges[e].curve)
+            edges_[e].curve = std::make_unique<DerivativeQuery<1, 3>>(*model.edges[e].curve);
+    for (std::size_t f = 0; f < model.faces.size(); ++f)
+        for (std::size_t l = 0; l < model.faces[f].loops.size(); ++l) {
+            const auto& coedges = model.faces[f].loops[l].coedges;
+            for (std::size_t c = 0; c < coedges.size(); ++c) {
+                auto use = std::make_unique<CoedgeQuery>();
+                use->face = int(f), use->loop = int(l), use->index = int(c);
+                use->coedge = &coedges[c];
+                for (int i = 0; i < 2; ++i) {
+                    use->component[i] = component_of(coedges[c].curve, i);
+                    use->bounds[i] = std::make_unique<DerivativeQuery<1, 1>>(use->component[i]);
+                }
+                use->both = std::make_unique<DerivativeQuery<1, 2>>(coedges[c].curve);
+                edges_[std::size_t(coedges[c].edge)].uses.push_back(std::move(use));
+            }
+        }
+}
+
+Vec<3> EdgeMesher::position(int edge, double t) const {
+    const Edge& e = model_.edges[std::size_t(edge)];
+    if (e.curve) return jet<0>(*e.curve, t).value();
+    const auto& uses = edges_[std::size_t(edge)].uses;
+    if (e.degenerate || uses.empty()) return model_.vertices[std::size_t(e.start)].point;
+    const auto& use = *uses.front();
+    return jet<0>(model_.faces[std::size_t(use.face)].surface, jet<0>(use.coedge->curve, t).value().c)
+        .value();
+}
+
+SegmentError EdgeMesher::error(int edge, double a, double b) const {
+    const EdgeMesh& mesh = edges_[std::size_t(edge)];
+    const Edge& e = model_.edges[std::size_t(edge)];
+    const double h = b - a, h2 = h * h / 8;
+    SegmentError out;
+    if (mesh.curve) out.polyline = h2 * (*mesh.curve)({Interval{a, b}})(2);
+    for (const auto& use : mesh.uses) {
+        const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
+        const DerivativeBounds<1> du = (*use->bounds[0])({Interval{a, b}}),
+                                  dv = (*use->bounds[1])({Interval{a, b}});
+        const Vec<2> from = jet<0>(use->coedge->curve, a).value(), to = jet<0>(use->coedge->curve, b).value();
+        const Vec<2> chord = to - from, sag{{h2 * du(2), h2 * dv(2)}};
+        Box<2> box;
+        for (const Vec<2>& p : {from, to}) {
+            box.add(p - sag);
+            box.add(p + sag);
+        }
+        const auto s = surface({box.side(0), box.side(1)});
+        const auto along = [&](double x, double y) {
+            return s(2, 0) * x * x + 2 * s(1, 1) * std::abs(x * y) + s(0, 2) * y * y;
+        };
+        const double kinks =
+            kink_error(surface.kinks(0), box.side(0)) + kink_error(surface.kinks(1), box.side(1));
+        out.triangle = std::max(out.triangle, along(chord[0], chord[1]) / 6 + kinks);
+        out.sliver = std::max(out.sliver, along(sag[0], sag[1]) / 8 + kinks);
+        if (e.degenerate) continue;
+        // The largest stretch of the surface's first derivative: exact in the middle of the box, plus its
+        // variation.
+        const Vec<2> size = box.hi - box.lo, middle = from + 0.5 * chord;
+        const auto j = jet<1>(model_.faces[std::size_t(use->face)].surface, middle.c);
+        const double uu = dot(j.d[1], j.d[1]), vv = dot(j.d[2], j.d[2]), uv = dot(j.d[1], j.d[2]);
+        const double stretch = 1.0000001 * std::sqrt((uu + vv + std::hypot(uu - vv, 2 * uv)) / 2) +
+                               (s(2, 0) + s(1, 1)) * size[0] / 2 + (s(1, 1) + s(0, 2)) * size[1] / 2;
+        const double bend =
+            std::min(s(1, 0) * du(2) + s(0, 1) * dv(2), stretch * (*use->both)({Interval{a, b}})(2));
+        out.polyline = std::max(
+            {out.polyline, h2 * (along(du(1), dv(1)) + bend) + kinks, along(chord[0], chord[1]) / 8 + kinks});
+    }
+    return out;
+}
+
+Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_segments) {
+    EdgeMesh& mesh = edges_[std::size_t(edge)];
+    const Edge& e = model_.edges[std::size_t(edge)];
+    const Interval on = e.range;
+    std::vector<double> must{on.lo, on.hi};
+    const auto add_kinks = [&](std::span<const Kink> kinks) {
+        for (const Kink& k : kinks)
+            if (on.lo < k.at && k.at < on.hi) must.push_back(k.at);
+    };
+    if (mesh.curve) add_kinks(mesh.curve->kinks(0));
+    for (const auto& use : mesh.uses) add_kinks(use->both->kinks(0));
+    // A closed edge must not collapse to a slit.
+    if (e.start == e.end && !e.degenerate)
+        for (int k = 1; k < 4; ++k) must.push_back(on.lo + on.length() * (k / 4.0));
+    std::sort(must.begin(), must.end());
+    must.erase(std::unique(must.begin(), must.end()), must.end());
+
+    mesh.parameters = {on.lo};
+    mesh.bound = 0;
+    std::vector<std::pair<double, double>> stack;
+    for (std::size_t i = must.size() - 1; i-- > 0;) stack.push_back({must[i], must[i + 1]});
+    while (!stack.empty()) {
+        const auto [a, b] = stack.back();
+        stack.pop_back();
+        const SegmentError err = error(edge, a, b);
+        const double middle = a + (b - a) / 2;
+        const bool done =
+            err.polyline <= tolerance && err.triangle <= tolerance && err.sliver <= tolerance / 32;
+        if (done || !(a < middle && middle < b)) {
+            if (!done)
+                return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
+                              text("cannot be brought within ", tolerance, " near parameter ", a));
+            mesh.parameters.push_back(b);
+            mesh.bound = std::max(mesh.bound, err.polyline + err.sliver);
+            continue;
+        }
+        if (mesh.parameters.size() + stack.size() > max_segments)
+            return refuse(
+                RefusalKind::limit, "max_triangles",
+                text("edge ", edge, " needs more than ", max_segments, " segments within ", tolerance));
+        stack.push_back({middle, b});
+        stack.push_back({a, middle});
+    }
+    return {};
+}
+
+void EdgeMesher::split(int edge, int index) {
+    auto& t = edges_[std::size_t(edge)].parameters;
+    const double a = t[std::size_t(index)], b = t[std::size_t(index) + 1], middle = a + (b - a) / 2;
+    if (a < middle && middle < b) t.insert(t.begin() + index + 1, middle);
+}
+
+}  // namespace freiform

@@ -1,0 +1,118 @@
+// From coedges to polygons.
+//
+// Where two coedges meet in a vertex their parameter curves need not meet exactly. If the surface moves less
+// than the tolerances of the vertex, the edges and the face (or the gap is rounding) and the jump is short
+// against the segments beside it, the end is moved onto the next start, and the move counts as gap. If the
+// jump is long but the surface stands still along it (a pole that the file has no edge for), a segment joins
+// the two. Anything else is an open loop.
+#include "face_boundary_detail.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+struct Run {
+    std::vector<Vec<2>> uv;
+    std::vector<int> points;
+    std::vector<BoundaryOfFace::Source> sources;  // one fewer
+};
+
+// A spline ends at its domain; parameter curves may leave it by rounding.
+Vec<2> clamped(const SurfaceGeometry& surface, Vec<2> uv) {
+    const auto on = domain(surface);
+    const bool spline = std::visit(
+        [](const auto& s) {
+            return requires { s.net(); };
+        },
+        surface);
+    if (spline)
+        for (int i = 0; i < 2; ++i) uv[i] = std::clamp(uv[i], on[std::size_t(i)].lo, on[std::size_t(i)].hi);
+    return uv;
+}
+
+Run run_of(const Coedge& coedge, const SurfaceGeometry& surface, const EdgeMesh& mesh) {
+    Run run;
+    const int n = int(mesh.parameters.size());
+    for (int k = 0; k < n; ++k) {
+        const int i = coedge.reversed ? n - 1 - k : k;
+        run.uv.push_back(clamped(surface, jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value()));
+        run.points.push_back(mesh.points[std::size_t(i)]);
+        if (k + 1 < n) run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
+    }
+    return run;
+}
+
+double length_in(const Vec<2>& d, const Vec<2>& size) {
+    return std::max(size[0] > 0 ? std::abs(d[0]) / size[0] : 0, size[1] > 0 ? std::abs(d[1]) / size[1] : 0);
+}
+
+}  // namespace
+
+Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMesher& edges,
+                                   const DerivativeQuery<2, 3>& surface, std::span<const Vec<3>> mesh_points,
+                                   double tolerance, double rounding) {
+    const Face& f = model.faces[std::size_t(face)];
+    BoundaryOfFace out;
+    for (std::size_t l = 0; l < f.loops.size(); ++l) {
+        const auto& coedges = f.loops[l].coedges;
+        std::vector<Run> runs;
+        Box<2> box;
+        for (const Coedge& c : coedges) {
+            runs.push_back(run_of(c, f.surface, edges.mesh(c.edge)));
+            for (const Vec<2>& p : runs.back().uv) box.add(p);
+        }
+        const int first = int(out.polygon.uv.size());
+        for (std::size_t c = 0; c < runs.size(); ++c) {
+            Run& run = runs[c];
+            const std::size_t after = (c + 1) % runs.size();
+            const Run& next = runs[after];
+            const std::string where = text("loops[", l, "][", c, "]");
+            if (run.points.back() != next.points.front())
+                return refuse(RefusalKind::invalid, where,
+                              "does not end at the vertex where the next edge of the loop begins");
+            const Vec<2> jump = next.uv.front() - run.uv.back();
+            bool join = false;
+            if (jump != Vec<2>{}) {
+                Box<2> around;
+                around.add(run.uv.back());
+                around.add(next.uv.front());
+                const auto s = surface({around.side(0), around.side(1)}, 1);
+                const double moved = s(1, 0) * std::abs(jump[0]) + s(0, 1) * std::abs(jump[1]);
+                const auto tolerance_of = [&](const Coedge& k) {
+                    const Edge& e = model.edges[std::size_t(k.edge)];
+                    return std::max({e.tolerance, model.vertices[std::size_t(e.start)].tolerance,
+                                     model.vertices[std::size_t(e.end)].tolerance});
+                };
+                const double allowed = 4 * std::max({tolerance_of(coedges[c]), tolerance_of(coedges[after]),
+                                                     f.tolerance, tolerance / 4, rounding});
+                const Vec<2> size = box.hi - box.lo;
+                const double near = std::min(length_in(run.uv.back() - run.uv[run.uv.size() - 2], size),
+                                             length_in(next.uv[1] - next.uv.front(), size));
+                if (!(moved <= allowed))
+                    return refuse(RefusalKind::invalid, where,
+                                  text("the loop is open in the parameter plane: (", run.uv.back()[0], ", ",
+                                       run.uv.back()[1], ") -> (", next.uv.front()[0], ", ",
+                                       next.uv.front()[1], "), up to ", moved, " apart in space"));
+                join = length_in(jump, size) > near / 4;
+                out.gap = std::max(out.gap, moved);
+            }
+            for (std::size_t k = 0; k + 1 < run.uv.size() + (join ? 1 : 0); ++k) {
+                out.polygon.uv.push_back(run.uv[k]);
+                out.polygon.point.push_back(run.points[k]);
+                out.sources.push_back(k < run.sources.size() ? run.sources[k] : BoundaryOfFace::Source{});
+            }
+        }
+        const int end = int(out.polygon.uv.size());
+        for (int i = first; i < end; ++i) out.polygon.segments.push_back({i, i + 1 < end ? i + 1 : first});
+    }
+    for (std::size_t i = 0; i < out.polygon.uv.size(); ++i) {
+        const Vec<3> on = jet<0>(f.surface, out.polygon.uv[i].c).value();
+        out.gap = std::max(out.gap, norm(on - mesh_points[std::size_t(out.polygon.point[i])]));
+    }
+    return out;
+}
+
+}  // namespace freiform
