@@ -1,15 +1,28 @@
 // Definitions of the members of Patch; instantiated once per number of parameters in patch_1.cpp ..
 // patch_3.cpp.
 //
-// Accuracy of values. Notation: u = 2^-53, p_d degrees, all parameters inside the domain.
-// Every weight of the recurrence is a sum of products of non-negative factors; one step multiplies relative
-// errors by at most (1+u)^4 (two differences share no cancellation beyond their own rounding, a quotient, a
-// product) and adds one rounding, so a weight of degree p carries at most 5 p roundings, a term of the sum N
-// more products and a sum over p_d + 1 terms p_d more. With k = sum_d (6 p_d + 2) the computed value differs
-// from the exact one by at most k u / (1 - k u) * sum w_i |P_i| <= 1.01 k u max|P_i| (partition of unity).
-// For rational patches numerator and denominator each obey this, and the quotient by at most
-//     (1.01 k u w_max c_max + c_max 1.01 k u w_max) / (w_min (1 - 1.01 k u w_max / w_min)) + u c_max
-// with c_max the largest coordinate of a control point. Underflow aside.
+// Accuracy of values. Notation: u = 2^-53, p_d degrees, all parameters inside the domain, h = the smallest
+// denormal number, c = max |P_i|.
+//
+// Weights. A step of the recurrence maps non-negative numbers to sums of two products of non-negative
+// numbers, so relative errors do not grow in it; two differences of given numbers, a quotient, a product and
+// a sum add 5 roundings, of which the first step, where the old weight is 1 and the sum has one term, has
+// only 3. A weight of degree p >= 1 carries at most 5 p - 2 roundings; of degree 0 it is exactly 1.
+//
+// Sums. A term is one more product, a sum of p + 1 terms p more sums: 6 p - 1 along an axis, and
+// k = sum_d max(0, 6 p_d - 1) along all of them. So the computed value differs from the exact one by at most
+//     g sum w_i |P_i| + e <= g c + e,    g = 1.01 k u >= k u / (1 - k u)
+// by partition of unity, where e = h sum_d (p_d + 1) is what products that underflow lose (the weights of the
+// outer sums are at most 1 in all; losses inside weights are below 2^-1050 c, which the factor 1.01 covers).
+//
+// Rational. All w_i are positive, so for numerator A and denominator W alike the absolute error is at most g
+// times the sum of the absolute terms: g c W + e and g W + e with c = max |P_i / w_i| and W >= w_min. The
+// quotient:
+//     |A^/W^ - A/W| <= (2 g c + (1 + c) e / w_min) / (1 - g - e / w_min),   and one rounding of it,
+// independent of the spread of the weights. Weights are not subnormal, so e / w_min < 2^-45 and the
+// denominator is above 0.99. The factor 1.02 below pays for it and for the rounding of c and of the bound
+// itself.
+//
 // References: [Higham 2002, ch. 3] for the counting of roundings.
 #pragma once
 #include <freiform/spline/bezier.hpp>
@@ -72,6 +85,8 @@ Result<Patch<N, P, B>> Patch<N, P, B>::make(std::array<B, N> bases, Net<N, P> ne
                 RefusalKind::invalid, "points",
                 text(net.extent()[d], " coefficients along axis ", d, ", the basis has ", bases[d].size()));
     std::size_t i = 0;
+    constexpr double kLargest =
+        0x1p1022;  // so that rounding in a sum of weighted coefficients cannot overflow
     for (const P& p : net.flat()) {
         if (!is_finite(p))
             return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
@@ -79,9 +94,13 @@ Result<Patch<N, P, B>> Patch<N, P, B>::make(std::array<B, N> bases, Net<N, P> ne
         if (Space<P>::kRational && !(Space<P>::weight(p) > 0))
             return refuse(RefusalKind::invalid, text("weights[", i, "]"),
                           text("weight ", Space<P>::weight(p), " is not positive"));
-        if (!is_finite(freiform::project(p)))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
-                          "overflows when divided by its weight");
+        if (Space<P>::weight(p) < std::numeric_limits<double>::min())
+            return refuse(
+                RefusalKind::ill_conditioned, text("weights[", i, "]"),
+                text("weight ", Space<P>::weight(p), " is subnormal; give all weights a common factor"));
+        if (max_abs(p) > kLargest || !(max_abs(freiform::project(p)) <= kLargest))
+            return refuse(RefusalKind::limit, text("points[", i, "]"),
+                          "a coordinate, or its product with the weight, is above 2^1022");
         ++i;
     }
     return Patch(std::move(bases), std::move(net));
@@ -179,19 +198,21 @@ std::vector<typename Patch<N, P, B>::Point> Patch<N, P, B>::derivatives(const Pa
 
 template <std::size_t N, Coefficient P, Basis B>
 double Patch<N, P, B>::value_error_bound() const {
-    double k = 0;
-    for (const B& b : bases_) k += 6 * b.degree() + 2;
-    const double unit_roundoff = std::numeric_limits<double>::epsilon() / 2, g = 1.01 * k * unit_roundoff;
-    double c_max = 0, w_max = 0, w_min = std::numeric_limits<double>::infinity();
+    const double unit = std::numeric_limits<double>::epsilon() / 2;
+    const double denormal = std::numeric_limits<double>::denorm_min();
+    double roundings = 0, terms = 1;
+    for (const B& b : bases_) {
+        roundings += std::max(0, 6 * b.degree() - 1);
+        terms += b.degree() + 1;
+    }
+    const double g = 1.01 * roundings * unit, lost = terms * denormal;
+    double c = 0, w_min = std::numeric_limits<double>::infinity();
     for (const P& p : net_.flat()) {
-        c_max = std::max(c_max, max_abs(freiform::project(p)));
-        w_max = std::max(w_max, Space<P>::weight(p));
+        c = std::max(c, max_abs(freiform::project(p)));
         w_min = std::min(w_min, Space<P>::weight(p));
     }
-    if (!Space<P>::kRational) return g * c_max;
-    const double ratio = w_max / w_min, left = 1 - g * ratio;
-    return left > 0.5 ? (2 * g * ratio / left + 2 * unit_roundoff) * c_max
-                      : std::numeric_limits<double>::infinity();
+    if (!Space<P>::kRational) return g * c + lost;
+    return 1.02 * ((2 * g + unit) * c + (1 + c) * (lost / w_min)) + lost;
 }
 
 template <std::size_t N, class P, Basis B>
@@ -208,6 +229,13 @@ Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
                 return std::unexpected(ok.error());
     }
     if (count_of(extent) < 0) return refuse(RefusalKind::limit, "axes", "more than 2^31 - 1 grid points");
+    Index<N> between = s.net().extent();  // of the nets on the way
+    for (std::size_t d = 0; d < N; ++d) {
+        between[d] = extent[d];
+        if (count_of(between) < 0)
+            return refuse(RefusalKind::limit, "axes",
+                          "more than 2^31 - 1 coefficients on the way to the grid");
+    }
     Net<N, P> net = s.net();
     for (std::size_t d = 0; d < N; ++d) net = along(int(d), collocation(s.basis(int(d)), axes[d]), net);
     std::vector<PointOf<P>> out;

@@ -23,8 +23,8 @@ public:
     using Coefficients = P;
     using Point = PointOf<P>;
 
-    // Refuses nets that do not fit the bases, coefficients that are not finite and weights that are not
-    // positive.
+    // Refuses nets that do not fit the bases, coefficients that are not finite or above 2^1022, and weights
+    // that are not positive or subnormal. So every value inside the domain is finite.
     static Result<Patch> make(std::array<B, N> bases, Net<N, P> net);
     // REQUIRES what `make` checks. For results of operations that keep a valid patch valid.
     static Patch trusted(std::array<B, N> bases, Net<N, P> net) { return {std::move(bases), std::move(net)}; }
@@ -43,6 +43,10 @@ public:
         for (std::size_t i = 0; i < at.size(); ++i) {
             if (auto ok = check(at[i], i); !ok) return ok;
             partials(at[i], K, out[i].d);
+            for (const Point& d : out[i].d)
+                if (!is_finite(d))
+                    return refuse(RefusalKind::ill_conditioned, text("at[", i, "]"),
+                                  "a derivative is above the largest double");
         }
         return {};
     }
@@ -134,7 +138,7 @@ requires(!Space<P>::kRational) Patch<N, P> derivative(const Patch<N, P>& s, int 
 }
 
 // The patch of one parameter less where parameter `axis` is `at`: an iso-curve of a surface, a face of a
-// volume.
+// volume. REQUIRES a finite `at`, of an open basis inside the domain.
 template <std::size_t N, class P, Basis B>
 requires(N >= 2) Patch<N - 1, P, B> iso(const Patch<N, P, B>& s, int axis, double at) {
     const Net<N, P> net = along(axis, collocation(s.basis(axis), std::span(&at, 1)), s.net());
