@@ -54,7 +54,8 @@ function(freiform_library name)
     set_target_properties(freiform_${name} PROPERTIES EXPORT_NAME ${name}
         ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
     if(BUILD_SHARED_LIBS)
-        set_target_properties(freiform_${name} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+        set_target_properties(freiform_${name} PROPERTIES VERSION ${PROJECT_VERSION}
+            SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
     endif()
     if(FREIFORM_PCH)
         target_precompile_headers(freiform_${name} PRIVATE <algorithm> <array> <cmath> <expected> <functional> <memory>

@@ -1,0 +1,67 @@
+#include <freiform/core/parallel.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <thread>
+#include <vector>
+
+namespace freiform {
+namespace {
+
+// Leaves the process as it was found.
+struct Threads {
+    explicit Threads(int n) { set_max_threads(n); }
+    ~Threads() { set_max_threads(0); }
+};
+
+TEST(ParallelFor, calls_every_index_once) {
+    for (const int threads : {0, 1, 2, 3})
+        for (const std::size_t n : {0, 1, 2, 99, 1000})
+            for (const std::size_t grain : {0, 1, 10, 600}) {
+                const Threads limit(threads);
+                std::vector<std::atomic<int>> calls(n);
+                parallel_for(n, grain, [&](std::size_t i) { ++calls[i]; });
+                for (std::size_t i = 0; i < n; ++i)
+                    ASSERT_EQ(calls[i], 1) << i << " of " << n << ", grain " << grain;
+            }
+}
+
+TEST(ParallelFor, is_serial_and_in_order_below_twice_the_grain) {
+    const auto here = std::this_thread::get_id();
+    std::vector<std::size_t> order;
+    parallel_for(19, 10, [&](std::size_t i) {
+        // Time for another thread to take the second half, if it is offered.
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        ASSERT_EQ(std::this_thread::get_id(), here);
+        order.push_back(i);
+    });
+    ASSERT_EQ(order.size(), 19u);
+    for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i);
+}
+
+TEST(ParallelFor, one_thread_is_the_calling_one) {
+    const Threads limit(1);
+    const auto here = std::this_thread::get_id();
+    parallel_for(1000, 1, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), here); });
+}
+
+TEST(ParallelFor, gives_the_same_bits_for_any_number_of_threads) {
+    const auto compute = [](int threads) {
+        const Threads limit(threads);
+        std::vector<double> out(5000);
+        parallel_for(out.size(), 16, [&](std::size_t i) { out[i] = std::sin(double(i)) / 3; });
+        return out;
+    };
+    EXPECT_EQ(compute(1), compute(2));
+    EXPECT_EQ(compute(1), compute(0));
+}
+
+TEST(ParallelFor, a_negative_limit_means_no_limit) {
+    const Threads limit(-5);
+    EXPECT_EQ(max_threads(), 0);
+}
+
+}  // namespace
+}  // namespace freiform
