@@ -12,6 +12,14 @@
 #include <set>
 
 namespace freiform {
+
+// The exhaustive search behind the walk of `locate`, which no known input needs.
+struct TriangulationProbe {
+    static Triangulation::Location search(const Triangulation& t, const Vec<2>& p) {
+        return t.locate_by_search(p);
+    }
+};
+
 namespace {
 
 using Rational = boost::multiprecision::cpp_rational;
@@ -206,31 +214,40 @@ TEST(Triangulate, inside_triangles_have_exactly_the_odd_even_area) {
     }
 }
 
+// Many short walls first, then long segments between and along them: walls end inside the crossed region.
 TEST(Triangulate, long_segments_through_many_triangles) {
-    // Sawtooth walls on both sides of a long slit, whose tips come near it: edges dangle into the crossed
-    // region.
     std::mt19937 random(3);
-    for (int k = 0; k < 40; ++k) {
+    int long_ones = 0;
+    for (int k = 0; k < 300; ++k) {
         Region r;
-        const int n = 120;
-        r.add_loop({{{-300, -3000}}, {{3 * n + 300.0, -3000}}, {{3 * n + 300.0, 3000}}, {{-300, 3000}}});
-        r.add_loop({{{-3, 0}}, {{3.0 * n, 3}}, {{3.0 * n + 30, 150}}});
-        for (int i = 0; i < n; ++i) {
-            const double y = 3.0 * (3 + int(random() % 40)) * (random() % 2 ? 1 : -1);
-            if (is_in_region({r.points, {r.segments.begin() + 4, r.segments.end()}}, {{3.0 * i, y}}) || y > 0)
-                continue;
-            r.points.push_back({{3.0 * i, y}});
-            if (random() % 3 == 0) {
-                const int tip = int(r.points.size());
-                r.points.push_back({{3.0 * i, y - 3.0 * double(1 + random() % 30) - 400}});
-                r.segments.push_back({tip - 1, tip});
-                r.segments.push_back({tip, tip - 1});  // twice: an edge that does not change sides
-            }
+        const auto at = [&](int i) { return r.points[std::size_t(i)]; };
+        const auto add = [&](int a, int b) {
+            for (const auto [c, d] : r.segments)
+                if (segments_cross(at(a), at(b), at(c), at(d))) return false;
+            for (const Vec<2>& p : r.points)
+                if (is_between(at(a), at(b), p)) return false;
+            r.segments.push_back({a, b});
+            r.segments.push_back({b, a});  // twice: an edge that does not change sides
+            return true;
+        };
+        const int n = 10 + k % 50;
+        std::set<std::pair<int, int>> used;
+        while (int(r.points.size()) < 2 * n) {
+            const int x = int(random() % 1000), y = int(random() % 60), up = 1 + int(random() % 60);
+            if (!used.insert({x, y}).second || !used.insert({x, y + up}).second) continue;
+            r.points.push_back({{3.0 * x, 3.0 * y}});
+            r.points.push_back({{3.0 * x, 3.0 * (y + up)}});
+        }
+        for (int i = 0; i < n; ++i) add(2 * i, 2 * i + 1);
+        for (int i = 0; i < 20; ++i) {
+            const int a = int(random() % unsigned(2 * n)), b = int(random() % unsigned(2 * n));
+            long_ones += a / 2 != b / 2 && add(a, b);
         }
         const Triangulation t = make(r);
-        ASSERT_NO_FATAL_FAILURE(check_structure(t, r.segments));
-        ASSERT_NO_FATAL_FAILURE(check_by_definition(t, r));
+        ASSERT_NO_FATAL_FAILURE(check_structure(t, r.segments)) << "case " << k;
+        ASSERT_NO_FATAL_FAILURE(check_by_definition(t, r)) << "case " << k;
     }
+    EXPECT_GT(long_ones, 500);
 }
 
 // Everything that can be wrong with random segments on a small grid, against the definition of a conflict.
@@ -472,6 +489,33 @@ TEST(Triangulate, insertions_keep_all_invariants_and_report_changes) {
     for (const auto& [status, count] : seen) EXPECT_GT(count, 10);
 }
 
+TEST(Triangulate, walk_and_search_find_the_same) {
+    std::mt19937 random(10);
+    const Triangulation t = make({grid(9, 3), frame_of_grid(9)});
+    using On = Triangulation::Location::On;
+    std::map<On, int> seen;
+    for (int k = 0; k < 2000; ++k) {
+        const Vec<2> p{{double(random() % 60) / 2 - 3, double(random() % 60) / 2 - 3}};
+        const auto walked = t.locate(p, int(random() % unsigned(t.size())));
+        const auto found = TriangulationProbe::search(t, p);
+        ASSERT_EQ(walked.on, found.on);
+        ++seen[found.on];
+        for (const auto& [on, i, part] : {walked, found}) {
+            const auto& v = t.vertices(i);
+            const auto point = [&](int c) { return t.points()[std::size_t(v[std::size_t(c % 3)])]; };
+            ASSERT_EQ(t.is_infinite(i), on == On::outside);
+            for (int c = 0; on == On::face && c < 3; ++c) ASSERT_GT(orient2d(point(c), point(c + 1), p), 0);
+            ASSERT_TRUE(on != On::edge || is_between(point(part + 1), point(part + 2), p));
+            ASSERT_TRUE(on != On::vertex || point(part) == p);
+            if (on == On::outside) {
+                const int c = t.corner_of(i, Triangulation::kInfinite);
+                ASSERT_GT(orient2d(point(c + 1), point(c + 2), p), 0);
+            }
+        }
+    }
+    EXPECT_EQ(seen.size(), 4u);
+}
+
 TEST(Triangulate, insert_asks_before_it_changes_anything) {
     Triangulation t = make({grid(2, 1), frame_of_grid(2)});
     int asked = -1;
@@ -499,8 +543,13 @@ TEST(Triangulate, insert_all_is_insert_of_each) {
     p.push_back(r.points[7]);
     p.push_back({{std::numeric_limits<double>::quiet_NaN(), 0}});
     Triangulation t = make(r);
+    const Triangulation before = t;
     const auto got = t.insert_all(p);
     ASSERT_EQ(got.size(), p.size());
+    const std::set<int> changed(t.changed().begin(), t.changed().end());
+    EXPECT_EQ(changed.size(), t.changed().size());
+    for (int i = 0; i < t.size(); ++i)
+        ASSERT_TRUE(changed.count(i) || (i < before.size() && t.vertices(i) == before.vertices(i)));
     int done = 0;
     for (std::size_t i = 0; i < 3000; ++i) {
         ASSERT_TRUE(got[i].status != Insert::done || t.points()[std::size_t(got[i].vertex)] == p[i]);

@@ -143,6 +143,8 @@ public:
     std::vector<Inserted> insert_all(std::span<const Vec<2>> points);
 
 private:
+    friend struct TriangulationProbe;  // tests of what is hardly ever reached
+
     static constexpr std::uint8_t kInsideFlag = 64,
                                   kMarkFlag = 128;  // bits 0..2: constrained, 3..5: toggles inside
     static constexpr std::uint8_t kEdgeFlags = 9;   // constrained and toggle bit of edge 0
