@@ -1,0 +1,142 @@
+// Camera. Rotated coordinates are x to the right, y up, z towards the eye, in units of half the largest side
+// of the model's box. With k = 1 / distance (0 for parallel rays) a point is drawn at (x, y) / (1 - k z). The
+// box of all drawn points is fitted into the picture, and the range of z into the depth buffer.
+#include "gpu/scene.hpp"
+
+#include <freiform/core/interval.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+namespace {
+
+constexpr double kInverseDistance = 0.2;  // the eye is 5 half sides away: mild, and always outside the model
+constexpr double kDepthUsed = 0.98;       // the rest is for lines, which are drawn a little nearer
+
+struct Axes {
+    Vec<3> right, up, eye;
+};
+
+Axes axes_of(const View& view) {
+    const double ca = std::cos(view.azimuth), sa = std::sin(view.azimuth);
+    const double ce = std::cos(view.elevation), se = std::sin(view.elevation);
+    const Vec<3> right{{-sa, ca, 0}}, eye{{ce * ca, ce * sa, se}};
+    return {right, cross(eye, right), eye};
+}
+
+std::vector<Vec<3>> centred(const TriangleMesh& mesh) {
+    Box<3> box;
+    for (const auto& t : mesh.triangles)
+        for (int v : t) box.add(mesh.points[std::size_t(mesh.vertices[std::size_t(v)].point)]);
+    std::vector<Vec<3>> out(mesh.points.size());
+    if (box.is_empty()) return out;
+    Vec<3> middle, half;
+    for (int d = 0; d < 3; ++d) {
+        middle[d] = box.lo[d] / 2 + box.hi[d] / 2;
+        half[d] = box.hi[d] / 2 - box.lo[d] / 2;
+    }
+    const double size = max_abs(half);
+    for (std::size_t i = 0; i < out.size(); ++i)
+        for (int d = 0; d < 3; ++d) out[i][d] = size > 0 ? (mesh.points[i][d] - middle[d]) / size : 0;
+    return out;
+}
+
+std::array<float, 3> to_floats(const Vec<3>& p) { return {float(p[0]), float(p[1]), float(p[2])}; }
+
+std::array<std::uint8_t, 4> to_bytes(const Colour& c) {
+    const auto byte = [](double x) { return std::uint8_t(std::lround(255 * x)); };
+    return {byte(c.r), byte(c.g), byte(c.b), 255};
+}
+
+// Vertices are copied per part, so that each copy can have the colour of its part.
+void add_triangles(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
+                   const Colour& uncoloured) {
+    std::vector<std::pair<int, std::uint32_t>> copy(mesh.vertices.size(), {-1, 0});
+    scene.vertices.reserve(mesh.vertices.size());
+    scene.indices.reserve(3 * mesh.triangles.size());
+    const auto add = [&](int part, std::size_t first, std::size_t count, const Colour& colour) {
+        for (std::size_t t = first; t < first + count; ++t)
+            for (int v : mesh.triangles[t]) {
+                auto& [owner, index] = copy[std::size_t(v)];
+                if (owner != part) {
+                    const MeshVertex& from = mesh.vertices[std::size_t(v)];
+                    index = std::uint32_t(scene.vertices.size());
+                    scene.vertices.push_back({to_floats(points[std::size_t(from.point)]),
+                                              to_floats(unit(from.normal)), to_bytes(colour)});
+                    owner = part;
+                }
+                scene.indices.push_back(index);
+            }
+    };
+    if (mesh.parts.empty()) add(0, 0, mesh.triangles.size(), uncoloured);
+    for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
+        const MeshPart& part = mesh.parts[i];
+        add(int(i), std::size_t(part.first), std::size_t(part.count), part.colour.value_or(uncoloured));
+    }
+}
+
+void add_lines(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
+               const RenderOptions& options) {
+    if (!options.edges && !options.outlines) return;
+    std::vector<int> part_of(mesh.triangles.size(), 0);
+    for (std::size_t i = 0; i < mesh.parts.size(); ++i)
+        std::fill_n(part_of.begin() + mesh.parts[i].first, mesh.parts[i].count, int(i));
+    for (const MeshEdge& edge : edges(mesh)) {
+        const auto [first, second] = edge.triangles;
+        const bool outline = second < 0 || part_of[std::size_t(first)] != part_of[std::size_t(second)];
+        const SceneLine line{to_floats(points[std::size_t(edge.a)]), to_floats(points[std::size_t(edge.b)])};
+        if (outline && options.outlines) {
+            scene.outlines.push_back(line);
+        } else if (options.edges) {
+            scene.edges.push_back(line);
+        }
+    }
+}
+
+void set_camera(Scene& scene, const RenderOptions& options) {
+    const Axes axes = axes_of(options.view);
+    const std::array<Vec<3>, 3> rows{axes.right, axes.up, axes.eye};
+    const double k = options.perspective ? kInverseDistance : 0;
+    Box<3> box;
+    for (const SceneVertex& v : scene.vertices) {
+        const Vec<3> p{{v.position[0], v.position[1], v.position[2]}};
+        const double z = dot(axes.eye, p), w = 1 - k * z;
+        box.add(Vec<3>{{dot(axes.right, p) / w, dot(axes.up, p) / w, z}});
+    }
+    if (box.is_empty()) box.add(Vec<3>{{0, 0, 0}});
+    const double usable = 1 - 2 * options.margin * std::min(options.width, options.height) / options.width;
+    const double usable_y = 1 - 2 * options.margin * std::min(options.width, options.height) / options.height;
+    const double wide = box.hi[0] - box.lo[0], high = box.hi[1] - box.lo[1], deep = box.hi[2] - box.lo[2];
+    const double tiny = 1e-6;  // of a model of size 2: one seen edge on still gets a finite scale
+    const double scale = std::min(usable * options.width / std::max(wide, tiny),
+                                  usable_y * options.height / std::max(high, tiny));
+    const double sx = 2 * scale / options.width, sy = 2 * scale / options.height;
+    const double cx = (box.lo[0] + box.hi[0]) / 2, cy = (box.lo[1] + box.hi[1]) / 2;
+    // Depth a z + b over 1 - k z is -kDepthUsed at the nearest point and kDepthUsed at the farthest.
+    double a = 0, b = 0;
+    if (deep > tiny) {
+        const double near = -kDepthUsed * (1 - k * box.hi[2]), far = kDepthUsed * (1 - k * box.lo[2]);
+        a = (near - far) / deep;
+        b = near - a * box.hi[2];
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) scene.rotation[3 * j + i] = float(rows[i].c[j]);
+    const std::array<double, 16> m{sx,          0,           0, 0,  0,        sy,       0, 0,
+                                   k * cx * sx, k * cy * sy, a, -k, -cx * sx, -cy * sy, b, 1};
+    std::transform(m.begin(), m.end(), scene.projection.begin(), [](double x) { return float(x); });
+    scene.inverse_distance = float(k);
+}
+
+}  // namespace
+
+Scene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
+    Scene scene;
+    const std::vector<Vec<3>> points = centred(mesh);
+    add_triangles(scene, mesh, points, options.colour);
+    add_lines(scene, mesh, points, options);
+    set_camera(scene, options);
+    return scene;
+}
+
+}  // namespace freiform

@@ -1,0 +1,33 @@
+// A mesh and a view as the graphics card wants them: floats about the middle of the model, a matrix, lines.
+#pragma once
+#include <freiform/gpu/render.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace freiform {
+
+struct SceneVertex {
+    std::array<float, 3> position{};  // in [-1, 1]
+    std::array<float, 3> normal{};    // zero: that of the triangle is taken
+    std::array<std::uint8_t, 4> colour{};
+};
+
+struct SceneLine {
+    std::array<float, 3> from{}, to{};
+};
+
+struct Scene {
+    std::vector<SceneVertex> vertices;
+    std::vector<std::uint32_t> indices;
+    std::vector<SceneLine> outlines, edges;
+    std::array<float, 9> rotation{};     // to right, up, towards the eye; by columns
+    std::array<float, 16> projection{};  // of rotated positions, by columns
+    float inverse_distance = 0;          // of the eye from the origin; 0 without perspective
+};
+
+// REQUIRES a mesh that `validate` accepts.
+Scene make_scene(const TriangleMesh& mesh, const RenderOptions& options);
+
+}  // namespace freiform
