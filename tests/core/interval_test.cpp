@@ -41,6 +41,8 @@ TEST(Box, is_empty_until_something_is_added) {
     EXPECT_EQ(box.scale(), 4);
     box.add(Vec<2>{{6, 0}});
     EXPECT_EQ(box.scale(), 6);
+    box.add(Vec<2>{{-9, 0}});
+    EXPECT_EQ(box.scale(), 9);
 }
 
 TEST(Box, is_the_smallest_of_what_was_added) {
