@@ -4,6 +4,7 @@
 #include <atomic>
 #if FREIFORM_THREADS
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -21,7 +22,10 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
     grain = std::max<std::size_t>(grain, 1);
 #if FREIFORM_THREADS
     if (const int threads = g_max_threads; n >= 2 * grain && threads != 1) {
-        oneapi::tbb::task_arena arena(threads > 0 ? threads : oneapi::tbb::task_arena::automatic);
+        // More threads than the machine has would only make TBB print a warning.
+        oneapi::tbb::task_arena arena(threads > 0
+                                          ? std::min(threads, oneapi::tbb::info::default_concurrency())
+                                          : oneapi::tbb::task_arena::automatic);
         arena.execute([&] {
             oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain),
                                       [&](const auto& range) {
