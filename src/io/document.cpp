@@ -1,0 +1,191 @@
+#include "document_detail.hpp"
+
+#include <freiform/io/document.hpp>
+
+#include <cmath>
+
+namespace freiform {
+
+using namespace document_detail;
+
+namespace {
+
+constexpr std::string_view kTypes[] = {"curve", "surface", "volume", "hermite", "trimmed", "model"};
+
+template <std::size_t N>
+Result<Object> read_patch_object(json::Value v) {
+    auto patch = read_patch<N>(v);
+    if (!patch) return std::unexpected(patch.error());
+    return Object{"", std::move(patch->shape), std::move(patch->given_points)};
+}
+
+// Cubic Hermite segments as one C1 spline with double inner knots: a segment of length h from P to Q with
+// derivatives R and S has the Bezier points P, P + h R / 3, Q - h S / 3, Q; the points between two segments
+// are no coefficients of the spline, because the knot is double.
+template <int D>
+Result<Shape> hermite_curve(const std::vector<Vec<D>>& p, const std::vector<Vec<D>>& r,
+                            const std::vector<double>& t) {
+    std::vector<double> knots(2, t.front());
+    std::vector<Vec<D>> net{p.front()};
+    for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+        const double h = t[i + 1] - t[i];
+        net.push_back(p[i] + (h / 3) * r[i]);
+        net.push_back(p[i + 1] - (h / 3) * r[i + 1]);
+    }
+    net.push_back(p.back());
+    for (const double x : t) knots.insert(knots.end(), 2, x);
+    knots.insert(knots.end(), 2, t.back());
+    auto basis = BSplineBasis::make(3, std::move(knots));
+    if (!basis) return std::unexpected(basis.error());
+    const int n = int(net.size());
+    auto curve = Curve<Vec<D>>::make({std::move(*basis)}, Net<1, Vec<D>>({n}, std::move(net)));
+    if (!curve)
+        return refuse(curve.error().kind, "tangents", "point and tangent together leave the range of double");
+    return std::move(*curve);
+}
+
+template <int D>
+Result<Shape> read_hermite(const Fields& f, const std::vector<double>& t, std::size_t n) {
+    const auto vectors = [](json::Value v) { return read_list(v, read_vec<D>); };
+    const auto p = f.get("points", vectors), r = f.get("tangents", vectors);
+    if (!p) return std::unexpected(p.error());
+    if (!r) return std::unexpected(r.error());
+    if (r->size() != n)
+        return refuse(RefusalKind::invalid, "tangents", text(r->size(), " tangents for ", n, " points"));
+    return hermite_curve<D>(*p, *r, t);
+}
+
+Result<Object> read_hermite_object(json::Value v) {
+    static constexpr std::string_view kFields[] = {"type", "name", "points", "tangents", "parameters"};
+    const auto f = Fields::read(v, "a hermite curve", kFields);
+    if (!f) return std::unexpected(f.error());
+    const auto points = f->get("points");
+    if (!points) return std::unexpected(points.error());
+    if (!points->is(json::Kind::array) || points->size() < 2)
+        return expected("at least 2 points", *points, "points");
+    const std::size_t n = points->size();
+    const json::Value first = *points->elements().begin();
+    if (!first.is(json::Kind::array) || first.size() < 1 || first.size() > 4)
+        return expected("a point of 1 to 4 numbers", first, "points[0]");
+
+    std::vector<double> t;
+    for (std::size_t i = 0; i < n; ++i) t.push_back(double(i));
+    const auto given = f->get_or("parameters", read_numbers, t);
+    if (!given) return std::unexpected(given.error());
+    if (given->size() != n)
+        return refuse(RefusalKind::invalid, "parameters",
+                      text(given->size(), " parameters for ", n, " points"));
+    for (std::size_t i = 1; i < n; ++i)
+        if (!((*given)[i - 1] < (*given)[i]))
+            return refuse(RefusalKind::invalid, text("parameters[", i, "]"),
+                          text("does not increase: ", (*given)[i - 1], " -> ", (*given)[i]));
+    if (!std::isfinite(given->back() - given->front()))
+        return refuse(RefusalKind::nonfinite, "parameters", "their range leaves the range of double");
+
+    const auto shape = first.size() == 1   ? read_hermite<1>(*f, *given, n)
+                       : first.size() == 2 ? read_hermite<2>(*f, *given, n)
+                       : first.size() == 3 ? read_hermite<3>(*f, *given, n)
+                                           : read_hermite<4>(*f, *given, n);
+    if (!shape) return std::unexpected(shape.error());
+    return Object{"", *shape, {}};
+}
+
+Result<Object> object_of(Result<Shape> shape) {
+    if (!shape) return std::unexpected(shape.error());
+    return Object{"", std::move(*shape), {}};
+}
+
+Result<Object> read_object(json::Value v) {
+    const auto type = read_type(v, "", kTypes);
+    if (!type) return std::unexpected(type.error());
+    auto object = *type == "curve"     ? read_patch_object<1>(v)
+                  : *type == "surface" ? read_patch_object<2>(v)
+                  : *type == "volume"  ? read_patch_object<3>(v)
+                  : *type == "hermite" ? read_hermite_object(v)
+                  : *type == "trimmed" ? object_of(read_trimmed(v))
+                                       : object_of(read_model(v));
+    if (!object) return object;
+    for (const json::Member& m : v.members())
+        if (m.key == "name") {
+            auto name = read_string(m.value);
+            if (!name) return refuse_within("name", name.error());
+            object->name = std::move(*name);
+        }
+    return object;
+}
+
+bool has_member(json::Value v, std::string_view key) {
+    for (const json::Member& m : v.members())
+        if (m.key == key) return true;
+    return false;
+}
+
+}  // namespace
+
+Result<Document> read_document(std::string_view json) {
+    const auto tree = json::parse(json);
+    if (!tree) return std::unexpected(tree.error());
+    const json::Value root = tree->root();
+    if (!root.is(json::Kind::object))
+        return expected("a document: an object with \"objects\", or with \"type\"", root);
+    Document document;
+    if (has_member(root, "type")) {
+        auto object = read_object(root);
+        if (!object) return std::unexpected(object.error());
+        document.objects.push_back(std::move(*object));
+        return document;
+    }
+    static constexpr std::string_view kFields[] = {"freiform", "unit", "objects"};
+    const auto f = Fields::read(root, "a document", kFields);
+    if (!f) return std::unexpected(f.error());
+    const auto version = f->get_or("freiform", read_int, kVersion);
+    if (!version) return std::unexpected(version.error());
+    if (*version != kVersion)
+        return refuse(
+            RefusalKind::unsupported, "freiform",
+            text("the document is of version ", *version, ", this program reads version ", kVersion));
+    auto unit = f->get_or("unit", read_string, std::string());
+    if (!unit) return std::unexpected(unit.error());
+    document.unit = std::move(*unit);
+    auto objects = f->get("objects", [](json::Value list) { return read_list(list, read_object); });
+    if (!objects) return std::unexpected(objects.error());
+    document.objects = std::move(*objects);
+    return document;
+}
+
+std::string write_document(const Document& document) {
+    json::Writer w;
+    w.begin_object().field("freiform", kVersion);
+    if (!document.unit.empty()) w.field("unit", document.unit);
+    w.key("objects").begin_array();
+    for (const Object& o : document.objects) {
+        w.new_line(2).begin_object();
+        if (!o.name.empty()) w.field("name", o.name);
+        w.field("type", type_name(o.shape));
+        std::visit(
+            [&](const auto& s) {
+                using S = std::remove_cvref_t<decltype(s)>;
+                if constexpr (TensorPatch<S>) {
+                    write_patch(w, s, o.given_points);
+                } else if constexpr (std::same_as<S, Model>) {
+                    write_model(w, s);
+                } else {
+                    w.key("surface").begin_object();
+                    std::visit([&](const auto& surface) { write_patch(w, surface, {}); }, s.surface);
+                    w.end_object().key("loops").begin_array();
+                    for (const auto& loop : s.loops) {
+                        w.begin_array();
+                        for (const auto& curve : loop) write_curve(w, curve);
+                        w.end_array();
+                    }
+                    w.end_array();
+                }
+            },
+            o.shape);
+        w.end_object();
+    }
+    w.end_array().end_object();
+    return w.take() + "\n";
+}
+
+}  // namespace freiform

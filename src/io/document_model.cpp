@@ -1,0 +1,490 @@
+// Solid models of a document, and the curves and surfaces that only models and trimmed surfaces have.
+#include "document_detail.hpp"
+
+#include <array>
+
+namespace freiform::document_detail {
+
+namespace {
+
+constexpr std::string_view kConicNames[] = {"ellipse", "hyperbola", "parabola"};
+constexpr std::string_view kSurfaceKinds[] = {"general", "plane", "cylinder", "cone", "sphere", "torus"};
+
+// The index of a name in a list of names.
+template <std::size_t K>
+auto one_of(const std::string_view (&names)[K]) {
+    return [&names](json::Value v) -> Result<int> {
+        const auto s = read_string(v);
+        if (!s) return std::unexpected(s.error());
+        for (std::size_t i = 0; i < K; ++i)
+            if (names[i] == *s) return int(i);
+        return expected(text(listed(names), did_you_mean(*s, names)), v);
+    };
+}
+
+template <int D>
+Result<CurveGeometry<D>> read_analytic(json::Value v, std::string_view type) {
+    if (type == "line") {
+        static constexpr std::string_view kFields[] = {"type", "origin", "direction"};
+        const auto f = Fields::read(v, "a line", kFields);
+        if (!f) return std::unexpected(f.error());
+        const auto origin = f->get("origin", read_vec<D>), direction = f->get("direction", read_vec<D>);
+        if (!origin) return std::unexpected(origin.error());
+        if (!direction) return std::unexpected(direction.error());
+        return Line<D>{*origin, *direction};
+    }
+    static constexpr std::string_view kFields[] = {"type", "centre", "x", "y"};
+    const auto f = Fields::read(v, text("the curve \"", type, "\""), kFields);
+    if (!f) return std::unexpected(f.error());
+    const auto centre = f->get("centre", read_vec<D>), x = f->get("x", read_vec<D>),
+               y = f->get("y", read_vec<D>);
+    for (const auto* part : {&centre, &x, &y})
+        if (!*part) return std::unexpected(part->error());
+    const auto kind = type == kConicNames[0]   ? ConicKind::ellipse
+                      : type == kConicNames[1] ? ConicKind::hyperbola
+                                               : ConicKind::parabola;
+    return Conic<D>{kind, *centre, *x, *y};
+}
+
+template <int D>
+Result<CurveGeometry<D>> read_curve_geometry(json::Value v) {
+    static constexpr std::string_view kKnown[] = {"curve", "line", "ellipse", "hyperbola", "parabola"};
+    const auto type = read_type(v, "curve", kKnown);
+    if (!type) return std::unexpected(type.error());
+    if (*type != "curve") {
+        auto curve = read_analytic<D>(v, *type);
+        if (!curve) return curve;
+        if (auto ok = check(*curve); !ok) {  // names the kind first, which the path has already
+            Refusal r = ok.error();
+            const std::size_t dot = r.where.find('.');
+            r.where = dot == std::string::npos ? "" : r.where.substr(dot + 1);
+            return std::unexpected(std::move(r));
+        }
+        return curve;
+    }
+    auto patch = read_patch<1>(v);
+    if (!patch) return std::unexpected(patch.error());
+    if (auto* c = std::get_if<Curve<Vec<D>>>(&patch->shape)) return std::move(*c);
+    if (auto* c = std::get_if<Curve<Hom<D>>>(&patch->shape)) return std::move(*c);
+    return refuse(RefusalKind::invalid, "points", text("the points need ", D, " coordinates here"));
+}
+
+Result<std::variant<Surface<Vec<3>>, Surface<Hom<3>>>> read_space_patch(json::Value v) {
+    auto patch = read_patch<2>(v);
+    if (!patch) return std::unexpected(patch.error());
+    if (auto* s = std::get_if<Surface<Vec<3>>>(&patch->shape)) return std::move(*s);
+    if (auto* s = std::get_if<Surface<Hom<3>>>(&patch->shape)) return std::move(*s);
+    return refuse(RefusalKind::invalid, "points", "the points need 3 coordinates here");
+}
+
+Result<SurfaceGeometry> read_swept(json::Value v, bool revolution) {
+    static constexpr std::string_view kExtrusion[] = {"type", "profile", "direction", "kind"};
+    static constexpr std::string_view kRevolution[] = {"type", "profile", "origin", "axis", "kind"};
+    const auto f = revolution ? Fields::read(v, "a surface of revolution", kRevolution)
+                              : Fields::read(v, "an extrusion", kExtrusion);
+    if (!f) return std::unexpected(f.error());
+    auto profile = f->get("profile", read_space_curve);
+    if (!profile) return std::unexpected(profile.error());
+    const auto kind = f->get_or("kind", one_of(kSurfaceKinds), 0);
+    if (!kind) return std::unexpected(kind.error());
+    const auto direction = f->get(revolution ? "axis" : "direction", read_vec<3>);
+    if (!direction) return std::unexpected(direction.error());
+    if (!revolution) return Extrusion{std::move(*profile), *direction, SurfaceKind(*kind)};
+    const auto origin = f->get("origin", read_vec<3>);
+    if (!origin) return std::unexpected(origin.error());
+    return Revolution{std::move(*profile), *origin, *direction, SurfaceKind(*kind)};
+}
+
+Result<SurfaceGeometry> read_offset(json::Value v);
+
+// An offset's base is read by the same function without the offset among the types: no recursion on data.
+Result<SurfaceGeometry> read_surface(json::Value v, bool may_be_offset) {
+    static constexpr std::string_view kKnown[] = {"surface", "extrusion", "revolution", "offset"};
+    const auto type = read_type(v, "surface", std::span(kKnown).first(may_be_offset ? 4 : 3));
+    if (!type) return std::unexpected(type.error());
+    if (*type == "offset") return read_offset(v);
+    if (*type != "surface") {
+        auto swept = read_swept(v, *type == "revolution");
+        if (!swept) return swept;
+        if (auto ok = check(*swept); !ok) {
+            Refusal r = ok.error();
+            const std::size_t dot = r.where.find('.');
+            r.where = dot == std::string::npos ? "" : r.where.substr(dot + 1);
+            return std::unexpected(std::move(r));
+        }
+        return swept;
+    }
+    auto patch = read_space_patch(v);
+    if (!patch) return std::unexpected(patch.error());
+    return std::visit([](auto&& s) { return SurfaceGeometry(std::move(s)); }, std::move(*patch));
+}
+
+Result<SurfaceGeometry> read_offset(json::Value v) {
+    static constexpr std::string_view kFields[] = {"type", "base", "distance"};
+    const auto f = Fields::read(v, "an offset surface", kFields);
+    if (!f) return std::unexpected(f.error());
+    auto base = f->get("base", [](json::Value b) { return read_surface(b, false); });
+    if (!base) return std::unexpected(base.error());
+    const auto distance = f->get("distance", read_number);
+    if (!distance) return std::unexpected(distance.error());
+    return OffsetSurface{std::make_shared<const SurfaceGeometry>(std::move(*base)), *distance};
+}
+
+Result<std::optional<Colour>> read_colour(json::Value v) {
+    const auto c = read_numbers(v);
+    if (!c) return std::unexpected(c.error());
+    if (c->size() != 3 && c->size() != 4) return expected("3 or 4 numbers between 0 and 1", v);
+    for (std::size_t i = 0; i < c->size(); ++i)
+        if (!((*c)[i] >= 0 && (*c)[i] <= 1))
+            return refuse(RefusalKind::invalid, text("[", i, "]"), text("expected 0 to 1, found ", (*c)[i]));
+    return Colour{(*c)[0], (*c)[1], (*c)[2], c->size() == 4 ? (*c)[3] : 1};
+}
+
+// Puts what was read into its place; false, with the refusal, if there is none. For the many fields of a
+// model.
+class Into {
+public:
+    template <class T, class Read>
+    Into& field(const Fields& f, std::string_view key, T& place, Read&& read) {
+        if (refusal_ || !f.has(key)) return *this;
+        return needed(f, key, place, std::forward<Read>(read));
+    }
+    template <class T, class Read>
+    Into& needed(const Fields& f, std::string_view key, T& place, Read&& read) {
+        if (refusal_) return *this;
+        auto x = f.get(key, std::forward<Read>(read));
+        if (x)
+            place = std::move(*x);
+        else
+            refusal_ = std::move(x.error());
+        return *this;
+    }
+    template <class T>
+    Result<T> give(T value) {
+        if (refusal_) return std::unexpected(std::move(*refusal_));
+        return value;
+    }
+
+private:
+    std::optional<Refusal> refusal_;
+};
+
+template <class T, std::size_t K, class Fill>
+Result<T> read_entity(json::Value v, std::string_view what, const std::string_view (&allowed)[K],
+                      Fill&& fill) {
+    const auto f = Fields::read(v, what, allowed);
+    if (!f) return std::unexpected(f.error());
+    T entity;
+    Into into;
+    fill(into, *f, entity);
+    return into.give(std::move(entity));
+}
+
+constexpr std::string_view kVertexFields[] = {"point", "tolerance"};
+constexpr std::string_view kEdgeFields[] = {"curve", "degenerate", "range", "start",
+                                            "end",   "tolerance",  "name"};
+constexpr std::string_view kCoedgeFields[] = {"edge", "reversed", "curve"};
+constexpr std::string_view kFaceFields[] = {"surface", "reversed", "loops", "tolerance", "name", "colour"};
+constexpr std::string_view kFaceUseFields[] = {"face", "reversed"};
+constexpr std::string_view kShellFields[] = {"faces", "closed"};
+constexpr std::string_view kBodyFields[] = {"shells", "solid", "name", "colour"};
+constexpr std::string_view kRefusedFields[] = {"kind", "where", "message"};
+constexpr std::string_view kApproximationFields[] = {"where", "what", "bound"};
+constexpr std::string_view kModelFields[] = {"type",  "name",   "unit",   "vertices", "edges",
+                                             "faces", "shells", "bodies", "refused",  "approximations"};
+constexpr std::string_view kRefusalKinds[] = {
+    "invalid", "nonfinite",     "out_of_domain",   "unreadable", "unsupported", "unavailable",
+    "limit",   "not_converged", "ill_conditioned", "no_answer",  "io"};
+
+Result<Vertex> read_vertex(json::Value v) {
+    return read_entity<Vertex>(v, "a vertex", kVertexFields, [](Into& in, const Fields& f, Vertex& x) {
+        in.needed(f, "point", x.point, read_vec<3>).field(f, "tolerance", x.tolerance, read_number);
+    });
+}
+
+Result<Edge> read_edge(json::Value v) {
+    return read_entity<Edge>(v, "an edge", kEdgeFields, [](Into& in, const Fields& f, Edge& x) {
+        Vec<2> range{{0, 1}};
+        in.field(f, "curve", x.curve, read_space_curve)
+            .field(f, "degenerate", x.degenerate, read_bool)
+            .field(f, "range", range, read_vec<2>)
+            .needed(f, "start", x.start, read_int)
+            .needed(f, "end", x.end, read_int)
+            .field(f, "tolerance", x.tolerance, read_number)
+            .field(f, "name", x.name, read_string);
+        x.range = {range[0], range[1]};
+    });
+}
+
+// A coedge has no curve of its own to begin with, so it is built from its fields.
+Result<Coedge> read_coedge(json::Value v) {
+    const auto f = Fields::read(v, "a coedge", kCoedgeFields);
+    if (!f) return std::unexpected(f.error());
+    const auto edge = f->get("edge", read_int);
+    if (!edge) return std::unexpected(edge.error());
+    const auto reversed = f->get_or("reversed", read_bool, false);
+    if (!reversed) return std::unexpected(reversed.error());
+    auto curve = f->get("curve", read_plane_curve);
+    if (!curve) return std::unexpected(curve.error());
+    return Coedge{*edge, *reversed, std::move(*curve)};
+}
+
+Result<Loop> read_loop(json::Value v) {
+    auto coedges = read_list(v, read_coedge);
+    if (!coedges) return std::unexpected(coedges.error());
+    return Loop{std::move(*coedges)};
+}
+
+Result<Face> read_face(json::Value v) {
+    return read_entity<Face>(v, "a face", kFaceFields, [](Into& in, const Fields& f, Face& x) {
+        in.needed(f, "surface", x.surface, read_surface_geometry)
+            .field(f, "reversed", x.reversed, read_bool)
+            .field(f, "loops", x.loops, [](json::Value l) { return read_list(l, read_loop); })
+            .field(f, "tolerance", x.tolerance, read_number)
+            .field(f, "name", x.name, read_string)
+            .field(f, "colour", x.colour, read_colour);
+    });
+}
+
+Result<FaceUse> read_face_use(json::Value v) {
+    return read_entity<FaceUse>(
+        v, "a use of a face", kFaceUseFields, [](Into& in, const Fields& f, FaceUse& x) {
+            in.needed(f, "face", x.face, read_int).field(f, "reversed", x.reversed, read_bool);
+        });
+}
+
+Result<Shell> read_shell(json::Value v) {
+    return read_entity<Shell>(v, "a shell", kShellFields, [](Into& in, const Fields& f, Shell& x) {
+        in.needed(f, "faces", x.faces, [](json::Value l) {
+              return read_list(l, read_face_use);
+          }).field(f, "closed", x.closed, read_bool);
+    });
+}
+
+Result<Body> read_body(json::Value v) {
+    return read_entity<Body>(v, "a body", kBodyFields, [](Into& in, const Fields& f, Body& x) {
+        in.needed(f, "shells", x.shells, [](json::Value l) { return read_list(l, read_int); })
+            .field(f, "solid", x.solid, read_bool)
+            .field(f, "name", x.name, read_string)
+            .field(f, "colour", x.colour, read_colour);
+    });
+}
+
+Result<Refusal> read_refusal(json::Value v) {
+    return read_entity<Refusal>(v, "a refusal", kRefusedFields, [](Into& in, const Fields& f, Refusal& x) {
+        int kind = 0;
+        in.needed(f, "kind", kind, one_of(kRefusalKinds))
+            .field(f, "where", x.where, read_string)
+            .needed(f, "message", x.message, read_string);
+        x.kind = RefusalKind(kind);
+    });
+}
+
+Result<Approximation> read_approximation(json::Value v) {
+    return read_entity<Approximation>(v, "an approximation", kApproximationFields,
+                                      [](Into& in, const Fields& f, Approximation& x) {
+                                          in.field(f, "where", x.where, read_string)
+                                              .needed(f, "what", x.what, read_string)
+                                              .needed(f, "bound", x.bound, read_number);
+                                      });
+}
+
+}  // namespace
+
+Result<CurveGeometry<2>> read_plane_curve(json::Value v) { return read_curve_geometry<2>(v); }
+Result<CurveGeometry<3>> read_space_curve(json::Value v) { return read_curve_geometry<3>(v); }
+Result<SurfaceGeometry> read_surface_geometry(json::Value v) { return read_surface(v, true); }
+
+Result<Shape> read_trimmed(json::Value v) {
+    static constexpr std::string_view kFields[] = {"type", "name", "surface", "loops"};
+    const auto f = Fields::read(v, "a trimmed surface", kFields);
+    if (!f) return std::unexpected(f.error());
+    auto surface =
+        f->get("surface", [](json::Value s) -> Result<std::variant<Surface<Vec<3>>, Surface<Hom<3>>>> {
+            static constexpr std::string_view kKnown[] = {"surface"};
+            if (const auto type = read_type(s, "surface", kKnown); !type)
+                return std::unexpected(type.error());
+            return read_space_patch(s);
+        });
+    if (!surface) return std::unexpected(surface.error());
+    auto loops = f->get("loops", [](json::Value l) {
+        return read_list(l, [](json::Value loop) { return read_list(loop, read_plane_curve); });
+    });
+    if (!loops) return std::unexpected(loops.error());
+    auto trimmed = TrimmedSurface::make(std::move(*surface), std::move(*loops));
+    if (!trimmed) {  // in a document this is invalid, not a question about a parameter
+        Refusal r = trimmed.error();
+        if (r.kind == RefusalKind::out_of_domain) r.kind = RefusalKind::invalid;
+        return std::unexpected(std::move(r));
+    }
+    return std::move(*trimmed);
+}
+
+Result<Shape> read_model(json::Value v) {
+    auto m = read_entity<Model>(v, "a model", kModelFields, [](Into& in, const Fields& f, Model& x) {
+        const auto list = [](auto&& read) { return [&read](json::Value l) { return read_list(l, read); }; };
+        in.field(f, "unit", x.unit, read_string)
+            .field(f, "vertices", x.vertices, list(read_vertex))
+            .field(f, "edges", x.edges, list(read_edge))
+            .needed(f, "faces", x.faces, list(read_face))
+            .field(f, "shells", x.shells, list(read_shell))
+            .field(f, "bodies", x.bodies, list(read_body))
+            .field(f, "refused", x.refused, list(read_refusal))
+            .field(f, "approximations", x.approximations, list(read_approximation));
+    });
+    if (!m) return std::unexpected(m.error());
+    auto checked = make_model(std::move(*m));
+    if (!checked) {
+        Refusal r = checked.error();
+        if (r.kind == RefusalKind::out_of_domain) r.kind = RefusalKind::invalid;
+        return std::unexpected(std::move(r));
+    }
+    return std::move(*checked);
+}
+
+namespace {
+
+template <int D>
+void write_curve_fields(json::Writer& w, const Line<D>& l) {
+    w.field("type", "line").key("origin").array(l.origin.c).key("direction").array(l.direction.c);
+}
+template <int D>
+void write_curve_fields(json::Writer& w, const Conic<D>& c) {
+    w.field("type", kConicNames[int(c.kind)]).key("centre").array(c.centre.c);
+    w.key("x").array(c.x.c).key("y").array(c.y.c);
+}
+template <class P>
+void write_curve_fields(json::Writer& w, const Curve<P>& c) {
+    write_patch(w, c, {});
+}
+
+void write_surface_fields(json::Writer& w, const Extrusion& e) {
+    w.field("type", "extrusion").key("profile");
+    write_curve(w, e.profile);
+    w.key("direction").array(e.direction.c);
+    if (e.kind != SurfaceKind::general) w.field("kind", kSurfaceKinds[int(e.kind)]);
+}
+void write_surface_fields(json::Writer& w, const Revolution& r) {
+    w.field("type", "revolution").key("profile");
+    write_curve(w, r.profile);
+    w.key("origin").array(r.origin.c).key("axis").array(r.axis.c);
+    if (r.kind != SurfaceKind::general) w.field("kind", kSurfaceKinds[int(r.kind)]);
+}
+void write_surface_fields(json::Writer& w, const OffsetSurface& o) {
+    w.field("type", "offset").key("base");
+    write_surface(w, *o.base);
+    w.field("distance", o.distance);
+}
+template <class P>
+void write_surface_fields(json::Writer& w, const Surface<P>& s) {
+    w.field("type", "surface");
+    write_patch(w, s, {});
+}
+
+template <int D>
+void write_curve_object(json::Writer& w, const CurveGeometry<D>& c) {
+    w.begin_object();
+    std::visit([&](const auto& g) { write_curve_fields(w, g); }, c);
+    w.end_object();
+}
+
+void write_optional(json::Writer& w, bool reversed, double tolerance, const std::string& name) {
+    if (reversed) w.field("reversed", true);
+    if (tolerance != 0) w.field("tolerance", tolerance);
+    if (!name.empty()) w.field("name", name);
+}
+void write_optional(json::Writer& w, const std::optional<Colour>& c) {
+    if (c) w.key("colour").array(std::array{c->r, c->g, c->b, c->a});
+}
+
+void write_entity(json::Writer& w, const Vertex& v) {
+    w.key("point").array(v.point.c);
+    write_optional(w, false, v.tolerance, "");
+}
+void write_entity(json::Writer& w, const Edge& e) {
+    if (e.curve) {
+        w.key("curve");
+        write_curve(w, *e.curve);
+    }
+    if (e.degenerate) w.field("degenerate", true);
+    w.key("range").array(std::array{e.range.lo, e.range.hi}).field("start", e.start).field("end", e.end);
+    write_optional(w, false, e.tolerance, e.name);
+}
+void write_entity(json::Writer& w, const Face& f) {
+    w.key("surface");
+    write_surface(w, f.surface);
+    w.key("loops").begin_array();
+    for (const Loop& loop : f.loops) {
+        w.begin_array();
+        for (const Coedge& c : loop.coedges) {
+            w.begin_object().field("edge", c.edge);
+            if (c.reversed) w.field("reversed", true);
+            w.key("curve");
+            write_curve(w, c.curve);
+            w.end_object();
+        }
+        w.end_array();
+    }
+    w.end_array();
+    write_optional(w, f.reversed, f.tolerance, f.name);
+    write_optional(w, f.colour);
+}
+void write_entity(json::Writer& w, const Shell& s) {
+    w.key("faces").begin_array();
+    for (const FaceUse& u : s.faces) {
+        w.begin_object().field("face", u.face);
+        if (u.reversed) w.field("reversed", true);
+        w.end_object();
+    }
+    w.end_array();
+    if (s.closed) w.field("closed", true);
+}
+void write_entity(json::Writer& w, const Body& b) {
+    w.key("shells").array(b.shells);
+    if (b.solid) w.field("solid", true);
+    write_optional(w, false, 0, b.name);
+    write_optional(w, b.colour);
+}
+void write_entity(json::Writer& w, const Refusal& r) {
+    w.field("kind", name_of(r.kind)).field("where", r.where).field("message", r.message);
+}
+void write_entity(json::Writer& w, const Approximation& a) {
+    w.field("where", a.where).field("what", a.what).field("bound", a.bound);
+}
+
+template <class T>
+void write_entities(json::Writer& w, std::string_view field, const std::vector<T>& list,
+                    bool always = false) {
+    if (list.empty() && !always) return;
+    w.new_line(3).key(field).begin_array();
+    for (const T& x : list) {
+        w.new_line(4).begin_object();
+        write_entity(w, x);
+        w.end_object();
+    }
+    w.end_array();
+}
+
+}  // namespace
+
+void write_curve(json::Writer& w, const CurveGeometry<2>& c) { write_curve_object(w, c); }
+void write_curve(json::Writer& w, const CurveGeometry<3>& c) { write_curve_object(w, c); }
+
+void write_surface(json::Writer& w, const SurfaceGeometry& s) {
+    w.begin_object();
+    std::visit([&](const auto& g) { write_surface_fields(w, g); }, s);
+    w.end_object();
+}
+
+void write_model(json::Writer& w, const Model& m) {
+    if (!m.unit.empty()) w.field("unit", m.unit);
+    write_entities(w, "vertices", m.vertices);
+    write_entities(w, "edges", m.edges);
+    write_entities(w, "faces", m.faces, true);
+    write_entities(w, "shells", m.shells);
+    write_entities(w, "bodies", m.bodies);
+    write_entities(w, "refused", m.refused);
+    write_entities(w, "approximations", m.approximations);
+}
+
+}  // namespace freiform::document_detail

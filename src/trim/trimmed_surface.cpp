@@ -1,0 +1,138 @@
+// Whether a curve stays inside the domain. Idea: a Bezier piece stays in every box that contains its control
+// points; a piece whose control points leave the box is halved until its ends leave (then the curve does) or
+// its control points stay inside. Control points approach the curve quadratically, so with a slack the
+// halving ends after about fifteen steps; the budget is a backstop, and a curve that needs more is taken for
+// inside, where no point of it was found outside. Cost: pieces only near places where the curve touches the
+// boundary.
+#include <freiform/spline/bezier.hpp>
+#include <freiform/trim/trimmed_surface.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace freiform {
+
+namespace {
+
+using Loops = std::vector<std::vector<CurveGeometry<2>>>;
+
+// The box that curves have to stay in: closed axes go round, so that every parameter is inside.
+Box<2> allowed(const std::variant<Surface<Vec<3>>, Surface<Hom<3>>>& surface) {
+    Box<2> box;
+    std::visit(
+        [&](const auto& s) {
+            for (int d = 0; d < 2; ++d) {
+                const Interval on = s.basis(d).domain();
+                const double slack = s.basis(d).is_closed() ? std::numeric_limits<double>::infinity()
+                                                            : TrimmedSurface::kSlack * on.length();
+                box.lo[d] = on.lo - slack;
+                box.hi[d] = on.hi + slack;
+            }
+        },
+        surface);
+    return box;
+}
+
+template <class P>
+std::optional<Vec<2>> point_outside(std::vector<P> piece, const Box<2>& box) {
+    constexpr int kMostPieces = 4096;
+    std::vector<std::vector<P>> pending;
+    pending.push_back(std::move(piece));
+    for (int i = 0; i < kMostPieces && !pending.empty(); ++i) {
+        std::vector<P> b = std::move(pending.back());
+        pending.pop_back();
+        bool inside = true;
+        for (const P& p : b) inside = inside && box.contains(project(p));
+        if (inside) continue;
+        for (const P& end : {b.front(), b.back()})
+            if (!box.contains(project(end))) return project(end);
+        std::vector<P> left = b;
+        keep_left(Fibre<P>{left.data(), int(left.size()), 1}, 0.5);
+        keep_right(Fibre<P>{b.data(), int(b.size()), 1}, 0.5);
+        pending.push_back(std::move(b));
+        pending.push_back(std::move(left));
+    }
+    return std::nullopt;
+}
+
+template <class P>
+std::optional<Vec<2>> point_outside(const Curve<P>& curve, const Box<2>& box) {
+    const auto pieces = decompose(curve);
+    for (int i = 0; i < pieces.extent()[0]; ++i) {
+        const auto net = pieces.net({i});
+        if (auto p = point_outside(std::vector<P>(net.data, net.data + net.extent[0]), box)) return p;
+    }
+    return std::nullopt;
+}
+
+// An ellipse reaches centre +- sqrt(x_d^2 + y_d^2) along each axis.
+std::optional<Vec<2>> point_outside(const Conic<2>& c, const Box<2>& box) {
+    for (int d = 0; d < 2; ++d) {
+        const double t = std::atan2(c.y[d], c.x[d]);
+        for (const double at : {t, t + std::numbers::pi}) {
+            const Vec<2> p = jet<0, 2>(CurveGeometry<2>(c), at).value();
+            if (!(box.lo[d] <= p[d] && p[d] <= box.hi[d])) return p;
+        }
+    }
+    return std::nullopt;
+}
+std::optional<Vec<2>> point_outside(const Line<2>&, const Box<2>&) { return std::nullopt; }
+
+bool has_ends(const CurveGeometry<2>& c) {
+    if (std::holds_alternative<Line<2>>(c)) return false;
+    const auto* conic = std::get_if<Conic<2>>(&c);
+    return !conic || conic->kind == ConicKind::ellipse;
+}
+
+Vec<2> end_of(const CurveGeometry<2>& c, int side) {
+    // The cosine and sine of a rounded 2 pi would leave a gap in an ellipse that has none.
+    if (std::holds_alternative<Conic<2>>(c)) return jet<0, 2>(c, 0).value();
+    const Interval on = domain(c)[0];
+    return jet<0, 2>(c, side == 0 ? on.lo : on.hi).value();
+}
+
+Result<void> check_loop(const std::vector<CurveGeometry<2>>& loop, const Box<2>& box, const Vec<2>& slack) {
+    if (loop.empty()) return refuse(RefusalKind::invalid, "", "a loop needs at least one curve");
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const std::string at = text("[", i, "]");
+        if (auto ok = check(loop[i]); !ok) return refuse_within(at, ok.error());
+        if (!has_ends(loop[i]))
+            return refuse(
+                RefusalKind::invalid, at,
+                text("a ", kind_name(loop[i]), " has no ends; a loop is made of splines and ellipses"));
+        if (const auto p = std::visit([&](const auto& c) { return point_outside(c, box); }, loop[i]))
+            return refuse(RefusalKind::out_of_domain, at,
+                          text("leaves the domain of the surface at (", (*p)[0], ", ", (*p)[1], ")"));
+    }
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec<2> end = end_of(loop[i], 1), start = end_of(loop[(i + 1) % loop.size()], 0),
+                     gap = start - end;
+        if (!(std::abs(gap[0]) <= slack[0] && std::abs(gap[1]) <= slack[1]))
+            return refuse(
+                RefusalKind::invalid, text("[", i, "]"),
+                text("the loop is open: the curve ends at (", end[0], ", ", end[1], "), the next begins at (",
+                     start[0], ", ", start[1], "), a gap of ", norm(gap), " in the parameters"));
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surface<Hom<3>>> surface,
+                                            Loops loops) {
+    const Box<2> box = allowed(surface);
+    Vec<2> slack;
+    std::visit(
+        [&](const auto& s) {
+            for (int d = 0; d < 2; ++d) slack[d] = kSlack * s.basis(d).domain().length();
+        },
+        surface);
+    for (std::size_t i = 0; i < loops.size(); ++i)
+        if (auto ok = check_loop(loops[i], box, slack); !ok)
+            return refuse_within(text("loops[", i, "]"), ok.error());
+    return TrimmedSurface{std::move(surface), std::move(loops)};
+}
+
+}  // namespace freiform
