@@ -29,7 +29,8 @@ namespace freiform {
 
 namespace {
 
-constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
+constexpr double kFarBeyond = 16;  // an estimate from the whole surface may be too large, by less than this
+constexpr int kMaxDepth = 100;     // backstop: 2^-50 of the box in both directions
 
 double kink_error(std::span<const Kink> kinks, Interval on) {
     double sum = 0;
@@ -136,6 +137,14 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             kink_error(tree.kinks_[0], box.side(0)) + kink_error(tree.kinks_[1], box.side(1));
         const double error = c.along(size[0], size[1]) / 8 + kinks;
         if (error <= tolerance || !(size[0] > 0) || !(size[1] > 0)) continue;
+        if (item.depth == 0 && std::isfinite(error)) {  // far too many: say so at once
+            const double estimate = std::sqrt(1 + c.along(size[0], 0) / 8 / tolerance) *
+                                    std::sqrt(1 + c.along(0, size[1]) / 8 / tolerance);
+            if (estimate > kFarBeyond * double(max_leaves))
+                return refuse(RefusalKind::limit, "max_triangles",
+                              text("the tolerance ", tolerance, " needs about ", std::ceil(2 * estimate),
+                                   " triangles"));
+        }
         if (item.depth == kMaxDepth) {
             if (!std::isfinite(error))
                 return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),

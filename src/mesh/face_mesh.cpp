@@ -65,10 +65,50 @@ double scale_for(double x) {
     return x > 0 && std::isfinite(x) ? std::ldexp(1.0, -std::ilogb(x * 1.4142)) : 1.0;
 }
 
+// A segment between two corners that are the same point in space (a pole) belongs to this face alone, so it
+// may be cut where the leaves of the tree are.
+void cut_poles(Polygon& polygon, const FaceBoundary& boundary, const CurvatureTree& tree) {
+    std::vector<Vec<2>> corners;
+    const std::vector<Triangulation::Segment> before = std::move(polygon.segments);
+    polygon.segments.clear();
+    for (const auto& s : before) {
+        const int a = polygon.corner[std::size_t(s.a)], b = polygon.corner[std::size_t(s.b)];
+        if (boundary.point[std::size_t(a)] != boundary.point[std::size_t(b)]) {
+            polygon.segments.push_back(s);
+            continue;
+        }
+        if (corners.empty())
+            for (const auto& c : tree.corners()) corners.push_back(c.at);
+        const Vec<2> p = boundary.uv[std::size_t(a)], q = boundary.uv[std::size_t(b)], d = q - p;
+        std::vector<std::pair<double, Vec<2>>> cuts;  // by the part of the way
+        if (d[0] == 0 || d[1] == 0) {
+            const int axis = d[0] == 0 ? 1 : 0;
+            for (const Vec<2>& c : corners)
+                if (c[1 - axis] == p[1 - axis] && (c[axis] - p[axis]) * (c[axis] - q[axis]) < 0)
+                    cuts.push_back({(c[axis] - p[axis]) / d[axis], c});
+        } else {
+            const Vec<2> leaf = tree.mean_leaf();
+            const int n = int(
+                std::min(1000.0, std::ceil(std::max(std::abs(d[0]) / leaf[0], std::abs(d[1]) / leaf[1]))));
+            for (int k = 1; k < n; ++k) cuts.push_back({double(k) / n, p + (double(k) / n) * d});
+        }
+        std::sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+        int last = s.a;
+        for (const auto& cut : cuts) {
+            polygon.points.push_back(cut.second);
+            polygon.corner.push_back(a);
+            polygon.segments.push_back({last, int(polygon.points.size()) - 1});
+            last = int(polygon.points.size()) - 1;
+        }
+        polygon.segments.push_back({last, s.b});
+    }
+}
+
 class Filler {
 public:
-    Filler(Triangulation& t, const CurvatureTree& tree, Vec<2> scale, double tolerance)
-        : t_(t), tree_(tree), scale_(scale), tolerance_(tolerance) {}
+    Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, Vec<2> scale,
+           double tolerance)
+        : t_(t), tree_(tree), surface_(surface), scale_(scale), tolerance_(tolerance) {}
 
     void insert_corners();
     // False when more than `max_points` are needed.
@@ -86,7 +126,9 @@ private:
     bool improve(int triangle);
 
     Triangulation& t_;
+    Curvature curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const;
     const CurvatureTree& tree_;
+    const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_;
     double tolerance_;
 };
@@ -115,12 +157,25 @@ void Filler::insert_corners() {
     }
 }
 
+// What the tree says of the leaves that the triangle meets; where that is not enough, of its own box, which
+// may be much smaller than a leaf.
+Curvature Filler::curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const {
+    Box<2> box;
+    for (const Vec<2>& p : {a, b, c}) box.add(p);
+    const Curvature from_tree = tree_.over(box);
+    if (linear_interpolation_bound(from_tree, a, b, c) + tree_.kink_bound(box) <= tolerance_)
+        return from_tree;
+    const auto own = surface_({box.side(0), box.side(1)});
+    return {std::min(from_tree.uu, own(2, 0)), std::min(from_tree.uv, own(1, 1)),
+            std::min(from_tree.vv, own(0, 2))};
+}
+
 double Filler::bound(int triangle) const {
     const auto& v = t_.vertices(triangle);
     const Vec<2> a = uv(v[0]), b = uv(v[1]), c = uv(v[2]);
     Box<2> box;
     for (const Vec<2>& p : {a, b, c}) box.add(p);
-    return linear_interpolation_bound(tree_.over(box), a, b, c) + tree_.kink_bound(box);
+    return linear_interpolation_bound(curvature_over(a, b, c), a, b, c) + tree_.kink_bound(box);
 }
 
 // Inserts a point that makes the triangle better; false if there is none.
@@ -129,7 +184,7 @@ bool Filler::improve(int triangle) {
     const Vec<2> corner[3] = {uv(v[0]), uv(v[1]), uv(v[2])};
     Box<2> box;
     for (const Vec<2>& p : corner) box.add(p);
-    const Curvature c = tree_.over(box);
+    const Curvature c = curvature_over(corner[0], corner[1], corner[2]);
     const auto attempt = [&](const Vec<2>& at) {
         return t_.insert(scaled(at), triangle).status == Triangulation::Insert::done;
     };
@@ -250,6 +305,8 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
                                     std::size_t(max_triangles) / 2 + 1);
     if (!tree) return std::unexpected(tree.error());
 
+    const int merged_corners = int(polygon->points.size());
+    cut_poles(*polygon, boundary, *tree);
     const Vec<2> leaf = tree->mean_leaf();
     const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
     std::vector<Vec<2>> points = polygon->points;
@@ -257,7 +314,7 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
     auto triangulation = Triangulation::make(points, polygon->segments);
     if (!triangulation) return std::unexpected(triangulation.error());
 
-    Filler filler(*triangulation, *tree, scale, tolerance);
+    Filler filler(*triangulation, *tree, surface, scale, tolerance);
     for (const Vec<2>& p : extra) triangulation->insert({{p[0] * scale[0], p[1] * scale[1]}});
     filler.insert_corners();
     // Corners that stand for the same mesh point, numbered by the first of them.
@@ -274,8 +331,15 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
 
     FaceMesh out;
     out.uv = boundary.uv;
-    const int corners = int(polygon->points.size()), shift = int(boundary.uv.size()) - corners;
-    for (int v = corners; v < int(triangulation->points().size()); ++v) out.uv.push_back(filler.uv(v));
+    out.point = boundary.point;
+    // Merged corners keep the first of their places; what was cut out of poles and what was inserted comes
+    // after them.
+    const int shift = int(boundary.uv.size()) - merged_corners;
+    for (int v = merged_corners; v < int(triangulation->points().size()); ++v) {
+        out.uv.push_back(filler.uv(v));
+        out.point.push_back(
+            v < int(points.size()) ? boundary.point[std::size_t(polygon->corner[std::size_t(v)])] : -1);
+    }
     for (int i = 0; i < triangulation->size(); ++i) {
         if (!triangulation->is_inside(i)) continue;
         const double bound = filler.bound(i);
@@ -287,8 +351,8 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
         std::array<int, 3> t = triangulation->vertices(i);
         std::array<int, 3> at{};
         for (std::size_t k = 0; k < 3; ++k) {
-            at[k] = t[k] < corners ? place[std::size_t(t[k])] : t[k];
-            t[k] = t[k] < corners ? polygon->corner[std::size_t(t[k])] : t[k] + shift;
+            at[k] = t[k] < int(place.size()) ? place[std::size_t(t[k])] : t[k];
+            t[k] = t[k] < merged_corners ? polygon->corner[std::size_t(t[k])] : t[k] + shift;
         }
         if (at[0] != at[1] && at[1] != at[2] && at[2] != at[0]) out.triangles.push_back(t);
     }

@@ -21,6 +21,8 @@ namespace freiform {
 
 namespace {
 
+constexpr double kFarBeyond = 16;  // the estimate may be too large, by less than this
+
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
     return std::visit(
         [&](const auto& c) -> CurveGeometry<1> {
@@ -141,6 +143,16 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_
     std::sort(must.begin(), must.end());
     must.erase(std::unique(must.begin(), must.end()), must.end());
 
+    // Errors fall with the square of the length: an estimate that is far beyond the limit needs no attempt.
+    double estimate = 0;
+    for (std::size_t i = 0; i + 1 < must.size(); ++i) {
+        const SegmentError err = error(edge, must[i], must[i + 1]);
+        estimate += std::sqrt(std::max(err.polyline, err.triangle) / tolerance);
+    }
+    if (estimate > kFarBeyond * double(max_segments) && std::isfinite(estimate))
+        return refuse(
+            RefusalKind::limit, "max_triangles",
+            text("edge ", edge, " needs about ", std::ceil(estimate), " segments within ", tolerance));
     mesh.parameters = {on.lo};
     mesh.bound = 0;
     std::vector<std::pair<double, double>> stack;

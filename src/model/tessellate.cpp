@@ -288,7 +288,6 @@ Tessellation Tessellator::collect() {
             continue;
         }
         const FaceMesh& m = meshes_[f];
-        const auto& polygon = boundaries_[f].polygon;
         const bool flip = face.reversed != bool(flipped[f]);
         const int base = int(out.mesh.vertices.size());
         std::vector<Vec<2>> inwards(m.uv.size());
@@ -299,9 +298,8 @@ Tessellation Tessellator::collect() {
         for (std::size_t i = 0; i < m.uv.size(); ++i) {
             MeshVertex v;
             v.uv = m.uv[i];
-            if (i < polygon.uv.size()) {
-                v.point = polygon.point[i];
-            } else {
+            v.point = m.point[i];
+            if (v.point < 0) {
                 v.point = int(out.mesh.points.size());
                 out.mesh.points.push_back(jet<0>(face.surface, m.uv[i].c).value());
             }

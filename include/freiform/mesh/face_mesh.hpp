@@ -28,7 +28,8 @@ struct BoundaryConflict {
 std::optional<BoundaryConflict> find_conflict(const FaceBoundary& boundary);
 
 struct FaceMesh {
-    std::vector<Vec<2>> uv;  // the corners of the boundary first, in order, then inner points
+    std::vector<Vec<2>> uv;  // the corners of the boundary first, in order, then further points
+    std::vector<int> point;  // one for each uv: as FaceBoundary::point, -1 for inner points
     std::vector<std::array<int, 3>>
         triangles;     // counter-clockwise in the parameter plane, none with two equal points
     double bound = 0;  // of the interpolation error of all triangles

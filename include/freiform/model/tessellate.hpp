@@ -10,8 +10,8 @@ namespace freiform {
 struct TessellateOptions {
     double tolerance = 0;                  // distance in model units, > 0
     long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
-    std::function<bool(double)>
-        progress;  // called with a fraction in [0, 1]; false stops with a refusal (limit)
+    // Called with a fraction in [0, 1], from any thread; false stops with a refusal (limit).
+    std::function<bool(double)> progress = {};
 };
 
 struct RefusedFace {
