@@ -4,67 +4,15 @@
 //
 // Every offset is compared with the bytes that are there; nodes are walked with a stack of our own, and one
 // that is met twice is refused, so that a cycle ends.
+#include "io/glb_read_detail.hpp"
 #include "io/mesh_builder.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 namespace freiform {
 namespace {
-
-using Json = nlohmann::json;
-using Matrix = std::array<double, 16>;  // by columns
-
-constexpr Matrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-constexpr Matrix kYUpToZUp{1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1};
-
-Matrix product(const Matrix& a, const Matrix& b) {
-    Matrix c{};
-    for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t k = 0; k < 4; ++k) c[4 * j + i] += a[4 * k + i] * b[4 * j + k];
-    return c;
-}
-
-Vec<3> moved(const Matrix& m, const Vec<3>& p) {
-    Vec<3> q;
-    for (std::size_t i = 0; i < 3; ++i) q.c[i] = m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i];
-    return q;
-}
-
-// Normals follow the cofactors of the matrix; a reflection does not turn them round.
-Vec<3> turned(const Matrix& m, const Vec<3>& n) {
-    const Vec<3> x{{m[0], m[1], m[2]}}, y{{m[4], m[5], m[6]}}, z{{m[8], m[9], m[10]}};
-    const Vec<3> yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
-    return (dot(x, yz) < 0 ? -1.0 : 1.0) * (n[0] * yz + n[1] * zx + n[2] * xy);
-}
-
-double determinant(const Matrix& m) {
-    return dot(Vec<3>{{m[0], m[1], m[2]}}, cross(Vec<3>{{m[4], m[5], m[6]}}, Vec<3>{{m[8], m[9], m[10]}}));
-}
-
-// Says where a text stops being JSON; the parser itself only says that it does.
-struct Locator : nlohmann::json_sax<Json> {
-    std::size_t byte = 0;
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
-    bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override { return true; }
-    bool key(string_t&) override { return true; }
-    bool end_object() override { return true; }
-    bool start_array(std::size_t) override { return true; }
-    bool end_array() override { return true; }
-    bool parse_error(std::size_t at, const std::string&, const nlohmann::detail::exception&) override {
-        byte = at;
-        return false;
-    }
-};
 
 // One accessor whose bytes have been found and measured.
 struct View {

@@ -83,6 +83,7 @@ TEST(Topology, zero_area_is_decided_exactly) {
     }
     EXPECT_EQ(degenerate({{0.5, 1.5, -2.5}}, {{1, 3, -5}}, {{0x1p-60, 0x3p-60, -0x5p-60}}), 1);
     EXPECT_EQ(degenerate({{0x1p60, 0x3p60, 7}}, {{1, 3, 7}}, {{-0x1p-30, -0x3p-30, 7}}), 1);
+    EXPECT_EQ(degenerate({{0, 0, 1}}, {{1e300, 1e-300, 1}}, {{1e300, 0, 1}}), 0);
     // Not on a line, although both products of the cross product round to the same double.
     const double big = 0x1p27;
     EXPECT_EQ(degenerate({{0, 0, 0}}, {{big + 1, big, 0}}, {{big, big - 1, 0}}), 0);
