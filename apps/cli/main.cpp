@@ -14,6 +14,8 @@ void add_commands(CLI::App& app, Context& context) {
     add_info(app, context);
     add_eval(app, context);
     add_convert(app, context);
+    add_tessellate(app, context);
+    add_draw(app, context);
 }
 
 std::string version(bool verbose) {

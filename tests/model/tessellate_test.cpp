@@ -1,5 +1,5 @@
-#include "shapes.hpp"
-#include "solids.hpp"
+#include "support/shapes.hpp"
+#include "support/solids.hpp"
 
 #include <freiform/core/parallel.hpp>
 

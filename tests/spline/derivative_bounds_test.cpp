@@ -1,4 +1,4 @@
-#include "shapes.hpp"
+#include "support/shapes.hpp"
 
 #include <freiform/spline/derivative_bounds.hpp>
 

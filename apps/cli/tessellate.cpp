@@ -1,0 +1,186 @@
+// tessellate: a file to a mesh within a tolerance, and a report of what was reached.
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <freiform/io/mesh_file.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/model/tessellate.hpp>
+
+#include <chrono>
+#include <cmath>
+
+namespace freiform::cli {
+
+namespace {
+
+struct Options {
+    std::string file, object;
+    std::optional<double> tolerance;
+};
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The most that a point moves when its coordinates become floats.
+double float_rounding(const TriangleMesh& mesh) {
+    double most = 0;
+    for (const Vec<3>& p : mesh.points) {
+        Vec<3> d;
+        for (int i = 0; i < 3; ++i) d[i] = double(float(p[i])) - p[i];
+        most = std::max(most, norm(d));
+    }
+    return most;
+}
+
+struct Times {
+    double read = 0, write = 0, total = 0;
+};
+
+std::string json_report(const Tessellation& t, const Model& model, double tolerance,
+                        const std::string& output, double rounding, const Times& times) {
+    json::Writer w;
+    w.begin_object();
+    w.field("triangles", t.mesh.triangles.size())
+        .field("vertices", t.mesh.points.size())
+        .field("faces", model.faces.size());
+    w.field("open_edges", t.topology.open_edges).field("non_manifold_edges", t.topology.non_manifold_edges);
+    w.field("error_bound", t.error_bound).field("boundary_gap", t.boundary_gap);
+    w.field("degenerate_triangles", t.topology.degenerate_triangles);
+    w.field("tolerance", tolerance).field("unit", model.unit);
+    if (!output.empty()) w.field("output", output).field("storage_rounding", rounding);
+    w.key("seconds").begin_object();
+    w.field("read", times.read).field("edges", t.seconds.edges).field("faces", t.seconds.faces);
+    w.field("write", times.write).field("total", times.total).end_object();
+    w.key("refused").begin_array();
+    for (const RefusedFace& r : t.refused)
+        w.begin_object()
+            .field("face", r.face)
+            .field("name", r.name)
+            .field("kind", name_of(r.reason.kind))
+            .field("where", r.reason.where)
+            .field("message", r.reason.message)
+            .end_object();
+    for (const Refusal& r : model.refused)
+        w.begin_object()
+            .field("face", r.where)
+            .field("kind", name_of(r.kind))
+            .field("where", r.where)
+            .field("message", r.message)
+            .end_object();
+    w.end_array().key("approximations").begin_array();
+    for (const Approximation& a : model.approximations)
+        w.begin_object().field("where", a.where).field("what", a.what).field("bound", a.bound).end_object();
+    w.end_array().end_object();
+    return w.take() + "\n";
+}
+
+std::string text_report(const Tessellation& t, const Model& model, double tolerance,
+                        const std::string& output, double rounding, const Times& times) {
+    std::string s = text(t.mesh.triangles.size(), " triangles, ", t.mesh.points.size(), " points, ",
+                         model.faces.size(), " faces\n");
+    s += text("open edges      ", t.topology.open_edges, "\n");
+    if (t.topology.non_manifold_edges > 0) s += text("non-manifold    ", t.topology.non_manifold_edges, "\n");
+    if (t.topology.degenerate_triangles > 0)
+        s += text("degenerate      ", t.topology.degenerate_triangles, "\n");
+    s += text("error bound     ", t.error_bound, " (tolerance ", tolerance, model.unit.empty() ? "" : " ",
+              model.unit, ")\n");
+    s += text("boundary gap    ", t.boundary_gap, " (of the model itself)\n");
+    if (rounding > 0) s += text("stored as float ", rounding, " more\n");
+    s += text("seconds         ", times.total, "\n");
+    for (const RefusedFace& r : t.refused)
+        s += text("refused face ", r.face, r.name.empty() ? "" : text(" '", r.name, "'"), ": ",
+                  r.reason.where, ": ", r.reason.message, "\n");
+    for (const Refusal& r : model.refused) s += text("refused ", r.where, ": ", r.message, "\n");
+    for (const Approximation& a : model.approximations)
+        s += text("approximated ", a.where, ": ", a.what, ", within ", a.bound, "\n");
+    if (!output.empty()) s += text("written to ", output, "\n");
+    return s;
+}
+
+Result<void> run(Context& context, const Options& options) {
+    const double start = now();
+    // The mesh may go to standard output; then the report does not.
+    const std::string output = context.output;
+    std::optional<MeshFormat> format;
+    if (!context.to.empty() || (!output.empty() && output != "-")) {
+        auto known = mesh_format(context.to.empty() ? output : context.to);
+        if (!known) wrong_usage(known.error().message);
+        format = *known;
+    } else if (output == "-") {
+        wrong_usage("-o - needs --to glb, stl, obj or ply");
+    }
+    if (output == "-" && context.json) wrong_usage("--json and -o - both want standard output");
+
+    const auto document = read_any(options.file, context.read_options());
+    if (!document) return std::unexpected(document.error());
+    const auto objects = selected(*document, options.object);
+    if (!objects) return std::unexpected(objects.error());
+    const auto model = scene_of(*document, *objects);
+    if (!model) return std::unexpected(model.error());
+    Times times;
+    times.read = now() - start;
+
+    TessellateOptions how;
+    how.tolerance = options.tolerance.value_or(0);
+    if (!options.tolerance) {
+        how.tolerance = summary(*model).box.diagonal() / 1000;
+        remark(text("tolerance ", how.tolerance, model->unit.empty() ? "" : " ", model->unit,
+                    ", a thousandth of the model's box"));
+    }
+    how.max_triangles = (long long)(context.limits.max_triangles);
+    Progress bar("tessellate");
+    const double deadline = context.limits.timeout > 0 ? start + context.limits.timeout : 0;
+    how.progress = [&](double part) {
+        bar(part);
+        return deadline == 0 || now() < deadline;
+    };
+    auto t = tessellate(*model, how);
+    if (!t) {
+        if (t.error().where == "progress")
+            return refuse(RefusalKind::limit, "--timeout",
+                          text("more than ", context.limits.timeout, " seconds are needed"));
+        return std::unexpected(t.error());
+    }
+    if (t->mesh.triangles.empty() && !t->refused.empty())
+        return refuse(
+            t->refused[0].reason.kind == RefusalKind::limit ? RefusalKind::limit : RefusalKind::no_answer,
+            text("faces[", t->refused[0].face, "].", t->refused[0].reason.where),
+            text("no face could be meshed: ", t->refused[0].reason.message));
+    const double written = now();
+    double rounding = 0;
+    if (!output.empty()) {
+        if (auto ok = write_mesh(t->mesh, output, format); !ok) return ok;
+        if (format == MeshFormat::glb || format == MeshFormat::stl) rounding = float_rounding(t->mesh);
+    }
+    times.write = now() - written;
+    times.total = now() - start;
+    if (output == "-") return {};
+    context.output.clear();  // the report goes to standard output
+    return emit(context, context.json ? json_report(*t, *model, how.tolerance, output, rounding, times)
+                                      : text_report(*t, *model, how.tolerance, output, rounding, times));
+}
+
+}  // namespace
+
+void add_tessellate(CLI::App& app, Context& context) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = add_command(
+        app, context, "tessellate", "Triangles within a tolerance, watertight where the model is closed",
+        "  freiform tessellate teapot.bpt --tolerance 0.01 -o teapot.glb\n"
+        "  freiform tessellate part.step --tolerance 0.05 -o part.stl --json\n"
+        "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply");
+    command->add_option("FILE", options->file, "The file; - is standard input")->required();
+    add_number(
+        *command, "--tolerance", options->tolerance,
+        "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box)");
+    command->add_option("--object", options->object, "Only the object of this name or index")
+        ->type_name("NAME|INDEX");
+    add_output(*command, context, "The mesh: .glb, .stl, .obj or .ply");
+    add_limits(*command, context);
+    add_triangle_limit(*command, context);
+    command->callback(
+        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+}
+
+}  // namespace freiform::cli

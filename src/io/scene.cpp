@@ -1,0 +1,125 @@
+#include <freiform/io/bpt.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/model/assemble.hpp>
+
+namespace freiform {
+
+namespace {
+
+// The same surface in the plane z = 0.
+template <class P>
+auto in_space(const Surface<P>& s) {
+    constexpr bool rational = Space<P>::kRational;
+    using Q = std::conditional_t<rational, Hom<3>, Vec<3>>;
+    std::vector<Q> c;
+    for (const P& p : s.net().flat()) {
+        Q q{};
+        q[0] = p[0];
+        q[1] = p[1];
+        if constexpr (rational) q[3] = p.weight();
+        c.push_back(q);
+    }
+    return Surface<Q>::trusted(s.bases(), Net<2, Q>(s.net().extent(), std::move(c)));
+}
+
+// Appends a model; indices move up by what is there.
+void append(Model& to, Model from) {
+    const int vertices = int(to.vertices.size()), edges = int(to.edges.size()), faces = int(to.faces.size()),
+              shells = int(to.shells.size());
+    for (Edge& e : from.edges) e.start += vertices, e.end += vertices;
+    for (Face& f : from.faces)
+        for (Loop& l : f.loops)
+            for (Coedge& c : l.coedges) c.edge += edges;
+    for (Shell& s : from.shells)
+        for (FaceUse& u : s.faces) u.face += faces;
+    for (Body& b : from.bodies)
+        for (int& s : b.shells) s += shells;
+    const auto move_all = [](auto& a, auto& b) {
+        a.insert(a.end(), std::make_move_iterator(b.begin()), std::make_move_iterator(b.end()));
+    };
+    move_all(to.vertices, from.vertices);
+    move_all(to.edges, from.edges);
+    move_all(to.faces, from.faces);
+    move_all(to.shells, from.shells);
+    move_all(to.bodies, from.bodies);
+    move_all(to.refused, from.refused);
+    move_all(to.approximations, from.approximations);
+}
+
+class Scene {
+public:
+    explicit Scene(const Document& document) : document_(document), builder_(document.unit) {}
+
+    Result<void> add(std::size_t index) {
+        return std::visit([&](const auto& s) { return add_shape(index, s); }, document_.objects[index].shape);
+    }
+
+    Result<Model> finish() && {
+        Model all;
+        all.unit = document_.unit;
+        if (has_surfaces_) {
+            auto loose = std::move(builder_).finish();
+            if (!loose) return loose;
+            append(all, std::move(*loose));
+        }
+        for (const Model* m : models_) {
+            if (!m->unit.empty() && !all.unit.empty() && m->unit != all.unit)
+                return refuse(RefusalKind::unsupported, "unit",
+                              text("a model in ", m->unit, " cannot be joined with others in ", all.unit));
+            if (all.unit.empty()) all.unit = m->unit;
+            append(all, *m);
+        }
+        all.refused.insert(all.refused.end(), without_faces_.begin(), without_faces_.end());
+        if (all.faces.empty())
+            return refuse(RefusalKind::no_answer, "objects", "there is no surface among them");
+        return make_model(std::move(all));
+    }
+
+private:
+    template <class S>
+    Result<void> add_shape(std::size_t index, const S& s) {
+        const std::string& name = document_.objects[index].name;
+        Result<int> added = 0;
+        if constexpr (std::same_as<S, Surface<Vec<3>>> || std::same_as<S, Surface<Hom<3>>>) {
+            added = builder_.add(s, name);
+        } else if constexpr (std::same_as<S, Surface<Vec<2>>> || std::same_as<S, Surface<Hom<2>>>) {
+            added = builder_.add(in_space(s), name);
+        } else if constexpr (std::same_as<S, TrimmedSurface>) {
+            added = s.loops.empty() ? builder_.add(s.surface, name)
+                                    : builder_.add_trimmed(s.surface, s.loops, name);
+        } else if constexpr (std::same_as<S, Model>) {
+            models_.push_back(&s);
+            return {};
+        } else {
+            without_faces_.push_back(
+                {RefusalKind::unsupported, object_label(document_, index),
+                 text("a ", type_name(document_.objects[index].shape), " has no faces in space")});
+            return {};
+        }
+        if (!added) return refuse_within(object_label(document_, index), added.error());
+        has_surfaces_ = true;
+        return {};
+    }
+
+    const Document& document_;
+    ModelBuilder builder_;
+    bool has_surfaces_ = false;
+    std::vector<const Model*> models_;
+    std::vector<Refusal> without_faces_;
+};
+
+}  // namespace
+
+Result<Model> scene_of(const Document& document, std::span<const std::size_t> objects) {
+    Scene scene(document);
+    if (objects.empty()) {
+        for (std::size_t i = 0; i < document.objects.size(); ++i)
+            if (auto ok = scene.add(i); !ok) return std::unexpected(ok.error());
+    } else {
+        for (const std::size_t i : objects)
+            if (auto ok = scene.add(i); !ok) return std::unexpected(ok.error());
+    }
+    return std::move(scene).finish();
+}
+
+}  // namespace freiform
