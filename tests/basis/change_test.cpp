@@ -281,6 +281,55 @@ TEST(ToBezier, gives_every_span_its_own_coefficients) {
     });
 }
 
+// Row j of a change is a mean of blossoms of the old basis in the span of knot j, here in exact arithmetic.
+double largest_entry_error(const BSplineBasis& old, const Change<BSplineBasis>& change, bool elevation) {
+    const int p = old.degree();
+    double worst = 0;
+    for (int j = 0; j < change.basis.size(); ++j) {
+        const auto& t = change.basis;
+        if (t.knot(j + t.degree() + 1) <= t.domain().lo || t.knot(j) >= t.domain().hi) continue;
+        const int s = old.span(t.knot(j));
+        std::vector<test::Rational> exact(std::size_t(p) + 1), w(exact), args(std::size_t(p) + 1);
+        for (int skip = 0; skip <= (elevation ? p : 0); ++skip) {
+            for (int k = 0; k < p; ++k) args[std::size_t(k)] = t.knot(j + 1 + k + (elevation && k >= skip));
+            blossom(old, s, args.data(), w.data());
+            for (std::size_t k = 0; k < w.size(); ++k) exact[k] += w[k] / (elevation ? p + 1 : 1);
+        }
+        EXPECT_EQ(change.map.first[std::size_t(j)], s - p);
+        for (int k = 0; k <= p; ++k) {
+            const double entry = change.map.row(j)[std::size_t(k)];
+            const auto& x = exact[std::size_t(k)];
+            EXPECT_EQ(entry == 0, x == 0);
+            if (x != 0) worst = std::max(worst, test::gap(entry, x) / x.convert_to<double>() * 0x1p53);
+        }
+    }
+    return worst;
+}
+
+TEST(Changes, entries_carry_no_more_roundings_than_their_essay_says) {
+    Random random(27);
+    double refined = 0, elevated = 0;
+    for (int p = 1; p <= 9; ++p)
+        for (Ends ends : {Ends::clamped, Ends::unclamped}) {
+            const auto b = test::random_basis(random, p, {ends, 3});
+            const auto [lo, hi] = b.domain();
+            std::vector<double> more;
+            for (int k = 0; k < 4; ++k) more.push_back(random.real(lo, hi));
+            std::sort(more.begin(), more.end());
+            refined =
+                std::max({refined, largest_entry_error(b, must(insert_knots(b, more)), false) / (5 * p),
+                          largest_entry_error(b, must(restrict_to(b, {more[0], more[3]})), false) / (5 * p),
+                          largest_entry_error(b, to_bezier(b), false) / (5 * p)});
+            elevated = std::max(elevated, largest_entry_error(b, must(elevate(b)), true) / (6 * p + 3));
+        }
+    std::printf("  largest observed / claimed relative error: refined %.3f, elevated %.3f\n", refined,
+                elevated);
+    EXPECT_LE(refined, 1);
+    EXPECT_LE(elevated, 1);
+    EXPECT_GE(refined, 0.05);
+    EXPECT_GE(elevated, 0.05);
+}
+
 TEST(Collocation, rows_are_the_weights) {
     Random random(26);
     const auto b = test::random_basis(random, 3, {Ends::closed, 4});
