@@ -268,6 +268,12 @@ TEST(SimplexPatch, refuses_what_is_no_triangle_and_parameters_outside) {
     at[1] = {0, nan};
     EXPECT_EQ(s.evaluate(at, out).error().where, "at[1][1]");
     EXPECT_EQ(s.evaluate<1>(at, jets).error().kind, RefusalKind::nonfinite);
+    // Six times the third difference of coefficients near the largest double.
+    std::vector<Vec<1>> steep(10, Vec<1>{{0x1p1022}});
+    for (std::size_t i = 0; i < 10; i += 2) steep[i][0] *= -1;
+    const auto t = must(SimplexPatch<2, Vec<1>>::make(3, steep));
+    Jet<2, 3, Vec<1>> high[1];
+    EXPECT_EQ(t.evaluate<3>(std::span(at, 1), high).error().kind, RefusalKind::ill_conditioned);
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ public:
     Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out) const;
     template <int K>
     Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out) const {
+        FF_REQUIRE(at.size() == out.size());
         for (std::size_t i = 0; i < at.size(); ++i) {
             if (auto ok = check(at[i], i); !ok) return ok;
             partials(at[i], K, out[i].d);

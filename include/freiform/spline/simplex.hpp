@@ -66,6 +66,10 @@ public:
         for (std::size_t i = 0; i < at.size(); ++i) {
             if (auto ok = check(at[i], i); !ok) return ok;
             partials(at[i], K, out[i].d);
+            for (const Point& d : out[i].d)
+                if (!is_finite(d))
+                    return refuse(RefusalKind::ill_conditioned, text("at[", i, "]"),
+                                  "a derivative is above the largest double");
         }
         return {};
     }
