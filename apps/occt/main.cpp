@@ -1,0 +1,134 @@
+// freiform-occt-import INPUT OUTPUT [--format step|iges|brep] [--verify]
+//
+// Reads INPUT with Open CASCADE and writes it to OUTPUT in the form of io/model_binary.hpp; OUTPUT "-" is
+// standard output. A process of its own, because the reader may crash, hang or eat the memory on a damaged
+// file: whoever calls it sets the limits. What it has to say is one line on standard error,
+//     refusal TAB kind TAB where TAB message
+// with exit status 3; status 0 means that OUTPUT is whole.
+#include "convert.hpp"
+#include "verify.hpp"
+
+#include <freiform/io/file.hpp>
+#include <freiform/io/model_binary.hpp>
+
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <unistd.h>
+
+namespace {
+
+using namespace freiform;
+
+int say(const Refusal& r) {
+    const auto line = [](std::string s) {
+        for (char& c : s)
+            if (c == '\t' || c == '\n' || c == '\r') c = ' ';
+        return s;
+    };
+    std::cerr << "refusal\t" << name_of(r.kind) << '\t' << line(r.where) << '\t' << line(r.message)
+              << std::endl;
+    return 3;
+}
+
+struct Arguments {
+    std::string input, output;
+    occt::Format format = occt::Format::step;
+    bool verify = false;
+};
+
+std::optional<Arguments> parse(int count, char** values) {
+    Arguments a;
+    std::vector<std::string> plain;
+    bool given = false;
+    for (int i = 1; i < count; ++i) {
+        const std::string_view v = values[i];
+        if (v == "--verify") {
+            a.verify = true;
+        } else if (v == "--format" && i + 1 < count) {
+            const std::string_view name = values[++i];
+            if (name != "step" && name != "iges" && name != "brep") return std::nullopt;
+            a.format = name == "step"   ? occt::Format::step
+                       : name == "iges" ? occt::Format::iges
+                                        : occt::Format::brep;
+            given = true;
+        } else {
+            plain.emplace_back(v);
+        }
+    }
+    if (plain.size() != 2) return std::nullopt;
+    a.input = plain[0], a.output = plain[1];
+    if (!given) {
+        std::string ending = a.input.substr(std::min(a.input.size(), a.input.rfind('.') + 1));
+        for (char& c : ending) c = char(c >= 'A' && c <= 'Z' ? c + 32 : c);
+        if (ending == "igs" || ending == "iges") a.format = occt::Format::iges;
+        if (ending == "brep" || ending == "brp" || ending == "rle") a.format = occt::Format::brep;
+    }
+    return a;
+}
+
+Result<void> write_all(int fd, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return refuse(RefusalKind::io, "standard output", std::strerror(errno));
+        bytes.remove_prefix(std::size_t(n));
+    }
+    return {};
+}
+
+int run(const Arguments& a, int output) {
+    auto document = occt::read_document(a.input, a.format);
+    if (!document) return say(document.error());
+    occt::Conversion c = occt::convert(*document);
+    if (c.model.faces.empty() && c.model.edges.empty()) {
+        if (c.model.refused.empty())
+            return say({RefusalKind::no_answer, a.input, "the file has no faces and no curves"});
+        return say({c.model.refused.back().kind, c.model.refused.back().where,
+                    text("nothing of the file could be taken over: ", c.model.refused.back().message)});
+    }
+    if (a.verify && !occt::verify(c, a.input)) return 1;
+    auto model = make_model(std::move(c.model));
+    if (!model) return say({RefusalKind::unreadable, model.error().where, model.error().message});
+    const std::string bytes = to_binary(*model);
+    if (a.output == "-") {
+        if (auto ok = write_all(output, bytes); !ok) return say(ok.error());
+    } else if (auto ok = write_file(a.output, bytes); !ok) {
+        return say(ok.error());
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+    const auto arguments = parse(count, values);
+    if (!arguments) {
+        std::cerr << "usage: freiform-occt-import INPUT OUTPUT [--format step|iges|brep] [--verify]\n";
+        return 2;
+    }
+    // The reader prints to standard output now and then; only the model may go there.
+    const int output = ::dup(STDOUT_FILENO);
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);
+    Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+    try {
+        return run(*arguments, output);
+    } catch (const Standard_OutOfMemory&) {
+        return say({RefusalKind::limit, arguments->input, "the memory limit is too small for this file"});
+    } catch (const std::bad_alloc&) {
+        return say({RefusalKind::limit, arguments->input, "the memory limit is too small for this file"});
+    } catch (const Standard_Failure& f) {
+        return say({RefusalKind::unreadable, arguments->input,
+                    text("the reader gave up: ", f.DynamicType()->Name(), " ", f.GetMessageString())});
+    } catch (const std::exception& e) {
+        return say({RefusalKind::unreadable, arguments->input, text("the reader gave up: ", e.what())});
+    }
+}
