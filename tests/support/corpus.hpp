@@ -25,11 +25,12 @@ inline std::optional<std::filesystem::path> corpus(std::string_view name) {
 
 }  // namespace freiform::test
 
-// Declares `path`, a file of the corpus, or skips the test and says why. For the body of a TEST.
-#define FF_CORPUS_OR_SKIP(path, name)                                               \
-    const auto path##_found_ = ::freiform::test::corpus(name);                      \
-    if (!path##_found_)                                                             \
+// Declares `variable`, the path of a file of the corpus, or skips the test and says why. For the body of a
+// TEST.
+#define FF_CORPUS_OR_SKIP(variable, name)                                           \
+    const auto variable##_found_ = ::freiform::test::corpus(name);                  \
+    if (!variable##_found_)                                                         \
         GTEST_SKIP() << "no " << (name) << " below "                                \
                      << ::freiform::test::corpus_root().lexically_normal().string() \
                      << " (FREIFORM_CORPUS names another folder)";                  \
-    const std::filesystem::path& path = *path##_found_
+    const std::filesystem::path& variable = *variable##_found_
