@@ -385,8 +385,10 @@ void Converter::body(const TopoDS_Shape& s, bool solid, const Part& part, const 
     for (TopExp_Explorer i(s, TopAbs_SHELL); i.More(); i.Next()) shells.push_back(i.Current());
     if (solid && shells.size() > 1) {
         const TopoDS_Shell outer = BRepClass3d::OuterShell(TopoDS::Solid(s));
-        std::stable_partition(shells.begin(), shells.end(),
-                              [&](const TopoDS_Shape& x) { return !outer.IsNull() && x.IsSame(outer); });
+        const auto at_outer = std::find_if(shells.begin(), shells.end(), [&](const TopoDS_Shape& x) {
+            return !outer.IsNull() && x.IsSame(outer);
+        });
+        if (at_outer != shells.end()) std::rotate(shells.begin(), at_outer, at_outer + 1);
     }
     for (const TopoDS_Shape& x : shells)
         if (const int i = shell(x, solid || BRep_Tool::IsClosed(x), at, part); i >= 0)

@@ -18,10 +18,13 @@
 #include <Standard_OutOfMemory.hxx>
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <iostream>
 #include <new>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace {
@@ -85,8 +88,26 @@ Result<void> write_all(int fd, std::string_view bytes) {
     return {};
 }
 
+// Whether the address space was nearly used up at some time. The reader takes the failure of an allocation
+// for a fault of the file.
+bool ran_out_of_memory() {
+    struct rlimit limit {};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return false;
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmPeak:")) {
+            const std::size_t digits = std::min(line.find_first_of("0123456789"), line.size());
+            unsigned long long kibibytes = 0;
+            std::from_chars(line.data() + digits, line.data() + line.size(), kibibytes);
+            return kibibytes * 1024 > limit.rlim_cur / 10 * 8;
+        }
+    return false;
+}
+
 int run(const Arguments& a, int output) {
     auto document = occt::read_document(a.input, a.format);
+    if (!document && ran_out_of_memory())
+        return say({RefusalKind::limit, a.input, "the memory limit is too small for this file"});
     if (!document) return say(document.error());
     occt::Conversion c = occt::convert(*document);
     if (c.model.faces.empty() && c.model.edges.empty()) {
