@@ -13,6 +13,7 @@
 #include "convert.hpp"
 
 #include "geometry.hpp"
+#include "refit.hpp"
 
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -93,7 +94,7 @@ private:
     Result<Piece> piece(const TopoDS_Edge& e, const TopoDS_Face& f, const Handle(Geom_Plane) & plane);
     Result<int> edge(const TopoDS_Edge& e, const TopoDS_Face& f);
     int vertex(const TopoDS_Vertex& v);
-    void check_tolerance(const Face& f, std::string_view where);
+    Result<void> check_tolerance(Face& f, std::string_view where);
     int shell(const TopoDS_Shape& s, bool closed, const TopLoc_Location& at, const Part& part);
     void body(const TopoDS_Shape& s, bool solid, const Part& part, const TopLoc_Location& at);
 
@@ -127,7 +128,7 @@ Result<int> Converter::edge(const TopoDS_Edge& oriented, const TopoDS_Face& f) {
     if (!c.IsNull()) {
         auto converted = curve(c, made.range);
         if (converted) {
-            if (const double by = stretch_to(*converted, made.range); by > 0)
+            if (const double by = stretch_to(*converted, made.range); by > 1e-12 * (hi - lo))
                 out_.model.approximations.push_back(
                     {text("edges[", out_.model.edges.size(), "]"),
                      text("its curve ends ", by, " (in the parameter) before the edge does"),
@@ -272,6 +273,9 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
 
 // Samples miss the largest value of a smooth function by little; this much is added to what they find.
 constexpr double kMargin = 1.5;
+// Relative to the size of the face: better parameter curves are looked for from here, and what is this far
+// off describes another face.
+constexpr double kWorthRefitting = 1e-9, kHopeless = 0.25;
 
 // The largest value found among samples, and between the neighbours of the largest of them.
 template <class F>
@@ -297,18 +301,39 @@ int samples_for(const Edge& e, const Coedge& c) {
     return int(std::clamp<std::size_t>(6 * pieces, 48, 2000));
 }
 
-// Raises the tolerances of edges that the parameter curves of `f` do not keep.
-void Converter::check_tolerance(const Face& f, std::string_view where) {
+// Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
+// that the others do not keep. Refuses the face if one misses by a good part of the size of the face.
+Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
+    Box<3> box;
     for (const Loop& l : f.loops)
-        for (const Coedge& c : l.coedges) {
+        for (const Coedge& c : l.coedges)
+            if (const Edge& e = out_.model.edges[std::size_t(c.edge)]; e.curve)
+                for (int i = 0; i <= 8; ++i)
+                    box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * i / 8).value());
+    const double size = box.diagonal();
+    for (Loop& l : f.loops)
+        for (Coedge& c : l.coedges) {
             Edge& e = out_.model.edges[std::size_t(c.edge)];
-            const auto gap = [&](double t) {
-                const Vec<2> uv = jet<0>(c.curve, t).value();
-                const Vec<3> on_face = jet<0>(f.surface, uv.c).value();
-                if (e.curve) return norm(on_face - jet<0>(*e.curve, t).value());
-                return e.degenerate ? norm(on_face - out_.model.vertices[std::size_t(e.start)].point) : 0.0;
+            const auto gap_of = [&](const CurveGeometry<2>& on_surface) {
+                const auto gap = [&](double t) {
+                    const Vec<2> uv = jet<0>(on_surface, t).value();
+                    const Vec<3> on_face = jet<0>(f.surface, uv.c).value();
+                    if (e.curve) return norm(on_face - jet<0>(*e.curve, t).value());
+                    return e.degenerate ? norm(on_face - out_.model.vertices[std::size_t(e.start)].point)
+                                        : 0.0;
+                };
+                return largest(gap, e.range, samples_for(e, c));
             };
-            const double worst = largest(gap, e.range, samples_for(e, c));
+            double worst = gap_of(c.curve);
+            if (e.curve && worst > kWorthRefitting * size)
+                if (auto better = refit(f.surface, *e.curve, c.curve, e.range, kWorthRefitting / 10 * size))
+                    if (const double rest = gap_of(*better); rest < worst / 2) {
+                        c.curve = std::move(*better);
+                        worst = rest;
+                    }
+            if (e.curve && !(worst < kHopeless * size))
+                return refuse(RefusalKind::ill_conditioned, "parameter curve",
+                              text("misses its edge by ", worst, "; the face has a size of ", size));
             if (worst > e.tolerance)
                 out_.model.approximations.push_back(
                     {text("edges[", c.edge, "]"),
@@ -316,6 +341,7 @@ void Converter::check_tolerance(const Face& f, std::string_view where) {
                      kMargin * worst});
             e.tolerance = std::max(e.tolerance, kMargin * worst);
         }
+    return {};
 }
 
 Result<int> Converter::face(const TopoDS_Face& original, const TopLoc_Location& at, const Part& part) {
@@ -341,6 +367,8 @@ Result<int> Converter::face(const TopoDS_Face& original, const TopLoc_Location& 
                           text(failure.DynamicType()->Name(), ": ", failure.GetMessageString()));
         }
     }();
+    if (made)
+        if (auto ok = check_tolerance(*made, where); !ok) made = std::unexpected(ok.error());
     if (!made) {
         out_.model.refused.push_back(
             {made.error().kind, where, text(made.error().where, ": ", made.error().message)});
@@ -349,7 +377,6 @@ Result<int> Converter::face(const TopoDS_Face& original, const TopLoc_Location& 
     made->name = a.name;
     made->colour = a.colour;
     made->reversed = original.Orientation() == TopAbs_REVERSED;
-    check_tolerance(*made, where);
     const int i = int(out_.model.faces.size());
     out_.model.faces.push_back(std::move(*made));
     out_.faces.push_back(f);

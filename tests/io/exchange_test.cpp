@@ -143,6 +143,21 @@ TEST_F(Exchange, leaves_coordinates_in_the_unit_of_the_file) {
     }
 }
 
+TEST_F(Exchange, reads_the_solid_among_the_examples) {
+    const auto m = read_with_occt(FREIFORM_SOURCE_DIR "/examples/bracket.step");
+    ASSERT_TRUE(m.has_value()) << m.error().message;
+    const ModelSummary s = summary(*m);
+    EXPECT_EQ(m->unit, "mm");
+    EXPECT_EQ(s.solids, 1);
+    EXPECT_EQ(s.faces, 24);
+    EXPECT_EQ(s.edges, 53);
+    EXPECT_EQ(s.open_edges, 0);
+    EXPECT_TRUE(m->refused.empty());
+    expect_consistent(*m, 1e-5);
+    // The file has no parameter curves; those that were made follow the edges.
+    for (const Edge& e : m->edges) EXPECT_LT(e.tolerance, 2e-5) << e.tolerance;
+}
+
 TEST_F(Exchange, keeps_colours_and_names) {
     FF_CORPUS_OR_SKIP(path, "step/red_cube_blue_cylinder.step");
     const auto m = read_with_occt(path.string());
