@@ -291,14 +291,14 @@ double largest(const F& f, Interval on, int samples) {
 }
 
 // Several in each piece of a spline.
-int samples_for(const Edge& e, const Coedge& c) {
+int samples_for(const Edge& e, const CurveGeometry<2>& on_surface) {
     std::size_t pieces = 1;
     const auto count = [&](const auto& g) {
         if constexpr (requires { g.net(); }) pieces = std::max(pieces, g.net().flat().size());
     };
     if (e.curve) std::visit(count, *e.curve);
-    std::visit(count, c.curve);
-    return int(std::clamp<std::size_t>(6 * pieces, 48, 2000));
+    std::visit(count, on_surface);
+    return int(std::clamp<std::size_t>(6 * pieces, 48, 6000));
 }
 
 // Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
@@ -322,7 +322,7 @@ Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
                     return e.degenerate ? norm(on_face - out_.model.vertices[std::size_t(e.start)].point)
                                         : 0.0;
                 };
-                return largest(gap, e.range, samples_for(e, c));
+                return largest(gap, e.range, samples_for(e, on_surface));
             };
             double worst = gap_of(c.curve);
             if (e.curve && worst > kWorthRefitting * size)
@@ -331,7 +331,7 @@ Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
                         c.curve = std::move(*better);
                         worst = rest;
                     }
-            if (e.curve && !(worst < kHopeless * size))
+            if (size > 0 && !(worst < kHopeless * size))
                 return refuse(RefusalKind::ill_conditioned, "parameter curve",
                               text("misses its edge by ", worst, "; the face has a size of ", size));
             if (worst > e.tolerance)

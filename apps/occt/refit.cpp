@@ -116,7 +116,8 @@ std::optional<CurveGeometry<2>> refit(const SurfaceGeometry& s, const CurveGeome
             const double gap = norm(jet<0>(s, at.c).value() - jet<0>(c, t).value());
             if (gap > 1.1 * n.distance + accuracy) good = false;
         }
-        if (good || b.t - a.t < 2 * shortest) {
+        if (!good && b.t - a.t < 2 * shortest) return std::nullopt;
+        if (good) {
             done.push_back(b);
             todo.pop_back();
         } else {
