@@ -143,6 +143,23 @@ TEST_F(Exchange, leaves_coordinates_in_the_unit_of_the_file) {
     }
 }
 
+TEST_F(Exchange, turns_normals_out_of_the_solid) {
+    FF_CORPUS_OR_SKIP(path, "step/cube-mm.step");
+    const auto m = read_with_occt(path.string());
+    ASSERT_TRUE(m.has_value());
+    Vec<3> centre{};
+    for (const Vertex& v : m->vertices) centre += 1.0 / double(m->vertices.size()) * v.point;
+    ASSERT_EQ(m->shells.size(), 1u);
+    ASSERT_EQ(m->shells[0].faces.size(), 6u);
+    for (const FaceUse& use : m->shells[0].faces) {
+        const Face& f = m->faces[std::size_t(use.face)];
+        const Coedge& c = f.loops[0].coedges[0];
+        const Vec<2> uv = jet<0>(c.curve, m->edges[std::size_t(c.edge)].range.middle()).value();
+        const double side = f.reversed != use.reversed ? -1 : 1;
+        EXPECT_GT(side * dot(normal(f.surface, uv.c), jet<0>(f.surface, uv.c).value() - centre), 499);
+    }
+}
+
 TEST_F(Exchange, reads_the_solid_among_the_examples) {
     const auto m = read_with_occt(FREIFORM_SOURCE_DIR "/examples/bracket.step");
     ASSERT_TRUE(m.has_value()) << m.error().message;
