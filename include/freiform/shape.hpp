@@ -3,6 +3,7 @@
 #pragma once
 #include <freiform/model/model.hpp>
 #include <freiform/spline/patch.hpp>
+#include <freiform/spline/simplex.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
 #include <string>
@@ -12,12 +13,17 @@
 
 namespace freiform {
 
-using Shape = std::variant<Curve<Vec<1>>, Curve<Vec<2>>, Curve<Vec<3>>, Curve<Vec<4>>,          //
-                           Curve<Hom<1>>, Curve<Hom<2>>, Curve<Hom<3>>, Curve<Hom<4>>,          //
-                           Surface<Vec<1>>, Surface<Vec<2>>, Surface<Vec<3>>, Surface<Vec<4>>,  //
-                           Surface<Hom<1>>, Surface<Hom<2>>, Surface<Hom<3>>, Surface<Hom<4>>,  //
-                           Volume<Vec<1>>, Volume<Vec<2>>, Volume<Vec<3>>, Volume<Vec<4>>,      //
-                           Volume<Hom<1>>, Volume<Hom<2>>, Volume<Hom<3>>, Volume<Hom<4>>,      //
+template <class P>
+using Triangle = SimplexPatch<2, P>;
+
+using Shape = std::variant<Curve<Vec<1>>, Curve<Vec<2>>, Curve<Vec<3>>, Curve<Vec<4>>,              //
+                           Curve<Hom<1>>, Curve<Hom<2>>, Curve<Hom<3>>, Curve<Hom<4>>,              //
+                           Surface<Vec<1>>, Surface<Vec<2>>, Surface<Vec<3>>, Surface<Vec<4>>,      //
+                           Surface<Hom<1>>, Surface<Hom<2>>, Surface<Hom<3>>, Surface<Hom<4>>,      //
+                           Volume<Vec<1>>, Volume<Vec<2>>, Volume<Vec<3>>, Volume<Vec<4>>,          //
+                           Volume<Hom<1>>, Volume<Hom<2>>, Volume<Hom<3>>, Volume<Hom<4>>,          //
+                           Triangle<Vec<1>>, Triangle<Vec<2>>, Triangle<Vec<3>>, Triangle<Vec<4>>,  //
+                           Triangle<Hom<1>>, Triangle<Hom<2>>, Triangle<Hom<3>>, Triangle<Hom<4>>,  //
                            TrimmedSurface, Model>;
 
 // A curve, surface or volume: `visit` with `if constexpr (TensorPatch<S>)`.
@@ -28,13 +34,22 @@ concept TensorPatch = requires(const S& s) {
     s.net();
 };
 
-// "curve", "surface", "volume", "trimmed", "model": the `type` of the document.
+// A triangular patch.
+template <class S>
+concept TriangularPatch = requires(const S& s) {
+    s.coefficient(0, 0);
+    s.coefficients();
+};
+
+// "curve", "surface", "volume", "triangle", "trimmed", "model": the `type` of the document.
 inline std::string_view type_name(const Shape& shape) {
     return std::visit(
         [](const auto& s) -> std::string_view {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>)
                 return S::kParams == 1 ? "curve" : S::kParams == 2 ? "surface" : "volume";
+            else if constexpr (TriangularPatch<S>)
+                return "triangle";
             else if constexpr (std::same_as<S, TrimmedSurface>)
                 return "trimmed";
             else
@@ -46,9 +61,9 @@ inline std::string_view type_name(const Shape& shape) {
 struct Object {
     std::string name;  // may be empty
     Shape shape;
-    // Of a rational patch, optional: its points as they were given, one after the other. The patch holds w x,
-    // from which x comes back only up to rounding. Whoever changes the shape leaves this empty; the writer
-    // uses only numbers that fit the shape.
+    // Of a rational patch or triangle, optional: its points as they were given, one after the other. The
+    // patch holds w x, from which x comes back only up to rounding. Whoever changes the shape leaves this
+    // empty; the writer uses only numbers that fit the shape.
     std::vector<double> given_points;
 };
 

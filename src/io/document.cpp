@@ -10,13 +10,12 @@ using namespace document_detail;
 
 namespace {
 
-constexpr std::string_view kTypes[] = {"curve", "surface", "volume", "hermite", "trimmed", "model"};
+constexpr std::string_view kTypes[] = {"curve",   "surface", "volume", "triangle",
+                                       "hermite", "trimmed", "model"};
 
-template <std::size_t N>
-Result<Object> read_patch_object(json::Value v) {
-    auto patch = read_patch<N>(v);
-    if (!patch) return std::unexpected(patch.error());
-    return Object{"", std::move(patch->shape), std::move(patch->given_points)};
+Result<Object> object_of(Result<ReadShape> shape) {
+    if (!shape) return std::unexpected(shape.error());
+    return Object{"", std::move(shape->shape), std::move(shape->given_points)};
 }
 
 // Cubic Hermite segments as one C1 spline with double inner knots: a segment of length h from P to Q with
@@ -98,12 +97,13 @@ Result<Object> object_of(Result<Shape> shape) {
 Result<Object> read_object(json::Value v) {
     const auto type = read_type(v, "", kTypes);
     if (!type) return std::unexpected(type.error());
-    auto object = *type == "curve"     ? read_patch_object<1>(v)
-                  : *type == "surface" ? read_patch_object<2>(v)
-                  : *type == "volume"  ? read_patch_object<3>(v)
-                  : *type == "hermite" ? read_hermite_object(v)
-                  : *type == "trimmed" ? object_of(read_trimmed(v))
-                                       : object_of(read_model(v));
+    auto object = *type == "curve"      ? object_of(read_patch<1>(v))
+                  : *type == "surface"  ? object_of(read_patch<2>(v))
+                  : *type == "volume"   ? object_of(read_patch<3>(v))
+                  : *type == "triangle" ? object_of(read_triangle(v))
+                  : *type == "hermite"  ? read_hermite_object(v)
+                  : *type == "trimmed"  ? object_of(read_trimmed(v))
+                                        : object_of(read_model(v));
     if (!object) return object;
     for (const json::Member& m : v.members())
         if (m.key == "name") {
@@ -167,6 +167,8 @@ std::string write_document(const Document& document) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (TensorPatch<S>) {
                     write_patch(w, s, o.given_points);
+                } else if constexpr (TriangularPatch<S>) {
+                    write_triangle(w, s, o.given_points);
                 } else if constexpr (std::same_as<S, Model>) {
                     write_model(w, s);
                 } else {

@@ -70,14 +70,14 @@ auto read_list(json::Value v, Read&& read)
     return out;
 }
 
-// A tensor product patch of N parameters, with the points as they were given.
-template <std::size_t N>
-struct ReadPatch {
+// A shape, with the points as they were given.
+struct ReadShape {
     Shape shape;
     std::vector<double> given_points;
 };
 template <std::size_t N>
-Result<ReadPatch<N>> read_patch(json::Value v);
+Result<ReadShape> read_patch(json::Value v);  // a tensor product patch of N parameters
+Result<ReadShape> read_triangle(json::Value v);
 
 // The same where a space of D coordinates is needed. `type` may be left out.
 Result<CurveGeometry<2>> read_plane_curve(json::Value v);
@@ -99,6 +99,9 @@ void write_model(json::Writer& w, const Model& m);  // the fields, without the b
 // empty.
 template <std::size_t N, class P>
 void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const double> given);
+
+template <class P>
+void write_triangle(json::Writer& w, const Triangle<P>& triangle, std::span<const double> given);
 
 template <int D>
 Result<Vec<D>> read_vec(json::Value v) {

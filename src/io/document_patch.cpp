@@ -6,6 +6,8 @@
 // bits in every case.
 #include "document_detail.hpp"
 
+#include <freiform/core/scan.hpp>
+
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -93,11 +95,12 @@ Result<std::vector<double>> read_weights(json::Value v, const Index<N>& extent) 
     return flat;
 }
 
-// `field` or, of a patch with several parameters, `field` with the axis.
 template <std::size_t N>
-std::string on_axis(std::string_view field, std::size_t axis) {
-    return N == 1 ? std::string(field) : text(field, N == 1 ? "" : "s", "[", axis, "]");
-}
+struct ReadNet {
+    Points<N> points;
+    std::optional<std::vector<double>> weights;
+    std::optional<Points<N>> products;  // of points and weights
+};
 
 // One array per axis; of a curve the array itself.
 template <std::size_t N, class Read>
@@ -178,38 +181,94 @@ bool same_bits(double a, double b) {
 // Whether h is the product of x and w, or x the quotient of h and w: one rounding either way.
 bool agree(double x, double w, double h) { return w * x == h || h / w == x; }
 
-template <std::size_t N, int D>
-Result<ReadPatch<N>> assemble(std::array<BSplineBasis, N> bases, Points<N> p,
-                              const std::vector<double>* weights, const Points<N>* weighted_points) {
-    const std::size_t n = p.flat.size() / std::size_t(D);
-    if (!weights) {
-        std::vector<Vec<D>> net(n);
-        for (std::size_t i = 0; i < n; ++i)
-            for (int c = 0; c < D; ++c) net[i][c] = p.flat[i * std::size_t(D) + std::size_t(c)];
-        auto patch = Patch<N, Vec<D>>::make(std::move(bases), Net<N, Vec<D>>(p.extent, std::move(net)));
-        if (!patch) return std::unexpected(patch.error());
-        return ReadPatch<N>{std::move(*patch), {}};
-    }
-    std::vector<Hom<D>> net(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const double w = (*weights)[i];
+template <int D>
+std::vector<Vec<D>> polynomial_net(const std::vector<double>& flat) {
+    std::vector<Vec<D>> net(flat.size() / std::size_t(D));
+    for (std::size_t k = 0; k < flat.size(); ++k) net[k / std::size_t(D)][int(k % std::size_t(D))] = flat[k];
+    return net;
+}
+
+template <int D, std::size_t N>
+Result<std::vector<Hom<D>>> rational_net(const Points<N>& p, const std::vector<double>& weights,
+                                         const Points<N>* weighted_points) {
+    std::vector<Hom<D>> net(weights.size());
+    for (std::size_t k = 0; k < p.flat.size(); ++k) {
+        const std::size_t i = k / std::size_t(D), c = k % std::size_t(D);
+        const double w = weights[i], x = p.flat[k], h = weighted_points ? weighted_points->flat[k] : w * x;
+        if (!std::isfinite(h) || !std::isfinite(h / w))
+            return refuse(RefusalKind::nonfinite, text("points", point_name<N>(p.extent, i), "[", c, "]"),
+                          text(x, " times its weight ", w, " leaves the range of double"));
+        if (!agree(x, w, h))
+            return refuse(RefusalKind::invalid,
+                          text("weighted_points", point_name<N>(p.extent, i), "[", c, "]"),
+                          text(h, " is not the point ", x, " times its weight ", w));
+        net[i][int(c)] = h;
         net[i][D] = w;
-        for (int c = 0; c < D; ++c) {
-            const std::size_t k = i * std::size_t(D) + std::size_t(c);
-            const double x = p.flat[k], h = weighted_points ? weighted_points->flat[k] : w * x;
-            if (!std::isfinite(h) || !std::isfinite(h / w))
-                return refuse(RefusalKind::nonfinite, text("points", point_name<N>(p.extent, i), "[", c, "]"),
-                              text(x, " times its weight ", w, " leaves the range of double"));
-            if (!agree(x, w, h))
-                return refuse(RefusalKind::invalid,
-                              text("weighted_points", point_name<N>(p.extent, i), "[", c, "]"),
-                              text(h, " is not the point ", x, " times its weight ", w));
-            net[i][c] = h;
-        }
     }
-    auto patch = Patch<N, Hom<D>>::make(std::move(bases), Net<N, Hom<D>>(p.extent, std::move(net)));
-    if (!patch) return std::unexpected(patch.error());
-    return ReadPatch<N>{std::move(*patch), std::move(p.flat)};
+    return net;
+}
+
+// "points[7]", counted through the net, as "points[1][3]".
+template <std::size_t N>
+Refusal nested(Refusal r, const Index<N>& extent) {
+    // Numbers too large or too small to calculate with are no limit on effort.
+    if (r.kind == RefusalKind::limit || r.kind == RefusalKind::ill_conditioned) r.kind = RefusalKind::unsupported;
+    const std::size_t open = r.where.find('['), close = r.where.find(']');
+    if (open == std::string::npos || close == std::string::npos) return r;
+    const auto flat = scan_number<std::size_t>(std::string_view(r.where).substr(open + 1, close - open - 1));
+    if (flat)
+        r.where = text(r.where.substr(0, open), point_name<N>(extent, *flat), r.where.substr(close + 1));
+    return r;
+}
+
+// Points, weights and products as one of the two kinds of net, handed to `make`.
+template <int D, std::size_t N, class Make>
+Result<ReadShape> assemble_in(const ReadNet<N>& in, Make&& make) {
+    const auto shape_of = [&](auto patch, std::vector<double> given) -> Result<ReadShape> {
+        if (!patch) return std::unexpected(nested(patch.error(), in.points.extent));
+        return ReadShape{std::move(*patch), std::move(given)};
+    };
+    if (!in.weights) return shape_of(make(polynomial_net<D>(in.points.flat)), {});
+    auto net = rational_net<D>(in.points, *in.weights, in.products ? &*in.products : nullptr);
+    if (!net) return std::unexpected(net.error());
+    return shape_of(make(std::move(*net)), in.points.flat);
+}
+
+// The same for the dimension that the points have.
+template <std::size_t N, class Make>
+Result<ReadShape> assemble(const ReadNet<N>& in, Make&& make) {
+    switch (in.points.dim) {
+        case 1:
+            return assemble_in<1>(in, make);
+        case 2:
+            return assemble_in<2>(in, make);
+        case 3:
+            return assemble_in<3>(in, make);
+        default:
+            return assemble_in<4>(in, make);
+    }
+}
+
+template <std::size_t N>
+Result<ReadNet<N>> read_net(const Fields& fields) {
+    ReadNet<N> net;
+    auto points = fields.get("points", read_points<N>);
+    if (!points) return std::unexpected(points.error());
+    net.points = std::move(*points);
+    if (fields.has("weights")) {
+        auto w = fields.get("weights", [&](json::Value x) { return read_weights<N>(x, net.points.extent); });
+        if (!w) return std::unexpected(w.error());
+        net.weights = std::move(*w);
+    }
+    if (fields.has("weighted_points")) {
+        if (!net.weights) return refuse(RefusalKind::invalid, "weighted_points", "needs weights");
+        auto p = fields.get("weighted_points", read_points<N>);
+        if (!p) return std::unexpected(p.error());
+        if (p->extent != net.points.extent || p->dim != net.points.dim)
+            return refuse(RefusalKind::invalid, "weighted_points", "is not of the same shape as the points");
+        net.products = std::move(*p);
+    }
+    return net;
 }
 
 template <std::size_t N>
@@ -247,59 +306,57 @@ Result<std::array<Axis, N>> read_axes(const Fields& fields) {
 }  // namespace
 
 template <std::size_t N>
-Result<ReadPatch<N>> read_patch(json::Value v) {
+Result<ReadShape> read_patch(json::Value v) {
     const auto fields = Fields::read(v, kPatchNames[N], kPatchFields<N>);
     if (!fields) return std::unexpected(fields.error());
-    auto points = fields->get("points", read_points<N>);
-    if (!points) return std::unexpected(points.error());
+    const auto net = read_net<N>(*fields);
+    if (!net) return std::unexpected(net.error());
     const auto axes = read_axes<N>(*fields);
     if (!axes) return std::unexpected(axes.error());
 
     std::vector<BSplineBasis> made;
     for (std::size_t d = 0; d < N; ++d) {
         const std::string index = N == 1 ? "" : text("[", d, "]");
-        auto basis = make_basis((*axes)[d], points->extent[d], text(N == 1 ? "degree" : "degrees", index),
+        auto basis = make_basis((*axes)[d], net->points.extent[d], text(N == 1 ? "degree" : "degrees", index),
                                 text("knots", index));
         if (!basis) return std::unexpected(basis.error());
         made.push_back(std::move(*basis));
     }
-    auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    const auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
         return std::array<BSplineBasis, N>{std::move(made[I])...};
     }
     (std::make_index_sequence<N>{});
-
-    std::optional<std::vector<double>> weights;
-    if (fields->has("weights")) {
-        auto w = fields->get("weights", [&](json::Value x) { return read_weights<N>(x, points->extent); });
-        if (!w) return std::unexpected(w.error());
-        weights = std::move(*w);
-    }
-    std::optional<Points<N>> products;
-    if (fields->has("weighted_points")) {
-        if (!weights) return refuse(RefusalKind::invalid, "weighted_points", "needs weights");
-        auto p = fields->get("weighted_points", read_points<N>);
-        if (!p) return std::unexpected(p.error());
-        if (p->extent != points->extent || p->dim != points->dim)
-            return refuse(RefusalKind::invalid, "weighted_points", "is not of the same shape as the points");
-        products = std::move(*p);
-    }
-    const auto* w = weights ? &*weights : nullptr;
-    const auto* h = products ? &*products : nullptr;
-    switch (points->dim) {
-        case 1:
-            return assemble<N, 1>(std::move(bases), std::move(*points), w, h);
-        case 2:
-            return assemble<N, 2>(std::move(bases), std::move(*points), w, h);
-        case 3:
-            return assemble<N, 3>(std::move(bases), std::move(*points), w, h);
-        default:
-            return assemble<N, 4>(std::move(bases), std::move(*points), w, h);
-    }
+    return assemble(*net, [&]<class P>(std::vector<P> coefficients) {
+        return Patch<N, P>::make(bases, Net<N, P>(net->points.extent, std::move(coefficients)));
+    });
 }
 
-template Result<ReadPatch<1>> read_patch(json::Value);
-template Result<ReadPatch<2>> read_patch(json::Value);
-template Result<ReadPatch<3>> read_patch(json::Value);
+template Result<ReadShape> read_patch<1>(json::Value);
+template Result<ReadShape> read_patch<2>(json::Value);
+template Result<ReadShape> read_patch<3>(json::Value);
+
+Result<ReadShape> read_triangle(json::Value v) {
+    static constexpr std::string_view kFields[] = {"type",   "name",    "degree",
+                                                   "points", "weights", "weighted_points"};
+    const auto fields = Fields::read(v, "a triangle", kFields);
+    if (!fields) return std::unexpected(fields.error());
+    const auto net = read_net<1>(*fields);
+    if (!net) return std::unexpected(net.error());
+    const long long count = net->points.extent[0];
+    int fitting = 0;
+    while (fitting <= kMaxDegree && (fitting + 1) * (fitting + 2) / 2 < count) ++fitting;
+    const auto degree = fields->get_or("degree", read_int, fitting);
+    if (!degree) return std::unexpected(degree.error());
+    if (*degree < 0 || *degree > kMaxDegree)
+        return refuse(*degree < 0 ? RefusalKind::invalid : RefusalKind::unsupported, "degree",
+                      text("degree ", *degree, " is outside 0..", kMaxDegree));
+    if (const int wanted = (*degree + 1) * (*degree + 2) / 2; wanted != count)
+        return refuse(RefusalKind::invalid, "points",
+                      text(count, " points, a triangle of degree ", *degree, " has ", wanted));
+    return assemble(*net, [&]<class P>(std::vector<P> coefficients) {
+        return Triangle<P>::make(*degree, std::move(coefficients));
+    });
+}
 
 namespace {
 
@@ -355,11 +412,31 @@ std::vector<double> points_of(std::span<const Hom<D>> net, std::span<const doubl
     return x;
 }
 
+// The points, and of a rational net the weights.
+template <std::size_t N, class P>
+void write_net(json::Writer& w, const Index<N>& extent, std::span<const P> net,
+               std::span<const double> given) {
+    if constexpr (!Space<P>::kRational) {
+        w.key("points");
+        write_nested(w, extent, [&](std::size_t i) { w.array(net[i].c); });
+    } else {
+        constexpr auto kDim = std::size_t(Space<P>::kDim);
+        bool exact = false;
+        const std::vector<double> x = points_of(net, given, exact);
+        w.key("points");
+        write_nested(w, extent, [&](std::size_t i) { w.array(std::span(x).subspan(i * kDim, kDim)); });
+        w.key("weights");
+        write_nested(w, extent, [&](std::size_t i) { w.value(net[i].weight()); });
+        if (exact) return;
+        w.key("weighted_points");
+        write_nested(w, extent, [&](std::size_t i) { w.array(std::span(net[i].c).first(kDim)); });
+    }
+}
+
 }  // namespace
 
 template <std::size_t N, class P>
 void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const double> given) {
-    constexpr int kDim = Space<P>::kDim;
     const auto per_axis = [&](std::string_view field, auto&& content) {
         w.key(field);
         if (N > 1) w.begin_array();
@@ -372,25 +449,13 @@ void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const doub
     if (closed) per_axis("closed", [&](const BSplineBasis& b) { w.value(b.is_closed()); });
     per_axis("knots", [&](const BSplineBasis& b) { w.array(b.defining()); });
 
-    const std::span<const P> net = patch.net().flat();
-    const Index<N>& extent = patch.net().extent();
-    if constexpr (!Space<P>::kRational) {
-        w.key("points");
-        write_nested(w, extent, [&](std::size_t i) { w.array(net[i].c); });
-    } else {
-        bool exact = false;
-        const std::vector<double> x = points_of<kDim>(net, given, exact);
-        w.key("points");
-        write_nested(w, extent, [&](std::size_t i) {
-            w.array(std::span(x).subspan(i * std::size_t(kDim), std::size_t(kDim)));
-        });
-        w.key("weights");
-        write_nested(w, extent, [&](std::size_t i) { w.value(net[i].weight()); });
-        if (exact) return;
-        w.key("weighted_points");
-        write_nested(w, extent,
-                     [&](std::size_t i) { w.array(std::span(net[i].c).first(std::size_t(kDim))); });
-    }
+    write_net<N>(w, patch.net().extent(), patch.net().flat(), given);
+}
+
+template <class P>
+void write_triangle(json::Writer& w, const Triangle<P>& triangle, std::span<const double> given) {
+    w.field("degree", triangle.degree());
+    write_net<1>(w, {int(triangle.coefficients().size())}, triangle.coefficients(), given);
 }
 
 #define FF_INSTANTIATE_WRITE(N, D)                                                              \
@@ -402,5 +467,12 @@ void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const doub
 FF_INSTANTIATE_WRITES(1)
 FF_INSTANTIATE_WRITES(2)
 FF_INSTANTIATE_WRITES(3)
+#define FF_INSTANTIATE_TRIANGLE(D)                                                                 \
+    template void write_triangle(json::Writer&, const Triangle<Vec<D>>&, std::span<const double>); \
+    template void write_triangle(json::Writer&, const Triangle<Hom<D>>&, std::span<const double>);
+FF_INSTANTIATE_TRIANGLE(1)
+FF_INSTANTIATE_TRIANGLE(2)
+FF_INSTANTIATE_TRIANGLE(3)
+FF_INSTANTIATE_TRIANGLE(4)
 
 }  // namespace freiform::document_detail
