@@ -1,9 +1,13 @@
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
+#include <freiform/io/exchange.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/read.hpp>
 
 #include <algorithm>
+#include <cerrno>
+#include <sys/mman.h>
+#include <unistd.h>
 
 namespace freiform {
 
@@ -45,9 +49,61 @@ std::optional<FileFormat> format_of_content(std::string_view bytes) {
     return std::nullopt;
 }
 
+namespace {
+
+bool is_exchange(FileFormat f) {
+    return f == FileFormat::step || f == FileFormat::iges || f == FileFormat::brep;
+}
+
+Result<Document> import(const std::string& path, const ReadOptions& options) {
+    ImportLimits limits;
+    if (options.timeout > 0) limits.seconds = options.timeout;
+    if (options.max_memory > 0) limits.memory_bytes = std::size_t(options.max_memory);
+    auto model = read_with_occt(path, limits);
+    if (!model) return std::unexpected(model.error());
+    Document document;
+    document.unit = model->unit;
+    document.objects.push_back({"", std::move(*model), {}});
+    return document;
+}
+
+// The reader of these formats wants a file: one without a name, which is gone when the process is.
+Result<Document> import_bytes(std::string_view bytes, const ReadOptions& options) {
+    const int fd = ::memfd_create("freiform", MFD_CLOEXEC);
+    if (fd < 0) return refuse(RefusalKind::io, "", "standard input cannot be kept in memory");
+    const std::string name = text("/proc/", ::getpid(), "/fd/", fd);
+    bool kept = true;
+    for (std::string_view rest = bytes; kept && !rest.empty();) {
+        const ssize_t n = ::write(fd, rest.data(), rest.size());
+        kept = n > 0 || (n < 0 && errno == EINTR);
+        if (n > 0) rest.remove_prefix(std::size_t(n));
+    }
+    auto document =
+        kept ? import(name, options)
+             : Result<Document>(refuse(RefusalKind::io, "", "standard input cannot be kept in memory"));
+    ::close(fd);
+    if (!document) {
+        Refusal r = document.error();
+        if (r.where.starts_with(name)) r.where.erase(0, name.size());
+        return std::unexpected(std::move(r));
+    }
+    return document;
+}
+
+// The file as part of the place, once.
+Result<Document> within(const std::string& label, Result<Document> document) {
+    if (document) return document;
+    Refusal r = document.error();
+    if (!r.where.starts_with(label)) r.where = r.where.empty() ? label : text(label, ": ", r.where);
+    return std::unexpected(std::move(r));
+}
+
+}  // namespace
+
 Result<Document> read_any(const std::string& path, const ReadOptions& options) {
     const std::string label = path == "-" ? "standard input" : path;
     auto format = options.format ? options.format : format_of_name(path);
+    if (format && is_exchange(*format) && path != "-") return within(label, import(path, options));
     auto bytes = read_file(path, options.max_bytes);
     if (!bytes) return std::unexpected(bytes.error());
     if (!format) format = format_of_content(*bytes);
@@ -56,18 +112,9 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                       bytes->empty()
                           ? "the file is empty"
                           : text("neither its name nor its content says a format that is known: ", kKnown));
-    auto document =
-        *format == FileFormat::json ? read_document(*bytes)
-        : *format == FileFormat::bpt
-            ? read_bpt(*bytes)
-            : Result<Document>(refuse(RefusalKind::unavailable, "",
-                                      text("this build has no reader for ", name_of(*format), " files")));
-    if (!document) {
-        Refusal r = document.error();
-        r.where = r.where.empty() ? label : text(label, ": ", r.where);
-        return std::unexpected(std::move(r));
-    }
-    return document;
+    if (is_exchange(*format))
+        return within(label, path == "-" ? import_bytes(*bytes, options) : import(path, options));
+    return within(label, *format == FileFormat::json ? read_document(*bytes) : read_bpt(*bytes));
 }
 
 }  // namespace freiform
