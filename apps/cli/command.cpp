@@ -183,6 +183,8 @@ Result<std::vector<std::size_t>> selected(const Document& document, const std::s
              names.empty() ? "" : listed(names), did_you_mean(object, names)));
 }
 
+std::string shown(const std::string& file) { return file == "-" ? "standard input" : file; }
+
 int exit_code(RefusalKind kind) {
     switch (kind) {
         case RefusalKind::out_of_domain:

@@ -65,6 +65,9 @@ void remark(std::string_view message);
 // exist.
 Result<std::vector<std::size_t>> selected(const Document& document, const std::string& object);
 
+// The name of an input for people: "standard input" for "-".
+std::string shown(const std::string& file);
+
 // The exit code of the contract.
 int exit_code(RefusalKind kind);
 

@@ -6,6 +6,7 @@
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/spline/bezier.hpp>
+#include <freiform/spline/refine.hpp>
 
 namespace freiform::cli {
 
@@ -17,16 +18,18 @@ struct Options {
     std::string file, object, axis;
     bool to_bezier = false, reverse = false;
     std::optional<int> elevate;
-    std::optional<double> split;
+    std::optional<double> split, reduce;
     std::vector<double> knots;
 
-    bool changes() const { return to_bezier || reverse || elevate || split || !knots.empty(); }
+    bool changes() const { return to_bezier || reverse || elevate || split || reduce || !knots.empty(); }
 };
 
 // One patch becomes one or more; `suffix` tells them apart.
 struct Piece {
     std::string suffix;
     Shape shape;
+    double bound = 0;  // of the distance to what it was
+    int removed = 0;   // knots
 };
 using Pieces = std::vector<Piece>;
 
@@ -48,13 +51,16 @@ public:
         if (o_.elevate)
             if (auto ok = each("--elevate", [&](auto& s) { return elevate_all(s); }); !ok)
                 return std::unexpected(ok.error());
+        if (o_.reduce)
+            if (auto ok = reduce(); !ok) return std::unexpected(ok.error());
         if (o_.split)
             if (auto ok = split(); !ok) return std::unexpected(ok.error());
         if (o_.reverse)
             for (auto& part : parts_) part.patch = reverse(part.patch, int(axis_or(0)));
         if (o_.to_bezier) to_bezier();
         Pieces out;
-        for (auto& part : parts_) out.push_back({std::move(part.suffix), std::move(part.patch)});
+        for (auto& part : parts_)
+            out.push_back({std::move(part.suffix), std::move(part.patch), bound_, removed_});
         return out;
     }
 
@@ -96,6 +102,19 @@ private:
         for (std::size_t d = 0; d < N && out; ++d)
             if (o_.axis.empty() || axis_or(0) == d) out = elevate(*out, int(d), *o_.elevate);
         return out;
+    }
+
+    // Each axis may use what the ones before have left of the tolerance, so that the sum stays within it.
+    Result<void> reduce() {
+        for (std::size_t d = 0; d < N; ++d) {
+            if (!o_.axis.empty() && axis_or(0) != d) continue;
+            auto thin = remove_knots(parts_[0].patch, int(d), std::max(*o_.reduce - bound_, 0.0));
+            if (!thin) return about("--reduce", thin.error());
+            parts_[0].patch = std::move(thin->patch);
+            bound_ = thin->bound == 0 ? bound_ : std::nextafter(bound_ + thin->bound, 1e308);
+            removed_ += thin->removed;
+        }
+        return {};
     }
 
     Result<void> split() {
@@ -140,7 +159,20 @@ private:
 
     const Options& o_;
     std::vector<Part> parts_;
+    double bound_ = 0;
+    int removed_ = 0;
 };
+
+// Of the changes, a triangle knows elevation, and a Bezier patch it is.
+template <class P>
+Result<Pieces> changed_triangle(const Triangle<P>& s, const Options& o) {
+    if (o.reverse || o.split || o.reduce || !o.knots.empty() || !o.axis.empty())
+        return refuse(RefusalKind::no_answer, "", "is a triangle; of the changes it knows --elevate only");
+    Result<Triangle<P>> out = s;
+    for (int i = 0; i < o.elevate.value_or(0) && out; ++i) out = elevate(*out);
+    if (!out) return refuse(RefusalKind::no_answer, "--elevate", out.error().message);
+    return Pieces{{"", std::move(*out)}};
+}
 
 Result<Pieces> changed(const Shape& shape, const Options& options) {
     return std::visit(
@@ -148,6 +180,8 @@ Result<Pieces> changed(const Shape& shape, const Options& options) {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>)
                 return Changes<S::kParams, typename S::Coefficients>(options, s).run();
+            else if constexpr (TriangularPatch<S>)
+                return changed_triangle(s, options);
             else
                 return refuse(RefusalKind::no_answer, "",
                               text("is a ", type_name(shape),
@@ -156,7 +190,12 @@ Result<Pieces> changed(const Shape& shape, const Options& options) {
         shape);
 }
 
-Result<Document> changed(const Document& document, const Options& options) {
+struct Reduction {
+    double bound = 0;  // the largest of all objects
+    int removed = 0;
+};
+
+Result<Document> changed(const Document& document, const Options& options, Reduction& reduction) {
     const auto objects = selected(document, options.object);
     if (!objects) return std::unexpected(objects.error());
     Document out;
@@ -172,6 +211,10 @@ Result<Document> changed(const Document& document, const Options& options) {
             Refusal r = pieces.error();
             r.where = text(object_label(document, i), r.where.empty() ? "" : ": ", r.where);
             return std::unexpected(std::move(r));
+        }
+        if (!pieces->empty()) {
+            reduction.bound = std::max(reduction.bound, pieces->front().bound);
+            reduction.removed += pieces->front().removed;
         }
         for (Piece& p : *pieces) {
             const std::string name =
@@ -193,6 +236,8 @@ std::string output_format(const Context& context) {
 }
 
 Result<void> run(const Context& context, const Options& options) {
+    if (options.reduce && !(*options.reduce >= 0))
+        wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
     if (format != "json" && format != "bpt")
         wrong_usage(text("convert writes .json and .bpt, not \"", format, "\"",
@@ -201,25 +246,29 @@ Result<void> run(const Context& context, const Options& options) {
                              : ""));
     const auto document = read_any(options.file, context.read_options());
     if (!document) return std::unexpected(document.error());
-    const auto out = changed(*document, options);
+    Reduction reduction;
+    const auto out = changed(*document, options, reduction);
     if (!out) {
         Refusal r = out.error();
-        if (r.where.starts_with("objects[")) r.where = text(options.file, ": ", r.where);
+        if (r.where.starts_with("objects[")) r.where = text(shown(options.file), ": ", r.where);
         return std::unexpected(std::move(r));
     }
     const auto bytes = format == "json" ? Result<std::string>(write_document(*out)) : write_bpt(*out);
     if (!bytes) {
         Refusal r = bytes.error();
-        r.where = text(options.file, ": ", r.where);
+        r.where = text(shown(options.file), ": ", r.where);
         return std::unexpected(std::move(r));
     }
     if (auto ok = emit(context, *bytes); !ok) return ok;
+    if (options.reduce && !context.json)
+        remark(text(reduction.removed, " knots removed, no point moved by more than ", reduction.bound));
     if (!context.json || context.output.empty() || context.output == "-") return {};
     json::Writer w;
     w.begin_object()
         .field("output", context.output)
         .field("format", format)
         .field("objects", out->objects.size());
+    if (options.reduce) w.field("removed_knots", reduction.removed).field("bound", reduction.bound);
     w.end_object();
     return emit({}, w.take() + "\n");
 }
@@ -228,15 +277,18 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_convert(CLI::App& app, Context& context) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(
-        app, context, "convert",
-        "Read any known format, write any that can hold it, change splines on the way",
-        "  freiform convert teapot.bpt -o teapot.json\n"
-        "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
-        "  freiform convert surface.json --to-bezier -o patches.bpt\n"
-        "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
-        "Changes are made in this order: --insert-knots, --elevate, --split, --reverse, --to-bezier.\n"
-        "--elevate changes all directions, the others the first, unless --axis says which.");
+    CLI::App* command =
+        add_command(app, context, "convert",
+                    "Read any known format, write any that can hold it, change splines on the way",
+                    "  freiform convert teapot.bpt -o teapot.json\n"
+                    "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
+                    "  freiform convert surface.json --to-bezier -o patches.bpt\n"
+                    "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
+                    "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
+                    "--reverse, --to-bezier.\n"
+                    "--elevate and --reduce change all directions, --insert-knots, --split and --reverse the "
+                    "first, unless\n"
+                    "--axis says which.");
     command->add_option("FILE", options->file, "The file; - is standard input")->required();
     add_output(*command, context, "The file to write: .json or .bpt");
     command->add_option("--object", options->object, "Only the object of this name or index")
@@ -246,6 +298,8 @@ void add_convert(CLI::App& app, Context& context) {
     add_count(*command, "--elevate", options->elevate, 0, kMaxDegree,
               "Raise the degree by N; the shape stays");
     add_numbers(*command, "--insert-knots", options->knots, "Insert knots; the shape stays");
+    add_number(*command, "--reduce", options->reduce,
+               "Remove knots as long as no point moves by more than this; the bound reached is printed");
     add_number(*command, "--split", options->split, "Cut at a parameter, an object for each side");
     command->add_flag("--reverse", options->reverse, "Run through the parameter backwards");
     command->add_option("--axis", options->axis, "Which parameter the changes are for")

@@ -72,12 +72,14 @@ public:
     Evaluation(json::Writer& w, const Parameters& at, int derivatives, std::optional<std::size_t> object)
         : w_(w), at_(at), derivatives_(derivatives), object_(object) {}
 
-    template <std::size_t N, class P>
-    Result<void> operator()(const Patch<N, P>& patch) {
+    template <class S>
+    requires(TensorPatch<S> || TriangularPatch<S>) Result<void>
+    operator()(const S& patch) {
+        constexpr std::size_t N = S::kParams;
         for (std::size_t i = 0; i < at_.size(); ++i) {
             Param<N> u{};
             if (auto ok = fill<N>(i, u); !ok) return ok;
-            PointOf<P> point;
+            typename S::Point point;
             if (auto ok = patch.evaluate(std::span(&u, 1), std::span(&point, 1)); !ok)
                 return moved(ok.error(), i);
             const auto all = patch.derivatives(u, derivatives_);
@@ -143,7 +145,7 @@ Result<void> run(const Context& context, const Options& options) {
     const auto objects = selected(*document, options.object);
     if (!objects) return std::unexpected(objects.error());
     if (objects->empty())
-        return refuse(RefusalKind::no_answer, options.file, "there is no object to evaluate");
+        return refuse(RefusalKind::no_answer, shown(options.file), "there is no object to evaluate");
 
     json::Writer w;
     w.begin_object().key("results").begin_array();
@@ -153,7 +155,7 @@ Result<void> run(const Context& context, const Options& options) {
         if (auto ok = std::visit(evaluate, document->objects[i].shape); !ok) {
             Refusal r = ok.error();
             const std::string label =
-                document->objects.size() > 1 ? object_label(*document, i) : options.file;
+                document->objects.size() > 1 ? object_label(*document, i) : shown(options.file);
             r.where = r.where.empty() ? label : text(label, ": ", r.where);
             return std::unexpected(std::move(r));
         }

@@ -27,6 +27,23 @@ auto box_of(const Patch<N, P>& s) {
     return box;
 }
 
+template <class P>
+auto box_of(const Triangle<P>& s) {
+    Box<Space<P>::kDim> box;
+    for (const P& p : s.coefficients()) box.add(project(p));
+    return box;
+}
+
+template <class P>
+void write_triangle_info(json::Writer& w, const Triangle<P>& s) {
+    w.field("degree", s.degree()).field("dimension", Space<P>::kDim).field("rational", Space<P>::kRational);
+    w.key("points").array(std::array{s.coefficients().size()});
+    w.key("domain").begin_array();
+    for (const Interval& on : s.domain()) w.array(std::array{on.lo, on.hi});
+    w.end_array();
+    write_box(w, box_of(s));
+}
+
 template <std::size_t N, class P>
 void write_patch_info(json::Writer& w, const Patch<N, P>& s) {
     const auto per_axis = [&](std::string_view name, auto&& content) {
@@ -109,6 +126,8 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (TensorPatch<S>) {
                     write_patch_info(w, s);
+                } else if constexpr (TriangularPatch<S>) {
+                    write_triangle_info(w, s);
                 } else if constexpr (std::same_as<S, TrimmedSurface>) {
                     w.field("loops", s.loops.size());
                     std::visit([&](const auto& surface) { write_patch_info(w, surface); }, s.surface);
@@ -148,6 +167,13 @@ std::string patch_text(const Patch<N, P>& s) {
                 domains, "\n", box_text(box_of(s)));
 }
 
+template <class P>
+std::string triangle_text(const Triangle<P>& s) {
+    return text("  degree   ", s.degree(), ", ", s.coefficients().size(), " points of ", Space<P>::kDim,
+                Space<P>::kRational ? " coordinates, rational" : " coordinates",
+                "\n  domain   u >= 0, v >= 0, u + v <= 1\n", box_text(box_of(s)));
+}
+
 std::string kinds_text(const Counts& counts) {
     std::string s;
     for (const auto& [name, n] : counts) s += text(s.empty() ? "" : ", ", n, " ", name);
@@ -180,6 +206,8 @@ std::string text_info(const Document& d, const std::string& file, const std::vec
                 using S = std::remove_cvref_t<decltype(shape)>;
                 if constexpr (TensorPatch<S>)
                     return patch_text(shape);
+                else if constexpr (TriangularPatch<S>)
+                    return triangle_text(shape);
                 else if constexpr (std::same_as<S, TrimmedSurface>)
                     return std::visit([](const auto& surface) { return patch_text(surface); },
                                       shape.surface) +
@@ -201,7 +229,7 @@ Result<void> run(const Context& context, const Options& options) {
     if (!document) return std::unexpected(document.error());
     const auto objects = selected(*document, options.object);
     if (!objects) return std::unexpected(objects.error());
-    const std::string file = options.file == "-" ? "standard input" : options.file;
+    const std::string file = shown(options.file);
     return emit(context,
                 context.json ? json_info(*document, file, *objects) : text_info(*document, file, *objects));
 }
