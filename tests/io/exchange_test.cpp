@@ -155,7 +155,8 @@ TEST_F(Exchange, turns_normals_out_of_the_solid) {
         const Face& f = m->faces[std::size_t(use.face)];
         const Coedge& c = f.loops[0].coedges[0];
         const Vec<2> uv = jet<0>(c.curve, m->edges[std::size_t(c.edge)].range.middle()).value();
-        const double side = f.reversed != use.reversed ? -1 : 1;
+        EXPECT_FALSE(use.reversed);
+        const double side = f.reversed ? -1 : 1;
         EXPECT_GT(side * dot(normal(f.surface, uv.c), jet<0>(f.surface, uv.c).value() - centre), 499);
     }
 }
