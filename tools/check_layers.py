@@ -17,7 +17,7 @@ RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
 # Other people's headers, and the only folders that may include them.
 THIRD_PARTY = [
     (r".*\.hxx", ["apps/occt"]),
-    (r"nlohmann/.*", ["src/io", "apps"]),
+    (r"nlohmann/.*", ["src/io", "apps", "tests"]),
     (r"CLI/.*", ["apps/cli"]),
     (r"(oneapi/)?tbb/.*", ["src/core"]),
     (r"(epoxy|EGL|GL)/.*|png\.h", ["src/gpu"]),
