@@ -29,8 +29,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kFarBeyond = 16;  // an estimate from the whole surface may be too large, by less than this
-constexpr int kMaxDepth = 100;     // backstop: 2^-50 of the box in both directions
+constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
+constexpr int kMaxDepth = 100;    // backstop: 2^-50 of the box in both directions
 
 double kink_error(std::span<const Kink> kinks, Interval on) {
     double sum = 0;
@@ -86,6 +86,21 @@ bool is_inside(const Vec<2>& x, std::span<const Vec<2>> polygon,
     return in;
 }
 
+// How many leaves the curvature at samples asks for: tells hopeless tolerances before they take time. Only an
+// estimate; bounds over large boxes would be far too large for it.
+double leaves_needed(const SurfaceGeometry& surface, const Box<2>& box, double tolerance) {
+    constexpr int kSamples = 12;
+    const Vec<2> h = (1.0 / kSamples) * (box.hi - box.lo);
+    double sum = 0;
+    for (int i = 0; i < kSamples; ++i)
+        for (int k = 0; k < kSamples; ++k) {
+            const auto j = jet<2>(surface, {box.lo[0] + (i + 0.5) * h[0], box.lo[1] + (k + 0.5) * h[1]});
+            sum += std::sqrt(1 + norm(j(2, 0)) * h[0] * h[0] / 8 / tolerance) *
+                   std::sqrt(1 + norm(j(0, 2)) * h[1] * h[1] / 8 / tolerance);
+        }
+    return std::isfinite(sum) ? sum : 0;
+}
+
 }  // namespace
 
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d) {
@@ -115,11 +130,13 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     for (const Vec<2>& p : polygon) root.add(p);
     struct Item {
         int node, depth;
+        Curvature outer;
         std::vector<std::array<int, 2>> near;
     };
     std::vector<Item> stack;
     tree.nodes_.push_back({root, {}, -1, false});
-    stack.push_back({0, 0, {segments.begin(), segments.end()}});
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    stack.push_back({0, 0, {kAny, kAny, kAny}, {segments.begin(), segments.end()}});
     std::size_t leaves = 1;
     while (!stack.empty()) {
         const Item item = std::move(stack.back());
@@ -131,20 +148,21 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             continue;
         }
         const auto bounds = surface({box.side(0), box.side(1)});
-        const Curvature c{bounds(2, 0), bounds(1, 1), bounds(0, 2)};
+        // What holds for the whole holds for a part: of very small boxes rounding would make the bound
+        // larger.
+        const Curvature c{std::min(item.outer.uu, bounds(2, 0)), std::min(item.outer.uv, bounds(1, 1)),
+                          std::min(item.outer.vv, bounds(0, 2))};
         tree.nodes_[std::size_t(item.node)].curvature = c;
         const double kinks =
             kink_error(tree.kinks_[0], box.side(0)) + kink_error(tree.kinks_[1], box.side(1));
         const double error = c.along(size[0], size[1]) / 8 + kinks;
         if (error <= tolerance || !(size[0] > 0) || !(size[1] > 0)) continue;
-        if (item.depth == 0 && std::isfinite(error)) {  // far too many: say so at once
-            const double estimate = std::sqrt(1 + c.along(size[0], 0) / 8 / tolerance) *
-                                    std::sqrt(1 + c.along(0, size[1]) / 8 / tolerance);
-            if (estimate > kFarBeyond * double(max_leaves))
-                return refuse(RefusalKind::limit, "max_triangles",
-                              text("the tolerance ", tolerance, " needs about ", std::ceil(2 * estimate),
-                                   " triangles"));
-        }
+        if (item.depth == 0)
+            if (const double needed = leaves_needed(surface.geometry(), box, tolerance);
+                needed > kFarBeyond * double(max_leaves))
+                return refuse(
+                    RefusalKind::limit, "max_triangles",
+                    text("the tolerance ", tolerance, " needs about ", std::ceil(2 * needed), " triangles"));
         if (item.depth == kMaxDepth) {
             if (!std::isfinite(error))
                 return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
@@ -173,7 +191,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         for (int half = 1; half >= 0; --half) {
             Box<2> part = box;
             (half == 0 ? part.hi : part.lo)[axis] = at;
-            Item next{child + half, item.depth + 1, {}};
+            Item next{child + half, item.depth + 1, c, {}};
             for (const auto& s : item.near)
                 if (meets(part, polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]))
                     next.near.push_back(s);

@@ -21,7 +21,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kFarBeyond = 16;  // the estimate may be too large, by less than this
+constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
 
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
     return std::visit(
@@ -126,6 +126,19 @@ SegmentError EdgeMesher::error(int edge, double a, double b) const {
     return out;
 }
 
+// How many segments the curvature at samples asks for: tells hopeless tolerances before they take time. Only
+// an estimate; bounds over long intervals would be far too large for it.
+double EdgeMesher::estimate(int edge, double tolerance) const {
+    constexpr int kSamples = 32;
+    const Edge& e = model_.edges[std::size_t(edge)];
+    if (!e.curve) return 0;
+    const double h = e.range.length() / kSamples;
+    double sum = 0;
+    for (int k = 0; k < kSamples; ++k)
+        sum += std::sqrt(norm(jet<2>(*e.curve, e.range.lo + (k + 0.5) * h)(2)) * h * h / 8 / tolerance);
+    return std::isfinite(sum) ? sum : 0;
+}
+
 Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_segments) {
     EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
@@ -143,16 +156,10 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_
     std::sort(must.begin(), must.end());
     must.erase(std::unique(must.begin(), must.end()), must.end());
 
-    // Errors fall with the square of the length: an estimate that is far beyond the limit needs no attempt.
-    double estimate = 0;
-    for (std::size_t i = 0; i + 1 < must.size(); ++i) {
-        const SegmentError err = error(edge, must[i], must[i + 1]);
-        estimate += std::sqrt(std::max(err.polyline, err.triangle) / tolerance);
-    }
-    if (estimate > kFarBeyond * double(max_segments) && std::isfinite(estimate))
+    if (const double needed = estimate(edge, tolerance); needed > kFarBeyond * double(max_segments))
         return refuse(
             RefusalKind::limit, "max_triangles",
-            text("edge ", edge, " needs about ", std::ceil(estimate), " segments within ", tolerance));
+            text("edge ", edge, " needs about ", std::ceil(needed), " segments within ", tolerance));
     mesh.parameters = {on.lo};
     mesh.bound = 0;
     std::vector<std::pair<double, double>> stack;

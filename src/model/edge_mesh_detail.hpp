@@ -49,6 +49,8 @@ public:
     SegmentError error(int edge, double a, double b) const;
 
 private:
+    double estimate(int edge, double tolerance) const;
+
     const Model& model_;
     std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces_;
     std::vector<EdgeMesh> edges_;

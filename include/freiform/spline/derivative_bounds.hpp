@@ -59,6 +59,7 @@ public:
     using Geometry = typename GeometryOf<N, D>::type;
 
     explicit DerivativeQuery(const Geometry& geometry);
+    const Geometry& geometry() const { return *geometry_; }
     // Bounds on `box` up to total order `order` <= 3 (of an offset: 2). The part of the box outside the
     // domain of a spline is ignored. Infinite where no bound exists (at singular points of an offset).
     DerivativeBounds<N> operator()(const std::array<Interval, N>& box, int order = 2) const;
