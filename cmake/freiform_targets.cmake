@@ -24,7 +24,7 @@ function(freiform_common target)
     endif()
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
         # False alarms of g++ 12 about std::string and std::vector that it has inlined (its bugs 105329, 105651).
-        target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
+        target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
     endif()
     if(FREIFORM_CHECKED)
         target_compile_definitions(${target} PRIVATE FF_CHECKED=1)
