@@ -14,6 +14,7 @@ TEST(Closest, finds_words_with_a_letter_missing_added_changed_or_swapped) {
     EXPECT_EQ(closest("wieghts", kWords), "weights");
     EXPECT_EQ(closest("pointts", kWords), "points");
     EXPECT_EQ(closest("decree", kWords), "degree");
+    EXPECT_EQ(closest("konts", kWords), "knots");
 }
 
 TEST(Closest, says_nothing_about_words_that_are_like_none) {

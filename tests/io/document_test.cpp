@@ -101,6 +101,8 @@ TEST(Document, reads_what_it_writes_and_writes_the_same_again) {
             EXPECT_EQ(out["objects"][i][key], value) << i << key;
         }
     EXPECT_EQ(out["objects"][8]["faces"][0]["surface"], in["objects"][8]["faces"][0]["surface"]);
+    using Unordered = nlohmann::json;
+    EXPECT_EQ(Unordered(out["objects"][8]["faces"][0]), Unordered(in["objects"][8]["faces"][0]));
     EXPECT_EQ(out["objects"][8]["edges"][0], in["objects"][8]["edges"][0]);
     EXPECT_EQ(out["objects"][7]["loops"][1], in["objects"][7]["loops"][1]);
 }
