@@ -82,10 +82,15 @@ Result<Unwound> unwind(int degree, bool periodic, const TColStd_Array1OfReal& kn
     }
     const int n = int(t.size()) - 1;
     const double last = knots(count), period = last - knots(1);
+    // The first knot and the last are one place of the closed spline: all their copies have to get the same
+    // number, or rounding would open a span between them.
+    const auto seam = [&](long long turn) {
+        return turn > 0 ? last + double(turn - 1) * period : knots(1) + double(turn) * period;
+    };
     const auto knot = [&](long long j) {
         const long long turn = j >= 0 ? j / n : -((n - 1 - j) / n);
         const auto k = std::size_t(j - turn * n);
-        return k == 0 && turn > 0 ? last + double(turn - 1) * period : t[k] + double(turn) * period;
+        return k == 0 ? seam(turn) : t[k] == last ? seam(turn + 1) : t[k] + double(turn) * period;
     };
     if (!(period > 0) || !(range.lo <= range.hi) || range.hi - range.lo > 1e4 * period ||
         std::abs(range.lo) > 1e6 * (period + std::abs(last)))

@@ -25,6 +25,7 @@ namespace {
 
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kShortest = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
 // The net of differences of order `a`, of the numerator after shifting to c0 and of the weight: the largest
 // of them, and their values in the middle of the block.
@@ -206,11 +207,17 @@ DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array
         std::array<double, N> width{};
         const auto on = pieces.box(piece);
         for (std::size_t d = 0; d < N; ++d) {
-            const double hi = std::clamp(box[d].hi, on[d].lo, on[d].hi),
-                         lo = std::clamp(box[d].lo, on[d].lo, hi);
             width[d] = on[d].length();
+            double lo = std::clamp(box[d].lo, on[d].lo, on[d].hi),
+                   hi = std::clamp(box[d].hi, on[d].lo, on[d].hi);
+            // Differences of a very short part are all rounding: a longer part around it gives the better
+            // bound.
+            const double lack = kShortest * width[d] - (hi - lo);
+            if (lack > 0) {
+                lo = std::max(on[d].lo, lo - lack);
+                hi = std::min(on[d].hi, hi + lack);
+            }
             if (lo <= on[d].lo && hi >= on[d].hi) continue;
-            if (!(lo < hi)) continue;  // the box touches the piece only: the whole piece is a bound as well
             each_fibre(int(d), whole.extent, [&](const Index<N>& at) {
                 if (hi < on[d].hi) keep_left(own.fibre(int(d), at), (hi - on[d].lo) / width[d]);
                 if (lo > on[d].lo) keep_right(own.fibre(int(d), at), (lo - on[d].lo) / (hi - on[d].lo));
