@@ -24,6 +24,8 @@ namespace freiform {
 namespace {
 
 constexpr int kSeparateRounds = 16;
+constexpr double kNearPoint = 1e-3;    // likewise of a leaf, for other points
+constexpr double kLeastLength = 1e-9;  // of the box of the face: shorter is rounding
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
 
@@ -108,7 +110,11 @@ class Filler {
 public:
     Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, Vec<2> scale,
            double tolerance)
-        : t_(t), tree_(tree), surface_(surface), scale_(scale), tolerance_(tolerance) {}
+        : t_(t), tree_(tree), surface_(surface), scale_(scale), tolerance_(tolerance) {
+        Box<2> box;
+        for (const Vec<2>& p : t.points()) box.add(unscaled(p));
+        least_ = kLeastLength * (box.hi - box.lo);
+    }
 
     void insert_corners();
     // False when more than `max_points` are needed.
@@ -129,21 +135,24 @@ private:
     Curvature curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const;
     const CurvatureTree& tree_;
     const DerivativeQuery<2, 3>& surface_;
-    Vec<2> scale_;
+    Vec<2> scale_, least_{};  // least_: what counts as a length at all
     double tolerance_;
 };
 
 bool Filler::is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf) const {
-    for (int e = 0; e < 3; ++e) {
-        if (!t_.is_constrained(triangle, e)) continue;
-        const auto& v = t_.vertices(triangle);
-        const Vec<2> a = t_.points()[std::size_t(v[std::size_t((e + 1) % 3)])],
-                     b = t_.points()[std::size_t(v[std::size_t((e + 2) % 3)])];
-        // Distance in the metric where the leaf is a unit square.
-        const auto local = [&](const Vec<2>& d) {
-            return Vec<2>{{d[0] / (leaf[0] * scale_[0]), d[1] / (leaf[1] * scale_[1])}};
-        };
+    // Distances in the metric where the leaf is a unit square. Leaves between two kinks that differ by
+    // rounding only are too thin to measure by.
+    const auto local = [&](const Vec<2>& d) {
+        return Vec<2>{{d[0] / (std::max(leaf[0], least_[0]) * scale_[0]),
+                       d[1] / (std::max(leaf[1], least_[1]) * scale_[1])}};
+    };
+    const auto& v = t_.vertices(triangle);
+    for (std::size_t e = 0; e < 3; ++e) {
+        const Vec<2> a = t_.points()[std::size_t(v[(e + 1) % 3])],
+                     b = t_.points()[std::size_t(v[(e + 2) % 3])];
         const Vec<2> ab = local(b - a), ax = local(x - a);
+        if (max_abs(ax) < kNearPoint) return true;
+        if (!t_.is_constrained(triangle, int(e))) continue;
         const double along = std::clamp(dot(ab, ax) / dot(ab, ab), 0.0, 1.0);
         if (norm(ax - along * ab) < kNearBoundary) return true;
     }
@@ -279,20 +288,19 @@ int Filler::separate(std::span<const int> place) {
 
 }  // namespace
 
-std::optional<BoundaryConflict> find_conflict(const FaceBoundary& boundary) {
+std::vector<BoundaryConflict> find_conflicts(const FaceBoundary& boundary) {
     auto polygon = merged(boundary);
-    if (!polygon) return polygon.error();
+    if (!polygon) return {polygon.error()};
     auto t = Triangulation::attempt(polygon->points, polygon->segments);
     if (t) return {};
-    BoundaryConflict out{-1, -1, -1, t.error().refusal.message};
-    if (!t.error().conflicts.empty()) {
-        const auto& c = t.error().conflicts.front();
+    std::vector<BoundaryConflict> all;
+    for (const auto& c : t.error().conflicts) {
         const auto source = [&](int s) { return s < 0 ? -1 : polygon->segment_source[std::size_t(s)]; };
-        out.first = source(c.first_segment);
-        out.second = source(c.second_segment);
-        if (c.point >= 0) out.corner = polygon->corner[std::size_t(c.point)];
+        const int corner = c.point < 0 ? -1 : polygon->corner[std::size_t(c.point)];
+        all.push_back({source(c.first_segment), source(c.second_segment), corner, t.error().refusal.message});
     }
-    return out;
+    if (all.empty()) all.push_back({-1, -1, -1, t.error().refusal.message});
+    return all;
 }
 
 Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,

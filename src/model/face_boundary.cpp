@@ -9,10 +9,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace freiform {
 
 namespace {
+
+constexpr double kNoPole = 1e-4;     // of the box of the loop in the parameter plane
+constexpr double kSamePlace = 1e-9;  // of the box of the face: one vertex, not two sides of a seam
 
 struct Run {
     std::vector<Vec<2>> uv;
@@ -49,6 +53,22 @@ double length_in(const Vec<2>& d, const Vec<2>& size) {
     return std::max(size[0] > 0 ? std::abs(d[0]) / size[0] : 0, size[1] > 0 ? std::abs(d[1]) / size[1] : 0);
 }
 
+// Loops that touch in a vertex have it at the same place of the parameter plane but for rounding.
+void unite(FaceBoundary& polygon) {
+    Box<2> box;
+    for (const Vec<2>& p : polygon.uv) box.add(p);
+    std::map<int, std::vector<int>> corners_at;
+    for (std::size_t i = 0; i < polygon.uv.size(); ++i) {
+        auto& others = corners_at[polygon.point[i]];
+        for (const int k : others)
+            if (length_in(polygon.uv[i] - polygon.uv[std::size_t(k)], box.hi - box.lo) < kSamePlace) {
+                polygon.uv[i] = polygon.uv[std::size_t(k)];
+                break;
+            }
+        others.push_back(int(i));
+    }
+}
+
 }  // namespace
 
 Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMesher& edges,
@@ -64,10 +84,19 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
             runs.push_back(run_of(c, f.surface, edges.mesh(c.edge)));
             for (const Vec<2>& p : runs.back().uv) box.add(p);
         }
+        // A pole that has no length in the parameter plane either is left to the joint of its neighbours.
+        std::vector<int> kept;
+        for (std::size_t c = 0; c < coedges.size(); ++c) {
+            Box<2> own;
+            for (const Vec<2>& p : runs[c].uv) own.add(p);
+            if (!model.edges[std::size_t(coedges[c].edge)].degenerate ||
+                length_in(own.hi - own.lo, box.hi - box.lo) > kNoPole)
+                kept.push_back(int(c));
+        }
         const int first = int(out.polygon.uv.size());
-        for (std::size_t c = 0; c < runs.size(); ++c) {
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+            const std::size_t c = std::size_t(kept[k]), after = std::size_t(kept[(k + 1) % kept.size()]);
             Run& run = runs[c];
-            const std::size_t after = (c + 1) % runs.size();
             const Run& next = runs[after];
             const std::string where = text("loops[", l, "][", c, "]");
             if (run.points.back() != next.points.front())
@@ -96,18 +125,19 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
                                   text("the loop is open in the parameter plane: (", run.uv.back()[0], ", ",
                                        run.uv.back()[1], ") -> (", next.uv.front()[0], ", ",
                                        next.uv.front()[1], "), up to ", moved, " apart in space"));
-                join = length_in(jump, size) > near / 4;
+                join = length_in(jump, size) > near / 4 && moved <= std::max(tolerance / 4, rounding);
                 out.gap = std::max(out.gap, moved);
             }
-            for (std::size_t k = 0; k + 1 < run.uv.size() + (join ? 1 : 0); ++k) {
-                out.polygon.uv.push_back(run.uv[k]);
-                out.polygon.point.push_back(run.points[k]);
-                out.sources.push_back(k < run.sources.size() ? run.sources[k] : BoundaryOfFace::Source{});
+            for (std::size_t i = 0; i + 1 < run.uv.size() + (join ? 1 : 0); ++i) {
+                out.polygon.uv.push_back(run.uv[i]);
+                out.polygon.point.push_back(run.points[i]);
+                out.sources.push_back(i < run.sources.size() ? run.sources[i] : BoundaryOfFace::Source{});
             }
         }
         const int end = int(out.polygon.uv.size());
         for (int i = first; i < end; ++i) out.polygon.segments.push_back({i, i + 1 < end ? i + 1 : first});
     }
+    unite(out.polygon);
     for (std::size_t i = 0; i < out.polygon.uv.size(); ++i) {
         const Vec<3> on = jet<0>(f.surface, out.polygon.uv[i].c).value();
         out.gap = std::max(out.gap, norm(on - mesh_points[std::size_t(out.polygon.point[i])]));

@@ -50,6 +50,7 @@ private:
     Result<void> discretise_edges();
     void number_points();
     void assemble(std::size_t face);
+    void refuse_boundary(std::size_t face, const BoundaryConflict& conflict);
     void resolve_conflicts();
     Result<void> fill(std::span<const std::size_t> which);
     std::vector<std::size_t> non_manifold_faces();
@@ -131,32 +132,45 @@ void Tessellator::assemble(std::size_t f) {
         refusals_[f] = boundary.error();
 }
 
+void Tessellator::refuse_boundary(std::size_t f, const BoundaryConflict& conflict) {
+    const int s = std::max(conflict.first, conflict.second);
+    const int edge = s < 0 ? -1 : boundaries_[f].sources[std::size_t(s)].edge;
+    refusals_[f] = Refusal{RefusalKind::invalid, edge < 0 ? std::string("loops") : text("edges[", edge, "]"),
+                           text("the boundary touches itself in the parameter plane: ", conflict.message)};
+}
+
 void Tessellator::resolve_conflicts() {
     std::vector<char> stale(faces(), 1);
     for (int round = 0;; ++round) {
         number_points();
-        std::vector<std::optional<BoundaryConflict>> conflicts(faces());
+        std::vector<std::vector<BoundaryConflict>> conflicts(faces());
         parallel_for(faces(), 1, [&](std::size_t f) {
             if (is_refused(f)) return;
             assemble(f);  // point numbers change with every cut
-            if (!is_refused(f) && stale[f]) conflicts[f] = find_conflict(boundaries_[f].polygon);
+            if (!is_refused(f) && stale[f]) conflicts[f] = find_conflicts(boundaries_[f].polygon);
         });
         std::set<std::pair<int, int>, std::greater<>> cuts;  // later segments of an edge first
         std::fill(stale.begin(), stale.end(), 0);
         for (std::size_t f = 0; f < faces(); ++f) {
-            if (!conflicts[f]) continue;
-            bool any = false;
-            for (int s : {conflicts[f]->first, conflicts[f]->second}) {
-                if (s < 0) continue;
-                const auto& source = boundaries_[f].sources[std::size_t(s)];
-                if (source.edge >= 0) any = true, cuts.insert({source.edge, source.segment});
-            }
-            if (!any || round == kConflictRounds) {
-                const int s = std::max(conflicts[f]->first, conflicts[f]->second);
-                const int edge = s < 0 ? -1 : boundaries_[f].sources[std::size_t(s)].edge;
-                refusals_[f] = Refusal{
-                    RefusalKind::invalid, edge < 0 ? std::string("loops") : text("edges[", edge, "]"),
-                    text("the boundary touches itself in the parameter plane: ", conflicts[f]->message)};
+            for (const BoundaryConflict& conflict : conflicts[f]) {
+                std::set<std::pair<int, int>> here;
+                const auto add = [&](int s) {
+                    if (s >= 0 && boundaries_[f].sources[std::size_t(s)].edge >= 0)
+                        here.insert({boundaries_[f].sources[std::size_t(s)].edge,
+                                     boundaries_[f].sources[std::size_t(s)].segment});
+                };
+                add(conflict.first);
+                add(conflict.second);
+                if (conflict.second < 0 &&
+                    conflict.corner >= 0)  // a segment through a corner: the corner's neighbours too
+                    for (std::size_t s = 0; s < boundaries_[f].polygon.segments.size(); ++s)
+                        for (int end : boundaries_[f].polygon.segments[s])
+                            if (end == conflict.corner) add(int(s));
+                if (here.empty() || round == kConflictRounds) {
+                    refuse_boundary(f, conflict);
+                    break;
+                }
+                cuts.insert(here.begin(), here.end());
             }
         }
         if (cuts.empty() || round == kConflictRounds) return;

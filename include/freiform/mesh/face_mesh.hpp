@@ -4,7 +4,6 @@
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +23,8 @@ struct BoundaryConflict {
     int corner = -1;
     std::string message;
 };
-// Nothing if the boundary can be triangulated as it is.
-std::optional<BoundaryConflict> find_conflict(const FaceBoundary& boundary);
+// Empty if the boundary can be triangulated as it is.
+std::vector<BoundaryConflict> find_conflicts(const FaceBoundary& boundary);
 
 struct FaceMesh {
     std::vector<Vec<2>> uv;  // the corners of the boundary first, in order, then further points
