@@ -110,8 +110,8 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
                 around.add(next.uv.front());
                 const auto s = surface({around.side(0), around.side(1)}, 1);
                 const double moved = s(1, 0) * std::abs(jump[0]) + s(0, 1) * std::abs(jump[1]);
-                const auto tolerance_of = [&](const Coedge& k) {
-                    const Edge& e = model.edges[std::size_t(k.edge)];
+                const auto tolerance_of = [&](const Coedge& use) {
+                    const Edge& e = model.edges[std::size_t(use.edge)];
                     return std::max({e.tolerance, model.vertices[std::size_t(e.start)].tolerance,
                                      model.vertices[std::size_t(e.end)].tolerance});
                 };
