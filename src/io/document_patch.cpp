@@ -212,7 +212,8 @@ Result<std::vector<Hom<D>>> rational_net(const Points<N>& p, const std::vector<d
 template <std::size_t N>
 Refusal nested(Refusal r, const Index<N>& extent) {
     // Numbers too large or too small to calculate with are no limit on effort.
-    if (r.kind == RefusalKind::limit || r.kind == RefusalKind::ill_conditioned) r.kind = RefusalKind::unsupported;
+    if (r.kind == RefusalKind::limit || r.kind == RefusalKind::ill_conditioned)
+        r.kind = RefusalKind::unsupported;
     const std::size_t open = r.where.find('['), close = r.where.find(']');
     if (open == std::string::npos || close == std::string::npos) return r;
     const auto flat = scan_number<std::size_t>(std::string_view(r.where).substr(open + 1, close - open - 1));
