@@ -16,12 +16,12 @@ RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
 
 # Other people's headers, and the only folders that may include them.
 THIRD_PARTY = [
-    (r".*\.hxx", ["apps/occt"]),
+    (r".*\.hxx", ["apps/occt", "bench/compare"]),
     (r"nlohmann/.*", ["src/io", "apps", "tests"]),
     (r"CLI/.*", ["apps/cli"]),
     (r"(oneapi/)?tbb/.*", ["src/core"]),
     (r"(epoxy|EGL|GL)/.*|png\.h", ["src/gpu"]),
-    (r"iostream", ["apps"]),
+    (r"iostream", ["apps", "bench"]),
 ]
 
 # In the library: what depends on the locale, throws, dispatches at run time, prints or ends the process.
@@ -108,7 +108,7 @@ def check(path):
 
 
 def main():
-    files = [p.relative_to(ROOT) for top in ("include", "src", "apps", "bindings", "tests")
+    files = [p.relative_to(ROOT) for top in ("include", "src", "apps", "bindings", "tests", "bench")
              for p in sorted((ROOT / top).rglob("*")) if p.suffix in (".hpp", ".cpp", ".inl")]
     problems = [f"{path}:{line}: {problem}" for path in files for line, problem in check(path)]
     print("\n".join(problems) or f"{len(files)} files: layers and calls are in order")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/setup.sh [demo|test|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
+# tools/setup.sh [demo|test|bench|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
 # Does nothing, and takes no time, where all are there.
 set -euo pipefail
 
@@ -9,16 +9,18 @@ occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 test="libgtest-dev librapidcheck-dev libboost-dev"
 ci="python3 clang-22 libclang-rt-22-dev clang-format"
+bench="python3 gmsh-doc occt-misc"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 
 purpose=${1:-demo}
 case $purpose in
     demo) packages="$build $library $occt $gl" ;;
     test) packages="$build $library $occt $gl $test" ;;
+    bench) packages="$build $library $occt $gl $bench" ;;
     ci) packages="$build $library $occt $gl $test $ci" ;;
     wasm) packages="$build $wasm" ;;
     *)
-        echo "usage: tools/setup.sh [demo|test|ci|wasm]" >&2
+        echo "usage: tools/setup.sh [demo|test|bench|ci|wasm]" >&2
         exit 2
         ;;
 esac
@@ -39,7 +41,8 @@ what_for() {
         libpng-dev) echo "writes pictures" ;;
         libgtest-dev | librapidcheck-dev) echo "the tests" ;;
         libboost-dev) echo "exact arithmetic to test against" ;;
-        python3) echo "the checks of the source" ;;
+        python3) echo "the checks of the source, the report of the benchmarks" ;;
+        gmsh-doc | occt-misc) echo "models to compare on" ;;
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;

@@ -1,0 +1,377 @@
+#!/usr/bin/env python3
+"""tools/bench_report.py [--build DIR] [--rounds N] [--only TEXT]: compares tessellation with Open CASCADE.
+
+Runs bench-tessellate and bench-tessellate-occt (bench/CMakeLists.txt) in turns over the models below, each run a
+process of its own with a time limit, and writes bench/results/DATE-COMMIT.json and, from it, bench/REPORT.md. With
+--only, which takes only the models whose name contains TEXT, it prints the report instead of writing anything.
+"""
+import argparse
+import datetime
+import gzip
+import json
+import math
+import os
+import pathlib
+import platform
+import shutil
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+LIMIT = 60  # seconds for one process
+TOLERANCES = (1e-3, 1e-4)
+OCCT_DATA = "/usr/share/opencascade/data"
+GMSH_DATA = "/usr/share/doc/gmsh-doc/doc/gmsh/demos/boolean"
+
+# The 16 models of the comparison: Debian's packages occt-misc and gmsh-doc.
+PEER_MODELS = [
+    ("as1-tu-203.stp", f"{GMSH_DATA}/as1-tu-203.stp.gz"),
+    ("bearing.iges", f"{OCCT_DATA}/iges/bearing.iges"),
+    ("component8.step", f"{GMSH_DATA}/component8.step.gz"),
+    ("hammer.iges", f"{OCCT_DATA}/iges/hammer.iges"),
+    ("linkrods.step", f"{OCCT_DATA}/step/linkrods.step"),
+    ("Ball.brep", f"{OCCT_DATA}/occ/Ball.brep"),
+    ("CrankArm.brep", f"{OCCT_DATA}/occ/CrankArm.brep"),
+    ("MODERN_Chair_1.brep", f"{OCCT_DATA}/occ/MODERN_Chair_1.brep"),
+    ("Motor-c.brep", f"{OCCT_DATA}/occ/Motor-c.brep"),
+    ("Pump_TopCover.brep", f"{OCCT_DATA}/occ/Pump_TopCover.brep"),
+    ("Top.brep", f"{OCCT_DATA}/occ/Top.brep"),
+    ("bottle.brep", f"{OCCT_DATA}/occ/bottle.brep"),
+    ("hammer.brep", f"{OCCT_DATA}/occ/hammer.brep"),
+    ("shell1.brep", f"{OCCT_DATA}/occ/shell1.brep"),
+    ("wing.brep", f"{OCCT_DATA}/occ/wing.brep"),
+    ("screw.step", f"{OCCT_DATA}/step/screw.step"),
+]
+OWN_MODELS = [("bracket.step", str(ROOT / "examples/bracket.step")), ("teapot.bpt", str(ROOT / "examples/teapot.bpt"))]
+
+
+def unpacked(path, folder):
+    """A readable file for `path`, or None. Debian compresses what lies under /usr/share/doc."""
+    path = pathlib.Path(path)
+    if not path.is_file():
+        return None
+    if path.suffix != ".gz":
+        return path
+    folder.mkdir(parents=True, exist_ok=True)
+    plain = folder / path.stem
+    with gzip.open(path, "rb") as source, open(plain, "wb") as target:
+        shutil.copyfileobj(source, target)
+    return plain
+
+
+def run(command):
+    """What the program says, or {"refusal": why there is nothing}."""
+    try:
+        done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        return {"refusal": f"not finished after {LIMIT} s"}
+    if done.returncode < 0:
+        return {"refusal": f"crashed (signal {-done.returncode})"}
+    try:
+        # Some readers of Open CASCADE print to standard output themselves; the result is the last line.
+        return json.loads(done.stdout.strip().split("\n")[-1])
+    except ValueError:
+        return {"refusal": f"exit status {done.returncode}: {(done.stderr or done.stdout).strip()[-200:]}"}
+
+
+def add_times(result, more):
+    for clock in ("one_thread", "two_threads"):
+        for kind, values in more.get(clock, {}).items():
+            result[clock][kind] += values
+
+
+def measure(name, path, relative, programs, rounds):
+    """One row: both programs in turns, `rounds` times; what is not a time is measured in the first round."""
+    ours, occt = None, None
+    wants_occt = programs["occt"] and not name.endswith(".bpt")
+    for i in range(rounds):
+        tail = ["--relative", repr(relative)] + (["--times-only"] if i else [])
+        if wants_occt and (occt is None or "refusal" not in occt):
+            result = run([programs["occt"], path] + tail)
+            occt = result if i == 0 else (add_times(occt, result) or occt)
+        if ours is None or "refusal" not in ours:
+            diagonal = ["--diagonal", repr(occt["diagonal"])] if occt and "diagonal" in occt else []
+            result = run([programs["ours"], path] + tail + diagonal)
+            ours = result if i == 0 else (add_times(ours, result) or ours)
+    return {"model": name, "relative": relative, "freiform": ours, "occt": occt}
+
+
+def machine():
+    names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")] \
+        if os.path.exists("/proc/cpuinfo") else []
+    return {"cpu": names[0] if names else platform.machine(), "cores": os.cpu_count()}
+
+
+def commit():
+    git = ["git", "-C", str(ROOT)]
+    try:
+        short = subprocess.run(git + ["rev-parse", "--short=7", "HEAD"], capture_output=True, text=True, check=True).stdout
+        changed = subprocess.run(git + ["status", "--porcelain", "--", "src", "include", "bench/common", "bench/tasks",
+                                        "bench/compare"], capture_output=True, text=True, check=True).stdout
+        return short.strip() + ("-changed" if changed.strip() else "")
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+# ---- the report
+
+def median(result, threads="one_thread", clock="processor_ms"):
+    return statistics.median(result[threads][clock])
+
+
+def good(result):
+    return result is not None and "refusal" not in result
+
+
+def sewn(row):
+    return good(row["freiform"]) and row["freiform"]["solids"] > 0 and row["freiform"]["free_edges"] == 0
+
+
+def bound_kept(result):
+    return result["deviation"] <= result["error_bound"] + result["boundary_gap"]
+
+
+def geometric_mean(values):
+    return math.exp(statistics.fmean(math.log(v) for v in values)) if values else math.nan
+
+
+def number(x):
+    return "–" if x is None else f"{x:.2g}" if x < 0.095 else f"{x:.2f}" if x < 100 else f"{x:.3g}"
+
+
+def milliseconds(x):
+    return f"{x:.1f}" if x < 100 else f"{x:.0f}"
+
+
+def table_row(row):
+    f, o = row["freiform"], row["occt"]
+    cells = [row["model"], f"{row['relative']:g}"]
+    if not good(f):
+        return "| " + " | ".join(cells + [f"no result: {f['refusal']}"]) + " |"
+    pair = lambda a, b: f"{a} / {b}" if b is not None else f"{a}"
+    other = lambda get: get(o) if good(o) else None if o is None else "failed"
+    ratio = number(median(f) / median(o)) if good(o) else "–"
+    share = f["tolerance"]
+    cells += [
+        str(f["faces"]),
+        pair(f["triangles"], other(lambda r: r["triangles"])),
+        number(f["triangles"] / o["triangles"]) if good(o) else "–",
+        pair(milliseconds(median(f)), other(lambda r: milliseconds(median(r)))),
+        ratio,
+        pair(f["topology"]["open_edges"], other(lambda r: r["open_edges"])) + ("" if sewn(row) else " (not closed)"),
+        pair(number(f["deviation"] / share), other(lambda r: number(r["deviation"] / r["tolerance"]))),
+        number(f["error_bound"] / share),
+        number(f["boundary_gap"] / share),
+        "yes" if bound_kept(f) else "**no**",
+        str(len(f["refused"])),
+    ]
+    return "| " + " | ".join(cells) + " |"
+
+
+def listing(lines):
+    return "\n".join(f"- {line}" for line in lines) if lines else "- none"
+
+
+def label(row):
+    return f"{row['model']} at {row['relative']:g}"
+
+
+def losses(rows):
+    out = []
+    for row in rows:
+        f, o = row["freiform"], row["occt"]
+        if not good(f):
+            out.append(f"{label(row)}: no result: {f['refusal']}")
+            continue
+        said = []
+        if good(o):
+            if f["triangles"] > o["triangles"]:
+                said.append(f"{f['triangles'] / o['triangles']:.2f} times the triangles")
+            if median(f) > median(o):
+                said.append(f"{median(f) / median(o):.2f} times the time")
+            if f["deviation"] / f["tolerance"] > max(1, o["deviation"] / o["tolerance"]):
+                said.append("further from the surface")
+        if not bound_kept(f):
+            said.append(f"**deviation above the proven bound: {f['deviation']:.6g} > {f['error_bound']:.6g} + {f['boundary_gap']:.6g}**")
+        if f["deviation"] > f["tolerance"]:
+            said.append(f"deviation {f['deviation'] / f['tolerance']:.2f} times the tolerance, where the model's own gap is "
+                        f"{f['boundary_gap'] / f['tolerance']:.2f} times the tolerance")
+        t = f["topology"]
+        if sewn(row) and t["open_edges"]:
+            said.append(f"**{t['open_edges']} open edges in a sewn solid**")
+        if t["non_manifold_edges"]:
+            said.append(f"{t['non_manifold_edges']} edges with more than two triangles")
+        if t["degenerate_triangles"]:
+            said.append(f"{t['degenerate_triangles']} triangles without area")
+        least = o["degenerate_triangles"] if good(o) else 0
+        if f["degenerate_triangles"] > least:
+            said.append(f"{f['degenerate_triangles']} triangles with corners closer than 1e-7 of the diagonal"
+                        + (f" (Open CASCADE: {least})" if good(o) else ""))
+        said += [f"refused {r['face']}: {r['where']}: {r['message']}" for r in f["refused"]]
+        if said:
+            out.append(f"{label(row)}: " + "; ".join(said))
+    return out
+
+
+def wins(rows):
+    out = []
+    for row in rows:
+        f, o = row["freiform"], row["occt"]
+        if not good(f) or o is None:
+            continue
+        if not good(o):
+            out.append(f"{label(row)}: Open CASCADE gives no result: {o['refusal']}")
+            continue
+        said = []
+        if f["triangles"] < o["triangles"]:
+            said.append(f"{f['triangles'] / o['triangles']:.2f} times the triangles")
+        if median(f) < median(o):
+            said.append(f"{median(f) / median(o):.2f} times the time")
+        if o["deviation"] > o["tolerance"] >= f["deviation"] * o["tolerance"] / f["tolerance"]:
+            said.append(f"within the tolerance, which Open CASCADE exceeds {o['deviation'] / o['tolerance']:.2f} times")
+        if said:
+            out.append(f"{label(row)}: " + "; ".join(said))
+    return out
+
+
+def summary(rows):
+    done = [r for r in rows if good(r["freiform"])]
+    both = [r for r in done if good(r["occt"])]
+    closed = [r for r in done if sewn(r)]
+    tight = [r for r in closed if r["freiform"]["topology"]["open_edges"] == 0]
+    kept = [r for r in done if bound_kept(r["freiform"])]
+    within = [r for r in done if r["freiform"]["deviation"] <= r["freiform"]["tolerance"]]
+    theirs = [r for r in both if r["occt"]["deviation"] <= r["occt"]["tolerance"]]
+    proven = [r for r in done if r["freiform"]["error_bound"] <= r["freiform"]["tolerance"]]
+    lines = [
+        f"Rows with a result: {len(done)} of {len(rows)}, {len(both)} of them with Open CASCADE beside.",
+        f"Sewn solids without an open edge: {len(tight)} of {len(closed)}.",
+        f"Measured deviation within the proven bound and the model's gap: {len(kept)} of {len(done)}.",
+        f"Proven bound within the tolerance: {len(proven)} of {len(done)}.",
+        f"Measured deviation within the tolerance: {len(within)} of {len(done)}; Open CASCADE {len(theirs)} of {len(both)}.",
+        f"Refused faces: {sum(len(r['freiform']['refused']) for r in done)}.",
+    ]
+    if not both:
+        return lines
+    f, o = [r["freiform"] for r in both], [r["occt"] for r in both]
+    for relative in TOLERANCES:
+        some = [r for r in both if r["relative"] == relative]
+        if some:
+            t = geometric_mean([r["freiform"]["triangles"] / r["occt"]["triangles"] for r in some])
+            s = geometric_mean([median(r["freiform"]) / median(r["occt"]) for r in some])
+            lines.append(f"Geometric mean of freiform / Open CASCADE at {relative:g}: triangles {t:.2f}, time {s:.2f}.")
+    lines += [
+        f"Totals: {sum(r['triangles'] for r in f)} triangles in {sum(map(median, f)) / 1e3:.2f} s, Open CASCADE "
+        f"{sum(r['triangles'] for r in o)} in {sum(map(median, o)) / 1e3:.2f} s, with one thread.",
+        "With two threads freiform needs " +
+        f"{sum(median(r, 'two_threads', 'wall_ms') for r in f) / sum(median(r, 'one_thread', 'wall_ms') for r in f):.2f}"
+        " times the time of one (wall clock).",
+    ]
+    return lines
+
+
+def report(data):
+    rows, where = data["rows"], data["machine"]
+    angles = []
+    for key, who in (("freiform", "freiform"), ("occt", "Open CASCADE")):
+        some = [r[key] for r in rows if good(r[key]) and good(r["occt"])]
+        if some:
+            all_triangles = sum(r["triangles"] for r in some)
+            below = [sum(r["triangles"] * r["angles_below"][i] for r in some) / all_triangles for i in range(4)]
+            angles.append(f"{who}: " + ", ".join(f"{100 * b:.1f} % below {limit:g}°" for b, limit in
+                                                  zip(below, some[0]["angle_limits"])))
+    versions = {r["occt"]["version"] for r in rows if good(r["occt"])}
+    missing = [f"{m['model']}: {m['reason']}" for m in data["skipped"]]
+    return f"""# Tessellation, beside Open CASCADE
+
+Generated by tools/bench_report.py from bench/results/{data['name']}.json; `make bench` does it again. Do not edit.
+
+## What was measured
+
+- Models: the 16 of Debian's packages occt-misc (/usr/share/opencascade/data) and gmsh-doc, as they are, without sewing
+  or healing; and two of examples/. The IGES files, shell1 and wing are no closed solids; the others of the 16 are.
+- Tolerance: 1e-3 and 1e-4 of the diagonal of the model's tight box. Open CASCADE gets it as the deflection of
+  BRepMesh_IncrementalMesh, with an angle of 0.5 radians; freiform has no angular limit. That costs Open CASCADE
+  triangles where the tolerance is coarse.
+- Time: the mesher alone, without reading, on one thread; the median, in processor time, of {data['rounds']} rounds of up to five
+  repetitions, with the two programs in turns. The time of freiform includes the proof of the bound. Absolute times wander
+  from run to run and from machine to machine: compare the ratios.
+- Deviation: the largest distance from ten samples inside each triangle (evenly spread over its parameters, mapped by the surface)
+  to the nearest triangle of the same face, divided by the tolerance. One program text (bench/common/measure.cpp)
+  measures both.
+- Bound: what freiform proves of the distance between faces and mesh (`error_bound`), divided by the tolerance. Gap: how far the model
+  contradicts itself along its edges (`boundary_gap`), likewise. Kept: the measured deviation is no larger than their sum.
+- Open edges: used by one triangle. Of freiform by the mesh's own indices, of Open CASCADE, whose faces share no points, after
+  welding within 1e-7 of the diagonal.
+- Machine: {where['cpu']}, {where['cores']} cores. {data['build']['compiler']}, {data['build']['build_type']}, flags `{data['build']['flags'].strip()}`.
+  freiform at {data['commit']}; Open CASCADE {', '.join(sorted(versions)) or 'absent'}, as Debian builds it.
+
+## Summary
+
+{listing(summary(rows))}
+
+Shape of the triangles, smallest angle: {'; '.join(angles) or 'not measured'}.
+
+## Table
+
+Pairs are freiform / Open CASCADE; times in milliseconds.
+
+| model | tolerance | faces | triangles | ratio | ms | ratio | open edges | deviation | bound | gap | kept | refused |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|
+{chr(10).join(map(table_row, rows))}
+
+## Losses
+
+{listing(losses(rows))}
+
+## Wins
+
+{listing(wins(rows))}
+
+## Left out
+
+{listing(missing)}
+"""
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    options.add_argument("--build", default="build", help="the build folder (default: build)")
+    options.add_argument("--rounds", type=int, default=2)
+    options.add_argument("--only", default="")
+    args = options.parse_args()
+    folder = pathlib.Path(args.build)
+    folder = folder if folder.is_absolute() else ROOT / folder
+    programs = {"ours": folder / "bin/bench-tessellate", "occt": folder / "bin/bench-tessellate-occt"}
+    if not programs["ours"].is_file():
+        sys.exit(f"{programs['ours']} is not built: make bench")
+    skipped = []
+    if not programs["occt"].is_file():
+        programs["occt"] = None
+        skipped.append({"model": "all", "reason": "no Open CASCADE was found to compare with"})
+    rows = []
+    for name, source in PEER_MODELS + OWN_MODELS:
+        if args.only not in name:
+            continue
+        path = unpacked(source, folder / "bench-models")
+        if path is None:
+            skipped.append({"model": name, "reason": f"{source} is not there"})
+            continue
+        for relative in TOLERANCES:
+            rows.append(measure(name, path, relative, programs, args.rounds))
+            print(table_row(rows[-1]), file=sys.stderr, flush=True)
+    data = {"name": f"{datetime.date.today().isoformat()}-{commit()}", "commit": commit(), "rounds": args.rounds,
+            "machine": machine(), "build": json.loads((folder / "bin/bench.json").read_text()), "skipped": skipped, "rows": rows}
+    if args.only:
+        print(report(data))
+        return
+    results = ROOT / "bench/results"
+    results.mkdir(parents=True, exist_ok=True)
+    (results / f"{data['name']}.json").write_text(json.dumps(data, indent=1) + "\n")
+    (ROOT / "bench/REPORT.md").write_text(report(data))
+    print(f"bench/REPORT.md and bench/results/{data['name']}.json")
+
+
+if __name__ == "__main__":
+    main()
