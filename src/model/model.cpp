@@ -75,6 +75,80 @@ Result<void> check_face(const Model& m, const Face& f, std::string_view where) {
     return {};
 }
 
+// A box that contains the curve or surface over `on`: in each of several cells it lies within Q / 8 of the
+// linear interpolant of the corners (curvature_tree.cpp), kinks add jump x width / 4.
+template <std::size_t N, int D>
+Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<Interval, N>& on) {
+    constexpr int kCells = N == 1 ? 16 : 8;
+    const DerivativeQuery<N, D> query(geometry);
+    Index<N> cells{}, corners{};
+    for (auto& c : cells) c = kCells;
+    for (auto& c : corners) c = 2;
+    Box<D> box;
+    bool torn = false;
+    each_index(cells, [&](const Index<N>& cell) {
+        std::array<Interval, N> part;
+        for (std::size_t d = 0; d < N; ++d) {
+            const double h = on[d].length() / kCells;
+            part[d] = {on[d].lo + cell[d] * h,
+                       cell[d] + 1 == kCells ? on[d].hi : on[d].lo + (cell[d] + 1) * h};
+        }
+        const auto bounds = query(part);
+        double slack = 0;
+        if constexpr (N == 1) {
+            slack = bounds(2) * part[0].length() * part[0].length() / 8;
+        } else {
+            const double du = part[0].length(), dv = part[1].length();
+            slack = (bounds(2, 0) * du * du + 2 * bounds(1, 1) * du * dv + bounds(0, 2) * dv * dv) / 8;
+        }
+        for (std::size_t d = 0; d < N; ++d)
+            for (const Kink& k : query.kinks(int(d)))
+                if (part[d].lo < k.at && k.at < part[d].hi) slack += k.jump * part[d].length() / 4;
+        torn = torn || !std::isfinite(slack);
+        if (torn) return;
+        each_index(corners, [&](const Index<N>& i) {
+            std::array<double, N> at{};
+            for (std::size_t d = 0; d < N; ++d) at[d] = i[d] == 0 ? part[d].lo : part[d].hi;
+            Vec<D> p;
+            if constexpr (N == 1)
+                p = jet<0>(geometry, at[0]).value();
+            else
+                p = jet<0>(geometry, at).value();
+            box.add(p - Box<D>::filled(slack));
+            box.add(p + Box<D>::filled(slack));
+        });
+    });
+    if (torn)  // a spline that jumps: its control points contain it as well
+        std::visit(
+            [&](const auto& g) {
+                if constexpr (requires { g.net(); })
+                    for (const auto& p : points(g)) box.add(p);
+            },
+            geometry);
+    return box;
+}
+
+// Contains the loops of the face; without loops the domain.
+std::array<Interval, 2> parameter_box(const Model& m, const Face& f) {
+    const auto whole = domain(f.surface);
+    if (f.loops.empty()) return whole;
+    Box<2> box;
+    for (const Loop& l : f.loops)
+        for (const Coedge& c : l.coedges)
+            box.add(box_of<1, 2>(c.curve, {m.edges[std::size_t(c.edge)].range}));
+    std::array<Interval, 2> on{box.side(0), box.side(1)};
+    if (std::visit(
+            [](const auto& s) {
+                return requires { s.net(); };
+            },
+            f.surface))
+        for (std::size_t d = 0; d < 2; ++d) {
+            on[d].lo = std::clamp(on[d].lo, whole[d].lo, whole[d].hi);
+            on[d].hi = std::clamp(on[d].hi, on[d].lo, whole[d].hi);
+        }
+    return on;
+}
+
 }  // namespace
 
 Result<Model> make_model(Model m) {
@@ -129,48 +203,12 @@ ModelSummary summary(const Model& m) {
             ++s.open_edges;
     }
     for (const Vertex& v : m.vertices) s.box.add(v.point);
-    const auto add_hull = [&](const auto& geometry) {
-        std::visit(
-            [&](const auto& g) {
-                if constexpr (requires { g.net(); })
-                    for (const auto& p : points(g)) s.box.add(p);
-            },
-            geometry);
-    };
-    // A ball about the middle that contains the curve, from the bound of its first derivative.
     for (const Edge& e : m.edges)
-        if (e.curve) {
-            if (const auto* conic = std::get_if<Conic<3>>(&*e.curve)) {
-                const Vec<3> c = jet<0>(*e.curve, e.range.middle()).value();
-                const double r = DerivativeQuery<1, 3>(*e.curve)({e.range}, 1)(1) * e.range.length() / 2;
-                const double whole = conic->kind == ConicKind::ellipse ? norm(conic->x) + norm(conic->y) : r;
-                for (double side : {-1.0, 1.0})
-                    s.box.add((r < whole ? c : conic->centre) + side * Box<3>::filled(std::min(r, whole)));
-            } else {
-                add_hull(*e.curve);
-            }
-        }
+        if (e.curve) s.box.add(box_of<1, 3>(*e.curve, {e.range}));
     for (const Face& f : m.faces) {
-        add_hull(f.surface);
-        std::visit(
-            [&](const auto& g) {
-                if constexpr (requires { g.axis; }) {  // a sphere or torus may bulge over its edges
-                    Box<2> uv;
-                    for (const Loop& l : f.loops)
-                        for (const Coedge& c : l.coedges)
-                            for (double t : {m.edges[std::size_t(c.edge)].range.lo,
-                                             m.edges[std::size_t(c.edge)].range.hi})
-                                uv.add(jet<0>(c.curve, t).value());
-                    if (uv.is_empty()) return;
-                    const DerivativeQuery<1, 3> q(g.profile);
-                    const Interval on = uv.side(1);
-                    const Vec<3> c = jet<0>(g.profile, on.middle()).value() - g.origin,
-                                 up = dot(g.axis, c) * g.axis;
-                    const double r = norm(c - up) + q({on}, 1)(0);
-                    for (double side : {-1.0, 1.0}) s.box.add(g.origin + up + side * Box<3>::filled(r));
-                }
-            },
-            f.surface);
+        const auto on = parameter_box(m, f);
+        if (std::isfinite(on[0].length()) && std::isfinite(on[1].length()))
+            s.box.add(box_of<2, 3>(f.surface, on));
     }
     return s;
 }

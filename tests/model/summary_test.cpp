@@ -1,0 +1,62 @@
+#include "support/solids.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace freiform;
+using namespace freiform::test;
+
+namespace {
+
+TEST(Summary, boxes_contain_the_model_and_little_more) {
+    const struct {
+        const char* name;
+        Model model;
+        Vec<3> lo, hi;
+    } cases[] = {{"sphere", sphere({{1, 2, 3}}, 2), {{-1, 0, 1}}, {{3, 4, 5}}},
+                 {"torus", torus(3, 1), {{-4, -4, -1}}, {{4, 4, 1}}},
+                 {"frustum", frustum(2, 1, 3), {{-2, -2, 0}}, {{2, 2, 3}}}};
+    for (const auto& c : cases) {
+        const Box<3> box = summary(c.model).box;
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_LE(box.lo[i], c.lo[i]) << c.name;
+            EXPECT_GE(box.hi[i], c.hi[i]) << c.name;
+            EXPECT_NEAR(box.lo[i], c.lo[i], 0.6) << c.name;
+            EXPECT_NEAR(box.hi[i], c.hi[i], 0.6) << c.name;
+        }
+    }
+}
+
+TEST(Summary, counts_what_the_model_has) {
+    const ModelSummary s = summary(sphere({}, 1));
+    EXPECT_EQ(s.faces, 1);
+    EXPECT_EQ(s.edges, 3);
+    EXPECT_EQ(s.degenerate_edges, 2);
+    EXPECT_EQ(s.seams, 1);
+    EXPECT_EQ(s.open_edges, 0);
+    EXPECT_EQ(s.solids, 1);
+    Model open = frustum(1, 1, 1);
+    open.faces.pop_back();
+    open.shells[0].faces.pop_back();
+    EXPECT_EQ(summary(open).open_edges, 1);
+}
+
+TEST(MakeModel, refuses_what_would_lead_out_of_the_arrays) {
+    const auto where = [](auto change) {
+        Model m = sphere({}, 1);
+        change(m);
+        const auto made = make_model(std::move(m));
+        return made ? std::string("accepted") : made.error().where;
+    };
+    EXPECT_EQ(where([](Model&) {}), "accepted");
+    EXPECT_EQ(where([](Model& m) { m.edges[0].end = 7; }), "edges[0].end");
+    EXPECT_EQ(where([](Model& m) { m.edges[0].range = {1, 1}; }), "edges[0].range");
+    EXPECT_EQ(where([](Model& m) { m.edges[1].end = 1; }), "edges[1]");
+    EXPECT_EQ(where([](Model& m) { m.vertices[1].point[2] = NAN; }), "vertices[1]");
+    EXPECT_EQ(where([](Model& m) { m.vertices[1].tolerance = -1; }), "vertices[1].tolerance");
+    EXPECT_EQ(where([](Model& m) { m.faces[0].loops[0].coedges[2].edge = -1; }), "faces[0].loops[0][2].edge");
+    EXPECT_EQ(where([](Model& m) { m.faces[0].loops[0].coedges.clear(); }), "faces[0].loops[0]");
+    EXPECT_EQ(where([](Model& m) { m.shells[0].faces[0].face = 1; }), "shells[0].faces[0]");
+    EXPECT_EQ(where([](Model& m) { m.bodies[0].shells[0] = 3; }), "bodies[0].shells[0]");
+}
+
+}  // namespace
