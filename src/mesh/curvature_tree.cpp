@@ -18,6 +18,8 @@
 // Why not sampling: a bump between the samples is missed, see the adversarial bump in the tests.
 #include "curvature_tree_detail.hpp"
 
+#include <freiform/mesh/face_mesh.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -29,8 +31,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
-constexpr int kMaxDepth = 100;    // backstop: 2^-50 of the box in both directions
+constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
 
 double kink_error(std::span<const Kink> kinks, Interval on) {
     double sum = 0;
@@ -86,22 +87,20 @@ bool is_inside(const Vec<2>& x, std::span<const Vec<2>> polygon,
     return in;
 }
 
-// How many leaves the curvature at samples asks for: tells hopeless tolerances before they take time. Only an
-// estimate; bounds over large boxes would be far too large for it.
-double leaves_needed(const SurfaceGeometry& surface, const Box<2>& box, double tolerance) {
+}  // namespace
+
+double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, double tolerance) {
     constexpr int kSamples = 12;
     const Vec<2> h = (1.0 / kSamples) * (box.hi - box.lo);
     double sum = 0;
     for (int i = 0; i < kSamples; ++i)
         for (int k = 0; k < kSamples; ++k) {
             const auto j = jet<2>(surface, {box.lo[0] + (i + 0.5) * h[0], box.lo[1] + (k + 0.5) * h[1]});
-            sum += std::sqrt(1 + norm(j(2, 0)) * h[0] * h[0] / 8 / tolerance) *
-                   std::sqrt(1 + norm(j(0, 2)) * h[1] * h[1] / 8 / tolerance);
+            sum += 2 * std::sqrt(1.0 / kSamples / kSamples + norm(j(2, 0)) * h[0] * h[0] / 8 / tolerance) *
+                   std::sqrt(1.0 / kSamples / kSamples + norm(j(0, 2)) * h[1] * h[1] / 8 / tolerance);
         }
     return std::isfinite(sum) ? sum : 0;
 }
-
-}  // namespace
 
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d) {
     const double grow = 1 + 1e-14;  // the roundings of this function
@@ -157,12 +156,6 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             kink_error(tree.kinks_[0], box.side(0)) + kink_error(tree.kinks_[1], box.side(1));
         const double error = c.along(size[0], size[1]) / 8 + kinks;
         if (error <= tolerance || !(size[0] > 0) || !(size[1] > 0)) continue;
-        if (item.depth == 0)
-            if (const double needed = leaves_needed(surface.geometry(), box, tolerance);
-                needed > kFarBeyond * double(max_leaves))
-                return refuse(
-                    RefusalKind::limit, "max_triangles",
-                    text("the tolerance ", tolerance, " needs about ", std::ceil(2 * needed), " triangles"));
         if (item.depth == kMaxDepth) {
             if (!std::isfinite(error))
                 return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),

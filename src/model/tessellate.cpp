@@ -26,6 +26,7 @@ namespace {
 
 constexpr int kConflictRounds = 12;  // each halves the segments that touch
 constexpr int kManifoldRounds = 4;
+constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -47,6 +48,7 @@ public:
 private:
     std::size_t faces() const { return model_.faces.size(); }
     bool is_refused(std::size_t f) const { return refusals_[f].has_value(); }
+    Result<void> check_budget() const;
     Result<void> discretise_edges();
     void number_points();
     void assemble(std::size_t face);
@@ -69,6 +71,26 @@ private:
     std::vector<std::vector<Vec<2>>> extra_;
     std::vector<std::optional<Refusal>> refusals_;
 };
+
+// Refuses what is beyond the limit by far; what is near it is counted while it is made.
+Result<void> Tessellator::check_budget() const {
+    double sum = 0;
+    for (const Face& face : model_.faces) {
+        Box<2> box;
+        for (const Loop& l : face.loops)
+            for (const Coedge& c : l.coedges)
+                for (int k = 0; k <= 8; ++k) {
+                    const Interval on = model_.edges[std::size_t(c.edge)].range;
+                    box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
+                }
+        if (!box.is_empty()) sum += estimated_triangles(face.surface, box, tolerance_);
+    }
+    if (sum > kFarBeyond * double(options_.max_triangles))
+        return refuse(RefusalKind::limit, "max_triangles",
+                      text("the tolerance ", options_.tolerance, " needs about ", std::ceil(sum),
+                           " triangles, the limit is ", options_.max_triangles));
+    return {};
+}
 
 Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
@@ -365,6 +387,7 @@ Result<Tessellation> Tessellator::run() {
                                            "the surface is torn here (a knot of multiplicity degree + 1)"};
     }
     edges_ = std::make_unique<EdgeMesher>(model_, queries_);
+    if (auto ok = check_budget(); !ok) return std::unexpected(ok.error());
     if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
     resolve_conflicts();
     const double meshed_edges = now();

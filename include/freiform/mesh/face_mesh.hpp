@@ -34,6 +34,10 @@ struct FaceMesh {
     double bound = 0;  // of the interpolation error of all triangles
 };
 
+// About how many triangles the part of the surface over `box` needs: from its curvature at samples, in
+// microseconds, to tell hopeless tolerances before they take time. An estimate, not a bound.
+double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, double tolerance);
+
 // Inner points are placed until every triangle's interpolation bound is at most `tolerance`. `extra`: further
 // inner points to begin with. Refuses (invalid) boundaries with a conflict, (limit) more than
 // `max_triangles`.
