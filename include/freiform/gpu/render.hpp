@@ -1,6 +1,8 @@
 // Pictures of meshes, drawn without a window: on the graphics card where there is one, else by the processor.
 #pragma once
+#include <freiform/core/colour.hpp>
 #include <freiform/core/result.hpp>
+#include <freiform/core/view.hpp>
 #include <freiform/mesh/triangle_mesh.hpp>
 
 #include <string>
@@ -18,17 +20,6 @@ struct Image {
         return &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
     }
 };
-
-// Where the eye is, seen from the model: azimuth from the x axis towards the y axis, elevation above the x-y
-// plane; radians. The z axis points up in the picture (the y axis where the view is along z and azimuth
-// -pi/2).
-struct View {
-    double azimuth = -0.7853981633974483, elevation = 0.6154797086703874;
-};
-
-// iso (the default above), front (the eye at -y), back, left (at -x), right, top, bottom, or
-// "AZIMUTH,ELEVATION" in degrees.
-Result<View> parse_view(std::string_view text);
 
 struct RenderOptions {
     int width = 1200, height = 900;  // pixels, at most 16384

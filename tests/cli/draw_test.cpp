@@ -1,0 +1,98 @@
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+using Draw = Program;
+
+const std::string kExample = std::string(FREIFORM_SOURCE_DIR) + "/examples/curves.json";
+const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
+const std::string kLine = R"({"type": "curve", "degree": 1, "points": [[0,0],[4,2]]})";
+
+Json error_of(const Ran& r) { return Json::parse(r.out, nullptr, false).value("error", Json::object()); }
+
+TEST_F(Draw, curves_become_svg_and_pdf) {
+    const Ran svg = run({"draw", kExample, "-o", "c.svg", "--control", "--knots", "--comb", "--construction",
+                         "0.4", "--width", "640", "--height", "480"});
+    ASSERT_EQ(svg.code, 0) << svg.err;
+    EXPECT_EQ(svg.out + svg.err, "");
+    const std::string s = content(path("c.svg"));
+    EXPECT_NE(s.find("viewBox=\"0 0 640 480\""), std::string::npos);
+    for (const char* role : {"curve", "control", "knots", "comb", "construction", "point"})
+        EXPECT_NE(s.find(std::string("class=\"") + role + "\""), std::string::npos) << role;
+    for (const char* name : {"cubic", "closed", "circle"})
+        EXPECT_NE(s.find(std::string("<title>") + name + "</title>"), std::string::npos) << name;
+    const Ran pdf = run({"draw", kExample, "-o", "c.pdf"});
+    EXPECT_EQ(pdf.code, 0) << pdf.err;
+    EXPECT_TRUE(content(path("c.pdf")).starts_with("%PDF-1.4\n"));
+}
+
+TEST_F(Draw, documents_of_curves_become_png_without_the_renderer) {
+    const Ran r = run({"draw", kExample, "-o", "c.png", "--control", "--width", "300", "--height", "200"});
+    if (r.code == 3 && r.err.find("without .png") != std::string::npos) GTEST_SKIP() << r.err;
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_TRUE(content(path("c.png")).starts_with("\x89PNG"));
+}
+
+TEST_F(Draw, surfaces_become_lines_in_svg) {
+    const Ran r = run({"draw", kTeapot, "-o", "t.svg", "--control", "--view", "30,20"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(content(path("t.svg")).find("class=\"isolines\""), std::string::npos);
+}
+
+TEST_F(Draw, an_object_can_be_chosen) {
+    ASSERT_EQ(run({"draw", kExample, "-o", "c.svg", "--object", "circle"}).code, 0);
+    const std::string s = content(path("c.svg"));
+    EXPECT_NE(s.find("<title>circle</title>"), std::string::npos);
+    EXPECT_EQ(s.find("<title>cubic</title>"), std::string::npos);
+}
+
+TEST_F(Draw, wrong_combinations_are_wrong_usage) {
+    for (const std::vector<std::string>& a :
+         std::vector<std::vector<std::string>>{{"draw", kExample, "-o", "c.gif"},
+                                               {"draw", kExample},
+                                               {"draw", kExample, "-o", "c.svg", "--zebra"},
+                                               {"draw", kExample, "-o", "c.pdf", "--perspective"},
+                                               {"draw", kExample, "-o", "c.png", "--edges"},
+                                               {"draw", kExample, "-o", "c.svg", "--tolerance", "0.1"},
+                                               {"draw", kExample, "-o", "c.svg", "--view", "askew"},
+                                               {"draw", kExample, "-o", "c.svg", "--width", "0"},
+                                               {"draw", kExample, "-o", "c.svg", "--construction", "middle"},
+                                               {"draw", kTeapot, "-o", "t.png", "--control"},
+                                               {"draw", kTeapot, "-o", "t.png", "--comb"}}) {
+        const Ran r = run(a);
+        EXPECT_EQ(r.code, 2) << a.back() << ": " << r.err;
+        EXPECT_FALSE(std::filesystem::exists(path("c.svg")));
+    }
+}
+
+TEST_F(Draw, questions_without_an_answer_exit_with_1) {
+    const Ran outside = run({"draw", "-", "-o", "c.svg", "--construction", "1.5", "--json"}, kLine);
+    EXPECT_EQ(outside.code, 1);
+    EXPECT_EQ(error_of(outside).value("kind", ""), "out_of_domain");
+    EXPECT_NE(error_of(outside).value("message", "").find("[0, 1]"), std::string::npos) << outside.out;
+    const Ran four =
+        run({"draw", "-", "-o", "c.svg", "--json"},
+            R"({"name": "deep", "type": "curve", "degree": 1, "points": [[0,0,0,0],[4,2,1,1]]})");
+    EXPECT_EQ(four.code, 1);
+    EXPECT_NE(error_of(four).value("where", "").find("deep"), std::string::npos) << four.out;
+    EXPECT_NE(error_of(four).value("message", "").find("four coordinates"), std::string::npos) << four.out;
+    EXPECT_EQ(run({"draw", kTeapot, "-o", "t.svg", "--construction", "0.5"}).code, 1);
+    EXPECT_FALSE(std::filesystem::exists(path("c.svg")));
+    EXPECT_EQ(run({"draw", "absent.json", "-o", "c.svg"}).code, 5) << "no such file";
+}
+
+TEST_F(Draw, what_is_missing_is_said) {
+    const Ran r = run({"draw", "-", "-o", "c.svg"},
+                      R"({"freiform": 1, "objects": [{"type": "curve", "degree": 1, "points": [[0,0],[4,2]]},
+        {"name": "deep", "type": "curve", "degree": 1, "points": [[0,0,0,0],[4,2,1,1]]}]})");
+    EXPECT_EQ(r.code, 0);
+    EXPECT_NE(r.err.find("deep"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("is missing"), std::string::npos) << r.err;
+}
+
+}  // namespace
+}  // namespace freiform::test
