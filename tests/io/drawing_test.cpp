@@ -352,11 +352,41 @@ TEST(Drawing, loops_of_trimmed_surfaces_stay_within_the_tolerance) {
     }
 }
 
+TEST(Drawing, loops_on_flat_surfaces_bend_by_their_own_curvature) {
+    const auto plane =
+        *Surface<Vec<3>>::make({*BSplineBasis::bezier(1), *BSplineBasis::bezier(1)},
+                               Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
+    const CurveGeometry<2> loop = Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.4, 0}}, {{0, 0.4}}};
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    const auto d = draw(with(*TrimmedSurface::make(plane, {{loop}})), {}, how);
+    ASSERT_TRUE(d) << d.error().message;
+    double worst = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec<2> p = jet<0>(loop, 2 * std::numbers::pi * i / 3000).value();
+        worst = std::max(worst, distance(pixel(*d, p), *group(*d, "edges")));
+    }
+    EXPECT_LE(worst, kDrawingTolerance);
+    EXPECT_GT(worst, kDrawingTolerance / 20);
+}
+
 TEST(Drawing, volumes_and_triangles_have_edges) {
     std::mt19937 rng(6);
     const auto v = draw(with(test::random_patch<3, Vec<3>>(rng, {2, 1, 3}, 1)));
     ASSERT_TRUE(v);
     EXPECT_EQ(group(*v, "edges")->paths.size(), 12u);
+    std::vector<std::array<double, 4>> ends;
+    for (const DrawnPath& path : group(*v, "edges")->paths) {
+        const DrawnSegment& last = path.segments.back();
+        const Vec<2>& end = last.points[std::size_t(last.degree - 1)];
+        ends.push_back({path.start[0], path.start[1], end[0], end[1]});
+    }
+    std::ranges::sort(ends);
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+        double apart = 0;
+        for (std::size_t k = 0; k < 4; ++k) apart = std::max(apart, std::abs(ends[i][k] - ends[i - 1][k]));
+        EXPECT_GT(apart, 1e-6) << "an edge is drawn twice";
+    }
     const auto t = *Triangle<Vec<2>>::make(2, {{{0, 0}}, {{1, 0}}, {{0, 1}}, {{2, 0}}, {{1, 1}}, {{0, 3}}});
     const auto d = draw(with(t));
     ASSERT_TRUE(d);
