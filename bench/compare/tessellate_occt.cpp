@@ -134,7 +134,7 @@ int run(const Arguments& a) {
         }
         return times;
     };
-    const std::vector<Seconds> one = mesh(false);
+    const std::vector<Seconds> one = mesh(false), two = mesh(true);
 
     TopTools_IndexedMapOfShape faces;
     TopExp::MapShapes(shape, TopAbs_FACE, faces);
@@ -145,6 +145,7 @@ int run(const Arguments& a) {
         .field("diagonal", diagonal);
     w.field("faces", faces.Extent());
     write_times(w, "one_thread", one);
+    write_times(w, "two_threads", two);
     if (!a.times_only) {
         int without = 0;
         write_measured(w, look(faces, without), tolerance, diagonal);
