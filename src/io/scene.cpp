@@ -22,6 +22,31 @@ auto in_space(const Surface<P>& s) {
     return Surface<Q>::trusted(s.bases(), Net<2, Q>(s.net().extent(), std::move(c)));
 }
 
+// A triangular patch as a surface of degree n x n with a pole at corner 1: with (u, v) at the barycentric
+// coordinates (1 - u, u (1 - v), u v), row j + k = a of its coefficients is a Bezier curve of degree a in v,
+// raised to degree n. The three sides keep their control points to the bit.
+template <class P>
+Surface<P> as_surface(const Triangle<P>& t) {
+    const int n = t.degree();
+    std::vector<P> net;
+    for (int a = 0; a <= n; ++a) {
+        std::vector<P> row;
+        for (int k = 0; k <= a; ++k) row.push_back(t.coefficient(a - k, k));
+        for (int m = a + 1; m <= n; ++m) {
+            std::vector<P> raised{row.front()};
+            for (int k = 1; k < m; ++k)
+                raised.push_back(a == 0 ? row.front()
+                                        : (double(k) / m) * row[std::size_t(k - 1)] +
+                                              (double(m - k) / m) * row[std::size_t(k)]);
+            raised.push_back(row.back());
+            row = std::move(raised);
+        }
+        net.insert(net.end(), row.begin(), row.end());
+    }
+    const auto basis = *BSplineBasis::bezier(n);
+    return Surface<P>::trusted({basis, basis}, Net<2, P>({n + 1, n + 1}, std::move(net)));
+}
+
 // Appends a model; indices move up by what is there.
 void append(Model& to, Model from) {
     const int vertices = int(to.vertices.size()), edges = int(to.edges.size()), faces = int(to.faces.size()),
@@ -84,6 +109,11 @@ private:
             added = builder_.add(s, name);
         } else if constexpr (std::same_as<S, Surface<Vec<2>>> || std::same_as<S, Surface<Hom<2>>>) {
             added = builder_.add(in_space(s), name);
+        } else if constexpr (std::same_as<S, Triangle<Vec<3>>> || std::same_as<S, Triangle<Hom<3>>>) {
+            if (s.degree() == 0)
+                return refuse(RefusalKind::no_answer, object_label(document_, index),
+                              "a triangle of degree 0 is a point");
+            added = builder_.add(as_surface(s), name);
         } else if constexpr (std::same_as<S, TrimmedSurface>) {
             added = s.loops.empty() ? builder_.add(s.surface, name)
                                     : builder_.add_trimmed(s.surface, s.loops, name);

@@ -99,4 +99,30 @@ TEST(Scene, joins_surfaces_and_names_what_has_no_faces) {
     EXPECT_EQ(scene_of(d, only_line).error().kind, RefusalKind::no_answer);
 }
 
+TEST(Scene, triangular_patches_share_their_sides) {
+    // Flat triangles of degree 2 over the faces of a tetrahedron: closed to the bit, whatever the corner they
+    // begin at.
+    const Vec<3> corner[4] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+    const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {3, 2, 0}, {1, 2, 3}};
+    Document d;
+    for (const auto& f : faces) {
+        std::vector<Vec<3>> c;
+        for (int a = 0; a <= 2; ++a)
+            for (int k = 0; k <= a; ++k) {  // b_ijk = (i c_0 + j c_1 + k c_2) / 2
+                Vec<3> p =
+                    double(2 - a) * corner[f[0]] + double(a - k) * corner[f[1]] + double(k) * corner[f[2]];
+                c.push_back(0.5 * p);
+            }
+        d.objects.push_back({"", *Triangle<Vec<3>>::make(2, c), {}});
+    }
+    const auto model = scene_of(d);
+    ASSERT_TRUE(model);
+    EXPECT_EQ(model->faces.size(), 4u);
+    EXPECT_TRUE(model->bodies[0].solid) << "the sides of the triangles are shared";
+    const auto t = tessellate(*model, {.tolerance = 0.01});
+    ASSERT_TRUE(t);
+    EXPECT_EQ(t->topology.open_edges, 0);
+    EXPECT_NEAR(std::abs(signed_volume(t->mesh)), 1.0 / 6, 1e-12);
+}
+
 }  // namespace
