@@ -277,7 +277,7 @@ def summary(rows):
         f"Totals: {sum(r['triangles'] for r in f)} triangles in {sum(map(median, f)) / 1e3:.2f} s, Open CASCADE "
         f"{sum(r['triangles'] for r in o)} in {sum(map(median, o)) / 1e3:.2f} s, with one thread.",
         f"Wall clock with two threads, as a part of that with one: freiform {two_threads(f):.2f}, Open CASCADE {two_threads(o):.2f} "
-        "(near 1 for both: the machine was busy with other work, and the figure says nothing)."
+        "(near 1 for both: probably no second processor was free, so this says nothing about the programs)."
         if min(two_threads(f), two_threads(o)) > 0.9 else
         f"Wall clock with two threads, as a part of that with one: freiform {two_threads(f):.2f}, Open CASCADE {two_threads(o):.2f}.",
     ]
