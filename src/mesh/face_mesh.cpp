@@ -24,6 +24,7 @@ namespace freiform {
 namespace {
 
 constexpr int kSeparateRounds = 16;
+constexpr std::size_t kPatience = 16;  // times the points that are expected
 constexpr double kNearPoint = 1e-3;    // likewise of a leaf, for other points
 constexpr double kLeastLength = 1e-9;  // of the box of the face: shorter is rounding
 constexpr double kNearBoundary =
@@ -330,10 +331,18 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
     std::map<int, int> first;
     for (std::size_t i = 0; i < place.size(); ++i)
         place[i] = first.try_emplace(boundary.point[std::size_t(polygon->corner[i])], int(i)).first->second;
+    // Leaves and boundary say how many points to expect; many times as many mean that something does not
+    // converge.
+    const std::size_t limit = std::size_t(max_triangles) / 2 + points.size();
+    const std::size_t most = std::min(limit, kPatience * (points.size() + tree->corners().size()) + 10'000);
     for (int round = 0; round < kSeparateRounds; ++round) {
-        if (!filler.refine(std::size_t(max_triangles) / 2 + points.size()))
-            return refuse(RefusalKind::limit, "max_triangles",
-                          text("more than ", max_triangles, " triangles are needed within ", tolerance));
+        if (!filler.refine(most))
+            return most == limit
+                       ? refuse(RefusalKind::limit, "max_triangles",
+                                text("more than ", max_triangles, " triangles are needed within ", tolerance))
+                       : refuse(RefusalKind::not_converged, "mesh",
+                                text("more than ", most, " points do not bring all triangles within ",
+                                     tolerance));
         if (filler.separate(place) == 0) break;
     }
 

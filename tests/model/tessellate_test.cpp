@@ -208,6 +208,28 @@ TEST(Tessellate, refuses_tolerances_that_ask_for_too_much_at_once) {
     EXPECT_EQ(tessellate(model, {.tolerance = NAN}).error().kind, RefusalKind::nonfinite);
 }
 
+TEST(Tessellate, knots_a_rounding_apart_end_in_a_mesh_or_a_refusal) {
+    std::mt19937 rng(13);
+    const double twin = std::nextafter(0.5, 1);
+    const auto basis = *BSplineBasis::make(3, {0, 0, 0, 0, 0.25, 0.5, 0.5, twin, 0.75, 1, 1, 1, 1});
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 9; ++i)
+        for (int j = 0; j < 9; ++j) c.push_back({{i / 8.0, j / 8.0, 0.2 * uniform(rng, -1, 1)}});
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(*Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({9, 9}, c))));
+    const auto model = std::move(builder).finish();
+    const auto start = std::chrono::steady_clock::now();
+    const auto t = tessellate(*model, {.tolerance = 0.002});
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
+    ASSERT_TRUE(t) << t.error().message;
+    if (t->refused.empty()) {
+        EXPECT_LE(t->error_bound, 0.002);
+        EXPECT_LE(sampled_deviation(*model, *t), t->error_bound);
+    } else {
+        EXPECT_FALSE(t->refused[0].reason.message.empty());
+    }
+}
+
 TEST(Tessellate, an_open_loop_is_refused_and_the_other_faces_are_delivered) {
     Model m = frustum(2, 1, 3);
     auto& coedges = m.faces[0].loops[0].coedges;
