@@ -8,6 +8,7 @@
 #include <iterator>
 #include <random>
 #include <support/corpus.hpp>
+#include <support/sanitizer.hpp>
 #include <unistd.h>
 
 namespace {
@@ -245,6 +246,7 @@ TEST_F(Exchange, says_what_to_install_where_the_reader_is_missing) {
 }
 
 TEST_F(Exchange, keeps_the_memory_limit) {
+    if (test::kAddressSanitizer) GTEST_SKIP() << "AddressSanitizer needs more memory than the limits allow";
     FF_CORPUS_OR_SKIP(path, "step/linkrods.step");
     int models = 0;
     for (std::size_t mebibytes : {20, 60, 86, 120, 300}) {
