@@ -276,11 +276,12 @@ TEST_F(Cli, limits_end_it_with_4_and_leave_no_file) {
     expect_error(
         run({"convert", "large.json", "--elevate", "3", "-o", "x.json", "--timeout", "0.05", "--json"}), 4,
         "limit", "--timeout", "0.05");
-    if (!kAddressSanitizer)  // which takes more by itself
+    if (!kAddressSanitizer) {  // which takes more by itself
         expect_error(run({"convert", "large.json", "-o", "x.json", "--max-memory", "40M", "--json"}), 4,
                      "limit", "--max-memory", "41943040");
-    expect_error(run({"info", "large.json", "--max-memory", "1M", "--json"}), 4, "limit", "large.json",
-                 "bytes");
+        expect_error(run({"info", "large.json", "--max-memory", "1M", "--json"}), 4, "limit", "large.json",
+                     "bytes");
+    }
     EXPECT_FALSE(std::filesystem::exists(path("x.json")));
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
         EXPECT_FALSE(entry.path().filename().string().starts_with(".freiform")) << entry.path();
