@@ -27,8 +27,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-// Open CASCADE keeps what it allocated once; looking for leaks would only find those. Called by LeakSanitizer,
-// unused in ordinary builds.
+// Open CASCADE keeps what it allocated once; looking for leaks would only find those. Called by
+// LeakSanitizer, unused in ordinary builds.
 extern "C" int __lsan_is_turned_off();
 extern "C" int __lsan_is_turned_off() { return 1; }
 
