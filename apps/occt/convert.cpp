@@ -335,10 +335,10 @@ Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
                 return refuse(RefusalKind::ill_conditioned, "parameter curve",
                               text("misses its edge by ", worst, "; the face has a size of ", size));
             if (worst > e.tolerance)
-                out_.model.approximations.push_back(
-                    {text("edges[", c.edge, "]"),
-                     text("lies up to ", worst, " beside ", where, "; the file says at most ", e.tolerance),
-                     kMargin * worst});
+                out_.model.approximations.push_back({text("edges[", c.edge, "]"),
+                                                     text("lies up to ", worst, " (sampled) beside ", where,
+                                                          "; the file says at most ", e.tolerance),
+                                                     kMargin * worst});
             e.tolerance = std::max(e.tolerance, kMargin * worst);
         }
     return {};

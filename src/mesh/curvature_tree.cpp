@@ -33,13 +33,6 @@ namespace {
 
 constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
 
-double kink_error(std::span<const Kink> kinks, Interval on) {
-    double sum = 0;
-    for (const Kink& k : kinks)
-        if (on.lo < k.at && k.at < on.hi) sum += k.jump * ((k.at - on.lo) * (on.hi - k.at) / on.length());
-    return sum;
-}
-
 // Half of the squared min-containment radius with the metric diag(A, B).
 double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
     const auto length2 = [&](const Vec<2>& p, const Vec<2>& q) {
@@ -56,8 +49,6 @@ double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b,
     const double acute = s[2] / 6;
     return sixteen_area2 > 0 ? std::min(acute, s[0] * s[1] * s[2] / sixteen_area2 / 2) : acute;
 }
-
-enum class Side { outside, inside, mixed };
 
 // Does the segment meet the box? Conservative: may say yes for near misses.
 bool meets(const Box<2>& box, const Vec<2>& p, const Vec<2>& q) {
@@ -153,7 +144,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                           std::min(item.outer.vv, bounds(0, 2))};
         tree.nodes_[std::size_t(item.node)].curvature = c;
         const double kinks =
-            kink_error(tree.kinks_[0], box.side(0)) + kink_error(tree.kinks_[1], box.side(1));
+            kink_bound_of(tree.kinks_[0], box.side(0)) + kink_bound_of(tree.kinks_[1], box.side(1));
         const double error = c.along(size[0], size[1]) / 8 + kinks;
         if (error <= tolerance || !(size[0] > 0) || !(size[1] > 0)) continue;
         if (item.depth == kMaxDepth) {
@@ -227,7 +218,7 @@ Curvature CurvatureTree::over(const Box<2>& box) const {
 }
 
 double CurvatureTree::kink_bound(const Box<2>& box) const {
-    return kink_error(kinks_[0], box.side(0)) + kink_error(kinks_[1], box.side(1));
+    return kink_bound_of(kinks_[0], box.side(0)) + kink_bound_of(kinks_[1], box.side(1));
 }
 
 std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& box) const {
@@ -235,7 +226,7 @@ std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& bo
     double most = 0;
     for (int d = 0; d < 2; ++d)
         for (const Kink& k : kinks_[std::size_t(d)])
-            if (const double e = kink_error(std::span(&k, 1), box.side(d)); e > most)
+            if (const double e = kink_bound_of(std::span(&k, 1), box.side(d)); e > most)
                 most = e, worst = {d, k.at};
     return worst;
 }

@@ -44,13 +44,6 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
         curve);
 }
 
-double kink_error(std::span<const Kink> kinks, Interval on) {
-    double sum = 0;
-    for (const Kink& k : kinks)
-        if (on.lo < k.at && k.at < on.hi) sum += k.jump * ((k.at - on.lo) * (on.hi - k.at) / on.length());
-    return sum;
-}
-
 }  // namespace
 
 EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
@@ -107,7 +100,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b) const {
             return s(2, 0) * x * x + 2 * s(1, 1) * std::abs(x * y) + s(0, 2) * y * y;
         };
         const double kinks =
-            kink_error(surface.kinks(0), box.side(0)) + kink_error(surface.kinks(1), box.side(1));
+            kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
         out.triangle = std::max(out.triangle, along(chord[0], chord[1]) / 6 + kinks);
         out.sliver = std::max(out.sliver, along(sag[0], sag[1]) / 8 + kinks);
         if (e.degenerate) continue;

@@ -76,7 +76,7 @@ Result<void> check_face(const Model& m, const Face& f, std::string_view where) {
 }
 
 // A box that contains the curve or surface over `on`: in each of several cells it lies within Q / 8 of the
-// linear interpolant of the corners (curvature_tree.cpp), kinks add jump x width / 4.
+// linear interpolant of the corners (curvature_tree.cpp), kinks add their own bound.
 template <std::size_t N, int D>
 Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<Interval, N>& on) {
     constexpr int kCells = N == 1 ? 16 : 8;
@@ -101,9 +101,7 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
             const double du = part[0].length(), dv = part[1].length();
             slack = (bounds(2, 0) * du * du + 2 * bounds(1, 1) * du * dv + bounds(0, 2) * dv * dv) / 8;
         }
-        for (std::size_t d = 0; d < N; ++d)
-            for (const Kink& k : query.kinks(int(d)))
-                if (part[d].lo < k.at && k.at < part[d].hi) slack += k.jump * part[d].length() / 4;
+        for (std::size_t d = 0; d < N; ++d) slack += kink_bound_of(query.kinks(int(d)), part[d]);
         torn = torn || !std::isfinite(slack);
         if (torn) return;
         each_index(corners, [&](const Index<N>& i) {

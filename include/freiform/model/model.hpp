@@ -68,7 +68,8 @@ struct Body {
     std::optional<Colour> colour;
 };
 
-// Something that a reader had to approximate: never silent, always with a bound.
+// Something that a reader had to approximate: never silent, always with a number. Where `what` says "sampled"
+// the number is an estimate (dense samples and a margin), not proven.
 struct Approximation {
     std::string where, what;
     double bound = 0;  // no point moved by more than this

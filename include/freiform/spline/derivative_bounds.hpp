@@ -40,6 +40,15 @@ struct Kink {
         0;  // bound of |f_d(at+) - f_d(at-)| along the whole line; infinite where the value itself jumps
 };
 
+// What kinks inside `on` add to the error of linear interpolation over it (see curvature_tree.cpp): a jump J
+// with a and b of the interval on its sides adds J a b / (a + b).
+inline double kink_bound_of(std::span<const Kink> kinks, Interval on) {
+    double sum = 0;
+    for (const Kink& k : kinks)
+        if (on.lo < k.at && k.at < on.hi) sum += k.jump * ((k.at - on.lo) * (on.hi - k.at) / on.length());
+    return sum;
+}
+
 template <std::size_t N, int D>
 struct GeometryOf;
 template <int D>
