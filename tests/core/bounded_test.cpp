@@ -1,0 +1,63 @@
+#include <freiform/core/bounded.hpp>
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace freiform {
+namespace {
+
+using Wide = boost::multiprecision::number<
+    boost::multiprecision::cpp_bin_float<400, boost::multiprecision::digit_base_2>>;
+
+// A number, what is known of it, and where in its bound it really lies.
+struct Known {
+    Bounded known;
+    Wide exact;
+};
+
+Known random_known(std::mt19937& rng) {
+    const double value = std::ldexp(double(int(rng() % 2001) - 1000) / 7, int(rng() % 40) - 20);
+    const double bound = rng() % 3 == 0 ? 0 : std::abs(value) * std::ldexp(1, -int(rng() % 60));
+    const double at = double(int(rng() % 201) - 100) / 100;
+    return {{value, bound}, Wide(value) + Wide(bound) * Wide(at)};
+}
+
+bool holds(const Bounded& b, const Wide& exact) { return abs(Wide(b.value) - exact) <= Wide(b.bound); }
+
+TEST(Bounded, every_operation_keeps_the_exact_number_inside) {
+    std::mt19937 rng(11);
+    for (int i = 0; i < 20000; ++i) {
+        const Known a = random_known(rng), b = random_known(rng);
+        EXPECT_TRUE(holds(a.known + b.known, a.exact + b.exact));
+        EXPECT_TRUE(holds(a.known - b.known, a.exact - b.exact));
+        EXPECT_TRUE(holds(a.known * b.known, a.exact * b.exact));
+        if (b.known.excludes_zero()) EXPECT_TRUE(holds(a.known / b.known, a.exact / b.exact));
+        if (a.exact >= 0) EXPECT_TRUE(holds(sqrt(a.known), sqrt(a.exact)));
+    }
+}
+
+TEST(Bounded, the_bound_of_exact_arguments_is_about_half_a_unit_in_the_last_place) {
+    const Bounded third = Bounded(1) / Bounded(3);
+    EXPECT_GT(third.bound, 0);
+    EXPECT_LT(third.bound, 0x1.1p-54);
+    EXPECT_LT((Bounded(0.1) * Bounded(0.2)).bound, 0x1.1p-53 * 0.0201);
+    EXPECT_LT(sqrt(Bounded(2)).bound, 0x1.1p-53 * 1.42);
+}
+
+TEST(Bounded, a_divisor_that_may_be_zero_leaves_nothing_known) {
+    EXPECT_EQ((Bounded(1) / Bounded(1e-9, 1e-9)).bound, std::numeric_limits<double>::infinity());
+    EXPECT_FALSE(Bounded(1e-9, 1e-9).excludes_zero());
+    EXPECT_TRUE(Bounded(-1e-9, 0.5e-9).excludes_zero());
+    EXPECT_FALSE(Bounded(1, NAN).excludes_zero());
+}
+
+TEST(Bounded, holds_where_results_underflow) {
+    const Bounded tiny(0x1p-1060), r = tiny * Bounded(0x1.8p-15);
+    EXPECT_TRUE(holds(r, Wide(0x1p-1060) * Wide(0x1.8p-15)));
+    EXPECT_TRUE(holds(tiny * tiny, Wide(0x1p-1060) * Wide(0x1p-1060)));
+    EXPECT_TRUE(holds(tiny / Bounded(3e10), Wide(0x1p-1060) / Wide(3e10)));
+}
+
+}  // namespace
+}  // namespace freiform
