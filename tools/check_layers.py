@@ -11,7 +11,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ORDER = [["core"], ["poly", "kernel"], ["basis"], ["spline"], ["make", "path", "query"],
          ["intersect", "fit", "animate", "colour"], ["trim"], ["mesh"], ["model"], ["shape"], ["io", "gpu"],
-         ["apps", "bindings"]]
+         ["paint"], ["apps", "bindings"]]
 RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
 
 # Other people's headers, and the only folders that may include them.
@@ -21,6 +21,7 @@ THIRD_PARTY = [
     (r"CLI/.*", ["apps/cli"]),
     (r"(oneapi/)?tbb/.*", ["src/core"]),
     (r"(epoxy|EGL|GL)/.*|png\.h", ["src/gpu"]),
+    (r"cairo.*\.h", ["src/paint"]),
     (r"iostream", ["apps", "bench"]),
 ]
 

@@ -7,6 +7,7 @@ build="g++ cmake ninja-build ccache pkg-config"
 library="libtbb-dev nlohmann-json3-dev libcli11-dev"
 occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
+paint="libcairo2-dev fonts-dejavu-core"
 test="libgtest-dev librapidcheck-dev libboost-dev"
 ci="python3 clang-22 libclang-rt-22-dev clang-format"
 bench="python3 gmsh-doc occt-misc"
@@ -14,10 +15,10 @@ wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-2
 
 purpose=${1:-demo}
 case $purpose in
-    demo) packages="$build $library $occt $gl" ;;
-    test) packages="$build $library $occt $gl $test" ;;
-    bench) packages="$build $library $occt $gl $bench" ;;
-    ci) packages="$build $library $occt $gl $test $ci" ;;
+    demo) packages="$build $library $occt $gl $paint" ;;
+    test) packages="$build $library $occt $gl $paint $test" ;;
+    bench) packages="$build $library $occt $gl $paint $bench" ;;
+    ci) packages="$build $library $occt $gl $paint $test $ci" ;;
     wasm) packages="$build $wasm" ;;
     *)
         echo "usage: tools/setup.sh [demo|test|bench|ci|wasm]" >&2
@@ -31,7 +32,7 @@ what_for() {
         cmake) echo "configures the build (3.25 or newer)" ;;
         ninja-build) echo "runs the build" ;;
         ccache) echo "makes the second build quick" ;;
-        pkg-config) echo "finds epoxy and EGL" ;;
+        pkg-config) echo "finds epoxy, EGL and cairo" ;;
         libtbb-dev) echo "threads" ;;
         nlohmann-json3-dev) echo "reads and writes JSON and glTF" ;;
         libcli11-dev) echo "the options of the command line" ;;
@@ -39,6 +40,8 @@ what_for() {
         libegl-dev | libepoxy-dev) echo "OpenGL without a window, for pictures" ;;
         libegl-mesa0 | libgl1-mesa-dri) echo "OpenGL in software, for pictures without a graphics card" ;;
         libpng-dev) echo "writes pictures" ;;
+        libcairo2-dev) echo "drawings as PDF and PNG" ;;
+        fonts-dejavu-core) echo "the letters of drawings" ;;
         libgtest-dev | librapidcheck-dev) echo "the tests" ;;
         libboost-dev) echo "exact arithmetic to test against" ;;
         python3) echo "the checks of the source, the report of the benchmarks" ;;

@@ -5,6 +5,9 @@
 #include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/tessellate.hpp>
+#if FREIFORM_HAS_CAIRO
+#include <freiform/paint/paint.hpp>
+#endif
 #if FREIFORM_HAS_GL
 #include <freiform/gpu/render.hpp>
 #endif
@@ -14,30 +17,42 @@ namespace freiform::cli {
 namespace {
 
 struct Options {
-    std::string file, object, view;
-    std::optional<double> tolerance, construction;
+    std::string file, object, view, title, names;
+    std::optional<double> tolerance, construction, tangent, osculating;
     std::optional<int> width, height;
-    bool control = false, knots = false, comb = false;       // of lines
+    bool control = false, knots = false, comb = false, hull = false, box = false;  // of lines
+    bool hodograph = false, basis = false, axes = false, grid = false, legend = false;
     bool edges = false, zebra = false, perspective = false;  // of shaded pictures
 };
 
 // Of options that belong to the other kind of picture the first one that was given.
 void refuse_other_kind(const Options& o, bool shaded) {
-    const auto given = [&](bool is, std::string_view name) {
-        if (is && shaded)
-            wrong_usage(text(name, " is for drawings: .svg, .pdf, or .png of curves without surfaces"));
-        if (is) wrong_usage(text(name, " is for shaded pictures: .png of surfaces, models and meshes"));
+    struct Given {
+        bool is, of_shaded;
+        std::string_view name;
     };
-    if (shaded) {
-        given(o.control, "--control");
-        given(o.knots, "--knots");
-        given(o.comb, "--comb");
-        given(o.construction.has_value(), "--construction");
-    } else {
-        given(o.edges, "--edges");
-        given(o.zebra, "--zebra");
-        given(o.perspective, "--perspective");
-        given(o.tolerance.has_value(), "--tolerance");
+    for (const Given& g : {Given{o.control, false, "--control"},
+                           {!o.names.empty(), false, "--names"},
+                           {o.knots, false, "--knots"},
+                           {o.comb, false, "--comb"},
+                           {o.hull, false, "--hull"},
+                           {o.box, false, "--box"},
+                           {o.hodograph, false, "--hodograph"},
+                           {o.basis, false, "--basis"},
+                           {o.construction.has_value(), false, "--construction"},
+                           {o.tangent.has_value(), false, "--tangent"},
+                           {o.osculating.has_value(), false, "--osculating"},
+                           {o.axes, false, "--axes"},
+                           {o.grid, false, "--grid"},
+                           {o.legend, false, "--legend"},
+                           {!o.title.empty(), false, "--title"},
+                           {o.edges, true, "--edges"},
+                           {o.zebra, true, "--zebra"},
+                           {o.perspective, true, "--perspective"},
+                           {o.tolerance.has_value(), true, "--tolerance"}}) {
+        if (!g.is || g.of_shaded == shaded) continue;
+        wrong_usage(text(g.name, shaded ? " is for drawings: .svg, .pdf, or .png of curves without surfaces"
+                                        : " is for shaded pictures: .png of surfaces, models and meshes"));
     }
 }
 
@@ -47,34 +62,45 @@ bool has_faces(const Shape& shape) {
            std::holds_alternative<Surface<Vec<3>>>(shape) || std::holds_alternative<Surface<Hom<3>>>(shape);
 }
 
-Result<std::string> png_of(int width, int height, std::vector<unsigned char> rgb) {
-#if FREIFORM_HAS_GL
-    return to_png({width, height, std::move(rgb)});
+[[maybe_unused]] std::unexpected<Refusal> not_built(std::string_view what, std::string_view packages,
+                                                    std::string_view instead) {
+    return refuse(
+        RefusalKind::unavailable, "draw",
+        text("this program was built without ", what, ": install ", packages, " and build again", instead));
+}
+
+// Of a drawing, in the format that is asked for.
+Result<std::string> encoded(const Drawing& drawing, const std::string& format) {
+    if (format == "svg") return to_svg(drawing);
+#if FREIFORM_HAS_CAIRO
+    return format == "pdf" ? to_pdf(drawing) : to_png(drawing);
 #else
-    (void)width, (void)height, (void)rgb;
-    return refuse(RefusalKind::unavailable, "draw",
-                  "this program was built without .png: install libegl-dev libepoxy-dev libpng-dev and build "
-                  "again, or write .svg or .pdf");
+    return not_built(text(".", format, " of drawings"), "libcairo2-dev", ", or write .svg");
 #endif
+}
+
+DrawingOptions drawing_options(const Options& o, const std::optional<View>& view) {
+    DrawingOptions how;
+    how.width = o.width.value_or(how.width);
+    how.height = o.height.value_or(how.height);
+    how.view = view;
+    how.title = o.title, how.legend = o.legend;
+    how.axes = o.grid ? Axes::grid : o.axes ? Axes::ticks : Axes::none;
+    how.control = o.control, how.knots = o.knots, how.comb = o.comb;
+    if (o.names == "b0") how.names = PointNames::from_zero;
+    if (o.names == "P1") how.names = PointNames::from_one;
+    how.hull = o.hull, how.box = o.box, how.hodograph = o.hodograph, how.basis = o.basis;
+    how.construction = o.construction, how.tangent = o.tangent, how.osculating = o.osculating;
+    return how;
 }
 
 Result<std::string> drawn(const Document& document, std::span<const std::size_t> objects,
                           const Options& options, const std::optional<View>& view,
                           const std::string& format) {
-    DrawingOptions how;
-    how.width = options.width.value_or(how.width);
-    how.height = options.height.value_or(how.height);
-    how.view = view;
-    how.control = options.control, how.knots = options.knots, how.comb = options.comb;
-    how.construction = options.construction;
-    const auto drawing = draw(document, objects, how);
+    const auto drawing = draw(document, objects, drawing_options(options, view));
     if (!drawing) return std::unexpected(drawing.error());
     for (const Refusal& r : drawing->left_out) remark(text(r.where, " is missing: ", r.message));
-    if (format == "svg") return to_svg(*drawing);
-    if (format == "pdf") return to_pdf(*drawing);
-    auto rgb = to_pixels(*drawing);
-    if (!rgb) return std::unexpected(rgb.error());
-    return png_of(drawing->width, drawing->height, std::move(*rgb));
+    return encoded(*drawing, format);
 }
 
 #if FREIFORM_HAS_GL
@@ -127,7 +153,7 @@ Result<std::string> picture(const Context& context, const Options& options, cons
         if (!mesh) return std::unexpected(mesh.error());
         return shaded(*mesh, options, view);
 #else
-        return png_of(0, 0, {});
+        return not_built(".png of surfaces", "libegl-dev libepoxy-dev libpng-dev", ", or write .svg");
 #endif
     }
     const auto document = read_any(options.file, context.read_options());
@@ -144,7 +170,7 @@ Result<std::string> picture(const Context& context, const Options& options, cons
     if (!mesh) return std::unexpected(mesh.error());
     return shaded(*mesh, options, view);
 #else
-    return png_of(0, 0, {});
+    return not_built(".png of surfaces", "libegl-dev libepoxy-dev libpng-dev", ", or write .svg");
 #endif
 }
 
@@ -160,15 +186,42 @@ Result<void> run(const Context& context, const Options& options) {
     return emit(context, *bytes);
 }
 
+void add_line_options(CLI::App& command, Options& o) {
+    command.add_flag("--control", o.control,
+                     "Also control polygons and nets; the area of a point is as its weight");
+    command.add_option("--names", o.names, "Name the control points of curves: b0, b1, .. or P1, P2, ..")
+        ->type_name("b0|P1")
+        ->check(CLI::IsMember({"b0", "P1"}));
+    command.add_flag("--knots", o.knots, "Also the places of the knots on curves, multiple ones larger");
+    command.add_flag("--comb", o.comb, "Also the curvature of curves, as needles away from its centre");
+    add_number(command, "--construction", o.construction,
+               "Also the points of the de Casteljau or de Boor scheme at this parameter");
+    add_number(command, "--tangent", o.tangent, "Also tangent and normal of curves at this parameter");
+    add_number(command, "--osculating", o.osculating,
+               "Also the circle of curvature of curves at this parameter");
+    command.add_flag("--hull", o.hull, "Also the convex hull of the control points of curves");
+    command.add_flag("--box", o.box, "Also the boxes of curves");
+    command.add_flag("--hodograph", o.hodograph, "A panel with the curve of the derivatives");
+    command.add_flag("--basis", o.basis, "A panel with the basis functions and the knots of curves");
+    command.add_flag("--axes", o.axes, "Axes with ticks");
+    command.add_flag("--grid", o.grid, "Axes with ticks, and a grid");
+    command.add_flag("--legend", o.legend, "What is what");
+    command.add_option("--title", o.title, "Above the drawing")->type_name("TEXT");
+}
+
 }  // namespace
 
 void add_draw(CLI::App& app, Context& context) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(app, context, "draw", "A picture of curves, surfaces, a model or a mesh",
-                                    "  freiform draw curves.json -o curves.svg --control --knots\n"
-                                    "  freiform draw teapot.bpt -o teapot.png\n"
-                                    "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
-                                    "  freiform draw part.glb -o part.png --edges");
+    CLI::App* command =
+        add_command(app, context, "draw", "A picture of curves, surfaces, a model or a mesh",
+                    "  freiform draw curves.json -o curves.svg --control --knots\n"
+                    "  freiform draw curves.json -o curve.pdf --object cubic --names b0 "
+                    "--construction 0.4 --hull\n"
+                    "  freiform draw curves.json -o curve.svg --object closed --comb --basis\n"
+                    "  freiform draw teapot.bpt -o teapot.png\n"
+                    "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
+                    "  freiform draw part.glb -o part.png --edges");
     command->add_option("FILE", options->file, "The file; - is standard input")->required();
     add_output(*command, context,
                "The picture: .svg and .pdf of lines; .png shaded, or lines where there are only curves");
@@ -177,14 +230,7 @@ void add_draw(CLI::App& app, Context& context) {
                      "iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees "
                      "(default: plane curves as they are, others from iso)")
         ->type_name("VIEW");
-    command->add_flag("--control", options->control,
-                      "Also control polygons and nets; the area of a point is as its weight");
-    command->add_flag("--knots", options->knots,
-                      "Also the places of the knots on curves, multiple ones larger");
-    command->add_flag("--comb", options->comb,
-                      "Also the curvature of curves, as needles away from its centre");
-    add_number(*command, "--construction", options->construction,
-               "Also the points of the de Casteljau or de Boor scheme at this parameter");
+    add_line_options(*command, *options);
     add_number(*command, "--tolerance", options->tolerance,
                "Of the mesh that is drawn (default: below a pixel)");
     add_count(*command, "--width", options->width, 1, 16384, "Pixels");

@@ -39,6 +39,9 @@ std::string version(bool verbose) {
 #if defined(FREIFORM_HAS_GL)
     s += " gl";
 #endif
+#if defined(FREIFORM_HAS_CAIRO)
+    s += " cairo";
+#endif
     return s + "\n";
 }
 

@@ -1,4 +1,5 @@
-// What the parts of the drawing share: the projection to the plane, and flattening.
+// What the parts of the drawing share: the projection to the plane, flattening, and the sketch that all draw
+// on.
 #pragma once
 #include <freiform/io/drawing.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
@@ -53,12 +54,6 @@ bool flatten(const Interval& on, double tolerance, std::size_t most, const Value
     return true;
 }
 
-// The end of what is there of a path.
-inline const Vec<2>& end_of(const DrawnPath& path) {
-    return path.segments.empty() ? path.start
-                                 : path.segments.back().points[std::size_t(path.segments.back().degree - 1)];
-}
-
 // Appends a Bezier piece with these plane coefficients, exactly or flattened.
 bool add_piece(DrawnPath& path, std::span<const Vec<2>> b, double tolerance, std::size_t most);
 bool add_piece(DrawnPath& path, std::span<const Hom<2>> b, double tolerance, std::size_t most);
@@ -90,5 +85,58 @@ std::optional<std::vector<DrawnPath>> paths_of(const Curve<P>& curve, const Plan
         paths[0].closed = true;
     return paths;
 }
+
+// What is drawn so far, and of which object.
+class Sketch {
+public:
+    Sketch(const Plane& plane_in, double tolerance_in, double size_in, const DrawingOptions& options_in)
+        : plane(plane_in), tolerance(tolerance_in), size(size_in), options(options_in) {}
+
+    DrawnGroup& group(std::string role, const Colour& c, double width) {
+        groups.push_back({name, std::move(role), c, width, {}, {}, {}});
+        return groups.back();
+    }
+    void take(DrawnGroup& to, DrawnPath path) {
+        used += path.segments.size();
+        to.paths.push_back(std::move(path));
+    }
+    void leave_out(std::string why) { left_out.push_back({RefusalKind::unsupported, label, std::move(why)}); }
+    void keep(DrawnGroup& to, std::optional<DrawnPath> path, std::string_view what) {
+        if (!path) return leave_out(text(what, " cannot be followed in double precision"));
+        take(to, std::move(*path));
+    }
+    std::size_t rest() const { return kMostSegments - std::min(used, kMostSegments); }
+    template <class P>
+    void add_paths(DrawnGroup& to, const Curve<P>& curve) {
+        auto paths = paths_of(curve, plane, tolerance, rest());
+        if (!paths) return leave_out("a curve of it cannot be followed in double precision");
+        for (DrawnPath& path : *paths) take(to, std::move(path));
+    }
+
+    const Plane plane;
+    const double tolerance, size;  // of curves in the plane; of all that is drawn (0: not yet known)
+    const DrawingOptions& options;
+    std::string label, name;  // of the object: for messages, for groups
+    Colour colour;
+    std::size_t curves = 0;  // met so far
+    std::vector<DrawnGroup> groups;
+    std::vector<Note> notes;
+    std::vector<Panel> more;  // further panels
+    std::vector<Refusal> left_out;
+    std::optional<Refusal> failure;
+    std::size_t used = 0;   // segments
+    bool answered = false;  // a curve was there for what is asked at a parameter
+};
+
+// Everything that the options ask for of a curve in space. `basis`: of the curve as it was given, which
+// differs from that of its graph. P is Vec<3> or Hom<3>.
+template <class P>
+void add_curve(Sketch& sketch, const Curve<P>& curve, const BSplineBasis& basis);
+// Control points and the lines between them along each axis.
+template <class P>
+void add_points(Sketch& sketch, DrawnGroup& group, std::span<const P> coefficients);
+
+// Adds an object; what of it cannot be drawn goes to left_out.
+void add_object(Sketch& sketch, const Document& document, std::size_t index);
 
 }  // namespace freiform::drawing

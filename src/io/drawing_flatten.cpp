@@ -10,7 +10,9 @@ namespace freiform::drawing {
 
 Plane plane_of(const std::optional<View>& view, bool all_plane, double size) {
     Plane plane;
-    plane.exponent = size > 0 && std::isfinite(size) ? std::ilogb(size) : 0;
+    // Squares and cubes of coordinates stay far from the ends of the doubles.
+    if (size > 0 && std::isfinite(size) && std::abs(std::ilogb(size)) > 200)
+        plane.exponent = std::ilogb(size);
     if (all_plane && !view) return plane;
     const View from = view.value_or(View{});
     const double ca = std::cos(from.azimuth), sa = std::sin(from.azimuth);

@@ -198,7 +198,7 @@ TEST(Drawing, everything_is_inside_the_picture_and_aspect_is_kept) {
         const auto d = draw(with(c), {}, all);
         ASSERT_TRUE(d) << d.error().message;
         expect_inside(*d);
-        const std::string files = to_svg(*d) + to_pdf(*d);
+        const std::string files = to_svg(*d);
         EXPECT_EQ(files.find("nan"), std::string::npos);
         EXPECT_EQ(files.find("inf"), std::string::npos);
     }
@@ -422,45 +422,6 @@ TEST(Drawing, names_are_escaped_in_svg) {
     const auto d = draw(with(bezier<Vec<2>>({{{0, 0}}, {{1, 2}}}), "a<b>&\"c\""));
     ASSERT_TRUE(d);
     EXPECT_NE(to_svg(*d).find("<title>a&lt;b&gt;&amp;&quot;c&quot;</title>"), std::string::npos);
-}
-
-TEST(Drawing, the_table_of_a_pdf_points_at_its_objects) {
-    const auto d = draw(with(circle(1, {})));
-    ASSERT_TRUE(d);
-    const std::string pdf = to_pdf(*d);
-    const std::size_t start = pdf.rfind("startxref\n") + 10;
-    const auto table = scan_number<std::size_t>(pdf.substr(start, pdf.find('\n', start) - start));
-    ASSERT_TRUE(table);
-    ASSERT_EQ(pdf.substr(*table, 9), "xref\n0 5\n");
-    for (std::size_t i = 1; i <= 4; ++i) {
-        const auto at = scan_number<std::size_t>(pdf.substr(*table + 9 + 20 * i, 10));
-        ASSERT_TRUE(at);
-        EXPECT_EQ(pdf.substr(*at, 7), std::to_string(i) + " 0 obj");
-    }
-    const std::size_t stream = pdf.find("stream\n") + 7;
-    EXPECT_NE(pdf.find(text("/Length ", pdf.find("endstream") - stream, " ")), std::string::npos);
-}
-
-TEST(Drawing, pixels_are_dark_on_the_curve_and_white_elsewhere) {
-    DrawingOptions how;
-    how.width = 200, how.height = 100;
-    const auto d = draw(with(circle(1, {})), {}, how);
-    ASSERT_TRUE(d);
-    const auto rgb = to_pixels(*d);
-    ASSERT_TRUE(rgb);
-    ASSERT_EQ(rgb->size(), 3u * 200 * 100);
-    const auto red = [&](const Vec<2>& p) {
-        return int((*rgb)[3 * (std::size_t(p[1]) * 200 + std::size_t(p[0]))]);
-    };
-    EXPECT_EQ(red({{100, 50}}), 255);
-    EXPECT_EQ(red({{5, 5}}), 255);
-    for (int i = 0; i < 60; ++i) {
-        const double a = 2 * std::numbers::pi * i / 60;
-        EXPECT_LT(red(pixel(*d, {{std::cos(a), std::sin(a)}})), 100);
-    }
-    Drawing huge;
-    huge.width = huge.height = 16384;
-    EXPECT_EQ(to_pixels(huge).error().kind, RefusalKind::limit);
 }
 
 TEST(Drawing, scaling_by_a_power_of_two_changes_no_byte) {
