@@ -1,0 +1,50 @@
+// The stages of the root finder, each on its own.
+#pragma once
+#include "poly/integer_detail.hpp"
+
+#include <freiform/poly/roots.hpp>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace freiform::detail {
+
+// The sign of a polynomial at a double of [0, 1], with all the work that it takes.
+class ExactSign {
+public:
+    explicit ExactSign(std::vector<Integer> bernstein) : c_(std::move(bernstein)) {}
+    int operator()(double t) const;
+    const std::vector<Integer>& coefficients() const { return c_; }
+
+private:
+    std::vector<Integer> c_;
+};
+
+// The coefficients sum of parts, all multiplied by one power of two that makes them integers.
+std::vector<Integer> integer_coefficients(std::span<const double> parts, int terms);
+
+// A polynomial as the refinement of a bracket sees it: coefficients in [-1, 1], off by at most `error`.
+struct Approximate {
+    std::span<const double> c;
+    double error = 0;
+};
+
+// A bracket of a simple root, narrowed to `width`. The polynomial has the sign `before` at at.lo and the
+// other at at.hi. `exact` may be null: then the result may be wider.
+Interval refined(const Approximate& p, const ExactSign* exact, Interval at, int before, double width);
+
+// Part [cell / 2^depth, (cell + 1) / 2^depth] of [0, 1]; its left end does not belong to it.
+struct Cell {
+    long long cell = 0;
+    int depth = 0;
+};
+// The roots in the cells (in order, without overlap), but not those at 0 and 1. Signs are left open.
+std::vector<Root> exact_roots(const std::vector<Integer>& bernstein, std::span<const Cell> cells,
+                              double width);
+
+// The polynomials S_1, S_2, ..: S_k has the roots of p in (0, 1) whose multiplicity is k or more, each once.
+// Bernstein coefficients, up to a factor. p has no root at 0 and none at 1.
+std::vector<std::vector<Integer>> multiplicity_chain(const std::vector<Integer>& bernstein);
+
+}  // namespace freiform::detail
