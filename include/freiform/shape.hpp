@@ -64,7 +64,11 @@ struct Object {
     // Of a rational patch or triangle, optional: its points as they were given, one after the other. The
     // patch holds w x, from which x comes back only up to rounding. Whoever changes the shape leaves this
     // empty; the writer uses only numbers that fit the shape.
-    std::vector<double> given_points;
+    std::vector<double> given_points = {};
+    // Of a patch or triangle, optional: the name of its texture or material, and a colour for every control
+    // point, in the order of the points.
+    std::string material = {};
+    std::vector<Colour> colours = {};
 };
 
 struct Document {

@@ -94,6 +94,41 @@ Result<Object> object_of(Result<Shape> shape) {
     return Object{"", std::move(*shape), {}};
 }
 
+// How many colours a shape has room for: one per control point.
+std::size_t room_for_colours(const Shape& shape) {
+    return std::visit(
+        [](const auto& s) -> std::size_t {
+            using S = std::remove_cvref_t<decltype(s)>;
+            if constexpr (TensorPatch<S>)
+                return s.net().flat().size();
+            else if constexpr (TriangularPatch<S>)
+                return s.coefficients().size();
+            else
+                return 0;
+        },
+        shape);
+}
+
+Result<void> read_attribute(const json::Member& m, Object& object) {
+    if (m.key == "name" || m.key == "material") {
+        auto word = read_string(m.value);
+        if (!word) return refuse_within(m.key, word.error());
+        (m.key == "name" ? object.name : object.material) = std::move(*word);
+    } else if (m.key == "colours") {
+        auto colours = read_list(m.value, [](json::Value c) -> Result<Colour> {
+            const auto colour = read_colour(c);
+            if (!colour) return std::unexpected(colour.error());
+            return **colour;
+        });
+        if (!colours) return refuse_within("colours", colours.error());
+        if (const auto room = room_for_colours(object.shape); colours->size() != room)
+            return refuse(RefusalKind::invalid, "colours",
+                          text(colours->size(), " colours for ", room, " points"));
+        object.colours = std::move(*colours);
+    }
+    return {};
+}
+
 Result<Object> read_object(json::Value v) {
     const auto type = read_type(v, "", kTypes);
     if (!type) return std::unexpected(type.error());
@@ -106,11 +141,7 @@ Result<Object> read_object(json::Value v) {
                                         : object_of(read_model(v));
     if (!object) return object;
     for (const json::Member& m : v.members())
-        if (m.key == "name") {
-            auto name = read_string(m.value);
-            if (!name) return refuse_within("name", name.error());
-            object->name = std::move(*name);
-        }
+        if (auto ok = read_attribute(m, *object); !ok) return std::unexpected(ok.error());
     return object;
 }
 
@@ -184,6 +215,12 @@ std::string write_document(const Document& document) {
                 }
             },
             o.shape);
+        if (!o.material.empty()) w.field("material", o.material);
+        if (!o.colours.empty() && o.colours.size() == room_for_colours(o.shape)) {
+            w.key("colours").begin_array();
+            for (const Colour& c : o.colours) w.array(std::array{c.r, c.g, c.b, c.a});
+            w.end_array();
+        }
         w.end_object();
     }
     w.end_array().end_object();

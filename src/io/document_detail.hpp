@@ -19,6 +19,7 @@ Result<int> read_int(json::Value v);
 Result<bool> read_bool(json::Value v);
 Result<std::string> read_string(json::Value v);
 Result<std::vector<double>> read_numbers(json::Value v);
+Result<std::optional<Colour>> read_colour(json::Value v);  // [r, g, b] or [r, g, b, a]
 
 // The members of one object, of which `allowed` may occur.
 class Fields {

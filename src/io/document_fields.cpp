@@ -40,6 +40,16 @@ Result<std::string> read_string(json::Value v) {
 
 Result<std::vector<double>> read_numbers(json::Value v) { return read_list(v, read_number); }
 
+Result<std::optional<Colour>> read_colour(json::Value v) {
+    const auto c = read_numbers(v);
+    if (!c) return std::unexpected(c.error());
+    if (c->size() != 3 && c->size() != 4) return expected("3 or 4 numbers between 0 and 1", v);
+    for (std::size_t i = 0; i < c->size(); ++i)
+        if (!((*c)[i] >= 0 && (*c)[i] <= 1))
+            return refuse(RefusalKind::invalid, text("[", i, "]"), text("expected 0 to 1, found ", (*c)[i]));
+    return Colour{(*c)[0], (*c)[1], (*c)[2], c->size() == 4 ? (*c)[3] : 1};
+}
+
 Result<Fields> Fields::read(json::Value v, std::string_view what, std::span<const std::string_view> allowed) {
     if (!v.is(json::Kind::object)) return expected(text(what, " (an object)"), v);
     Fields f(v);

@@ -130,16 +130,6 @@ Result<SurfaceGeometry> read_offset(json::Value v) {
     return OffsetSurface{std::make_shared<const SurfaceGeometry>(std::move(*base)), *distance};
 }
 
-Result<std::optional<Colour>> read_colour(json::Value v) {
-    const auto c = read_numbers(v);
-    if (!c) return std::unexpected(c.error());
-    if (c->size() != 3 && c->size() != 4) return expected("3 or 4 numbers between 0 and 1", v);
-    for (std::size_t i = 0; i < c->size(); ++i)
-        if (!((*c)[i] >= 0 && (*c)[i] <= 1))
-            return refuse(RefusalKind::invalid, text("[", i, "]"), text("expected 0 to 1, found ", (*c)[i]));
-    return Colour{(*c)[0], (*c)[1], (*c)[2], c->size() == 4 ? (*c)[3] : 1};
-}
-
 // Puts what was read into its place; false, with the refusal, if there is none. For the many fields of a
 // model.
 class Into {

@@ -273,8 +273,16 @@ Result<ReadNet<N>> read_net(const Fields& fields) {
 }
 
 template <std::size_t N>
-inline constexpr std::array<std::string_view, 8> kPatchFields = {
-    "type", "name", N == 1 ? "degree" : "degrees", "knots", "closed", "points", "weights", "weighted_points"};
+inline constexpr std::array<std::string_view, 10> kPatchFields = {"type",
+                                                                  "name",
+                                                                  N == 1 ? "degree" : "degrees",
+                                                                  "knots",
+                                                                  "closed",
+                                                                  "points",
+                                                                  "weights",
+                                                                  "weighted_points",
+                                                                  "material",
+                                                                  "colours"};
 constexpr std::string_view kPatchNames[] = {"", "a curve", "a surface", "a volume"};
 
 template <std::size_t N>
@@ -337,8 +345,8 @@ template Result<ReadShape> read_patch<2>(json::Value);
 template Result<ReadShape> read_patch<3>(json::Value);
 
 Result<ReadShape> read_triangle(json::Value v) {
-    static constexpr std::string_view kFields[] = {"type",   "name",    "degree",
-                                                   "points", "weights", "weighted_points"};
+    static constexpr std::string_view kFields[] = {
+        "type", "name", "degree", "points", "weights", "weighted_points", "material", "colours"};
     const auto fields = Fields::read(v, "a triangle", kFields);
     if (!fields) return std::unexpected(fields.error());
     const auto net = read_net<1>(*fields);

@@ -2,6 +2,7 @@
 #include <freiform/io/document.hpp>
 #include <freiform/io/exchange.hpp>
 #include <freiform/io/file.hpp>
+#include <freiform/io/quake3.hpp>
 #include <freiform/io/read.hpp>
 
 #include <algorithm>
@@ -13,12 +14,12 @@ namespace freiform {
 
 namespace {
 
-constexpr std::string_view kKnown = ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp)";
+constexpr std::string_view kKnown = ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .bsp, .map";
 
 }  // namespace
 
 std::string_view name_of(FileFormat format) {
-    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep"};
+    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep", "bsp", "map"};
     return kNames[int(format)];
 }
 
@@ -33,6 +34,8 @@ std::optional<FileFormat> format_of_name(std::string_view name) {
     if (ending == "step" || ending == "stp" || ending == "p21") return FileFormat::step;
     if (ending == "iges" || ending == "igs") return FileFormat::iges;
     if (ending == "brep" || ending == "brp") return FileFormat::brep;
+    if (ending == "bsp") return FileFormat::quake3_bsp;
+    if (ending == "map") return FileFormat::quake3_map;
     return std::nullopt;
 }
 
@@ -41,6 +44,7 @@ std::optional<FileFormat> format_of_content(std::string_view bytes) {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos) return std::nullopt;
     const std::string_view s = bytes.substr(first);
+    if (s.starts_with("IBSP")) return FileFormat::quake3_bsp;
     if (s[0] == '{' || s[0] == '[') return FileFormat::json;
     if (s.starts_with("ISO-10303-21")) return FileFormat::step;
     if (s.starts_with("DBRep_DrawableShape") || s.starts_with("CASCADE Topology")) return FileFormat::brep;
@@ -114,7 +118,10 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                           : text("neither its name nor its content says a format that is known: ", kKnown));
     if (is_exchange(*format))
         return within(label, path == "-" ? import_bytes(*bytes, options) : import(path, options));
-    return within(label, *format == FileFormat::json ? read_document(*bytes) : read_bpt(*bytes));
+    return within(label, *format == FileFormat::json         ? read_document(*bytes)
+                         : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
+                         : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
+                                                             : read_bpt(*bytes));
 }
 
 }  // namespace freiform

@@ -113,7 +113,14 @@ private:
             if (s.degree() == 0)
                 return refuse(RefusalKind::no_answer, object_label(document_, index),
                               "a triangle of degree 0 is a point");
-            added = builder_.add(as_surface(s), name);
+            bool flat = false;
+            if constexpr (std::same_as<S, Triangle<Vec<3>>>) flat = s.degree() == 1;
+            if (flat)
+                added = builder_.add({project(s.coefficient(0, 0)), project(s.coefficient(1, 0)),
+                                      project(s.coefficient(0, 1))},
+                                     name);
+            else
+                added = builder_.add(as_surface(s), name);
         } else if constexpr (std::same_as<S, TrimmedSurface>) {
             added = s.loops.empty() ? builder_.add(s.surface, name)
                                     : builder_.add_trimmed(s.surface, s.loops, name);

@@ -29,6 +29,32 @@ Surface<P> opened(Surface<P> s) {
     return s;
 }
 
+// The parts of a curve between its corners, the inner knots of multiplicity p and more: neighbours that are
+// cut elsewhere still share what they have in common. Control points stay what they are to the bit.
+template <class P>
+std::vector<Curve<P>> between_corners(const Curve<P>& c) {
+    const int p = c.basis().degree(), n = c.basis().size();
+    const auto knots = c.basis().knots();
+    const auto net = c.net().flat();
+    std::vector<Curve<P>> parts;
+    for (int first = 0; first < n - 1;) {
+        // The next coefficient that the curve passes through: t_{i+1} = .. = t_{i+p} above it.
+        int last = first + p;
+        while (last < n - 1 && knots[std::size_t(last + 1)] != knots[std::size_t(last + p)]) ++last;
+        last = std::min(last, n - 1);
+        if (last == n - 1 && first == 0) return {c};
+        std::vector<double> t(knots.begin() + first, knots.begin() + last + p + 2);
+        t.front() = t[1], t.back() = t[t.size() - 2];
+        auto basis = BSplineBasis::make(p, std::move(t));
+        if (!basis) return {c};
+        const int size = last - first + 1;
+        parts.push_back(Curve<P>::trusted({std::move(*basis)},
+                                          Net<1, P>({size}, {net.begin() + first, net.begin() + last + 1})));
+        first = last;
+    }
+    return parts;
+}
+
 Line<2> straight(Interval on, const Vec<2>& from, const Vec<2>& to) {
     const Vec<2> direction = (1 / on.length()) * (to - from);
     return {from - on.lo * direction, direction};
@@ -86,9 +112,17 @@ Result<int> ModelBuilder::add(SplineSurface surface, std::string name, std::opti
             };
             Loop loop;
             const auto add_side = [&](int axis, int which, Vec<2> from, Vec<2> to, bool backwards) {
-                Coedge c = coedge_for(side(axis, which), from, to);
-                if (backwards) c.reversed = !c.reversed;
-                loop.coedges.push_back(std::move(c));
+                auto parts = between_corners(side(axis, which));
+                const int along = 1 - axis;
+                if (backwards) std::reverse(parts.begin(), parts.end());
+                for (const auto& part : parts) {
+                    Vec<2> a = from, b = to;
+                    if (parts.size() > 1)
+                        a[along] = part.basis().domain().lo, b[along] = part.basis().domain().hi;
+                    Coedge c = coedge_for(part, a, b);
+                    if (backwards) c.reversed = !c.reversed;
+                    loop.coedges.push_back(std::move(c));
+                }
             };
             add_side(1, 0, {{u.lo, v.lo}}, {{u.hi, v.lo}}, false);
             add_side(0, 1, {{u.hi, v.lo}}, {{u.hi, v.hi}}, false);
@@ -98,6 +132,28 @@ Result<int> ModelBuilder::add(SplineSurface surface, std::string name, std::opti
             face.surface = s;
         },
         surface);
+    model_.faces.push_back(std::move(face));
+    return int(model_.faces.size()) - 1;
+}
+
+// Half of a parallelogram, which unlike a patch with a side of length zero is an affine map: nothing about it
+// needs refinement.
+Result<int> ModelBuilder::add(const std::array<Vec<3>, 3>& corners, std::string name,
+                              std::optional<Colour> colour) {
+    const auto& [a, b, c] = corners;
+    const auto linear = *BSplineBasis::bezier(1);
+    auto surface = Surface<Vec<3>>::make({linear, linear}, Net<2, Vec<3>>({2, 2}, {a, c, b, b + (c - a)}));
+    if (!surface) return std::unexpected(surface.error());
+    Face face;
+    face.name = std::move(name), face.colour = colour, face.surface = std::move(*surface);
+    const Vec<2> at[3] = {{{0, 0}}, {{1, 0}}, {{0, 1}}};
+    Loop loop;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        loop.coedges.push_back(coedge_for(
+            Curve<Vec<3>>::trusted({linear}, Net<1, Vec<3>>({2}, {corners[i], corners[j]})), at[i], at[j]));
+    }
+    face.loops.push_back(std::move(loop));
     model_.faces.push_back(std::move(face));
     return int(model_.faces.size()) - 1;
 }

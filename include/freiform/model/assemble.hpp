@@ -20,6 +20,10 @@ public:
     // face.
     Result<int> add(SplineSurface surface, std::string name = {}, std::optional<Colour> colour = {});
 
+    // A flat triangle.
+    Result<int> add(const std::array<Vec<3>, 3>& corners, std::string name = {},
+                    std::optional<Colour> colour = {});
+
     // The part of the surface inside `loops` (odd-even rule): closed chains of curves in its parameter plane,
     // each over its whole domain. Their edges belong to this face alone.
     Result<int> add_trimmed(SplineSurface surface, std::span<const std::vector<CurveGeometry<2>>> loops,
