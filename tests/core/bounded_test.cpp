@@ -1,11 +1,17 @@
+#include "support/random.hpp"
+
 #include <freiform/core/bounded.hpp>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 #include <random>
 
 namespace freiform {
 namespace {
+
+using boost::multiprecision::cpp_rational;
+using test::Random;
 
 using Wide = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<400, boost::multiprecision::digit_base_2>>;
@@ -57,6 +63,55 @@ TEST(Bounded, holds_where_results_underflow) {
     EXPECT_TRUE(holds(r, Wide(0x1p-1060) * Wide(0x1.8p-15)));
     EXPECT_TRUE(holds(tiny * tiny, Wide(0x1p-1060) * Wide(0x1p-1060)));
     EXPECT_TRUE(holds(tiny / Bounded(3e10), Wide(0x1p-1060) / Wide(3e10)));
+}
+
+// Numbers of all sizes; some with few bits, so that operations are exact now and then.
+double number(Random& random, int range) {
+    const double m = random.chance(0.3) ? random.integer(-8, 8) : random.real(-2, 2);
+    return std::scalbn(m, random.integer(-range, range));
+}
+
+TEST(Bounded, holds_over_the_whole_range_of_double) {
+    Random random(1);
+    for (int round = 0; round < 3000; ++round) {
+        const int range = round % 3 == 0 ? 530 : 4;
+        const Bounded a(number(random, range), random.chance(0.5) ? 0 : std::abs(number(random, range)));
+        const Bounded b(number(random, range), random.chance(0.5) ? 0 : std::abs(number(random, range)));
+        // Any numbers inside the operands' bounds.
+        const cpp_rational x = cpp_rational(a.value) +
+                               cpp_rational(random.real(-1, 1)) * cpp_rational(a.bound),
+                           y = cpp_rational(b.value) +
+                               cpp_rational(random.real(-1, 1)) * cpp_rational(b.bound);
+        const auto expect = [&](const Bounded& got, const cpp_rational& exact, const char* what) {
+            if (!got.is_finite()) return;
+            EXPECT_LE(abs(cpp_rational(got.value) - exact), cpp_rational(got.bound))
+                << what << " " << a.value << " " << b.value;
+        };
+        expect(a + b, x + y, "+");
+        expect(a - b, x - y, "-");
+        expect(a * b, x * y, "*");
+        if (y != 0 && b.excludes_zero()) expect(a / b, x / y, "/");
+        if (x >= 0) {
+            const Bounded s = sqrt(a);
+            const cpp_rational low = cpp_rational(s.value) - cpp_rational(s.bound),
+                               high = cpp_rational(s.value) + cpp_rational(s.bound);
+            EXPECT_GE(high * high, x) << a.value;
+            if (low > 0) EXPECT_LE(low * low, x) << a.value;
+        }
+    }
+}
+
+TEST(Bounded, exact_operations_add_nothing) {
+    const Bounded three(3), quarter(0.25);
+    for (const Bounded& x :
+         {three + quarter, three - quarter, three * quarter, three / quarter, sqrt(quarter)})
+        EXPECT_EQ(x.bound, 0);
+    EXPECT_GT((Bounded(1) / three).bound, 0);
+    EXPECT_LT((Bounded(1) / three).bound, 0x1p-54);
+    EXPECT_EQ((Bounded(0) * Bounded(1, 7)).bound, 0);
+    EXPECT_EQ((three / Bounded(1, 1)).bound, std::numeric_limits<double>::infinity());
+    EXPECT_FALSE(Bounded(1, 1).excludes_zero());
+    EXPECT_TRUE(Bounded(1, 0.99).excludes_zero());
 }
 
 }  // namespace

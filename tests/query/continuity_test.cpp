@@ -1,0 +1,417 @@
+#include "support/random.hpp"
+
+#include <freiform/make/joint.hpp>
+#include <freiform/query/continuity.hpp>
+
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace freiform {
+namespace {
+
+using test::must;
+using test::Random;
+
+template <class P>
+Curve<P> bezier(std::vector<P> b, Interval on = {0, 1}) {
+    const int n = int(b.size());
+    return must(Curve<P>::make({must(BSplineBasis::bezier(n - 1, on))}, Net<1, P>({n}, std::move(b))));
+}
+template <class P>
+Curve<P> spline(int degree, std::vector<double> knots, std::vector<P> b) {
+    const int n = int(b.size());
+    return must(
+        Curve<P>::make({must(BSplineBasis::make(degree, std::move(knots)))}, Net<1, P>({n}, std::move(b))));
+}
+template <class P>
+Curve<P> random_bezier(Random& random, int degree, Interval on = {0, 1}) {
+    std::vector<P> b;
+    for (int i = 0; i <= degree; ++i) b.push_back(test::random_coefficient<P>(random, 1, 0, 0.5));
+    return bezier(std::move(b), on);
+}
+
+// R9
+// -----------------------------------------------------------------------------------------------------------
+
+TEST(R09, g1_is_parallel_tangents_of_the_same_sense) {
+    const auto a = bezier<Vec<2>>({{{0, 0}}, {{1, 0}}});
+    EXPECT_EQ(must(joint(a, bezier<Vec<2>>({{{1, 0}}, {{4, 0}}}))).g_order, 3);  // a straight line
+    const auto same = must(joint(a, bezier<Vec<2>>({{{1, 0}}, {{4, 0}}, {{5, 2}}})));
+    EXPECT_EQ(same.g_order, 1);
+    EXPECT_EQ(same.c_order, 0);
+    const auto back = must(joint(a, bezier<Vec<2>>({{{1, 0}}, {{0.5, 0}}, {{0, 2}}})));
+    EXPECT_EQ(back.g_order, 0);
+    EXPECT_TRUE(back.opposed);
+    EXPECT_DOUBLE_EQ(back.g[1].size, std::numbers::pi);
+    const auto corner = must(joint(a, bezier<Vec<2>>({{{1, 0}}, {{2, 1}}})));
+    EXPECT_EQ(corner.g_order, 0);
+    EXPECT_FALSE(corner.opposed);
+    EXPECT_NEAR(corner.g[1].size, std::numbers::pi / 4, corner.g[1].bound);
+    EXPECT_LT(corner.g[1].bound, 1e-14);
+    const auto gap = must(joint(a, bezier<Vec<2>>({{{4, 4}}, {{5, 4}}})));
+    EXPECT_EQ(gap.g_order, -1);
+    EXPECT_EQ(gap.c_order, -1);
+    EXPECT_NEAR(gap.first_c_jump()->size, 5, 1e-14);
+}
+
+TEST(R09, curvature_is_the_cross_product_over_the_cubed_speed) {
+    Random random(1);
+    for (int i = 0; i < 20; ++i) {
+        const auto c = random_bezier<Vec<3>>(random, 4), next = random_bezier<Vec<3>>(random, 3);
+        const auto j = must(joint(c, next));
+        const auto d = c.jet<3>(1);
+        const Vec<3> b = cross(d(1), d(2));
+        const double kappa = norm(b) / std::pow(norm(d(1)), 3), tau = dot(b, d(3)) / dot(b, b);
+        EXPECT_NEAR(j.before.curvature->value, kappa, 1e-12 * kappa);
+        EXPECT_NEAR(j.before.torsion->value, tau, 1e-11 * (1 + std::abs(tau)));
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(j.before.binormal[std::size_t(k)], unit(b)[k], 1e-12);
+    }
+    const auto plane =
+        must(joint(bezier<Vec<2>>({{{0, 0}}, {{1, 0}}, {{2, 1}}}), bezier<Vec<2>>({{{2, 1}}, {{3, 3}}})));
+    const double kappa = cross(Vec<2>{{2, 2}}, Vec<2>{{0, 2}}) / std::pow(8, 1.5);
+    EXPECT_NEAR(plane.before.curvature->value, kappa, 1e-15);  // left turns are positive
+}
+
+TEST(R09, g2_of_an_arc_and_a_parabola_that_osculates_it) {
+    const double s = std::sqrt(0.5);
+    // Quarter circle of radius 1 about the origin from (0, -1) to (1, 0), then parabolas up from there.
+    const auto arc = bezier<Hom<2>>(
+        {weighted(Vec<2>{{0, -1}}, 1), weighted(Vec<2>{{1, -1}}, s), weighted(Vec<2>{{1, 0}}, 1)});
+    // (1, 0), (1, b), (1 - h, 2 b): c' = (0, 2b), c'' = (-2h, 0), curvature 4 b h / 8 b^3 = 1 for h = 2 b^2.
+    const auto osculating = bezier<Vec<2>>({{{1, 0}}, {{1, 0.5}}, {{0.5, 1}}});
+    const auto g2 = must(joint(arc, osculating));
+    EXPECT_EQ(g2.g_order, 3);  // at its vertex a parabola and its circle meet with G3
+    EXPECT_EQ(g2.c_order, 0);
+    EXPECT_NEAR(g2.before.curvature->value, 1, g2.before.curvature->bound);
+    const auto g1 = must(joint(arc, bezier<Vec<2>>({{{1, 0}}, {{1, 0.5}}, {{0, 1}}})));
+    EXPECT_EQ(g1.g_order, 1);
+    EXPECT_NEAR(g1.g[2].size, 1, 1e-14);  // curvature 2 after 1
+}
+
+// A helix x = r cos t, y = r sin t, z = h t expanded to order 7 at t = 0: curvature r / (r^2 + h^2), torsion
+// h / ..
+Curve<Vec<3>> helix(double r, double h, bool backwards) {
+    std::vector<Vec<3>> b(8);
+    const double s = backwards ? -1 : 1;
+    for (int i = 0; i < 8; ++i)
+        for (int j = 0; j <= i; ++j) {
+            const double a = binomial(i, j) / binomial(7, j), f = std::tgamma(j + 1);
+            const double x = j % 2 == 0 ? (j % 4 == 0 ? 1 : -1) / f : 0,
+                         y = j % 2 == 1 ? (j % 4 == 1 ? 1 : -1) / f * s : 0;
+            b[std::size_t(i)] += Vec<3>{{a * r * x, a * r * y, j == 1 ? a * h * s : 0}};
+        }
+    if (backwards) std::reverse(b.begin(), b.end());
+    return bezier(std::move(b));
+}
+TEST(R09, helices_of_equal_curvature_and_other_torsion_are_g2_in_space) {
+    // r / (r^2 + h^2) = 1/2 for r = 1, h = 1 and, left-handed, for h = -1: torsion 1/2 and -1/2. Rotated so
+    // that the tangents agree.
+    const auto right = helix(1, 1, true);
+    Curve<Vec<3>> left = helix(1, -1, false);
+    std::vector<Vec<3>> b(left.net().flat().begin(), left.net().flat().end());
+    for (Vec<3>& p : b)
+        p = Vec<3>{{p[0], -p[2], p[1]}};  // quarter turn about the x-axis: (0, 1, -1) -> (0, 1, 1)
+    const auto j = must(joint(right, bezier(std::move(b))));
+    EXPECT_EQ(j.g_order, 2);
+    EXPECT_NEAR(j.before.curvature->value, 0.5, 1e-14);
+    EXPECT_NEAR(j.after.curvature->value, 0.5, 1e-14);
+    EXPECT_NEAR(j.before.torsion->value, 0.5, 1e-13);
+    EXPECT_NEAR(j.after.torsion->value, -0.5, 1e-13);
+    EXPECT_NEAR(j.g[3].size, 0.5, 1e-13);  // kappa |tau - tau'|
+    EXPECT_LE(j.binormal->size, j.binormal->bound);
+    const auto whole = must(joint(right, helix(1, 1, false)));
+    EXPECT_EQ(whole.g_order, 3);
+    EXPECT_EQ(whole.c_order, 7);
+}
+
+TEST(R09, a_knot_of_multiplicity_m_leaves_d_minus_m_derivatives) {
+    Random random(9);
+    for (int d = 1; d <= 6; ++d)
+        for (int m = 1; m <= d + 1; ++m) {
+            std::vector<double> t(std::size_t(d) + 1, 0.0);
+            t.insert(t.end(), std::size_t(m), 1.0);
+            t.insert(t.end(), std::size_t(d) + 1, 2.5);
+            std::vector<Vec<3>> b;
+            for (int i = 0; i < d + 1 + m; ++i) b.push_back(test::random_coefficient<Vec<3>>(random));
+            const auto all = must(continuity(spline(d, t, b)));
+            ASSERT_EQ(all.size(), 1u);
+            EXPECT_EQ(all[0].multiplicity, m);
+            EXPECT_EQ(all[0].joint.c_order, d - m) << d << " " << m;
+            EXPECT_EQ(all[0].joint.g_order, std::min(d - m, 3)) << d << " " << m;
+            EXPECT_FALSE(all[0].removable);
+            EXPECT_EQ(all[0].at, 1);
+        }
+}
+
+TEST(R11, a_tripled_control_point_is_c2_with_zero_derivative_and_not_g1) {
+    const Vec<2> corner{{2, 3}};
+    const auto c = spline<Vec<2>>(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10},
+                                  {{{0, 0}}, {{1, 1}}, corner, corner, corner, {{4, 0}}, {{5, 1}}});
+    const auto all = must(continuity(c));
+    ASSERT_EQ(all.size(), 3u);
+    const Continuity& j = all[1].joint;  // knot 5: where the three coefficients alone count
+    EXPECT_EQ(all[1].at, 5);
+    EXPECT_EQ(j.c_order, 2);
+    EXPECT_TRUE(j.singular);
+    EXPECT_EQ(j.g_order, 0);
+    EXPECT_EQ(j.g.size(), 2u);
+    // The straight pieces run along (1, 2) and (2, -3).
+    EXPECT_NEAR(j.g[1].size, std::acos((2 - 6) / std::sqrt(5 * 13)), 1e-14);
+    EXPECT_EQ(all[0].joint.g_order, 2);
+    EXPECT_FALSE(all[0].joint.singular);
+}
+
+// Laws
+// ---------------------------------------------------------------------------------------------------------
+
+TEST(Continuity, a_cusp_turns_back_and_a_stop_does_not) {
+    // (t^2, t^3) as a spline with a removable knot at 0: C-infinity, and a cusp.
+    const auto half = [](std::vector<Vec<2>> b) { return bezier(std::move(b)); };
+    const auto in = half({{{1, -1}}, {{1.0 / 3, 0}}, {{0, 0}}, {{0, 0}}}),
+               out = half({{{0, 0}}, {{0, 0}}, {{1.0 / 3, 0}}, {{1, 1}}});
+    const auto cusp = must(joint(in, out));
+    EXPECT_EQ(cusp.c_order, 3);
+    EXPECT_TRUE(cusp.singular);
+    EXPECT_TRUE(cusp.opposed);
+    EXPECT_EQ(cusp.g_order, 0);
+    EXPECT_TRUE(cusp.phi.empty());
+    // (t^3, 0): stops and goes on.
+    const auto stop = must(joint(half({{{-1, 0}}, {{0, 0}}, {{0, 0}}, {{0, 0}}}),
+                                 half({{{0, 0}}, {{0, 0}}, {{0, 0}}, {{1, 0}}})));
+    EXPECT_EQ(stop.g_order, 1);
+    EXPECT_TRUE(stop.singular);
+    // A piece that is one point has no tangent.
+    const auto none = must(joint(in, bezier<Vec<2>>({{{0, 0}}, {{0, 0}}})));
+    EXPECT_EQ(none.g.size(), 1u);
+    EXPECT_EQ(none.g_order, 0);
+}
+
+TEST(Continuity, an_inserted_knot_is_found_removable) {
+    Random random(3);
+    for (int i = 0; i < 20; ++i) {
+        const auto c = random_bezier<Hom<3>>(random, random.integer(2, 6));
+        const double at[] = {random.real(0.3, 0.7)};
+        const auto all = must(continuity(must(insert_knots(c, 0, at))));
+        ASSERT_EQ(all.size(), 1u);
+        EXPECT_TRUE(all[0].removable);
+        EXPECT_EQ(all[0].joint.g_order, 3);
+    }
+}
+
+TEST(Continuity, of_a_closed_spline_includes_the_seam) {
+    Random random(5);
+    for (const int d : {2, 3, 4}) {
+        std::vector<Vec<3>> b;
+        for (int i = 0; i < 5; ++i) b.push_back(test::random_coefficient<Vec<3>>(random));
+        const auto c = must(Curve<Vec<3>>::make({must(BSplineBasis::periodic(d, {0, 1, 2.5, 3, 4, 6}))},
+                                                Net<1, Vec<3>>({5}, b)));
+        const auto all = must(continuity(c));
+        ASSERT_EQ(all.size(), 5u);
+        EXPECT_TRUE(all.back().seam);
+        EXPECT_EQ(all.back().at, 0);
+        for (const auto& k : all) EXPECT_EQ(k.joint.c_order, d - 1) << k.at;
+        // Cut open, it still comes back to its start.
+        const auto open = must(continuity(must(restrict_to(c, 0, {0, 6}))));
+        ASSERT_EQ(open.size(), 5u);
+        EXPECT_TRUE(open.back().seam);
+        EXPECT_EQ(open.back().joint.c_order, d - 1);
+    }
+    EXPECT_TRUE(must(continuity(random_bezier<Vec<2>>(random, 3))).empty());
+}
+
+// Full circle of four arcs: C0 in homogeneous coordinates with these knots, G-infinity in the plane.
+TEST(Continuity, judges_rational_curves_by_their_points) {
+    const double s = std::sqrt(0.5);
+    std::vector<Hom<2>> b;
+    const double x[][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
+    for (int i = 0; i < 9; ++i) b.push_back(weighted(Vec<2>{{x[i][0], x[i][1]}}, i % 2 ? s : 1));
+    const auto circle = spline<Hom<2>>(2, {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4}, b);
+    const auto all = must(continuity(circle));
+    ASSERT_EQ(all.size(), 4u);  // with the seam
+    EXPECT_TRUE(all[3].seam);
+    for (const auto& k : all) {
+        EXPECT_EQ(k.joint.g_order, 3);
+        EXPECT_EQ(k.joint.c_order, 1);  // C1 by symmetry, though the weights have corners
+        EXPECT_FALSE(k.removable);
+    }
+    const auto lines = must(knot_lines(circle, 0));
+    EXPECT_EQ(lines[0].c_order, 0);
+}
+
+TEST(Continuity, does_not_depend_on_the_place_and_scales) {
+    Random random(6);
+    for (int round = 0; round < 20; ++round) {
+        const auto a = random_bezier<Vec<3>>(random, 4);
+        const double phi[] = {1.5, -0.5};
+        const auto b = must(next_g(a, phi, {{0, 0.5}, {Vec<3>{{1, 2, 3}}, Vec<3>{{2, 2, 2}}}}));
+        const double u = std::cos(0.7), v = std::sin(0.7);
+        const auto mapped = [](const Curve<Vec<3>>& c, auto&& f) {
+            std::vector<Vec<3>> p(c.net().flat().begin(), c.net().flat().end());
+            for (Vec<3>& q : p) q = f(q);
+            return must(Curve<Vec<3>>::make(c.bases(), Net<1, Vec<3>>({int(p.size())}, p)));
+        };
+        const auto larger = [](const Vec<3>& q) { return 0x1p300 * q; };
+        const auto moved = [&](const Vec<3>& q) {
+            return Vec<3>{{u * q[0] - v * q[1] + 7, u * q[1] + v * q[0] + 3, q[2] - 5}};
+        };
+        const auto other = must(joint(mapped(a, moved), mapped(b, moved)));
+        EXPECT_EQ(other.g_order, 2);
+        EXPECT_EQ(other.c_order, 0);
+        const auto j = must(joint(a, b)), big = must(joint(mapped(a, larger), mapped(b, larger)));
+        EXPECT_NEAR(other.g[3].size, j.g[3].size, other.g[3].bound + j.g[3].bound);
+        ASSERT_EQ(j.g_order, 2);
+        EXPECT_EQ(big.g_order, 2);
+        for (int k = 0; k < 4; ++k) {
+            EXPECT_EQ(big.g[std::size_t(k)].size,
+                      k == 1 ? j.g[1].size : std::scalbn(j.g[std::size_t(k)].size, 300 * (1 - k)));
+            EXPECT_EQ(big.c[std::size_t(k)].size, std::scalbn(j.c[std::size_t(k)].size, 300));
+        }
+        EXPECT_EQ(big.phi, j.phi);
+    }
+}
+
+TEST(Continuity, tolerances_are_distances_over_a_piece) {
+    const auto a = bezier<Vec<2>>({{{0, 0}}, {{1, 0}}});
+    // A gap of 0.01 and an angle of 0.01.
+    const auto gap = bezier<Vec<2>>({{{1.01, 0}}, {{2, 0}}}), turn = bezier<Vec<2>>({{{1, 0}}, {{2, 0.01}}});
+    ContinuityOptions o;
+    o.tolerance = 0.011;
+    EXPECT_EQ(must(joint(a, gap)).g_order, -1);
+    EXPECT_EQ(must(joint(a, gap, o)).g_order, 3);
+    EXPECT_EQ(must(joint(a, turn)).g_order, 0);
+    EXPECT_EQ(must(joint(a, turn, o)).c_order, 3);
+    EXPECT_EQ(must(joint(a, turn, o)).g_order, 3);
+    o.tolerance = 0.009;
+    EXPECT_EQ(must(joint(a, turn, o)).g_order, 0);
+    o.angle = 0.011;
+    EXPECT_EQ(must(joint(a, turn, o)).g_order, 3);
+    EXPECT_EQ(must(joint(a, turn, o)).c_order, 0);
+    o.angle = -1;
+    EXPECT_EQ(joint(a, turn, o).error().where, "angle");
+}
+
+TEST(Reparametrised, makes_a_g_joint_c) {
+    Random random(7);
+    int rational = 0;
+    for (int round = 0; round < 40; ++round) {
+        const int k = round % 4 + 1;
+        const auto a = random_bezier<Vec<3>>(random, 4, {-1, 1.5});
+        std::vector<double> phi{random.real(0.5, 2)};
+        for (int i = 1; i < k; ++i) phi.push_back(random.real(-1, 1));
+        const auto b = must(next_g(a, phi, {{3, 3.5}, {Vec<3>{{1, 2, 3}}}}));
+        ContinuityOptions o;
+        o.orders = k;
+        o.tolerance = 1e-9;
+        const auto j = must(joint(a, b, o));
+        ASSERT_EQ(j.g_order, k);
+        ASSERT_EQ(j.phi[0], 3);
+        const auto c = reparametrised(b, j.phi, 1.5);
+        if (!c) {
+            EXPECT_EQ(c.error().kind, RefusalKind::unsupported) << c.error().message;
+            continue;
+        }
+        EXPECT_GE(must(joint(a, *c, o)).c_order, k) << k;
+        const auto p = a.derivatives(1.5, k), q = c->derivatives(1.5, k);
+        for (int i = 0; i <= k; ++i)
+            EXPECT_LT(norm(p[std::size_t(i)] - q[std::size_t(i)]), 1e-7 * (1 + norm(p[std::size_t(i)]))) << i;
+        // The same points: the ends, and points on the old curve in the same order.
+        EXPECT_EQ(c->net().flat().back(), b.net().flat().back());
+        if (k == 2) {
+            const auto r = reparametrised_rationally(b, j.phi[1], j.phi[2], 1.5);
+            if (!r) continue;
+            ++rational;
+            EXPECT_EQ(r->basis().degree(), b.basis().degree());
+            EXPECT_GE(must(joint(a, *r, o)).c_order, 2);
+        }
+    }
+    EXPECT_GT(rational, 5);
+}
+
+TEST(Reparametrised, keeps_the_points) {
+    Random random(8);
+    const auto b = random_bezier<Hom<2>>(random, 3, {1, 2});
+    const double phi[] = {1, 2, -1, 0.5};
+    const auto c = must(reparametrised(b, phi, 0));
+    // phi is the polynomial 2 t - t^2 / 2 + t^3 / 12, if it rises to 1.
+    const double end = c.basis().domain().hi;
+    const auto value = [](double t) { return 2 * t - t * t / 2 + t * t * t / 12; };
+    EXPECT_EQ(c.basis().degree(), 9);
+    EXPECT_NEAR(value(end), 1, 1e-14);
+    for (int i = 0; i <= 10; ++i) {
+        const double t = end * i / 10;
+        EXPECT_LT(norm(c(t) - b(std::min(2.0, 1 + value(t)))), 1e-13);
+    }
+    // A polynomial that turns back before the end gets one degree more.
+    const double turning[] = {0, 1, -2};
+    const auto d = must(reparametrised(b, turning, 0));
+    EXPECT_EQ(d.basis().degree(), 9);
+    const auto one = b.jet<2>(1), two = d.jet<2>(0);
+    EXPECT_LT(norm(two(1) - one(1)) + norm(two(2) - (one(2) - 2.0 * one(1))), 1e-11);
+    // Splines: linear and fractional changes.
+    const auto s = test::random_patch_on<1, Vec<2>>(random, {test::random_basis(random, 3, {})});
+    const auto lo = s.basis().domain().lo;
+    const auto r = must(reparametrised_rationally(s, 2, 0.1, 5));
+    for (const double t : {5.0, 5.1, 5.2}) {
+        const double x = 2 * (t - 5) / (1 - 0.1 / 4 * (t - 5));
+        if (x <= s.basis().domain().length()) EXPECT_LT(norm(r(t) - s(lo + x)), 1e-13);
+    }
+    EXPECT_EQ(reparametrised(s, phi, 0).error().kind, RefusalKind::unsupported);
+    const double rate[] = {0, 4};
+    const double x = s.basis().domain().length() / 2;
+    EXPECT_LT(norm(must(reparametrised(s, rate, 1))(1 + x / 4) - s(lo + x)), 1e-12);
+    EXPECT_EQ(reparametrised_rationally(b, 1, -4, 0).error().kind, RefusalKind::no_answer);
+}
+
+TEST(KnotLines, of_a_surface_have_the_order_of_its_fibres) {
+    Random random(10);
+    const auto u = must(BSplineBasis::make(3, {0, 0, 0, 0, 1, 1, 2, 3, 3, 3, 3})),
+               v = must(BSplineBasis::periodic(2, {0, 1, 2, 4}));
+    const auto s = test::random_patch_on<2, Vec<3>>(random, {u, v});
+    const auto along_u = must(knot_lines(s, 0)), along_v = must(knot_lines(s, 1));
+    ASSERT_EQ(along_u.size(), 2u);
+    EXPECT_EQ(along_u[0].c_order, 1);
+    EXPECT_EQ(along_u[1].c_order, 2);
+    ASSERT_EQ(along_v.size(), 3u);
+    EXPECT_TRUE(along_v[2].seam);
+    for (const auto& line : along_v) EXPECT_EQ(line.c_order, 1);
+    // The jump bounds what is seen at any place of the line.
+    const double e = 1e-9;
+    for (double y = 0; y < 4; y += 0.1) {
+        const auto after = s.jet<2>({1 + e, y}), before = s.jet<2>({1 - e, y});
+        EXPECT_LE(norm(after(2, 0) - before(2, 0)), along_u[0].c[2].size + 1e-5);
+    }
+    const double more[] = {0.5, 2.25};
+    const auto fine = must(insert_knots(s, 0, more));
+    const auto lines = must(knot_lines(fine, 0));
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines[0].c_order, 3);
+    EXPECT_EQ(lines[3].c_order, 3);
+}
+
+TEST(Meetings, are_found_and_put_in_order) {
+    const auto ends = [](std::vector<double> a, std::vector<double> b) {
+        return CurveEnds{std::move(a), std::move(b)};
+    };
+    const CurveEnds all[] = {
+        ends({0, 0}, {1, 0}), ends({2, 0}, {1, 1e-3}),   ends({2, 1e-4}, {0, 0}), ends({5, 5}, {5, 5}),
+        ends({}, {}),         ends({0, 0, 0}, {9, 9, 9})};
+    const auto m = must(meetings(all, 0.01));
+    ASSERT_EQ(m.size(), 4u);
+    EXPECT_EQ(m[0].first, 0u);  // end to end
+    EXPECT_EQ(m[0].second, 1u);
+    EXPECT_EQ(m[0].first_end, End::end);
+    EXPECT_EQ(m[0].second_end, End::end);
+    EXPECT_DOUBLE_EQ(m[0].distance, 1e-3);
+    EXPECT_EQ(m[1].first, 2u);  // the end of 2 leads into the start of 0
+    EXPECT_EQ(m[1].second, 0u);
+    EXPECT_EQ(m[2].first_end, End::start);
+    EXPECT_EQ(m[2].second_end, End::start);
+    EXPECT_EQ(m[3].first, 3u);
+    EXPECT_EQ(m[3].second, 3u);
+    EXPECT_EQ(must(meetings(all, 0)).size(), 2u);
+    EXPECT_EQ(meetings(all, 0.01, 3).error().kind, RefusalKind::limit);
+    EXPECT_EQ(meetings(all, -1).error().where, "gap");
+}
+
+}  // namespace
+}  // namespace freiform
