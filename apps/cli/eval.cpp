@@ -3,7 +3,7 @@
 
 #include <freiform/core/scan.hpp>
 #include <freiform/io/bpt.hpp>
-#include <freiform/io/file.hpp>
+#include <freiform/io/points.hpp>
 
 namespace freiform::cli {
 
@@ -27,32 +27,12 @@ std::optional<std::vector<double>> numbers(std::string_view s) {
     return out;
 }
 
-// A line per parameter, its numbers separated by commas (or semicolons, or blanks). A first line without any
-// number is a heading.
-Result<Parameters> read_csv(const std::string& path, const ReadOptions& options) {
-    const auto bytes = read_file(path, options.max_bytes);
-    if (!bytes) return std::unexpected(bytes.error());
-    Parameters all;
-    std::string_view rest = *bytes;
-    for (std::size_t line = 1; !rest.empty(); ++line) {
-        std::string_view s = next_part(rest, '\n');
-        std::string row(trimmed(s.substr(0, s.find('#'))));
-        if (row.empty()) continue;
-        if (row.find(',') == std::string::npos)
-            for (char& c : row) c = c == ';' || c == '\t' || c == ' ' ? ',' : c;
-        auto values = numbers(row);
-        if (!values && all.empty() && row.find_first_of("0123456789") == std::string::npos) continue;
-        if (!values)
-            return refuse(
-                RefusalKind::unreadable, text(path, ": line ", line),
-                text("expected finite numbers separated by commas, found \"", row.substr(0, 40), "\""));
-        all.push_back(std::move(*values));
-    }
-    return all;
-}
-
 Result<Parameters> parameters(const Options& options, const ReadOptions& limits) {
-    if (options.at.starts_with('@')) return read_csv(options.at.substr(1), limits);
+    if (options.at.starts_with('@')) {
+        auto lines = read_number_lines(options.at.substr(1), limits);
+        if (!lines) return std::unexpected(lines.error());
+        return std::move(lines->row);
+    }
     Parameters all;
     std::string_view rest = options.at;
     while (!rest.empty()) {

@@ -16,6 +16,7 @@ void add_commands(CLI::App& app, Context& context) {
     add_convert(app, context);
     add_tessellate(app, context);
     add_draw(app, context);
+    add_interpolate(app, context);
 }
 
 std::string version(bool verbose) {
