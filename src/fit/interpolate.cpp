@@ -119,8 +119,8 @@ Net<N, Vec<D>> solved(int axis, const SplineSystem& s, const BandSystem& a, cons
         (int(d) < axis ? outer : inner) *= int(d) == axis ? 1 : std::size_t(extent[d]);
     Net<N, Vec<D>> out(extent);
     const std::size_t width = inner * D;
-    const double* from = data.flat().data()->c.data();
-    double* to = out.flat().data()->c.data();
+    const double* from = &data.flat()[0].c[0];
+    double* to = &out.flat()[0].c[0];
     if (outer * inner == 1) {
         // One curve: the column for the condition goes along with the coordinates.
         std::vector<double> x(n * (D + 1));

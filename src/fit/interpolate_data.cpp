@@ -82,9 +82,9 @@ Result<Interpolant<1, D>> interpolate(const BSplineBasis& basis, std::span<const
     }
     std::vector<int> order(data.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
         const auto &x = data[std::size_t(a)], &y = data[std::size_t(b)];
-        return x.at != y.at ? x.at < y.at : x.order < y.order;
+        return x.at != y.at ? x.at < y.at : x.order != y.order ? x.order < y.order : a < b;
     });
     for (std::size_t i = 1; i < order.size(); ++i) {
         const auto &x = data[std::size_t(order[i - 1])], &y = data[std::size_t(order[i])];
