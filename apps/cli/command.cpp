@@ -151,6 +151,21 @@ Result<void> emit(const Context& context, std::string_view bytes) {
     return {};
 }
 
+void write_approximation(json::Writer& w, const Approximation& a) {
+    w.begin_object().field("where", a.where).field("what", a.what);
+    if (a.bound)
+        w.field("bound", *a.bound);
+    else
+        w.field("estimate", a.estimate);
+    w.end_object();
+}
+
+std::string approximation_text(const Approximation& a) {
+    return text(
+        a.where, ": ", a.what,
+        a.bound ? text(", within ", *a.bound) : text(", about ", a.estimate, ", which nothing proves"));
+}
+
 void remark(std::string_view message) {
     const char* no_colour = std::getenv("NO_COLOR");
     const char* terminal = std::getenv("TERM");

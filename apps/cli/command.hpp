@@ -62,6 +62,10 @@ Result<void> emit(const Context& context, std::string_view bytes);
 // A remark for people, on standard error.
 void remark(std::string_view message);
 
+// What a model says about its approximations: a proven bound is told from an estimate.
+void write_approximation(json::Writer& w, const Approximation& a);
+std::string approximation_text(const Approximation& a);
+
 // Which objects of a document are meant by --object NAME|INDEX; without it all. Refuses names that do not
 // exist.
 Result<std::vector<std::size_t>> selected(const Document& document, const std::string& object);

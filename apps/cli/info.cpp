@@ -101,8 +101,7 @@ void write_model_info(json::Writer& w, const Model& m) {
             .field("message", r.message)
             .end_object();
     w.end_array().key("approximations").begin_array();
-    for (const Approximation& a : m.approximations)
-        w.begin_object().field("where", a.where).field("what", a.what).field("bound", a.bound).end_object();
+    for (const Approximation& a : m.approximations) write_approximation(w, a);
     w.end_array();
     write_box(w, s.box);
 }
@@ -191,7 +190,7 @@ std::string model_text(const Model& m) {
     for (const Refusal& r : m.refused)
         t += text("  refused  ", r.where, ": ", r.message, " (", name_of(r.kind), ")\n");
     for (const Approximation& a : m.approximations)
-        t += text("  approximated  ", a.where, ": ", a.what, ", within ", a.bound, "\n");
+        t += text("  approximated  ", approximation_text(a), "\n");
     return t;
 }
 

@@ -69,8 +69,7 @@ std::string json_report(const Tessellation& t, const Model& model, double tolera
             .field("message", r.message)
             .end_object();
     w.end_array().key("approximations").begin_array();
-    for (const Approximation& a : model.approximations)
-        w.begin_object().field("where", a.where).field("what", a.what).field("bound", a.bound).end_object();
+    for (const Approximation& a : model.approximations) write_approximation(w, a);
     w.end_array().end_object();
     return w.take() + "\n";
 }
@@ -93,7 +92,7 @@ std::string text_report(const Tessellation& t, const Model& model, double tolera
                   r.reason.where, ": ", r.reason.message, "\n");
     for (const Refusal& r : model.refused) s += text("refused ", r.where, ": ", r.message, "\n");
     for (const Approximation& a : model.approximations)
-        s += text("approximated ", a.where, ": ", a.what, ", within ", a.bound, "\n");
+        s += text("approximated ", approximation_text(a), "\n");
     if (!output.empty()) s += text("written to ", output, "\n");
     return s;
 }

@@ -8,12 +8,14 @@
 // to where its own ends.
 //
 // Tolerances. A file promises that the curve of an edge and the images of its parameter curves agree within
-// the tolerance of the edge. That is looked at, at some parameters, and where it does not hold the tolerance
-// is raised and the model says so.
+// the tolerance of the edge. Samples tell where that may not hold and where a better parameter curve is worth
+// its time; whatever is then replaced or raised gets a proven bound (model/edge_gap), and the model says so.
 #include "convert.hpp"
 
 #include "geometry.hpp"
 #include "refit.hpp"
+
+#include <freiform/model/edge_gap.hpp>
 
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
@@ -43,6 +45,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace freiform::occt {
 
@@ -78,6 +81,23 @@ bool is_rigid(const TopLoc_Location& at) {
            (std::abs(at.Transformation().ScaleFactor() - 1) < 1e-14 && !at.Transformation().IsNegative());
 }
 
+constexpr double kRounding = 1e-12;  // of the range of an edge
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+// How far the stretched curve is from the curve, whose end stands for what lies beyond it: seen as an edge
+// beside the extrusion of the curve.
+double stretch_bound(const CurveGeometry<3>& curve, const CurveGeometry<3>& stretched, Interval range) {
+    const SurfaceGeometry surface = Extrusion{curve, {{1, 0, 0}}};
+    return edge_gap(DerivativeQuery<2, 3>(surface), Line<2>{{{0, 0}}, {{1, 0}}}, stretched, range, {}).bound;
+}
+
+// A parameter curve whose distance from its edge has to be proven.
+struct Suspect {
+    const Coedge* coedge = nullptr;
+    double sampled = 0;  // the largest gap among samples
+    bool replaced = false, stretched = false;
+};
+
 class Converter {
 public:
     explicit Converter(const Document& document) : document_(document) {
@@ -94,13 +114,22 @@ private:
     Result<Piece> piece(const TopoDS_Edge& e, const TopoDS_Face& f, const Handle(Geom_Plane) & plane);
     Result<int> edge(const TopoDS_Edge& e, const TopoDS_Face& f);
     int vertex(const TopoDS_Vertex& v);
+    const Vec<3>& vertex_of(const Edge& e) const { return out_.model.vertices[std::size_t(e.start)].point; }
+    // `bound` may be infinite: then nothing is proven, and the estimate is all there is.
+    void report(int edge, std::string what, double bound, double estimate);
     Result<void> check_tolerance(Face& f, std::string_view where);
+    bool improve(const Face& f, Coedge& c, double size, double& worst);
+    void prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target,
+               std::string_view where);
     int shell(const TopoDS_Shape& s, bool closed, const TopLoc_Location& at, const Part& part);
     void body(const TopoDS_Shape& s, bool solid, const Part& part, const TopLoc_Location& at);
 
     const Document& document_;
     Conversion out_;
     IndexMap vertices_, edges_, faces_;
+    std::vector<double> stated_;                   // the tolerance of each edge in the file
+    std::vector<int> approximated_;                // the edge that each approximation is about
+    std::vector<std::pair<int, bool>> stretched_;  // coedges (edge, reversed) of the face in work
     int free_edges_ = 0;
 };
 
@@ -110,6 +139,17 @@ int Converter::vertex(const TopoDS_Vertex& v) {
     out_.model.vertices.push_back({vec(BRep_Tool::Pnt(v)), BRep_Tool::Tolerance(v)});
     vertices_.Bind(v, i);
     return i;
+}
+
+void Converter::report(int edge, std::string what, double bound, double estimate) {
+    Approximation a{"", std::move(what), std::nullopt,
+                    0};  // `finish` knows the number that the edge will have
+    if (std::isfinite(bound))
+        a.bound = bound;
+    else
+        a.estimate = estimate;
+    out_.model.approximations.push_back(std::move(a));
+    approximated_.push_back(edge);
 }
 
 // The edge in the model. `f`: a face that it bounds, for edges without a curve in space.
@@ -128,20 +168,21 @@ Result<int> Converter::edge(const TopoDS_Edge& oriented, const TopoDS_Face& f) {
     if (!c.IsNull()) {
         auto converted = curve(c, made.range);
         if (converted) {
-            if (const double by = stretch_to(*converted, made.range); by > 1e-12 * (hi - lo))
-                out_.model.approximations.push_back(
-                    {text("edges[", out_.model.edges.size(), "]"),
-                     text("its curve ends ", by, " (in the parameter) before the edge does"),
-                     2 * by * norm(jet<1>(*converted, lo).d[1]) +
-                         2 * by * norm(jet<1>(*converted, hi).d[1])});
-            made.curve = std::move(*converted);
+            made.curve = *converted;
+            if (const double by = stretch_to(*made.curve, made.range); by > kRounding * (hi - lo))
+                report(int(out_.model.edges.size()),
+                       text("its curve ends ", by,
+                            " (in the parameter) before the edge does and is stretched; beyond its end it "
+                            "stands for its end"),
+                       stretch_bound(*converted, *made.curve, made.range), made.tolerance);
         } else if (converted.error().kind != RefusalKind::unsupported || f.IsNull())
             return std::unexpected(converted.error());
         else
-            out_.model.approximations.push_back(
-                {text("edges[", out_.model.edges.size(), "]"),
-                 text(converted.error().message, "; its parameter curve on a face takes its place"),
-                 made.tolerance});
+            report(int(out_.model.edges.size()),
+                   text(converted.error().message,
+                        "; its parameter curve on a face takes its place, within the tolerance that the file "
+                        "states"),
+                   kNoBound, made.tolerance);
     }
     const TopoDS_Vertex first = TopExp::FirstVertex(e), last = TopExp::LastVertex(e);
     const auto end = [&](const TopoDS_Vertex& v, double t) {
@@ -160,6 +201,7 @@ Result<int> Converter::edge(const TopoDS_Edge& oriented, const TopoDS_Face& f) {
                         c->Value(lo).Distance(c->Value(hi)) <= made.tolerance;
     made.end = made.degenerate || closed ? made.start : end(last, hi);
     const int i = int(out_.model.edges.size());
+    stated_.push_back(made.tolerance);
     out_.model.edges.push_back(std::move(made));
     out_.edges.push_back(e);
     edges_.Bind(e, i);
@@ -184,7 +226,8 @@ Result<Piece> Converter::piece(const TopoDS_Edge& e, const TopoDS_Face& f, const
         auto converted = curve(c, Interval{lo, hi});
         if (converted) converted = reparametrised(*converted, {lo, hi}, in_space.range);
         if (!converted) return refuse_within("parameter curve", converted.error());
-        stretch_to(*converted, in_space.range);  // what this moves, check_tolerance sees
+        if (stretch_to(*converted, in_space.range) > kRounding * in_space.range.length())
+            stretched_.push_back({p.coedge.edge, p.coedge.reversed});
         p.coedge.curve = std::move(*converted);
     }
     p.from = in_space.start, p.to = in_space.end;
@@ -241,6 +284,7 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
     Face out;
     out.tolerance = BRep_Tool::Tolerance(f);
     Box<2> used;
+    stretched_.clear();
     for (TopoDS_Iterator w(f); w.More(); w.Next()) {
         if (w.Value().ShapeType() != TopAbs_WIRE || w.Value().Orientation() == TopAbs_INTERNAL ||
             w.Value().Orientation() == TopAbs_EXTERNAL)
@@ -271,34 +315,53 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
     return out;
 }
 
-// Samples miss the largest value of a smooth function by little; this much is added to what they find.
+// Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
+// believed, of what the file promises.
 constexpr double kMargin = 1.5;
 // Relative to the size of the face: better parameter curves are looked for from here, and what is this far
 // off describes another face.
 constexpr double kWorthRefitting = 1e-9, kHopeless = 0.25;
 
-// The largest value found among samples, and between the neighbours of the largest of them.
-template <class F>
-double largest(const F& f, Interval on, int samples) {
-    const auto at = [&](int i) { return on.lo + on.length() * i / samples; };
-    double worst = 0;
-    int place = 0;
-    for (int i = 0; i <= samples; ++i)
-        if (const double x = f(at(i)); x > worst) worst = x, place = i;
-    const Interval near{at(std::max(place - 1, 0)), at(std::min(place + 1, samples))};
-    for (int i = 1; i < 16; ++i) worst = std::max(worst, f(near.lo + near.length() * i / 16));
-    return worst;
+// Replaces a parameter curve that misses its edge if that helps. `worst`: its gap, before and after.
+bool Converter::improve(const Face& f, Coedge& c, double size, double& worst) {
+    const Edge& e = out_.model.edges[std::size_t(c.edge)];
+    if (!e.curve || !(worst > kWorthRefitting * size)) return false;
+    auto better = refit(f.surface, *e.curve, c.curve, e.range, kWorthRefitting / 10 * size);
+    if (!better) return false;
+    const double rest = sampled_gap(f.surface, e, vertex_of(e), *better);
+    if (!(rest < worst / 2)) return false;
+    c.curve = std::move(*better);
+    worst = rest;
+    return true;
 }
 
-// Several in each piece of a spline.
-int samples_for(const Edge& e, const CurveGeometry<2>& on_surface) {
-    std::size_t pieces = 1;
-    const auto count = [&](const auto& g) {
-        if constexpr (requires { g.net(); }) pieces = std::max(pieces, g.net().flat().size());
-    };
-    if (e.curve) std::visit(count, *e.curve);
-    std::visit(count, on_surface);
-    return int(std::clamp<std::size_t>(6 * pieces, 48, 6000));
+// Lists a parameter curve that was replaced or does not keep the tolerance of the file, with a proven bound
+// of its distance from the edge, and raises the tolerance of the edge to it.
+void Converter::prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target,
+                      std::string_view where) {
+    const Coedge& c = *suspect.coedge;
+    Edge& e = out_.model.edges[std::size_t(c.edge)];
+    const double stated = stated_[std::size_t(c.edge)];
+    const bool changed = suspect.replaced || suspect.stretched;
+    const CurveGeometry<3> vertex = Line<3>{vertex_of(e), {}};
+    EdgeGapOptions options;
+    options.target = changed ? target : e.tolerance;
+    options.factor = changed ? 1.25 : 1.05;
+    const EdgeGap gap = edge_gap(surface, c.curve, e.curve ? *e.curve : vertex, e.range, options);
+    const double found = std::max(suspect.sampled, gap.found), estimate = kMargin * found,
+                 distance = std::isfinite(gap.bound) ? gap.bound : estimate;
+    const bool beyond = distance > stated;
+    if (!changed && !beyond) return;
+    std::string what;
+    if (changed)
+        what = text("its parameter curve on ", where,
+                    suspect.replaced ? " is replaced by a spline that follows the edge"
+                                     : " ends before the edge does and is stretched");
+    if (beyond)
+        what += text(changed ? ", but " : "", "lies up to ", found, " beside ", changed ? "it" : where,
+                     "; the file says at most ", stated);
+    report(c.edge, std::move(what), gap.bound, estimate);
+    e.tolerance = std::max(e.tolerance, distance);
 }
 
 // Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
@@ -311,36 +374,23 @@ Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
                 for (int i = 0; i <= 8; ++i)
                     box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * i / 8).value());
     const double size = box.diagonal();
+    std::vector<Suspect> suspects;
     for (Loop& l : f.loops)
         for (Coedge& c : l.coedges) {
-            Edge& e = out_.model.edges[std::size_t(c.edge)];
-            const auto gap_of = [&](const CurveGeometry<2>& on_surface) {
-                const auto gap = [&](double t) {
-                    const Vec<2> uv = jet<0>(on_surface, t).value();
-                    const Vec<3> on_face = jet<0>(f.surface, uv.c).value();
-                    if (e.curve) return norm(on_face - jet<0>(*e.curve, t).value());
-                    return e.degenerate ? norm(on_face - out_.model.vertices[std::size_t(e.start)].point)
-                                        : 0.0;
-                };
-                return largest(gap, e.range, samples_for(e, on_surface));
-            };
-            double worst = gap_of(c.curve);
-            if (e.curve && worst > kWorthRefitting * size)
-                if (auto better = refit(f.surface, *e.curve, c.curve, e.range, kWorthRefitting / 10 * size))
-                    if (const double rest = gap_of(*better); rest < worst / 2) {
-                        c.curve = std::move(*better);
-                        worst = rest;
-                    }
+            const Edge& e = out_.model.edges[std::size_t(c.edge)];
+            double worst = sampled_gap(f.surface, e, vertex_of(e), c.curve);
+            const bool replaced = improve(f, c, size, worst);
             if (size > 0 && !(worst < kHopeless * size))
                 return refuse(RefusalKind::ill_conditioned, "parameter curve",
                               text("misses its edge by ", worst, "; the face has a size of ", size));
-            if (worst > e.tolerance)
-                out_.model.approximations.push_back({text("edges[", c.edge, "]"),
-                                                     text("lies up to ", worst, " (sampled) beside ", where,
-                                                          "; the file says at most ", e.tolerance),
-                                                     kMargin * worst});
-            e.tolerance = std::max(e.tolerance, kMargin * worst);
+            const bool stretched = std::find(stretched_.begin(), stretched_.end(),
+                                             std::pair(c.edge, c.reversed)) != stretched_.end();
+            if (replaced || stretched || kMargin * worst > e.tolerance)
+                suspects.push_back({&c, worst, replaced, stretched});
         }
+    if (suspects.empty()) return {};
+    const DerivativeQuery<2, 3> surface(f.surface);
+    for (const Suspect& s : suspects) prove(surface, s, kWorthRefitting * size, where);
     return {};
 }
 
@@ -474,6 +524,15 @@ Conversion Converter::finish() {
         }
         ++kept;
     }
+    std::size_t told = 0;
+    for (std::size_t i = 0; i < m.approximations.size(); ++i) {
+        const int edge = place[std::size_t(approximated_[i])];
+        if (edge < 0) continue;
+        m.approximations[i].where = text("edges[", edge, "]");
+        if (told != i) m.approximations[told] = std::move(m.approximations[i]);
+        ++told;
+    }
+    m.approximations.resize(told);
     m.edges.resize(kept);
     out_.edges.resize(kept);
     for (Face& f : m.faces)

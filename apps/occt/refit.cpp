@@ -78,6 +78,30 @@ CurveGeometry<2> joined(const std::vector<Node>& nodes) {
                                   Net<1, Vec<2>>({size}, std::move(net)));
 }
 
+// The largest value found among samples, and between the neighbours of the largest of them.
+template <class F>
+double largest(const F& f, Interval on, int samples) {
+    const auto at = [&](int i) { return on.lo + on.length() * i / samples; };
+    double worst = 0;
+    int place = 0;
+    for (int i = 0; i <= samples; ++i)
+        if (const double x = f(at(i)); x > worst) worst = x, place = i;
+    const Interval near{at(std::max(place - 1, 0)), at(std::min(place + 1, samples))};
+    for (int i = 1; i < 16; ++i) worst = std::max(worst, f(near.lo + near.length() * i / 16));
+    return worst;
+}
+
+// Several in each piece of a spline.
+int samples_for(const Edge& e, const CurveGeometry<2>& on_surface) {
+    std::size_t pieces = 1;
+    const auto count = [&](const auto& g) {
+        if constexpr (requires { g.net(); }) pieces = std::max(pieces, g.net().flat().size());
+    };
+    if (e.curve) std::visit(count, *e.curve);
+    std::visit(count, on_surface);
+    return int(std::clamp<std::size_t>(6 * pieces, 48, 6000));
+}
+
 }  // namespace
 
 std::optional<CurveGeometry<2>> refit(const SurfaceGeometry& s, const CurveGeometry<3>& c,
@@ -129,6 +153,17 @@ std::optional<CurveGeometry<2>> refit(const SurfaceGeometry& s, const CurveGeome
         if (done.size() + todo.size() > kMostPieces) return std::nullopt;
     }
     return joined(done);
+}
+
+double sampled_gap(const SurfaceGeometry& s, const Edge& e, const Vec<3>& vertex,
+                   const CurveGeometry<2>& on_surface) {
+    if (!e.curve && !e.degenerate) return 0;
+    const auto on = limits(s);
+    const auto gap = [&](double t) {
+        const Vec<3> on_face = jet<0>(s, clamped(jet<0>(on_surface, t).value(), on).c).value();
+        return norm(on_face - (e.curve ? jet<0>(*e.curve, t).value() : vertex));
+    };
+    return largest(gap, e.range, samples_for(e, on_surface));
 }
 
 }  // namespace freiform::occt

@@ -1,6 +1,6 @@
 // Better parameter curves than those that come with a file, or that the reader has made for want of them.
 #pragma once
-#include <freiform/spline/geometry.hpp>
+#include <freiform/model/model.hpp>
 
 #include <optional>
 
@@ -11,5 +11,10 @@ namespace freiform::occt {
 // poles, where the guess is far off, and where too many pieces would be needed.
 std::optional<CurveGeometry<2>> refit(const SurfaceGeometry& s, const CurveGeometry<3>& c,
                                       const CurveGeometry<2>& guess, Interval on, double accuracy);
+
+// The largest distance, among samples, of the image of a parameter curve from its edge; of a degenerate edge
+// from its `vertex`. No bound: says where one is wanted.
+double sampled_gap(const SurfaceGeometry& s, const Edge& e, const Vec<3>& vertex,
+                   const CurveGeometry<2>& on_surface);
 
 }  // namespace freiform::occt

@@ -179,7 +179,7 @@ constexpr std::string_view kFaceUseFields[] = {"face", "reversed"};
 constexpr std::string_view kShellFields[] = {"faces", "closed"};
 constexpr std::string_view kBodyFields[] = {"shells", "solid", "name", "colour"};
 constexpr std::string_view kRefusedFields[] = {"kind", "where", "message"};
-constexpr std::string_view kApproximationFields[] = {"where", "what", "bound"};
+constexpr std::string_view kApproximationFields[] = {"where", "what", "bound", "estimate"};
 constexpr std::string_view kModelFields[] = {"type",  "name",   "unit",   "vertices", "edges",
                                              "faces", "shells", "bodies", "refused",  "approximations"};
 constexpr std::string_view kRefusalKinds[] = {
@@ -275,7 +275,9 @@ Result<Approximation> read_approximation(json::Value v) {
                                       [](Into& in, const Fields& f, Approximation& x) {
                                           in.field(f, "where", x.where, read_string)
                                               .needed(f, "what", x.what, read_string)
-                                              .needed(f, "bound", x.bound, read_number);
+                                              .field(f, "estimate", x.estimate, read_number);
+                                          if (f.has("bound") || !f.has("estimate"))
+                                              in.needed(f, "bound", x.bound, read_number);
                                       });
 }
 
@@ -439,7 +441,11 @@ void write_entity(json::Writer& w, const Refusal& r) {
     w.field("kind", name_of(r.kind)).field("where", r.where).field("message", r.message);
 }
 void write_entity(json::Writer& w, const Approximation& a) {
-    w.field("where", a.where).field("what", a.what).field("bound", a.bound);
+    w.field("where", a.where).field("what", a.what);
+    if (a.bound)
+        w.field("bound", *a.bound);
+    else
+        w.field("estimate", a.estimate);
 }
 
 template <class T>

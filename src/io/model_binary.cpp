@@ -20,7 +20,7 @@ namespace freiform {
 namespace {
 
 constexpr std::string_view kMagic{"FFMODEL\0", 8};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct Writer {
     static constexpr bool kReading = false;
@@ -174,6 +174,7 @@ void describe(A& a, Approximation& x) {
     describe(a, x.where);
     describe(a, x.what);
     describe(a, x.bound);
+    describe(a, x.estimate);
 }
 
 // Splines are valid from construction on, so they are read into parts first.

@@ -23,6 +23,8 @@ namespace {
 
 constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
 
+}  // namespace
+
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
     return std::visit(
         [&](const auto& c) -> CurveGeometry<1> {
@@ -43,8 +45,6 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
         },
         curve);
 }
-
-}  // namespace
 
 EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
     : model_(model), faces_(faces), edges_(model.edges.size()) {

@@ -9,6 +9,9 @@
 
 namespace freiform {
 
+// u(t) or v(t).
+CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i);
+
 // One use of an edge by a face, with what is needed to bound errors along it.
 struct CoedgeQuery {
     int face = -1, loop = -1, index = -1;

@@ -24,25 +24,13 @@ struct Run {
     std::vector<BoundaryOfFace::Source> sources;  // one fewer
 };
 
-// A spline ends at its domain; parameter curves may leave it by rounding.
-Vec<2> clamped(const SurfaceGeometry& surface, Vec<2> uv) {
-    const auto on = domain(surface);
-    const bool spline = std::visit(
-        [](const auto& s) {
-            return requires { s.net(); };
-        },
-        surface);
-    if (spline)
-        for (int i = 0; i < 2; ++i) uv[i] = std::clamp(uv[i], on[std::size_t(i)].lo, on[std::size_t(i)].hi);
-    return uv;
-}
-
 Run run_of(const Coedge& coedge, const SurfaceGeometry& surface, const EdgeMesh& mesh) {
     Run run;
+    const auto on = limits(surface);  // parameter curves may leave it by rounding
     const int n = int(mesh.parameters.size());
     for (int k = 0; k < n; ++k) {
         const int i = coedge.reversed ? n - 1 - k : k;
-        run.uv.push_back(clamped(surface, jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value()));
+        run.uv.push_back(clamped(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on));
         run.points.push_back(mesh.points[std::size_t(i)]);
         if (k + 1 < n) run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
     }

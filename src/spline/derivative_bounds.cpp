@@ -25,6 +25,7 @@ namespace {
 
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostBernstein = kMaxDegree + 1;
 constexpr double kShortest = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
 // The net of differences of order `a`, of the numerator after shifting to c0 and of the weight: the largest
@@ -46,28 +47,36 @@ Differences<Space<P>::kDim> differences(const NetView<N, const P>& net, const In
         if (extent[d] <= 0) return out;
         terms[d] = a[d] + 1;
     }
+    // (-1)^(a - k) C(a, k), and the Bernstein polynomials at 1/2, along each axis.
+    std::array<std::array<double, kBoundOrder + 1>, N> sign{};
+    std::array<std::array<double, kMostBernstein>, N> bernstein{};
+    for (std::size_t d = 0; d < N; ++d) {
+        for (int k = 0; k <= a[d]; ++k)
+            sign[d][std::size_t(k)] = ((a[d] - k) % 2 == 0 ? 1 : -1) * binomial(a[d], k);
+        for (int i = 0; i < extent[d]; ++i)
+            bernstein[d][std::size_t(i)] = std::ldexp(binomial(extent[d] - 1, i), 1 - extent[d]);
+    }
     double most = 0;
     each_index(extent, [&](const Index<N>& at) {
         Vec<D> sum{};
-        double weight_sum = 0, bernstein = 1;
+        double weight_sum = 0, share = 1;
         each_index(terms, [&](const Index<N>& k) {
-            double sign = 1;
+            double factor = 1;
             Index<N> from = at;
             for (std::size_t d = 0; d < N; ++d) {
-                sign *= ((a[d] - k[d]) % 2 == 0 ? 1 : -1) * binomial(a[d], k[d]);
+                factor *= sign[d][std::size_t(k[d])];
                 from[d] += k[d];
             }
             const P& p = net(from);
             const double w = Space<P>::weight(p);
-            for (int i = 0; i < D; ++i) sum[i] += sign * (p[i] - w * c0[i]);
-            weight_sum += sign * w;
+            for (int i = 0; i < D; ++i) sum[i] += factor * (p[i] - w * c0[i]);
+            weight_sum += factor * w;
         });
-        for (std::size_t d = 0; d < N; ++d)
-            bernstein *= std::ldexp(binomial(extent[d] - 1, at[d]), 1 - extent[d]);
+        for (std::size_t d = 0; d < N; ++d) share *= bernstein[d][std::size_t(at[d])];
         most = std::max(most, dot(sum, sum));
         out.weight_most = std::max(out.weight_most, std::abs(weight_sum));
-        out.middle += bernstein * sum;
-        out.weight_middle += bernstein * weight_sum;
+        out.middle += share * sum;
+        out.weight_middle += share * weight_sum;
     });
     out.most = std::sqrt(most) * (1 + 8 * kRoundoff);
     if (!Space<P>::kRational) out.weight_most = 0;

@@ -68,6 +68,28 @@ std::array<Interval, 2> domain(const SurfaceGeometry& surface) {
         *s);
 }
 
+std::array<Interval, 2> limits(const SurfaceGeometry& surface) {
+    static constexpr Interval kNone{-kInfinity, kInfinity};
+    const auto of_profile = [](const CurveGeometry<3>& profile) {
+        return std::visit(
+            Overloaded{[](const Line<3>&) { return kNone; }, [](const Conic<3>&) { return kNone; },
+                       [](const auto& spline) { return spline.domain()[0]; }},
+            profile);
+    };
+    const auto* offset = std::get_if<OffsetSurface>(&surface);
+    return std::visit(Overloaded{[&](const Extrusion& e) {
+                                     return std::array{of_profile(e.profile), kNone};
+                                 },
+                                 [&](const Revolution& r) {
+                                     return std::array{kNone, of_profile(r.profile)};
+                                 },
+                                 [](const OffsetSurface&) {
+                                     return std::array{kNone, kNone};
+                                 },
+                                 [](const auto& spline) { return spline.domain(); }},
+                      offset ? *offset->base : surface);
+}
+
 template <int D>
 Result<void> check(const CurveGeometry<D>& curve) {
     return std::visit(

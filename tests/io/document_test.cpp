@@ -49,7 +49,8 @@ const char* const kEverything = R"({"freiform": 1, "unit": "mm", "objects": [
    "shells": [{"faces": [{"face": 0}, {"face": 1, "reversed": true}], "closed": true}],
    "bodies": [{"shells": [0], "solid": true, "name": "b", "colour": [0,0,0,0.5]}],
    "refused": [{"kind": "unsupported", "where": "#12", "message": "why"}],
-   "approximations": [{"where": "#13", "what": "a curve", "bound": 1e-9}]}
+   "approximations": [{"where": "#13", "what": "a curve", "bound": 1e-9},
+                      {"where": "", "what": "another", "estimate": 0.25}]}
 ]})";
 
 Document must_read(std::string_view text) {

@@ -1,6 +1,8 @@
 #include <freiform/io/exchange.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -142,6 +144,57 @@ TEST_F(Exchange, leaves_coordinates_in_the_unit_of_the_file) {
         EXPECT_NEAR(small.hi[i] - small.lo[i], 1000 / 25.4, 1e-9);
         EXPECT_NEAR(large.hi[i] - large.lo[i], 1000, 1e-9);
     }
+}
+
+// The largest distance of an edge from its image on the face, among many samples.
+double dense_gap(const Model& m, const Face& f, const Coedge& c) {
+    const Edge& e = m.edges[std::size_t(c.edge)];
+    const auto on = limits(f.surface);
+    double worst = 0;
+    for (int k = 0; k <= 2000; ++k) {
+        const double t = e.range.lo + e.range.length() * (k / 2000.0);
+        const Vec<3> p = jet<0>(f.surface, clamped(jet<0>(c.curve, t).value(), on).c).value();
+        if (e.curve) worst = std::max(worst, norm(p - jet<0>(*e.curve, t).value()));
+    }
+    return worst;
+}
+
+TEST_F(Exchange, lists_every_parameter_curve_that_it_replaces_with_a_proven_bound) {
+    FF_CORPUS_OR_SKIP(path, "step/linkrods.step");
+    const auto m = read_with_occt(path.string());
+    ASSERT_TRUE(m.has_value());
+    int replaced = 0, raised = 0;
+    std::vector<double> listed(m->edges.size(), 0);
+    for (const Approximation& a : m->approximations) {
+        ASSERT_TRUE(a.bound.has_value()) << a.what;
+        int edge = -1;
+        ASSERT_EQ(std::sscanf(a.where.c_str(), "edges[%d]", &edge), 1) << a.where;
+        ASSERT_LT(std::size_t(edge), m->edges.size());
+        replaced += a.what.find("is replaced by a spline") != std::string::npos;
+        raised += a.what.find("the file says at most") != std::string::npos;
+        EXPECT_LE(*a.bound, std::max(m->edges[std::size_t(edge)].tolerance, 1e-6)) << a.where;
+        listed[std::size_t(edge)] = std::max(listed[std::size_t(edge)], *a.bound);
+    }
+    EXPECT_GT(replaced, 40);
+    EXPECT_GT(raised, 20);
+    int refitted = 0;
+    for (const Face& f : m->faces)
+        for (const Loop& l : f.loops)
+            for (const Coedge& c : l.coedges) {
+                const double gap = dense_gap(*m, f, c);
+                EXPECT_LE(gap, m->edges[std::size_t(c.edge)].tolerance) << c.edge;
+                // What the refit makes: cubic, all inner knots double.
+                const auto* curve = std::get_if<Curve<Vec<2>>>(&c.curve);
+                if (!curve || curve->basis().degree() != 3) continue;
+                const auto breaks = curve->basis().breaks();
+                if (breaks.size() < 9 || !std::all_of(breaks.begin() + 1, breaks.end() - 1, [&](double t) {
+                        return curve->basis().multiplicity(t) == 2;
+                    }))
+                    continue;
+                ++refitted;
+                EXPECT_LE(gap, listed[std::size_t(c.edge)]) << c.edge;
+            }
+    EXPECT_GE(refitted, replaced);
 }
 
 TEST_F(Exchange, turns_normals_out_of_the_solid) {

@@ -72,7 +72,7 @@ Model everything() {
     m.shells = {{{{0, false}, {4, true}}, true}, {{{1, false}}, false}};
     m.bodies = {{{0, 1}, true, "solid", Colour{1, 0, 0, 1}}, {{1}, false, "", std::nullopt}};
     m.refused = {{RefusalKind::unsupported, "#12 FACE", "has no counterpart"}, {RefusalKind::io, "", ""}};
-    m.approximations = {{"edges[3]", "moved", 1e-5}};
+    m.approximations = {{"edges[3]", "moved", 1e-5}, {"edges[4]", "sampled", std::nullopt, 2e-5}};
     return m;
 }
 
@@ -114,8 +114,10 @@ TEST(ModelBinary, gives_back_every_part_to_the_last_bit) {
     EXPECT_TRUE(std::signbit(back->vertices[1].point[0]));
     EXPECT_EQ(back->vertices[1].point[1], std::numeric_limits<double>::denorm_min());
     EXPECT_EQ(back->refused, m.refused);
-    ASSERT_EQ(back->approximations.size(), 1u);
+    ASSERT_EQ(back->approximations.size(), 2u);
     EXPECT_EQ(back->approximations[0].bound, 1e-5);
+    EXPECT_EQ(back->approximations[1].bound, std::nullopt);
+    EXPECT_EQ(back->approximations[1].estimate, 2e-5);
     EXPECT_TRUE(back->bodies[0].solid);
     EXPECT_EQ(back->shells[0].faces[1].face, 4);
     EXPECT_TRUE(back->shells[0].faces[1].reversed);
@@ -193,7 +195,7 @@ TEST(ModelBinary, does_not_nest_offsets) {
 TEST(ModelBinary, tells_another_version_from_damage) {
     std::string bytes = to_binary(Model{});
     ASSERT_TRUE(from_binary(bytes).has_value());
-    bytes[8] = 2;
+    ++bytes[8];
     ASSERT_FALSE(from_binary(bytes).has_value());
     EXPECT_EQ(from_binary(bytes).error().kind, RefusalKind::unsupported);
 }

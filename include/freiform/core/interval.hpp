@@ -17,6 +17,7 @@ struct Interval {
     friend constexpr bool operator==(const Interval&, const Interval&) = default;
 };
 
+constexpr double clamped(double t, const Interval& on) { return t < on.lo ? on.lo : on.hi < t ? on.hi : t; }
 constexpr Interval hull(const Interval& a, const Interval& b) {
     return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }

@@ -68,11 +68,11 @@ struct Body {
     std::optional<Colour> colour;
 };
 
-// Something that a reader had to approximate: never silent, always with a number. Where `what` says "sampled"
-// the number is an estimate (dense samples and a margin), not proven.
+// Something that a reader had to approximate: never silent, always with a number.
 struct Approximation {
     std::string where, what;
-    double bound = 0;  // no point moved by more than this
+    std::optional<double> bound;  // no point moved by more than this: proven, rounding included
+    double estimate = 0;          // without a bound: what is believed instead; nothing proves it
 };
 
 struct Model {

@@ -67,6 +67,13 @@ template <int D>
 std::array<Interval, 1> domain(const CurveGeometry<D>& curve);
 std::array<Interval, 2> domain(const SurfaceGeometry& surface);
 
+// Where a spline ends nothing is defined beyond its domain: faces take parameters there as moved back to it.
+// The ends of splines, in each direction; infinite where there are none.
+std::array<Interval, 2> limits(const SurfaceGeometry& surface);
+inline Vec<2> clamped(const Vec<2>& uv, const std::array<Interval, 2>& limits) {
+    return {{clamped(uv[0], limits[0]), clamped(uv[1], limits[1])}};
+}
+
 // Refuses numbers that are not finite, directions and radii that vanish where none may.
 template <int D>
 Result<void> check(const CurveGeometry<D>& curve);
