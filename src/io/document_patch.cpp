@@ -7,7 +7,9 @@
 #include "document_detail.hpp"
 
 #include <freiform/core/scan.hpp>
+#include <freiform/spline/weights.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -82,7 +84,6 @@ Result<std::vector<double>> read_weights(json::Value v, const Index<N>& extent) 
     const auto leaf = [&](json::Value weight) -> Result<void> {
         const auto w = read_number(weight);
         if (!w) return std::unexpected(w.error());
-        if (!(*w > 0)) return refuse(RefusalKind::invalid, "", text("the weight ", *w, " is not positive"));
         flat.push_back(*w);
         return {};
     };
@@ -178,8 +179,9 @@ bool same_bits(double a, double b) {
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-// Whether h is the product of x and w, or x the quotient of h and w: one rounding either way.
-bool agree(double x, double w, double h) { return w * x == h || h / w == x; }
+// Whether h is the product of x and w, or x the quotient of h and w: one rounding either way. A point at
+// infinity (weight 0) is given by its direction h, for which x stands in.
+bool agree(double x, double w, double h) { return w * x == h || (w == 0 ? x == h : h / w == x); }
 
 template <int D>
 std::vector<Vec<D>> polynomial_net(const std::vector<double>& flat) {
@@ -195,7 +197,7 @@ Result<std::vector<Hom<D>>> rational_net(const Points<N>& p, const std::vector<d
     for (std::size_t k = 0; k < p.flat.size(); ++k) {
         const std::size_t i = k / std::size_t(D), c = k % std::size_t(D);
         const double w = weights[i], x = p.flat[k], h = weighted_points ? weighted_points->flat[k] : w * x;
-        if (!std::isfinite(h) || !std::isfinite(h / w))
+        if (!std::isfinite(h) || (w != 0 && !std::isfinite(h / w)))
             return refuse(RefusalKind::nonfinite, text("points", point_name<N>(p.extent, i), "[", c, "]"),
                           text(x, " times its weight ", w, " leaves the range of double"));
         if (!agree(x, w, h))
@@ -312,6 +314,22 @@ Result<std::array<Axis, N>> read_axes(const Fields& fields) {
     return axes;
 }
 
+bool all_positive(const std::vector<double>& weights) {
+    return std::all_of(weights.begin(), weights.end(), [](double w) { return w > 0; });
+}
+
+// Weights that are not positive are taken where the patch has no pole.
+template <std::size_t N, class P>
+Result<Patch<N, P>> make_patch(const std::array<BSplineBasis, N>& bases, Net<N, P> net) {
+    if constexpr (Space<P>::kRational) {
+        auto form = positive_weights<N, Space<P>::kDim>(bases, net);
+        if (!form) return std::unexpected(form.error());
+        return std::move(form->patch);
+    } else {
+        return Patch<N, P>::make(bases, std::move(net));
+    }
+}
+
 }  // namespace
 
 template <std::size_t N>
@@ -335,9 +353,12 @@ Result<ReadShape> read_patch(json::Value v) {
         return std::array<BSplineBasis, N>{std::move(made[I])...};
     }
     (std::make_index_sequence<N>{});
-    return assemble(*net, [&]<class P>(std::vector<P> coefficients) {
-        return Patch<N, P>::make(bases, Net<N, P>(net->points.extent, std::move(coefficients)));
+    auto read = assemble(*net, [&]<class P>(std::vector<P> coefficients) {
+        return make_patch(bases, Net<N, P>(net->points.extent, std::move(coefficients)));
     });
+    // Points that were given are those of the patch unless knots had to be inserted or signs changed.
+    if (read && net->weights && !all_positive(*net->weights)) read->given_points.clear();
+    return read;
 }
 
 template Result<ReadShape> read_patch<1>(json::Value);

@@ -64,6 +64,23 @@ Refusal must_refuse(std::string_view text) {
     return d ? Refusal{} : d.error();
 }
 
+TEST(Document, takes_weights_that_are_not_positive_where_there_is_no_pole) {
+    // A half circle: the middle control point is at infinity, in the direction (0, 1).
+    const Document d = must_read(R"({"type":"curve","points":[[1,0],[0,1],[-1,0]],"weights":[1,0,1],
+        "weighted_points":[[1,0],[0,1],[-1,0]]})");
+    const auto& half = std::get<Curve<Hom<2>>>(d.objects.at(0).shape);
+    EXPECT_EQ(weights(half), (std::vector<double>{1, 0.5, 0.5, 1}));
+    EXPECT_NEAR(norm(half(0.3)), 1, 1e-15);
+    EXPECT_TRUE(d.objects[0].given_points.empty());
+    // All negative: the same curve.
+    const Document n = must_read(R"({"type":"curve","points":[[1,0],[1,1],[0,1]],"weights":[-1,-0.5,-1]})");
+    EXPECT_EQ(weights(std::get<Curve<Hom<2>>>(n.objects.at(0).shape)), (std::vector<double>{1, 0.5, 1}));
+    EXPECT_EQ(must_refuse(R"({"type":"curve","points":[[1,0],[0,1],[-1,0]],"weights":[1,0,1],
+        "weighted_points":[[1,0],[0,2],[-1,0]]})")
+                  .where,
+              "weighted_points[1][1]");
+}
+
 TEST(Document, has_one_of_every_type) {
     const Document d = must_read(kEverything);
     ASSERT_EQ(d.objects.size(), 9u);
@@ -420,8 +437,9 @@ TEST(Document, refuses_contradictions_and_says_what_was_expected) {
              RefusalKind::nonfinite},
             {R"({"type":"curve","points":[[0],[1e308]]})", "points[1]", "2^1022", RefusalKind::unsupported},
             {R"({"type":"curve","points":[[0],[1]],"weights":[1]})", "weights", "1 weights for 2 points"},
-            {R"({"type":"curve","points":[[0],[1]],"weights":[1,0]})", "weights[1]", "not positive"},
-            {R"({"type":"curve","points":[[0],[1]],"weights":[1,-2]})", "weights[1]", "not positive"},
+            {R"({"type":"curve","points":[[0],[1]],"weights":[1,0]})", "weights", "0 at the parameter 1"},
+            {R"({"type":"curve","points":[[0],[1]],"weights":[1,-1]})", "weights",
+             "between the parameters 0.4999"},
             {R"({"type":"curve","points":[[0],[1e200]],"weights":[1,1e200]})", "points[1][0]",
              "leaves the range", RefusalKind::nonfinite},
             {R"({"type":"curve","points":[[0],[1]],"weights":[1,1e-320]})", "weights[1]", "subnormal",
@@ -450,8 +468,9 @@ TEST(Document, refuses_contradictions_and_says_what_was_expected) {
              "needs 3 points"},
             {R"({"type":"surface","degrees":[1,1],"knots":[[0,0,1,1],[0,0,2,1]],"points":[[[0],[1]],[[0],[1]]]})",
              "knots[1][3]", "decreases"},
-            {R"({"type":"surface","points":[[[0],[1]],[[0],[1]]],"weights":[[1,1],[1,0]]})", "weights[1][1]",
-             "not positive"},
+            {R"({"type":"surface","points":[[[0],[1]],[[0],[1]]],"weights":[[1,1],[1,0]]})", "weights",
+             "0 at the parameters (1, 1)"},
+            {R"({"type":"triangle","points":[[0],[1],[2]],"weights":[1,1,0]})", "weights[2]", "not positive"},
             {R"({"type":"surface","points":[[[0],[1]],[[0],[1]]],"weights":[[1,1],[1]]})", "weights[1]",
              "has 1 entries"},
             {R"({"type":"triangle","degree":2,"points":[[0],[1],[2]]})", "points", "degree 2 has 6"},
