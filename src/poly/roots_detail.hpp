@@ -10,6 +10,14 @@
 
 namespace freiform::detail {
 
+// Coefficients, the lowest first; not always all of its degree are there.
+using IntegerPolynomial = std::vector<Integer>;
+void trim(IntegerPolynomial& a);            // without leading zeros: zero is empty
+void make_primitive(IntegerPolynomial& a);  // divided by the greatest common divisor of the coefficients
+IntegerPolynomial derivative_of(const IntegerPolynomial& a);
+// From Bernstein coefficients c to the coefficients C(n, i) c_i of the powers of t / (1 - t).
+IntegerPolynomial to_power(const IntegerPolynomial& bernstein);
+
 // The sign of a polynomial at a double of [0, 1], with all the work that it takes.
 class ExactSign {
 public:

@@ -27,25 +27,10 @@
 
 namespace freiform::detail {
 
-namespace {
-
-using Coefficients = std::vector<Integer>;
-
-constexpr int kDepth = 52;  // of cells that are told apart
-constexpr int kDeepest =
-    20000;  // halvings while counting, a backstop: the distance of roots is bounded below
+using Coefficients = IntegerPolynomial;
 
 void trim(Coefficients& a) {
     while (!a.empty() && a.back().sign() == 0) a.pop_back();
-}
-
-// Without the common power of two: all that costs nothing.
-void remove_twos(Coefficients& a) {
-    int zeros = 0x7fffffff;
-    for (const Integer& x : a)
-        if (x.sign() != 0) zeros = std::min(zeros, trailing_zeros(x));
-    if (zeros == 0 || zeros == 0x7fffffff) return;
-    for (Integer& x : a) x = shifted_right(x, zeros);
 }
 
 void make_primitive(Coefficients& a) {
@@ -63,6 +48,39 @@ Coefficients derivative_of(const Coefficients& a) {
     Coefficients d;
     for (std::size_t i = 1; i < a.size(); ++i) d.push_back(a[i] * integer(std::int64_t(i)));
     return d;
+}
+
+namespace {
+
+Coefficients binomials(int n) {
+    Coefficients row(std::size_t(n) + 1, integer(1));
+    for (int i = 1; i <= n; ++i)
+        row[std::size_t(i)] = divided(row[std::size_t(i) - 1] * integer(n - i + 1), integer(i)).quotient;
+    return row;
+}
+
+}  // namespace
+
+Coefficients to_power(const Coefficients& c) {
+    const Coefficients row = binomials(int(c.size()) - 1);
+    Coefficients s(c.size());
+    for (std::size_t i = 0; i < c.size(); ++i) s[i] = c[i] * row[i];
+    return s;
+}
+
+namespace {
+
+constexpr int kDepth = 52;  // of cells that are told apart
+constexpr int kDeepest =
+    20000;  // halvings while counting, a backstop: the distance of roots is bounded below
+
+// Without the common power of two: all that costs nothing.
+void remove_twos(Coefficients& a) {
+    int zeros = 0x7fffffff;
+    for (const Integer& x : a)
+        if (x.sign() != 0) zeros = std::min(zeros, trailing_zeros(x));
+    if (zeros == 0 || zeros == 0x7fffffff) return;
+    for (Integer& x : a) x = shifted_right(x, zeros);
 }
 
 // lc(b)^k a mod b, for some k.
@@ -131,20 +149,6 @@ bool is_square_free(const Coefficients& p) {
 }
 
 // --- between Bernstein and power coefficients --------------------------------------------------------------
-
-Coefficients binomials(int n) {
-    Coefficients row(std::size_t(n) + 1, integer(1));
-    for (int i = 1; i <= n; ++i)
-        row[std::size_t(i)] = divided(row[std::size_t(i) - 1] * integer(n - i + 1), integer(i)).quotient;
-    return row;
-}
-
-Coefficients to_power(const Coefficients& c) {
-    const Coefficients row = binomials(int(c.size()) - 1);
-    Coefficients s(c.size());
-    for (std::size_t i = 0; i < c.size(); ++i) s[i] = c[i] * row[i];
-    return s;
-}
 
 // Up to a positive factor.
 Coefficients to_bernstein(const Coefficients& s) {
