@@ -17,6 +17,8 @@ void add_commands(CLI::App& app, Context& context) {
     add_tessellate(app, context);
     add_draw(app, context);
     add_interpolate(app, context);
+    add_flatten(app, context);
+    add_length(app, context);
 }
 
 std::string version(bool verbose) {

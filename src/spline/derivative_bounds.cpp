@@ -431,14 +431,17 @@ template class DerivativeQuery<1, 1>;
 template class DerivativeQuery<1, 2>;
 template class DerivativeQuery<1, 3>;
 template class DerivativeQuery<2, 3>;
-template DerivativeBounds<1> derivative_bounds(const NetView<1, const Vec<2>>&, const std::array<double, 1>&,
-                                               int);
-template DerivativeBounds<1> derivative_bounds(const NetView<1, const Hom<2>>&, const std::array<double, 1>&,
-                                               int);
-template DerivativeBounds<1> derivative_bounds(const NetView<1, const Vec<3>>&, const std::array<double, 1>&,
-                                               int);
-template DerivativeBounds<1> derivative_bounds(const NetView<1, const Hom<3>>&, const std::array<double, 1>&,
-                                               int);
+#define FF_INSTANTIATE(P)                                                                                    \
+    template DerivativeBounds<1> derivative_bounds(const NetView<1, const P>&, const std::array<double, 1>&, \
+                                                   int);
+FF_INSTANTIATE(Vec<1>)
+FF_INSTANTIATE(Hom<1>)
+FF_INSTANTIATE(Vec<2>)
+FF_INSTANTIATE(Hom<2>)
+FF_INSTANTIATE(Vec<3>)
+FF_INSTANTIATE(Hom<3>)
+FF_INSTANTIATE(Vec<4>)
+FF_INSTANTIATE(Hom<4>)
 template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
                                                int);
 template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,

@@ -1,0 +1,126 @@
+#include "run.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+using FlattenCommand = Program;
+using LengthCommand = Program;
+
+const std::string kExample = std::string(FREIFORM_SOURCE_DIR) + "/examples/curves.json";
+const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
+const std::string kArch = R"({"type": "curve", "degree": 3, "points": [[0,0],[1,2],[3,2],[4,0]]})";
+
+Json parsed(const Ran& r) {
+    EXPECT_EQ(r.code, 0) << r.err;
+    return Json::parse(r.out, nullptr, false);
+}
+std::string kind_of(const Ran& r) {
+    return Json::parse(r.out, nullptr, false).value("error", Json::object()).value("kind", "");
+}
+
+TEST_F(FlattenCommand, polylines_are_json_with_points_parameters_and_the_bound) {
+    for (const char* method : {"adaptive", "uniform", "forward", "halving"}) {
+        const Json all = parsed(run({"flatten", "-", "--tolerance", "0.01", "--method", method}, kArch));
+        ASSERT_EQ(all["objects"].size(), 1u);
+        const Json& line = all["objects"][0];
+        ASSERT_EQ(line["points"].size(), line["parameters"].size());
+        EXPECT_GT(line["points"].size(), 10u);
+        EXPECT_LE(line["error_bound"].get<double>(), 0.01);
+        EXPECT_EQ(line["points"][0], Json::array({0.0, 0.0}));
+        EXPECT_EQ(line["points"].back(), Json::array({4.0, 0.0}));
+        EXPECT_EQ(line["parameters"].back(), 1.0);
+    }
+    const Json three = parsed(run({"flatten", kExample, "--tolerance", "0.1"}));
+    ASSERT_EQ(three["objects"].size(), 3u);
+    EXPECT_EQ(three["objects"][2]["name"], "circle");
+    EXPECT_EQ(three["objects"][1]["closed"], true);
+}
+
+TEST_F(FlattenCommand, writes_csv_and_svg) {
+    ASSERT_EQ(run({"flatten", kExample, "--tolerance", "0.1", "-o", "c.csv"}).code, 0);
+    EXPECT_TRUE(content(path("c.csv")).starts_with("object,parameter,x,y\n0,0,0,0\n"));
+    ASSERT_EQ(run({"flatten", kExample, "--segments", "12", "-o", "c.svg"}).code, 0);
+    const std::string svg = content(path("c.svg"));
+    EXPECT_TRUE(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox="));
+    EXPECT_NE(svg.find("Z\"/>"), std::string::npos) << "the closed curve is closed";
+    const Ran space = run({"flatten", "-", "--tolerance", "1", "-o", "c3.svg"},
+                          R"({"type": "curve", "degree": 1, "points": [[0,0,0],[1,1,1]]})");
+    EXPECT_EQ(space.code, 1);
+    EXPECT_FALSE(std::filesystem::exists(path("c3.svg")));
+}
+
+TEST_F(FlattenCommand, compares_the_methods_at_equal_effort) {
+    const Json all = parsed(run({"flatten", "-", "--compare", "16", "--json"}, kArch));
+    const Json& rows = all["objects"][0]["methods"];
+    ASSERT_EQ(rows.size(), 5u);
+    for (const Json& row : rows) EXPECT_LE(row["measured"].get<double>(), row["error_bound"].get<double>());
+    EXPECT_NE(run({"flatten", "-", "--compare", "16"}, kArch).out.find("halving, polygons"),
+              std::string::npos);
+}
+
+TEST_F(FlattenCommand, refuses_with_the_exit_codes_of_the_contract) {
+    EXPECT_EQ(run({"flatten", kExample}).code, 2);
+    EXPECT_EQ(run({"flatten", kExample, "--tolerance", "0"}).code, 2);
+    EXPECT_EQ(run({"flatten", kExample, "--tolerance", "1", "--segments", "4"}).code, 2);
+    EXPECT_EQ(run({"flatten", kExample, "--tolerance", "1", "--polygons"}).code, 2);
+    EXPECT_EQ(run({"flatten", kExample, "--tolerance", "1", "-o", "c.dxf"}).code, 2);
+    const Ran word = run({"flatten", kExample, "--tolerance", "1", "--method", "halfing"});
+    EXPECT_EQ(word.code, 2);
+    EXPECT_NE(word.err.find("halving"), std::string::npos) << word.err;
+    const Ran fine = run({"flatten", kExample, "--tolerance", "1e-15", "--json"});
+    EXPECT_EQ(fine.code, 1);
+    EXPECT_EQ(kind_of(fine), "ill_conditioned");
+    const Ran many = run({"flatten", "-", "--tolerance", "1e-9", "--method", "uniform", "--json"},
+                         R"({"type": "curve", "points": [[0,0],[1e7,2e7],[3e7,2e7],[4e7,0]]})");
+    EXPECT_EQ(many.code, 1) << many.out;
+    EXPECT_EQ(run({"flatten", kTeapot, "--tolerance", "1", "--json"}).code, 1);
+    EXPECT_EQ(run({"flatten", "absent.json", "--tolerance", "1"}).code, 5);
+}
+
+TEST_F(LengthCommand, prints_lengths_for_people_and_as_json) {
+    const Ran text = run({"length", kExample});
+    EXPECT_EQ(text.code, 0) << text.err;
+    EXPECT_NE(text.out.find("mm (within "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("in all: "), std::string::npos) << text.out;
+    const Json all = parsed(run({"length", kExample, "--json"}));
+    EXPECT_NEAR(all["objects"][2]["value"].get<double>(), 32 * std::acos(-1.0), 1e-11);
+    double sum = 0;
+    for (const Json& o : all["objects"]) sum += o["value"].get<double>();
+    EXPECT_NEAR(all["value"].get<double>(), sum, 1e-11);
+    EXPECT_LT(all["bound"].get<double>(), 1e-10);
+}
+
+TEST_F(LengthCommand, finds_places_at_lengths_and_at_equal_distance) {
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"length", "-", "--at", "1", "2.5", "--json"}, {"length", "--json", "--at", "1,2.5", "-"}}) {
+        const Json all = parsed(run(words, kArch));
+        const Json& at = all["objects"][0]["at"];
+        ASSERT_EQ(at.size(), 2u);
+        const double t = at[1]["parameter"].get<double>();
+        const Json back = parsed(run({"length", "-", "--range", "0," + std::to_string(t), "--json"}, kArch));
+        EXPECT_NEAR(back["value"].get<double>(), 2.5, 1e-5);
+        EXPECT_EQ(at[1]["point"].size(), 2u);
+        EXPECT_LT(at[1]["bound"].get<double>(), 1e-12);
+    }
+    const Json equal = parsed(run({"length", "-", "--equal", "7", "--json"}, kArch));
+    EXPECT_EQ(equal["objects"][0]["at"].size(), 8u);
+    const Json spaced = parsed(run({"length", "-", "--spacing", "0.5", "--json"}, kArch));
+    EXPECT_EQ(spaced["objects"][0]["at"].size(), 11u);  // of 5.268
+}
+
+TEST_F(LengthCommand, refuses_with_the_exit_codes_of_the_contract) {
+    EXPECT_EQ(run({"length"}).code, 2);
+    EXPECT_EQ(run({"length", kExample, "--at", "x"}).code, 2);
+    EXPECT_EQ(run({"length", kExample, "--equal", "3", "--spacing", "1"}).code, 2);
+    const Ran beyond = run({"length", "-", "--at", "6", "--json"}, kArch);
+    EXPECT_EQ(beyond.code, 1);
+    EXPECT_EQ(kind_of(beyond), "out_of_domain");
+    EXPECT_EQ(run({"length", kTeapot}).code, 1);
+}
+
+}  // namespace
+}  // namespace freiform::test
