@@ -148,7 +148,7 @@ struct Part {
     double x0 = 0, x1 = 1;
     double bound = 0;
     int piece = 0, depth = 0;
-    friend bool operator<(const Part& a, const Part& b) { return a.bound < b.bound; }
+    friend bool operator<(const Part& l, const Part& r) { return l.bound < r.bound; }
 };
 
 template <class P>
