@@ -1,6 +1,7 @@
 #include "document_detail.hpp"
 
 #include <freiform/io/document.hpp>
+#include <freiform/make/named_curve.hpp>
 
 #include <cmath>
 
@@ -18,31 +19,6 @@ Result<Object> object_of(Result<ReadShape> shape) {
     return Object{"", std::move(shape->shape), std::move(shape->given_points)};
 }
 
-// Cubic Hermite segments as one C1 spline with double inner knots: a segment of length h from P to Q with
-// derivatives R and S has the Bezier points P, P + h R / 3, Q - h S / 3, Q; the points between two segments
-// are no coefficients of the spline, because the knot is double.
-template <int D>
-Result<Shape> hermite_curve(const std::vector<Vec<D>>& p, const std::vector<Vec<D>>& r,
-                            const std::vector<double>& t) {
-    std::vector<double> knots(2, t.front());
-    std::vector<Vec<D>> net{p.front()};
-    for (std::size_t i = 0; i + 1 < p.size(); ++i) {
-        const double h = t[i + 1] - t[i];
-        net.push_back(p[i] + (h / 3) * r[i]);
-        net.push_back(p[i + 1] - (h / 3) * r[i + 1]);
-    }
-    net.push_back(p.back());
-    for (const double x : t) knots.insert(knots.end(), 2, x);
-    knots.insert(knots.end(), 2, t.back());
-    auto basis = BSplineBasis::make(3, std::move(knots));
-    if (!basis) return std::unexpected(basis.error());
-    const int n = int(net.size());
-    auto curve = Curve<Vec<D>>::make({std::move(*basis)}, Net<1, Vec<D>>({n}, std::move(net)));
-    if (!curve)
-        return refuse(curve.error().kind, "tangents", "point and tangent together leave the range of double");
-    return std::move(*curve);
-}
-
 template <int D>
 Result<Shape> read_hermite(const Fields& f, const std::vector<double>& t, std::size_t n) {
     const auto vectors = [](json::Value v) { return read_list(v, read_vec<D>); };
@@ -51,7 +27,9 @@ Result<Shape> read_hermite(const Fields& f, const std::vector<double>& t, std::s
     if (!r) return std::unexpected(r.error());
     if (r->size() != n)
         return refuse(RefusalKind::invalid, "tangents", text(r->size(), " tangents for ", n, " points"));
-    return hermite_curve<D>(*p, *r, t);
+    auto curve = hermite_spline<Vec<D>>(*p, *r, t);
+    if (!curve) return std::unexpected(curve.error());
+    return std::move(*curve);
 }
 
 Result<Object> read_hermite_object(json::Value v) {
