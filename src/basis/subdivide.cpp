@@ -10,7 +10,7 @@
 // consecutive old knots. Between, u is among them, and c'_j = a c_j + (1 - a) c_{j-1}, a = (u - t_j) /
 // (t_{j+p} - t_j), is the step from the arguments where u is replaced by t_j and by t_{j+p}. On a closed
 // basis the same with indices modulo n, beginning at j = s - p + 1; the previous copy of u has the index s -
-// n there, and is no argument if n >= p - 1.
+// n there, and is no argument if n >= p - 1 (shorter ones are left to insert_knots).
 //
 // Lane and Riesenfeld: N_i(x) = sum_k C(p + 1, k) / 2^p N_{2i+k}(2 x) for knots at the integers. Row f of the
 // matrix therefore has the entries a_{f - 2 i}; the first function that the domain [p, n] sees has f = p.
@@ -42,10 +42,7 @@ Result<Change<BSplineBasis>> insert_knot(const BSplineBasis& old, double u) {
     if (!old.domain().contains(u))
         return refuse(RefusalKind::out_of_domain, "knot",
                       text(u, " is outside the domain [", old.domain().lo, ", ", old.domain().hi, "]"));
-    if (old.is_closed() && n < p - 1)
-        return refuse(RefusalKind::unsupported, "knot",
-                      text("a closed basis of degree ", p, " with ", n, " coefficients; at least ", p - 1,
-                           " are expected"));
+    if (old.is_closed() && n < p - 1) return insert_knots(old, std::span(&u, 1));
     std::vector<double> t(old.defining().begin(), old.defining().end());
     t.insert(std::upper_bound(t.begin(), t.end(), u), u);
     auto fresh = old.same_kind(p, std::move(t));
