@@ -8,7 +8,7 @@ namespace freiform {
 // Boehm's algorithm: one knot u inside the domain, of multiplicity <= p + 1 afterwards (closed: p). Of the
 // new coefficients at most p are a mean of two neighbours, the others are old ones. The same function, basis
 // and coefficients as insert_knots, up to rounding; cheaper where knots come one by one. Refuses as
-// insert_knots does; and unsupported, of closed bases of fewer than p - 1 coefficients.
+// insert_knots does, to which closed bases of fewer than p - 1 coefficients are left.
 //   auto more = insert_knot(curve.basis(), 0.5);
 Result<Change<BSplineBasis>> insert_knot(const BSplineBasis& old, double u);
 
