@@ -25,7 +25,9 @@
 // Accuracy: bounded.hpp after the exact part. Coefficients are first multiplied by powers of two that bring
 // lengths near 1.
 //
-// References: [Salmon 1879, ch. 10-13], [Bronstein et al. 2015, 3.5.2.11] for the table of kinds.
+// References: [Salmon 1879, ch. 10-13].
+//
+// Why not an eigenvalue routine? Its rounding decides about kinds, and near parabolas it is always wrong.
 #include <freiform/make/conic_equation.hpp>
 #include <freiform/poly/determinant.hpp>
 #include <freiform/poly/exact.hpp>

@@ -134,6 +134,26 @@ TEST(ConicEquation, the_bound_of_the_centre_holds_even_beside_a_parabola) {
     }
 }
 
+TEST(ConicEquation, the_weight_of_an_arc_says_its_kind) {
+    // The equation of the arc with weights 1, w, 1 at a, b, c: 4 w^2 L_ab L_bc = L_ac^2, with the lines
+    // through the points as barycentric coordinates: here x, y and 1 - x - y.
+    for (const auto& [w, type] :
+         {std::pair{0.5, ConicType::ellipse}, {1.0, ConicType::parabola}, {2.0, ConicType::hyperbola}}) {
+        const auto arc = must(weighted_arc<2>({{1, 0}}, {{0, 0}}, {{0, 1}}, w));
+        const double k = 4 * w * w;  // 4 w^2 x y = (1 - x - y)^2
+        const ConicEquation q{{1, 2 - k, 1, -2, -2, 1}};
+        EXPECT_EQ(must(classify(q)), type);
+        for (double t : {0.25, 0.5, 0.9}) EXPECT_NEAR(value_of(q, arc.curve(t)), 0, 1e-15);
+        // Back: the arcs of the equation inside the unit square contain this one.
+        const auto back = must(arcs_inside(must(solve(q)), {{{0, 0}}, {{1, 1}}}));
+        double nearest = 1;
+        for (const auto& a : back)
+            for (int i = 0; i <= 1000; ++i)
+                nearest = std::min(nearest, norm(a.curve(i / 1000.0) - arc.curve(0.4)));
+        EXPECT_LT(nearest, 2e-3);
+    }
+}
+
 TEST(ConicEquation, arcs_inside_a_box) {
     const Box<2> box{{{-2, -2}}, {{2, 2}}};
     const auto inside = [&](const std::array<double, 6>& c) {

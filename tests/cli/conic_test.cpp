@@ -1,0 +1,71 @@
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+using Cli = Program;
+
+TEST_F(Cli, implicit_prints_the_equation_of_plane_curves) {
+    const std::string parabola = R"({"type":"curve","points":[[0,0],[0.5,0],[1,1]]})";
+    const Ran r = run({"implicit", "-", "--at", "0.5,0.25;0.5,0.3;0.5,0.2"}, parabola);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.out.find("degree 2"), std::string::npos) << r.out;
+    EXPECT_NE(r.out.find("x^2"), std::string::npos) << r.out;
+    EXPECT_NE(r.out.find("at 0.5,0.25: zero"), std::string::npos) << r.out;
+    const Json j =
+        Json::parse(run({"implicit", "-", "--json", "--at", "0.5,0.25;0.5,0.3;0.5,0.2"}, parabola).out);
+    const Json& one = j["results"][0];
+    EXPECT_EQ(one["degree"], 2);
+    EXPECT_EQ(one["traces"], 1);
+    EXPECT_EQ(one["bound"], 0);
+    double x2 = 0, y1 = 0, others = 0;
+    for (const Json& t : one["terms"])
+        (t["x"] == 2 && t["y"] == 0   ? x2
+         : t["x"] == 0 && t["y"] == 1 ? y1
+                                      : others) += std::abs(t["coefficient"].get<double>());
+    EXPECT_EQ(x2, y1);
+    EXPECT_GT(x2, 0);
+    EXPECT_EQ(others, 0);
+    EXPECT_EQ(one["signs"][0], 0);
+    EXPECT_EQ(one["signs"][1].get<int>() * one["signs"][2].get<int>(), -1);
+    EXPECT_EQ(run({"implicit", "-"}, R"({"type":"curve","points":[[0,0,1],[0.5,0,1]]})").code, 1);
+    EXPECT_EQ(run({"implicit", "-", "--at", "1"}, parabola).code, 2);
+}
+
+TEST_F(Cli, conic_says_what_an_equation_is_and_writes_its_arcs) {
+    const Json j = Json::parse(run({"conic", "--equation", "1,0,4,0,0,-4", "--json"}).out);
+    EXPECT_EQ(j["type"], "ellipse");
+    EXPECT_EQ(j["centre"], Json::parse("[0.0,0.0]"));
+    EXPECT_EQ(std::abs(j["x"][0].get<double>()), 2);
+    const Ran r = run({"conic", "--equation", "0,1,0,0,0,-1", "--box", "-3,-3,3,3", "-o", "h.json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.out.find("hyperbola"), std::string::npos);
+    EXPECT_NE(r.out.find("2 arcs"), std::string::npos);
+    const Json at = Json::parse(run({"eval", "h.json", "--at", "0.3"}).out)["results"];
+    ASSERT_EQ(at.size(), 2u);
+    for (const Json& p : at) EXPECT_NEAR(p["point"][0].get<double>() * p["point"][1].get<double>(), 1, 1e-14);
+    EXPECT_EQ(run({"conic", "--equation", "0,1,0,0,0,-1", "-o", "h.json"}).code, 1);
+    EXPECT_NE(run({"conic", "--equation", "1,0,-1,0,0,0"}).out.find("crossing lines"), std::string::npos);
+    EXPECT_EQ(run({"conic", "--equation", "1,0,-1"}).code, 2);
+    EXPECT_EQ(run({"conic"}).code, 2);
+}
+
+TEST_F(Cli, conic_takes_points_and_circles) {
+    ASSERT_EQ(run({"conic", "--points", "1,0,5;0,1,5;-1,0,5", "-o", "a.json"}).code, 0);
+    const Json p = Json::parse(run({"eval", "a.json", "--at", "0.5"}).out)["results"][0]["point"];
+    EXPECT_NEAR(p[1].get<double>(), 1, 1e-15);
+    EXPECT_EQ(p[2], 5.0);
+    EXPECT_EQ(run({"conic", "--points", "0,0;1,1;2,2"}).code, 3);
+    EXPECT_NE(run({"conic", "--points", "5,0;0,5;-5,0;3,4;4,-3"}).out.find("circle"), std::string::npos);
+    EXPECT_EQ(run({"conic", "--points", "0,0;1,0;2,0;0,1;0,3"}).code, 1);
+    ASSERT_EQ(run({"conic", "--circle", "1,1,2", "--angles", "0,270", "-o", "c.json"}).code, 0);
+    const Json e = Json::parse(run({"eval", "c.json", "--at", "1"}).out)["results"][0]["point"];
+    EXPECT_NEAR(e[1].get<double>(), -1, 1e-14);
+    EXPECT_EQ(run({"conic", "--circle", "1,1,-2"}).code, 3);
+}
+
+}  // namespace
+}  // namespace freiform::test
