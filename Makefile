@@ -3,13 +3,14 @@ SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test bench format clean
+.PHONY: help setup build demo test bench accuracy format clean
 .NOTPARALLEL:
 
 help:
 	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/)"
 	@echo "make test    build everything and run all tests"
 	@echo "make bench   compare tessellation with Open CASCADE (bench/REPORT.md)"
+	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"
 	@echo "make build   build the program: build/bin/freiform"
 	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
 	@echo "make format  format the C++ files"
@@ -44,6 +45,13 @@ bench:
 	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
 	step "Build" cmake --build --preset release --target bench-tessellate bench-tessellate-occt freiform-occt-import; \
 	step "Compare" tools/bench_report.py
+
+accuracy:
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh bench; \
+	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
+	step "Build" cmake --build --preset release --target bench-accuracy bench-accuracy-occt bench-accuracy-sisl; \
+	step "Compare" tools/accuracy_report.py
 
 format:
 	@tools/format.sh

@@ -14,6 +14,13 @@ struct Change {
     BandMap map;
 };
 
+// Rounding. A new coefficient is a convex combination of old ones; what is computed differs from it, in each
+// coordinate, by at most this times the largest absolute coordinate of the old ones (away from underflow):
+// insertion, restriction and decomposition into Bezier pieces of degree p; elevation from degree p. Argument
+// in change.cpp.
+inline constexpr double refinement_error(int p) { return 1.01 * (6 * p + 1) * 0x1p-53; }
+inline constexpr double elevation_error(int p) { return 1.01 * (7 * p + 4) * 0x1p-53; }
+
 // Insert the knots `more` (sorted, inside the domain; together with the old ones of multiplicity <= p + 1).
 // The function does not change. Oslo algorithm: every new coefficient is a blossom of the old spline.
 Result<Change<BSplineBasis>> insert_knots(const BSplineBasis& old, std::span<const double> more);
