@@ -3,7 +3,8 @@
 
 #include <freiform/core/scan.hpp>
 #include <freiform/io/bpt.hpp>
-#include <freiform/query/length.hpp>
+#include <freiform/io/document.hpp>
+#include <freiform/query/reparametrise.hpp>
 
 namespace freiform::cli {
 
@@ -13,7 +14,7 @@ struct Options {
     std::string file, object;
     std::vector<std::string> places;  // as they were given
     std::vector<double> at, range;
-    std::optional<double> accuracy, spacing;
+    std::optional<double> accuracy, spacing, reparametrise;
     std::optional<int> equal;
 };
 
@@ -103,6 +104,62 @@ private:
     Measure total_;
 };
 
+// Calls f(index, curve) for the curves among the objects; what else there is is remarked on.
+template <class F>
+Result<void> each_curve(const Document& document, const std::vector<std::size_t>& objects,
+                        const std::string& file, F&& f) {
+    std::size_t curves = 0;
+    for (const std::size_t i : objects) {
+        const auto done = std::visit(
+            [&](const auto& s) -> Result<void> {
+                using S = std::remove_cvref_t<decltype(s)>;
+                if constexpr (TensorPatch<S>)
+                    if constexpr (S::kParams == 1) {
+                        ++curves;
+                        return f(i, s);
+                    }
+                remark(text(object_label(document, i), ": is a ", type_name(document.objects[i].shape),
+                            ", not a curve, and left out"));
+                return {};
+            },
+            document.objects[i].shape);
+        if (!done)
+            return refuse_within(document.objects.size() > 1 ? object_label(document, i) : shown(file),
+                                 done.error());
+    }
+    if (curves == 0) return refuse(RefusalKind::no_answer, shown(file), "there is no curve to measure");
+    return {};
+}
+
+// The curves by their arc length, as a document; the report goes to standard output if the document does not.
+Result<void> reparametrise(const Context& context, const Options& options, const Document& document,
+                           const std::vector<std::size_t>& objects) {
+    Document out{document.unit, {}};
+    json::Writer w;
+    std::string report;
+    w.begin_object().key("objects").begin_array();
+    const auto done =
+        each_curve(document, objects, options.file, [&](std::size_t i, const auto& c) -> Result<void> {
+            auto even = by_arc_length(c, *options.reparametrise);
+            if (!even) return std::unexpected(even.error());
+            const std::size_t pieces = even->curve.basis().breaks().size() - 1;
+            w.new_line(1).begin_object().field("object", i).field("length", even->length.value);
+            w.field("pieces", pieces)
+                .field("error_bound", even->bound)
+                .field("speed_bound", even->speed_bound);
+            w.end_object();
+            report += text(object_label(document, i), ": ", pieces, " pieces, within ", even->bound,
+                           ", speed within ", even->speed_bound, " of 1\n");
+            out.objects.push_back({document.objects[i].name, std::move(even->curve), {}});
+            return {};
+        });
+    if (!done) return done;
+    w.end_array().end_object();
+    if (auto ok = emit(context, write_document(out)); !ok) return ok;
+    if (context.output.empty() || context.output == "-") return {};
+    return emit({}, context.json ? w.take() + "\n" : report);
+}
+
 // `--at 1 2,3 FILE`: a list that takes all words up to the next option.
 void understand_places(Options& options) {
     if (options.file.empty() && options.places.size() > 1) {
@@ -126,37 +183,26 @@ Result<void> run(const Context& context, const Options& given) {
     understand_places(options);
     if (!options.range.empty() && options.range.size() != 2)
         wrong_usage("--range needs two parameters, such as 0.25,0.75");
-    if (int(!options.at.empty()) + options.equal.has_value() + options.spacing.has_value() > 1)
-        wrong_usage("only one of --at, --equal and --spacing");
+    if (int(!options.at.empty()) + options.equal.has_value() + options.spacing.has_value() +
+            options.reparametrise.has_value() >
+        1)
+        wrong_usage("only one of --at, --equal, --spacing and --reparametrise");
+    if (options.reparametrise && !(*options.reparametrise > 0))
+        wrong_usage(text("--reparametrise needs a positive distance, found ", *options.reparametrise));
     if (options.accuracy && !(*options.accuracy >= 0))
         wrong_usage(text("--accuracy must not be negative, found ", *options.accuracy));
     const auto document = read_any(options.file, context.read_options());
     if (!document) return std::unexpected(document.error());
     const auto objects = selected(*document, options.object);
     if (!objects) return std::unexpected(objects.error());
+    if (options.reparametrise) return reparametrise(context, options, *document, *objects);
     Lengths lengths(*document, options);
     std::size_t curves = 0;
-    for (const std::size_t i : *objects) {
-        const auto done = std::visit(
-            [&](const auto& s) -> Result<void> {
-                using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (TensorPatch<S>)
-                    if constexpr (S::kParams == 1) {
-                        ++curves;
-                        return lengths.add(i, s);
-                    }
-                remark(text(object_label(*document, i), ": is a ", type_name(document->objects[i].shape),
-                            ", not a curve, and left out"));
-                return {};
-            },
-            document->objects[i].shape);
-        if (!done)
-            return refuse_within(
-                document->objects.size() > 1 ? object_label(*document, i) : shown(options.file),
-                done.error());
-    }
-    if (curves == 0)
-        return refuse(RefusalKind::no_answer, shown(options.file), "there is no curve to measure");
+    const auto done = each_curve(*document, *objects, options.file, [&](std::size_t i, const auto& curve) {
+        ++curves;
+        return lengths.add(i, curve);
+    });
+    if (!done) return done;
     return emit(context, context.json ? lengths.json() : lengths.text_for_people(curves));
 }
 
@@ -167,7 +213,8 @@ void add_length(CLI::App& app, Context& context) {
     CLI::App* command = add_command(app, context, "length", "Arc length, and places at lengths along a curve",
                                     "  freiform length curves.json\n"
                                     "  freiform length curve.json --at 0.5,1,2.5\n"
-                                    "  freiform length curve.json --equal 10 --json");
+                                    "  freiform length curve.json --equal 10 --json\n"
+                                    "  freiform length curve.json --reparametrise 1e-6 -o even.json");
     command->add_option("FILE", options->file, "The file; - is standard input");
     command
         ->add_option("--at", options->places,
@@ -179,6 +226,8 @@ void add_length(CLI::App& app, Context& context) {
     add_numbers(*command, "--range", options->range, "Only the part between these two parameters");
     add_number(*command, "--accuracy", options->accuracy,
                "What the length may be off (default 0: as little as rounding allows)");
+    add_number(*command, "--reparametrise", options->reparametrise,
+               "Writes the curves as splines over their arc length, within this distance, as a document");
     command->add_option("--object", options->object, "Only the object of this name or index")
         ->type_name("NAME|INDEX");
     command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");

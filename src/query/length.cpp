@@ -10,14 +10,15 @@
 //     H_k = sum_{i < j, i + j = k + 1} (j - i) C(p, i) C(p, j) / C(m, k) w_i w_j (b_j - b_i),
 // since B_i B_j' - B_i' B_j = (j - i) B_i B_j / (x (1 - x)): no cancellation but that of vectors. z in [-1,
 // 1] is the parameter of a part, E the ellipse with foci +-1 and half-axes (rho +- 1/rho) / 2, R the longer
-// one; |z| <= R on it. q = H . H (without conjugation, so that it is analytic).
+// one. q = H . H (without conjugation, so that it is analytic).
 //
-// Method. Let H, q, W have the Taylor coefficients H_k, q_k, W_k about z = 0. On E
-//     |q - q_0| <= s = sum_{k > 0} |q_k| R^k,    |W - W_0| <= t = sum_{k > 0} |W_k| R^k.
-// If s < q_0 and t < W_0 then neither vanishes, the root g of q has a positive real part, and f = g / W^2
-// differs from its value in the middle by at most
-//     v = s / (|H_0| (W_0 - t)^2) + |H_0| t (2 W_0 + t) / (W_0 (W_0 - t))^2.
-// The Chebyshev coefficients of f - f(0) are at most 2 v rho^-k. The rule with N points is exact to degree
+// Method. Let q_k and W_k be the Chebyshev coefficients of q and W, found from values at Chebyshev nodes. On
+// E |T_k| <= (rho^k + rho^-k) / 2, so there
+//     |q - q_0| <= s = sum_{k > 0} |q_k| (rho^k + rho^-k) / 2,    and likewise |W - W_0| <= t.
+// If s < q_0 and t < W_0 then neither vanishes, the root g of q has a positive real part, hence
+// |g + sqrt(q_0)| >= sqrt(q_0), and f = g / W^2 differs from the constant f_0 = sqrt(q_0) / W_0^2 by at most
+//     v = s / (sqrt(q_0) (W_0 - t)^2) + sqrt(q_0) t (2 W_0 + t) / (W_0 (W_0 - t))^2.
+// The Chebyshev coefficients of f - f_0 are at most 2 v rho^-k. The rule with N points is exact to degree
 // 2 N - 1 and, like the integral, zero for odd functions; for even k >= 2 N it is off by at most
 // 2 + 2 / (k^2 - 1) <= 32/15. So the error of the integral over [-1, 1] is at most
 //     sum_{even k >= 2 N} 2 v rho^-k 32/15 = (64/15) v rho^(-2 N) / (1 - rho^-2),
@@ -36,15 +37,16 @@
 // iteration ended, but the length up to the parameter that is given back, against the wanted one.
 //
 // Accuracy. Chain::error for the coefficients; H has p + 10 roundings; halving m each, evaluation 3 m + 4,
-// all of convex terms; Taylor coefficients carry C(m, k) 2^k (m + k + 3) roundings, and that is part of s
-// (which is why smaller rho are tried for high degrees). A node is off by at most 3 u, the value by that
-// times |f'|, which is at most v / (R - 1) (Cauchy, on the disc around it). All this is in the bound.
+// all of convex terms. What a value at a node is off, a Chebyshev coefficient is off by twice that at most,
+// and s contains it times rho^k. A node of the quadrature is off by at most 3 u, the value by that times
+// |f'|, which is at most v / (R - 1) (Cauchy, on the disc around it). All this is in the bound.
 //
 // Cost. A smooth cubic to 10 digits: 2 to 4 parts of 12 to 16 points.
 //
-// Why not the polygon and the chord alone: they converge as h^2, 10^5 parts for 10 digits; their combination
-// that converges as h^4 [Gravesen 1997] is an estimate. Why not adaptive quadrature that compares two rules:
-// an estimate, too, and wrong at cusps.
+// Why not Taylor coefficients: simpler, but of degree m they carry 3^m roundings: nothing was provable beyond
+// degree 20. Why not the polygon and the chord alone: they converge as h^2, 10^5 parts for 10 digits; their
+// combination that converges as h^4 [Gravesen 1997] is an estimate. Why not adaptive quadrature that compares
+// two rules: an estimate, too, and wrong at cusps.
 #include "query/speed_detail.hpp"
 
 #include <numeric>

@@ -1,41 +1,49 @@
 #include "query/speed_detail.hpp"
 
+#include <numbers>
+
 namespace freiform::detail {
 
 namespace {
 
-// sum_k |a_k| r^k for k >= 1.
-template <class V>
-double tail(std::span<const V> a, double r) {
-    double sum = 0;
-    for (std::size_t k = a.size(); k-- > 1;) sum = (sum + norm(a[k])) * r;
-    return sum;
+// cos(pi i / (2 n)) for i = 0 .. 4 n - 1, for every n that is needed: T_k at the Chebyshev nodes.
+constexpr int kMostNodes = 2 * kMostHodograph + 1;
+const std::vector<double>& cosines(int n) {
+    static const auto tables = [] {
+        std::vector<std::vector<double>> all(kMostNodes + 1);
+        for (int k = 1; k <= kMostNodes; ++k)
+            for (int i = 0; i < 4 * k; ++i)
+                all[std::size_t(k)].push_back(std::cos(std::numbers::pi * i / (2 * k)));
+        return all;
+    }();
+    return tables[std::size_t(n)];
 }
 
-// Taylor coefficients of a Bernstein form about its middle, in z = 2 y - 1: of the right half, where the
-// power form begins.
-template <class V, std::size_t N>
-void taylor(const std::array<V, N>& b, int m, std::array<V, N>& out) {
-    std::array<V, N> left = b;
-    for (int r = 0; r <= m; ++r) {
-        out[std::size_t(m - r)] = left[std::size_t(m)];
-        for (int i = m; i > r; --i)
-            left[std::size_t(i)] = 0.5 * left[std::size_t(i) - 1] + 0.5 * left[std::size_t(i)];
-    }
-    for (int k = 1; k <= m; ++k)
-        for (int i = m; i >= k; --i) out[std::size_t(i)] -= out[std::size_t(i) - 1];
-    for (int k = 1; k <= m; ++k) out[std::size_t(k)] *= binomial(m, k);
-}
-
-// sum_k C(m, k) 2^k (m + k + 3) r^k: what the roundings of `taylor` and a slip of the coefficients grow to
-// on the disc |z| <= r, for coefficients of size 1 and one rounding.
-double growth(int m, double r) {
-    double sum = 0, term = 1;
+// The Chebyshev coefficients of a polynomial of degree m < n with these values at the nodes
+// cos(pi (2 j + 1) / (2 n)).
+void chebyshev(std::span<const double> value, int m, std::span<double> a) {
+    const int n = int(value.size());
+    const std::vector<double>& c = cosines(n);
     for (int k = 0; k <= m; ++k) {
-        sum += term * (m + k + 3);
-        term *= 2 * r * (m - k) / (k + 1);
+        double sum = 0;
+        for (int j = 0, at = k; j < n; ++j) {  // at: k (2 j + 1) modulo 4 n
+            sum += value[std::size_t(j)] * c[std::size_t(at)];
+            at += 2 * k;
+            at -= at >= 4 * n ? 4 * n : 0;
+        }
+        a[std::size_t(k)] = (k == 0 ? 1.0 : 2.0) / n * sum;
     }
-    return sum;
+}
+
+// Bound of |f - a_0| over the ellipse for a polynomial whose coefficients are off by at most `slip`:
+// |T_k| <= (rho^k + rho^-k) / 2 there.
+double variation_on(std::span<const double> a, double rho, double slip) {
+    double sum = 0, up = 1, down = 1;
+    for (std::size_t k = 1; k < a.size(); ++k) {
+        up *= rho, down /= rho;
+        sum += (std::abs(a[k]) + slip) * (up + down) / 2;
+    }
+    return sum * (1 + 128 * kUnit) + slip;
 }
 
 constexpr double kRadii[] = {16, 8, 5, 3.5, 2.6, 2, 1.6};
@@ -100,42 +108,52 @@ Measure gauss_length(const SpeedBlock<D>& b, double wanted) {
     const Measure none{0, std::numeric_limits<double>::infinity()};
     const double largest = b.largest();
     if (!(largest > 0)) return none;
-    std::array<Vec<D>, kMostHodograph + 1> h;
-    std::array<Vec<1>, kMaxDegree + 1> w;
-    std::array<Vec<1>, 2 * kMostHodograph + 1> q{};  // h . h
-    taylor(b.h, b.m, h);
-    for (int i = 0; i <= b.m; ++i)
-        for (int j = 0; j <= b.m; ++j) q[std::size_t(i + j)][0] += dot(h[std::size_t(i)], h[std::size_t(j)]);
-    if (b.p > 0) taylor(b.w, b.p, w);
-    const double h0 = norm(h[0]), q0 = q[0][0], w0 = b.p > 0 ? w[0][0] : 1;
+    // q = H . H, of degree 2 m, and W through their values at Chebyshev nodes.
+    double value[kMostNodes], q[kMostNodes], w[kMaxDegree + 1];
+    const int n = 2 * b.m + 1;
+    for (int j = 0; j < n; ++j) {
+        const Vec<D> v = b.hodograph(0.5 + 0.5 * cosines(n)[std::size_t(2 * j + 1)]);
+        value[j] = dot(v, v);
+    }
+    chebyshev({value, std::size_t(n)}, 2 * b.m, {q, std::size_t(n)});
+    // A value of H is off by its slip, the roundings of the scheme, and 8 u of its node times |H'| <= m
+    // max|H|.
+    const double h_off = b.h_slip + (3.03 * b.m + 6 + 8 * b.m) * kUnit * largest;
+    const double q_slip = 2 * ((2 * largest + h_off) * h_off + (D + 4) * kUnit * largest * largest) +
+                          2 * (n + 8) * kUnit * largest * largest;
+    double w_slip = 0;
+    w[0] = 1;
+    if (b.p > 0) {
+        for (int j = 0; j <= b.p; ++j)
+            value[j] = b.weight(0.5 + 0.5 * cosines(b.p + 1)[std::size_t(2 * j + 1)]);
+        chebyshev({value, std::size_t(b.p) + 1}, b.p, {w, std::size_t(b.p) + 1});
+        w_slip = 2 * (b.w_slip + (12 * b.p + 24) * kUnit) * b.weights().hi;
+    }
+    const double q0 = q[0], w0 = w[0];
+    if (!(q0 > q_slip && w0 > w_slip)) return none;
+    const double h0 = std::sqrt(q0);
     const GaussRule* best = nullptr;
     double truncation = 0, variation = 0, radius = 0, lightest = 1;
     for (const double rho : kRadii) {
-        const double r = (rho + 1 / rho) / 2;
-        // The speed over the ellipse, less that in the middle.
-        const double reach = h0 + tail(std::span<const Vec<D>>(h).first(std::size_t(b.m) + 1), r);
-        const double slip = growth(b.m, r) * (b.h_slip + 1.01 * kUnit * largest);
-        const double s = tail(std::span<const Vec<1>>(q).first(std::size_t(2 * b.m) + 1), r) +
-                         (2 * reach + slip) * slip + (2 * b.m + D + 8) * kUnit * reach * reach;
-        if (!(s < 0.999 * q0)) continue;
-        double ws = 0;
-        if (b.p > 0)
-            ws = tail(std::span<const Vec<1>>(w).first(std::size_t(b.p) + 1), r) +
-                 growth(b.p, r) * (b.w_slip + 1.01 * kUnit) * b.weights().hi;
-        const double least = w0 - ws;
-        if (!(least > 1e-3 * w0)) continue;
-        const double varied =
-            s / h0 / (least * least) + h0 * (ws * (2 * w0 + ws)) / (w0 * w0 * least * least);
+        const double s = variation_on({q, std::size_t(n)}, rho, q_slip);
+        const double t = b.p > 0 ? variation_on({w, std::size_t(b.p) + 1}, rho, w_slip) : 0;
+        const double least = w0 - t;
+        if (!(s < 0.999 * q0) || !(least > 1e-3 * w0)) continue;
+        const auto varied = [&](double by) {
+            return by / h0 / (least * least) + h0 * (t * (2 * w0 + t)) / (w0 * w0 * least * least);
+        };
         // Below what the slip alone contributes nothing is gained by asking for less.
+        const double noise = q_slip * 2 * std::pow(rho, 2 * b.m + 1) / (rho - 1) / h0 / (least * least);
         const double shrink = 64.0 / 30 * b.width / (1 - 1 / (rho * rho)) * (1 + 64 * kUnit);
-        const double aim = std::max(wanted, 4 * shrink * std::pow(rho, -2 * kGaussRules.back().points) *
-                                                slip * (2 * reach + slip) / h0);
+        const double aim =
+            std::max(wanted, 4 * shrink * noise * std::pow(rho, -2 * kGaussRules.back().points));
         for (const GaussRule& rule : kGaussRules) {
             if (best && rule.points > best->points) break;
-            const double error = shrink * varied * std::pow(rho, -2 * rule.points);
+            const double error = shrink * varied(s) * std::pow(rho, -2 * rule.points);
             if (!(error <= aim)) continue;
             if (best && rule.points == best->points && error >= truncation) break;
-            best = &rule, truncation = error, variation = varied, radius = r, lightest = least;
+            best = &rule, truncation = error, variation = varied(s);
+            radius = (rho + 1 / rho) / 2, lightest = least;
             break;
         }
     }

@@ -41,6 +41,18 @@ struct SpeedBlock {
         b.width = width * y;
         return b;
     }
+    // A part that contains [x0, x1] and begins at most 2 u x0 before it, as in Chain::cut_left.
+    SpeedBlock part(double x0, double x1) const {
+        SpeedBlock b = x1 < 1 ? left(x1) : *this;
+        if (x0 > 0) {
+            const double y = std::nextafter(x0 / x1, 0.0);
+            b.h_slip += 3.03 * m * kUnit * largest();
+            keep_right(Fibre<Vec<D>>{b.h.data(), m + 1, 1}, y);
+            if (p > 0) keep_right(Fibre<Vec<1>>{b.w.data(), p + 1, 1}, y), b.w_slip += 3.03 * p * kUnit;
+        }
+        b.width = width * (x1 - x0);
+        return b;
+    }
     // Becomes the left half and returns the right one.
     SpeedBlock split() {
         SpeedBlock right;
@@ -60,12 +72,12 @@ struct SpeedBlock {
         }
         return right;
     }
+    Vec<D> hodograph(double y) const { return horner(h, m, y); }
+    double weight(double y) const { return p == 0 ? 1 : horner(w, p, y)[0]; }
     double speed(double y) const {
-        const Vec<D> v = horner(h, m, y);
-        const double top = std::sqrt(dot(v, v));
-        if (p == 0) return top;
-        const double below = horner(w, p, y)[0];
-        return top / (below * below);
+        const Vec<D> v = hodograph(y);
+        const double below = weight(y);
+        return std::sqrt(dot(v, v)) / (below * below);
     }
 
 private:

@@ -112,6 +112,18 @@ TEST_F(LengthCommand, finds_places_at_lengths_and_at_equal_distance) {
     EXPECT_EQ(spaced["objects"][0]["at"].size(), 11u);  // of 5.268
 }
 
+TEST_F(LengthCommand, writes_curves_by_their_arc_length) {
+    const Json report =
+        parsed(run({"length", kExample, "--reparametrise", "1e-4", "-o", "even.json", "--json"}));
+    ASSERT_EQ(report["objects"].size(), 3u);
+    for (const Json& o : report["objects"]) EXPECT_LE(o["error_bound"].get<double>(), 1e-4);
+    const Json again = parsed(run({"length", path("even.json"), "--json"}));
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(again["objects"][i]["value"].get<double>(), report["objects"][i]["length"].get<double>(),
+                    1e-3);
+    EXPECT_EQ(run({"length", kExample, "--reparametrise", "-1"}).code, 2);
+}
+
 TEST_F(LengthCommand, refuses_with_the_exit_codes_of_the_contract) {
     EXPECT_EQ(run({"length"}).code, 2);
     EXPECT_EQ(run({"length", kExample, "--at", "x"}).code, 2);
