@@ -21,6 +21,7 @@ void add_commands(CLI::App& app, Context& context) {
     add_interpolate(app, context);
     add_flatten(app, context);
     add_length(app, context);
+    add_fit(app, context);
 }
 
 std::string version(bool verbose) {

@@ -1,0 +1,122 @@
+// fit: the smallest curve found within a tolerance of points.
+#include "point_commands.hpp"
+
+#include <freiform/fit/approximate.hpp>
+
+namespace freiform::cli {
+
+namespace {
+
+struct Options {
+    std::string file, spacing = "chordal", tangents;
+    std::optional<double> tolerance, smoothing;
+    std::optional<int> degree;
+    bool closed = false, keep_ends = false, keep_parameters = false;
+};
+
+Spacing spacing_of(const std::string& word) {
+    for (const Spacing s : {Spacing::uniform, Spacing::chordal, Spacing::centripetal})
+        if (word == name_of(s)) return s;
+    wrong_usage(text("--parameters: there is no \"", word, "\"; there are uniform, chordal or centripetal"));
+}
+
+template <int D>
+Result<Fitted<D>> fitted(const std::vector<Vec<D>>& points, const Options& options) {
+    std::vector<KeptPoint<D>> kept;
+    const int last = int(points.size()) - 1;
+    if (options.keep_ends && last >= 0) {
+        kept.push_back({0, 0, points.front()});
+        if (!options.closed && last > 0) kept.push_back({last, 0, points.back()});
+    }
+    const auto tangents = parse_vectors("--tangents", options.tangents, D);
+    if (!options.tangents.empty() && tangents.size() != 2)
+        wrong_usage("--tangents needs two vectors: at the start and at the end");
+    for (std::size_t i = 0; i < tangents.size(); ++i) {
+        KeptPoint<D> k{i == 0 ? 0 : last, 1, {}};
+        for (int c = 0; c < D; ++c) k.value[c] = tangents[i][std::size_t(c)];
+        kept.push_back(k);
+    }
+    ApproximateOptions o;
+    o.tolerance = *options.tolerance;
+    o.degree = options.degree.value_or(3);
+    o.closed = options.closed;
+    o.spacing = spacing_of(options.spacing);
+    o.move_parameters = !options.keep_parameters;
+    o.smoothing = options.smoothing.value_or(0);
+    return approximate<D>(points, o, kept);
+}
+
+Result<void> run(const Context& context, const Options& options) {
+    const std::string format = spline_format(context, "fit");
+    if (!(*options.tolerance > 0)) wrong_usage("--tolerance needs a positive distance");
+    if (options.smoothing && !(*options.smoothing >= 0))
+        wrong_usage("--smoothing needs a number that is not negative");
+    if (options.closed && !options.tangents.empty()) wrong_usage("--tangents is for open curves");
+    (void)spacing_of(options.spacing);
+    const auto table = read_points(options.file, context.read_options());
+    if (!table) return std::unexpected(table.error());
+    if (table->grid)
+        return refuse(RefusalKind::unsupported, shown(options.file),
+                      "holds a grid of points; fit takes points in one sequence (interpolate takes grids)");
+    return with_points(*table, [&]<int D>(std::vector<Vec<D>> points) -> Result<void> {
+        auto f = fitted<D>(points, options);
+        if (!f) return about_file(f.error(), *table, options.file);
+        const FitReport& r = f->report;
+        const int coefficients = f->curve.basis().size();
+        json::Writer w;
+        w.begin_object().field("points", points.size()).field("coefficients", coefficients);
+        w.field("degree", f->curve.basis().degree()).field("closed", options.closed);
+        w.field("tolerance", *options.tolerance)
+            .field("bound", r.bound)
+            .field("polyline_bound", r.polyline_bound);
+        w.field("kept_bound", r.kept_bound).field("rms_error", r.rms_error).field("iterations", r.iterations);
+        w.key("parameters").array(f->at).field("output", context.output).end_object();
+        std::string s = text("points          ", points.size(), "\ncoefficients    ", coefficients);
+        s += text("\nbound           ", r.bound, " (no point is farther from the curve; tolerance ",
+                  *options.tolerance, ")\n");
+        s += text("polyline bound  ", r.polyline_bound, " (the curve from the polygon of the points)\n");
+        s += text("mean error      ", r.rms_error, "\nwritten to ", context.output, "\n");
+        Document document;
+        document.objects.push_back({"", std::move(f->curve), {}});
+        return emit_spline(context, format, std::move(document), s, w.take() + "\n");
+    });
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app, Context& context) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = add_command(
+        app, context, "fit", "The smallest spline found within a tolerance of points in order",
+        "  freiform fit points.csv --tolerance 0.01 -o curve.json\n"
+        "  freiform fit outline.csv --closed --tolerance 0.01 --degree 5 -o outline.json\n"
+        "  freiform fit points.csv --tolerance 0.01 --keep-ends --tangents '1,0;0,1' -o curve.json\n"
+        "Points are lines of 1 to 4 numbers, or JSON: [[x,y], ...]. The distance reached is proven, and\n"
+        "reported in both directions: from the points to the curve, and from the curve to their polygon.");
+    command->add_option("POINTS", options->file, "The file with the points; - is standard input")->required();
+    add_output(*command, context, "The file to write: .json or .bpt");
+    add_number(*command, "--tolerance", options->tolerance,
+               "No point is to be farther from the curve than this")
+        ->required();
+    add_count(*command, "--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
+    command->add_flag("--closed", options->closed, "The curve closes smoothly");
+    command
+        ->add_option("--parameters", options->spacing,
+                     "To begin with: uniform, chordal (default) or centripetal")
+        ->type_name("WAY");
+    command->add_flag("--keep-parameters", options->keep_parameters,
+                      "Do not move parameters to where the curve is nearest");
+    command->add_flag("--keep-ends", options->keep_ends,
+                      "The curve begins and ends exactly at the first and the last point");
+    command
+        ->add_option("--tangents", options->tangents,
+                     "Derivatives by the parameter to keep at the start and at the end")
+        ->type_name("X,Y;X,Y");
+    add_number(*command, "--smoothing", options->smoothing,
+               "Add this many times the integral of the squared second derivative");
+    add_limits(*command, context);
+    command->callback(
+        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+}
+
+}  // namespace freiform::cli
