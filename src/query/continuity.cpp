@@ -41,6 +41,7 @@ namespace freiform {
 namespace {
 
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Vector = std::vector<Bounded>;
 
 Bounded scaled(const Bounded& a, int e) { return {std::scalbn(a.value, e), std::scalbn(a.bound, e)}; }
@@ -49,8 +50,11 @@ Jump scaled(const Jump& a, int e) { return {std::scalbn(a.size, e), std::scalbn(
 // Length with bound: lengths differ by at most the length of the difference.
 Bounded length(const Vector& v) {
     double most = 0;
-    for (const Bounded& x : v) most = std::max({most, std::abs(x.value), x.bound});
-    if (most == 0 || !std::isfinite(most)) return {most, most};
+    for (const Bounded& x : v) {
+        if (!x.is_finite()) return {kInfinity, kInfinity};
+        most = std::max({most, std::abs(x.value), x.bound});
+    }
+    if (most == 0) return {};
     const int e = std::ilogb(most);
     double sum = 0, slack = 0;
     for (const Bounded& x : v) {
@@ -80,8 +84,11 @@ Vector cross(const Vector& a, const Vector& b) {
 // Empty where v may be 0.
 Vector unit(const Vector& v) {
     double most = 0;
-    for (const Bounded& x : v) most = std::max(most, std::abs(x.value));
-    if (most == 0 || !std::isfinite(most)) return {};
+    for (const Bounded& x : v) {
+        if (!x.is_finite()) return {};
+        most = std::max(most, std::abs(x.value));
+    }
+    if (most == 0) return {};
     Vector u = v;
     for (Bounded& x : u) x = scaled(x, -std::ilogb(most));
     const Bounded square = inner(u, u);

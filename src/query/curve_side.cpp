@@ -17,6 +17,8 @@
 // Why not Bezier pieces: their coefficients have been computed, so their rounding would look like jumps.
 //
 // References: [Ramshaw 1989], [PT97, 2.5, 4.3].
+#include "knot_window_detail.hpp"
+
 #include <freiform/poly/series.hpp>
 #include <freiform/query/continuity.hpp>
 
@@ -40,12 +42,13 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
                     const ContinuityOptions& options) {
     constexpr int D = Space<P>::kDim;
     const BSplineBasis& basis = curve.basis();
-    const int p = basis.degree(), terms = std::max(options.orders, p) + 1;
+    const int p = basis.degree(), terms = std::clamp(options.orders, p, kMaxDegree) + 1;
     const Interval piece{basis.knot(span), basis.knot(span + 1)};
     CurveSide side;
     side.dimension = D;
     side.degree = p;
     side.parameter = at;
+    side.other_end = basis.domain().lo + (basis.domain().hi - at);
     side.span = piece.length();
     // Points inside the piece only: at its ends the neighbour may be what is evaluated.
     const auto inside = [&](int i) { return curve(piece.lo + piece.length() * (2 * i + 1) / 16); };
@@ -65,8 +68,10 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
     std::vector<Series<Bounded>> h(P::kCoords);
     for (auto& x : h) x.resize(std::size_t(terms));
     std::vector<Bounded> w(std::size_t(p) + 1);
+    const Interval on = basis.domain();
+    const detail::KnotWindow window(basis, span, at, basis.is_closed() && at == (after ? on.lo : on.hi));
     for (int k = 0; k <= p; ++k) {
-        weights_in_span(basis, span, Bounded(at), k, w.data());
+        weights_in_span(window, span, window.at(), k, w.data());
         for (int i = 0; i <= p; ++i) {
             const P& q = b[std::size_t(i)];
             const Bounded weight =
@@ -89,19 +94,18 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
     return side;
 }
 
-// The same side of the curve run through backwards.
-CurveSide reversed(CurveSide s, double parameter) {
-    s.parameter = parameter;
-    for (std::size_t i = 0; i < s.derivatives.size(); ++i)
-        if (i / std::size_t(s.dimension) % 2 == 1) s.derivatives[i] = -s.derivatives[i];
-    return s;
-}
-
 std::unexpected<Refusal> no_end() {
     return refuse(RefusalKind::no_answer, "curve", "is closed and has no end where another could join");
 }
 
 }  // namespace
+
+CurveSide reversed(CurveSide side) {
+    std::swap(side.parameter, side.other_end);
+    for (std::size_t i = 0; i < side.derivatives.size(); ++i)
+        if (i / std::size_t(side.dimension) % 2 == 1) side.derivatives[i] = -side.derivatives[i];
+    return side;
+}
 
 template <class P>
 CurveSide side_before(const Curve<P>& curve, double at, const ContinuityOptions& options) {
@@ -119,14 +123,21 @@ template <class P>
 Result<CurveSide> leaving(const Curve<P>& curve, End end, const ContinuityOptions& options) {
     const auto [lo, hi] = curve.basis().domain();
     if (curve.basis().is_closed()) return no_end();
-    return end == End::start ? side_after(curve, lo, options) : reversed(side_before(curve, hi, options), lo);
+    return end == End::start ? side_after(curve, lo, options) : reversed(side_before(curve, hi, options));
 }
 
 template <class P>
 Result<CurveSide> arriving(const Curve<P>& curve, End end, const ContinuityOptions& options) {
     const auto [lo, hi] = curve.basis().domain();
     if (curve.basis().is_closed()) return no_end();
-    return end == End::end ? side_before(curve, hi, options) : reversed(side_after(curve, lo, options), hi);
+    return end == End::end ? side_before(curve, hi, options) : reversed(side_after(curve, lo, options));
+}
+
+template <class P>
+CurveEnds ends_of(const Curve<P>& curve, const ContinuityOptions& options) {
+    if (curve.basis().is_closed()) return {};
+    const auto [lo, hi] = curve.basis().domain();
+    return {side_after(curve, lo, options), side_before(curve, hi, options)};
 }
 
 template <class P>
@@ -153,6 +164,7 @@ Result<std::vector<KnotContinuity>> continuity(const Curve<P>& curve, const Cont
 #define FF_INSTANTIATE_SIDES(P)                                                          \
     template CurveSide side_before(const Curve<P>&, double, const ContinuityOptions&);   \
     template CurveSide side_after(const Curve<P>&, double, const ContinuityOptions&);    \
+    template CurveEnds ends_of(const Curve<P>&, const ContinuityOptions&);               \
     template Result<CurveSide> leaving(const Curve<P>&, End, const ContinuityOptions&);  \
     template Result<CurveSide> arriving(const Curve<P>&, End, const ContinuityOptions&); \
     template Result<std::vector<KnotContinuity>> continuity(const Curve<P>&, const ContinuityOptions&);

@@ -17,6 +17,8 @@
 // and files write splines as Bezier pieces with full knots.
 //
 // References: [PT97, 2.5], [Lyche & Morken 2018, ch. 3].
+#include "knot_window_detail.hpp"
+
 #include <freiform/query/continuity.hpp>
 
 #include <algorithm>
@@ -34,16 +36,31 @@ struct JumpRow {
     std::vector<Bounded> weight;
 };
 
-// after - before, at the knot; `before` and `after` are spans, of the seam of a closed basis a period apart.
-JumpRow jump_row(const BSplineBasis& basis, int before, double at_before, int after, double at, int order) {
-    const int p = basis.degree(), shift = at_before == at ? 0 : basis.size();
-    std::vector<Bounded> left(std::size_t(p) + 1), right(std::size_t(p) + 1);
-    weights_in_span(basis, before, Bounded(at_before), order, left.data());
-    weights_in_span(basis, after, Bounded(at), order, right.data());
-    JumpRow row{before - p, std::vector<Bounded>(std::size_t(after + shift - before + p + 1))};
+// A knot, with the spans on its two sides; of the seam of a closed basis they are a period apart.
+struct Place {
+    double at = 0, before_at = 0;
+    int before = 0, after = 0, shift = 0;  // spans; what index `after` has, counted on from `before`
+    bool seam = false;
+};
+Place place_at(const BSplineBasis& basis, double at, bool seam) {
+    Place k{at, seam ? basis.domain().hi : at, 0, basis.span(at), seam ? basis.size() : 0, seam};
+    k.before = basis.span(k.before_at);
+    while (k.before > basis.degree() && basis.knot(k.before) >= k.before_at) --k.before;
+    return k;
+}
+
+// After less before.
+JumpRow jump_row(const BSplineBasis& basis, const Place& k, int order) {
+    const int p = basis.degree(), right = k.after + k.shift - k.before;
+    const detail::KnotWindow before(basis, k.before, k.before_at, k.seam),
+        after(basis, k.after, k.at, k.seam);
+    std::vector<Bounded> b(std::size_t(p) + 1), a(std::size_t(p) + 1);
+    weights_in_span(before, k.before, before.at(), order, b.data());
+    weights_in_span(after, k.after, after.at(), order, a.data());
+    JumpRow row{k.before - p, std::vector<Bounded>(std::size_t(right + p + 1))};
     for (int i = 0; i <= p; ++i) {
-        row.weight[std::size_t(i)] -= left[std::size_t(i)];
-        row.weight[std::size_t(after + shift - before + i)] += right[std::size_t(i)];
+        row.weight[std::size_t(i)] -= b[std::size_t(i)];
+        row.weight[std::size_t(right + i)] += a[std::size_t(i)];
     }
     return row;
 }
@@ -95,17 +112,14 @@ template <std::size_t N, class P>
 KnotLine line_at(const Patch<N, P>& patch, int axis, const Frame<P>& frame, double at, bool seam,
                  double tolerance) {
     const BSplineBasis& basis = patch.basis(axis);
-    const double at_before = seam ? basis.domain().hi : at;
-    const int after = basis.span(at);
-    int before = basis.span(at_before);
-    while (before > basis.degree() && basis.knot(before) >= at_before) --before;
-    const double h =
-        std::min(basis.knot(before + 1) - basis.knot(before), basis.knot(after + 1) - basis.knot(after));
+    const Place place = place_at(basis, at, seam);
+    const double h = std::min(basis.knot(place.before + 1) - basis.knot(place.before),
+                              basis.knot(place.after + 1) - basis.knot(place.after));
 
     KnotLine line{at, basis.multiplicity(at), seam, {}, -1};
     double allowed = tolerance;
     for (int k = 0; k <= basis.degree(); ++k) {
-        const JumpRow row = jump_row(basis, before, at_before, after, at, k);
+        const JumpRow row = jump_row(basis, place, k);
         Jump most;
         each_fibre(axis, patch.net().extent(), [&](const Index<N>& start) {
             const Jump j = jump_of(frame, row, patch.net().view().fibre(axis, start));

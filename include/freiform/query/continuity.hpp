@@ -86,6 +86,7 @@ enum class End { start, end };
 struct CurveSide {
     int dimension = 0, degree = 0;
     double parameter = 0;              // on the curve as it is run through
+    double other_end = 0;              // of the domain; where `parameter` would be, run through backwards
     double span = 0;                   // length of the piece in parameters
     double reach = 0;                  // estimate of the length of the piece (8 points), model units
     std::vector<double> origin;        // a point nearby
@@ -97,8 +98,10 @@ template <class P>
 CurveSide side_before(const Curve<P>& curve, double at, const ContinuityOptions& options);
 template <class P>
 CurveSide side_after(const Curve<P>& curve, double at, const ContinuityOptions& options);
-// The side of the curve that leads away from its end, run through backwards if that is the upper one; and the
-// same run through towards the end. Refuses closed curves, which have no end.
+// The same side of the curve run through backwards, its parameter lo + hi - t.
+CurveSide reversed(CurveSide side);
+// The side that leads away from an end of the curve, run through backwards from the upper end; and the side
+// that arrives there. Refuse closed curves, which have no end.
 template <class P>
 Result<CurveSide> leaving(const Curve<P>& curve, End end, const ContinuityOptions& options);
 template <class P>
@@ -153,21 +156,37 @@ template <std::size_t N, class P>
 Result<std::vector<KnotLine>> knot_lines(const Patch<N, P>& patch, int axis,
                                          const ContinuityOptions& options = {});
 
-// Ends of curves that meet. `curve` indexes the list; `reversed` curves are run through backwards.
+// What joints between curves of a drawing need of one of them.
+struct CurveEnds {
+    CurveSide start,
+        end;  // the sides inside the curve, as it is run through; without dimension: takes no part
+};
+// A closed curve takes no part.
+template <class P>
+CurveEnds ends_of(const Curve<P>& curve, const ContinuityOptions& options = {});
+
+// Two ends that meet, of different curves or of one. Curves are counted as in the list. As far as the ends
+// allow, the end of the first meets the start of the second; a curve that meets with the wrong end is run
+// through backwards.
 struct Meeting {
     std::size_t first = 0, second = 0;
     End first_end = End::end, second_end = End::start;
     double distance = 0;
 };
-struct CurveEnds {
-    std::vector<double> start, end;  // of the same dimension; both empty: takes no part (a closed curve)
-};
-// All pairs of ends, of different curves or of one, that are at most `gap` apart, in the order of the list;
-// of several pairs between one end and another curve's ends all are named. Curves of different dimensions do
-// not meet. Refuses (limit) more than `most` pairs. Cost: O(n log n) and the pairs whose first coordinates
-// are close.
+// All pairs of ends that are at most `gap` apart, in the order of the list; where more than two ends meet,
+// every pair. Curves of different dimensions do not meet. Refuses (limit) more than `most` pairs. Cost: O(n
+// log n) and the pairs whose first coordinates are that close.
 Result<std::vector<Meeting>> meetings(std::span<const CurveEnds> curves, double gap,
                                       std::size_t most = 1'000'000);
+
+struct CurveJoint {
+    Meeting meeting;
+    Continuity joint;
+};
+// The meetings with their continuity. `gap` is for finding; whether a joint is C0 depends on the options,
+// which `ends_of` must have been given as well.
+Result<std::vector<CurveJoint>> joints(std::span<const CurveEnds> curves, double gap,
+                                       const ContinuityOptions& options = {}, std::size_t most = 1'000'000);
 
 // The curve with another parameter: curve(phi(t)), t from `from` on. The points are the same, up to
 // rounding; the derivatives of phi at the start are given, so that with those that `joint` finds the curve
