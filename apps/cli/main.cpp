@@ -18,6 +18,7 @@ void add_commands(CLI::App& app, Context& context) {
     add_draw(app, context);
     add_conic(app, context);
     add_implicit(app, context);
+    add_continuity(app, context);
     add_interpolate(app, context);
     add_flatten(app, context);
     add_length(app, context);

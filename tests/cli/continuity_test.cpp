@@ -1,0 +1,109 @@
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+using ContinuityCommand = Program;
+
+// Cubics a and b, joined with C1, and c, which is run the other way and leaves a gap of 0.001.
+const std::string kPath = R"({"freiform": 1, "unit": "mm", "objects": [
+  {"name": "a", "type": "curve", "points": [[0,0],[1,2],[3,2],[4,0]]},
+  {"name": "b", "type": "curve", "points": [[4,0],[5,-2],[7,-2],[9,0]]},
+  {"name": "c", "type": "curve", "points": [[20,5],[12,4],[10,1],[9,0.001]]}]})";
+// Knots of multiplicity 1, 2 and 3.
+const std::string kSpline = R"({"type": "curve", "degree": 3, "knots": [0,0,0,0,1,2,2,3,3,3,4,4,4,4],
+  "points": [[0,0],[1,2],[3,2],[4,0],[5,1],[6,1],[7,3],[8,8],[9,9],[10,10]]})";
+
+TEST_F(ContinuityCommand, reports_every_inner_knot_with_orders_and_first_jumps) {
+    const Ran r = run({"continuity", "-", "--json"}, kSpline);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json knots = Json::parse(r.out)["objects"][0]["knots"];
+    ASSERT_EQ(knots.size(), 3u);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(knots[i]["at"], i + 1);
+        EXPECT_EQ(knots[i]["multiplicity"], i + 1);
+        EXPECT_EQ(knots[i]["c_order"], 2 - i);
+        EXPECT_EQ(knots[i]["g_order"], 2 - i);
+        EXPECT_EQ(knots[i]["first_c_jump"]["order"], 3 - i);
+        EXPECT_FALSE(knots[i]["removable"]);
+    }
+    // At the triple knot (7, 3), (8, 8), (9, 9) hold the tangents 3 (1, 2) and 3 (1, 5).
+    EXPECT_NEAR(knots[2]["first_c_jump"]["size"], 9, 1e-13);
+    EXPECT_EQ(knots[2]["first_c_jump"]["unit"], "unit/t");
+    EXPECT_NEAR(knots[2]["first_g_jump"]["size"], std::atan(5) - std::atan(2), 1e-13);
+    EXPECT_EQ(knots[2]["first_g_jump"]["unit"], "rad");
+    EXPECT_LT(knots[2]["first_g_jump"]["bound"], 1e-13);
+
+    const Ran text = run({"continuity", file("s.json", kSpline)});
+    EXPECT_EQ(text.code, 0);
+    for (const char* part : {"knot 1 x1  C2  G2", "knot 2 x2  C1  G1", "knot 3 x3  C0  G0  C1 by 9 unit/t"})
+        EXPECT_NE(text.out.find(part), std::string::npos) << text.out;
+}
+
+TEST_F(ContinuityCommand, reports_joints_of_neighbouring_objects) {
+    const std::string path = file("path.json", kPath);
+    const Json all = Json::parse(run({"continuity", path, "--json"}).out), joints = all["joints"];
+    ASSERT_EQ(joints.size(), 2u) << joints;
+    EXPECT_EQ(joints[0]["first"], 0);
+    EXPECT_EQ(joints[0]["second"], 1);
+    EXPECT_EQ(joints[0]["c_order"], 1);
+    EXPECT_EQ(joints[0]["g_order"], 1);
+    // P'' = 6 (P4 - 2 P3 + P2) = (-6, -12) before, 6 (1, 2) after.
+    EXPECT_NEAR(joints[0]["first_c_jump"]["size"], std::hypot(12, 24), 1e-12);
+    EXPECT_EQ(joints[0]["first_c_jump"]["unit"], "mm/t^2");
+    EXPECT_EQ(joints[1]["second_end"], "end");
+    EXPECT_EQ(joints[1]["c_order"], -1);
+    EXPECT_NEAR(joints[1]["distance"], 0.001, 1e-15);
+    EXPECT_NEAR(joints[1]["first_g_jump"]["size"], 0.001, 1e-15);
+
+    // With a tolerance above the gap it is a joint; with a smaller `gap` none at all.
+    const Json loose = Json::parse(run({"continuity", path, "--json", "--tolerance", "0.002"}).out)["joints"];
+    EXPECT_EQ(loose[1]["c_order"], 0);
+    EXPECT_EQ(Json::parse(run({"continuity", path, "--json", "--gap", "1e-6"}).out)["joints"].size(), 1u);
+    // One object alone has no neighbours.
+    EXPECT_EQ(Json::parse(run({"continuity", path, "--json", "--object", "b"}).out)["joints"].size(), 0u);
+    EXPECT_NE(run({"continuity", path}).out.find("\"a\" end - objects[1] \"b\" start"), std::string::npos);
+}
+
+TEST_F(ContinuityCommand, looks_at_knots_of_surfaces_and_says_what_it_leaves_out) {
+    const std::string surface =
+        R"({"type": "surface", "degrees": [1, 2], "knots": [[0,0,1,2,2],[0,0,0,1,1,1]],
+        "points": [[[0,0,0],[0,1,0],[0,2,1]],[[1,0,0],[1,1,3],[1,2,0]],[[2,0,0],[2,1,HEIGHT],[2,2,-1]]]})";
+    const auto with = [&](const std::string& height) {
+        std::string s = surface;
+        return s.replace(s.find("HEIGHT"), 6, height);
+    };
+    const Json line =
+        Json::parse(run({"continuity", "-", "--json"}, with("7")).out)["objects"][0]["axes"][0][0];
+    EXPECT_EQ(line["c_order"], 0);
+    EXPECT_NEAR(line["first_c_jump"]["size"], 1, 1e-13);  // slopes 3 and 4 of the middle row
+    EXPECT_EQ(
+        Json::parse(run({"continuity", "-", "--json"}, with("6")).out)["objects"][0]["axes"][0][0]["c_order"],
+        1);
+
+    const std::string triangle = R"({"type": "triangle", "degree": 1, "points": [[0,0,0],[1,0,0],[0,1,0]]})";
+    const Ran none = run({"continuity", "-", "--json"}, triangle);
+    EXPECT_EQ(none.code, 1);
+    EXPECT_EQ(Json::parse(none.out)["error"]["kind"], "no_answer");
+    const Json both = Json::parse(run({"continuity", "-", "--json"},
+                                      R"({"freiform": 1, "objects": [)" + triangle + "," + kSpline + "]}")
+                                      .out);
+    EXPECT_TRUE(both["objects"][0].contains("skipped"));
+    EXPECT_EQ(both["objects"][1]["knots"].size(), 3u);
+}
+
+TEST_F(ContinuityCommand, refuses_wrong_options) {
+    EXPECT_EQ(run({"continuity", "-", "--tolerance", "-1"}, kSpline).code, 2);
+    EXPECT_EQ(run({"continuity", "-", "--tolerance", "x"}, kSpline).code, 2);
+    EXPECT_EQ(run({"continuity", "-", "--orders", "26"}, kSpline).code, 2);
+    EXPECT_EQ(run({"continuity"}).code, 2);
+    EXPECT_EQ(run({"continuity", "-"}, "{").code, 3);
+    EXPECT_EQ(run({"continuity", "missing.json"}).code, 5);
+    EXPECT_EQ(run({"continuity", "-", "--object", "other"}, kSpline).code, 1);
+}
+
+}  // namespace
+}  // namespace freiform::test
