@@ -34,6 +34,7 @@ struct Context {
 
 void add_info(CLI::App& app, Context& context);
 void add_eval(CLI::App& app, Context& context);
+void add_basis(CLI::App& app, Context& context);
 void add_convert(CLI::App& app, Context& context);
 void add_tessellate(CLI::App& app, Context& context);
 void add_draw(CLI::App& app, Context& context);

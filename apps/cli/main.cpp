@@ -13,6 +13,7 @@ constexpr int kWrongUsage = 2;
 void add_commands(CLI::App& app, Context& context) {
     add_info(app, context);
     add_eval(app, context);
+    add_basis(app, context);
     add_convert(app, context);
     add_tessellate(app, context);
     add_draw(app, context);

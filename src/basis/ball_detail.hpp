@@ -6,9 +6,8 @@
 // r. The radius is a double, every formula for it is rounded up by a factor that pays for its few roundings.
 // A radius that is not finite says that nothing is known; to_double refuses it.
 #pragma once
-#include "poly/integer_detail.hpp"
-
 #include <freiform/core/bounded.hpp>
+#include <freiform/poly/integer.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // limbs of a divisor whose highest bit is set is at most 2 too large. gcd: Euclid's algorithm.
 //
 // Why not a library? They are asked for where doubles cannot decide, and the library depends on nothing.
-#include "poly/integer_detail.hpp"
+#include <freiform/poly/integer.hpp>
 
 #include <algorithm>
 #include <bit>

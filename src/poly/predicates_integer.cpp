@@ -1,7 +1,8 @@
 // The last stage of the predicates: determinants in integers of any length. Slow, and obviously right; it is
 // asked only if the exponents of the coordinates are hundreds of powers of two apart. See predicates.cpp.
-#include "poly/integer_detail.hpp"
 #include "poly/predicates_detail.hpp"
+
+#include <freiform/poly/integer.hpp>
 
 #include <algorithm>
 

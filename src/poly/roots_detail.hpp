@@ -1,7 +1,6 @@
 // The stages of the root finder, each on its own.
 #pragma once
-#include "poly/integer_detail.hpp"
-
+#include <freiform/poly/integer.hpp>
 #include <freiform/poly/roots.hpp>
 
 #include <optional>
