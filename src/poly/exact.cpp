@@ -1,8 +1,7 @@
 // Dyadic numbers on top of integers of any length. Accuracy: exact by construction; a sum shifts the operand
 // with the higher exponent to the left, so its cost grows with the distance of exponents.
-#include "poly/integer_detail.hpp"
-
 #include <freiform/poly/exact.hpp>
+#include <freiform/poly/integer.hpp>
 
 #include <algorithm>
 #include <cmath>
