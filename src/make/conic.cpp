@@ -22,9 +22,9 @@
 // Accuracy: all is computed with bounds (bounded.hpp). With errors e_i of numerators and d_i of weights, the
 // difference of the stored curve f and the exact one g is sum B_i (e_i - g d_i) / sum B_i w_i, hence at most
 //     max_i (|e_i| + |g| |d_i|) / w_i,    |g| <= max |P_i| + |f - g|.
-// sin, cos, sinh and cosh of the C library are taken to be off by at most 4 units of 2^-53 (relative for the
-// hyperbolic ones); glibc, musl and Apple's state 1 to 2. Weights that reach the curve are above cos 45
-// degrees, unless `widest` allows less.
+// sin and cos of the C library are taken to be off by at most one unit in the last place, sinh and cosh by
+// two, as glibc and musl state. Weights that reach the curve are above cos 45 degrees, unless `widest` allows
+// less.
 //
 // References: [PT97, ch. 7], [Farin 2002, ch. 12], [Chou 1995] for the quintic.
 //
@@ -142,8 +142,9 @@ Result<ConicArc<D>> spline_of(const std::vector<Piece<D>>& pieces, bool closed =
                     closed ? BSplineBasis::periodic(2, std::move(t)) : BSplineBasis::make(2, std::move(t)));
 }
 
-Bounded cosine(const Bounded& t) { return {std::cos(t.value), t.bound + 4 * kUnit}; }
-Bounded sine(const Bounded& t) { return {std::sin(t.value), t.bound + 4 * kUnit}; }
+Bounded off_by_an_ulp(double x, double more) { return {x, std::abs(x) * (2.01 * kUnit) + more}; }
+Bounded cosine(const Bounded& t) { return off_by_an_ulp(std::cos(t.value), t.bound); }
+Bounded sine(const Bounded& t) { return off_by_an_ulp(std::sin(t.value), t.bound); }
 Bounded hyperbolic_cosine(const Bounded& t) {
     const double c = std::cosh(t.value);
     return {c,
@@ -192,29 +193,22 @@ std::vector<Piece<D>> quarters(const Axes<D>& axes) {
 
 template <int D>
 std::vector<Piece<D>> elliptic_pieces(const Axes<D>& axes, Interval on, int n) {
-    // k / (2 n) of the way, two roundings of a number of size at most |lo| + length.
-    const auto angle = [&](int k) {
-        const double t = on.lo + on.length() * k / (2 * n);
-        return Bounded(t, 4 * kUnit * (std::abs(on.lo) + on.length()));
-    };
-    const auto at = [&](int k) {
-        return axes.centre + (cosine(angle(k)) * axes.x + sine(angle(k)) * axes.y);
-    };
-    const double half = on.length() / (2 * n);
-    const Bounded w = cosine({half, 3 * kUnit * half});
+    // Joints are doubles, and exact; what is between them follows with bounds.
+    const auto joint = [&](int k) { return k == n ? on.hi : on.lo + on.length() * k / n; };
+    const auto spoke = [&](const Bounded& t) { return cosine(t) * axes.x + sine(t) * axes.y; };
     std::vector<Piece<D>> pieces;
-    for (int k = 0; k < n; ++k)
-        pieces.push_back(quadratic<D>(
-            at(2 * k),
-            w * axes.centre + (cosine(angle(2 * k + 1)) * axes.x + sine(angle(2 * k + 1)) * axes.y), w,
-            at(2 * k + 2)));
+    for (int k = 0; k < n; ++k) {
+        const Bounded from = joint(k), to = joint(k + 1), half(0.5), w = cosine(half * (to - from));
+        pieces.push_back(quadratic<D>(axes.centre + spoke(from), w * axes.centre + spoke(half * (from + to)),
+                                      w, axes.centre + spoke(to)));
+    }
     return pieces;
 }
 
 template <int D>
 Piece<D> hyperbolic_piece(const Axes<D>& axes, Interval on) {
-    const double size = std::abs(on.lo) + std::abs(on.hi);
-    const Bounded middle(on.lo / 2 + on.hi / 2, kUnit * size), half((on.hi - on.lo) / 2, kUnit * size);
+    const Bounded halved(0.5), middle = halved * (Bounded(on.lo) + Bounded(on.hi)),
+                               half = halved * (Bounded(on.hi) - Bounded(on.lo));
     const auto spoke = [&](const Bounded& t) {
         return hyperbolic_cosine(t) * axes.x + hyperbolic_sine(t) * axes.y;
     };
