@@ -24,6 +24,7 @@ struct Line {
     std::string name;
     int dim = 0;
     std::vector<double> points, parameters;
+    std::optional<std::size_t> edge;  // of a model
     double bound = 0;
     bool closed = false;
 };
@@ -32,13 +33,43 @@ template <int D>
 void add_lines(const Polyline<D>& p, std::size_t object, const std::string& name, std::vector<Line>& out) {
     for (std::size_t k = 0; k < p.parts.size(); ++k) {
         const std::size_t from = p.parts[k], to = k + 1 < p.parts.size() ? p.parts[k + 1] : p.points.size();
-        Line line{object, name, D, {}, {}, p.bound, p.closed};
+        Line line{object, name, D, {}, {}, {}, p.bound, p.closed};
         for (std::size_t i = from; i < to; ++i) {
             line.points.insert(line.points.end(), p.points[i].c.begin(), p.points[i].c.end());
             line.parameters.push_back(p.parameters[i]);
         }
         out.push_back(std::move(line));
     }
+}
+
+template <class P>
+Result<void> add_curve(const Curve<P>& curve, std::size_t object, const FlattenOptions& how,
+                       const std::string& name, std::vector<Line>& out) {
+    const auto line = flatten(curve, how);
+    if (!line) return std::unexpected(line.error());
+    add_lines(*line, object, name, out);
+    return {};
+}
+
+// The edges of a model that have a curve of their own.
+Result<void> add_edges(const Model& model, std::size_t object, const FlattenOptions& how,
+                       std::vector<Line>& out) {
+    std::size_t without = 0;
+    for (std::size_t e = 0; e < model.edges.size(); ++e) {
+        const Edge& edge = model.edges[e];
+        if (edge.degenerate) continue;
+        if (!edge.curve) {
+            ++without;
+            continue;
+        }
+        const auto line = flatten(*edge.curve, edge.range, how);
+        if (!line) return refuse_within(text("edges[", e, "]"), line.error());
+        const std::size_t first = out.size();
+        add_lines(*line, object, edge.name, out);
+        for (std::size_t k = first; k < out.size(); ++k) out[k].edge = e;
+    }
+    if (without > 0) remark(text(without, " edges have no curve in space of their own, and are left out"));
+    return {};
 }
 
 template <class F>
@@ -54,6 +85,10 @@ Result<void> each_curve(const Document& document, const std::vector<std::size_t>
                         ++curves;
                         return f(i, s);
                     }
+                if constexpr (std::same_as<S, Model> && requires { f(i, s); }) {
+                    ++curves;
+                    return f(i, s);
+                }
                 remark(text(object_label(document, i), ": is a ", type_name(document.objects[i].shape),
                             ", not a curve, and left out"));
                 return {};
@@ -76,6 +111,7 @@ std::string to_json(const std::vector<Line>& lines, const Document& document) {
     for (const Line& line : lines) {
         w.new_line(1).begin_object();
         if (document.objects.size() > 1) w.field("object", line.object);
+        if (line.edge) w.field("edge", *line.edge);
         if (!line.name.empty()) w.field("name", line.name);
         w.key("points").begin_array();
         for (std::size_t i = 0; i < line.points.size(); i += std::size_t(line.dim))
@@ -134,8 +170,8 @@ Result<void> compare(const Context& context, const Options& options, const Docum
     json::Writer w;
     std::string table;
     w.begin_object().key("objects").begin_array();
-    const auto done =
-        each_curve(document, objects, options.file, [&](std::size_t i, const auto& curve) -> Result<void> {
+    const auto done = each_curve(
+        document, objects, options.file, [&]<class P>(std::size_t i, const Curve<P>& curve) -> Result<void> {
             const auto rows = compare_flattening(curve, *options.compare);
             if (!rows) return std::unexpected(rows.error());
             w.new_line(1).begin_object().field("object", i).key("methods").begin_array();
@@ -191,10 +227,10 @@ Result<void> run(const Context& context, const Options& options) {
     std::vector<Line> lines;
     const auto done =
         each_curve(*document, *objects, options.file, [&](std::size_t i, const auto& curve) -> Result<void> {
-            const auto line = flatten(curve, how);
-            if (!line) return std::unexpected(line.error());
-            add_lines(*line, i, document->objects[i].name, lines);
-            return {};
+            if constexpr (requires { curve.edges; })
+                return add_edges(curve, i, how, lines);
+            else
+                return add_curve(curve, i, how, document->objects[i].name, lines);
         });
     if (!done) return done;
     if (format == "json") return emit(context, to_json(lines, *document));
@@ -208,7 +244,8 @@ Result<void> run(const Context& context, const Options& options) {
 void add_flatten(CLI::App& app, Context& context) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
-        add_command(app, context, "flatten", "Curves as polylines, within a distance that is proven",
+        add_command(app, context, "flatten",
+                    "Curves, and edges of models, as polylines, within a distance that is proven",
                     "  freiform flatten curves.json --tolerance 0.01 -o curves.svg\n"
                     "  freiform flatten curve.json --segments 64 --method forward\n"
                     "  freiform flatten curve.json --compare 16");

@@ -42,8 +42,9 @@ FlattenResult<P> by_number(const Chain<P>& chain, std::size_t wanted) {
     return best;
 }
 
-template <class P>
-Result<void> check(const FlattenOptions& o) {
+}  // namespace
+
+Result<void> check_options(const FlattenOptions& o) {
     const bool by_tolerance = o.tolerance != 0, by_segments = o.segments != 0;
     if (by_tolerance == by_segments)
         return refuse(RefusalKind::invalid, "tolerance",
@@ -57,6 +58,8 @@ Result<void> check(const FlattenOptions& o) {
         return refuse(RefusalKind::invalid, "polygons", "only halving has control polygons to draw");
     return {};
 }
+
+namespace {
 
 template <int D>
 void to_model_units(Polyline<D>& line, int exponent) {
@@ -90,7 +93,7 @@ double measured(const Curve<P>& curve, const Polyline<Space<P>::kDim>& line) {
 
 template <class P>
 Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOptions& options) {
-    if (auto ok = detail::check<P>(options); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_options(options); !ok) return std::unexpected(ok.error());
     const detail::Chain<P> chain(curve);
     const double tolerance = std::scalbn(options.tolerance, -chain.exponent());
     if (options.tolerance > 0 && !(tolerance > 0))

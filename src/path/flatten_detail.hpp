@@ -144,6 +144,8 @@ inline double steps_for(double second, double tolerance) {
     return std::max(1.0, std::ceil(std::sqrt(second / (8 * tolerance)) * (1 + 8 * kUnit)));
 }
 
+Result<void> check_options(const FlattenOptions& options);
+
 template <class P>
 Result<Polyline<Space<P>::kDim>> flatten_adaptive(const Chain<P>& chain, double tolerance, std::size_t most);
 template <class P>

@@ -347,6 +347,47 @@ TEST(Flatten, by_number_of_segments_adaptive_uses_them_well) {
     }
 }
 
+TEST(Flatten, conics_and_lines_of_models_are_flattened_as_they_are) {
+    const Conic<3> ellipse{ConicKind::ellipse, {{1, 2, 3}}, {{5, 0, 0}}, {{0, 1, 0.5}}},
+        hyperbola{ConicKind::hyperbola, {}, {{1, 0, 0}}, {{0, 2, 0}}},
+        parabola{ConicKind::parabola, {}, {{0, 1, 0}}, {{3, 0, 0}}};
+    const auto check = [](const CurveGeometry<3>& curve, Interval on, FlattenOptions o, std::size_t most) {
+        const auto line = must(flatten(curve, on, o));
+        double found = 0;
+        for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
+            for (int k = 1; k < 32; ++k) {
+                const double s = line.parameters[i], t = line.parameters[i + 1];
+                found = std::max(found, distance_to_segment(jet<0>(curve, s + (t - s) * k / 32).value(),
+                                                            line.points[i], line.points[i + 1]));
+            }
+        EXPECT_LE(found, line.bound);
+        EXPECT_GE(found, 0.95 * line.bound);
+        EXPECT_LE(line.bound, o.tolerance > 0 ? o.tolerance : 1e300);
+        EXPECT_LE(line.segments(), most);
+    };
+    for (const double tolerance : {0.1, 1e-4, 1e-7})
+        for (const FlattenMethod method : {FlattenMethod::adaptive, FlattenMethod::uniform}) {
+            check(ellipse, {-1, 5.28}, by_tolerance(method, tolerance), 100000);
+            check(hyperbola, {-2, 1}, by_tolerance(method, tolerance), 100000);
+            check(parabola, {-1, 3}, by_tolerance(method, tolerance), 100000);
+        }
+    check(ellipse, {0, 1}, by_segments(FlattenMethod::adaptive, 7), 7);
+    // A circle needs pi / acos(1 - tolerance / r) segments.
+    const Conic<3> circle_of_9{ConicKind::ellipse, {}, {{9, 0, 0}}, {{0, 9, 0}}};
+    check(circle_of_9, {0, 2 * std::acos(-1)}, by_tolerance(FlattenMethod::adaptive, 1e-3),
+          std::size_t(std::ceil(std::acos(-1) / std::acos(1 - 1e-3 / 9))) + 1);
+    const CurveGeometry<3> line = Line<3>{{{1, 1, 1}}, {{1, 2, 3}}};
+    EXPECT_EQ(must(flatten(line, {0, 4}, by_tolerance(FlattenMethod::adaptive, 1e-3))).points,
+              (std::vector<Vec<3>>{{{1, 1, 1}}, {{5, 9, 13}}}));
+    const CurveGeometry<2> spline = kArch;
+    const auto part = must(flatten(spline, {0.25, 0.5}, by_tolerance(FlattenMethod::adaptive, 1e-3)));
+    EXPECT_EQ(part.parameters.front(), 0.25);
+    EXPECT_EQ(part.parameters.back(), 0.5);
+    EXPECT_LT(distance(part.points.back(), kArch(0.5)), 1e-14);
+    EXPECT_FALSE(flatten(line, {0, std::numeric_limits<double>::infinity()},
+                         by_tolerance(FlattenMethod::adaptive, 1)));
+}
+
 TEST(Flatten, refuses_what_it_cannot_do_and_says_what_is_needed) {
     const auto kind = [](const auto& r) { return r ? RefusalKind::io : r.error().kind; };
     EXPECT_EQ(kind(flatten(kArch, {})), RefusalKind::invalid);

@@ -1,6 +1,6 @@
 // Curves as polylines, within a distance that is proven.
 #pragma once
-#include <freiform/spline/patch.hpp>
+#include <freiform/spline/geometry.hpp>
 
 #include <cstddef>
 #include <string_view>
@@ -51,6 +51,12 @@ struct Polyline {
 //   auto line = flatten(curve, {.tolerance = 0.01});
 template <class P>
 Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOptions& options);
+
+// The same for a curve of a model on an interval inside its domain (ellipses: any finite interval). Lines
+// have two points. Conics have no Bezier pieces: methods other than adaptive take equal parameter steps. D =
+// 2, 3.
+template <int D>
+Result<Polyline<D>> flatten(const CurveGeometry<D>& curve, Interval on, const FlattenOptions& options);
 
 inline constexpr double kCornerAngle = 1e-4;  // radians
 
