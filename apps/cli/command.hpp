@@ -41,6 +41,7 @@ void add_draw(CLI::App& app, Context& context);
 void add_conic(CLI::App& app, Context& context);
 void add_implicit(CLI::App& app, Context& context);
 void add_continuity(CLI::App& app, Context& context);
+void add_inside(CLI::App& app, Context& context);
 void add_interpolate(CLI::App& app, Context& context);
 void add_flatten(CLI::App& app, Context& context);
 void add_length(CLI::App& app, Context& context);

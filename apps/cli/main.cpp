@@ -20,6 +20,7 @@ void add_commands(CLI::App& app, Context& context) {
     add_conic(app, context);
     add_implicit(app, context);
     add_continuity(app, context);
+    add_inside(app, context);
     add_interpolate(app, context);
     add_flatten(app, context);
     add_length(app, context);

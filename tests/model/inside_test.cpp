@@ -1,0 +1,75 @@
+#include "support/solids.hpp"
+
+#include <freiform/model/inside.hpp>
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace freiform {
+namespace {
+
+double uniform(std::mt19937& rng) { return double(rng() >> 5) * 0x1p-27; }
+
+TEST(R27, a_point_in_a_closed_body_is_told_from_one_outside) {
+    const Model ball = test::sphere({{1, 2, 3}}, 2);
+    const auto in = inside_solid(
+        ball, std::vector<Vec<3>>{{{1, 2, 3}}, {{2.9, 2, 3}}, {{3.1, 2, 3}}, {{1, 2, 5.5}}, {{9, 9, 9}}},
+        1e-3);
+    ASSERT_TRUE(in) << in.error().message;
+    const Place want[] = {Place::inside, Place::inside, Place::outside, Place::outside, Place::outside};
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ((*in)[i].place, want[i]) << i;
+    EXPECT_EQ((*in)[0].winding, 1);
+}
+
+TEST(InsideSolid, answers_of_a_torus_are_right_and_their_distances_hold) {
+    const double R = 3, r = 1, accuracy = 4e-3;
+    const Model torus = test::torus(R, r);
+    std::mt19937 rng(12);
+    std::vector<Vec<3>> points;
+    for (int i = 0; i < 300; ++i)
+        points.push_back({{9 * uniform(rng) - 4.5, 9 * uniform(rng) - 4.5, 3 * uniform(rng) - 1.5}});
+    for (int i = 0; i < 100; ++i) {  // near the surface, on either side of it
+        const double a = 7 * uniform(rng), b = 7 * uniform(rng), away = std::pow(10, -1 - 5 * uniform(rng));
+        const double tube = r + (i % 2 ? away : -away), axis = R + tube * std::cos(b);
+        points.push_back({{axis * std::cos(a), axis * std::sin(a), tube * std::sin(b)}});
+    }
+    const auto in = inside_solid(torus, points, accuracy);
+    ASSERT_TRUE(in) << in.error().message;
+    int boundary = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Vec<3>& p = points[i];
+        const double signed_distance = std::hypot(std::hypot(p[0], p[1]) - R, p[2]) - r;
+        const SolidInside& s = (*in)[i];
+        if (s.place == Place::boundary) {
+            ++boundary;
+            EXPECT_LE(std::abs(signed_distance), s.distance);
+            EXPECT_LE(s.distance, accuracy);
+        } else {
+            EXPECT_EQ(s.place, signed_distance < 0 ? Place::inside : Place::outside) << i;
+            EXPECT_GE(std::abs(signed_distance), s.distance);
+        }
+        if (std::abs(signed_distance) > accuracy) EXPECT_NE(s.place, Place::boundary) << i;
+    }
+    EXPECT_GT(boundary, 10);
+    EXPECT_LT(boundary, 80);
+}
+
+TEST(InsideSolid, open_models_and_nonsense_are_refused) {
+    ModelBuilder builder;
+    std::vector<Vec<3>> net = {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 1}}};
+    const auto linear = *BSplineBasis::bezier(1);
+    ASSERT_TRUE(builder.add(*Surface<Vec<3>>::make({linear, linear}, Net<2, Vec<3>>({2, 2}, net))));
+    const auto sheet = std::move(builder).finish();
+    ASSERT_TRUE(sheet);
+    const std::vector<Vec<3>> origin = {{{0, 0, 0}}}, nan = {{{0, NAN, 0}}};
+    EXPECT_EQ(inside_solid(*sheet, origin, 1e-3).error().kind, RefusalKind::no_answer);
+    const Model ball = test::sphere({}, 1);
+    EXPECT_EQ(inside_solid(ball, nan, 1e-3).error().kind, RefusalKind::nonfinite);
+    EXPECT_EQ(inside_solid(ball, origin, 0).error().kind, RefusalKind::invalid);
+    EXPECT_EQ(inside_solid(ball, std::vector<Vec<3>>{{{1, 0, 0}}}, 1e-9, 1000).error().kind,
+              RefusalKind::limit);
+}
+
+}  // namespace
+}  // namespace freiform
