@@ -9,7 +9,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 help:
 	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/)"
 	@echo "make test    build everything and run all tests"
-	@echo "make bench   compare tessellation with Open CASCADE (bench/REPORT.md)"
+	@echo "make bench   compare tessellation and curves with other libraries (bench/*.md)"
 	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"
 	@echo "make build   build the program: build/bin/freiform"
 	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
@@ -43,8 +43,10 @@ bench:
 	@source tools/steps.sh; \
 	step "Packages" tools/setup.sh bench; \
 	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
-	step "Build" cmake --build --preset release --target bench-tessellate bench-tessellate-occt freiform-occt-import; \
-	step "Compare" tools/bench_report.py
+	step "Build" cmake --build --preset release --target bench-tessellate bench-tessellate-occt freiform-occt-import \
+		bench-curves bench-curves-occt bench-curves-boost; \
+	step "Compare" tools/bench_report.py; \
+	step "Compare curves" tools/bench_curves.py
 
 accuracy:
 	@source tools/steps.sh; \

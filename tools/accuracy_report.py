@@ -253,7 +253,7 @@ evaluate_accurate<1, Vec<1>, Bernstein>(curve, t, std::span<Accurate<Vec<1>>>(ou
 ```
 
 It works for curves, surfaces and volumes, polynomial and rational, Bernstein and B-spline bases, of all degrees, and takes
-10 to 40 times as long. The bound is derived in `src/spline/accurate.cpp`. Splitting, insertion and elevation have bounds too
+10 to 60 times as long. The bound is derived in `src/spline/accurate.cpp`. Splitting, insertion and elevation have bounds too
 (`refinement_error`, `elevation_error`, `split_error`); the tests hold all of them against exact arithmetic for the
 degrees 1 to 25.
 """

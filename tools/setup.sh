@@ -10,7 +10,7 @@ gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 test="libgtest-dev librapidcheck-dev libboost-dev"
 ci="python3 clang-22 libclang-rt-22-dev clang-format"
-bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev"
+bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 
 purpose=${1:-demo}

@@ -24,7 +24,7 @@
 //     |v - exact| <= (n + |v| d) / (|W| - d) + 64 u^2 |v|, infinite if W cannot be told from 0.
 // The bound is that plus |v.lo|: computed after the fact, for this value, not for the worst.
 //
-// Cost. Measured, 10 to 40 times that of evaluate.
+// Cost. Measured, 10 to 60 times that of evaluate.
 //
 // References: [Joldes Muller Popescu 2017].
 //
