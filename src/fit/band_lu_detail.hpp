@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 namespace freiform::detail {
@@ -32,14 +33,16 @@ public:
           below_(below),
           above_(above),
           row_(2 * std::size_t(below) + std::size_t(above) + 1),
-          a_(std::size_t(n) * row_),
-          swap_(std::size_t(n), 0) {}
+          a_(std::size_t(n) * row_) {}
 
     int size() const { return n_; }
     int below() const { return below_; }
     int above() const { return above_; }
     // The entry (i, j) before `factor`. REQUIRES -below <= j - i <= above.
-    double& at(int i, int j) { return a_[std::size_t(i) * row_ + std::size_t(j - i + below_)]; }
+    double& at(int i, int j) {
+        FF_REQUIRE(j - i >= -below_ && j - i <= above_);
+        return a_[std::size_t(i) * row_ + std::size_t(j - i + below_)];
+    }
 
     // The row without a pivot, where the matrix is singular (or holds NaN).
     std::optional<int> factor() {
@@ -48,16 +51,23 @@ public:
         return factor_any();
     }
 
-    // x := A^-1 x, of n rows of `width` numbers each. REQUIRES a successful `factor`.
-    void solve(double* x, std::size_t width) const {
-        if (below_ == 1 && above_ == 1) return solve_narrow<1, 1>(x, width);
-        if (below_ == 2 && above_ == 2) return solve_narrow<2, 2>(x, width);
+    // x := A^-1 x, of n rows of `width` numbers each; `more`, if there is any, is one more column of its own.
+    // REQUIRES a successful `factor`.
+    void solve(double* x, std::size_t width, double* more = nullptr) const {
+        if (below_ == 1 && above_ == 1) return solve_narrow<1, 1>(x, width, more);
+        if (below_ == 2 && above_ == 2) return solve_narrow<2, 2>(x, width, more);
         solve_any(x, width);
+        if (more) solve_any(more, 1);
     }
 
 private:
     double* row(int i) { return a_.data() + std::size_t(i) * row_; }
     const double* row(int i) const { return a_.data() + std::size_t(i) * row_; }
+    bool swapped() const { return !swap_.empty(); }
+    void mark_swap(int i, int by) {
+        if (swap_.empty()) swap_.resize(std::size_t(n_));
+        swap_[std::size_t(i)] = by;
+    }
     static bool usable(double pivot) { return std::abs(pivot) > 0 && std::isfinite(1 / pivot); }
 
     std::optional<int> factor_any();
@@ -88,8 +98,7 @@ private:
                 if (std::abs(w[r][0]) > std::abs(w[p][0])) p = r;
             if (p != 0) {
                 for (int k = 0; k <= U; ++k) std::swap(w[0][k], w[p][k]);
-                swap_[std::size_t(i)] = p;
-                swapped_ = true;
+                mark_swap(i, p);
             }
             if (!usable(w[0][0])) return i;
             const double inverse = 1 / w[0][0];
@@ -108,60 +117,71 @@ private:
     }
 
     template <int KL, int KU>
-    void solve_narrow(double* x, std::size_t width) const {
+    void solve_narrow(double* x, std::size_t width, double* more) const {
         switch (width) {
             case 1:
-                return solve_rows<KL, KU, 1>(x);
+                return solve_rows<KL, KU, 1>(x, more);
             case 2:
-                return solve_rows<KL, KU, 2>(x);
+                return solve_rows<KL, KU, 2>(x, more);
             case 3:
-                return solve_rows<KL, KU, 3>(x);
+                return solve_rows<KL, KU, 3>(x, more);
             case 4:
-                return solve_rows<KL, KU, 4>(x);
-            case 5:
-                return solve_rows<KL, KU, 5>(x);
+                return solve_rows<KL, KU, 4>(x, more);
             default:
-                return solve_any(x, width);
+                solve_any(x, width);
+                if (more) solve_any(more, 1);
         }
     }
     template <int KL, int KU, int W>
-    void solve_rows(double* x) const {
-        forward<KL, W>(x);
-        if (swapped_)
-            backward<KL, KL + KU, W>(x);
+    void solve_rows(double* x, double* more) const {
+        // One column more, in a place of its own, costs little beside the others.
+        if (more)
+            solve_columns<KL, KU>(std::integral_constant<int, W + 1>{}, [=](int i, int c) -> double& {
+                return c < W ? x[std::ptrdiff_t(i) * W + c] : more[i];
+            });
         else
-            backward<KL, KU, W>(x);  // interchanges alone make U wider than A
+            solve_columns<KL, KU>(std::integral_constant<int, W>{},
+                                  [=](int i, int c) -> double& { return x[std::ptrdiff_t(i) * W + c]; });
     }
-    template <int KL, int W>
-    void forward(double* x) const {
-        double w[KL + 1][W] = {};
+    template <int KL, int KU, int C, class X>
+    void solve_columns(std::integral_constant<int, C>, X x) const {
+        if (swapped()) {
+            forward<KL, C, true>(x);
+            backward<KL, KL + KU, C>(x);
+        } else {  // interchanges alone make U wider than A
+            forward<KL, C, false>(x);
+            backward<KL, KU, C>(x);
+        }
+    }
+    template <int KL, int C, bool Swapped, class X>
+    void forward(X x) const {
+        double w[KL + 1][C] = {};
         for (int r = 0; r < KL && r < n_; ++r)
-            for (int c = 0; c < W; ++c) w[r][c] = x[r * W + c];
+            for (int c = 0; c < C; ++c) w[r][c] = x(r, c);
         for (int i = 0; i < n_; ++i) {
-            double* own = x + std::size_t(i) * W;
             const double* l = row(i);
             const bool enters = i + KL < n_;
-            for (int c = 0; c < W; ++c) w[KL][c] = enters ? own[KL * W + c] : 0;
-            if (const int p = swap_[std::size_t(i)]; p != 0)
-                for (int c = 0; c < W; ++c) std::swap(w[0][c], w[p][c]);
-            for (int c = 0; c < W; ++c) {
+            for (int c = 0; c < C; ++c) w[KL][c] = enters ? x(i + KL, c) : 0;
+            if constexpr (Swapped)
+                if (const int p = swap_[std::size_t(i)]; p != 0)
+                    for (int c = 0; c < C; ++c) std::swap(w[0][c], w[p][c]);
+            for (int c = 0; c < C; ++c) {
                 const double head = w[0][c];
-                own[c] = head;
+                x(i, c) = head;
                 for (int r = 1; r <= KL; ++r) w[r - 1][c] = w[r][c] - l[r - 1] * head;
             }
         }
     }
-    template <int KL, int U, int W>
-    void backward(double* x) const {
-        double w[U + 1][W] = {};
+    template <int KL, int U, int C, class X>
+    void backward(X x) const {
+        double w[U + 1][C] = {};
         for (int i = n_; i-- > 0;) {
-            double* own = x + std::size_t(i) * W;
             const double* u = row(i) + KL;
-            for (int c = 0; c < W; ++c) {
-                double sum = own[c];
+            for (int c = 0; c < C; ++c) {
+                double sum = x(i, c);
                 for (int k = U; k >= 1; --k) sum -= u[k] * w[k - 1][c];
                 for (int k = U; k >= 1; --k) w[k][c] = w[k - 1][c];
-                own[c] = w[0][c] = sum * u[0];
+                x(i, c) = w[0][c] = sum * u[0];
             }
         }
     }
@@ -169,8 +189,7 @@ private:
     int n_, below_, above_;
     std::size_t row_;
     std::vector<double> a_;
-    std::vector<int> swap_;  // row i was exchanged with row i + swap_[i]
-    bool swapped_ = false;
+    std::vector<int> swap_;  // row i was exchanged with row i + swap_[i]; empty if none was
 };
 
 inline std::optional<int> BandLU::factor_any() {
@@ -186,8 +205,7 @@ inline std::optional<int> BandLU::factor_any() {
         if (p != i) {
             // What the rows hold of the columns i .. i + reach; beyond their own ends they hold zeros.
             for (int k = 0; k <= columns; ++k) std::swap(left(i, i)[k], left(p, i)[k]);
-            swap_[std::size_t(i)] = p - i;
-            swapped_ = true;
+            mark_swap(i, p - i);
         }
         const double pivot = *left(i, i);
         if (!usable(pivot)) return i;
@@ -209,11 +227,12 @@ inline void BandLU::solve_any(double* x, std::size_t width) const {
         for (std::size_t c = 0; c < width; ++c) to[c] -= f * from[c];
     };
     for (int i = 0; i < n_; ++i) {
-        if (const int p = swap_[std::size_t(i)]; p != 0) std::swap_ranges(at(i), at(i) + width, at(i + p));
+        if (const int p = swapped() ? swap_[std::size_t(i)] : 0; p != 0)
+            std::swap_ranges(at(i), at(i) + width, at(i + p));
         for (int r = 1; r <= below_ && i + r < n_; ++r)
             if (const double l = row(i)[r - 1]; l != 0) subtract(at(i + r), l, at(i));
     }
-    const int reach = swapped_ ? below_ + above_ : above_;
+    const int reach = swapped() ? below_ + above_ : above_;
     for (int i = n_; i-- > 0;) {
         const double* u = row(i) + below_;
         for (int k = std::min(reach, n_ - 1 - i); k >= 1; --k)

@@ -61,10 +61,18 @@ public:
         if (const auto bad = g_.factor()) return inner + *bad;
         return std::nullopt;
     }
-    // x := A^-1 x, of n rows of `width` numbers each. REQUIRES a successful `factor`.
-    void solve(double* x, std::size_t width) const {
-        band_.solve(x, width);
+    // x := A^-1 x, of n rows of `width` numbers each; `more`, if there is any, is one more column of its own.
+    // REQUIRES a successful `factor`.
+    void solve(double* x, std::size_t width, double* more = nullptr) const {
+        band_.solve(x, width, more);
         if (border_ == 0) return;
+        finish(x, width);
+        if (more) finish(more, 1);
+    }
+
+private:
+    // The border, after the band.
+    void finish(double* x, std::size_t width) const {
         const int inner = n_ - border_;
         double* y = x + std::size_t(inner) * width;
         for (int r = 0; r < border_; ++r)
@@ -80,7 +88,6 @@ public:
                         x[std::size_t(k) * width + c] -= a * y[std::size_t(r) * width + c];
     }
 
-private:
     static int border(int n, int below, int above, bool closed) {
         const int k = std::max(below, above);
         return closed && n > 4 * k + 4 ? k : 0;

@@ -43,54 +43,46 @@ namespace freiform {
 namespace {
 
 using detail::BandSystem;
-using detail::chessboard_norm;
 using detail::finished;
 using detail::Largest;
 using detail::SplineSystem;
+using detail::ValueRows;
 using detail::with_rounding;
-
-// Calls f(row, first column, entries) for all rows of the system.
-template <class F>
-void each_row(const SplineSystem& s, F&& f) {
-    const int n = s.size(), k = s.conditions(), last = n - s.basis.degree() - 1;
-    for (int i = 0; i < s.points(); ++i) f(s.row_of(i), s.values.first[std::size_t(i)], s.values.row(i));
-    for (int j = 0; j < k; ++j) {
-        f(j + 1, 0, std::span<const double>(s.start[std::size_t(j)].entry));
-        f(n - 2 - j, last, std::span<const double>(s.end[std::size_t(j)].entry));
-    }
-}
 
 // Of a closed system the unknowns are turned, so that the entries of row i are around i.
 int turn_of(const SplineSystem& s) { return s.basis.is_closed() ? s.basis.degree() / 2 : 0; }
 
 BandSystem matrix_of(const SplineSystem& s) {
-    int below = 0, above = 0;
-    const int turn = turn_of(s);
-    each_row(s, [&](int i, int first, std::span<const double> w) {
-        int lo = 0, hi = int(w.size()) - 1;
-        while (lo < hi && w[std::size_t(lo)] == 0) ++lo;
-        while (lo < hi && w[std::size_t(hi)] == 0) --hi;
-        below = std::max(below, i - (first + lo - turn));
-        above = std::max(above, first + hi - turn - i);
+    const int n = s.size(), turn = turn_of(s), width = s.basis.degree() + 1;
+    BandSystem a(n, s.half_width, s.half_width, s.basis.is_closed());
+    const auto add = [&](int row, int first, const double* w) {
+        for (int k = 0; k < width; ++k)
+            if (w[k] != 0) a.add(row, first + k - turn, w[k]);
+    };
+    ValueRows(s.basis, s.sites).each_block([&](int i, const BandMap& rows) {
+        for (int k = 0; k < rows.rows(); ++k)
+            add(s.row_of(i + k), rows.first[std::size_t(k)], &rows.entry[std::size_t(k * width)]);
     });
-    BandSystem a(s.size(), below, above, s.basis.is_closed());
-    each_row(s, [&](int i, int first, std::span<const double> w) {
-        for (std::size_t k = 0; k < w.size(); ++k)
-            if (w[k] != 0) a.add(i, first + int(k) - turn, w[k]);
-    });
+    for (int j = 0; j < s.conditions(); ++j) {
+        add(j + 1, 0, s.start[std::size_t(j)].entry.data());
+        add(n - 2 - j, n - width, s.end[std::size_t(j)].entry.data());
+    }
     return a;
 }
 
-// The right-hand side for one line of the net: rows of `width` numbers, `stride` >= width apart on both
-// sides.
-void arrange(const SplineSystem& s, const double* data, double* rhs, std::size_t width, std::size_t stride) {
+// The right-hand side for one line of the net, of rows of `width` numbers.
+void arrange(const SplineSystem& s, const double* data, double* rhs, std::size_t width) {
     const int k = s.conditions(), n = s.size(), offset = s.given ? k : 0;
     const auto copy = [&](int layer, int row, double scale) {
         const double* from = data + std::size_t(layer) * width;
-        double* to = rhs + std::size_t(row) * stride;
+        double* to = rhs + std::size_t(row) * width;
         for (std::size_t c = 0; c < width; ++c) to[c] = scale * from[c];
     };
-    for (int i = 0; i < s.points(); ++i) copy(offset + i, s.row_of(i), 1);
+    const int m = s.points();  // the first and the last point stand outside the conditions
+    copy(offset, 0, 1);
+    copy(offset + m - 1, n - 1, 1);
+    const double* inner = data + std::size_t(offset + 1) * width;
+    std::copy(inner, inner + std::size_t(m - 2) * width, rhs + std::size_t(k + 1) * width);
     for (int j = 1; j <= k && s.given; ++j) {
         copy(k - j, j, s.start[std::size_t(j - 1)].scale);
         copy(k + s.points() + j - 1, n - 1 - j, s.end[std::size_t(j - 1)].scale);
@@ -109,9 +101,8 @@ void turn_back(const SplineSystem& s, std::span<T> lines, std::size_t inner) {
 
 // Coefficients along `axis` instead of layers of data.
 template <std::size_t N, int D>
-Net<N, Vec<D>> solved(int axis, const SplineSystem& s, const BandSystem& a, const Net<N, Vec<D>>& data,
-                      double& norm_of_inverse) {
-    Index<N> extent = data.extent();
+Net<N, Vec<D>> solved(int axis, const SplineSystem& s, const BandSystem& a, std::span<const Vec<D>> data,
+                      Index<N> extent, double& norm_of_inverse) {
     const std::size_t layers = std::size_t(extent[std::size_t(axis)]), n = std::size_t(s.size());
     extent[std::size_t(axis)] = s.size();
     std::size_t inner = 1, outer = 1;
@@ -119,27 +110,17 @@ Net<N, Vec<D>> solved(int axis, const SplineSystem& s, const BandSystem& a, cons
         (int(d) < axis ? outer : inner) *= int(d) == axis ? 1 : std::size_t(extent[d]);
     Net<N, Vec<D>> out(extent);
     const std::size_t width = inner * D;
-    const double* from = &data.flat()[0].c[0];
+    const double* from = &data[0].c[0];
     double* to = &out.flat()[0].c[0];
-    if (outer * inner == 1) {
-        // One curve: the column for the condition goes along with the coordinates.
-        std::vector<double> x(n * (D + 1));
-        arrange(s, from, x.data(), D, D + 1);
-        for (std::size_t i = 0; i < n; ++i) x[i * (D + 1) + D] = i % 2 == 0 ? 1 : -1;
-        a.solve(x.data(), D + 1);
-        double most = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t c = 0; c < D; ++c) to[i * D + c] = x[i * (D + 1) + c];
-            most = std::max(most, std::abs(x[i * (D + 1) + D]));
-        }
-        norm_of_inverse = most;
-    } else {
-        norm_of_inverse = chessboard_norm(a);
-        for (std::size_t o = 0; o < outer; ++o) {
-            arrange(s, from + o * layers * width, to + o * n * width, width, width);
-            a.solve(to + o * n * width, width);
-        }
+    // For the condition: one more column, along with the first line.
+    std::vector<double> chessboard(n);
+    for (std::size_t i = 0; i < n; ++i) chessboard[i] = i % 2 == 0 ? 1 : -1;
+    for (std::size_t o = 0; o < outer; ++o) {
+        arrange(s, from + o * layers * width, to + o * n * width, width);
+        a.solve(to + o * n * width, width, o == 0 ? chessboard.data() : nullptr);
     }
+    norm_of_inverse = 0;
+    for (const double x : chessboard) norm_of_inverse = std::max(norm_of_inverse, std::abs(x));
     turn_back(s, out.flat(), inner);
     return out;
 }
@@ -168,13 +149,52 @@ std::string axis_name(std::size_t dimensions, std::size_t d) {
     return dimensions == 1 ? "axis" : text("axes[", d, "]");
 }
 
-}  // namespace
+// The largest distance of a point from the patch at its parameters, as computed. Derivatives lie in layers of
+// their own and do not count.
+template <std::size_t N, int D>
+double residual_of(const std::vector<SplineSystem>& systems, const Patch<N, Vec<D>>& patch,
+                   std::span<const Vec<D>> points, const Index<N>& extent) {
+    Largest<D> residual;
+    if constexpr (N == 1) {
+        const SplineSystem& s = systems[0];
+        const Vec<D>* q = points.data() + (s.given ? s.conditions() : 0);
+        const Vec<D>* c = patch.net().flat().data();
+        const int n = patch.basis().size(), width = patch.basis().degree() + 1;
+        ValueRows(patch.basis(), s.sites).each_block([&](int begin, const BandMap& rows) {
+            for (int i = 0; i < rows.rows(); ++i) {
+                const double* w = &rows.entry[std::size_t(i * width)];
+                const int first = rows.first[std::size_t(i)];
+                Vec<D> sum{};
+                for (int k = 0; k < width; ++k) {
+                    const int column = first + k < n ? first + k : (first + k) % n;
+                    for (int d = 0; d < D; ++d) sum[d] += w[k] * c[column][d];
+                }
+                residual.add(sum - q[begin + i]);
+            }
+        });
+    } else {
+        Net<N, Vec<D>> value = patch.net();
+        Index<N> from{};
+        for (std::size_t d = 0; d < N; ++d) {
+            value = along(int(d), detail::values_at(patch.basis(int(d)), systems[d].sites), value);
+            if (systems[d].given) from[d] = systems[d].conditions();
+        }
+        std::array<std::ptrdiff_t, N> stride{};
+        std::ptrdiff_t step = 1;
+        for (std::size_t d = N; d-- > 0; step *= extent[d]) stride[d] = step;
+        const NetView<N, const Vec<D>> all{points.data(), extent, stride};
+        const auto q = all.window(from, value.extent());
+        each_index(value.extent(), [&](const Index<N>& at) { residual.add(value.view()(at) - q(at)); });
+    }
+    return residual.norm_;
+}
 
 template <std::size_t N, int D>
-Result<Interpolant<N, D>> interpolate(const Net<N, Vec<D>>& points, const std::array<AxisSpline, N>& axes) {
-    if (auto ok = check_points<D>(points.flat(), "points"); !ok) return std::unexpected(ok.error());
+Result<Interpolant<N, D>> through(std::span<const Vec<D>> points, Index<N> extent,
+                                  const std::array<AxisSpline, N>& axes) {
+    if (auto ok = check_points<D>(points, "points"); !ok) return std::unexpected(ok.error());
+    const Index<N> given = extent;
     std::vector<SplineSystem> systems;
-    Index<N> extent = points.extent();
     for (std::size_t d = 0; d < N; ++d) {
         auto s = detail::spline_system(axes[d], extent[d]);
         if (!s) return N == 1 ? std::unexpected(s.error()) : refuse_within(axis_name(N, d), s.error());
@@ -183,7 +203,8 @@ Result<Interpolant<N, D>> interpolate(const Net<N, Vec<D>>& points, const std::a
         if (count_of(extent) < 0)
             return refuse(RefusalKind::limit, "points", "more than 2^31 - 1 coefficients");
     }
-    Net<N, Vec<D>> net = points;
+    Net<N, Vec<D>> net;
+    extent = given;
     double condition = 1;
     for (std::size_t d = 0; d < N; ++d) {
         BandSystem a = matrix_of(systems[d]);
@@ -192,45 +213,24 @@ Result<Interpolant<N, D>> interpolate(const Net<N, Vec<D>>& points, const std::a
                           text("no single spline of degree ", axes[d].degree, " with ", name_of(axes[d].ends),
                                " ends goes through points at these parameters (row ", *bad, ")"));
         double inverse = 1;
-        net = solved(int(d), systems[d], a, net, inverse);
+        net = solved<N, D>(int(d), systems[d], a, d == 0 ? points : net.flat(), extent, inverse);
+        extent = net.extent();
         condition *= norm_of(systems[d]) * inverse;
     }
     auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
         return std::array<BSplineBasis, N>{std::move(systems[I].basis)...};
     }
     (std::make_index_sequence<N>{});
-    auto out = finished<N, D>(bases, std::move(net), condition);
-    if (!out) return out;
-
-    // The residual at the points alone: derivatives lie in layers of their own.
-    Largest<D> residual;
-    if constexpr (N == 1) {
-        const SplineSystem& s = systems[0];
-        const Vec<D>* q = points.flat().data() + (s.given ? s.conditions() : 0);
-        const Vec<D>* c = out->patch.net().flat().data();
-        const int n = out->patch.basis().size(), width = s.values.width;
-        for (int i = 0; i < s.points(); ++i) {
-            const double* w = &s.values.entry[std::size_t(i) * std::size_t(width)];
-            int column = s.values.first[std::size_t(i)] % n;
-            Vec<D> sum{};
-            for (int k = 0; k < width; ++k) {
-                for (int d = 0; d < D; ++d) sum[d] += w[k] * c[column][d];
-                if (++column == n) column = 0;
-            }
-            residual.add(sum - q[i]);
-        }
-    } else {
-        Net<N, Vec<D>> value = out->patch.net();
-        Index<N> from{};
-        for (std::size_t d = 0; d < N; ++d) {
-            value = along(int(d), systems[d].values, value);
-            if (systems[d].given) from[d] = systems[d].conditions();
-        }
-        const auto q = points.view().window(from, value.extent());
-        each_index(value.extent(), [&](const Index<N>& at) { residual.add(value.view()(at) - q(at)); });
-    }
-    out->bound = with_rounding(residual.norm_, out->patch);
+    auto out = finished<N, D>(std::move(bases), std::move(net), condition);
+    if (out) out->bound = with_rounding(residual_of<N, D>(systems, out->patch, points, given), out->patch);
     return out;
+}
+
+}  // namespace
+
+template <std::size_t N, int D>
+Result<Interpolant<N, D>> interpolate(const Net<N, Vec<D>>& points, const std::array<AxisSpline, N>& axes) {
+    return through<N, D>(points.flat(), points.extent(), axes);
 }
 
 template <int D>
@@ -246,13 +246,13 @@ Result<Interpolant<1, D>> interpolate(std::span<const Vec<D>> points, const Axis
             return refuse(RefusalKind::invalid, name,
                           text(given, given == 1 ? " derivative, " : " derivatives, ", name_of(axis.ends),
                                " ends of degree ", axis.degree, " take ", wanted));
+    if (wanted == 0) return through<1, D>(points, {int(points.size())}, {axis});
     std::vector<Vec<D>> layers;
     layers.reserve(points.size() + 2 * wanted);
     layers.insert(layers.end(), start.rbegin(), start.rend());
     layers.insert(layers.end(), points.begin(), points.end());
     layers.insert(layers.end(), end.begin(), end.end());
-    const int size = int(layers.size());
-    return interpolate<1, D>(Net<1, Vec<D>>({size}, std::move(layers)), {axis});
+    return through<1, D>(layers, {int(layers.size())}, {axis});
 }
 
 #define FF_INTERPOLATE(D)                                                                                    \

@@ -105,30 +105,37 @@ SplineSystem::Condition condition(const BSplineBasis& basis, double at, int orde
 
 }  // namespace
 
-BandMap values_at(const BSplineBasis& basis, std::span<const double> sites) {
+void ValueRows::fill(const BSplineBasis& basis, std::span<const double> sites, int& s, int* first,
+                     double* entry) {
     const int p = basis.degree(), width = p + 1, n = basis.size() + basis.wrapped();
     const double* t = basis.knots().data();
-    BandMap m{basis.size(), width, std::vector<int>(sites.size()),
-              std::vector<double>(sites.size() * std::size_t(width))};
-    int s = p;
     for (std::size_t i = 0; i < sites.size();) {
         while (s + 1 < n && t[s + 1] <= sites[i]) ++s;
         std::size_t run = 0;  // of sites that are successive simple knots
         while (p >= 1 && run < kLanes && i + run < sites.size() && s + int(run) < n &&
                sites[i + run] == t[s + int(run)] && t[s + int(run)] < t[s + int(run) + 1])
             ++run;
-        double* entry = &m.entry[i * std::size_t(width)];
+        double* row = entry + i * std::size_t(width);
         if (run == kLanes) {
-            values_at_knots(t + s, p, entry);
-            for (std::size_t k = 0; k < run; ++k) m.first[i + k] = s + int(k) - p;
+            values_at_knots(t + s, p, row);
+            for (std::size_t k = 0; k < run; ++k) first[i + k] = s + int(k) - p;
             i += run;
+            s += int(run) - 1;
             continue;
         }
         // Too few for all lanes; or the end of the domain, which belongs to the last span.
         const int own = sites[i] < t[n] ? s : basis.span(sites[i]);
-        weights_in_span(basis, own, sites[i], 0, entry);
-        m.first[i++] = own - p;
+        weights_in_span(basis, own, sites[i], 0, row);
+        first[i++] = own - p;
     }
+}
+
+BandMap values_at(const BSplineBasis& basis, std::span<const double> sites) {
+    const int width = basis.degree() + 1;
+    BandMap m{basis.size(), width, std::vector<int>(sites.size()),
+              std::vector<double>(sites.size() * std::size_t(width))};
+    int span = basis.degree();
+    ValueRows::fill(basis, sites, span, m.first.data(), m.entry.data());
     return m;
 }
 
@@ -146,8 +153,8 @@ Result<SplineSystem> spline_system(const AxisSpline& axis, int layers) {
         return std::unexpected(ok.error());
     auto basis = basis_through(axis);
     if (!basis) return refuse_within("at", basis.error());
-    SplineSystem s{std::move(*basis), {}, {}, {}, given};
-    s.values = values_at(s.basis, axis.at.first(std::size_t(points)));
+    SplineSystem s{std::move(*basis), axis.at.first(std::size_t(points)), 0, {}, {}, given};
+    s.half_width = std::min(axis.ends == SplineEnds::not_a_knot ? 2 * (p / 2) : p / 2, s.size() - 1);
     for (int j = 1; j <= k; ++j) {
         const int order = given ? j : k + j;
         s.start.push_back(condition(s.basis, axis.at.front(), order));
