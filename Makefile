@@ -43,7 +43,7 @@ bench:
 	@source tools/steps.sh; \
 	step "Packages" tools/setup.sh bench; \
 	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
-	step "Build" cmake --build --preset release --target bench-tessellate bench-tessellate-occt freiform-occt-import \
+	step "Build" cmake --build --preset release --target bench-tessellate bench-interpolate bench-tessellate-occt freiform-occt-import \
 		bench-curves bench-curves-occt bench-curves-boost; \
 	step "Compare" tools/bench_report.py; \
 	step "Compare curves" tools/bench_curves.py

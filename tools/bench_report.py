@@ -121,6 +121,23 @@ def commit():
         return "unknown"
 
 
+def measure_interpolation(folder, rounds):
+    """Interpolation by freiform and by SciPy in turns, or None where a program is missing."""
+    ours, scipy = folder / "bin/bench-interpolate", ROOT / "bench/compare/interpolate_scipy.py"
+    if not ours.is_file():
+        return None
+    both = {}
+    for _ in range(rounds):
+        for who, command in (("freiform", [ours]), ("scipy", ["/usr/bin/python3", scipy])):
+            result = run(command)
+            for name, value in result.items():
+                if isinstance(value, dict) and name in both.setdefault(who, {}):
+                    both[who][name]["processor_ms"] += value["processor_ms"]
+                else:
+                    both.setdefault(who, {})[name] = value
+    return both
+
+
 # ---- the report
 
 def median(result, threads="one_thread", clock="processor_ms"):
@@ -284,6 +301,31 @@ def summary(rows):
     return lines
 
 
+def interpolation(data):
+    both = data.get("interpolation")
+    if not both or "refusal" in both["freiform"]:
+        return ""
+    ours, theirs = both["freiform"], both["scipy"]
+    lines = []
+    for name, value in ours.items():
+        mine = statistics.median(value["processor_ms"])
+        other = statistics.median(theirs[name]["processor_ms"]) if name in theirs else None
+        lines.append(f"| {name} | {mine:.3g} | " + (f"{other:.3g} | {mine / other:.2f}" if other else "– | –") +
+                     f" | {value['bound']:.1e} |")
+    table = "\n".join(lines)
+    return f"""
+## Interpolation, beside SciPy {theirs.get("version", "(absent)")}
+
+Cubic splines through points in space, from given parameters, in milliseconds of processor time (median); curves through so many points,
+surfaces through square grids (not-a-knot). The time of freiform includes the proven bound of the distance from the points. SciPy:
+make_interp_spline, and RectBivariateSpline three times. Points: bench/tasks/interpolate.cpp.
+
+| points | freiform | SciPy | ratio | bound |
+|---|---|---|---|---|
+{table}
+"""
+
+
 def report(data):
     rows, where = data["rows"], data["machine"]
     angles = []
@@ -347,7 +389,7 @@ Pairs are freiform / Open CASCADE; times in milliseconds.
 ## Left out
 
 {listing(missing)}
-"""
+{interpolation(data)}"""
 
 
 def main():
@@ -377,7 +419,8 @@ def main():
             rows.append(measure(name, path, relative, programs, args.rounds))
             print(table_row(rows[-1]), file=sys.stderr, flush=True)
     data = {"name": f"{datetime.date.today().isoformat()}-{commit()}", "commit": commit(), "rounds": args.rounds,
-            "machine": before, "build": json.loads((folder / "bin/bench.json").read_text()), "skipped": skipped, "rows": rows}
+            "machine": before, "build": json.loads((folder / "bin/bench.json").read_text()), "skipped": skipped, "rows": rows,
+            "interpolation": None if args.only else measure_interpolation(folder, args.rounds)}
     if args.only:
         print(report(data))
         return
