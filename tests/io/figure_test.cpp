@@ -92,8 +92,7 @@ TEST(Arrange, words_do_not_overlap_each_other_nor_leave_the_page) {
     for (int i = 0; i < 5; ++i)
         for (int j = 0; j < 5; ++j)
             p.notes.push_back({{{0.25 * i, 0.25 * j}}, formula(text("*P*_{", i, j, "}")), kInk, 15});
-    for (int i = 0; i < 5; ++i)
-        p.notes.push_back({{{0, 0}}, plain_text("origin"), kInk, 15, {{-1, -1}}});
+    for (int i = 0; i < 5; ++i) p.notes.push_back({{{0, 0}}, plain_text("origin"), kInk, 15, {{-1, -1}}});
     f.panels.push_back(p);
     const Drawing d = arrange(f);
     std::vector<Box<2>> boxes;
