@@ -5,7 +5,7 @@
 // one: exactly one. Otherwise halve by de Casteljau's algorithm and ask again. That needs only signs of
 // coefficients, so rounding matters only where a coefficient is smaller than a bound of its error.
 //
-// Notation. u = 2^-53 for double, 2^-103 for double-double. A piece is a part [j, j + 1] / 2^k of [0, 1] with
+// Notation. u = 2^-53 for double, 2^-100 for double-double. A piece is a part [j, j + 1] / 2^k of [0, 1] with
 // coefficients b_i, each off by at most E; M = max |b_i|. A sign is certain if |b_i| > E.
 //
 // Method. 1. Coefficients are scaled by a power of two so that 1/2 <= M < 1. Zeros at the ends are roots
@@ -23,10 +23,10 @@
 // Accuracy. Halving takes means (a + b) / 2: the division is exact, so each mean is off by u M plus the error
 // of its terms: n rows add at most 1.01 n u M to E. Cutting out [a, b] in double-double takes 2 n rows of
 // (1 - x) a + x b, with x off by 2u relatively: 8 u M each. A value by de Casteljau carries 3 roundings per
-// row: 3.1 n u M + E. Double-double sums are those of [Joldes Muller Popescu 2017], relative error 3 u'^2 +
-// 13 u'^3 with u' = 2^-53; products 5 u'^2: below 2^-103. Underflow: scaled coefficients are below 1, and
-// each operation loses at most 2^-1074; E starts at 2^-960, more than all of them together for n <= 100 and
-// depth 52. (Then coefficients that are smaller have no certain sign, and go to the next stage.)
+// row: 3.1 n u M + E. Operations of double-double have relative errors below 2^-100 (double_double.hpp).
+// Underflow: scaled coefficients are below 1, doubles lose at most 2^-1074 in each operation, double-doubles
+// 2^-860; E starts at 2^-840, more than all of that together for n <= 100 and depth 52. (So coefficients that
+// are smaller have no certain sign, and go to the last stage.)
 //   The number of roots of all polynomials within E in a closed piece is at most the largest number of
 // variations that any choice of the uncertain signs gives: a choice of coefficients for which a first or last
 // one is zero has a root at that end for each, and giving those zeros alternating signs adds one variation
@@ -34,13 +34,15 @@
 //
 // Cost. n^2 / 2 means per halving, and about log2(1 / distance) halvings for two roots near to each other.
 //
-// References. [Lane Riesenfeld 1981], [Rouillier Zimmermann 2004] (halving and termination), [Joldes Muller
-// Popescu 2017]. With rounding bounded in the same way: [Mehlhorn Sagraloff 2011].
+// References. [Lane Riesenfeld 1981], [Rouillier Zimmermann 2004] (halving and termination). With rounding
+// bounded in the same way: [Mehlhorn Sagraloff 2011].
 //
 // Why not Bezier clipping [SederbergNishita1990]? It converges faster to one root, but Newton's method does
 // that here, and clipped ends are no dyadic numbers, for which later stages could repeat the cut exactly. Why
 // not eigenvalues of a companion matrix? They say neither how many roots are real nor that none was missed.
 #include "poly/roots_detail.hpp"
+
+#include <freiform/core/double_double.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -52,45 +54,24 @@ namespace detail {
 namespace {
 
 constexpr double kU = 0x1p-53;
-constexpr double kUnderflow = 0x1p-960;
+constexpr double kUnderflow = 0x1p-840;
 constexpr int kDepth = 52;
 
-// --- double-double -----------------------------------------------------------------------------------------
-
-struct Double2 {
-    double high = 0, low = 0;
-};
-Double2 fast_two_sum(double a, double b) {
-    const double s = a + b;
-    return {s, b - (s - a)};
-}
-Double2 two_sum(double a, double b) {
-    const double s = a + b, t = s - a;
-    return {s, (a - (s - t)) + (b - t)};
-}
-Double2 operator+(Double2 a, Double2 b) {
-    const Double2 s = two_sum(a.high, b.high), t = two_sum(a.low, b.low);
-    const Double2 v = fast_two_sum(s.high, s.low + t.high);
-    return fast_two_sum(v.high, t.low + v.low);
-}
-Double2 operator*(Double2 a, Double2 b) {
-    const double p = a.high * b.high, e = std::fma(a.high, b.high, -p);
-    return fast_two_sum(p, e + (a.high * b.low + a.low * b.high));
-}
+// --- the two kinds of numbers ------------------------------------------------------------------------------
 
 double high(double x) { return x; }
-double high(const Double2& x) { return x.high; }
+double high(const DoubleDouble& x) { return x.hi; }
 double mean(double a, double b) { return 0.5 * (a + b); }
-Double2 mean(Double2 a, Double2 b) {
-    const Double2 s = a + b;
-    return {0.5 * s.high, 0.5 * s.low};
+DoubleDouble mean(const DoubleDouble& a, const DoubleDouble& b) {
+    const DoubleDouble s = a + b;
+    return {0.5 * s.hi, 0.5 * s.lo};
 }
 template <class T>
 constexpr double kUnit = 0;
 template <>
 constexpr double kUnit<double> = kU;
 template <>
-constexpr double kUnit<Double2> = 0x1p-103;
+constexpr double kUnit<DoubleDouble> = 0x1p-100;
 
 // --- signs -------------------------------------------------------------------------------------------------
 
@@ -208,23 +189,23 @@ struct Problem {
 };
 
 // Cut out of the whole, in double-double.
-std::vector<Double2> cut(const Problem& p, const Cell& cell, double& error) {
+std::vector<DoubleDouble> cut(const Problem& p, const Cell& cell, double& error) {
     const int n = p.degree();
-    std::vector<Double2> b(p.c.size());
+    std::vector<DoubleDouble> b(p.c.size());
     double size = 0;
     for (std::size_t i = 0; i < p.c.size(); ++i) {
         double sum = 0;
         for (int k = 0; k < p.terms; ++k) {
             const double x = std::scalbn(p.parts[i * std::size_t(p.terms) + std::size_t(k)], -p.exponent);
-            b[i] = b[i] + Double2{x, 0};
+            b[i] = b[i] + DoubleDouble(x);
             sum += std::abs(x);
         }
         size = std::max(size, sum);
     }
-    const double u = kUnit<Double2>;
+    const double u = kUnit<DoubleDouble>;
     error = kUnderflow + (p.terms > 1 ? 1.01 * p.terms * u * size : 0);
     const Interval on = interval_of(cell);
-    const auto row = [&](int r, Double2 x, Double2 y, bool keep_right) {
+    const auto row = [&](int r, DoubleDouble x, DoubleDouble y, bool keep_right) {
         if (keep_right)
             for (int i = 0; i + r <= n; ++i)
                 b[std::size_t(i)] = x * b[std::size_t(i)] + y * b[std::size_t(i) + 1];
@@ -233,29 +214,16 @@ std::vector<Double2> cut(const Problem& p, const Cell& cell, double& error) {
                 b[std::size_t(i)] = x * b[std::size_t(i) - 1] + y * b[std::size_t(i)];
     };
     if (on.lo > 0) {
-        for (int r = 1; r <= n; ++r) row(r, two_sum(1, -on.lo), {on.lo, 0}, true);
+        for (int r = 1; r <= n; ++r) row(r, DoubleDouble(1) - on.lo, on.lo, true);
         error += 8.1 * n * u * size;
     }
     if (on.hi < 1) {
-        // x = (hi - lo) / (1 - lo), a double plus a correction.
-        const Double2 whole = two_sum(1, -on.lo);
-        const double width = on.hi - on.lo, q = width / whole.high;
-        const double rest = std::fma(-q, whole.high, width) - q * whole.low;
-        const Double2 x = fast_two_sum(q, rest / whole.high);
-        const Double2 y = two_sum(1, -x.high) + Double2{-x.low, 0};
+        const DoubleDouble x = DoubleDouble(on.hi - on.lo) / (DoubleDouble(1) - on.lo);
+        const DoubleDouble y = DoubleDouble(1) - x;
         for (int r = 1; r <= n; ++r) row(r, y, x, false);
         error += 8.1 * n * u * size;
     }
     return b;
-}
-
-// The signs between all roots, from the one right of 0.
-void set_signs(std::vector<Root>& roots, int sign) {
-    for (Root& r : roots) {
-        r.before = r.at.hi == 0 ? 0 : sign;
-        if (r.most % 2 != 0 && r.before != 0) sign = -sign;
-        r.after = r.at.lo == 1 ? 0 : sign;
-    }
 }
 
 struct Value {
@@ -313,7 +281,7 @@ private:
             deepest = Arithmetic::doubled;
             double error = 0;
             const auto b = cut(p_, f.cell, error);
-            Search<Double2>(b.data(), p_.degree(), error, f.cell).run(all);
+            Search<DoubleDouble>(b.data(), p_.degree(), error, f.cell).run(all);
         }
         found.clear();
         std::vector<Cell> undecided;
@@ -374,6 +342,14 @@ private:
 };
 
 }  // namespace
+
+void set_signs(std::vector<Root>& roots, int sign) {
+    for (Root& r : roots) {
+        r.before = r.at.hi == 0 ? 0 : sign;
+        if (r.most % 2 != 0 && r.before != 0) sign = -sign;
+        r.after = r.at.lo == 1 ? 0 : sign;
+    }
+}
 
 Interval refined(const Approximate& p, const ExactSign* exact, Interval at, int before, double width) {
     const double n = double(p.c.size()) - 1;

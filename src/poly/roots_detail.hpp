@@ -1,6 +1,7 @@
 // The stages of the root finder, each on its own.
 #pragma once
 #include <freiform/poly/integer.hpp>
+#include <freiform/poly/integer_roots.hpp>
 #include <freiform/poly/roots.hpp>
 
 #include <optional>
@@ -28,9 +29,6 @@ private:
     std::vector<Integer> c_;
 };
 
-// The coefficients sum of parts, all multiplied by one power of two that makes them integers.
-std::vector<Integer> integer_coefficients(std::span<const double> parts, int terms);
-
 // A polynomial as the refinement of a bracket sees it: coefficients in [-1, 1], off by at most `error`.
 struct Approximate {
     std::span<const double> c;
@@ -40,6 +38,9 @@ struct Approximate {
 // A bracket of a simple root, narrowed to `width`. The polynomial has the sign `before` at at.lo and the
 // other at at.hi. `exact` may be null: then the result may be wider.
 Interval refined(const Approximate& p, const ExactSign* exact, Interval at, int before, double width);
+
+// Writes down the signs between roots that are all known exactly, from the one right of 0 on.
+void set_signs(std::vector<Root>& roots, int sign);
 
 // Part [cell / 2^depth, (cell + 1) / 2^depth] of [0, 1]; its left end does not belong to it.
 struct Cell {

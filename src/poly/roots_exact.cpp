@@ -399,4 +399,40 @@ std::vector<Root> exact_roots(const std::vector<Integer>& bernstein, std::span<c
     return roots;
 }
 
+std::vector<Root> integer_roots(const std::vector<Integer>& bernstein, double width) {
+    std::size_t at_zero = 0, at_one = 0;
+    while (bernstein[at_zero].sign() == 0) ++at_zero;
+    while (bernstein[bernstein.size() - 1 - at_one].sign() == 0) ++at_one;
+    std::vector<Root> roots;
+    if (at_zero > 0) roots.push_back({{0, 0}, int(at_zero), int(at_zero), true, 0, 0});
+    const Cell whole{};
+    for (const Root& r : exact_roots(bernstein, std::span(&whole, 1), width)) roots.push_back(r);
+    if (at_one > 0) roots.push_back({{1, 1}, int(at_one), int(at_one), true, 0, 0});
+    set_signs(roots, bernstein[at_zero].sign());
+    return roots;
+}
+
+std::vector<Root> common_roots(std::span<const std::vector<Integer>> bernstein, double width) {
+    // Roots at 0 and 1 are factors x^i of the power form and its missing degree, so they are set aside.
+    Coefficients g;
+    std::size_t at_zero = 0, at_one = 0;
+    bool first = true;
+    for (const auto& c : bernstein) {
+        Coefficients s = to_power(c);
+        std::size_t lo = 0, hi = 0;
+        while (lo < s.size() && s[lo].sign() == 0) ++lo;
+        if (lo == s.size()) continue;
+        while (s.back().sign() == 0) s.pop_back(), ++hi;
+        s.erase(s.begin(), s.begin() + std::ptrdiff_t(lo));
+        make_primitive(s);
+        at_zero = first ? lo : std::min(at_zero, lo);
+        at_one = first ? hi : std::min(at_one, hi);
+        g = first ? std::move(s) : polynomial_gcd(std::move(g), std::move(s));
+        first = false;
+    }
+    g.insert(g.begin(), at_zero, Integer{});
+    g.insert(g.end(), at_one, Integer{});
+    return integer_roots(to_bernstein(g), width);
+}
+
 }  // namespace freiform::detail

@@ -28,16 +28,8 @@ inline void make_primitive(Polynomial& p) {
         for (Whole& x : p) x /= g;
 }
 
-// The polynomial in t with these Bernstein coefficients, each a sum of `terms` doubles, times a positive
-// factor.
-inline Polynomial power_form(std::span<const double> parts, int terms = 1) {
-    const std::size_t n = parts.size() / std::size_t(terms) - 1;
-    int least = 2000;
-    for (const double x : parts)
-        if (x != 0) least = std::min(least, std::ilogb(x) - 53);
-    Polynomial c(n + 1);
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        if (parts[i] != 0) c[i / std::size_t(terms)] += whole_of(parts[i], least);
+inline Polynomial power_form(Polynomial c) {  // from Bernstein coefficients
+    const std::size_t n = c.size() - 1;
     // Coefficient k is C(n, k) times the k-th difference of the c.
     Whole binomial = 1;
     Polynomial p;
@@ -49,6 +41,19 @@ inline Polynomial power_form(std::span<const double> parts, int terms = 1) {
     }
     trim(p);
     return p;
+}
+
+// The polynomial in t with these Bernstein coefficients, each a sum of `terms` doubles, times a positive
+// factor.
+inline Polynomial power_form(std::span<const double> parts, int terms = 1) {
+    const std::size_t n = parts.size() / std::size_t(terms) - 1;
+    int least = 2000;
+    for (const double x : parts)
+        if (x != 0) least = std::min(least, std::ilogb(x) - 53);
+    Polynomial c(n + 1);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (parts[i] != 0) c[i / std::size_t(terms)] += whole_of(parts[i], least);
+    return power_form(std::move(c));
 }
 
 inline int sign_at(const Polynomial& p, double t) {

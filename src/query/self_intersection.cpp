@@ -1,0 +1,477 @@
+// Self-intersections of a curve by subdivision with certificates.
+//
+// Idea. A part of a curve does not meet itself if all its tangents lie in an open half-space: it then moves
+// on in one direction. Two parts do not meet if their hulls are apart. Two parts of a plane curve meet at
+// most once if no tangent of one is parallel to one of the other. Halving makes one of the three true
+// everywhere but where the curve touches itself, and at cusps.
+//
+// Notation. Parts are Bezier pieces or halves of them with projected control points P_i; legs are P_{i+1} -
+// P_i. Weights are positive. e bounds the error of each coordinate of a P_i.
+//
+// Method. The tangents of a polynomial or rational piece are non-negative combinations of its legs: for
+// polynomials by the hodograph; for rational ones because C(t) - C(s), s < t, is one (total positivity: the
+// weight of P_i moves towards higher i). So is every chord, which is what the tests need:
+//   - half-space: a vector a with a . leg > 0 for all legs. Legs that are exactly zero at an end of the
+//     curve (repeated control points) are left out: the derivative vanishes there, but only there. The same
+//     for two neighbours together: they have their joint in common and nothing else.
+//   - apart: the boxes, or the projections on the normals of both chords.
+//   - at most once: cross(leg of A, leg of B) has one sign for all pairs. Two meetings would give two chords
+//     that are equal, one a combination of legs of A, the other of B, and their cross product is not zero.
+//   - once: Poincare and Miranda. On a rectangle of parameters around the result of Newton's method the ends
+//     of each arc lie on different sides of the strip that contains the other. Together with "at most once",
+//     exactly one. A pair is settled by a crossing found before if the arcs of both together are still "at
+//     most once".
+// Pairs are looked at breadth first. Pairs as small as the accuracy, or parallel and as flat, are given up as
+// uncertain; neighbouring ones are united.
+//
+// Accuracy. Errors of coefficients as in bounds.cpp; legs are off by 2 e in each coordinate, and a . leg by
+// 2 e |a|_1 and rounding; all comparisons leave that distance.
+//
+// Cost. Grows with the number of pieces squared for the first boxes, then with the number of meetings times
+// log(1 / accuracy).
+//
+// References. [Sederberg Meyers 1988] (tangent cones), [Floater 1992] (derivatives of rational curves).
+//
+// Why not elimination (implicit form, resultants)? Degree (n - 1)(n - 2) in one parameter, with coefficients
+// that doubles cannot hold for n > 4.
+#include <freiform/query/self_intersection.hpp>
+#include <freiform/spline/bezier.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kU = 0x1p-53;
+
+// Control points of an arc, of one part or several in a row, with what bounds them.
+template <int D>
+struct Arc {
+    Interval on;
+    std::vector<Vec<D>> points, legs;
+    double error = 0;  // of each coordinate of `points`
+    Box<D> box;
+};
+
+template <class P>
+struct Part {
+    static constexpr int D = Space<P>::kDim;
+    std::vector<P> b;
+    double error = 0;                // of the numbers in b
+    int still_lo = 0, still_hi = 0;  // legs at the ends that are exactly zero
+    int left = -1, right = -1;       // halves, once they are made
+    Arc<D> arc;
+};
+
+template <class P>
+void add_points(Arc<Space<P>::kDim>& arc, const std::vector<P>& b, double error, int skip_lo, int skip_hi) {
+    double x = 0, w = std::numeric_limits<double>::infinity();
+    const std::size_t first = arc.points.size();
+    for (const P& p : b) {
+        arc.points.push_back(project(p));
+        x = std::max(x, max_abs(arc.points.back()));
+        w = std::min(w, Space<P>::weight(p));
+    }
+    double e = error;
+    if (Space<P>::kRational)
+        e = w > 2 * error ? error * (1 + x) / (w - error) + 2 * kU * x
+                          : std::numeric_limits<double>::infinity();
+    arc.error = std::max(arc.error, 1.01 * e);
+    for (std::size_t i = first + std::size_t(skip_lo); i + 1 + std::size_t(skip_hi) < arc.points.size(); ++i)
+        arc.legs.push_back(arc.points[i + 1] - arc.points[i]);
+    for (std::size_t i = first; i < arc.points.size(); ++i) arc.box.add(arc.points[i]);
+}
+
+// The range of n . x over the arc, rounding included.
+template <int D>
+Interval range_along(const Arc<D>& arc, const Vec<D>& n) {
+    Interval r{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    double size = 0;
+    for (int k = 0; k < D; ++k) size += std::abs(n[k]);
+    for (const Vec<D>& p : arc.points) {
+        const double v = dot(n, p);
+        r = {std::min(r.lo, v), std::max(r.hi, v)};
+    }
+    const double slack = size * (1.01 * arc.error + (D + 1) * 1.01 * kU * arc.box.scale());
+    return {r.lo - slack, r.hi + slack};
+}
+
+template <int D>
+double leg_error(const Arc<D>& arc) {
+    return 2.02 * arc.error + 2 * kU * arc.box.scale();
+}
+
+// Do all legs of all arcs point into one open half-space?
+template <int D>
+bool moves_on(std::initializer_list<const Arc<D>*> arcs) {
+    Vec<D> a{};
+    for (const Arc<D>* arc : arcs)
+        for (const Vec<D>& leg : arc->legs) a += unit(leg);
+    a = unit(a);
+    for (const Arc<D>* arc : arcs) {
+        const double e = 2 * leg_error(*arc);  // |a|_1 <= sqrt(D) < 2
+        for (const Vec<D>& leg : arc->legs)
+            if (!(dot(a, leg) > e + 4 * kU * norm(leg))) return false;
+    }
+    return true;
+}
+
+// Is cross(leg of a, leg of b) of one sign for all legs?
+bool meet_at_most_once(std::initializer_list<const Arc<2>*> as, std::initializer_list<const Arc<2>*> bs) {
+    int sign = 0;
+    for (const Arc<2>* a : as)
+        for (const Arc<2>* b : bs) {
+            const double ea = leg_error(*a), eb = leg_error(*b);
+            for (const Vec<2>& p : a->legs)
+                for (const Vec<2>& q : b->legs) {
+                    const double c = cross(p, q), mp = std::abs(p[0]) + std::abs(p[1]),
+                                 mq = std::abs(q[0]) + std::abs(q[1]);
+                    const double e = ea * mq + eb * mp + 2 * ea * eb + 3 * kU * mp * mq;
+                    const int s = c > 1.01 * e ? 1 : c < -1.01 * e ? -1 : 0;
+                    if (s == 0 || (sign != 0 && s != sign)) return false;
+                    sign = s;
+                }
+        }
+    return sign != 0;
+}
+
+template <class P>
+class Search {
+public:
+    static constexpr int D = Space<P>::kDim;
+    using Meeting = SelfIntersection<D>;
+
+    Search(const Curve<P>& curve, double accuracy, int max_pairs)
+        : curve_(curve), accuracy_(accuracy), max_pairs_(max_pairs) {
+        const BezierPieces<1, P> pieces(curve);
+        const BSplineBasis& basis = curve.basis();
+        const int p = basis.degree();
+        for (int i = 0; i < pieces.extent()[0]; ++i) {
+            Part<P> part;
+            const auto net = pieces.net({i});
+            double most = 0;
+            for (int j = 0; j <= p; ++j) part.b.push_back(net({j})), most = std::max(most, max_abs(net({j})));
+            part.arc.on = pieces.box({i})[0];
+            const int s = basis.span(part.arc.on.lo);
+            const bool exact =
+                p > 0 && basis.knot(s - p + 1) == part.arc.on.lo && basis.knot(s + p) == part.arc.on.hi;
+            if (exact) {
+                while (part.still_lo < p && net({part.still_lo}) == net({part.still_lo + 1})) ++part.still_lo;
+                while (part.still_hi < p && net({p - part.still_hi}) == net({p - part.still_hi - 1}))
+                    ++part.still_hi;
+            } else {
+                part.error = (12 * p + 8) * kU * most + 0x1p-1060;
+            }
+            if (i > 0) jumps_.push_back(basis.multiplicity(part.arc.on.lo) > p);
+            finish(part);
+            parts_.push_back(std::move(part));
+        }
+        is_closed_ = basis.is_closed();
+        const Interval domain = basis.domain();
+        parameter_error_ = 4 * kU * std::max(std::abs(domain.lo), std::abs(domain.hi));
+        count_ = int(parts_.size());
+    }
+
+    std::vector<Meeting> run() {
+        for (int i = 0; i < count_; ++i)
+            for (int j = i; j < count_; ++j) queue_.push_back({i, j});
+        for (int looked_at = 0; !queue_.empty(); ++looked_at) {
+            const Pair pair = queue_.front();
+            queue_.pop_front();
+            if (pair.a == pair.b)
+                look_at_one(pair.a, looked_at < max_pairs_);
+            else
+                look_at_two(pair, looked_at < max_pairs_);
+        }
+        unite_open();
+        std::sort(found_.begin(), found_.end(), [](const Meeting& x, const Meeting& y) {
+            return x.first.lo != y.first.lo ? x.first.lo < y.first.lo : x.second.lo < y.second.lo;
+        });
+        return std::move(found_);
+    }
+
+private:
+    struct Pair {
+        int a, b;  // a is left of b, or the same
+    };
+    const Arc<D>& arc(int i) const { return parts_[std::size_t(i)].arc; }
+
+    // By more than the ends of halves, whose parameters are rounded, may be off.
+    bool overlap(const Interval& a, const Interval& b) const {
+        return std::min(a.hi, b.hi) - std::max(a.lo, b.lo) > parameter_error_;
+    }
+
+    void finish(Part<P>& part) {
+        const int n = int(part.b.size()) - 1;
+        const bool point = part.still_lo == n;
+        add_points(part.arc, part.b, part.error, point ? 0 : part.still_lo, point ? 0 : part.still_hi);
+    }
+
+    // Makes the halves of a part, exactly at half of its local parameter; `on` says where that is up to
+    // parameter_error_: a mean of two ends that are off by 2 u of the largest parameter is so, too.
+    bool halve(int i) {
+        if (parts_[std::size_t(i)].left >= 0) return true;
+        const Part<P>& whole = parts_[std::size_t(i)];
+        const double middle = whole.arc.on.middle();
+        if (!(whole.arc.on.lo < middle && middle < whole.arc.on.hi)) return false;
+        double most = 0;
+        for (const P& p : whole.b) most = std::max(most, max_abs(p));
+        const int n = int(whole.b.size());
+        const double e = whole.error + 1.01 * n * kU * most + 0x1p-1060;
+        Part<P> left{whole.b, e, whole.still_lo, 0, -1, -1, {}},
+            right{whole.b, e, 0, whole.still_hi, -1, -1, {}};
+        keep_left(Fibre<P>{left.b.data(), n, 1}, 0.5);
+        keep_right(Fibre<P>{right.b.data(), n, 1}, 0.5);
+        left.arc.on = {whole.arc.on.lo, middle};
+        right.arc.on = {middle, whole.arc.on.hi};
+        finish(left);
+        finish(right);
+        const int at = int(parts_.size());
+        parts_[std::size_t(i)].left = at;
+        parts_[std::size_t(i)].right = at + 1;
+        parts_.push_back(std::move(left));
+        parts_.push_back(std::move(right));
+        return true;
+    }
+
+    void look_at_one(int i, bool may_halve) {
+        if (parts_[std::size_t(i)].b.size() < 2 || moves_on<D>({&arc(i)})) return;
+        if (!may_halve || arc(i).box.diagonal() <= smallest(arc(i)) || !halve(i)) {
+            open_.push_back({false, arc(i).on, arc(i).on, {}, 0});
+            return;
+        }
+        const Part<P>& p = parts_[std::size_t(i)];
+        queue_.push_back({p.left, p.left});
+        queue_.push_back({p.right, p.right});
+        queue_.push_back({p.left, p.right});
+    }
+
+    double smallest(const Arc<D>& a) const { return std::max(accuracy_, 16 * a.error); }
+
+    bool are_neighbours(const Arc<D>& a, const Arc<D>& b) const {
+        if (a.on.hi == b.on.lo) {
+            for (int i = 1; i < count_; ++i)
+                if (parts_[std::size_t(i)].arc.on.lo == b.on.lo) return !jumps_[std::size_t(i) - 1];
+            return true;
+        }
+        const Interval domain = curve_.basis().domain();
+        return is_closed_ && a.on.lo == domain.lo && b.on.hi == domain.hi;
+    }
+
+    static bool are_apart(const Arc<D>& a, const Arc<D>& b) {
+        for (int k = 0; k < D; ++k) {
+            const double e = 1.01 * (a.error + b.error);
+            if (a.box.lo[k] > b.box.hi[k] + e || b.box.lo[k] > a.box.hi[k] + e) return true;
+        }
+        if constexpr (D == 2)
+            for (const Arc<2>* side : {&a, &b}) {
+                const Vec<2> chord = side->points.back() - side->points.front();
+                const Vec<2> n = unit(Vec<2>{{-chord[1], chord[0]}});
+                const Interval ra = range_along(a, n), rb = range_along(b, n);
+                if (ra.hi < rb.lo || rb.hi < ra.lo) return true;
+            }
+        return false;
+    }
+
+    // The width across its chord.
+    static double thickness(const Arc<D>& a) {
+        if constexpr (D != 2) return a.box.diagonal();
+        const Vec<D> chord = unit(a.points.back() - a.points.front());
+        double most = 0;
+        for (const Vec<D>& p : a.points) {
+            const Vec<D> d = p - a.points.front();
+            most = std::max(most, norm(d - dot(d, chord) * chord));
+        }
+        return most;
+    }
+
+    void look_at_two(const Pair& pair, bool may_halve) {
+        const Arc<D>&a = arc(pair.a), &b = arc(pair.b);
+        const bool neighbours = are_neighbours(a, b);
+        bool parallel = true;
+        if (neighbours) {
+            if (a.on.hi == b.on.lo ? moves_on<D>({&a, &b}) : moves_on<D>({&b, &a})) return;
+        } else {
+            if (are_apart(a, b)) return;
+            if constexpr (D == 2) {
+                parallel = !meet_at_most_once({&a}, {&b});
+                if (!parallel && settle(a, b)) return;
+            }
+        }
+        const double size_a = a.box.diagonal(), size_b = b.box.diagonal(),
+                     least = std::max(smallest(a), smallest(b));
+        const bool small = std::max(size_a, size_b) <= least;
+        const bool flat = !neighbours && parallel && std::max(thickness(a), thickness(b)) <= least && D == 2;
+        const int larger = size_a >= size_b ? pair.a : pair.b;
+        if (!may_halve || small || flat || !halve(larger)) {
+            open_.push_back({false, arc(pair.a).on, arc(pair.b).on, {}, 0});
+            return;
+        }
+        const Part<P>& p = parts_[std::size_t(larger)];
+        for (const int half : {p.left, p.right})
+            queue_.push_back(larger == pair.a ? Pair{half, pair.b} : Pair{pair.a, half});
+    }
+
+    // The control points of the curve over an interval, which may reach over knots.
+    Arc<D> arc_over(const Interval& on) const {
+        Arc<D> out;
+        out.on = on;
+        for (int i = 0; i < count_; ++i) {
+            const Part<P>& part = parts_[std::size_t(i)];
+            const Interval own = part.arc.on;
+            const double lo = std::max(on.lo, own.lo), hi = std::min(on.hi, own.hi);
+            if (!(lo < hi)) continue;
+            std::vector<P> b = part.b;
+            double most = 0;
+            for (const P& p : b) most = std::max(most, max_abs(p));
+            const int n = int(b.size());
+            // Local parameters are off by 6 u, their quotients, with divisors of at least 1/2, by 24 u; that
+            // moves coefficients by 2 n times as much of the largest. Each cut has 3 n roundings of its own.
+            const double e = part.error + 60 * n * kU * most + 0x1p-1060;
+            const double from = (lo - own.lo) / own.length(), to = (hi - own.lo) / own.length();
+            const Fibre<P> row{b.data(), n, 1};
+            if (from <= 0.5) {
+                if (lo > own.lo) keep_right(row, from);
+                if (hi < own.hi) keep_left(row, std::clamp((to - from) / (1 - from), 0.0, 1.0));
+            } else {
+                if (hi < own.hi) keep_left(row, to);
+                keep_right(row, std::clamp(from / to, 0.0, 1.0));
+            }
+            add_points(out, b, e, 0, 0);
+        }
+        return out;
+    }
+
+    // One crossing of the arcs at most. True: it has been found, here or before. (Plane curves.)
+    bool settle(const Arc<2>& a, const Arc<2>& b) {
+        for (std::size_t i = 0; i < found_.size(); ++i)
+            if (overlap(found_[i].first, a.on) && overlap(found_[i].second, b.on) &&
+                meet_at_most_once({&a, &arcs_[i].first}, {&b, &arcs_[i].second}))
+                return true;
+        // Newton's method for C(s) = C(t).
+        const Interval domain = curve_.basis().domain();
+        double s = a.on.middle(), t = b.on.middle();
+        for (int k = 0; k < 12; ++k) {
+            const auto js = curve_.template jet<1>(s), jt = curve_.template jet<1>(t);
+            const Vec<2> f = js.value() - jt.value(), u = js.d[1], v = jt.d[1];
+            const double det = cross(u, v);
+            if (det == 0) return false;
+            const double ds = -cross(f, v) / det, dt = -cross(f, u) / det;
+            if (!(std::abs(ds) <= 2 * a.on.length() && std::abs(dt) <= 2 * b.on.length())) return false;
+            s = std::clamp(s + ds, domain.lo, domain.hi);
+            t = std::clamp(t + dt, domain.lo, domain.hi);
+            if (std::abs(ds) <= 4 * kU * std::abs(s) && std::abs(dt) <= 4 * kU * std::abs(t)) break;
+        }
+        const auto near = [](const Interval& on, double x) {
+            return on.lo - 0.1 * on.length() <= x && x <= on.hi + 0.1 * on.length();
+        };
+        if (!near(a.on, s) || !near(b.on, t)) return false;
+        const double vs = norm(curve_.template jet<1>(s).d[1]), vt = norm(curve_.template jet<1>(t).d[1]);
+        double size = 0.4 * accuracy_;
+        for (int k = 0; k < 14; ++k, size *= 4) {
+            const auto around = [&](double x, double speed, const Interval& whole) {
+                const double r =
+                    std::max(size / speed, 4 * kU * std::max(std::abs(whole.lo), std::abs(whole.hi)));
+                return Interval{std::max(whole.lo, x - r), std::min(whole.hi, x + r)};
+            };
+            const Arc<2> p = arc_over(around(s, vs, domain)), q = arc_over(around(t, vt, domain));
+            if (p.on.overlaps(q.on)) return false;
+            if (!is_certainly_crossing(p, q)) continue;
+            if (!overlap(p.on, a.on) || !overlap(q.on, b.on) || !meet_at_most_once({&a, &p}, {&b, &q}))
+                return false;
+            const Vec<2> x = curve_(s);
+            double bound = 0;
+            for (const Arc<2>* side : {&p, &q})
+                for (const Vec<2>& y : side->points) bound = std::max(bound, norm(y - x) + 2 * side->error);
+            found_.push_back({true, p.on, q.on, x, bound * (1 + 8 * kU) + 2 * curve_.value_error_bound()});
+            arcs_.push_back({p, q});
+            return true;
+        }
+        return false;
+    }
+
+    static bool is_certainly_crossing(const Arc<2>& p, const Arc<2>& q) {
+        if (!meet_at_most_once({&p}, {&q})) return false;
+        const auto passes = [](const Arc<2>& through, const Arc<2>& strip) {
+            const Vec<2> chord = strip.points.back() - strip.points.front();
+            const Vec<2> n = unit(Vec<2>{{-chord[1], chord[0]}});
+            const Interval r = range_along(strip, n);
+            const double e = 2 * (1.01 * through.error + 4 * kU * through.box.scale());
+            const double from = dot(n, through.points.front()), to = dot(n, through.points.back());
+            return (from + e < r.lo && to - e > r.hi) || (to + e < r.lo && from - e > r.hi);
+        };
+        return passes(p, q) && passes(q, p);
+    }
+
+    // Pairs that were given up: those that touch are one answer.
+    void unite_open() {
+        std::sort(open_.begin(), open_.end(), [](const Meeting& x, const Meeting& y) {
+            return x.first.lo != y.first.lo ? x.first.lo < y.first.lo : x.second.lo < y.second.lo;
+        });
+        std::vector<Meeting> united;
+        for (const Meeting& m : open_) {
+            Meeting all = m;
+            // Growing one answer may make it touch another.
+            for (bool again = true; again;) {
+                again = false;
+                for (std::size_t i = 0; i < united.size(); ++i) {
+                    const Meeting u = united[i];
+                    if (!u.first.overlaps(all.first) || !u.second.overlaps(all.second)) continue;
+                    all.first = hull(u.first, all.first);
+                    all.second = hull(u.second, all.second);
+                    united[i] = united.back();
+                    united.pop_back();
+                    again = true;
+                    break;
+                }
+            }
+            united.push_back(all);
+        }
+        const Interval domain = curve_.basis().domain();
+        for (Meeting& m : united) {
+            for (Interval* on : {&m.first, &m.second})
+                *on = {std::max(domain.lo, on->lo - parameter_error_),
+                       std::min(domain.hi, on->hi + parameter_error_)};
+            m.point = 0.5 * (curve_(m.first.middle()) + curve_(m.second.middle()));
+            for (const Interval& on : {m.first, m.second}) {
+                const Arc<D> a = arc_over(on);
+                for (const Vec<D>& y : a.points) m.bound = std::max(m.bound, norm(y - m.point) + 2 * a.error);
+            }
+            m.bound = m.bound * (1 + 8 * kU) + 2 * curve_.value_error_bound();
+            found_.push_back(m);
+        }
+    }
+
+    const Curve<P>& curve_;
+    double accuracy_, parameter_error_ = 0;
+    int max_pairs_, count_ = 0;
+    bool is_closed_ = false;
+    std::deque<Part<P>> parts_;
+    std::vector<char> jumps_;  // at the beginning of piece i + 1
+    std::deque<Pair> queue_;
+    std::vector<Meeting> found_, open_;
+    std::vector<std::pair<Arc<D>, Arc<D>>> arcs_;  // of the certain ones in found_
+};
+
+}  // namespace
+
+template <class P>
+requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)
+    Result<std::vector<SelfIntersection<Space<P>::kDim>>> self_intersections(const Curve<P>& curve,
+                                                                             double accuracy, int max_pairs) {
+    if (!(accuracy > 0))
+        return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a length > 0"));
+    return Search<P>(curve, accuracy, max_pairs).run();
+}
+
+template Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Vec<2>>&, double, int);
+template Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Hom<2>>&, double, int);
+template Result<std::vector<SelfIntersection<3>>> self_intersections(const Curve<Vec<3>>&, double, int);
+template Result<std::vector<SelfIntersection<3>>> self_intersections(const Curve<Hom<3>>&, double, int);
+
+}  // namespace freiform
