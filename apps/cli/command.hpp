@@ -37,6 +37,8 @@ void add_eval(CLI::App& app, Context& context);
 void add_basis(CLI::App& app, Context& context);
 void add_convert(CLI::App& app, Context& context);
 void add_tessellate(CLI::App& app, Context& context);
+void add_bounds(CLI::App& app, Context& context);
+void add_features(CLI::App& app, Context& context);
 void add_draw(CLI::App& app, Context& context);
 void add_conic(CLI::App& app, Context& context);
 void add_implicit(CLI::App& app, Context& context);

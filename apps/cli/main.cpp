@@ -16,6 +16,8 @@ void add_commands(CLI::App& app, Context& context) {
     add_basis(app, context);
     add_convert(app, context);
     add_tessellate(app, context);
+    add_bounds(app, context);
+    add_features(app, context);
     add_draw(app, context);
     add_conic(app, context);
     add_implicit(app, context);

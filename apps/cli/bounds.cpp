@@ -1,0 +1,224 @@
+// bounds: tight boxes of objects, each with the distance that it may be too large by.
+#include "command.hpp"
+
+#include <freiform/io/bpt.hpp>
+#include <freiform/query/bounds.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace freiform::cli {
+
+namespace {
+
+// A box of up to four coordinates, and how far each side may be from the object.
+struct Answer {
+    std::vector<double> lo, hi;
+    double bound = 0;
+};
+
+template <int D>
+Answer answer_of(const Box<D>& box, double bound) {
+    if (box.is_empty()) return {{}, {}, 0};
+    return {{box.lo.c.begin(), box.lo.c.end()}, {box.hi.c.begin(), box.hi.c.end()}, bound};
+}
+
+// What an object contains for certain, against the box that contains it.
+template <int D>
+Answer answer_of(const Box<D>& outer, const Box<D>& inner) {
+    double bound = inner.is_empty() && !outer.is_empty() ? std::numeric_limits<double>::infinity() : 0;
+    for (int i = 0; i < D && !inner.is_empty(); ++i)
+        bound = std::max({bound, inner.lo[i] - outer.lo[i], outer.hi[i] - inner.hi[i]});
+    return answer_of(outer, bound);
+}
+
+class Bounding {
+public:
+    explicit Bounding(std::optional<double> accuracy) : accuracy_(accuracy) {}
+
+    template <TensorPatch S>
+    Result<Answer> operator()(const S& s) const {
+        Box<Space<typename S::Coefficients>::kDim> control;
+        for (const auto& p : points(s)) control.add(p);
+        const double relative = S::kParams == 1 ? 1e-12 : 1e-7;
+        const auto b = tight_box(s, accuracy_.value_or(relative * control.diagonal()));
+        if (!b) return std::unexpected(b.error());
+        return answer_of(b->box, b->slack);
+    }
+    template <TriangularPatch S>
+    Result<Answer> operator()(const S& s) const {
+        Box<Space<typename S::Coefficients>::kDim> control;
+        for (const auto& p : s.coefficients()) control.add(project(p));
+        const auto b = tight_box(s, accuracy_.value_or(1e-7 * control.diagonal()));
+        if (!b) return std::unexpected(b.error());
+        return answer_of(b->box, b->slack);
+    }
+    // The surface over the box of the loops contains the face; the loops are part of it.
+    Result<Answer> operator()(const TrimmedSurface& t) const {
+        if (t.loops.empty()) return std::visit(*this, t.surface);
+        return std::visit(
+            [&](const auto& s) -> Result<Answer> {
+                const auto domain = s.domain();
+                Box<3> inner;
+                Box<2> in_domain;
+                for (const auto& loop : t.loops)
+                    for (const auto& curve : loop) add_loop(s, curve, in_domain, inner);
+                auto part = s;
+                for (int d = 0; d < 2; ++d) {
+                    Interval on = in_domain.side(d);
+                    on = {std::max(on.lo, domain[std::size_t(d)].lo),
+                          std::min(on.hi, domain[std::size_t(d)].hi)};
+                    if (s.basis(d).is_closed() || !(on.lo < on.hi)) continue;
+                    auto cut = restrict_to(part, d, on);
+                    if (!cut) return std::unexpected(cut.error());
+                    part = std::move(*cut);
+                }
+                const auto outer = (*this)(part);
+                if (!outer) return outer;
+                Box<3> box;
+                for (int i = 0; i < 3; ++i) {
+                    // Restriction moves points by a few roundings.
+                    const double slack = 4 * s.value_error_bound();
+                    box.lo[i] = outer->lo[std::size_t(i)] - slack;
+                    box.hi[i] = outer->hi[std::size_t(i)] + slack;
+                }
+                return answer_of(box, inner);
+            },
+            t.surface);
+    }
+    Result<Answer> operator()(const Model& m) const {
+        Box<3> inner;
+        for (const Vertex& v : m.vertices) inner.add(v.point);
+        for (const Edge& e : m.edges) {
+            if (!e.curve || !std::isfinite(e.range.length())) continue;
+            for (int i = 0; i <= kSamples; ++i)
+                inner.add(jet<0>(*e.curve, e.range.lo + e.range.length() * i / kSamples).value());
+        }
+        return answer_of(summary(m).box, inner);
+    }
+
+private:
+    static constexpr int kSamples = 64;
+
+    template <class S>
+    static void add_loop(const S& s, const CurveGeometry<2>& curve, Box<2>& in_domain, Box<3>& inner) {
+        const Interval on = domain(curve)[0];
+        for (int i = 0; i <= kSamples; ++i) {
+            const Vec<2> uv = jet<0>(curve, on.lo + on.length() * i / kSamples).value();
+            inner.add(s(Param<2>{uv[0], uv[1]}));
+        }
+        std::visit(
+            [&](const auto& c) {
+                if constexpr (requires { c.net(); }) {
+                    for (const auto& p : points(c)) in_domain.add(p);
+                } else if constexpr (requires { c.centre; }) {
+                    // An ellipse reaches sqrt(x^2 + y^2) from its centre along each axis; |x| + |y| contains
+                    // that.
+                    for (const double sx : {-1.0, 1.0})
+                        for (const double sy : {-1.0, 1.0}) in_domain.add(c.centre + sx * c.x + sy * c.y);
+                }
+            },
+            curve);
+    }
+
+    std::optional<double> accuracy_;
+};
+
+struct Options {
+    std::string file, object;
+    std::optional<double> accuracy;
+};
+
+void add_to(Answer& all, const Answer& a, bool first) {
+    if (first) {
+        all = a;
+        return;
+    }
+    if (all.lo.size() != a.lo.size()) {
+        all = {};  // objects of different dimension have no common box
+        return;
+    }
+    for (std::size_t i = 0; i < a.lo.size(); ++i) {
+        all.lo[i] = std::min(all.lo[i], a.lo[i]);
+        all.hi[i] = std::max(all.hi[i], a.hi[i]);
+    }
+    all.bound = std::max(all.bound, a.bound);
+}
+
+void write_box(json::Writer& w, const Answer& a) {
+    w.key("box");
+    if (a.lo.empty()) {
+        w.null();
+        return;
+    }
+    w.begin_object().key("min").array(a.lo).key("max").array(a.hi).end_object().field("bound", a.bound);
+}
+
+std::string box_text(const Answer& a) {
+    if (a.lo.empty()) return "none";
+    std::string s;
+    for (std::size_t i = 0; i < a.lo.size(); ++i) s += text(i ? " x [" : "[", a.lo[i], ", ", a.hi[i], "]");
+    return s + text(", each side within ", a.bound);
+}
+
+Result<void> run(const Context& context, const Options& options) {
+    if (options.accuracy && !(*options.accuracy >= 0)) wrong_usage("--accuracy needs a length >= 0");
+    const auto document = read_any(options.file, context.read_options());
+    if (!document) return std::unexpected(document.error());
+    const auto objects = selected(*document, options.object);
+    if (!objects) return std::unexpected(objects.error());
+
+    json::Writer w;
+    std::string s;
+    Answer all;
+    w.begin_object()
+        .field("file", shown(options.file))
+        .field("unit", document->unit)
+        .key("objects")
+        .begin_array();
+    for (std::size_t k = 0; k < objects->size(); ++k) {
+        const std::size_t i = (*objects)[k];
+        const Object& o = document->objects[i];
+        const auto answer = std::visit(Bounding(options.accuracy), o.shape);
+        if (!answer) return refuse_within(object_label(*document, i), answer.error());
+        w.new_line(1)
+            .begin_object()
+            .field("index", i)
+            .field("name", o.name)
+            .field("type", type_name(o.shape));
+        write_box(w, *answer);
+        w.end_object();
+        s += text(object_label(*document, i), ": ", box_text(*answer), "\n");
+        add_to(all, *answer, k == 0 || (all.lo.empty() && k == 0));
+    }
+    w.end_array();
+    write_box(w, all);
+    w.end_object();
+    if (objects->size() > 1 && !all.lo.empty()) s += text("all: ", box_text(all), "\n");
+    return emit(context, context.json ? w.take() + "\n" : s);
+}
+
+}  // namespace
+
+void add_bounds(CLI::App& app, Context& context) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command =
+        add_command(app, context, "bounds",
+                    "Tight boxes: they contain the object, and the object comes within `bound` of every side",
+                    "  freiform bounds curve.json\n"
+                    "  freiform bounds teapot.bpt --accuracy 1e-6 --json\n"
+                    "  freiform bounds part.step");
+    command->add_option("FILE", options->file, "The file; - is standard input")->required();
+    add_number(
+        *command, "--accuracy", options->accuracy,
+        "How far a side may be from the object, in the unit of the file (curves: 1e-12 of the diagonal, "
+        "else 1e-7). Of models the answer says what was reached");
+    command->add_option("--object", options->object, "Only the object of this name or index")
+        ->type_name("NAME|INDEX");
+    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
+    add_limits(*command, context);
+    command->callback(
+        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+}
+
+}  // namespace freiform::cli
