@@ -48,6 +48,7 @@ void add_interpolate(CLI::App& app, Context& context);
 void add_flatten(CLI::App& app, Context& context);
 void add_length(CLI::App& app, Context& context);
 void add_fit(CLI::App& app, Context& context);
+void add_gallery(CLI::App& app, Context& context);
 
 // A subcommand with its description and examples (lines that begin with "freiform ..."), and --json.
 CLI::App* add_command(CLI::App& app, Context& context, const std::string& name,

@@ -21,7 +21,8 @@ struct Options {
     std::optional<double> tolerance, construction, tangent, osculating;
     std::optional<int> width, height;
     bool control = false, knots = false, comb = false, hull = false, box = false;  // of lines
-    bool hodograph = false, basis = false, axes = false, grid = false, legend = false;
+    bool joints = false, a_frames = false, hodograph = false, basis = false, axes = false, grid = false,
+         legend = false;
     bool edges = false, zebra = false, perspective = false;  // of shaded pictures
 };
 
@@ -37,6 +38,8 @@ void refuse_other_kind(const Options& o, bool shaded) {
                            {o.comb, false, "--comb"},
                            {o.hull, false, "--hull"},
                            {o.box, false, "--box"},
+                           {o.joints, false, "--joints"},
+                           {o.a_frames, false, "--a-frames"},
                            {o.hodograph, false, "--hodograph"},
                            {o.basis, false, "--basis"},
                            {o.construction.has_value(), false, "--construction"},
@@ -89,7 +92,8 @@ DrawingOptions drawing_options(const Options& o, const std::optional<View>& view
     how.control = o.control, how.knots = o.knots, how.comb = o.comb;
     if (o.names == "b0") how.names = PointNames::from_zero;
     if (o.names == "P1") how.names = PointNames::from_one;
-    how.hull = o.hull, how.box = o.box, how.hodograph = o.hodograph, how.basis = o.basis;
+    how.hull = o.hull, how.box = o.box, how.joints = o.joints, how.a_frames = o.a_frames,
+    how.hodograph = o.hodograph, how.basis = o.basis;
     how.construction = o.construction, how.tangent = o.tangent, how.osculating = o.osculating;
     return how;
 }
@@ -201,6 +205,9 @@ void add_line_options(CLI::App& command, Options& o) {
                "Also the circle of curvature of curves at this parameter");
     command.add_flag("--hull", o.hull, "Also the convex hull of the control points of curves");
     command.add_flag("--box", o.box, "Also the boxes of curves");
+    command.add_flag("--joints", o.joints, "Also the order of continuity at knots and where curves meet");
+    command.add_flag("--a-frames", o.a_frames,
+                     "Also the A-frames at inner knots of curves of degree 2 or more");
     command.add_flag("--hodograph", o.hodograph, "A panel with the curve of the derivatives");
     command.add_flag("--basis", o.basis, "A panel with the basis functions and the knots of curves");
     command.add_flag("--axes", o.axes, "Axes with ticks");

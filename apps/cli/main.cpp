@@ -27,6 +27,7 @@ void add_commands(CLI::App& app, Context& context) {
     add_flatten(app, context);
     add_length(app, context);
     add_fit(app, context);
+    add_gallery(app, context);
 }
 
 std::string version(bool verbose) {

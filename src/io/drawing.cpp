@@ -69,6 +69,7 @@ Result<Sketch> compose(const Document& document, std::span<const std::size_t> ob
             return refuse(RefusalKind::limit, sketch.label,
                           text("the drawing needs more than ", kMostSegments, " segments"));
     }
+    if (options.joints && size > 0) join_curves(sketch);
     return sketch;
 }
 

@@ -185,7 +185,7 @@ void add_object(Sketch& sketch, const Document& document, std::size_t index) {
     sketch.label = object_label(document, index);
     const std::string& name = document.objects[index].name;
     sketch.name = name.empty() ? sketch.label : name;
-    sketch.colour = kPalette[index % kPalette.size()];
+    sketch.colour = sketch.options.colour.value_or(kPalette[index % kPalette.size()]);
     std::visit([&](const auto& s) { Composer(sketch).add_shape(s); }, document.objects[index].shape);
 }
 

@@ -2,6 +2,7 @@
 // on.
 #pragma once
 #include <freiform/io/drawing.hpp>
+#include <freiform/query/continuity.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <cmath>
@@ -124,8 +125,10 @@ public:
     std::vector<Panel> more;  // further panels
     std::vector<Refusal> left_out;
     std::optional<Refusal> failure;
-    std::size_t used = 0;   // segments
-    bool answered = false;  // a curve was there for what is asked at a parameter
+    std::size_t used = 0;         // segments
+    std::vector<CurveEnds> ends;  // of the curves
+    std::size_t joints = 0;       // marked so far
+    bool answered = false;        // a curve was there for what is asked at a parameter
 };
 
 // Everything that the options ask for of a curve in space. `basis`: of the curve as it was given, which
@@ -135,6 +138,19 @@ void add_curve(Sketch& sketch, const Curve<P>& curve, const BSplineBasis& basis)
 // Control points and the lines between them along each axis.
 template <class P>
 void add_points(Sketch& sketch, DrawnGroup& group, std::span<const P> coefficients);
+
+// Panels of their own: c' as a curve, the graphs of the B-splines.
+template <class P>
+void add_hodograph(Sketch& sketch, const Curve<P>& curve);
+void add_basis(Sketch& sketch, const BSplineBasis& basis);
+
+// The knots of a curve; then, after all curves, where ends of two of them meet.
+template <class P>
+void add_joints(Sketch& sketch, const Curve<P>& curve);
+void join_curves(Sketch& sketch);
+// The A-frames at its inner knots.
+template <class P>
+void add_a_frames(Sketch& sketch, const Curve<P>& curve);
 
 // Adds an object; what of it cannot be drawn goes to left_out.
 void add_object(Sketch& sketch, const Document& document, std::size_t index);

@@ -1,11 +1,11 @@
 // What explains a curve: control points and their names, knots, curvature, the scheme of de Boor, tangent,
-// normal and circle of curvature at a parameter, hull and box, and, as panels of their own, the curve of its
-// derivatives and its B-splines.
+// normal and circle of curvature at a parameter, hull and box.
 //
 // Notation: c', c'' derivatives, T = c' / |c'|. Curvature vector k = (c'' - (c''.T) T) / |c'|^2; the centre
 // of curvature is c + k / |k|^2 [PT97, sec. 6.3 has the same in coordinates].
 #include "io/drawing_detail.hpp"
-#include "io/drawing_lift.hpp"
+
+#include <freiform/spline/construction.hpp>
 
 #include <algorithm>
 #include <numbers>
@@ -18,8 +18,7 @@ constexpr int kNeedles = 200, kFewestNeedles = 8;  // of a comb: per curve, per 
 constexpr double kCombSize = 0.3;                  // longest needle, of the size of its curve
 constexpr double kStraight = 1e-7;                 // curvature times size below which a line is straight
 constexpr double kPointRadius = 3.5;
-constexpr int kHodographSteps = 400;  // per piece of a rational curve
-constexpr int kMostNamedLevels = 5;   // of a scheme, so that names do not cover everything
+constexpr int kMostNamedLevels = 5;  // of a scheme, so that names do not cover everything
 constexpr Colour kFirstLevel{0.93, 0.65, 0.10, 1}, kLastLevel{0.72, 0.05, 0.10, 1};
 
 // What the curve does at a parameter, in the scaled coordinates of the sketch.
@@ -92,7 +91,7 @@ void add_knots(Sketch& s, const Curve<P>& curve, const BSplineBasis& basis) {
     DrawnGroup& g = s.group("knots", mixed(s.colour, {0, 0, 0, 1}, 0.3), 1.5);
     g.legend = plain_text("knots");
     for (const double u : basis.breaks())
-        g.discs.push_back({s.plane(curve(u)), 2 + 1.2 * basis.multiplicity(u), true});
+        g.discs.push_back({s.plane(curve(u)), 2.2 + 0.9 * basis.multiplicity(u), true});
 }
 
 struct Needle {
@@ -143,7 +142,7 @@ void add_comb(Sketch& s, const Curve<P>& curve) {
 }
 
 template <class P>
-void draw_level(Sketch& s, const std::vector<P>& d, int level, int degree, int first) {
+void draw_level(Sketch& s, std::span<const P> d, int level, int degree, int first) {
     DrawnGroup& g = s.group("construction", mixed(kFirstLevel, kLastLevel, double(level) / degree),
                             level == degree ? 2 : 1.3);
     std::vector<Vec<2>> line;
@@ -157,29 +156,18 @@ void draw_level(Sketch& s, const std::vector<P>& d, int level, int degree, int f
                            mixed(g.colour, kInk, 0.35), 14, outward(line, i, false)});
 }
 
-// Level r of the scheme of de Boor: the control points that inserting u the r-th time adds; with one Bezier
-// piece that is de Casteljau.
+// All levels of the scheme of de Boor; with one Bezier piece that is de Casteljau.
 template <class P>
 void add_construction(Sketch& s, const Curve<P>& curve, double at) {
     const BSplineBasis& basis = curve.basis();
     const auto wrapped = inside(s, basis, at, "construction");
     if (!wrapped) return;
-    const double u = *wrapped;
-    const int p = basis.degree(), span = basis.span(u);
-    const int first = span - p + (s.options.names == PointNames::from_one ? 1 : 0);
-    std::vector<P> d;
-    for (int i = span - p; i <= span; ++i) d.push_back(curve.net().flat()[std::size_t(i % basis.size())]);
-    for (int r = 1; r <= p; ++r) {
-        for (int i = 0; i <= p - r; ++i) {
-            const double lo = basis.knot(span - p + r + i), hi = basis.knot(span + 1 + i);
-            const double t = (u - lo) / (hi - lo);
-            d[std::size_t(i)] = (1 - t) * d[std::size_t(i)] + t * d[std::size_t(i) + 1];
-        }
-        d.pop_back();
-        draw_level(s, d, r, p, first);
-    }
+    const auto scheme = de_boor(curve, *wrapped);
+    if (!scheme) return s.leave_out(scheme.error().message);
+    const int first = scheme->first() + (s.options.names == PointNames::from_one ? 1 : 0);
+    for (int r = 1; r <= scheme->degree(); ++r) draw_level(s, scheme->level(r), r, scheme->degree(), first);
     DrawnGroup& g = s.group("point", {0.1, 0.1, 0.1, 1}, 1);
-    g.discs.push_back({s.plane(project(d[0])), 5, false});
+    g.discs.push_back({s.plane(project(scheme->point())), 5, false});
 }
 
 template <class P>
@@ -271,79 +259,6 @@ void add_box(Sketch& s, const DrawnGroup& curve) {
     s.take(g, line_through(p, true));
 }
 
-Panel& panel(Sketch& s, std::string_view name) {
-    const std::string full(name);
-    for (Panel& p : s.more)
-        if (p.name == full) return p;
-    s.more.emplace_back();
-    s.more.back().name = full;
-    s.more.back().caption = plain_text(full);
-    return s.more.back();
-}
-
-// c'(t) as a curve of its own, seen from the origin. The panel is that of all curves of the drawing.
-template <class P>
-void add_hodograph(Sketch& s, const Curve<P>& curve) {
-    DrawnGroup g{s.name, "hodograph", s.colour, 2, {}, {}, {}}, control{s.name, "control", {}, 1, {}, {}, {}};
-    control.colour = mixed(s.colour, kGrey, 0.65);
-    if constexpr (!Space<P>::kRational) {
-        if (curve.basis().degree() < 1) return;
-        const Curve<P> d = derivative(curve, 0);
-        Sketch scaled(s.plane, s.tolerance, s.size, s.options);
-        scaled.add_paths(g, d);
-        std::vector<Vec<2>> line;
-        for (const P& c : d.net().flat()) line.push_back(s.plane(c));
-        control.paths.push_back(line_through(line, d.basis().is_closed()));
-        for (const Vec<2>& p : line) control.discs.push_back({p, 3, false});
-    } else {
-        const BezierPieces<1, P> pieces(curve);
-        for (int i = 0; i < pieces.extent()[0]; ++i) {
-            const auto piece = pieces.piece({i});
-            g.paths.push_back(
-                sampled_path([&](double u) { return s.plane(Vec<3>(piece.template jet<1>(u)(1))); },
-                             pieces.box({i})[0], kHodographSteps));
-        }
-    }
-    Panel& to = panel(s, "hodograph");
-    to.axes = Axes::ticks;
-    to.share = 0.7;
-    DrawnGroup origin = dots("origin", kInk, std::array{Vec<2>{}}, 3);
-    if (to.groups.empty()) to.groups.push_back(std::move(origin));
-    to.groups.push_back(std::move(control));
-    to.groups.push_back(std::move(g));
-}
-
-// The graphs of the B-splines over the parameter.
-void add_basis(Sketch& s, const BSplineBasis& basis) {
-    Panel& to = panel(s, "basis functions");
-    to.axes = Axes::grid;
-    to.equal = false;
-    to.share = 0.8;
-    to.x_name = formula("*u*");
-    const int n = basis.size();
-    if (n > 400) return s.leave_out(text("it has ", n, " basis functions, a panel holds 400"));
-    const Plane plane;
-    const double width = basis.domain().length();
-    for (int i = 0; i < n; ++i) {
-        std::vector<Vec<1>> c(std::size_t(n), Vec<1>{});
-        c[std::size_t(i)] = {{1}};
-        const auto f = lifted(Curve<Vec<1>>::trusted({basis}, Net<1, Vec<1>>({n}, std::move(c))));
-        if (!f) continue;
-        // A graph is as long as the domain is; heights are at most 1 and shown as large.
-        auto paths = paths_of(*f, plane, 1e-4 * std::min(1.0, width), s.rest());
-        if (!paths) continue;
-        DrawnGroup g{s.name, "basis", kPalette[std::size_t(i) % kPalette.size()], 1.8, {}, {}, {}};
-        for (DrawnPath& path : *paths) s.take(g, std::move(path));
-        to.groups.push_back(std::move(g));
-    }
-    DrawnGroup knots{s.name, "knots", kInk, 1.3, {}, {}, {}};
-    for (const double u : basis.breaks()) {
-        const int m = basis.multiplicity(u);
-        for (int k = 0; k < m; ++k) knots.discs.push_back({{{u, -0.05 - 0.035 * k}}, 3, false});
-    }
-    to.groups.push_back(std::move(knots));
-}
-
 }  // namespace
 
 template <class P>
@@ -367,8 +282,10 @@ void add_curve(Sketch& s, const Curve<P>& curve, const BSplineBasis& basis) {
     if (o.box) add_box(s, drawn);
     if (o.comb && s.size > 0) add_comb(s, curve);
     if (o.control || names) add_control(s, curve);
+    if (o.a_frames) add_a_frames(s, curve);
     s.groups.push_back(std::move(drawn));
     if (o.knots) add_knots(s, curve, basis);
+    if (o.joints && s.size > 0) add_joints(s, curve);
     if (o.osculating) add_osculating(s, curve, *o.osculating);
     if (o.construction) add_construction(s, curve, *o.construction);
     if (o.tangent) add_tangent(s, curve, *o.tangent);

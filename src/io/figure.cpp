@@ -69,7 +69,7 @@ namespace figure {
 namespace {
 
 constexpr double kTitleRoom = 44, kCaptionRoom = 32, kBetween = 26, kLegendRow = 26, kPointRoom = 6;
-constexpr double kNoteRoom = 26, kLegendSample = 30;
+constexpr double kNoteRoom = 32, kLegendSample = 30;
 
 struct LegendEntry {
     const DrawnGroup* group;
@@ -168,6 +168,11 @@ Placed placed(const Panel& panel, Box<2> area) {
         p.shown.hi[i] = box.side(i).middle() + half;
     }
     return p;
+}
+
+// As large as fits, between two limits.
+double caption_size(const DrawnText& caption, const Box<2>& area) {
+    return std::clamp(16 * (area.side(0).length() + kBetween / 2) / width_of(caption, 16), 9.0, 16.0);
 }
 
 // A triangle at the end of the path, and the line shorter by most of it.
@@ -283,8 +288,8 @@ Drawing arrange(const Figure& f) {
         Box<2> area = cells[i];
         const Panel& panel = f.panels[i];
         if (!panel.caption.empty()) {
-            DrawnGroup caption =
-                words("caption", panel.caption, {{area.side(0).middle(), area.lo[1] + 16}}, 16, false);
+            DrawnGroup caption = words("caption", panel.caption, {{area.side(0).middle(), area.lo[1] + 16}},
+                                       caption_size(panel.caption, area), false);
             caption.layer = panel.name;
             d.groups.push_back(std::move(caption));
             area.lo[1] += kCaptionRoom;

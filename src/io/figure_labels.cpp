@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kDirections = 16, kDistances = 5;
 constexpr double kCell = 3;  // pixels
-constexpr float kLine = 1, kPoint = 3, kWord = 12, kOffPanel = 40, kOffPage = 10000;
+constexpr float kLine = 1.6F, kAxis = 6, kPoint = 3, kWord = 12, kOffPanel = 40, kOffPage = 10000;
 
 class Occupied {
 public:
@@ -32,13 +32,14 @@ public:
 
     void add(const DrawnGroup& g) {
         if (g.role == "grid") return;
+        const float weight = g.role == "axes" ? kAxis : kLine;
         for (const DrawnPath& path : g.paths) {
             Vec<2> from = path.start;
             for (const DrawnSegment& s : path.segments) {
-                add_segment(from, s);
+                add_segment(from, s, weight);
                 from = end_of(s);
             }
-            if (path.closed) add_segment(from, {1, {path.start}});
+            if (path.closed) add_segment(from, {1, {path.start}}, weight);
         }
         for (const DrawnDisc& d : g.discs) {
             const Vec<2> r{{d.radius, d.radius}};
@@ -62,14 +63,14 @@ public:
     }
 
 private:
-    void add_segment(const Vec<2>& from, const DrawnSegment& s) {
+    void add_segment(const Vec<2>& from, const DrawnSegment& s, float weight) {
         double length = norm(s.points[0] - from);
         for (int i = 1; i < s.degree; ++i)
             length += norm(s.points[std::size_t(i)] - s.points[std::size_t(i) - 1]);
         const int n = int(std::clamp(length / cell_, 1.0, 4096.0));
         for (int i = 0; i <= n; ++i) {
             const Vec<2> p = point_at(from, s, double(i) / n);
-            add({p, p}, kLine);
+            add({p, p}, weight);
         }
     }
     template <class F>

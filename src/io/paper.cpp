@@ -41,6 +41,15 @@ void append_styled(DrawnText& to, std::string_view s, int level, bool& italic) {
     }
 }
 
+// Of an index or exponent: small letters are italic.
+void append_letters(DrawnText& to, std::string_view s, int level) {
+    while (!s.empty()) {
+        const std::size_t n = letter(s);
+        append(to, s.substr(0, n), level, s[0] >= 'a' && s[0] <= 'z');
+        s.remove_prefix(n);
+    }
+}
+
 }  // namespace
 
 DrawnText formula(std::string_view s) {
@@ -54,13 +63,12 @@ DrawnText formula(std::string_view s) {
         s.remove_prefix(mark + 1);
         if (s.empty()) break;
         const std::size_t close = s[0] == '{' ? s.find('}') : std::string_view::npos;
-        bool inside = false;
         if (close != std::string_view::npos) {
-            append_styled(text, s.substr(1, close - 1), level, inside);
+            append_letters(text, s.substr(1, close - 1), level);
             s.remove_prefix(close + 1);
         } else {
             const std::size_t n = letter(s);
-            append(text, s.substr(0, n), level, s[0] >= 'a' && s[0] <= 'z');
+            append_letters(text, s.substr(0, n), level);
             s.remove_prefix(n);
         }
     }

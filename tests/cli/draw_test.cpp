@@ -43,6 +43,10 @@ TEST_F(Draw, curves_are_explained_by_what_is_asked_for) {
         EXPECT_NE(s.find(std::string("class=\"") + role + "\""), std::string::npos) << role;
     EXPECT_NE(s.find("<title>A &lt;cubic&gt;</title>"), std::string::npos);
     EXPECT_EQ(s.find("nan"), std::string::npos);
+    ASSERT_EQ(run({"draw", kExample, "-o", "j.svg", "--object", "closed", "--joints", "--a-frames"}).code, 0);
+    for (const char* role : {"joints", "a-frames"})
+        EXPECT_NE(content(path("j.svg")).find(std::string("class=\"") + role + "\""), std::string::npos)
+            << role;
 }
 
 TEST_F(Draw, documents_of_curves_become_png_without_the_renderer) {

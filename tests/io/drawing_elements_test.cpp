@@ -188,11 +188,60 @@ TEST(Elements, basis_functions_sum_to_one) {
     EXPECT_NEAR(sum, 1, 1e-9);
 }
 
+TEST(Elements, joints_say_their_orders) {
+    // Knots of multiplicity 1, 2, 3 in a cubic, and a next curve with the tangent of its end, twice as long.
+    const std::vector<Vec<2>> c{{{0, 0}}, {{1, 3}}, {{2, 0}}, {{3, 3}}, {{4, 0}},
+                                {{5, 2}}, {{6, 0}}, {{7, 3}}, {{8, 0}}, {{9, 1}}};
+    Document d = with(*Curve<Vec<2>>::make(
+        {*BSplineBasis::make(3, {0, 0, 0, 0, 1, 2, 2, 3, 3, 3, 4, 4, 4, 4})}, Net<1, Vec<2>>({10}, c)));
+    d.objects.push_back({"next", bezier<Vec<2>>({{{9, 1}}, {{11, 3}}, {{12, 0}}}), {}});
+    DrawingOptions how;
+    how.joints = true;
+    const auto drawing = draw(d, {}, how);
+    ASSERT_TRUE(drawing) << drawing.error().message;
+    EXPECT_TRUE(drawing->left_out.empty());
+    std::vector<std::string> names;
+    std::vector<Vec<2>> places;
+    for (const DrawnGroup& g : drawing->groups) {
+        for (const DrawnLabel& l : g.labels) {
+            std::string s;
+            for (const DrawnRun& run : l.text) s += run.text;
+            names.push_back(s);
+        }
+        if (g.role == "joints")
+            for (const DrawnDisc& disc : g.discs) places.push_back(disc.centre);
+    }
+    std::ranges::sort(names);
+    EXPECT_EQ(names, (std::vector<std::string>{"C0 G0", "C0 G1", "C1 G1", "C2 G2"}));
+    ASSERT_EQ(places.size(), 4u);
+    EXPECT_LT(norm(places[3] - pixel(*drawing, {{9, 1}})), 1e-9) << "where the curves meet";
+    how.joints = false;
+    const auto without = draw(d, {}, how);
+    ASSERT_TRUE(without);
+    for (const DrawnGroup& g : without->groups) EXPECT_NE(g.role, "joints");
+}
+
+TEST(Elements, the_apex_of_an_a_frame_is_a_control_point) {
+    std::mt19937 rng(8);
+    const auto c = test::random_patch<1, Vec<2>>(rng, {3}, 2);
+    DrawingOptions how;
+    how.a_frames = true;
+    const auto d = draw(with(c), {}, how);
+    ASSERT_TRUE(d);
+    const auto& paths = group(*d, "a-frames").paths;
+    ASSERT_EQ(paths.size(), 6u) << "a triangle and two legs at each of two knots";
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec<2> apex = paths[3 * k].segments[0].points[0], b = pixel(*d, c.net().flat()[k + 2]);
+        EXPECT_LT(norm(apex - b), 1e-6);
+        EXPECT_TRUE(paths[3 * k].closed);
+    }
+}
+
 TEST(Elements, scale_with_the_curve_to_the_last_byte) {
     std::mt19937 rng(9);
     const auto c = test::random_patch<1, Hom<2>>(rng, {4}, 3);
     DrawingOptions how;
-    how.box = how.hull = true;
+    how.box = how.hull = how.joints = true;
     how.names = PointNames::from_one;
     how.tangent = how.osculating = how.construction = c.domain()[0].middle();
     for (const double by : {0x1p40, 0x1p-600, 0x1p600}) {

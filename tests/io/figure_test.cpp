@@ -42,15 +42,19 @@ Panel square(double side) {
 
 TEST(Formula, letters_after_the_signs_are_low_or_high) {
     const DrawnText t = formula("*b*_0^{n-1} = 2");
-    ASSERT_EQ(t.size(), 4u);
+    ASSERT_EQ(t.size(), 5u);
     EXPECT_EQ(t[0].text, "b");
     EXPECT_TRUE(t[0].italic);
     EXPECT_EQ(t[1].text, "0");
     EXPECT_EQ(t[1].level, -1);
-    EXPECT_EQ(t[2].text, "n-1");
+    EXPECT_EQ(t[2].text, "n");
+    EXPECT_TRUE(t[2].italic);
     EXPECT_EQ(t[2].level, 1);
-    EXPECT_EQ(t[3].text, " = 2");
+    EXPECT_EQ(t[3].text, "-1");
     EXPECT_FALSE(t[3].italic);
+    EXPECT_EQ(t[3].level, 1);
+    EXPECT_EQ(t[4].text, " = 2");
+    EXPECT_FALSE(t[4].italic);
     EXPECT_EQ(formula("a_κ")[1].text, "κ") << "one letter, not one byte";
     EXPECT_EQ(plain_text("a_b*c")[0].text, "a_b*c");
     for (const char* odd : {"", "_", "^", "a_", "*", "a_{b", "^}", "**"})

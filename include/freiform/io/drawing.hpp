@@ -26,6 +26,7 @@ struct DrawingOptions {
     std::optional<View> view;        // none: plane objects as they are, others from iso
     double margin = 0.05;            // of the smaller side of the picture, in [0, 0.4]
     std::string title;
+    std::optional<Colour> colour;  // of all objects; none: another one for each
     bool legend = false;
     Axes axes = Axes::none;
 
@@ -36,6 +37,8 @@ struct DrawingOptions {
     bool comb = false;       // curvature: needles away from the centre, of length as the curvature
     bool hull = false;       // the convex hull of the control points, in the plane of the picture
     bool box = false;        // the axis-parallel box of what is drawn of the curve
+    bool joints = false;  // knots and ends that meet, in the colour of their order of continuity
+    bool a_frames = false;  // what ties the Bezier points on both sides of an inner knot (spline/a_frame.hpp)
     bool hodograph = false;  // a second panel: the curve of the derivatives
     bool basis = false;      // a further panel: the B-splines of the curve
     std::optional<double> construction;  // all points of the de Boor (de Casteljau) scheme here
