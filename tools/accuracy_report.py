@@ -249,8 +249,10 @@ unit wherever less than 2⁻³⁸ of the coefficients is not left over, and the 
 ```cpp
 #include <freiform/spline/accurate.hpp>
 std::vector<Accurate<Vec<1>>> out(t.size());
-evaluate_accurate<1, Vec<1>, Bernstein>(curve, t, std::span<Accurate<Vec<1>>>(out));   // out[i].value, out[i].bound
+evaluate_accurate(curve, t, out);   // out[i].value, out[i].bound
 ```
+
+    freiform eval curve.json --at 0.75 --accurate
 
 It works for curves, surfaces and volumes, polynomial and rational, Bernstein and B-spline bases, of all degrees, and takes
 10 to 60 times as long. The bound is derived in `src/spline/accurate.cpp`. Splitting, insertion and elevation have bounds too

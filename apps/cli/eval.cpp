@@ -4,6 +4,7 @@
 #include <freiform/core/scan.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/points.hpp>
+#include <freiform/spline/accurate.hpp>
 
 namespace freiform::cli {
 
@@ -12,6 +13,7 @@ namespace {
 struct Options {
     std::string file, object, at;
     std::optional<int> derivatives;
+    bool accurate = false;
 };
 
 using Parameters = std::vector<std::vector<double>>;
@@ -49,8 +51,9 @@ Result<Parameters> parameters(const Options& options, const ReadOptions& limits)
 
 class Evaluation {
 public:
-    Evaluation(json::Writer& w, const Parameters& at, int derivatives, std::optional<std::size_t> object)
-        : w_(w), at_(at), derivatives_(derivatives), object_(object) {}
+    Evaluation(json::Writer& w, const Parameters& at, int derivatives, bool accurate,
+               std::optional<std::size_t> object)
+        : w_(w), at_(at), derivatives_(derivatives), accurate_(accurate), object_(object) {}
 
     template <class S>
     requires(TensorPatch<S> || TriangularPatch<S>) Result<void>
@@ -59,15 +62,15 @@ public:
         for (std::size_t i = 0; i < at_.size(); ++i) {
             Param<N> u{};
             if (auto ok = fill<N>(i, u); !ok) return ok;
-            typename S::Point point;
-            if (auto ok = patch.evaluate(std::span(&u, 1), std::span(&point, 1)); !ok)
-                return moved(ok.error(), i);
+            Accurate<typename S::Point> value;
+            auto& point = value.value;
+            if (auto ok = answer(patch, u, value); !ok) return moved(ok.error(), i);
             const auto all = patch.derivatives(u, derivatives_);
             for (const auto& d : all)
                 if (!is_finite(d) || !is_finite(point))
                     return refuse(RefusalKind::ill_conditioned, text("at[", i, "]"),
                                   "a value or derivative there leaves the range of double");
-            write(i, point, std::span(all).subspan(1));
+            write(i, value, std::span(all).subspan(1));
         }
         return {};
     }
@@ -81,6 +84,16 @@ public:
     }
 
 private:
+    // The value; its bound only if that is wanted.
+    template <class S>
+    Result<void> answer(const S& patch, const Param<S::kParams>& u, Accurate<typename S::Point>& out) const {
+        if (!accurate_) return patch.evaluate(std::span(&u, 1), std::span(&out.value, 1));
+        if constexpr (TensorPatch<S>)
+            return evaluate_accurate(patch, std::span(&u, 1), std::span(&out, 1));
+        else
+            return refuse(RefusalKind::unsupported, "--accurate",
+                          "triangular patches have no accurate values");
+    }
     template <std::size_t N>
     Result<void> fill(std::size_t i, Param<N>& u) const {
         if (at_[i].size() != N)
@@ -99,10 +112,11 @@ private:
         return std::unexpected(std::move(r));
     }
     template <class Point>
-    void write(std::size_t i, const Point& point, std::span<const Point> derivatives) {
+    void write(std::size_t i, const Accurate<Point>& value, std::span<const Point> derivatives) {
         w_.new_line(1).begin_object();
         if (object_) w_.field("object", *object_);
-        w_.key("at").array(at_[i]).key("point").array(point.c);
+        w_.key("at").array(at_[i]).key("point").array(value.value.c);
+        if (accurate_) w_.key("bound").array(value.bound.c);
         if (derivatives_ > 0) {
             w_.key("derivatives").begin_array();
             for (const Point& d : derivatives) w_.array(d.c);
@@ -114,6 +128,7 @@ private:
     json::Writer& w_;
     const Parameters& at_;
     int derivatives_;
+    bool accurate_;
     std::optional<std::size_t> object_;
 };
 
@@ -130,7 +145,7 @@ Result<void> run(const Context& context, const Options& options) {
     json::Writer w;
     w.begin_object().key("results").begin_array();
     for (const std::size_t i : *objects) {
-        Evaluation evaluate(w, *at, options.derivatives.value_or(0),
+        Evaluation evaluate(w, *at, options.derivatives.value_or(0), options.accurate,
                             document->objects.size() > 1 ? std::optional(i) : std::nullopt);
         if (auto ok = std::visit(evaluate, document->objects[i].shape); !ok) {
             Refusal r = ok.error();
@@ -153,7 +168,8 @@ void add_eval(CLI::App& app, Context& context) {
         add_command(app, context, "eval", "Points and derivatives at parameters, as JSON",
                     "  freiform eval curve.json --at 0.5\n"
                     "  freiform eval teapot.bpt --object 3 --at '0,0;0.5,0.25' --derivatives 2\n"
-                    "  freiform eval curve.json --at @parameters.csv");
+                    "  freiform eval curve.json --at @parameters.csv\n"
+                    "  freiform eval curve.json --at 0.75 --accurate");
     command->add_option("FILE", options->file, "The file; - is standard input")->required();
     command
         ->add_option("--at", options->at,
@@ -163,6 +179,9 @@ void add_eval(CLI::App& app, Context& context) {
         ->required();
     add_count(*command, "--derivatives", options->derivatives, 0, kMostDerivatives,
               "Derivatives to this order; of a surface du, dv, duu, duv, dvv, ...");
+    command->add_flag(
+        "--accurate", options->accurate,
+        "Points right to the last digit, each with a proven bound of its error, by coordinate; slower");
     command->add_option("--object", options->object, "Only the object of this name or index")
         ->type_name("NAME|INDEX");
     command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");

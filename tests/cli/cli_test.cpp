@@ -1,6 +1,7 @@
 #include "run.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -60,6 +61,19 @@ TEST_F(Cli, eval_gives_points_and_derivatives) {
         Json::parse(run({"eval", "-", "--at", "0.25,0.5", "--derivatives", "2"}, kSurface).out)["results"][0];
     EXPECT_EQ(s["point"], Json::parse("[0.25,1.0,0.5625]"));
     EXPECT_EQ(s["derivatives"], Json::parse("[[1,0,1.25],[0,2,0.75],[0,0,0],[0,0,-1],[0,0,-1.5]]")) << s;
+}
+
+TEST_F(Cli, eval_gives_values_to_the_last_digit_with_their_bounds) {
+    // (4 t - 3)^3
+    const std::string cubed = R"({"type": "curve", "points": [[-27], [9], [-3], [1]]})";
+    const double d = 4 * 0.7501 - 3, right = d * d * d;
+    const Json r = Json::parse(run({"eval", "-", "--at", "0.7501", "--accurate"}, cubed).out)["results"][0];
+    EXPECT_NEAR(r["point"][0].get<double>(), right, 4e-16 * right);
+    EXPECT_LE(r["bound"][0].get<double>(), 2e-16 * right);
+    EXPECT_GT(r["bound"][0].get<double>(), 0);
+    const Json plain = Json::parse(run({"eval", "-", "--at", "0.7501"}, cubed).out)["results"][0];
+    EXPECT_FALSE(plain.contains("bound"));
+    EXPECT_GT(std::abs(plain["point"][0].get<double>() - right), 1e-8 * right);
 }
 
 TEST_F(Cli, eval_takes_parameters_from_a_file) {

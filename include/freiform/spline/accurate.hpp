@@ -1,7 +1,7 @@
 // Values to the last digit where the ordinary ones lose digits, each with its own bound.
 //
 //     Accurate<Vec<2>> out;
-//     evaluate_accurate(curve, std::span(&t, 1), std::span(&out, 1));     // out.value, out.bound
+//     evaluate_accurate(curve, std::span(&t, 1), std::span(&out, 1));  // out.value, out.bound
 //
 // Patch::evaluate is backward stable: its error is at most value_error_bound(), 1.01 (6 p - 1) 2^-53 max|P_i|
 // for a polynomial curve of degree p. Beside a value that is much smaller than the coefficients, as near a
