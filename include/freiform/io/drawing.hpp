@@ -33,14 +33,14 @@ struct DrawingOptions {
     bool control = false;                 // control polygons and nets; the area of a point is as its weight
     PointNames names = PointNames::none;  // of control points of curves; implies control
     // Of curves:
-    bool knots = false;      // places of the knots, larger where they are multiple
-    bool comb = false;       // curvature: needles away from the centre, of length as the curvature
-    bool hull = false;       // the convex hull of the control points, in the plane of the picture
-    bool box = false;        // the axis-parallel box of what is drawn of the curve
-    bool joints = false;  // knots and ends that meet, in the colour of their order of continuity
+    bool knots = false;     // places of the knots, larger where they are multiple
+    bool comb = false;      // curvature: needles away from the centre, of length as the curvature
+    bool hull = false;      // the convex hull of the control points, in the plane of the picture
+    bool box = false;       // the axis-parallel box of what is drawn of the curve
+    bool joints = false;    // knots and ends that meet, in the colour of their order of continuity
     bool a_frames = false;  // what ties the Bezier points on both sides of an inner knot (spline/a_frame.hpp)
-    bool hodograph = false;  // a second panel: the curve of the derivatives
-    bool basis = false;      // a further panel: the B-splines of the curve
+    bool hodograph = false;              // a second panel: the curve of the derivatives
+    bool basis = false;                  // a further panel: the B-splines of the curve
     std::optional<double> construction;  // all points of the de Boor (de Casteljau) scheme here
     std::optional<double> tangent;       // tangent and normal here
     std::optional<double> osculating;    // the circle of curvature here

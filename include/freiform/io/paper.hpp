@@ -54,7 +54,8 @@ struct DrawnRun {
 using DrawnText = std::vector<DrawnRun>;
 
 // Reads "*b*_1^{n-1} on [0, 1]": between asterisks italic; _ and ^ set the next letter, or what is in braces,
-// low or high, where small letters are italic. For text that is nobody's formula (names of objects): plain_text.
+// low or high, where small letters are italic. For text that is nobody's formula (names of objects):
+// plain_text.
 DrawnText formula(std::string_view s);
 DrawnText plain_text(std::string_view s);
 // About as wide as a usual typeface with serifs would be, in pixels; an estimate.
