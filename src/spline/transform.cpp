@@ -189,11 +189,11 @@ Result<Transformed<Patch<N, Hom<To>>>> transform(const Patch<N, Hom<From>>& patc
                                                               const Affinity<To, From>&); \
     template Result<Transformed<Patch<N, Hom<To>>>> transform(const Patch<N, Hom<From>>&, \
                                                               const Projectivity<To, From>&);
-#define FF_TRANSFORM_ALL(N)                                                                 \
-    FF_TRANSFORM(N, 1, 1)                                                                   \
-    FF_TRANSFORM(N, 2, 2)                                                                   \
-    FF_TRANSFORM(N, 3, 3) FF_TRANSFORM(N, 4, 4) FF_TRANSFORM(N, 2, 3) FF_TRANSFORM(N, 3, 2) \
-        FF_TRANSFORM(N, 3, 4)
+#define FF_TRANSFORM_ALL(N) \
+    FF_TRANSFORM(N, 1, 1)   \
+    FF_TRANSFORM(N, 2, 2)   \
+    FF_TRANSFORM(N, 3, 3)   \
+    FF_TRANSFORM(N, 4, 4) FF_TRANSFORM(N, 2, 3) FF_TRANSFORM(N, 3, 2) FF_TRANSFORM(N, 3, 4)
 FF_TRANSFORM_ALL(1)
 FF_TRANSFORM_ALL(2)
 FF_TRANSFORM_ALL(3)
