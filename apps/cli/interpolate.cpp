@@ -10,9 +10,9 @@ namespace freiform::cli {
 
 namespace {
 
-enum class Scheme { natural, clamped, not_a_knot, periodic, catmull_rom, akima, monotone };
+enum class Scheme { natural, clamped, not_a_knot, periodic, catmull_rom, akima, monotone, fritsch_carlson };
 constexpr std::string_view kSchemes[] = {"natural",     "clamped", "not-a-knot", "periodic",
-                                         "catmull-rom", "akima",   "monotone"};
+                                         "catmull-rom", "akima",   "monotone",   "fritsch-carlson"};
 constexpr std::string_view kSpacings[] = {"uniform", "chordal", "centripetal"};
 
 struct Options {
@@ -98,7 +98,9 @@ Result<Answer<N>> solve(const Net<N, Vec<D>>& points, const Options& options,
         }
         if constexpr (N == 1) {
             const std::span<const Vec<D>> q = points.flat();
-            const auto kind = ways[0] == Scheme::akima ? LocalSlopes::akima : LocalSlopes::monotone;
+            const auto kind = ways[0] == Scheme::akima      ? LocalSlopes::akima
+                              : ways[0] == Scheme::monotone ? LocalSlopes::monotone
+                                                            : LocalSlopes::fritsch_carlson;
             const auto slopes = local_slopes<D>(q, at[0], kind, closed[0]);
             if (!slopes) return std::unexpected(slopes.error());
             auto curve = cubic_through<D>(q, *slopes, at[0], closed[0]);
@@ -171,14 +173,15 @@ Result<void> run(const Context& context, const Options& options) {
             wrong_usage("--ends mixes schemes that do not go together");
         if (is_local(s) && options.degree && *options.degree != 3)
             wrong_usage(text(kSchemes[int(s)], " is for degree 3"));
-        if (axes == 2 && (s == Scheme::akima || s == Scheme::monotone || s == Scheme::clamped))
+        if (axes == 2 && ((is_local(s) && s != Scheme::catmull_rom) || s == Scheme::clamped))
             wrong_usage(text(kSchemes[int(s)],
                              " is for curves; a grid takes natural, not-a-knot, periodic or catmull-rom"));
         if (s != Scheme::clamped && !options.tangents.empty())
             wrong_usage("--tangents goes with --ends clamped");
         if (!is_local(s) && options.closed && s != Scheme::periodic)
             wrong_usage(
-                "--closed goes with catmull-rom, akima and monotone; closed splines are --ends periodic");
+                "--closed goes with the local schemes (catmull-rom, ...); closed splines are --ends "
+                "periodic");
     }
     if (axes == 2 && !options.at.empty()) wrong_usage("--at is for curves");
     return with_points(*table, [&]<int D>(std::vector<Vec<D>> points) -> Result<void> {
@@ -213,14 +216,16 @@ void add_interpolate(CLI::App& app, Context& context) {
         "  freiform interpolate grid.json --ends natural,periodic -o tube.json\n"
         "Points are lines of 1 to 4 numbers, or JSON: [[x,y], ...], of a grid [[[x,y,z], ...], ...].\n"
         "natural, clamped, not-a-knot and periodic have degree - 1 continuous derivatives;\n"
-        "catmull-rom, akima and monotone are cubic with continuous first derivatives and local.\n"
+        "catmull-rom, akima, monotone and fritsch-carlson are cubic with continuous first derivatives and "
+        "local.\n"
         "Without --parameters: chordal; uniform for catmull-rom.");
     command->add_option("POINTS", options->file, "The file with the points; - is standard input")->required();
     add_output(*command, context, "The file to write: .json or .bpt");
     add_count(*command, "--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
     command
         ->add_option("--ends", options->ends,
-                     "natural, clamped, not-a-knot, periodic, catmull-rom, akima or monotone; of a grid one "
+                     "natural, clamped, not-a-knot, periodic, catmull-rom, akima, monotone or "
+                     "fritsch-carlson; of a grid one "
                      "for each direction")
         ->type_name("WAY[,WAY]");
     command->add_option("--parameters", options->spacing, "uniform, chordal or centripetal")
@@ -233,7 +238,7 @@ void add_interpolate(CLI::App& app, Context& context) {
         ->add_option("--tangents", options->tangents,
                      "With clamped: derivatives by the parameter at the start, then at the end")
         ->type_name("X,Y;X,Y");
-    command->add_flag("--closed", options->closed, "Close a catmull-rom, akima or monotone curve");
+    command->add_flag("--closed", options->closed, "Close a curve of a local scheme (catmull-rom, ...)");
     add_limits(*command, context);
     command->callback(
         [&context, options] { context.action = [&context, options] { return run(context, *options); }; });

@@ -15,8 +15,11 @@
 // Accuracy: points are copied. An inner coefficient carries a few roundings of the largest of the points that
 // it depends on.
 //
-// Why not the two-step limiter of Fritsch and Carlson itself: it depends on the order in which the pieces are
-// visited, the harmonic mean does not.
+// Fritsch and Carlson: v_i of the parabola, 0 where d changes sign or vanishes; a piece with the ratios
+// a = v_i / d_i, b = v_{i+1} / d_i outside the circle a^2 + b^2 <= 9 asks for both to be multiplied by
+// 3 / sqrt(a^2 + b^2) [Fritsch & Carlson 1980]. Here a slope gets the smaller factor of its two pieces,
+// computed from what the slopes were before: shorter slopes of the same sign stay in the circle, and the
+// result does not depend on the order of the pieces, as theirs does.
 #include <freiform/fit/local.hpp>
 
 #include <algorithm>
@@ -65,6 +68,13 @@ Result<BSplineBasis> bezier_breaks(std::span<const double> at, bool closed) {
 }
 
 double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : 0; }
+
+// What a piece of slope d with the end slopes v and w asks both to be multiplied by.
+double shortening(double d, double v, double w) {
+    if (d == 0) return 0;
+    const double size = std::hypot(v / d, w / d);
+    return size > 3 ? 3 / size : 1;
+}
 
 // At an open end: `near` and `far` slopes and steps, counted from the end.
 double end_slope(double near, double far, double h, double next) {
@@ -216,11 +226,26 @@ Result<std::vector<Vec<D>>> local_slopes(std::span<const Vec<D>> points, std::sp
                 v = steps == 1 ? right : end_slope(right, d[k + 1], h[k], h[k + 1]);
             } else if (!closed && i == m - 1) {
                 v = steps == 1 ? left : end_slope(left, d[k - 2], h[k - 1], h[k - 2]);
-            } else if (sign(left) == sign(right) && left != 0) {
+            } else if (sign(left) != sign(right) || left == 0) {
+                v = 0;
+            } else if (kind == LocalSlopes::fritsch_carlson) {
+                const double l = h[k - 1] / (h[k - 1] + h[k]);
+                v = (1 - l) * left + l * right;
+            } else {
                 const double wl = 2 * h[k] + h[k - 1], wr = h[k] + 2 * h[k - 1];
                 v = (wl + wr) / (wl / left + wr / right);
             }
             out[std::size_t(i)][c] = v;
+        }
+        if (kind != LocalSlopes::fritsch_carlson) continue;
+        std::vector<double> factor(std::size_t(steps), 1.0);
+        for (int i = 0; i < steps; ++i)
+            factor[std::size_t(i)] =
+                shortening(d[std::size_t(i) + 2], out[std::size_t(i)][c], out[std::size_t((i + 1) % m)][c]);
+        for (int i = 0; i < m; ++i) {
+            const int before = closed ? (i + steps - 1) % steps : std::max(i - 1, 0),
+                      after = std::min(i, steps - 1);
+            out[std::size_t(i)][c] *= std::min(factor[std::size_t(before)], factor[std::size_t(after)]);
         }
     }
     if (auto ok = check_points<D>(out, "points"); !ok)

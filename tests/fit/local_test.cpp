@@ -128,7 +128,8 @@ TEST(Monotone, rises_only_where_the_points_rise) {
             const double step = random.chance(0.2) ? 0 : std::exp2(random.real(-10, 6));
             q.push_back({{q.back()[0] + (random.chance(0.8) ? step : -step)}});
         }
-        const auto slopes = must(local_slopes<1>(q, at, LocalSlopes::monotone));
+        const auto kind = round % 2 ? LocalSlopes::monotone : LocalSlopes::fritsch_carlson;
+        const auto slopes = must(local_slopes<1>(q, at, kind));
         const auto c = must(cubic_through<1>(q, slopes, at));
         for (int i = 0; i + 1 < n; ++i) {
             const double a = q[std::size_t(i)][0], b = q[std::size_t(i) + 1][0], lo = at[std::size_t(i)],
@@ -143,6 +144,31 @@ TEST(Monotone, rises_only_where_the_points_rise) {
     }
 }
 
+TEST(FritschCarlson, keeps_slopes_that_need_no_shortening_and_stays_in_the_circle) {
+    // On a parabola nothing is shortened, and the slopes are those of the parabola.
+    const std::vector<double> at{0, 1, 2.5, 3, 5};
+    std::vector<Vec<1>> q;
+    for (const double t : at) q.push_back({{t * t + t}});
+    const auto slopes = must(local_slopes<1>(q, at, LocalSlopes::fritsch_carlson));
+    for (std::size_t i = 0; i < at.size(); ++i) EXPECT_NEAR(slopes[i][0], 2 * at[i] + 1, 1e-13);
+    // Elsewhere a^2 + b^2 <= 9, and signs stay.
+    Random random(14);
+    for (int round = 0; round < 50; ++round) {
+        std::vector<double> t{0};
+        std::vector<Vec<1>> y{{{0}}};
+        for (int i = 1; i < 8; ++i) {
+            t.push_back(t.back() + std::exp2(random.real(-4, 4)));
+            y.push_back({{y.back()[0] + std::exp2(random.real(-8, 8))}});
+        }
+        const auto v = must(local_slopes<1>(y, t, LocalSlopes::fritsch_carlson));
+        for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+            const double d = (y[i + 1][0] - y[i][0]) / (t[i + 1] - t[i]);
+            EXPECT_LE(std::hypot(v[i][0] / d, v[i + 1][0] / d), 3 * (1 + 1e-14));
+            EXPECT_GE(v[i][0], 0);
+        }
+    }
+}
+
 TEST(Akima, stays_straight_where_the_points_are) {
     const std::vector<double> at{0, 1, 2, 3, 4, 5, 6};
     std::vector<Vec<1>> q;
@@ -153,7 +179,7 @@ TEST(Akima, stays_straight_where_the_points_are) {
 
 TEST(Local, closed_slopes_see_around_the_seam) {
     Random random(5);
-    for (const LocalSlopes kind : {LocalSlopes::akima, LocalSlopes::monotone}) {
+    for (const LocalSlopes kind : {LocalSlopes::akima, LocalSlopes::monotone, LocalSlopes::fritsch_carlson}) {
         const auto q = some_points(random, 7);
         std::vector<double> at{0, 1, 3, 3.5, 4, 6, 7, 9};
         const auto slopes = must(local_slopes<3>(q, at, kind, true));

@@ -33,6 +33,7 @@ Result<Curve<Vec<D>>> cubic_through(std::span<const Vec<D>> points, std::span<co
 enum class LocalSlopes {
     akima,     // weighted by how much the slopes change on either side: no overshoot beside a bend
     monotone,  // each coordinate rises and falls only where its points do, and is extreme at points only
+    fritsch_carlson,  // the same promise; parabolas' slopes (catmull_rom), only as much shortened as it needs
 };
 
 // Derivatives for cubic_through, coordinate by coordinate. Needs 2 points.
