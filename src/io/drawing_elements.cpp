@@ -5,6 +5,7 @@
 // of curvature is c + k / |k|^2 [PT97, sec. 6.3 has the same in coordinates].
 #include "io/drawing_detail.hpp"
 
+#include <freiform/query/hull.hpp>
 #include <freiform/spline/construction.hpp>
 
 #include <algorithm>
@@ -220,33 +221,19 @@ void add_osculating(Sketch& s, const Curve<P>& curve, double at) {
     s.notes.push_back({flat(s.plane, centre), formula("1/*κ*"), kPalette[1], 15, flat(s.plane, normal)});
 }
 
-// The convex hull, counter-clockwise [Andrew 1979].
-std::vector<Vec<2>> hull_of(std::vector<Vec<2>> p) {
-    std::ranges::sort(p, {}, [](const Vec<2>& v) { return std::pair(v[0], v[1]); });
-    std::vector<Vec<2>> h;
-    for (int side = 0; side < 2; ++side) {
-        const std::size_t begin = h.size();
-        for (const Vec<2>& q : p) {
-            while (h.size() >= begin + 2 && cross(h.back() - h[h.size() - 2], q - h.back()) <= 0)
-                h.pop_back();
-            h.push_back(q);
-        }
-        h.pop_back();
-        std::ranges::reverse(p);
-    }
-    return h;
-}
-
 template <class P>
 void add_hull(Sketch& s, const Curve<P>& curve) {
     std::vector<Vec<2>> p;
     for (const P& c : curve.net().flat()) p.push_back(s.plane(project(c)));
-    if (p.size() < 3) return;
+    const auto corners = convex_hull(p);
+    if (!corners || corners->size() < 3) return;
+    std::vector<Vec<2>> hull;
+    for (const int i : *corners) hull.push_back(p[std::size_t(i)]);
     DrawnGroup& g = s.group("hull", mixed(s.colour, {1, 1, 1, 1}, 0.3), 0.9);
     g.dashes = {2, 3};
     g.fill = 0.1;
     g.legend = plain_text("convex hull");
-    s.take(g, line_through(hull_of(p), true));
+    s.take(g, line_through(hull, true));
 }
 
 void add_box(Sketch& s, const DrawnGroup& curve) {

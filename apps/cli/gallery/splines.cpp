@@ -3,6 +3,7 @@
 
 #include <freiform/basis/subdivide.hpp>
 #include <freiform/make/conic.hpp>
+#include <freiform/query/crossings.hpp>
 
 #include <algorithm>
 #include <array>
@@ -209,14 +210,8 @@ Figure properties(const Document& d) {
     c.graph(line, {-0.2, 6.2}, {kOrange, 1.8, "", {}}, 1);
     const auto side = [&](const Vec<2>& q) { return q[1] - line(q[0]); };
     Points on_curve, on_polygon;
-    const double end = wave.domain()[0].hi;
-    for (int i = 0; i < 1000; ++i) {
-        double lo = end * i / 1000, hi = end * (i + 1) / 1000;
-        if (side(wave(lo)) * side(wave(hi)) > 0) continue;
-        for (int k = 0; k < 50; ++k)
-            (side(wave(lo)) * side(wave((lo + hi) / 2)) <= 0 ? hi : lo) = (lo + hi) / 2;
-        on_curve.push_back(wave(lo));
-    }
+    for (const auto& hit : sure(crossings(wave, Vec<2>{{-0.33, 1}}, -0.95, 1e-9)))
+        on_curve.push_back(hit.point);
     const Points w = points_of(wave);
     for (std::size_t i = 0; i + 1 < w.size(); ++i) {
         const double f = side(w[i]), g = side(w[i + 1]);
