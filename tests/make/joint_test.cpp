@@ -9,20 +9,11 @@
 namespace freiform {
 namespace {
 
+using test::bezier;
 using test::must;
 using test::Random;
+using test::random_bezier;
 
-template <class P>
-Curve<P> bezier(std::vector<P> b, Interval on = {0, 1}) {
-    const int n = int(b.size());
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n - 1, on))}, Net<1, P>({n}, std::move(b))));
-}
-template <class P>
-Curve<P> random_bezier(Random& random, int degree, Interval on) {
-    std::vector<P> b;
-    for (int i = 0; i <= degree; ++i) b.push_back(test::random_coefficient<P>(random, 1, 0, 0.5));
-    return bezier(std::move(b), on);
-}
 const Vec<2> kP1{{1, 2}}, kP2{{2, 5}}, kP3{{4, 6}}, kP4{{7, 5}}, kFree[] = {{{9, 1}}, {{10, 0}}, {{12, 3}}};
 const Curve<Vec<2>> kPrevious = bezier<Vec<2>>({kP1, kP2, kP3, kP4});
 
@@ -174,6 +165,7 @@ TEST(NextC, is_found_by_the_analysis_with_this_order_and_not_more) {
     expect_found<Hom<2>>(14, false);
     expect_found<Hom<3>>(15, false);
 }
+
 TEST(NextC, joins_the_points_for_any_given_weights) {
     expect_found<Hom<2>>(16, true);
     expect_found<Hom<3>>(17, true);

@@ -9,25 +9,16 @@
 namespace freiform {
 namespace {
 
+using test::bezier;
 using test::must;
 using test::Random;
+using test::random_bezier;
 
-template <class P>
-Curve<P> bezier(std::vector<P> b, Interval on = {0, 1}) {
-    const int n = int(b.size());
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n - 1, on))}, Net<1, P>({n}, std::move(b))));
-}
 template <class P>
 Curve<P> spline(int degree, std::vector<double> knots, std::vector<P> b) {
     const int n = int(b.size());
     return must(
         Curve<P>::make({must(BSplineBasis::make(degree, std::move(knots)))}, Net<1, P>({n}, std::move(b))));
-}
-template <class P>
-Curve<P> random_bezier(Random& random, int degree, Interval on = {0, 1}) {
-    std::vector<P> b;
-    for (int i = 0; i <= degree; ++i) b.push_back(test::random_coefficient<P>(random, 1, 0, 0.5));
-    return bezier(std::move(b), on);
 }
 
 TEST(R09, g1_is_parallel_tangents_of_the_same_sense) {
@@ -103,6 +94,7 @@ Curve<Vec<3>> helix(double r, double h, bool backwards) {
     if (backwards) std::reverse(b.begin(), b.end());
     return bezier(std::move(b));
 }
+
 TEST(R09, helices_of_equal_curvature_and_other_torsion_are_g2_in_space) {
     // r / (r^2 + h^2) = 1/2 for r = 1, h = 1 and, left-handed, for h = -1: torsion 1/2 and -1/2. Rotated so
     // that the tangents agree.

@@ -7,12 +7,6 @@
 namespace freiform::test {
 namespace {
 
-template <class P>
-Curve<P> bezier(std::vector<P> c) {
-    const int n = int(c.size()) - 1;
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n))}, Net<1, P>({n + 1}, std::move(c))));
-}
-
 // normal . X + offset w, exactly, as a polynomial in t.
 template <class P>
 Polynomial distance_polynomial(const Curve<P>& c, const PointOf<P>& normal, double offset) {

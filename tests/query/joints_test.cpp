@@ -9,20 +9,10 @@
 namespace freiform {
 namespace {
 
+using test::bezier;
 using test::must;
 using test::Random;
-
-template <class P>
-Curve<P> bezier(std::vector<P> b, Interval on = {0, 1}) {
-    const int n = int(b.size());
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n - 1, on))}, Net<1, P>({n}, std::move(b))));
-}
-template <class P>
-Curve<P> random_bezier(Random& random, int degree, Interval on = {0, 1}) {
-    std::vector<P> b;
-    for (int i = 0; i <= degree; ++i) b.push_back(test::random_coefficient<P>(random, 1, 0, 0.5));
-    return bezier(std::move(b), on);
-}
+using test::random_bezier;
 
 TEST(Meetings, are_found_and_put_in_order) {
     const auto ends = [](std::vector<double> a, std::vector<double> b) {

@@ -9,18 +9,7 @@ namespace {
 
 using test::must;
 using test::Random;
-
-template <class P>
-Curve<P> bezier(std::vector<P> b, Interval on = {0, 1}) {
-    const int n = int(b.size());
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n - 1, on))}, Net<1, P>({n}, std::move(b))));
-}
-template <class P>
-Curve<P> random_bezier(Random& random, int degree, Interval on = {0, 1}) {
-    std::vector<P> b;
-    for (int i = 0; i <= degree; ++i) b.push_back(test::random_coefficient<P>(random, 1, 0, 0.5));
-    return bezier(std::move(b), on);
-}
+using test::random_bezier;
 
 TEST(Knots, that_were_inserted_are_found_removable) {
     Random random(3);
@@ -103,6 +92,7 @@ void expect_law_of_knots(std::uint64_t seed) {
             EXPECT_GE(l.c_order, d - l.multiplicity) << "degree " << d << (l.seam ? ", seam" : "");
     }
 }
+
 TEST(Knots, obey_the_law_of_multiplicity_with_proven_bounds_alone) {
     expect_law_of_knots<Vec<1>>(21);
     expect_law_of_knots<Vec<3>>(22);

@@ -11,11 +11,6 @@
 namespace freiform::test {
 namespace {
 
-template <class P>
-Curve<P> bezier(std::vector<P> b) {
-    const int n = int(b.size());
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n - 1))}, Net<1, P>({n}, std::move(b))));
-}
 const Curve<Vec<2>> kArch = bezier<Vec<2>>({{{0, 0}}, {{1, 2}}, {{3, 2}}, {{4, 0}}});
 const Curve<Vec<2>> kCusp = bezier<Vec<2>>({{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}});
 

@@ -7,12 +7,6 @@
 namespace freiform::test {
 namespace {
 
-template <class P>
-Curve<P> bezier(std::vector<P> c) {
-    const int n = int(c.size()) - 1;
-    return must(Curve<P>::make({must(BSplineBasis::bezier(n))}, Net<1, P>({n + 1}, std::move(c))));
-}
-
 template <class M>
 int certain(const std::vector<M>& all) {
     return int(std::count_if(all.begin(), all.end(), [](const M& m) { return m.is_certain; }));
