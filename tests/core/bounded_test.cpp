@@ -101,6 +101,13 @@ TEST(Bounded, holds_over_the_whole_range_of_double) {
     }
 }
 
+TEST(Bounded, a_divisor_of_tiny_uncertainty_leaves_the_quotient_uncertain) {
+    // |q| times the bound of the divisor is far below the smallest double.
+    const Bounded q = Bounded(0x1p-500) / Bounded(0x1p200, 0x1p-400);
+    EXPECT_EQ(q.value, 0x1p-700);
+    EXPECT_GT(q.bound, 0);
+}
+
 TEST(Bounded, exact_operations_add_nothing) {
     const Bounded three(3), quarter(0.25);
     for (const Bounded& x :

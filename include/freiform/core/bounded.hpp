@@ -59,7 +59,8 @@ inline Bounded operator/(const Bounded& a, const Bounded& b) {
     if (!(room > 0)) return {a.value, std::numeric_limits<double>::infinity()};
     // |A / B - q| = |A - q B| / |B|, and |B| >= room.
     const double q = a.value / b.value;
-    double rest = std::abs(std::fma(-q, b.value, a.value)) + a.bound + std::abs(q) * b.bound;
+    double rest = std::abs(std::fma(-q, b.value, a.value)) + a.bound;
+    if (b.bound != 0) rest += std::abs(q) * b.bound + 0x1p-1070;
     if (std::abs(a.value) < detail::kSmall || std::abs(q) < detail::kSmall) rest += 0x1p-1070;
     const double bound = rest == 0 ? 0 : rest / (room * (1 - 0x1p-50)) + 0x1p-1070;
     return {q, std::abs(q) < detail::kSmall ? detail::above(bound) + 0x1p-1070 : detail::above(bound)};
