@@ -26,7 +26,10 @@ class Random {
 public:
     explicit Random(std::uint64_t seed) : engine_(seed) {}
     double real(double lo, double hi) { return lo + (hi - lo) * (double(engine_() >> 11) * 0x1p-53); }
-    int integer(int lo, int hi) { return lo + int(engine_() % std::uint64_t(hi - lo + 1)); }
+    int integer(int lo, int hi) {
+        const auto count = std::uint64_t(std::int64_t(hi) - lo + 1);
+        return int(lo + std::int64_t(engine_() % count));
+    }
     bool chance(double p) { return real(0, 1) < p; }
 
 private:
