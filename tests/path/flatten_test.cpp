@@ -1,4 +1,4 @@
-#include "random.hpp"
+#include "bezier.hpp"
 
 #include <freiform/path/flatten.hpp>
 #include <freiform/path/forward_differences.hpp>

@@ -1,7 +1,7 @@
 #include <freiform/query/crossings.hpp>
 
 #include <gtest/gtest.h>
-#include <support/random.hpp>
+#include <support/bezier.hpp>
 #include <support/sturm.hpp>
 
 namespace freiform::test {

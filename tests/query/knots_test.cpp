@@ -1,4 +1,4 @@
-#include "support/random.hpp"
+#include "support/bezier.hpp"
 
 #include <freiform/query/continuity.hpp>
 

@@ -1,4 +1,4 @@
-#include "random.hpp"
+#include "bezier.hpp"
 
 #include <freiform/query/length.hpp>
 #include <freiform/spline/bezier.hpp>

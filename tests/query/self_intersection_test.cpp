@@ -2,7 +2,7 @@
 #include <freiform/query/self_intersection.hpp>
 
 #include <gtest/gtest.h>
-#include <support/random.hpp>
+#include <support/bezier.hpp>
 
 namespace freiform::test {
 namespace {
