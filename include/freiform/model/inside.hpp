@@ -14,6 +14,8 @@ struct SolidInside {
     Place place = Place::outside;
     int winding =
         0;  // times that the surface goes round the point: 1 inside a solid, 0 outside and in its voids
+    // An estimate where the mesh has triangles so thin that rounding turns their planes: `place` and
+    // `winding` do not suffer, because the nearest edge of such a triangle is as near as the triangle is.
     double distance = 0;  // inside, outside: at least so far from the surface; boundary: at most so far
 };
 
