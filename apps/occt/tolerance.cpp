@@ -1,0 +1,107 @@
+// Tolerances. A file promises that the curve of an edge and the images of its parameter curves agree within
+// the tolerance of the edge. Samples tell where that may not hold and where a better parameter curve is worth
+// its time; whatever is then replaced or raised gets a proven bound (model/edge_gap), and the model says so.
+#include "converter.hpp"
+#include "refit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace freiform::occt {
+
+void Converter::report(int edge, std::string what, double bound, double estimate) {
+    Approximation a{"", std::move(what), std::nullopt,
+                    0};  // `finish` knows the number that the edge will have
+    if (std::isfinite(bound))
+        a.bound = bound;
+    else
+        a.estimate = estimate;
+    out_.model.approximations.push_back(std::move(a));
+    approximated_.push_back(edge);
+}
+
+namespace {
+
+// Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
+// believed, of what the file promises.
+constexpr double kMargin = 1.5;
+// Relative to the size of the face: better parameter curves are looked for from here, and what is this far
+// off describes another face.
+constexpr double kWorthRefitting = 1e-9, kHopeless = 0.25;
+
+}  // namespace
+
+// Replaces a parameter curve that misses its edge if that helps. `worst`: its gap, before and after.
+bool Converter::improve(const Face& f, Coedge& c, double size, double& worst) {
+    const Edge& e = out_.model.edges[std::size_t(c.edge)];
+    if (!e.curve || !(worst > kWorthRefitting * size)) return false;
+    auto better = refit(f.surface, *e.curve, c.curve, e.range, kWorthRefitting / 10 * size);
+    if (!better) return false;
+    const double rest = sampled_gap(f.surface, e, vertex_of(e), *better);
+    if (!(rest < worst / 2)) return false;
+    c.curve = std::move(*better);
+    worst = rest;
+    return true;
+}
+
+// Lists a parameter curve that was replaced or does not keep the tolerance of the file, with a proven bound
+// of its distance from the edge, and raises the tolerance of the edge to it.
+void Converter::prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target,
+                      std::string_view where) {
+    const Coedge& c = *suspect.coedge;
+    Edge& e = out_.model.edges[std::size_t(c.edge)];
+    const double stated = stated_[std::size_t(c.edge)];
+    const bool changed = suspect.replaced || suspect.stretched;
+    const CurveGeometry<3> vertex = Line<3>{vertex_of(e), {}};
+    EdgeGapOptions options;
+    options.target = changed ? target : e.tolerance;
+    options.factor = changed ? 1.25 : 1.05;
+    const EdgeGap gap = edge_gap(surface, c.curve, e.curve ? *e.curve : vertex, e.range, options);
+    const double found = std::max(suspect.sampled, gap.found), estimate = kMargin * found,
+                 distance = std::isfinite(gap.bound) ? gap.bound : estimate;
+    const bool beyond = distance > stated;
+    if (!changed && !beyond) return;
+    std::string what;
+    if (changed)
+        what = text("its parameter curve on ", where,
+                    suspect.replaced ? " is replaced by a spline that follows the edge"
+                                     : " ends before the edge does and is stretched");
+    if (beyond)
+        what += text(changed ? ", but " : "", "lies up to ", found, " beside ", changed ? "it" : where,
+                     "; the file says at most ", stated);
+    report(c.edge, std::move(what), gap.bound, estimate);
+    e.tolerance = std::max(e.tolerance, distance);
+}
+
+// Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
+// that the others do not keep. Refuses the face if one misses by a good part of the size of the face.
+Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
+    Box<3> box;
+    for (const Loop& l : f.loops)
+        for (const Coedge& c : l.coedges)
+            if (const Edge& e = out_.model.edges[std::size_t(c.edge)]; e.curve)
+                for (int i = 0; i <= 8; ++i)
+                    box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * i / 8).value());
+    const double size = box.diagonal();
+    std::vector<Suspect> suspects;
+    for (Loop& l : f.loops)
+        for (Coedge& c : l.coedges) {
+            const Edge& e = out_.model.edges[std::size_t(c.edge)];
+            double worst = sampled_gap(f.surface, e, vertex_of(e), c.curve);
+            const bool replaced = improve(f, c, size, worst);
+            if (size > 0 && !(worst < kHopeless * size))
+                return refuse(RefusalKind::ill_conditioned, "parameter curve",
+                              text("misses its edge by ", worst, "; the face has a size of ", size));
+            const bool stretched = std::find(stretched_.begin(), stretched_.end(),
+                                             std::pair(c.edge, c.reversed)) != stretched_.end();
+            if (replaced || stretched || kMargin * worst > e.tolerance)
+                suspects.push_back({&c, worst, replaced, stretched});
+        }
+    if (suspects.empty()) return {};
+    const DerivativeQuery<2, 3> surface(f.surface);
+    for (const Suspect& s : suspects) prove(surface, s, kWorthRefitting * size, where);
+    return {};
+}
+
+}  // namespace freiform::occt
