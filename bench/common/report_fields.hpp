@@ -1,4 +1,4 @@
-// What the programs of the comparison print in the same words, for tools/bench_report.py.
+// What the programs of the comparison are asked and print in the same words, for tools/bench_report.py.
 #pragma once
 #include "measure.hpp"
 
@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace freiform::bench {
@@ -15,6 +16,39 @@ inline std::optional<double> number(std::string_view s) {
     const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
     if (error != std::errc() || end != s.data() + s.size()) return std::nullopt;
     return x;
+}
+
+// FILE --relative R [--diagonal D] [--repetitions N] [--times-only]
+struct Arguments {
+    std::string file;
+    double relative = 0, diagonal = 0;
+    int repetitions = 5;
+    bool times_only = false;
+};
+
+inline std::optional<Arguments> parse(int count, char** values) {
+    Arguments a;
+    for (int i = 1; i < count; ++i) {
+        const std::string_view v = values[i];
+        if (v == "--times-only") {
+            a.times_only = true;
+        } else if (v.starts_with("--") && i + 1 < count) {
+            const std::optional<double> x = number(values[++i]);
+            if (!x) return std::nullopt;
+            if (v == "--relative")
+                a.relative = *x;
+            else if (v == "--diagonal")
+                a.diagonal = *x;
+            else if (v == "--repetitions")
+                a.repetitions = int(*x);
+            else
+                return std::nullopt;
+        } else {
+            a.file = v;
+        }
+    }
+    if (a.file.empty() || !(a.relative > 0)) return std::nullopt;
+    return a;
 }
 
 // The times of a tessellation, one array for each clock, in milliseconds.

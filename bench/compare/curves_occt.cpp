@@ -1,43 +1,16 @@
 // The tasks of curves.cpp with Open CASCADE, by its own means: the adaptor, which caches the piece it was in.
+#include "occt_curve.hpp"
+
 #include <GCPnts_AbscissaPoint.hxx>
 #include <GCPnts_QuasiUniformDeflection.hxx>
 #include <GCPnts_TangentialDeflection.hxx>
 #include <GCPnts_UniformDeflection.hxx>
 #include <GeomAdaptor_Curve.hxx>
-#include <Geom_BSplineCurve.hxx>
-#include <TColStd_Array1OfInteger.hxx>
-#include <TColStd_Array1OfReal.hxx>
-#include <TColgp_Array1OfPnt.hxx>
 #include <curve_tasks.hpp>
 
 namespace {
 
 using namespace freiform::bench;
-
-Handle(Geom_BSplineCurve) make(const SpaceCurve& c) {
-    const int n = int(c.net.size());
-    TColgp_Array1OfPnt poles(1, n);
-    TColStd_Array1OfReal weights(1, n);
-    for (int i = 0; i < n; ++i) {
-        const auto& p = c.net[std::size_t(i)];
-        poles(i + 1) = gp_Pnt(p[0] / p[3], p[1] / p[3], p[2] / p[3]);
-        weights(i + 1) = p[3];
-    }
-    std::vector<double> distinct;
-    std::vector<int> often;
-    for (double t : c.knots) {
-        if (!distinct.empty() && distinct.back() == t)
-            ++often.back();
-        else
-            distinct.push_back(t), often.push_back(1);
-    }
-    TColStd_Array1OfReal knots(1, int(distinct.size()));
-    TColStd_Array1OfInteger multiplicities(1, int(distinct.size()));
-    for (std::size_t i = 0; i < distinct.size(); ++i)
-        knots(int(i) + 1) = distinct[i], multiplicities(int(i) + 1) = often[i];
-    if (c.rational) return new Geom_BSplineCurve(poles, weights, knots, multiplicities, c.degree);
-    return new Geom_BSplineCurve(poles, knots, multiplicities, c.degree);
-}
 
 template <class F>
 void flatten(const char* name, double tolerance, const GeomAdaptor_Curve& curve, F&& run) {
@@ -71,7 +44,7 @@ void take(const A& polyline, std::vector<double>& at, std::vector<Point3>& point
 
 int main() {
     const auto c = read_space_curve();
-    const Handle(Geom_BSplineCurve) curve = make(c);
+    const Handle(Geom_BSplineCurve) curve = bspline(Poles(c.net), c.knots, c.degree, c.rational);
     const GeomAdaptor_Curve adaptor(curve);
     std::vector<gp_Pnt> out(c.random.size());
     const auto evaluate = [&](const char* name, const std::vector<double>& at) {

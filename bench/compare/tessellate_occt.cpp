@@ -1,4 +1,4 @@
-// bench-tessellate-occt FILE --relative R [--repetitions N] [--times-only]
+// bench-tessellate-occt FILE --relative R [--diagonal D] [--repetitions N] [--times-only]
 //
 // The same as bench-tessellate with the mesher of Open CASCADE: deflection R times the diagonal, 0.5 radians,
 // one thread, faces as the file has them (no sewing). Also prints the diagonal, in millimetres.
@@ -31,34 +31,6 @@ namespace {
 
 using namespace freiform;
 using namespace freiform::bench;
-
-struct Arguments {
-    std::string file;
-    double relative = 0;
-    int repetitions = 5;
-    bool times_only = false;
-};
-
-std::optional<Arguments> parse(int count, char** values) {
-    Arguments a;
-    for (int i = 1; i < count; ++i) {
-        const std::string_view v = values[i];
-        if (v == "--times-only") {
-            a.times_only = true;
-        } else if ((v == "--relative" || v == "--repetitions") && i + 1 < count) {
-            const std::optional<double> x = number(values[++i]);
-            if (!x) return std::nullopt;
-            if (v == "--relative")
-                a.relative = *x;
-            else
-                a.repetitions = int(*x);
-        } else {
-            a.file = v;
-        }
-    }
-    if (a.file.empty() || !(a.relative > 0)) return std::nullopt;
-    return a;
-}
 
 TopoDS_Shape read(const std::string& file) {
     TopoDS_Shape shape;
@@ -119,7 +91,8 @@ int run(const Arguments& a) {
     BRepTools::Clean(shape);
     Bnd_Box box;
     BRepBndLib::AddOptimal(shape, box, false, false);
-    const double diagonal = std::sqrt(box.SquareExtent()), tolerance = a.relative * diagonal;
+    const double diagonal = a.diagonal > 0 ? a.diagonal : std::sqrt(box.SquareExtent()),
+                 tolerance = a.relative * diagonal;
 
     // Throwing the old triangles away is no part of the work, so the clock runs for the mesher alone.
     std::vector<Seconds> times;
@@ -161,7 +134,8 @@ int run(const Arguments& a) {
 int main(int count, char** values) {
     const std::optional<Arguments> a = parse(count, values);
     if (!a) {
-        std::cerr << "usage: bench-tessellate-occt FILE --relative R [--repetitions N] [--times-only]\n";
+        std::cerr << "usage: bench-tessellate-occt FILE --relative R [--diagonal D] [--repetitions N] "
+                     "[--times-only]\n";
         return 2;
     }
     try {

@@ -18,38 +18,6 @@ namespace {
 using namespace freiform;
 using namespace freiform::bench;
 
-struct Arguments {
-    std::string file;
-    double relative = 0, diagonal = 0;
-    int repetitions = 5;
-    bool times_only = false;
-};
-
-std::optional<Arguments> parse(int count, char** values) {
-    Arguments a;
-    for (int i = 1; i < count; ++i) {
-        const std::string_view v = values[i];
-        if (v == "--times-only") {
-            a.times_only = true;
-        } else if (v.starts_with("--") && i + 1 < count) {
-            const std::optional<double> x = number(values[++i]);
-            if (!x) return std::nullopt;
-            if (v == "--relative")
-                a.relative = *x;
-            else if (v == "--diagonal")
-                a.diagonal = *x;
-            else if (v == "--repetitions")
-                a.repetitions = int(*x);
-            else
-                return std::nullopt;
-        } else {
-            a.file = v;
-        }
-    }
-    if (a.file.empty() || !(a.relative > 0)) return std::nullopt;
-    return a;
-}
-
 int fail(const Refusal& r) {
     json::Writer w;
     w.begin_object()
