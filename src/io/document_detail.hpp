@@ -10,6 +10,11 @@ namespace freiform::document_detail {
 
 inline constexpr int kVersion = 1;
 
+// In the order of ConicKind and SurfaceKind.
+inline constexpr std::string_view kConicNames[] = {"ellipse", "hyperbola", "parabola"};
+inline constexpr std::string_view kSurfaceKinds[] = {"general", "plane",  "cylinder",
+                                                     "cone",    "sphere", "torus"};
+
 // Every reader below refuses with a place relative to the value that it was given; callers put their own in
 // front.
 
