@@ -211,5 +211,67 @@ TEST(ConicEquation, five_points_determine_a_conic) {
     EXPECT_EQ(refused({{{{0, 0}}, {{1, HUGE_VAL}}, {{1, 0}}, {{3, 0}}, {{5, 1}}}}).where, "points[1]");
 }
 
+// The largest |F| on the curve, over the size of its terms.
+double residual(const ConicEquation& q, const Curve<Hom<2>>& curve) {
+    double worst = 0;
+    for (int i = 0; i <= 64; ++i) {
+        const Vec<2> p = curve(i / 64.0), d = p - q.origin;
+        const std::array<double, 6> term{d[0] * d[0], d[0] * d[1], d[1] * d[1], d[0], d[1], 1};
+        double size = 0;
+        for (std::size_t k = 0; k < 6; ++k) size += std::abs(q.c[k] * term[k]);
+        worst = std::max(worst, std::abs(value_of(q, p)) / size);
+    }
+    return worst;
+}
+
+TEST(ConicEquation, the_arc_through_five_points_passes_them_in_order_on_their_conic) {
+    Random random(24);
+    int more_than_half = 0;
+    for (int k = 0; k < 300; ++k) {
+        const double s = std::exp2(random.integer(-150, 150)), way = random.integer(0, 1) ? 1 : -1;
+        const int kind = random.integer(0, 2);
+        const Vec<2> x = s * Vec<2>{{random.real(1, 2), random.real(-1, 1)}},
+                     y = s * Vec<2>{{random.real(-1, 1), random.real(1, 2)}},
+                     m = s * Vec<2>{{random.real(-3, 3), 1}};
+        std::array<Vec<2>, 5> p;
+        const double from = random.real(-1.2, -0.8),
+                     step = kind == 0 ? random.real(0.3, 1.2) : random.real(0.3, 0.6);
+        for (int i = 0; i < 5; ++i) {
+            const double t = way * (from + i * step);
+            p[std::size_t(i)] = m + (kind == 0   ? std::cos(t) * x + std::sin(t) * y
+                                     : kind == 1 ? t * t * x + t * y
+                                                 : std::cosh(t) * x + std::sinh(t) * y);
+        }
+        const auto arc = must(arc_through(p));
+        EXPECT_LE(arc.bound, 1e-11 * s);
+        for (std::size_t i = 0; i < 5; ++i) {
+            EXPECT_LE(norm(arc.curve(arc.at[i]) - p[i]), arc.bound * (1 + 1e-9));
+            if (i > 0) EXPECT_LT(arc.at[i - 1], arc.at[i]);
+        }
+        EXPECT_LE(residual(must(equation_through(p)).equation, arc.curve), 1e-11);
+        more_than_half += kind == 0 && 4 * step > std::numbers::pi;
+    }
+    EXPECT_GT(more_than_half, 20);
+    const auto half = must(arc_through({{{{5, 0}}, {{4, 3}}, {{3, 4}}, {{0, 5}}, {{-5, 0}}}}));
+    EXPECT_EQ(half.type, ConicType::circle);
+    for (int i = 0; i <= 16; ++i) EXPECT_NEAR(norm(half.curve(i / 16.0)), 5, 1e-14);
+}
+
+TEST(ConicEquation, points_that_no_arc_passes_in_order_are_refused) {
+    const auto refused = [](std::array<Vec<2>, 5> p) { return arc_through(p).error(); };
+    EXPECT_EQ(refused({{{{5, 0}}, {{3, 4}}, {{4, 3}}, {{0, 5}}, {{-5, 0}}}}).kind, RefusalKind::no_answer);
+    EXPECT_EQ(refused({{{{5, 0}}, {{3, 4}}, {{4, 3}}, {{0, 5}}, {{-5, 0}}}}).where, "points");
+    // x y = 1: on both branches.
+    EXPECT_EQ(refused({{{{1, 1}}, {{2, 0.5}}, {{4, 0.25}}, {{-1, -1}}, {{-2, -0.5}}}}).kind,
+              RefusalKind::no_answer);
+    // y = x^2 and x y = 1 in an order that asks for infinity.
+    EXPECT_EQ(refused({{{{1, 1}}, {{2, 4}}, {{-2, 4}}, {{-1, 1}}, {{0, 0}}}}).kind, RefusalKind::no_answer);
+    EXPECT_EQ(refused({{{{1, 1}}, {{0.5, 2}}, {{0.25, 4}}, {{4, 0.25}}, {{2, 0.5}}}}).kind,
+              RefusalKind::no_answer);
+    EXPECT_EQ(refused({{{{0, 0}}, {{1, 0}}, {{2, 0}}, {{0, 1}}, {{0, 3}}}}).kind, RefusalKind::no_answer);
+    EXPECT_EQ(refused({{{{0, 0}}, {{1, HUGE_VAL}}, {{1, 0}}, {{3, 0}}, {{5, 1}}}}).kind,
+              RefusalKind::nonfinite);
+}
+
 }  // namespace
 }  // namespace freiform

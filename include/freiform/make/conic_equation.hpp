@@ -67,4 +67,16 @@ Result<FoundEquation> equation_of(const Conic<2>& conic);
 // equal ones), and degenerate conics: no_answer, the message says which.
 Result<FoundEquation> equation_through(const std::array<Vec<2>, 5>& points);
 
+struct FivePointArc {
+    Curve<Hom<2>> curve;                  // on [0, 1]
+    ConicType type = ConicType::ellipse;  // of the exact conic
+    std::array<double, 5> at{};           // parameters of the points
+    double bound = 0;                     // curve(at[i]) is no farther than this from points[i]
+};
+// The arc from points[0] through the others, in their order, to points[4]; of an ellipse possibly more than
+// half. Refuses (no_answer) points whose conic passes them in another order, on both branches, or only
+// through infinity.
+//   auto arc = arc_through({{{{5, 0}}, {{4, 3}}, {{3, 4}}, {{0, 5}}, {{-5, 0}}}});   // half a circle
+Result<FivePointArc> arc_through(const std::array<Vec<2>, 5>& points);
+
 }  // namespace freiform
