@@ -43,6 +43,10 @@ TEST(Approximate, bounds_hold_in_both_directions_against_dense_measurement) {
             const auto f = must(approximate<2>(q, {.tolerance = tolerance, .closed = closed}));
             EXPECT_LE(f.report.bound, tolerance);
             EXPECT_EQ(f.curve.basis().is_closed(), closed);
+            double squares = 0;
+            for (std::size_t i = 0; i < q.size(); ++i)
+                squares += std::pow(test::distance(f.curve(f.at[i]), q[i]), 2);
+            EXPECT_NEAR(f.report.rms_error, std::sqrt(squares / double(q.size())), 1e-13);
             for (std::size_t i = 0; i < q.size(); ++i) {
                 EXPECT_LE(test::distance(f.curve(f.at[i]), q[i]), f.report.bound);
                 EXPECT_LE(nearest(f.curve, q[i]), f.report.bound + 2e-2);
@@ -105,7 +109,22 @@ TEST(Approximate, keeps_values_and_derivatives_exactly) {
     EXPECT_LT(test::distance(f.curve.derivatives(f.at[0], 1)[1], {{0, 1}}), 1e-11);
     EXPECT_LT(test::distance(f.curve.derivatives(f.at[99], 1)[1], {{0, -1}}), 1e-11);
     EXPECT_LT(f.report.kept_bound, 1e-12);
+    EXPECT_LE(test::distance(f.curve(f.at[50]), q[50]), f.report.kept_bound);
+    EXPECT_GT(f.report.kept_bound, 0) << "the value inside is met up to rounding only";
     EXPECT_LE(f.report.bound, 0.05);
+    // Values at the ends are met to the bit, whatever the degree and the numbers.
+    Random random(6);
+    for (int degree = 2; degree <= 5; ++degree)
+        for (int round = 0; round < 5; ++round) {
+            std::vector<Vec<2>> p;
+            for (int i = 0; i < 12; ++i) p.push_back({{double(i), random.real(-1, 1)}});
+            const std::vector<KeptPoint<2>> ends{{0, 0, p[0] + Vec<2>{{0, random.real(0, 0.1)}}},
+                                                 {11, 0, p[11] + Vec<2>{{0, random.real(0, 0.1)}}}};
+            const auto g = must(
+                approximate<2>(p, {.tolerance = 0.5, .degree = degree}, std::span<const KeptPoint<2>>(ends)));
+            EXPECT_EQ(g.curve(g.at.front()), ends[0].value) << degree;
+            EXPECT_EQ(g.curve(g.at.back()), ends[1].value) << degree;
+        }
 }
 
 TEST(Approximate, any_degree_and_few_points) {

@@ -1,3 +1,4 @@
+#include "fit/spline_system_detail.hpp"
 #include "support/random.hpp"
 #include "support/reference.hpp"
 
@@ -296,6 +297,48 @@ TEST(Interpolate, condition_is_the_norm_of_the_inverse) {
               must(interpolate<1>(q, {3, SplineEnds::not_a_knot, even})).condition_estimate);
 }
 
+TEST(Interpolate, periodic_curves_do_not_depend_on_the_point_where_they_begin) {
+    Random random(13);
+    for (int degree = 1; degree <= 6; ++degree) {
+        const std::vector<double> at{0, 1, 1.5, 3, 3.25, 4, 6, 6.5};
+        const auto q = some_points<2>(random, 7);
+        const auto c = must(interpolate<2>(q, {degree, SplineEnds::periodic, at}));
+        std::vector<double> later;
+        std::vector<Vec<2>> turned;
+        for (std::size_t i = 0; i < 7; ++i)
+            turned.push_back(q[(i + 3) % 7]), later.push_back(at[(i + 3) % 7] + (i + 3 >= 7 ? 6.5 : 0));
+        later.push_back(at[3] + 6.5);
+        const auto again = must(interpolate<2>(turned, {degree, SplineEnds::periodic, later}));
+        for (double t = 3; t <= 9.5; t += 0.1875)
+            EXPECT_LT(
+                test::distance(again.patch(again.patch.basis().wrap(t)), c.patch(c.patch.basis().wrap(t))),
+                1e-11)
+                << degree << " at " << t;
+    }
+}
+
+TEST(Interpolate, values_in_bulk_are_those_of_one_site_to_the_bit) {
+    Random random(14);
+    for (int degree = 1; degree <= 6; ++degree)
+        for (const bool closed : {false, true}) {
+            const auto basis =
+                test::random_basis(random, degree, {closed ? test::Ends::closed : test::Ends::clamped, 40});
+            auto sites = basis.breaks();  // runs of simple knots, and places between them
+            const auto more = test::parameters(random, basis, 2);
+            sites.insert(sites.end(), more.begin(), more.end());
+            std::sort(sites.begin(), sites.end());
+            if (closed) std::erase(sites, basis.domain().hi);
+            const BandMap bulk = detail::values_at(basis, sites);
+            std::vector<double> one(std::size_t(degree) + 1);
+            for (std::size_t i = 0; i < sites.size(); ++i) {
+                EXPECT_EQ(bulk.first[i], weights(basis, sites[i], 0, one.data())) << degree;
+                const auto row = bulk.row(int(i));
+                EXPECT_TRUE(std::equal(one.begin(), one.end(), row.begin(), row.end()))
+                    << degree << " at " << sites[i];
+            }
+        }
+}
+
 void expect_refusal(const auto& r, RefusalKind kind, const std::string& where, const std::string& message) {
     ASSERT_FALSE(r.has_value());
     EXPECT_EQ(name_of(r.error().kind), name_of(kind)) << r.error().message;
@@ -376,6 +419,25 @@ TEST(InterpolateData, says_when_derivatives_do_not_determine_a_spline) {
     const std::vector<Datum<1>> data{{0, 0, {{0}}}, {1, 1, {{1}}}, {2, 0, {{0}}}};
     expect_refusal(interpolate<1>(basis, std::span<const Datum<1>>(data)), RefusalKind::ill_conditioned,
                    "data[1]", "no single spline");
+}
+
+TEST(InterpolateData, averaged_knots_are_means_of_degree_successive_sites) {
+    Random random(15);
+    for (int degree = 1; degree <= 5; ++degree) {
+        const auto at = sites(random, 11);
+        const auto basis = must(averaged_basis(degree, at));
+        ASSERT_EQ(basis.size(), 11);
+        for (int k = 0; k <= degree; ++k) {
+            EXPECT_EQ(basis.knot(k), at.front());
+            EXPECT_EQ(basis.knot(11 + k), at.back());
+        }
+        for (int i = 1; i + degree < 11; ++i) {
+            double sum = 0;
+            for (int k = 0; k < degree; ++k) sum += at[std::size_t(i + k)];
+            EXPECT_NEAR(basis.knot(degree + i), sum / degree, 1e-13 * std::abs(at.back() - at.front()))
+                << degree << " " << i;
+        }
+    }
 }
 
 }  // namespace

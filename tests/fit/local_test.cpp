@@ -76,6 +76,15 @@ TEST(CatmullRom, closes_with_its_derivative) {
         for (int i = 0; i < m; ++i) at.push_back(at.back() + random.real(0.5, 2));
         const auto c = must(catmull_rom<1, 3>(Net<1, Vec<3>>({m}, q), {at}, {true}));
         EXPECT_TRUE(c.basis().is_closed());
+        for (int i = 0; i < m; ++i) {  // the slope of the parabola through a point and its neighbours
+            const auto k = std::size_t(i), before = std::size_t((i + m - 1) % m),
+                       after = std::size_t((i + 1) % m);
+            const double g = at[before + 1] - at[before], h = at[k + 1] - at[k];
+            const Vec<3> left = (1 / g) * (q[k] - q[before]), right = (1 / h) * (q[after] - q[k]);
+            EXPECT_LT(test::distance(c.derivatives(at[k], 1)[1], (1 / (g + h)) * (h * left + g * right)),
+                      1e-13)
+                << m << " " << i;
+        }
         for (int i = 0; i < m; ++i)
             EXPECT_LT(test::distance(c(at[std::size_t(i)]), q[std::size_t(i)]), 1e-15);
         const auto pieces = decompose(c);
