@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace freiform::test {
 namespace {
@@ -132,6 +133,77 @@ TEST_F(LengthCommand, refuses_with_the_exit_codes_of_the_contract) {
     EXPECT_EQ(beyond.code, 1);
     EXPECT_EQ(kind_of(beyond), "out_of_domain");
     EXPECT_EQ(run({"length", kTeapot}).code, 1);
+}
+
+TEST_F(FlattenCommand, each_method_puts_its_points_where_it_says) {
+    const auto parameters = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"flatten", "-"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Json line = parsed(run(words, kArch))["objects"][0];
+        EXPECT_EQ(line["segments"].get<std::size_t>() + 1, line["parameters"].size());
+        return line["parameters"].get<std::vector<double>>();
+    };
+    const auto fewest = parameters({"--tolerance", "0.001"});
+    for (const std::string method : {"uniform", "forward", "halving"}) {
+        const auto t = parameters({"--tolerance", "0.001", "--method", method});
+        EXPECT_GT(t.size(), fewest.size()) << method;
+        for (std::size_t i = 0; i < t.size(); ++i)
+            if (method == "halving")
+                EXPECT_EQ(t[i] * 1024, std::floor(t[i] * 1024)) << "a dyadic number";
+            else
+                EXPECT_NEAR(t[i], double(i) / double(t.size() - 1), 1e-15) << method;
+        EXPECT_EQ(parameters({"--segments", "12", "--method", method}).size(), 13u) << method;
+    }
+    EXPECT_LE(parameters({"--segments", "12"}).size(), 13u);
+    EXPECT_GT(parameters({"--segments", "12"}).size(), 10u);
+}
+
+TEST_F(FlattenCommand, all_formats_hold_the_same_points_and_y_is_up) {
+    const std::vector<std::string> words{"flatten", "-", "--tolerance", "0.1"};
+    const auto as = [&](const std::string& format) {
+        auto w = words;
+        w.insert(w.end(), {"--to", format});
+        return run(w, kArch).out;
+    };
+    const Json line = Json::parse(as("json"))["objects"][0];
+    std::istringstream csv(as("csv"));
+    std::string row;
+    std::getline(csv, row);
+    const std::string svg = as("svg");
+    std::istringstream path(svg.substr(svg.find("d=\"M") + 4));
+    for (std::size_t i = 0; i < line["points"].size(); ++i) {
+        const double t = line["parameters"][i], x = line["points"][i][0], y = line["points"][i][1];
+        double object = -1, a = -1, b = -1, c = -1;
+        char comma = 0;
+        csv >> object >> comma >> a >> comma >> b >> comma >> c;
+        EXPECT_EQ(std::vector({object, a, b, c}), std::vector({0.0, t, x, y}));
+        path >> a >> comma >> b;
+        EXPECT_EQ(std::vector({a, b}), std::vector({x, -y})) << "y points down in SVG";
+    }
+}
+
+TEST_F(LengthCommand, places_are_on_the_curve_at_the_lengths_they_say) {
+    const std::string file = this->file("arch.json", kArch);
+    const double all = parsed(run({"length", file, "--json"}))["value"];
+    const auto ask = [&](const std::string& option, const std::string& value, std::size_t count,
+                         double step) {
+        const Json places = parsed(run({"length", file, option, value, "--json"}))["objects"][0]["at"];
+        ASSERT_EQ(places.size(), count) << option;
+        for (std::size_t k = 0; k < count; ++k) {
+            const Json& place = places[k];
+            EXPECT_NEAR(place["length"].get<double>(), std::min(all, step * double(k)), 1e-12) << option;
+            const std::string t = place["parameter"].dump();
+            const Json point = parsed(run({"eval", file, "--at", t}))["results"][0]["point"];
+            EXPECT_EQ(place["point"], point) << option;
+            if (k == 0) continue;
+            EXPECT_NEAR(parsed(run({"length", file, "--range", "0," + t, "--json"}))["value"].get<double>(),
+                        place["length"].get<double>(), 1e-12)
+                << option;
+        }
+    };
+    ask("--at", "0,0.5,1", 3, 0.5);
+    ask("--equal", "3", 4, all / 3);
+    ask("--spacing", "2", std::size_t(all / 2) + 1, 2);
 }
 
 }  // namespace
