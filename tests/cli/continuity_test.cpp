@@ -59,6 +59,11 @@ TEST_F(ContinuityCommand, reports_joints_of_neighbouring_objects) {
     EXPECT_NEAR(joints[1]["distance"], 0.001, 1e-15);
     EXPECT_NEAR(joints[1]["first_g_jump"]["size"], 0.001, 1e-15);
 
+    for (const Json& o : {joints[0], joints[1]})
+        for (const char* side : {"before", "after"}) EXPECT_EQ(o[side]["tangent"].size(), 2u) << side;
+    EXPECT_EQ(joints[1]["first"], 1);
+    EXPECT_EQ(joints[1]["first_end"], "end");
+
     // With a tolerance above the gap it is a joint; with a smaller `gap` none at all.
     const Json loose = Json::parse(run({"continuity", path, "--json", "--tolerance", "0.002"}).out)["joints"];
     EXPECT_EQ(loose[1]["c_order"], 0);
@@ -103,6 +108,40 @@ TEST_F(ContinuityCommand, refuses_wrong_options) {
     EXPECT_EQ(run({"continuity", "-"}, "{").code, 3);
     EXPECT_EQ(run({"continuity", "missing.json"}).code, 5);
     EXPECT_EQ(run({"continuity", "-", "--object", "other"}, kSpline).code, 1);
+}
+
+TEST_F(ContinuityCommand, angle_and_orders_are_those_asked_for) {
+    // Two lines that turn by two degrees where they meet.
+    const double a = 2 * M_PI / 180;
+    const std::string lines = file("lines.json", R"({"freiform": 1, "objects": [
+        {"type": "curve", "points": [[0,0],[1,0]]},
+        {"type": "curve", "points": [[1,0],[)" + std::to_string(1 + std::cos(a)) +
+                                                     "," + std::to_string(std::sin(a)) + "]]}]}");
+    const auto joint = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"continuity", lines, "--json"});
+        return Json::parse(run(more).out, nullptr, false)["joints"][0];
+    };
+    EXPECT_EQ(joint({})["g_order"], 0);
+    EXPECT_EQ(joint({"--angle", "1.5"})["g_order"], 0);
+    EXPECT_GE(joint({"--angle", "2.5"})["g_order"].get<int>(), 1);
+    EXPECT_NEAR(joint({})["first_g_jump"]["size"].get<double>(), a, 1e-5);
+    EXPECT_EQ(joint({"--orders", "1"})["g_jumps"].size(), 2u);
+    EXPECT_EQ(joint({"--orders", "2"})["g_jumps"].size(), 3u);
+}
+
+TEST_F(ContinuityCommand, a_seam_is_a_knot_and_a_knot_without_a_jump_can_be_removed) {
+    const std::string ring =
+        R"({"type": "curve", "degree": 2, "closed": true, "points": [[1,1],[-1,1],[-1,-1],[1,-1]]})";
+    const Json all = Json::parse(run({"continuity", "-", "--json"}, ring).out);
+    EXPECT_EQ(all["joints"].size(), 0u) << "the seam is not told twice";
+    const Json knots = all["objects"][0]["knots"];
+    ASSERT_EQ(knots.size(), 4u);
+    EXPECT_EQ(std::count_if(knots.begin(), knots.end(), [](const Json& k) { return k["seam"] == true; }), 1);
+    const std::string straight = R"({"type": "curve", "degree": 1, "knots": [0,0,1,2,2],
+        "points": [[0,0],[1,1],[2,2]]})";
+    EXPECT_EQ(
+        Json::parse(run({"continuity", "-", "--json"}, straight).out)["objects"][0]["knots"][0]["removable"],
+        true);
 }
 
 }  // namespace

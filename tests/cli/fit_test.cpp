@@ -42,6 +42,10 @@ TEST_F(Fit, closes_and_keeps_ends_and_tangents) {
     EXPECT_EQ(kept["points"][0], Json::parse("[10,0]"));
     EXPECT_EQ(kept["points"].back(), Json::parse("[-10,0]"));
     EXPECT_NEAR(kept["points"][1][0].get<double>(), 10, 1e-12);
+    EXPECT_GT(kept["points"][1][1].get<double>(), 0) << "the tangent at the start is (0, 1)";
+    const Json& last = kept["points"][kept["points"].size() - 2];
+    EXPECT_NEAR(last[0].get<double>(), -10, 1e-12);
+    EXPECT_GT(last[1].get<double>(), 0) << "the tangent at the end is (0, -1)";
 }
 
 TEST_F(Fit, refuses_clearly) {
@@ -62,6 +66,40 @@ TEST_F(Fit, refuses_clearly) {
     expect({"--tolerance", "1"}, "0,0\n1,inf\n", 3, "standard input: line 2");
     expect({"--tolerance", "1e-40"}, arc(10, 0.5), 1, "the closest curve found");
     expect({"--tolerance", "1"}, "[[[0,0],[1,0]],[[0,1],[1,1]]]", 3, "grid of points");
+}
+
+TEST_F(Fit, parameters_smoothing_and_bounds_are_those_asked_for) {
+    // Far from even steps on a line: kept parameters stay whole numbers all the same.
+    const std::string line = "0,0\n1,0\n10,0\n11,0\n50,0\n51,0\n52,0\n90,0\n";
+    const auto report = [&](std::vector<std::string> more, const std::string& points) {
+        more.insert(more.begin(), {"fit", "-", "--json", "-o", path("c.json"), "--tolerance"});
+        const Ran r = run(more, points);
+        EXPECT_EQ(r.code, 0) << r.err;
+        return Json::parse(r.out, nullptr, false);
+    };
+    const Json kept = report({"0.5", "--parameters", "uniform", "--keep-parameters"}, line);
+    EXPECT_EQ(kept["parameters"], Json::parse("[0,1,2,3,4,5,6,7]"));
+    const Json moved = report({"0.5", "--parameters", "uniform"}, line);
+    EXPECT_NE(moved["parameters"], kept["parameters"]);
+    EXPECT_LE(moved["coefficients"].get<int>(), kept["coefficients"].get<int>());
+
+    // Much smoothing leaves a line; without it the cubic follows the zigzag.
+    const std::string zigzag = "0,0\n1,2\n2,1\n3,4\n4,3\n5,5\n6,9\n";
+    const auto bend = [&](const std::vector<std::string>& more) {
+        (void)report(more, zigzag);
+        const Json p = Json::parse(content(path("c.json")))["objects"][0]["points"];
+        double most = 0;
+        for (std::size_t i = 1; i + 1 < p.size(); ++i)
+            most = std::max(most, std::abs(p[i + 1][1].get<double>() - 2 * p[i][1].get<double>() +
+                                           p[i - 1][1].get<double>()));
+        return most;
+    };
+    EXPECT_GT(bend({"5"}), 0.1);
+    EXPECT_LT(bend({"5", "--smoothing", "1e9"}), 1e-3);
+
+    // The polygon of the points on a circle is away from the curve by its sagitta at least.
+    const Json round = report({"0.01"}, arc(21, 0.5));
+    EXPECT_GT(round["polyline_bound"].get<double>(), 10 * (1 - std::cos(M_PI / 40)) - 0.02);
 }
 
 }  // namespace
