@@ -115,5 +115,29 @@ TEST_F(Interpolate, refuses_with_the_line) {
     EXPECT_EQ(run({"interpolate", path("missing.csv")}).code, 5);
 }
 
+// Slopes 0, 0, 0, 4, 2, 3 of the chords: at the fifth point Akima takes (4 + 4 * 2) / 5, the monotone scheme
+// the harmonic mean of 4 and 2, that of Fritsch and Carlson their mean.
+TEST_F(Interpolate, local_schemes_are_those_of_their_authors) {
+    const std::string points = "0,0\n1,0\n2,0\n3,0\n4,4\n5,6\n6,9\n";
+    for (const auto& [scheme, slope] :
+         {std::pair{"akima", 2.4}, {"monotone", 8 / 3.0}, {"fritsch-carlson", 3.0}}) {
+        const Json p = curve({"--ends", scheme, "--parameters", "uniform"}, points)["points"];
+        ASSERT_EQ(p.size(), 19u);
+        EXPECT_NEAR(p[13][1].get<double>(), 4 + slope / 3, 1e-14) << scheme;
+        EXPECT_NEAR(p[11][1].get<double>(), 4 - slope / 3, 1e-14) << scheme;
+        for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(p[i][1], 0.0) << scheme;
+    }
+}
+
+TEST_F(Interpolate, the_report_holds_the_parameters_of_all_points) {
+    const Ran r =
+        run({"interpolate", "-", "--parameters", "uniform", "-o", path("c.json"), "--json"}, kPoints);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_EQ(Json::parse(r.out)["parameters"], Json::parse("[0,1,2,3]"));
+    const std::string q = "0,0\n0,3\n4,3\n4,2\n";
+    const Json chordal = curve({"--at", "0,3,7,8"}, q), given = curve({}, q);
+    EXPECT_EQ(given, chordal);
+}
+
 }  // namespace
 }  // namespace freiform::test
