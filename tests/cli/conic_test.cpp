@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace freiform::test {
@@ -65,6 +66,44 @@ TEST_F(Cli, conic_takes_points_and_circles) {
     const Json e = Json::parse(run({"eval", "c.json", "--at", "1"}).out)["results"][0]["point"];
     EXPECT_NEAR(e[1].get<double>(), -1, 1e-14);
     EXPECT_EQ(run({"conic", "--circle", "1,1,-2"}).code, 3);
+}
+
+TEST_F(Cli, conic_reports_the_bound_and_the_number_of_its_arcs) {
+    const Json two = Json::parse(
+        run({"conic", "--equation", "0,1,0,0,0,-1", "--box", "-3,-3,3,3", "-o", "h.json", "--json"}).out);
+    EXPECT_EQ(two["type"], "hyperbola");
+    EXPECT_EQ(two["arcs"], 2);
+    EXPECT_GT(two["arc_bound"].get<double>(), 0);
+    EXPECT_LT(two["arc_bound"].get<double>(), 1e-13);
+    const Ran one = run({"conic", "--circle", "1,1,2", "--angles", "0,270", "-o", "c.json"});
+    EXPECT_NE(one.out.find("1 arc within "), std::string::npos) << one.out;
+    // An ellipse with the half axes 2 along x and 1 along y: x^2 / 4 + y^2 = 1.
+    const Json e = Json::parse(run({"conic", "--equation", "1,0,4,0,0,-4", "--json"}).out);
+    EXPECT_NEAR(std::hypot(e["x"][0].get<double>(), e["x"][1].get<double>()), 2, e["bound"].get<double>());
+    EXPECT_NEAR(std::hypot(e["y"][0].get<double>(), e["y"][1].get<double>()), 1, e["bound"].get<double>());
+}
+
+TEST_F(Cli, implicit_equations_vanish_on_the_curve_and_words_say_what_json_does) {
+    // x = t, y = t^2: x^2 - y, up to a factor.
+    const std::string parabola = R"({"type":"curve","points":[[0,0],[0.5,0],[1,1]]})";
+    const Json one = Json::parse(run({"implicit", "-", "--json"}, parabola).out)["results"][0];
+    for (const double t : {0.25, 0.75, 3.0}) {
+        double sum = 0, size = 0;
+        for (const Json& term : one["terms"]) {
+            const double x = term["coefficient"].get<double>() * std::pow(t, term["x"].get<int>()) *
+                             std::pow(t * t, term["y"].get<int>());
+            sum += x, size += std::abs(x);
+        }
+        EXPECT_EQ(sum, 0) << t;
+        EXPECT_GT(size, 0) << t;
+    }
+    const std::string words = run({"implicit", "-", "--at", "0.5,0.3;0.5,0.2;0.5,0.25"}, parabola).out;
+    const auto place = [&](const char* part) { return words.find(part); };
+    EXPECT_NE(place("at 0.5,0.25: zero"), std::string::npos) << words;
+    EXPECT_NE(place("at 0.5,0.3: positive") == std::string::npos,
+              place("at 0.5,0.3: negative") == std::string::npos);
+    EXPECT_NE(place("at 0.5,0.3: positive") == std::string::npos,
+              place("at 0.5,0.2: positive") == std::string::npos);
 }
 
 }  // namespace
