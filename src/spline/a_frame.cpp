@@ -21,6 +21,7 @@
 
 #include <freiform/spline/a_frame.hpp>
 #include <freiform/spline/bezier.hpp>
+#include <freiform/spline/refine.hpp>
 
 namespace freiform {
 
@@ -110,8 +111,9 @@ Result<Reduced<1, P>> de_boor_points(std::span<const P> bezier, std::span<const 
     if (!curve) return refuse(curve.error().kind, "points", curve.error().message);
     const int count = int(all.size());
     const Net<1, P> given({count}, std::move(all));
+    const Net<1, P> image = along(0, to_bezier(curve->basis()).map, curve->net());
     const double bound =
-        detail::distance_bound(3, given, curve->net(), along(0, to_bezier(curve->basis()).map, curve->net()));
+        detail::distance_bound(3, tuples(given.flat()), tuples(curve->net().flat()), tuples(image.flat()));
     return Reduced<1, P>{std::move(*curve), bound, 2 * (int(l) - 1)};
 }
 

@@ -50,31 +50,39 @@ constexpr double kSlack = 1 + 0x1p-40;
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 
 // A sum of weights times coefficients and the sum of their sizes, coordinate by coordinate.
-template <int C>
+constexpr std::size_t kMostNumbers = 5;  // of a coefficient
 struct Sum {
-    std::array<DoubleDouble, std::size_t(C)> value{};
-    std::array<double, std::size_t(C)> size{};
+    std::array<DoubleDouble, kMostNumbers> value{};
+    std::array<double, kMostNumbers> size{};
 };
 
-// The coefficients that act, along each axis: first index, number, weights.
-template <std::size_t N>
+// The coefficients that act: along each axis first index, number, weights.
 struct Block {
-    Index<N> first{}, count{};
-    DoubleDouble weight[N][kMaxDegree + 1];
+    Tuples net;
+    std::size_t axes = 0;
+    Index<3> extent{}, first{}, count{};
+    DoubleDouble weight[3][kMaxDegree + 1];
+
+    // The coefficient k[0], k[1] .. of the block.
+    std::size_t place(const Index<3>& k) const {
+        std::size_t at = 0;
+        for (std::size_t d = 0; d < axes; ++d)  // closed bases wrap
+            at = at * std::size_t(extent[d]) + std::size_t((first[d] + k[d]) % extent[d]);
+        return at;
+    }
 };
 
 // Coefficients are multiplied by 2^-point, of weights by 2^-weight: in two steps, as 2^-point may be out of
 // range.
-template <class P>
 struct Scale {
-    int point, weight;
+    int point, weight, dim;
     std::array<double, 2> of_point{steps(point)}, of_weight{steps(weight)};
 
     static std::array<double, 2> steps(int e) {
         return {std::ldexp(1.0, -(e / 2)), std::ldexp(1.0, e / 2 - e)};
     }
-    double operator()(const P& p, int c) const {
-        const auto& f = Space<P>::kRational && c == Space<P>::kDim ? of_weight : of_point;
+    double operator()(const double* p, int c) const {
+        const auto& f = c == dim ? of_weight : of_point;
         return p[c] * f[0] * f[1];
     }
 };
@@ -88,41 +96,34 @@ struct ScaledKnots {
 };
 double scale_of(double length) { return std::ldexp(1.0, -std::clamp(std::ilogb(length), -1000, 1000)); }
 
-template <std::size_t N, class P>
-Index<N> place(const NetView<N, const P>& net, const Block<N>& block, const Index<N>& k) {
-    Index<N> at{};
-    for (std::size_t d = 0; d < N; ++d) at[d] = (block.first[d] + k[d]) % net.extent[d];  // closed bases wrap
-    return at;
-}
-
-template <std::size_t N, class P>
-Scale<P> scale_of(const NetView<N, const P>& net, const Block<N>& block) {
+Scale scale_of(const Block& block) {
     double point = 0, weight = 0;
-    each_index(block.count, [&](const Index<N>& k) {
-        const P& p = net(place(net, block, k));
-        for (int c = 0; c < Space<P>::kDim; ++c) point = std::max(point, std::abs(p[c]));
-        weight = std::max(weight, std::abs(Space<P>::weight(p)));
+    Index<3> count = block.count;
+    for (std::size_t d = block.axes; d < 3; ++d) count[d] = 1;
+    each_index(count, [&](const Index<3>& k) {
+        const std::size_t at = block.place(k);
+        for (int c = 0; c < block.net.dim(); ++c) point = std::max(point, std::abs(block.net[at][c]));
+        weight = std::max(weight, std::abs(block.net.weight(at)));
     });
     const auto exponent = [](double x) { return x > 0 ? std::ilogb(x) + 1 : 0; };
-    return {exponent(point), exponent(weight)};
+    return {exponent(point), exponent(weight), block.net.dim()};
 }
 
-template <std::size_t N, class P>
-Sum<P::kCoords> sum_of(const NetView<N, const P>& net, const Block<N>& block, const Scale<P>& scale,
-                       Index<N>& k, std::size_t d) {
-    Sum<P::kCoords> sum;
+Sum sum_of(const Block& block, const Scale& scale, Index<3>& k, std::size_t d) {
+    Sum sum;
+    const auto size = std::size_t(block.net.size);
     for (k[d] = 0; k[d] < block.count[d]; ++k[d]) {
         const DoubleDouble& w = block.weight[d][k[d]];
-        if (d + 1 == N) {
-            const P& p = net(place(net, block, k));
-            for (std::size_t c = 0; c < std::size_t(P::kCoords); ++c) {
+        if (d + 1 == block.axes) {
+            const double* p = block.net[block.place(k)];
+            for (std::size_t c = 0; c < size; ++c) {
                 const double x = scale(p, int(c));
                 sum.value[c] = sum.value[c] + w * x;
                 sum.size[c] += w.hi * std::abs(x);
             }
         } else {
-            const auto inner = sum_of(net, block, scale, k, d + 1);
-            for (std::size_t c = 0; c < std::size_t(P::kCoords); ++c) {
+            const Sum inner = sum_of(block, scale, k, d + 1);
+            for (std::size_t c = 0; c < size; ++c) {
                 sum.value[c] = sum.value[c] + w * inner.value[c];
                 sum.size[c] += w.hi * inner.size[c];
             }
@@ -140,35 +141,35 @@ void give(const DoubleDouble& v, double rest, int e, double& value, double& boun
     if (!std::isfinite(value) || !std::isfinite(bound)) bound = std::numeric_limits<double>::infinity();
 }
 
-template <std::size_t N, class P, class B>
-Accurate<PointOf<P>> accurate_value(const Patch<N, P, B>& patch, const Param<N>& u) {
-    Block<N> block;
-    double steps = 0;
-    for (std::size_t d = 0; d < N; ++d) {
-        const B& basis = patch.basis(int(d));
-        const double x = basis.wrap(component<N>(u, d));
-        const int span = basis.span(x), p = basis.degree();
-        block.weight[d][0] = 1.0;
-        const ScaledKnots<B> knots{basis, scale_of(basis.knot(span + 1) - basis.knot(span))};
-        for (int k = 1; k <= p; ++k)
-            blossom_step(knots, span, k, DoubleDouble(x * knots.scale), block.weight[d]);
-        block.first[d] = (span - p) % basis.size();
-        block.count[d] = p + 1;
-        steps += 80 * p + 8;
-    }
-    const auto net = patch.net().view();
-    const Scale<P> scale = scale_of(net, block);
-    Index<N> k{};
-    const auto sum = sum_of(net, block, scale, k, 0);
+// The weights of the basis at u become those of the axis d. Returns their roundings.
+template <class B>
+double set_weights(Block& block, std::size_t d, const B& basis, double u) {
+    const double x = basis.wrap(u);
+    const int span = basis.span(x), p = basis.degree();
+    block.weight[d][0] = 1.0;
+    const ScaledKnots<B> knots{basis, scale_of(basis.knot(span + 1) - basis.knot(span))};
+    for (int k = 1; k <= p; ++k) blossom_step(knots, span, k, DoubleDouble(x * knots.scale), block.weight[d]);
+    block.extent[d] = basis.size();
+    block.first[d] = (span - p) % basis.size();
+    block.count[d] = p + 1;
+    return 80 * p + 8;
+}
+
+// Coordinates of the value of a block; `steps` roundings a weight.
+Accurate<Vec<4>> accurate_value(const Block& block, double steps) {
+    const Scale scale = scale_of(block);
+    Index<3> k{};
+    const Sum sum = sum_of(block, scale, k, 0);
     const double unit = steps * kUnit;
-    Accurate<PointOf<P>> out;
-    for (int c = 0; c < Space<P>::kDim; ++c) {
+    const int dim = block.net.dim();
+    Accurate<Vec<4>> out;
+    for (int c = 0; c < dim; ++c) {
         const DoubleDouble& s = sum.value[std::size_t(c)];
         const double size = sum.size[std::size_t(c)];
-        if constexpr (Space<P>::kRational) {
-            const DoubleDouble& w = sum.value[std::size_t(Space<P>::kDim)];
+        if (block.net.rational) {
+            const DoubleDouble& w = sum.value[std::size_t(dim)];
             const DoubleDouble v = s / w;
-            const double off = unit * sum.size[std::size_t(Space<P>::kDim)] + kUnderflow;  // of w
+            const double off = unit * sum.size[std::size_t(dim)] + kUnderflow;  // of w
             const double least = std::abs(w.hi) - kSlack * off, most = std::abs(v.hi);
             const double rest = least > kTooSmall
                                     ? (unit * size + kUnderflow + most * off) / least + 64 * kUnit * most
@@ -187,15 +188,21 @@ template <std::size_t N, Coefficient P, Basis B>
 Result<void> evaluate_accurate(const Patch<N, P, B>& patch, std::span<const Param<N>> at,
                                std::span<Accurate<PointOf<P>>> out) {
     FF_REQUIRE(at.size() == out.size());
+    Block block;
+    block.net = tuples(patch.net().flat());
+    block.axes = N;
     for (std::size_t i = 0; i < at.size(); ++i) {
-        for (std::size_t d = 0; d < N; ++d)
-            if (auto ok =
-                    detail::check_parameter(component<N>(at[i], d), patch.basis(int(d)).domain(),
-                                            detail::is_closed(patch.basis(int(d))),
-                                            N == 1 ? text("at[", i, "]") : text("at[", i, "][", d, "]"));
-                !ok)
-                return ok;
-        out[i] = accurate_value(patch, at[i]);
+        double steps = 0;
+        for (std::size_t d = 0; d < N; ++d) {
+            const double x = component<N>(at[i], d);
+            const Interval on = patch.basis(int(d)).domain();
+            if (!std::isfinite(x) || !(detail::is_closed(patch.basis(int(d))) || on.contains(x)))
+                return detail::bad_parameter(x, on, "at", i, N == 1 ? -1 : std::ptrdiff_t(d));
+            steps += set_weights(block, d, patch.basis(int(d)), x);
+        }
+        const Accurate<Vec<4>> found = accurate_value(block, steps);
+        for (int c = 0; c < Space<P>::kDim; ++c)
+            out[i].value[c] = found.value[c], out[i].bound[c] = found.bound[c];
     }
     return {};
 }

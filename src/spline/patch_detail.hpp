@@ -25,6 +25,8 @@
 //
 // References: [Higham 2002, ch. 3] for the counting of roundings.
 #pragma once
+#include "coefficients_detail.hpp"
+
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/patch.hpp>
 
@@ -58,15 +60,6 @@ P contract(const NetView<N, const P>& net, const std::array<const double*, N>& w
     return sum;
 }
 
-inline Result<void> check_parameter(double u, Interval on, bool closed, std::string where) {
-    if (!std::isfinite(u))
-        return refuse(RefusalKind::nonfinite, std::move(where), text(u, " is not a finite number"));
-    if (!closed && !on.contains(u))
-        return refuse(RefusalKind::out_of_domain, std::move(where),
-                      text(u, " is outside the domain [", on.lo, ", ", on.hi, "]"));
-    return {};
-}
-
 template <Basis B>
 bool is_closed(const B& basis) {
     if constexpr (requires { basis.is_closed(); })
@@ -84,25 +77,8 @@ Result<Patch<N, P, B>> Patch<N, P, B>::make(std::array<B, N> bases, Net<N, P> ne
             return refuse(
                 RefusalKind::invalid, "points",
                 text(net.extent()[d], " coefficients along axis ", d, ", the basis has ", bases[d].size()));
-    std::size_t i = 0;
-    constexpr double kLargest =
-        0x1p1022;  // so that rounding in a sum of weighted coefficients cannot overflow
-    for (const P& p : net.flat()) {
-        if (!is_finite(p))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
-                          "has a coordinate that is not finite");
-        if (Space<P>::kRational && !(Space<P>::weight(p) > 0))
-            return refuse(RefusalKind::invalid, text("weights[", i, "]"),
-                          text("weight ", Space<P>::weight(p), " is not positive"));
-        if (Space<P>::weight(p) < std::numeric_limits<double>::min())
-            return refuse(
-                RefusalKind::ill_conditioned, text("weights[", i, "]"),
-                text("weight ", Space<P>::weight(p), " is subnormal; give all weights a common factor"));
-        if (max_abs(p) > kLargest || !(max_abs(freiform::project(p)) <= kLargest))
-            return refuse(RefusalKind::limit, text("points[", i, "]"),
-                          "a coordinate, or its product with the weight, is above 2^1022");
-        ++i;
-    }
+    if (auto ok = detail::check_coefficients(tuples(std::as_const(net).flat())); !ok)
+        return std::unexpected(ok.error());
     return Patch(std::move(bases), std::move(net));
 }
 
@@ -115,12 +91,12 @@ std::array<Interval, N> Patch<N, P, B>::domain() const {
 
 template <std::size_t N, Coefficient P, Basis B>
 Result<void> Patch<N, P, B>::check(const Param<N>& u, std::size_t index) const {
-    for (std::size_t d = 0; d < N; ++d)
-        if (auto ok =
-                detail::check_parameter(component<N>(u, d), bases_[d].domain(), detail::is_closed(bases_[d]),
-                                        N == 1 ? text("at[", index, "]") : text("at[", index, "][", d, "]"));
-            !ok)
-            return ok;
+    for (std::size_t d = 0; d < N; ++d) {
+        const double x = component<N>(u, d);
+        const Interval on = bases_[d].domain();
+        if (std::isfinite(x) && (detail::is_closed(bases_[d]) || on.contains(x))) continue;
+        return detail::bad_parameter(x, on, "at", index, N == 1 ? -1 : std::ptrdiff_t(d));
+    }
     return {};
 }
 
@@ -206,11 +182,7 @@ double Patch<N, P, B>::value_error_bound() const {
         terms += b.degree() + 1;
     }
     const double g = 1.01 * roundings * unit, lost = terms * denormal;
-    double c = 0, w_min = std::numeric_limits<double>::infinity();
-    for (const P& p : net_.flat()) {
-        c = std::max(c, max_abs(freiform::project(p)));
-        w_min = std::min(w_min, Space<P>::weight(p));
-    }
+    const auto [c, w_min] = detail::reach_of(tuples(net_.flat()));
     if (!Space<P>::kRational) return g * c + lost;
     return 1.02 * ((2 * g + unit) * c + (1 + c) * (lost / w_min)) + lost;
 }
@@ -220,28 +192,17 @@ Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
                                          const std::array<std::span<const double>, N>& axes) {
     Index<N> extent{};
     for (std::size_t d = 0; d < N; ++d) {
+        const Interval on = s.basis(int(d)).domain();
+        if (auto ok = detail::check_axis(axes[d], on, detail::is_closed(s.basis(int(d))), d); !ok)
+            return std::unexpected(ok.error());
         extent[d] = int(std::min<std::size_t>(axes[d].size(), 0x7fffffff));
-        for (std::size_t i = 0; i < axes[d].size(); ++i)
-            if (auto ok = detail::check_parameter(axes[d][i], s.basis(int(d)).domain(),
-                                                  detail::is_closed(s.basis(int(d))),
-                                                  text("axes[", d, "][", i, "]"));
-                !ok)
-                return std::unexpected(ok.error());
     }
-    if (count_of(extent) < 0) return refuse(RefusalKind::limit, "axes", "more than 2^31 - 1 grid points");
-    Index<N> between = s.net().extent();  // of the nets on the way
-    for (std::size_t d = 0; d < N; ++d) {
-        between[d] = extent[d];
-        if (count_of(between) < 0)
-            return refuse(RefusalKind::limit, "axes",
-                          "more than 2^31 - 1 coefficients on the way to the grid");
-    }
-    Net<N, P> net = s.net();
-    for (std::size_t d = 0; d < N; ++d) net = along(int(d), collocation(s.basis(int(d)), axes[d]), net);
-    std::vector<PointOf<P>> out;
-    out.reserve(net.flat().size());
-    for (const P& p : net.flat()) out.push_back(freiform::project(p));
-    return Net<N, PointOf<P>>(net.extent(), std::move(out));
+    const auto map = [&](std::size_t d) { return collocation(s.basis(int(d)), axes[d]); };
+    const auto all = detail::grid_of(tuples(s.net().flat()), s.net().extent(), extent, map);
+    if (!all) return std::unexpected(all.error());
+    Net<N, PointOf<P>> out(extent);
+    std::ranges::copy(*all, numbers(out.flat()).begin());
+    return out;
 }
 
 template <std::size_t N, class P, Basis B>

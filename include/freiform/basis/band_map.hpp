@@ -21,33 +21,22 @@ struct BandMap {
         return std::span(entry).subspan(std::size_t(i) * std::size_t(width), std::size_t(width));
     }
 
-    template <class P>
-    void apply(Fibre<const P> in, Fibre<P> out) const {
-        for (int i = 0; i < rows(); ++i) {
-            const double* w = &entry[std::size_t(i) * std::size_t(width)];
-            P sum{};
-            int column = first[std::size_t(i)] % cols;
-            for (int k = 0; k < width; ++k) {
-                if (w[k] != 0) sum += w[k] * in[column];
-                if (++column == cols) column = 0;
-            }
-            out[i] = sum;
-        }
-    }
+    // Applied to numbers: `in` holds `blocks` times cols runs of `run` numbers, `out` as many times rows()
+    // runs.
+    void apply(const double* in, double* out, std::size_t run, std::size_t blocks) const;
 };
 
 // (I x .. x map x .. x I) net. REQUIRES net.extent()[axis] == map.cols.
-template <std::size_t N, class P>
+template <std::size_t N, Coefficient P>
 Net<N, P> along(int axis, const BandMap& map, const Net<N, P>& in) {
     FF_REQUIRE(in.extent()[std::size_t(axis)] == map.cols);
     Index<N> extent = in.extent();
     extent[std::size_t(axis)] = map.rows();
     Net<N, P> out(extent);
-    if (map.rows() == 0) return out;
-    const NetView<N, const P> from = in.view();
-    const NetView<N, P> to = out.view();
-    each_fibre(axis, extent,
-               [&](const Index<N>& at) { map.apply<P>(from.fibre(axis, at), to.fibre(axis, at)); });
+    std::size_t blocks = 1, run = std::size_t(P::kCoords);
+    for (std::size_t d = 0; d < N; ++d)
+        if (d != std::size_t(axis)) (d < std::size_t(axis) ? blocks : run) *= std::size_t(extent[d]);
+    map.apply(numbers(in.flat()).data(), numbers(out.flat()).data(), run, blocks);
     return out;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <span>
+#include <type_traits>
 
 namespace freiform {
 
@@ -25,6 +27,17 @@ concept Coefficient = requires(P p) {
     { p[0] } -> std::convertible_to<double>;
     p.c;
 };
+
+// The same coefficients as plain numbers, P::kCoords for each: for what treats every coordinate alike.
+template <class P>
+requires Coefficient<std::remove_const_t<P>>
+auto numbers(std::span<P> all) {
+    using Number = std::conditional_t<std::is_const_v<P>, const double, double>;
+    static_assert(sizeof(P) == std::size_t(P::kCoords) * sizeof(double));
+    if (all.empty()) return std::span<Number>();
+    Number* first = all.data()->c.data();
+    return std::span<Number>(first, all.size() * std::size_t(P::kCoords));
+}
 
 template <Coefficient P>
 constexpr P& operator+=(P& a, const P& b) {
