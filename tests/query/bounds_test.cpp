@@ -97,6 +97,39 @@ TEST(TightBox, of_a_triangle_contains_it_and_touches_it) {
     }
 }
 
+// Weights of very different size, directions of any kind.
+template <std::size_t N, class P>
+void expect_extent(std::uint64_t seed, double accuracy) {
+    Random random(seed);
+    constexpr int D = Space<P>::kDim;
+    for (int k = 0; k < 8; ++k) {
+        const auto shape = random_patch<N, P>(random, 3, {k % 2 == 0 ? Ends::clamped : Ends::closed, 2});
+        const auto s = must(Patch<N, P>::make(
+            shape.bases(), random_net<N, P>(random, shape.net().extent(), 1, 0, k < 4 ? 1.0 : 12.0)));
+        Vec<D> d;
+        for (int i = 0; i < D; ++i) d[i] = k == 0 ? double(i == 0) : random.real(-2, 2);
+        const Extent e = must(extent_along(s, d, accuracy));
+        const double rounding = 3 * D * (s.value_error_bound() + 0x1p-50);
+        Interval seen{INFINITY, -INFINITY};
+        for (const auto& u : parameters<N>(random, s, 400)) {
+            const double x = dot(d, s(u));
+            seen = {std::min(seen.lo, x), std::max(seen.hi, x)};
+        }
+        EXPECT_LE(e.range.lo, seen.lo + rounding);
+        EXPECT_GE(e.range.hi, seen.hi - rounding);
+        EXPECT_LE(e.slack, accuracy) << "case " << k;
+        if (k > 0) continue;
+        const auto box = must(tight_box(s, accuracy)).box;
+        EXPECT_EQ(e.range, box.side(0));
+    }
+}
+TEST(TightBox, reaches_in_a_direction_as_far_as_the_object_does) {
+    expect_extent<1, Hom<2>>(21, 1e-9);
+    expect_extent<1, Vec<4>>(22, 1e-9);
+    expect_extent<2, Hom<3>>(23, 1e-4);
+    expect_extent<3, Vec<2>>(24, 1e-2);
+}
+
 TEST(TightBox, scales_exactly_with_powers_of_two) {
     Random random(8);
     const auto s = random_patch<1, Vec<2>>(random, 5, {Ends::clamped, 3});
