@@ -16,6 +16,7 @@
 //
 // References: [Farin 2002, ch. 12], [PT97, ch. 1.4].
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/tuples.hpp>
 #include <freiform/spline/transform.hpp>
 
 #include <algorithm>
@@ -27,10 +28,23 @@ namespace {
 
 constexpr double kUnit = 0x1p-53;
 
+// Rows of `columns` numbers.
+struct Matrix {
+    std::span<const double> all;
+    std::size_t columns;
+
+    std::size_t rows() const { return all.size() / columns; }
+    const double* operator[](std::size_t i) const { return all.data() + i * columns; }
+};
 template <std::size_t Rows, std::size_t Columns>
-Result<void> check_matrix(const std::array<std::array<double, Columns>, Rows>& m, std::string_view name) {
-    for (std::size_t i = 0; i < Rows; ++i)
-        for (std::size_t j = 0; j < Columns; ++j)
+Matrix matrix(const std::array<std::array<double, Columns>, Rows>& m) {
+    static_assert(sizeof m == Rows * Columns * sizeof(double));
+    return {{m[0].data(), Rows * Columns}, Columns};
+}
+
+Result<void> check_matrix(const Matrix& m, std::string_view name) {
+    for (std::size_t i = 0; i < m.rows(); ++i)
+        for (std::size_t j = 0; j < m.columns; ++j)
             if (!std::isfinite(m[i][j]))
                 return refuse(RefusalKind::nonfinite, text(name, "[", i, "][", j, "]"),
                               text(m[i][j], " is not a finite number"));
@@ -42,19 +56,70 @@ struct Errors {
     double numerator = 0, weight = 0;  // the largest
 };
 
-// |row . p|, exact up to the bound.
-template <std::size_t Columns, class P>
-Bounded product(const std::array<double, Columns>& row, const P& p) {
+// The images of tuples, one after the other.
+struct Image {
+    std::vector<double> all;
+    std::vector<Errors> errors;  // of every tuple; of affine images numerators relative to the weight
+    Errors most;
+
+    void add(const Vec<4>& numerator_error, double weight_error) {
+        errors.push_back({norm(numerator_error), weight_error});
+        most.numerator = std::max(most.numerator, errors.back().numerator);
+        most.weight = std::max(most.weight, weight_error);
+    }
+};
+
+// row . p, exact up to the bound.
+Bounded product(const double* row, std::size_t columns, const double* p) {
     Bounded s;
-    for (std::size_t j = 0; j < Columns; ++j)
-        if (row[j] != 0 && p[int(j)] != 0) s = s + Bounded(row[j]) * Bounded(p[int(j)]);
+    for (std::size_t j = 0; j < columns; ++j)
+        if (row[j] != 0 && p[j] != 0) s = s + Bounded(row[j]) * Bounded(p[j]);
     return s;
 }
 
-template <std::size_t N, class P>
-double reach_of(const Net<N, P>& net) {
+Image affine_image(const Tuples& from, const Matrix& linear, std::span<const double> offset) {
+    Image out;
+    for (std::size_t i = 0; i < from.count(); ++i) {
+        const double w = from.weight(i);
+        Vec<4> e;
+        for (std::size_t k = 0; k < linear.rows(); ++k) {
+            const Bounded shift = from.rational ? Bounded(offset[k]) * Bounded(w) : Bounded(offset[k]);
+            const Bounded s = product(linear[k], linear.columns, from[i]) + shift;
+            out.all.push_back(s.value);
+            e[int(k)] = s.bound / w;
+        }
+        if (from.rational) out.all.push_back(w);
+        out.add(e, 0);
+    }
+    return out;
+}
+
+Image projective_image(const Tuples& from, const Matrix& m) {
+    Image out;
+    const std::size_t to = m.rows() - 1;
+    for (std::size_t i = 0; i < from.count(); ++i) {
+        Vec<4> e;
+        double of_weight = 0;
+        for (std::size_t k = 0; k <= to; ++k) {
+            const Bounded s = product(m[k], m.columns, from[i]);
+            out.all.push_back(s.value);
+            (k < to ? e[int(k)] : of_weight) = s.bound;
+        }
+        out.add(e, of_weight);
+    }
+    return out;
+}
+
+template <class P>
+std::vector<P> coefficients(const std::vector<double>& all) {
+    std::vector<P> out(all.size() / std::size_t(P::kCoords));
+    std::ranges::copy(all, numbers(std::span(out)).begin());
+    return out;
+}
+
+double farthest(const Tuples& net) {
     double r = 0;
-    for (const P& p : net.flat()) r = std::max(r, norm(project(p)));
+    for (std::size_t i = 0; i < net.count(); ++i) r = std::max(r, norm(net.point(i)));
     return r * (1 + 8 * kUnit);
 }
 
@@ -62,6 +127,17 @@ double reach_of(const Net<N, P>& net) {
 double distance(double moved, double reach, double rho) {
     if (!(rho < 0.5)) return std::numeric_limits<double>::infinity();
     return (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnit);
+}
+
+// `net` came from `image` by an insertion of knots with the bound `inserted`.
+double projective_bound(const Tuples& net, const Image& image, double inserted) {
+    double moved = 0, rho = 0;
+    for (std::size_t i = 0; i < net.count(); ++i) {
+        const Errors& e = inserted == 0 ? image.errors[i] : image.most;
+        moved = std::max(moved, e.numerator / net.weight(i));
+        rho = std::max(rho, e.weight / net.weight(i));
+    }
+    return distance(moved, farthest(net) + inserted, rho) + inserted;
 }
 
 template <class S>
@@ -103,82 +179,45 @@ Result<Projectivity<2, 3>> perspective(const Vec<3>& eye, const Vec<3>& origin, 
     }
     for (int k = 0; k < 3; ++k) p.m[2][std::size_t(k)] = front * n[k];
     p.m[2][3] = -front * dot(n, eye);
-    if (auto ok = check_matrix(p.m, "perspective"); !ok) return std::unexpected(ok.error());
+    if (auto ok = check_matrix(matrix(p.m), "perspective"); !ok) return std::unexpected(ok.error());
     return p;
 }
+
+namespace {
+
+template <class To, std::size_t N, class From>
+Result<Transformed<Patch<N, To>>> affine(const Patch<N, From>& patch, const Matrix& linear,
+                                         std::span<const double> offset) {
+    if (auto ok = check_matrix(linear, "linear"); !ok) return std::unexpected(ok.error());
+    const Image image = affine_image(tuples(patch.net().flat()), linear, offset);
+    return finished(
+        Patch<N, To>::make(patch.bases(), Net<N, To>(patch.net().extent(), coefficients<To>(image.all))),
+        image.most.numerator * (1 + 8 * kUnit));
+}
+
+}  // namespace
 
 template <std::size_t N, int To, int From>
 Result<Transformed<Patch<N, Vec<To>>>> transform(const Patch<N, Vec<From>>& patch,
                                                  const Affinity<To, From>& map) {
-    if (auto ok = check_matrix(map.linear, "linear"); !ok) return std::unexpected(ok.error());
-    double bound = 0;
-    std::vector<Vec<To>> out;
-    for (const Vec<From>& p : patch.net().flat()) {
-        Vec<To> x, e;
-        for (int i = 0; i < To; ++i) {
-            const Bounded s = product(map.linear[std::size_t(i)], p) + Bounded(map.offset[i]);
-            x[i] = s.value, e[i] = s.bound;
-        }
-        bound = std::max(bound, norm(e));
-        out.push_back(x);
-    }
-    return finished(Patch<N, Vec<To>>::make(patch.bases(), Net<N, Vec<To>>(patch.net().extent(), out)),
-                    bound * (1 + 8 * kUnit));
+    return affine<Vec<To>>(patch, matrix(map.linear), map.offset.c);
 }
 
 template <std::size_t N, int To, int From>
 Result<Transformed<Patch<N, Hom<To>>>> transform(const Patch<N, Hom<From>>& patch,
                                                  const Affinity<To, From>& map) {
-    if (auto ok = check_matrix(map.linear, "linear"); !ok) return std::unexpected(ok.error());
-    double bound = 0;
-    std::vector<Hom<To>> out;
-    for (const Hom<From>& p : patch.net().flat()) {
-        Hom<To> x;
-        Vec<To> e;
-        for (int i = 0; i < To; ++i) {
-            const Bounded s =
-                product(map.linear[std::size_t(i)], p) + Bounded(map.offset[i]) * Bounded(p.weight());
-            x[i] = s.value, e[i] = s.bound / p.weight();
-        }
-        x[To] = p.weight();
-        bound = std::max(bound, norm(e));
-        out.push_back(x);
-    }
-    return finished(Patch<N, Hom<To>>::make(patch.bases(), Net<N, Hom<To>>(patch.net().extent(), out)),
-                    bound * (1 + 8 * kUnit));
+    return affine<Hom<To>>(patch, matrix(map.linear), map.offset.c);
 }
 
 template <std::size_t N, int To, int From>
 Result<Transformed<Patch<N, Hom<To>>>> transform(const Patch<N, Hom<From>>& patch,
                                                  const Projectivity<To, From>& map) {
-    if (auto ok = check_matrix(map.m, "m"); !ok) return std::unexpected(ok.error());
-    std::vector<Hom<To>> out;
-    std::vector<Errors> errors;
-    Errors most;
-    for (const Hom<From>& p : patch.net().flat()) {
-        Hom<To> x;
-        Vec<To> e;
-        for (int i = 0; i < To; ++i) {
-            const Bounded s = product(map.m[std::size_t(i)], p);
-            x[i] = s.value, e[i] = s.bound;
-        }
-        const Bounded w = product(map.m[To], p);
-        x[To] = w.value;
-        out.push_back(x);
-        errors.push_back({norm(e), w.bound});
-        most.numerator = std::max(most.numerator, errors.back().numerator);
-        most.weight = std::max(most.weight, w.bound);
-    }
-    auto form = positive_weights<N, To>(patch.bases(), Net<N, Hom<To>>(patch.net().extent(), std::move(out)));
+    if (auto ok = check_matrix(matrix(map.m), "m"); !ok) return std::unexpected(ok.error());
+    const Image image = projective_image(tuples(patch.net().flat()), matrix(map.m));
+    auto form = positive_weights<N, To>(
+        patch.bases(), Net<N, Hom<To>>(patch.net().extent(), coefficients<Hom<To>>(image.all)));
     if (!form) return std::unexpected(form.error());
-    const auto& net = form->patch.net();
-    double moved = 0, rho = 0;
-    for (std::size_t i = 0; i < net.flat().size(); ++i) {
-        const Errors& e = form->bound == 0 ? errors[i] : most;
-        moved = std::max(moved, e.numerator / net.flat()[i].weight());
-        rho = std::max(rho, e.weight / net.flat()[i].weight());
-    }
-    const double bound = distance(moved, reach_of(net) + form->bound, rho) + form->bound;
+    const double bound = projective_bound(tuples(form->patch.net().flat()), image, form->bound);
     return finished(Result<Patch<N, Hom<To>>>(std::move(form->patch)), bound);
 }
 

@@ -25,6 +25,7 @@
 // References: [Farin 2002, ch. 13] for points at infinity, [LycheMorken2018] for the convergence.
 //
 // Why not degree elevation? It converges with 1/n only. Why not cutting into pieces? It makes p knots of one.
+#include <freiform/core/tuples.hpp>
 #include <freiform/spline/weights.hpp>
 
 #include <algorithm>
@@ -40,20 +41,24 @@ constexpr double kUnit = 0x1p-53, kTiny = 0x1p-1074;
 constexpr double kShortest = 0x1p-30;  // of the domain: spans that are halved no further
 constexpr long long kMostCoefficients = 1'000'000;
 
-template <class P>
-P absolute(P p) {
-    for (int i = 0; i < P::kCoords; ++i) p[i] = std::abs(p[i]);
+// Every net is one of three axes, of extent 1 where there are fewer, and of four coordinates, 0 where there
+// are fewer: the search looks at weights alone.
+using Tuple = Hom<4>;
+using Place = std::array<double, 3>;
+constexpr int kWeight = 4;
+
+Tuple absolute(Tuple p) {
+    for (int i = 0; i < Tuple::kCoords; ++i) p[i] = std::abs(p[i]);
     return p;
 }
 
 // A net together with the net of absolute values, and the number of roundings that their entries carry.
-template <std::size_t N, int D>
 struct Carried {
-    std::array<BSplineBasis, N> bases;
-    Net<N, Hom<D>> net, size;
+    std::vector<BSplineBasis> bases;  // one per axis that there is
+    Net<3, Tuple> net, size;
     double roundings = 0, terms = 0;
 
-    double error(const Hom<D>& sizes, int coordinate) const {
+    double error(const Tuple& sizes, int coordinate) const {
         return 1.01 * roundings * kUnit * sizes[coordinate] + terms * kTiny;
     }
     void apply(int axis, const BandMap& map, int degree) {
@@ -64,17 +69,25 @@ struct Carried {
     }
 };
 
-template <std::size_t N, int D>
+// What was found, before it is a patch.
+struct Found {
+    std::vector<BSplineBasis> bases;
+    Net<3, Tuple> net;
+    double bound = 0;
+    int inserted = 0;
+    bool negated = false;
+};
+
 class Search {
 public:
-    Search(const std::array<BSplineBasis, N>& bases, const Net<N, Hom<D>>& net)
-        : given_{bases, net, net}, now_{given_} {
-        for (Hom<D>& p : given_.size.flat()) p = absolute(p);
+    Search(std::vector<BSplineBasis> bases, const Net<3, Tuple>& net, int dim)
+        : given_{std::move(bases), net, net}, now_{given_}, dim_(dim) {
+        for (Tuple& p : given_.size.flat()) p = absolute(p);
     }
 
-    Result<PositiveForm<N, D>> run() {
+    Result<Found> run() {
         // Coefficients at an end that is not clamped say what the pieces do outside the domain.
-        for (std::size_t d = 0; d < N; ++d) {
+        for (std::size_t d = 0; d < axes(); ++d) {
             const BSplineBasis& b = given_.bases[d];
             if (b.is_closed() || (b.knot(0) == b.domain().lo && b.knots().back() == b.domain().hi)) continue;
             auto change = restrict_to(b, b.domain());
@@ -88,8 +101,8 @@ public:
             bool done = true;
             if (auto ok = round(done); !ok) return std::unexpected(ok.error());
             if (done) break;
-            Index<N> extent = given_.net.extent();
-            for (std::size_t d = 0; d < N; ++d) extent[d] += int(more_[d].size());
+            Index<3> extent = given_.net.extent();
+            for (std::size_t d = 0; d < axes(); ++d) extent[d] += int(more_[d].size());
             if (const long long n = count_of(extent); n < 0 || n > kMostCoefficients)
                 return refuse(RefusalKind::limit, "weights",
                               text("more than ", kMostCoefficients,
@@ -103,30 +116,32 @@ private:
         double w, error;
     };
 
+    std::size_t axes() const { return given_.bases.size(); }
+
     // The denominator at u, with a bound of its error.
-    Value denominator(const std::array<double, N>& u) const {
-        Carried<N, D> at = given_;
-        for (std::size_t d = 0; d < N; ++d) {
+    Value denominator(const Place& u) const {
+        Carried at = given_;
+        for (std::size_t d = 0; d < axes(); ++d) {
             const double x = at.bases[d].wrap(u[d]);
             at.apply(int(d), collocation(at.bases[d], std::span(&x, 1)), at.bases[d].degree());
         }
-        return {at.net.flat()[0].weight(), at.error(at.size.flat()[0], D)};
+        return {at.net.flat()[0].weight(), at.error(at.size.flat()[0], kWeight)};
     }
 
     Result<void> orient() {
-        std::array<double, N> corner;
-        for (std::size_t d = 0; d < N; ++d) corner[d] = given_.bases[d].domain().lo;
+        Place corner{};
+        for (std::size_t d = 0; d < axes(); ++d) corner[d] = given_.bases[d].domain().lo;
         const Value v = denominator(corner);
         if (v.w < -v.error) {
             negated_ = true;
-            for (Hom<D>& p : given_.net.flat()) p = -p;
+            for (Tuple& p : given_.net.flat()) p = -p;
         } else if (!(v.w > v.error)) {
             return zero_at(v, corner);
         }
         return {};
     }
 
-    static std::unexpected<Refusal> zero_at(const Value& v, const std::array<double, N>& where) {
+    std::unexpected<Refusal> zero_at(const Value& v, const Place& where) const {
         if (v.w == 0)
             return refuse(RefusalKind::invalid, "weights",
                           text("the denominator is 0 at ", shown(where), ": a pole"));
@@ -134,9 +149,9 @@ private:
                       text("the denominator cannot be told from 0 near ", shown(where)));
     }
 
-    Carried<N, D> carried() const {
-        Carried<N, D> to = given_;
-        for (std::size_t d = 0; d < N; ++d) {
+    Carried carried() const {
+        Carried to = given_;
+        for (std::size_t d = 0; d < axes(); ++d) {
             if (more_[d].empty()) continue;
             const std::vector<double> knots(more_[d].begin(), more_[d].end());
             auto change = insert_knots(to.bases[d], knots);
@@ -152,19 +167,19 @@ private:
         const auto net = now_.net.view();
         const auto size = now_.size.view();
         double worst = std::numeric_limits<double>::infinity();
-        Index<N> worst_at{};
+        Index<3> worst_at{};
         bool stuck = false;
-        each_index(now_.net.extent(), [&](const Index<N>& at) {
+        each_index(now_.net.extent(), [&](const Index<3>& at) {
             const double w = net(at).weight();
-            if (w > 2 * now_.error(size(at), D) && w >= std::numeric_limits<double>::min()) return;
+            if (w > 2 * now_.error(size(at), kWeight) && w >= std::numeric_limits<double>::min()) return;
             done = false;
             const double scale = size(at).weight();
             if (const double x = scale == 0 ? 0 : w / scale; x < worst) worst = x, worst_at = at;
             stuck = !refine(at) || stuck;
         });
         if (done) return {};
-        std::array<double, N> where;
-        for (std::size_t d = 0; d < N; ++d) where[d] = greville(now_.bases[d], worst_at[d]);
+        Place where{};
+        for (std::size_t d = 0; d < axes(); ++d) where[d] = greville(now_.bases[d], worst_at[d]);
         const Value v = denominator(where);
         if (v.w > v.error && !stuck) return {};
         if (v.w < -v.error) return pole(where);
@@ -181,10 +196,10 @@ private:
     }
 
     // Puts knots into the support of the coefficient; false if its spans are too short already.
-    bool refine(const Index<N>& at) {
+    bool refine(const Index<3>& at) {
         int best = -1;
         double most = -1;
-        for (std::size_t d = 0; d < N; ++d) {
+        for (std::size_t d = 0; d < axes(); ++d) {
             const BSplineBasis& b = now_.bases[d];
             const double length = longest(b, at[d]) / b.domain().length();
             if (b.degree() == 0 || !(length > kShortest)) continue;
@@ -216,7 +231,7 @@ private:
     }
     // How far the weight is from the mean of its neighbours along the axis (or the one that there is),
     // relative to the weights there.
-    double bend(Index<N> at, std::size_t d) const {
+    double bend(Index<3> at, std::size_t d) const {
         const auto net = now_.net.view();
         const int n = now_.net.extent()[d], i = at[d];
         const double w = net(at).weight();
@@ -235,81 +250,116 @@ private:
     }
 
     // W is positive in the corner and negative at `where`.
-    std::unexpected<Refusal> pole(const std::array<double, N>& where) const {
-        if constexpr (N > 1) {
+    std::unexpected<Refusal> pole(const Place& where) const {
+        if (axes() > 1)
             return refuse(RefusalKind::invalid, "weights",
                           text("the denominator is negative at ", shown(where),
                                " and positive elsewhere: there is a pole"));
-        } else {
-            // Between the last certainly positive and the first certainly negative value of two bisections.
-            const auto bisected = [&](bool undecided_is_positive) {
-                Interval x{given_.bases[0].domain().lo, where[0]};
-                for (int k = 0; k < 100 && x.lo < x.middle() && x.middle() < x.hi; ++k) {
-                    const Value v = denominator({x.middle()});
-                    const bool positive = v.w > v.error || (undecided_is_positive && v.w >= -v.error);
-                    (positive ? x.lo : x.hi) = x.middle();
-                }
-                return x;
-            };
-            const double plus = bisected(false).lo, minus = bisected(true).hi;
-            return refuse(RefusalKind::invalid, "weights",
-                          text("the denominator changes its sign between the parameters ", plus, " and ",
-                               minus, ": a pole"));
-        }
+        // Between the last certainly positive and the first certainly negative value of two bisections.
+        const auto bisected = [&](bool undecided_is_positive) {
+            Interval x{given_.bases[0].domain().lo, where[0]};
+            for (int k = 0; k < 100 && x.lo < x.middle() && x.middle() < x.hi; ++k) {
+                const Value v = denominator({x.middle()});
+                const bool positive = v.w > v.error || (undecided_is_positive && v.w >= -v.error);
+                (positive ? x.lo : x.hi) = x.middle();
+            }
+            return x;
+        };
+        const double plus = bisected(false).lo, minus = bisected(true).hi;
+        return refuse(RefusalKind::invalid, "weights",
+                      text("the denominator changes its sign between the parameters ", plus, " and ", minus,
+                           ": a pole"));
     }
-    static std::string shown(const std::array<double, N>& u) {
-        std::string s = N == 1 ? "the parameter " : "the parameters (";
-        for (std::size_t d = 0; d < N; ++d) s += text(d == 0 ? "" : ", ", u[d]);
-        return N == 1 ? s : s + ")";
+    std::string shown(const Place& u) const {
+        std::string s = axes() == 1 ? "the parameter " : "the parameters (";
+        for (std::size_t d = 0; d < axes(); ++d) s += text(d == 0 ? "" : ", ", u[d]);
+        return axes() == 1 ? s : s + ")";
     }
 
-    Result<PositiveForm<N, D>> result() {
+    Found result() {
         int inserted = 0;
         for (const auto& knots : more_) inserted += int(knots.size());
         double reach = 0, moved = 0, rho = 0;
         for (std::size_t i = 0; i < now_.net.flat().size() && now_.roundings > 0; ++i) {
-            const Hom<D>&p = now_.net.flat()[i], &s = now_.size.flat()[i];
-            Vec<D> e;
-            for (int c = 0; c < D; ++c) e[c] = now_.error(s, c) / p.weight();
+            const Tuple &p = now_.net.flat()[i], &s = now_.size.flat()[i];
+            Vec<4> e;
+            for (int c = 0; c < dim_; ++c) e[c] = now_.error(s, c) / p.weight();
             moved = std::max(moved, norm(e));
-            rho = std::max(rho, now_.error(s, D) / p.weight());
+            rho = std::max(rho, now_.error(s, kWeight) / p.weight());
             reach = std::max(reach, norm(project(p)));
         }
-        auto patch = Patch<N, Hom<D>>::make(std::move(now_.bases), std::move(now_.net));
-        if (!patch) return std::unexpected(patch.error());
-        return PositiveForm<N, D>{std::move(*patch), (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnit),
-                                  inserted, negated_};
+        return {std::move(now_.bases), std::move(now_.net),
+                (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnit), inserted, negated_};
     }
 
-    Carried<N, D> given_, now_;
-    std::array<std::set<double>, N> more_;
+    Carried given_, now_;
+    std::array<std::set<double>, 3> more_;
+    int dim_;
     bool negated_ = false;
 };
+
+// Refuses numbers that are not finite or too large. Are all weights positive?
+Result<bool> check_numbers(const Tuples& all) {
+    bool positive = true;
+    for (std::size_t i = 0; i < all.count(); ++i) {
+        double most = 0;
+        for (int c = 0; c < all.size; ++c) {
+            if (!std::isfinite(all[i][c]))
+                return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
+                              "has a coordinate or a weight that is not finite");
+            most = std::max(most, std::abs(all[i][c]));
+        }
+        if (most > 0x1p1022)
+            return refuse(RefusalKind::limit, text("points[", i, "]"),
+                          "a coordinate, or its product with the weight, is above 2^1022");
+        positive = positive && all.weight(i) > 0;
+    }
+    return positive;
+}
+
+Result<Found> search(std::span<const BSplineBasis> bases, const Index<3>& extent, const Tuples& all) {
+    std::vector<Tuple> net;
+    for (std::size_t i = 0; i < all.count(); ++i) {
+        Tuple& t = net.emplace_back();
+        for (int c = 0; c < all.dim(); ++c) t[c] = all[i][c];
+        t[kWeight] = all.weight(i);
+    }
+    return Search({bases.begin(), bases.end()}, Net<3, Tuple>(extent, std::move(net)), all.dim()).run();
+}
 
 }  // namespace
 
 template <std::size_t N, int D>
 Result<PositiveForm<N, D>> positive_weights(const std::array<BSplineBasis, N>& bases,
                                             const Net<N, Hom<D>>& net) {
-    bool positive = true;
-    for (std::size_t i = 0; i < net.flat().size(); ++i) {
-        const Hom<D>& p = net.flat()[i];
-        if (!is_finite(p))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
-                          "has a coordinate or a weight that is not finite");
-        if (max_abs(p) > 0x1p1022)
-            return refuse(RefusalKind::limit, text("points[", i, "]"),
-                          "a coordinate, or its product with the weight, is above 2^1022");
-        positive = positive && p.weight() > 0;
-    }
+    const auto positive = check_numbers(tuples(net.flat()));
+    if (!positive) return std::unexpected(positive.error());
     bool fits = true;
     for (std::size_t d = 0; d < N; ++d) fits = fits && net.extent()[d] == bases[d].size();
-    if (positive || !fits) {  // `make` says what does not fit
+    if (*positive || !fits) {  // `make` says what does not fit
         auto patch = Patch<N, Hom<D>>::make(bases, net);
         if (!patch) return std::unexpected(patch.error());
         return PositiveForm<N, D>{std::move(*patch)};
     }
-    return Search<N, D>(bases, net).run();
+    Index<3> extent{1, 1, 1};
+    std::ranges::copy(net.extent(), extent.begin());
+    auto found = search(bases, extent, tuples(net.flat()));
+    if (!found) return std::unexpected(found.error());
+    const auto made = [&]<std::size_t... I>(std::index_sequence<I...>) {
+        return std::array<BSplineBasis, N>{std::move(found->bases[I])...};
+    }
+    (std::make_index_sequence<N>{});
+    Index<N> size{};
+    for (std::size_t d = 0; d < N; ++d) size[d] = made[d].size();
+    std::vector<Hom<D>> coefficients;
+    for (const Tuple& t : found->net.flat()) {
+        Hom<D>& p = coefficients.emplace_back();
+        for (int c = 0; c < D; ++c) p[c] = t[c];
+        p[D] = t.weight();
+    }
+    auto patch = Patch<N, Hom<D>>::make(made, Net<N, Hom<D>>(size, std::move(coefficients)));
+    if (!patch) return std::unexpected(patch.error());
+    return PositiveForm<N, D>{std::move(*patch), found->bound, found->inserted, found->negated};
 }
 
 #define FF_POSITIVE(N, D)                                                                    \
