@@ -1,6 +1,7 @@
 // What the parts of the document's reader and writer share.
 #pragma once
 #include <freiform/core/spelling.hpp>
+#include <freiform/core/tuples.hpp>
 #include <freiform/io/json.hpp>
 #include <freiform/shape.hpp>
 
@@ -103,11 +104,18 @@ void write_model(json::Writer& w, const Model& m);  // the fields, without the b
 
 // The fields of a patch, without the braces. `given`: points to prefer, see Object::given_points; may be
 // empty.
-template <std::size_t N, class P>
-void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const double> given);
+void write_tensor(json::Writer& w, std::span<const BSplineBasis> bases, const Tuples& net,
+                  std::span<const double> given);
+void write_triangle(json::Writer& w, int degree, const Tuples& net, std::span<const double> given);
 
+template <std::size_t N, class P>
+void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const double> given) {
+    write_tensor(w, patch.bases(), tuples(patch.net().flat()), given);
+}
 template <class P>
-void write_triangle(json::Writer& w, const Triangle<P>& triangle, std::span<const double> given);
+void write_triangle(json::Writer& w, const Triangle<P>& triangle, std::span<const double> given) {
+    write_triangle(w, triangle.degree(), tuples(triangle.coefficients()), given);
+}
 
 template <int D>
 Result<Vec<D>> read_vec(json::Value v) {

@@ -7,28 +7,34 @@
 #include "document_detail.hpp"
 
 #include <freiform/core/scan.hpp>
+#include <freiform/core/tuples.hpp>
 #include <freiform/spline/weights.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 namespace freiform::document_detail {
 
 namespace {
 
-// The nested arrays of a net, in row-major order. `leaf` reads an entry and appends it.
-template <std::size_t N>
+// The nested arrays of a net with `levels` axes, in row-major order.
 struct Nested {
-    Index<N> extent{};
-    std::array<bool, N> known{};
+    std::size_t levels;
+    Index<3> extent{1, 1, 1};
+    std::array<bool, 3> known{};
 };
-template <std::size_t N, class Leaf>
-Result<void> read_nested(json::Value v, std::size_t level, Nested<N>& shape, Leaf&& leaf) {
+// Reads an entry and appends it.
+using Leaf = std::function<Result<void>(json::Value)>;
+
+Result<void> read_nested(json::Value v, std::size_t level, Nested& shape, const Leaf& leaf) {
+    const std::size_t levels = shape.levels;
     if (!v.is(json::Kind::array))
-        return expected(N == 1 ? "an array" : text("an array (", N - level, " more of ", N, ")"), v);
+        return expected(
+            levels == 1 ? "an array" : text("an array (", levels - level, " more of ", levels, ")"), v);
     if (v.size() == 0) return refuse(RefusalKind::invalid, "", "is empty");
     if (!shape.known[level]) shape.extent[level] = int(v.size());
     if (shape.extent[level] != int(v.size()))
@@ -37,24 +43,22 @@ Result<void> read_nested(json::Value v, std::size_t level, Nested<N>& shape, Lea
     shape.known[level] = true;
     std::size_t i = 0;
     for (const json::Value element : v.elements()) {
-        auto ok = level + 1 == N ? leaf(element) : read_nested<N>(element, level + 1, shape, leaf);
+        auto ok = level + 1 == levels ? leaf(element) : read_nested(element, level + 1, shape, leaf);
         if (!ok) return refuse_within(text("[", i, "]"), ok.error());
         ++i;
     }
     return {};
 }
 
-template <std::size_t N>
 struct Points {
-    Index<N> extent{};
+    Index<3> extent{};
     int dim = 0;
     std::vector<double> flat;
 };
 
-template <std::size_t N>
-Result<Points<N>> read_points(json::Value v) {
-    Points<N> p;
-    Nested<N> shape;
+Result<Points> read_points(json::Value v, std::size_t levels) {
+    Points p;
+    Nested shape{levels};
     const auto leaf = [&](json::Value point) -> Result<void> {
         if (!point.is(json::Kind::array)) return expected("a point (an array of 1 to 4 numbers)", point);
         if (p.dim == 0 && (point.size() < 1 || point.size() > 4))
@@ -72,52 +76,57 @@ Result<Points<N>> read_points(json::Value v) {
         }
         return {};
     };
-    if (auto ok = read_nested<N>(v, 0, shape, leaf); !ok) return std::unexpected(ok.error());
+    if (auto ok = read_nested(v, 0, shape, leaf); !ok) return std::unexpected(ok.error());
     p.extent = shape.extent;
     return p;
 }
 
-template <std::size_t N>
-Result<std::vector<double>> read_weights(json::Value v, const Index<N>& extent) {
+Result<std::vector<double>> read_weights(json::Value v, std::size_t levels, const Index<3>& extent) {
     std::vector<double> flat;
-    Nested<N> shape;
+    Nested shape{levels};
     const auto leaf = [&](json::Value weight) -> Result<void> {
         const auto w = read_number(weight);
         if (!w) return std::unexpected(w.error());
         flat.push_back(*w);
         return {};
     };
-    if (auto ok = read_nested<N>(v, 0, shape, leaf); !ok) return std::unexpected(ok.error());
-    for (std::size_t d = 0; d < N; ++d)
+    if (auto ok = read_nested(v, 0, shape, leaf); !ok) return std::unexpected(ok.error());
+    for (std::size_t d = 0; d < levels; ++d)
         if (shape.extent[d] != extent[d])
             return refuse(RefusalKind::invalid, "",
-                          text(shape.extent[d], " weights", N == 1 ? "" : text(" along axis ", d), " for ",
-                               extent[d], " points"));
+                          text(shape.extent[d], " weights", levels == 1 ? "" : text(" along axis ", d),
+                               " for ", extent[d], " points"));
     return flat;
 }
 
-template <std::size_t N>
 struct ReadNet {
-    Points<N> points;
+    std::size_t levels = 1;
+    Points points;
     std::optional<std::vector<double>> weights;
-    std::optional<Points<N>> products;  // of points and weights
+    std::optional<Points> products;  // of points and weights
+
+    template <std::size_t N>
+    Index<N> extent() const {
+        Index<N> e{};
+        std::copy_n(points.extent.begin(), N, e.begin());
+        return e;
+    }
 };
 
 // One array per axis; of a curve the array itself.
-template <std::size_t N, class Read>
-auto read_per_axis(json::Value v, Read&& read)
+template <class Read>
+auto read_per_axis(std::size_t axes, json::Value v, Read&& read)
     -> Result<std::vector<typename decltype(read(std::declval<json::Value>()))::value_type>> {
-    if constexpr (N == 1) {
+    if (axes == 1) {
         auto one = read(v);
         if (!one) return std::unexpected(one.error());
         std::vector<typename decltype(read(std::declval<json::Value>()))::value_type> list;
         list.push_back(std::move(*one));
         return list;
-    } else {
-        if (!v.is(json::Kind::array) || v.size() != N)
-            return expected(text("an array of ", N, ", one entry per parameter"), v);
-        return read_list(v, read);
     }
+    if (!v.is(json::Kind::array) || v.size() != axes)
+        return expected(text("an array of ", axes, ", one entry per parameter"), v);
+    return read_list(v, read);
 }
 
 struct Axis {
@@ -166,12 +175,12 @@ Result<BSplineBasis> make_basis(const Axis& a, int points, std::string_view degr
 }
 
 // points[i][j][c] of the flat index.
-template <std::size_t N>
-std::string point_name(const Index<N>& extent, std::size_t flat) {
-    std::array<std::size_t, N> at{};
-    for (std::size_t d = N; d-- > 0; flat /= std::size_t(extent[d])) at[d] = flat % std::size_t(extent[d]);
+std::string point_name(std::size_t levels, const Index<3>& extent, std::size_t flat) {
+    std::array<std::size_t, 3> at{};
+    for (std::size_t d = levels; d-- > 0; flat /= std::size_t(extent[d]))
+        at[d] = flat % std::size_t(extent[d]);
     std::string s;
-    for (const std::size_t i : at) s += text("[", i, "]");
+    for (std::size_t d = 0; d < levels; ++d) s += text("[", at[d], "]");
     return s;
 }
 
@@ -183,36 +192,31 @@ bool same_bits(double a, double b) {
 // infinity (weight 0) is given by its direction h, for which x stands in.
 bool agree(double x, double w, double h) { return w * x == h || (w == 0 ? x == h : h / w == x); }
 
-template <int D>
-std::vector<Vec<D>> polynomial_net(const std::vector<double>& flat) {
-    std::vector<Vec<D>> net(flat.size() / std::size_t(D));
-    for (std::size_t k = 0; k < flat.size(); ++k) net[k / std::size_t(D)][int(k % std::size_t(D))] = flat[k];
-    return net;
-}
-
-template <int D, std::size_t N>
-Result<std::vector<Hom<D>>> rational_net(const Points<N>& p, const std::vector<double>& weights,
-                                         const Points<N>* weighted_points) {
-    std::vector<Hom<D>> net(weights.size());
+// The coefficients of a rational net, tuple after tuple.
+Result<std::vector<double>> rational_net(const ReadNet& in) {
+    const Points& p = in.points;
+    const std::size_t dim = std::size_t(p.dim);
+    std::vector<double> net;
     for (std::size_t k = 0; k < p.flat.size(); ++k) {
-        const std::size_t i = k / std::size_t(D), c = k % std::size_t(D);
-        const double w = weights[i], x = p.flat[k], h = weighted_points ? weighted_points->flat[k] : w * x;
+        const std::size_t i = k / dim, c = k % dim;
+        const double w = (*in.weights)[i], x = p.flat[k], h = in.products ? in.products->flat[k] : w * x;
+        const auto place = [&](std::string_view field) {
+            return text(field, point_name(in.levels, p.extent, i), "[", c, "]");
+        };
         if (!std::isfinite(h) || (w != 0 && !std::isfinite(h / w)))
-            return refuse(RefusalKind::nonfinite, text("points", point_name<N>(p.extent, i), "[", c, "]"),
+            return refuse(RefusalKind::nonfinite, place("points"),
                           text(x, " times its weight ", w, " leaves the range of double"));
         if (!agree(x, w, h))
-            return refuse(RefusalKind::invalid,
-                          text("weighted_points", point_name<N>(p.extent, i), "[", c, "]"),
+            return refuse(RefusalKind::invalid, place("weighted_points"),
                           text(h, " is not the point ", x, " times its weight ", w));
-        net[i][int(c)] = h;
-        net[i][D] = w;
+        net.push_back(h);
+        if (c + 1 == dim) net.push_back(w);
     }
     return net;
 }
 
 // "points[7]", counted through the net, as "points[1][3]".
-template <std::size_t N>
-Refusal nested(Refusal r, const Index<N>& extent) {
+Refusal nested(Refusal r, const ReadNet& in) {
     // Numbers too large or too small to calculate with are no limit on effort.
     if (r.kind == RefusalKind::limit || r.kind == RefusalKind::ill_conditioned)
         r.kind = RefusalKind::unsupported;
@@ -220,52 +224,58 @@ Refusal nested(Refusal r, const Index<N>& extent) {
     if (open == std::string::npos || close == std::string::npos) return r;
     const auto flat = scan_number<std::size_t>(std::string_view(r.where).substr(open + 1, close - open - 1));
     if (flat)
-        r.where = text(r.where.substr(0, open), point_name<N>(extent, *flat), r.where.substr(close + 1));
+        r.where = text(r.where.substr(0, open), point_name(in.levels, in.points.extent, *flat),
+                       r.where.substr(close + 1));
     return r;
 }
 
-// Points, weights and products as one of the two kinds of net, handed to `make`.
-template <int D, std::size_t N, class Make>
-Result<ReadShape> assemble_in(const ReadNet<N>& in, Make&& make) {
-    const auto shape_of = [&](auto patch, std::vector<double> given) -> Result<ReadShape> {
-        if (!patch) return std::unexpected(nested(patch.error(), in.points.extent));
-        return ReadShape{std::move(*patch), std::move(given)};
-    };
-    if (!in.weights) return shape_of(make(polynomial_net<D>(in.points.flat)), {});
-    auto net = rational_net<D>(in.points, *in.weights, in.products ? &*in.products : nullptr);
-    if (!net) return std::unexpected(net.error());
-    return shape_of(make(std::move(*net)), in.points.flat);
+// Coefficients handed to `make`, as those of the dimension that the points have.
+template <class P, class Make>
+Result<ReadShape> assemble_as(const ReadNet& in, const std::vector<double>& all, Make&& make) {
+    std::vector<P> coefficients(all.size() / std::size_t(P::kCoords));
+    std::ranges::copy(all, numbers(std::span(coefficients)).begin());
+    auto patch = make(std::move(coefficients));
+    if (!patch) return std::unexpected(nested(patch.error(), in));
+    return ReadShape{std::move(*patch), in.weights ? in.points.flat : std::vector<double>()};
 }
-
-// The same for the dimension that the points have.
-template <std::size_t N, class Make>
-Result<ReadShape> assemble(const ReadNet<N>& in, Make&& make) {
+template <template <int> class P, class Make>
+Result<ReadShape> assemble_in(const ReadNet& in, const std::vector<double>& all, Make&& make) {
     switch (in.points.dim) {
         case 1:
-            return assemble_in<1>(in, make);
+            return assemble_as<P<1>>(in, all, make);
         case 2:
-            return assemble_in<2>(in, make);
+            return assemble_as<P<2>>(in, all, make);
         case 3:
-            return assemble_in<3>(in, make);
+            return assemble_as<P<3>>(in, all, make);
         default:
-            return assemble_in<4>(in, make);
+            return assemble_as<P<4>>(in, all, make);
     }
 }
+// Points, weights and products as one of the two kinds of net.
+template <class Make>
+Result<ReadShape> assemble(const ReadNet& in, Make&& make) {
+    if (!in.weights) return assemble_in<Vec>(in, in.points.flat, make);
+    const auto net = rational_net(in);
+    if (!net) return std::unexpected(net.error());
+    return assemble_in<Hom>(in, *net, make);
+}
 
-template <std::size_t N>
-Result<ReadNet<N>> read_net(const Fields& fields) {
-    ReadNet<N> net;
-    auto points = fields.get("points", read_points<N>);
+Result<ReadNet> read_net(const Fields& fields, std::size_t levels) {
+    ReadNet net;
+    net.levels = levels;
+    const auto of_levels = [&](json::Value v) { return read_points(v, levels); };
+    auto points = fields.get("points", of_levels);
     if (!points) return std::unexpected(points.error());
     net.points = std::move(*points);
     if (fields.has("weights")) {
-        auto w = fields.get("weights", [&](json::Value x) { return read_weights<N>(x, net.points.extent); });
+        auto w =
+            fields.get("weights", [&](json::Value x) { return read_weights(x, levels, net.points.extent); });
         if (!w) return std::unexpected(w.error());
         net.weights = std::move(*w);
     }
     if (fields.has("weighted_points")) {
         if (!net.weights) return refuse(RefusalKind::invalid, "weighted_points", "needs weights");
-        auto p = fields.get("weighted_points", read_points<N>);
+        auto p = fields.get("weighted_points", of_levels);
         if (!p) return std::unexpected(p.error());
         if (p->extent != net.points.extent || p->dim != net.points.dim)
             return refuse(RefusalKind::invalid, "weighted_points", "is not of the same shape as the points");
@@ -287,31 +297,44 @@ inline constexpr std::array<std::string_view, 10> kPatchFields = {"type",
                                                                   "colours"};
 constexpr std::string_view kPatchNames[] = {"", "a curve", "a surface", "a volume"};
 
-template <std::size_t N>
-Result<std::array<Axis, N>> read_axes(const Fields& fields) {
-    std::array<Axis, N> axes;
-    const std::string_view degree = N == 1 ? "degree" : "degrees";
+Result<std::array<Axis, 3>> read_axes(const Fields& fields, std::size_t n) {
+    std::array<Axis, 3> axes;
+    const std::string_view degree = n == 1 ? "degree" : "degrees";
     const auto whole = [](json::Value v) -> Result<int> {
         const auto p = read_int(v);
         if (p && *p < 0) return expected("a degree of at least 0", v);
         return p;
     };
     if (fields.has(degree)) {
-        const auto d = fields.get(degree, [&](json::Value v) { return read_per_axis<N>(v, whole); });
+        const auto d = fields.get(degree, [&](json::Value v) { return read_per_axis(n, v, whole); });
         if (!d) return std::unexpected(d.error());
-        for (std::size_t i = 0; i < N; ++i) axes[i].degree = (*d)[i];
+        for (std::size_t i = 0; i < n; ++i) axes[i].degree = (*d)[i];
     }
     if (fields.has("closed")) {
-        const auto c = fields.get("closed", [&](json::Value v) { return read_per_axis<N>(v, read_bool); });
+        const auto c = fields.get("closed", [&](json::Value v) { return read_per_axis(n, v, read_bool); });
         if (!c) return std::unexpected(c.error());
-        for (std::size_t i = 0; i < N; ++i) axes[i].closed = (*c)[i];
+        for (std::size_t i = 0; i < n; ++i) axes[i].closed = (*c)[i];
     }
     if (fields.has("knots")) {
-        auto k = fields.get("knots", [&](json::Value v) { return read_per_axis<N>(v, read_numbers); });
+        auto k = fields.get("knots", [&](json::Value v) { return read_per_axis(n, v, read_numbers); });
         if (!k) return std::unexpected(k.error());
-        for (std::size_t i = 0; i < N; ++i) axes[i].knots = std::move((*k)[i]);
+        for (std::size_t i = 0; i < n; ++i) axes[i].knots = std::move((*k)[i]);
     }
     return axes;
+}
+
+Result<std::vector<BSplineBasis>> read_bases(const Fields& fields, const ReadNet& net) {
+    const auto axes = read_axes(fields, net.levels);
+    if (!axes) return std::unexpected(axes.error());
+    std::vector<BSplineBasis> made;
+    for (std::size_t d = 0; d < net.levels; ++d) {
+        const std::string index = net.levels == 1 ? "" : text("[", d, "]");
+        auto basis = make_basis((*axes)[d], net.points.extent[d],
+                                text(net.levels == 1 ? "degree" : "degrees", index), text("knots", index));
+        if (!basis) return std::unexpected(basis.error());
+        made.push_back(std::move(*basis));
+    }
+    return made;
 }
 
 bool all_positive(const std::vector<double>& weights) {
@@ -336,25 +359,16 @@ template <std::size_t N>
 Result<ReadShape> read_patch(json::Value v) {
     const auto fields = Fields::read(v, kPatchNames[N], kPatchFields<N>);
     if (!fields) return std::unexpected(fields.error());
-    const auto net = read_net<N>(*fields);
+    const auto net = read_net(*fields, N);
     if (!net) return std::unexpected(net.error());
-    const auto axes = read_axes<N>(*fields);
-    if (!axes) return std::unexpected(axes.error());
-
-    std::vector<BSplineBasis> made;
-    for (std::size_t d = 0; d < N; ++d) {
-        const std::string index = N == 1 ? "" : text("[", d, "]");
-        auto basis = make_basis((*axes)[d], net->points.extent[d], text(N == 1 ? "degree" : "degrees", index),
-                                text("knots", index));
-        if (!basis) return std::unexpected(basis.error());
-        made.push_back(std::move(*basis));
-    }
+    auto made = read_bases(*fields, *net);
+    if (!made) return std::unexpected(made.error());
     const auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
-        return std::array<BSplineBasis, N>{std::move(made[I])...};
+        return std::array<BSplineBasis, N>{std::move((*made)[I])...};
     }
     (std::make_index_sequence<N>{});
     auto read = assemble(*net, [&]<class P>(std::vector<P> coefficients) {
-        return make_patch(bases, Net<N, P>(net->points.extent, std::move(coefficients)));
+        return make_patch(bases, Net<N, P>(net->template extent<N>(), std::move(coefficients)));
     });
     // Points that were given are those of the patch unless knots had to be inserted or signs changed.
     if (read && net->weights && !all_positive(*net->weights)) read->given_points.clear();
@@ -370,7 +384,7 @@ Result<ReadShape> read_triangle(json::Value v) {
         "type", "name", "degree", "points", "weights", "weighted_points", "material", "colours"};
     const auto fields = Fields::read(v, "a triangle", kFields);
     if (!fields) return std::unexpected(fields.error());
-    const auto net = read_net<1>(*fields);
+    const auto net = read_net(*fields, 1);
     if (!net) return std::unexpected(net.error());
     const long long count = net->points.extent[0];
     int fitting = 0;
@@ -390,18 +404,18 @@ Result<ReadShape> read_triangle(json::Value v) {
 
 namespace {
 
-// `leaf(i)` writes entry i of the flat net.
-template <std::size_t N, class Leaf>
-void write_nested(json::Writer& w, const Index<N>& extent, Leaf&& leaf) {
+// `leaf(i)` writes entry i of the flat net of `levels` axes.
+void write_nested(json::Writer& w, std::size_t levels, const Index<3>& extent,
+                  const std::function<void(std::size_t)>& leaf) {
     std::size_t i = 0;
-    each_index(extent, [&](const Index<N>& at) {
+    each_index(extent, [&](const Index<3>& at) {
         // A row begins where all inner indices are first, and ends where all are last.
-        std::size_t begins = N, ends = N;
+        std::size_t begins = levels, ends = levels;
         while (begins > 0 && at[begins - 1] == 0) --begins;
         while (ends > 0 && at[ends - 1] == extent[ends - 1] - 1) --ends;
-        for (std::size_t d = begins; d < N; ++d) w.begin_array();
+        for (std::size_t d = begins; d < levels; ++d) w.begin_array();
         leaf(i++);
-        for (std::size_t d = ends; d < N; ++d) w.end_array();
+        for (std::size_t d = ends; d < levels; ++d) w.end_array();
     });
 }
 
@@ -422,87 +436,66 @@ std::optional<double> point_of(double h, double w) {
 }
 
 // The points of a rational net; sets `exact` to whether they and the weights give the coefficients back.
-template <int D>
-std::vector<double> points_of(std::span<const Hom<D>> net, std::span<const double> given, bool& exact) {
-    std::vector<double> x(net.size() * std::size_t(D));
+std::vector<double> points_of(const Tuples& net, std::span<const double> given, bool& exact) {
+    const std::size_t dim = std::size_t(net.dim());
+    std::vector<double> x(net.count() * dim);
     exact = given.size() == x.size();
-    for (std::size_t i = 0; i < x.size() && exact; ++i) {
-        const Hom<D>& h = net[i / std::size_t(D)];
-        exact = same_bits(h.weight() * given[i], h[int(i % std::size_t(D))]);
-    }
+    for (std::size_t i = 0; i < x.size() && exact; ++i)
+        exact = same_bits(net.weight(i / dim) * given[i], net[i / dim][i % dim]);
     if (exact) return {given.begin(), given.end()};
     exact = true;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const Hom<D>& p = net[i / std::size_t(D)];
-        const double h = p[int(i % std::size_t(D))];
-        const auto point = point_of(h, p.weight());
+        const double h = net[i / dim][i % dim], w = net.weight(i / dim);
+        const auto point = point_of(h, w);
         exact = exact && point;
-        x[i] = point.value_or(h / p.weight());
+        x[i] = point.value_or(h / w);
     }
     return x;
 }
 
 // The points, and of a rational net the weights.
-template <std::size_t N, class P>
-void write_net(json::Writer& w, const Index<N>& extent, std::span<const P> net,
+void write_net(json::Writer& w, std::size_t levels, const Index<3>& extent, const Tuples& net,
                std::span<const double> given) {
-    if constexpr (!Space<P>::kRational) {
-        w.key("points");
-        write_nested(w, extent, [&](std::size_t i) { w.array(net[i].c); });
-    } else {
-        constexpr auto kDim = std::size_t(Space<P>::kDim);
-        bool exact = false;
-        const std::vector<double> x = points_of(net, given, exact);
-        w.key("points");
-        write_nested(w, extent, [&](std::size_t i) { w.array(std::span(x).subspan(i * kDim, kDim)); });
-        w.key("weights");
-        write_nested(w, extent, [&](std::size_t i) { w.value(net[i].weight()); });
-        if (exact) return;
-        w.key("weighted_points");
-        write_nested(w, extent, [&](std::size_t i) { w.array(std::span(net[i].c).first(kDim)); });
-    }
+    const std::size_t dim = std::size_t(net.dim());
+    bool exact = true;
+    std::vector<double> own;
+    if (net.rational) own = points_of(net, given, exact);
+    const std::span<const double> x = net.rational ? std::span<const double>(own) : net.all;
+    w.key("points");
+    write_nested(w, levels, extent, [&](std::size_t i) { w.array(x.subspan(i * dim, dim)); });
+    if (!net.rational) return;
+    w.key("weights");
+    write_nested(w, levels, extent, [&](std::size_t i) { w.value(net.weight(i)); });
+    if (exact) return;
+    w.key("weighted_points");
+    write_nested(w, levels, extent, [&](std::size_t i) { w.array(std::span(net[i], dim)); });
 }
 
 }  // namespace
 
-template <std::size_t N, class P>
-void write_patch(json::Writer& w, const Patch<N, P>& patch, std::span<const double> given) {
-    const auto per_axis = [&](std::string_view field, auto&& content) {
+void write_tensor(json::Writer& w, std::span<const BSplineBasis> bases, const Tuples& net,
+                  std::span<const double> given) {
+    const std::size_t n = bases.size();
+    const auto per_axis = [&](std::string_view field,
+                              const std::function<void(const BSplineBasis&)>& content) {
         w.key(field);
-        if (N > 1) w.begin_array();
-        for (std::size_t d = 0; d < N; ++d) content(patch.basis(int(d)));
-        if (N > 1) w.end_array();
+        if (n > 1) w.begin_array();
+        for (const BSplineBasis& b : bases) content(b);
+        if (n > 1) w.end_array();
     };
-    per_axis(N == 1 ? "degree" : "degrees", [&](const BSplineBasis& b) { w.value(b.degree()); });
+    per_axis(n == 1 ? "degree" : "degrees", [&](const BSplineBasis& b) { w.value(b.degree()); });
     bool closed = false;
-    for (const BSplineBasis& b : patch.bases()) closed = closed || b.is_closed();
+    for (const BSplineBasis& b : bases) closed = closed || b.is_closed();
     if (closed) per_axis("closed", [&](const BSplineBasis& b) { w.value(b.is_closed()); });
     per_axis("knots", [&](const BSplineBasis& b) { w.array(b.defining()); });
-
-    write_net<N>(w, patch.net().extent(), patch.net().flat(), given);
+    Index<3> extent{1, 1, 1};
+    for (std::size_t d = 0; d < n; ++d) extent[d] = bases[d].size();
+    write_net(w, n, extent, net, given);
 }
 
-template <class P>
-void write_triangle(json::Writer& w, const Triangle<P>& triangle, std::span<const double> given) {
-    w.field("degree", triangle.degree());
-    write_net<1>(w, {int(triangle.coefficients().size())}, triangle.coefficients(), given);
+void write_triangle(json::Writer& w, int degree, const Tuples& net, std::span<const double> given) {
+    w.field("degree", degree);
+    write_net(w, 1, {int(net.count()), 1, 1}, net, given);
 }
-
-#define FF_INSTANTIATE_WRITE(N, D)                                                              \
-    template void write_patch(json::Writer&, const Patch<N, Vec<D>>&, std::span<const double>); \
-    template void write_patch(json::Writer&, const Patch<N, Hom<D>>&, std::span<const double>);
-#define FF_INSTANTIATE_WRITES(N) \
-    FF_INSTANTIATE_WRITE(N, 1)   \
-    FF_INSTANTIATE_WRITE(N, 2) FF_INSTANTIATE_WRITE(N, 3) FF_INSTANTIATE_WRITE(N, 4)
-FF_INSTANTIATE_WRITES(1)
-FF_INSTANTIATE_WRITES(2)
-FF_INSTANTIATE_WRITES(3)
-#define FF_INSTANTIATE_TRIANGLE(D)                                                                 \
-    template void write_triangle(json::Writer&, const Triangle<Vec<D>>&, std::span<const double>); \
-    template void write_triangle(json::Writer&, const Triangle<Hom<D>>&, std::span<const double>);
-FF_INSTANTIATE_TRIANGLE(1)
-FF_INSTANTIATE_TRIANGLE(2)
-FF_INSTANTIATE_TRIANGLE(3)
-FF_INSTANTIATE_TRIANGLE(4)
 
 }  // namespace freiform::document_detail
