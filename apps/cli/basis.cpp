@@ -1,7 +1,6 @@
 // basis: the coefficients of curves in other bases, with what the change costs.
-#include "command.hpp"
+#include "input.hpp"
 
-#include <freiform/io/bpt.hpp>
 #include <freiform/make/named_curve.hpp>
 
 namespace freiform::cli {
@@ -47,126 +46,121 @@ std::string_view meaning(Scheme scheme) {
     }
 }
 
-struct Answers {
-    json::Writer json;
-    std::string text;
+// The coefficients of one piece, as numbers.
+struct Piece {
+    std::size_t object = 0, index = 0;
+    Interval on;
+    PolynomialBasis basis;
+    bool homogeneous = false;
+    std::vector<std::vector<double>> coefficients;
+    double bound = 0, condition = 0;
 };
 
-class Changes {
-public:
-    Changes(Answers& out, const Options& options, std::size_t object, std::string label)
-        : out_(out), o_(options), object_(object), label_(std::move(label)) {}
+void write(json::Writer& w, const Piece& p) {
+    const std::span<const double> numbers = p.basis.numbers();
+    w.new_line(1).begin_object().field("object", p.object).field("piece", p.index);
+    w.key("interval").array(std::array{p.on.lo, p.on.hi});
+    w.field("basis", name_of(p.basis.scheme())).field("degree", p.basis.degree());
+    if (p.basis.scheme() == Scheme::monomial)
+        w.field("origin", numbers[0]);
+    else
+        w.key(meaning(p.basis.scheme())).array(numbers);
+    w.field("homogeneous", p.homogeneous).key("coefficients").begin_array();
+    for (const auto& c : p.coefficients) w.array(c);
+    w.end_array().field("bound", p.bound).field("condition", p.condition).end_object();
+}
 
-    template <TensorPatch S>
-    Result<void> operator()(const S& s) {
-        if constexpr (S::kParams == 1) {
-            const auto breaks = s.basis().breaks();
-            for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-                if (auto ok = piece(s, i, {breaks[i], breaks[i + 1]}); !ok) return ok;
-            return {};
-        } else {
-            return refuse(RefusalKind::no_answer, "", "is no curve; basis is for curves");
-        }
-    }
-    template <class S>
-    Result<void> operator()(const S&) {
+std::string text_of(const Piece& p, const std::string& label) {
+    std::string s =
+        text(label, ", piece ", p.index, " on [", p.on.lo, ", ", p.on.hi, "]: ", name_of(p.basis.scheme()),
+             " of degree ", p.basis.degree(), ", ", meaning(p.basis.scheme()), " ", list(p.basis.numbers()),
+             p.homogeneous ? ", homogeneous (w x, .., w)" : "", "\n");
+    for (const auto& c : p.coefficients) s += text("  ", list(c), "\n");
+    return s + text("  within ", p.bound, "; condition ", p.condition,
+                    p.condition >= 1e15 ? ": an error in the last digit may change all digits" : "", "\n");
+}
+
+template <class P>
+Result<Piece> changed(const Curve<P>& curve, const PolynomialBasis& basis, Interval on) {
+    const auto c = to_basis(curve, on.lo, basis);
+    if (!c) return std::unexpected(c.error());
+    Piece piece{0, 0, on, basis, Space<P>::kRational, {}, c->bound, c->condition};
+    for (const P& p : c->coefficients) piece.coefficients.push_back({p.c.begin(), p.c.end()});
+    return piece;
+}
+
+// What a piece cannot be written in is a question without an answer, not a broken file.
+std::unexpected<Refusal> about_piece(std::size_t index, Refusal r) {
+    if (r.kind == RefusalKind::invalid || r.kind == RefusalKind::unsupported) r.kind = RefusalKind::no_answer;
+    return refuse_within(text("piece ", index), std::move(r));
+}
+
+Result<std::vector<Piece>> pieces_of(const Shape& shape, const Options& options) {
+    const std::span<const BSplineBasis> bases = bases_of(shape);
+    if (type_name(shape) != "curve")
         return refuse(RefusalKind::no_answer, "", "is no curve; basis is for curves");
+    const auto breaks = bases[0].breaks();
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+        const Interval on{breaks[i], breaks[i + 1]};
+        const auto basis = wanted(options, bases[0].degree(), on);
+        if (!basis) return about_piece(i, basis.error());
+        std::optional<Result<Piece>> piece;
+        with_curve(shape, [&](const auto& curve) { piece = changed(curve, *basis, on); });
+        if (!*piece) return about_piece(i, piece->error());
+        pieces.push_back(**std::move(piece));
+        pieces.back().index = i;
     }
-
-private:
-    template <class P>
-    Result<void> piece(const Curve<P>& curve, std::size_t index, Interval on) {
-        // What a piece cannot be written in is a question without an answer, not a broken file.
-        const auto about = [&](Refusal r) {
-            if (r.kind == RefusalKind::invalid || r.kind == RefusalKind::unsupported)
-                r.kind = RefusalKind::no_answer;
-            return refuse_within(text("piece ", index), std::move(r));
-        };
-        const auto basis = wanted(o_, curve.basis().degree(), on);
-        if (!basis) return about(basis.error());
-        const auto c = to_basis(curve, on.lo, *basis);
-        if (!c) return about(c.error());
-        std::span<const double> numbers = basis->numbers();
-        json::Writer& w = out_.json;
-        w.new_line(1).begin_object().field("object", object_).field("piece", index);
-        w.key("interval").array(std::array{on.lo, on.hi});
-        w.field("basis", name_of(basis->scheme())).field("degree", basis->degree());
-        if (basis->scheme() == Scheme::monomial)
-            w.field("origin", numbers[0]);
-        else
-            w.key(meaning(basis->scheme())).array(numbers);
-        w.field("homogeneous", Space<P>::kRational);
-        w.key("coefficients").begin_array();
-        for (const P& p : c->coefficients) w.array(p.c);
-        w.end_array().field("bound", c->bound).field("condition", c->condition).end_object();
-
-        out_.text +=
-            text(label_, ", piece ", index, " on [", on.lo, ", ", on.hi, "]: ", name_of(basis->scheme()),
-                 " of degree ", basis->degree(), ", ", meaning(basis->scheme()), " ", list(numbers),
-                 Space<P>::kRational ? ", homogeneous (w x, .., w)" : "", "\n");
-        for (const P& p : c->coefficients) out_.text += text("  ", list(p.c), "\n");
-        out_.text +=
-            text("  within ", c->bound, "; condition ", c->condition,
-                 c->condition >= 1e15 ? ": an error in the last digit may change all digits" : "", "\n");
-        return {};
-    }
-
-    Answers& out_;
-    const Options& o_;
-    std::size_t object_;
-    std::string label_;
-};
+    return pieces;
+}
 
 Result<void> run(const Context& context, const Options& options) {
     if (options.origin && options.scheme != "monomial") wrong_usage("--origin is for --to-basis monomial");
     if (!options.nodes.empty() && options.scheme != "lagrange" && options.scheme != "newton")
         wrong_usage("--nodes is for --to-basis lagrange or newton");
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
-    if (objects->empty()) return refuse(RefusalKind::no_answer, shown(options.file), "there is no curve");
-    Answers out;
-    out.json.begin_object().key("results").begin_array();
-    for (const std::size_t i : *objects) {
-        const std::string label =
-            document->objects.size() > 1 ? object_label(*document, i) : shown(options.file);
-        if (auto ok = std::visit(Changes(out, options, i, label), document->objects[i].shape); !ok) {
-            Refusal r = ok.error();
-            r.where = r.where.empty() ? label : text(label, ": ", r.where);
-            return std::unexpected(std::move(r));
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    if (input->chosen.empty())
+        return refuse(RefusalKind::no_answer, shown(options.file), "there is no curve");
+    json::Writer w;
+    std::string lines;
+    w.begin_object().key("results").begin_array();
+    for (const std::size_t i : input->chosen) {
+        auto pieces = pieces_of(input->object(i).shape, options);
+        if (!pieces) return input->about(i, pieces.error());
+        for (Piece& piece : *pieces) {
+            piece.object = i;
+            write(w, piece);
+            lines += text_of(piece, input->label(i));
         }
     }
-    out.json.end_array().end_object();
-    return emit(context, context.json ? out.json.take() + "\n" : out.text);
+    w.end_array().end_object();
+    return emit(context, context.json ? w.take() + "\n" : lines);
 }
 
 }  // namespace
 
-void add_basis(CLI::App& app, Context& context) {
+void add_basis(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(
-        app, context, "basis", "Coefficients of curves in another basis, with a bound and the condition",
+    const Command command = line.add(
+        "basis", "Coefficients of curves in another basis, with a bound and the condition",
         "  freiform basis curve.json --to-basis monomial --origin 0\n"
         "  freiform basis curve.json --to-basis lagrange --nodes 0,0.25,0.75,1 --json\n"
         "Monomials: highest power first. Hermite: values at both ends, first derivatives at both, and so "
         "on.\n"
         "`condition` is how much larger relative errors of the new coefficients may be than those of the old "
         "ones.");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    command->add_option("--to-basis", options->scheme, "The basis, for each polynomial piece")
-        ->check(CLI::IsMember({"monomial", "bernstein", "hermite", "lagrange", "newton"}))
-        ->required();
-    add_number(*command, "--origin", options->origin,
-               "Powers of t - ORIGIN; without it the lower end of each piece");
-    add_numbers(*command, "--nodes", options->nodes,
-                "Degree + 1 nodes; without them equidistant on each piece");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    command.file(options->file);
+    command.word("--to-basis", options->scheme, "The basis, for each polynomial piece")
+        .one_of({"monomial", "bernstein", "hermite", "lagrange", "newton"})
+        .required();
+    command.number("--origin", options->origin,
+                   "Powers of t - ORIGIN; without it the lower end of each piece");
+    command.numbers("--nodes", options->nodes, "Degree + 1 nodes; without them equidistant on each piece");
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,5 +1,5 @@
 // bounds: tight boxes of objects, each with the distance that it may be too large by.
-#include "command.hpp"
+#include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/query/bounds.hpp>
@@ -32,26 +32,24 @@ Answer answer_of(const Box<D>& outer, const Box<D>& inner) {
     return answer_of(outer, bound);
 }
 
+template <class P>
+double diagonal(std::span<const P> control) {
+    Box<Space<P>::kDim> box;
+    for (const P& p : control) box.add(project(p));
+    return box.diagonal();
+}
+
 class Bounding {
 public:
     explicit Bounding(std::optional<double> accuracy) : accuracy_(accuracy) {}
 
     template <TensorPatch S>
     Result<Answer> operator()(const S& s) const {
-        Box<Space<typename S::Coefficients>::kDim> control;
-        for (const auto& p : points(s)) control.add(p);
-        const double relative = S::kParams == 1 ? 1e-12 : 1e-7;
-        const auto b = tight_box(s, accuracy_.value_or(relative * control.diagonal()));
-        if (!b) return std::unexpected(b.error());
-        return answer_of(b->box, b->slack);
+        return bounded(s, s.net().flat(), S::kParams == 1 ? 1e-12 : 1e-7);
     }
     template <TriangularPatch S>
     Result<Answer> operator()(const S& s) const {
-        Box<Space<typename S::Coefficients>::kDim> control;
-        for (const auto& p : s.coefficients()) control.add(project(p));
-        const auto b = tight_box(s, accuracy_.value_or(1e-7 * control.diagonal()));
-        if (!b) return std::unexpected(b.error());
-        return answer_of(b->box, b->slack);
+        return bounded(s, s.coefficients(), 1e-7);
     }
     // The surface over the box of the loops contains the face; the loops are part of it.
     Result<Answer> operator()(const TrimmedSurface& t) const {
@@ -99,6 +97,14 @@ public:
 
 private:
     static constexpr int kSamples = 64;
+
+    // Where no accuracy was asked for, this fraction of the control points' box.
+    template <class S, class P>
+    Result<Answer> bounded(const S& s, std::span<const P> control, double fraction) const {
+        const auto b = tight_box(s, accuracy_ ? *accuracy_ : fraction * diagonal(control));
+        if (!b) return std::unexpected(b.error());
+        return answer_of(b->box, b->slack);
+    }
 
     template <class S>
     static void add_loop(const S& s, const CurveGeometry<2>& curve, Box<2>& in_domain, Box<3>& inner) {
@@ -163,24 +169,23 @@ std::string box_text(const Answer& a) {
 
 Result<void> run(const Context& context, const Options& options) {
     if (options.accuracy && !(*options.accuracy >= 0)) wrong_usage("--accuracy needs a length >= 0");
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    const Document& document = *input->document;
 
     json::Writer w;
     std::string s;
     Answer all;
     w.begin_object()
         .field("file", shown(options.file))
-        .field("unit", document->unit)
+        .field("unit", document.unit)
         .key("objects")
         .begin_array();
-    for (std::size_t k = 0; k < objects->size(); ++k) {
-        const std::size_t i = (*objects)[k];
-        const Object& o = document->objects[i];
+    for (std::size_t k = 0; k < input->chosen.size(); ++k) {
+        const std::size_t i = input->chosen[k];
+        const Object& o = document.objects[i];
         const auto answer = std::visit(Bounding(options.accuracy), o.shape);
-        if (!answer) return refuse_within(object_label(*document, i), answer.error());
+        if (!answer) return refuse_within(object_label(document, i), answer.error());
         w.new_line(1)
             .begin_object()
             .field("index", i)
@@ -188,37 +193,34 @@ Result<void> run(const Context& context, const Options& options) {
             .field("type", type_name(o.shape));
         write_box(w, *answer);
         w.end_object();
-        s += text(object_label(*document, i), ": ", box_text(*answer), "\n");
+        s += text(object_label(document, i), ": ", box_text(*answer), "\n");
         add_to(all, *answer, k == 0 || (all.lo.empty() && k == 0));
     }
     w.end_array();
     write_box(w, all);
     w.end_object();
-    if (objects->size() > 1 && !all.lo.empty()) s += text("all: ", box_text(all), "\n");
+    if (input->chosen.size() > 1 && !all.lo.empty()) s += text("all: ", box_text(all), "\n");
     return emit(context, context.json ? w.take() + "\n" : s);
 }
 
 }  // namespace
 
-void add_bounds(CLI::App& app, Context& context) {
+void add_bounds(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        add_command(app, context, "bounds",
-                    "Tight boxes: they contain the object, and the object comes within `bound` of every side",
-                    "  freiform bounds curve.json\n"
-                    "  freiform bounds teapot.bpt --accuracy 1e-6 --json\n"
-                    "  freiform bounds part.step");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    add_number(
-        *command, "--accuracy", options->accuracy,
+    const Command command = line.add(
+        "bounds", "Tight boxes: they contain the object, and the object comes within `bound` of every side",
+        "  freiform bounds curve.json\n"
+        "  freiform bounds teapot.bpt --accuracy 1e-6 --json\n"
+        "  freiform bounds part.step");
+    command.file(options->file);
+    command.number(
+        "--accuracy", options->accuracy,
         "How far a side may be from the object, in the unit of the file (curves: 1e-12 of the diagonal, "
         "else 1e-7). Of models the answer says what was reached");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,18 +1,38 @@
 // What the commands share. A command is one file with one function,
 //
-//     void add_NAME(CLI::App& app, Context& context);
+//     void add_NAME(CommandLine& line);
 //
 // declared below and called by main.cpp. It describes its options and leaves an action, which main runs after
 // all arguments have been understood: an answer goes through `emit`, a refusal is returned, wrong usage is
 // thrown with `wrong_usage`.
+//
+//     const auto options = std::make_shared<Options>();
+//     Command command = line.add("length", "Arc length", "  freiform length curve.json");
+//     command.file(options->file);
+//     command.number("--accuracy", options->accuracy, "What the length may be off");
+//     command.object(options->object);
+//     command.action(options, run);  // Result<void> run(const Context&, const Options&)
+//
+// CLI11 is known to command_line.cpp alone: it is one header of templates, which every file that includes it
+// parses and compiles again.
 #pragma once
 #include <freiform/io/json.hpp>
 #include <freiform/io/read.hpp>
 
-#include <CLI/CLI.hpp>
+#include <expected>
 #include <functional>
+#include <initializer_list>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace freiform::cli {
 
@@ -32,40 +52,104 @@ struct Context {
     ReadOptions read_options() const;
 };
 
-void add_info(CLI::App& app, Context& context);
-void add_eval(CLI::App& app, Context& context);
-void add_basis(CLI::App& app, Context& context);
-void add_convert(CLI::App& app, Context& context);
-void add_tessellate(CLI::App& app, Context& context);
-void add_bounds(CLI::App& app, Context& context);
-void add_features(CLI::App& app, Context& context);
-void add_draw(CLI::App& app, Context& context);
-void add_conic(CLI::App& app, Context& context);
-void add_implicit(CLI::App& app, Context& context);
-void add_continuity(CLI::App& app, Context& context);
-void add_inside(CLI::App& app, Context& context);
-void add_interpolate(CLI::App& app, Context& context);
-void add_flatten(CLI::App& app, Context& context);
-void add_length(CLI::App& app, Context& context);
-void add_fit(CLI::App& app, Context& context);
-void add_gallery(CLI::App& app, Context& context);
+// What has just been added to a command, to say more about it.
+class Option {
+public:
+    explicit Option(CLI::Option& option) : option_(&option) {}
+    Option required() const;
+    Option shown_as(std::string_view value) const;  // what --help calls its value: "NUMBER"
+    Option one_of(std::initializer_list<std::string_view> words) const;
 
-// A subcommand with its description and examples (lines that begin with "freiform ..."), and --json.
-CLI::App* add_command(CLI::App& app, Context& context, const std::string& name,
-                      const std::string& description, const std::string& examples);
-void add_output(CLI::App& command, Context& context, const std::string& what);  // -o and --to
-void add_limits(CLI::App& command, Context& context);                           // --timeout and --max-memory
-void add_triangle_limit(CLI::App& command, Context& context);                   // --max-triangles
+private:
+    CLI::Option* option_;
+};
 
-// Options that hold a number. Not CLI11's own conversions: those depend on the locale.
-CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<double>& value,
-                        const std::string& help);
-CLI::Option* add_count(CLI::App& command, const std::string& name, std::optional<int>& value, int least,
-                       int most, const std::string& help);
-// Numbers separated by commas.
-CLI::Option* add_numbers(CLI::App& command, const std::string& name, std::vector<double>& values,
-                         const std::string& help);
+// Describes one command. A handle: copies mean the same command. Values must live until the action has run;
+// names are "--name", "-n,--name", or "NAME" for an argument without a name.
+class Command {
+public:
+    Command(CLI::App& app, Context& context) : app_(&app), context_(&context) {}
+    Context& context() const { return *context_; }
 
+    Option flag(std::string_view name, bool& value, std::string_view help) const;
+    Option word(std::string_view name, std::string& value, std::string_view help) const;
+    // All words up to the next option.
+    Option words(std::string_view name, std::vector<std::string>& values, std::string_view help) const;
+    Option number(std::string_view name, std::optional<double>& value, std::string_view help) const;
+    Option count(std::string_view name, std::optional<int>& value, int least, int most,
+                 std::string_view help) const;
+    // Separated by commas.
+    Option numbers(std::string_view name, std::vector<double>& values, std::string_view help) const;
+
+    // What many commands have, with the same words.
+    Option file(std::string& value) const;         // FILE, required
+    Option points_file(std::string& value) const;  // POINTS, required
+    Option object(std::string& value) const;       // --object
+    void answer_file() const;                      // -o for the answer
+    void output(std::string_view what) const;      // -o and --to for a file that is made
+    void limits() const;                           // --timeout and --max-memory
+    void triangle_limit() const;                   // --max-triangles
+
+    // What the command does: run(context, options), where the context may be const.
+    template <class Options, class C>
+    void action(std::shared_ptr<Options> options, Result<void> (*run)(C&, const Options&)) const {
+        act([run, options = std::move(options)](Context& context) { return run(context, *options); });
+    }
+
+private:
+    using Use = std::function<void(const std::string&)>;
+    Option use(std::string_view name, Use&& use, std::string_view help, std::string_view shown_as) const;
+    void act(std::function<Result<void>(Context&)>&& run) const;
+
+    CLI::App* app_;
+    Context* context_;
+};
+
+// The program with its commands, and the only thing that knows what the user typed.
+class CommandLine {
+public:
+    CommandLine(Context& context, std::string_view name, std::string_view description,
+                std::string_view footer);
+    ~CommandLine();
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+
+    Command program() const;  // options without a command
+    // A command with its description and examples (lines that begin with "freiform ..."), and --json.
+    Command add(std::string_view name, std::string_view description, std::string_view examples);
+    Context& context() const { return context_; }
+
+    // Sets all values. Returns the help, if it was asked for, else nothing; the error is a message about
+    // wrong usage.
+    std::expected<std::string, std::string> understand(std::vector<std::string> arguments);
+
+private:
+    Context& context_;
+    std::unique_ptr<CLI::App> app_;
+};
+
+void add_info(CommandLine& line);
+void add_eval(CommandLine& line);
+void add_basis(CommandLine& line);
+void add_convert(CommandLine& line);
+void add_tessellate(CommandLine& line);
+void add_bounds(CommandLine& line);
+void add_features(CommandLine& line);
+void add_draw(CommandLine& line);
+void add_conic(CommandLine& line);
+void add_implicit(CommandLine& line);
+void add_continuity(CommandLine& line);
+void add_inside(CommandLine& line);
+void add_interpolate(CommandLine& line);
+void add_flatten(CommandLine& line);
+void add_length(CommandLine& line);
+void add_fit(CommandLine& line);
+void add_gallery(CommandLine& line);
+
+// Of `wrong_usage`; nothing else is thrown.
+class WrongUsage : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 [[noreturn]] void wrong_usage(const std::string& message);
 
 // The result, to `context.output` or standard output: the only way anything gets there.

@@ -181,27 +181,25 @@ Result<void> run(const Context& context, const Options& options) {
 
 }  // namespace
 
-void add_conic(CLI::App& app, Context& context) {
+void add_conic(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(
-        app, context, "conic", "Conics by equation or through points: what they are, and their arcs",
-        "  freiform conic --equation 1,0,4,0,0,-4\n"
-        "  freiform conic --equation 0,1,0,0,0,-1 --box -3,-3,3,3 -o hyperbola.json\n"
-        "  freiform conic --points '1,0;0,1;-1,0' -o arc.json\n"
-        "  freiform conic --circle 0,0,2 --angles 0,270 -o arc.json");
-    add_numbers(*command, "--equation", options->equation, "A x^2 + B x y + C y^2 + D x + E y + F = 0")
-        ->type_name("A,B,C,D,E,F");
+    const Command command =
+        line.add("conic", "Conics by equation or through points: what they are, and their arcs",
+                 "  freiform conic --equation 1,0,4,0,0,-4\n"
+                 "  freiform conic --equation 0,1,0,0,0,-1 --box -3,-3,3,3 -o hyperbola.json\n"
+                 "  freiform conic --points '1,0;0,1;-1,0' -o arc.json\n"
+                 "  freiform conic --circle 0,0,2 --angles 0,270 -o arc.json");
+    command.numbers("--equation", options->equation, "A x^2 + B x y + C y^2 + D x + E y + F = 0")
+        .shown_as("A,B,C,D,E,F");
     command
-        ->add_option("--points", options->points,
-                     "Three points: the circular arc through them; five: the conic through them")
-        ->type_name("X,Y;...");
-    add_numbers(*command, "--circle", options->circle, "Centre and radius")->type_name("X,Y,R");
-    add_numbers(*command, "--angles", options->angles, "Of the circle: from, to, in degrees")
-        ->type_name("A,B");
-    add_numbers(*command, "--box", options->box, "Only the parts inside this box")->type_name("X0,Y0,X1,Y1");
-    add_output(*command, context, "Where the arcs go, as rational splines (.json, .bpt)");
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+        .word("--points", options->points,
+              "Three points: the circular arc through them; five: the conic through them")
+        .shown_as("X,Y;...");
+    command.numbers("--circle", options->circle, "Centre and radius").shown_as("X,Y,R");
+    command.numbers("--angles", options->angles, "Of the circle: from, to, in degrees").shown_as("A,B");
+    command.numbers("--box", options->box, "Only the parts inside this box").shown_as("X0,Y0,X1,Y1");
+    command.output("Where the arcs go, as rational splines (.json, .bpt)");
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,5 +1,5 @@
 // continuity: how smooth curves are at their knots, and how smoothly neighbouring curves join.
-#include "command.hpp"
+#include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/query/continuity.hpp>
@@ -38,19 +38,18 @@ struct Answer {
     std::vector<CurveJoint> joints;
 };
 
+// Curves, surfaces and volumes.
+bool has_knots(const Shape& shape) {
+    return !bases_of(shape).empty() && !std::holds_alternative<TrimmedSurface>(shape);
+}
+
 // The largest extent of any object, from its control points.
 double diagonal(const Document& document, const std::vector<std::size_t>& objects) {
     double most = 0;
-    for (const std::size_t i : objects)
-        std::visit(
-            [&](const auto& s) {
-                if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>) {
-                    Box<Space<typename std::remove_cvref_t<decltype(s)>::Coefficients>::kDim> box;
-                    for (const auto& p : points(s)) box.add(p);
-                    most = std::max(most, box.diagonal());
-                }
-            },
-            document.objects[i].shape);
+    for (const std::size_t i : objects) {
+        const Shape& shape = document.objects[i].shape;
+        if (has_knots(shape)) most = std::max(most, control_box(shape).diagonal);
+    }
     return most;
 }
 
@@ -60,30 +59,37 @@ std::string without_knots(const Shape& shape) {
     return text("is a ", type_name(shape), ", which has no knots");
 }
 
-Result<Found> look_at(const Shape& shape, std::size_t object, const ContinuityOptions& options) {
+// The knot lines of a surface or volume along one axis.
+Result<std::vector<KnotLine>> lines_along(const Shape& shape, int axis, const ContinuityOptions& options) {
     return std::visit(
-        [&](const auto& s) -> Result<Found> {
-            using S = std::remove_cvref_t<decltype(s)>;
-            Found found;
-            found.object = object;
-            if constexpr (TensorPatch<S>) {
-                if constexpr (S::kParams == 1) {
-                    auto knots = continuity(s, options);
-                    if (!knots) return std::unexpected(knots.error());
-                    found.knots = *std::move(knots);
-                } else {
-                    for (std::size_t axis = 0; axis < S::kParams; ++axis) {
-                        auto lines = knot_lines(s, int(axis), options);
-                        if (!lines) return std::unexpected(lines.error());
-                        found.lines.push_back(*std::move(lines));
-                    }
-                }
-            } else {
-                found.without = without_knots(shape);
-            }
-            return found;
+        [&](const auto& s) -> Result<std::vector<KnotLine>> {
+            if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
+                if constexpr (std::remove_cvref_t<decltype(s)>::kParams > 1)
+                    return knot_lines(s, axis, options);
+            return {};
         },
         shape);
+}
+
+Result<Found> look_at(const Shape& shape, std::size_t object, const ContinuityOptions& options) {
+    Found found;
+    found.object = object;
+    if (!has_knots(shape)) {
+        found.without = without_knots(shape);
+        return found;
+    }
+    Result<std::vector<KnotContinuity>> knots;
+    if (with_curve(shape, [&](const auto& curve) { knots = continuity(curve, options); })) {
+        if (!knots) return std::unexpected(knots.error());
+        found.knots = *std::move(knots);
+        return found;
+    }
+    for (std::size_t axis = 0; axis < bases_of(shape).size(); ++axis) {
+        auto lines = lines_along(shape, int(axis), options);
+        if (!lines) return std::unexpected(lines.error());
+        found.lines.push_back(*std::move(lines));
+    }
+    return found;
 }
 
 Result<Answer> answer(const Document& document, const std::vector<std::size_t>& objects,
@@ -102,14 +108,9 @@ Result<Answer> answer(const Document& document, const std::vector<std::size_t>& 
         auto found = look_at(shape, i, a.options);
         if (!found) return refuse_within(object_label(document, i), found.error());
         a.objects.push_back(*std::move(found));
-        std::visit(
-            [&](const auto& s) {
-                using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (TensorPatch<S>)
-                    if constexpr (S::kParams == 1)
-                        ends.push_back(ends_of(s, a.options)), a.curve.push_back(i);
-            },
-            shape);
+        with_curve(shape, [&](const auto& curve) {
+            ends.push_back(ends_of(curve, a.options)), a.curve.push_back(i);
+        });
     }
     if (std::all_of(a.objects.begin(), a.objects.end(), [](const Found& f) { return !f.without.empty(); }))
         return refuse(RefusalKind::no_answer,
@@ -337,40 +338,35 @@ Result<void> run(const Context& context, const Options& options) {
     for (const auto& [name, x] :
          {std::pair("--tolerance", options.tolerance), {"--gap", options.gap}, {"--angle", options.angle}})
         if (x && !(*x >= 0)) wrong_usage(text(name, " needs a number >= 0, found ", *x));
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
-    const auto a = answer(*document, *objects, options);
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    const auto a = answer(*input->document, input->chosen, options);
     if (!a) return std::unexpected(a.error());
     return emit(context, context.json ? json_of(*a) : text_of(*a));
 }
 
 }  // namespace
 
-void add_continuity(CLI::App& app, Context& context) {
+void add_continuity(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        add_command(app, context, "continuity",
-                    "The order of C and G that curves reach at inner knots and where they join",
-                    "  freiform continuity path.json\n"
-                    "  freiform continuity path.json --tolerance 1e-6 --json\n"
-                    "  freiform continuity surface.json          knots of surfaces: C only");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    add_number(
-        *command, "--tolerance", options->tolerance,
+    const Command command =
+        line.add("continuity", "The order of C and G that curves reach at inner knots and where they join",
+                 "  freiform continuity path.json\n"
+                 "  freiform continuity path.json --tolerance 1e-6 --json\n"
+                 "  freiform continuity surface.json          knots of surfaces: C only");
+    command.file(options->file);
+    command.number(
+        "--tolerance", options->tolerance,
         "A jump counts as none if it moves no point of a neighbouring piece by more than this distance; "
         "0: only rounding (1e-9 of the size of the largest object)");
-    add_number(*command, "--angle", options->angle, "Degrees that tangents may differ by all the same (0)");
-    add_number(*command, "--gap", options->gap,
-               "Ends of curves nearer than this are a joint (1e-3 of the size of the largest object)");
-    add_count(*command, "--orders", options->orders, 0, kMaxDegree, "Highest order of G to look at (3)");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    command.number("--angle", options->angle, "Degrees that tangents may differ by all the same (0)");
+    command.number("--gap", options->gap,
+                   "Ends of curves nearer than this are a joint (1e-3 of the size of the largest object)");
+    command.count("--orders", options->orders, 0, kMaxDegree, "Highest order of G to look at (3)");
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

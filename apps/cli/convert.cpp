@@ -1,7 +1,6 @@
 // convert: from any format to any that can hold it, with changes on the way that leave the shape as it is
-// (or, with
-// --reduce, within a bound).
-#include "command.hpp"
+// (or, with --reduce, within a bound).
+#include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
@@ -28,48 +27,95 @@ struct Options {
 struct Piece {
     std::string suffix;
     Shape shape;
-    double bound = 0;  // of the distance to what it was
-    int removed = 0;   // knots
 };
 using Pieces = std::vector<Piece>;
 
+// What became of an object.
+struct Changed {
+    Pieces pieces;
+    double bound = 0;  // of the distance to what it was
+    int removed = 0;   // knots
+};
+
+// The library's functions for patches of any kind, on shapes. REQUIRES a curve, surface or volume.
+template <class F>
+Result<Shape> with_patch(const Shape& shape, F&& change) {
+    return std::visit(
+        [&](const auto& s) -> Result<Shape> {
+            if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>) {
+                auto changed = change(s);
+                if (!changed) return std::unexpected(std::move(changed.error()));
+                return Result<Shape>(std::in_place, *std::move(changed));
+            } else {
+                return shape;
+            }
+        },
+        shape);
+}
+
+Result<Shape> with_knots(const Shape& shape, int axis, std::span<const double> knots) {
+    return with_patch(shape, [&](const auto& s) { return insert_knots(s, axis, knots); });
+}
+Result<Shape> elevated(const Shape& shape, int axis, int by) {
+    return with_patch(shape, [&](const auto& s) { return elevate(s, axis, by); });
+}
+Result<Shape> restricted(const Shape& shape, int axis, const Interval& on) {
+    return with_patch(shape, [&](const auto& s) { return restrict_to(s, axis, on); });
+}
+Result<Shape> reversed(const Shape& shape, int axis) {
+    return with_patch(shape, [&](const auto& s) { return Result<Shape>(std::in_place, reverse(s, axis)); });
+}
+Result<Shape> reduced(const Shape& shape, int axis, double tolerance, double& bound, int& removed) {
+    return with_patch(shape, [&](const auto& s) -> Result<std::remove_cvref_t<decltype(s)>> {
+        auto thin = remove_knots(s, axis, tolerance);
+        if (!thin) return std::unexpected(std::move(thin.error()));
+        bound = thin->bound, removed = thin->removed;
+        return std::move(thin->patch);
+    });
+}
+
 template <std::size_t N, class P>
+void add_bezier_pieces(const Patch<N, P>& patch, const std::string& suffix, Pieces& all) {
+    const auto pieces = decompose(patch);
+    const bool one = count_of(pieces.extent()) == 1;
+    each_index(pieces.extent(), [&](const Index<N>& at) {
+        const auto piece = pieces.piece(at);
+        auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
+            return std::array<BSplineBasis, N>{
+                *BSplineBasis::bezier(piece.basis(int(I)).degree(), piece.basis(int(I)).domain())...};
+        }
+        (std::make_index_sequence<N>{});
+        std::string name = suffix;
+        if (!one)
+            for (const int i : at) name += text(".", i);
+        all.push_back({std::move(name), Patch<N, P>::trusted(std::move(bases), piece.net())});
+    });
+}
+
 class Changes {
 public:
-    Changes(const Options& options, Patch<N, P> patch) : o_(options) {
-        parts_.push_back({"", std::move(patch)});
+    Changes(const Options& options, const Shape& patch) : o_(options), axes_(bases_of(patch).size()) {
+        all_.pieces.push_back({"", patch});
     }
 
-    Result<Pieces> run() {
-        if (!o_.axis.empty() && axis_or(0) >= N)
+    Result<Changed> run() {
+        if (!o_.axis.empty() && axis_or(0) >= axes_)
             return refuse(
                 RefusalKind::no_answer, "--axis",
-                text("the object has ", N, N == 1 ? " parameter" : " parameters", ", no ", o_.axis));
-        if (!o_.knots.empty())
-            if (auto ok = each("--insert-knots", [&](auto& s) { return insert(s); }); !ok)
-                return std::unexpected(ok.error());
-        if (o_.elevate)
-            if (auto ok = each("--elevate", [&](auto& s) { return elevate_all(s); }); !ok)
-                return std::unexpected(ok.error());
-        if (o_.reduce)
-            if (auto ok = reduce(); !ok) return std::unexpected(ok.error());
-        if (o_.split)
-            if (auto ok = split(); !ok) return std::unexpected(ok.error());
-        if (o_.reverse)
-            for (auto& part : parts_) part.patch = reverse(part.patch, int(axis_or(0)));
+                text("the object has ", axes_, axes_ == 1 ? " parameter" : " parameters", ", no ", o_.axis));
+        Result<void> ok;
+        if (!o_.knots.empty()) ok = insert();
+        if (ok && o_.elevate) ok = elevate_all();
+        if (ok && o_.reduce) ok = reduce();
+        if (ok && o_.split) ok = split();
+        if (ok && o_.reverse)
+            ok = each("--reverse", [&](const Shape& s) { return reversed(s, int(axis_or(0))); });
+        if (!ok) return std::unexpected(ok.error());
         if (o_.to_bezier) to_bezier();
-        Pieces out;
-        for (auto& part : parts_)
-            out.push_back({std::move(part.suffix), std::move(part.patch), bound_, removed_});
-        return out;
+        return std::move(all_);
     }
 
 private:
-    struct Part {
-        std::string suffix;
-        Patch<N, P> patch;
-    };
-
     std::size_t axis_or(std::size_t otherwise) const {
         return o_.axis.empty() ? otherwise : kAxisNames.find(o_.axis[0]);
     }
@@ -81,113 +127,112 @@ private:
         return refuse_within(option, std::move(r));
     }
 
-    template <class F>
-    Result<void> each(std::string_view option, F&& change) {
-        for (auto& part : parts_) {
-            auto changed = change(part.patch);
+    Result<void> each(std::string_view option, const std::function<Result<Shape>(const Shape&)>& change) {
+        for (Piece& piece : all_.pieces) {
+            auto changed = change(piece.shape);
             if (!changed) return about(option, changed.error());
-            part.patch = std::move(*changed);
+            piece.shape = *std::move(changed);
         }
         return {};
     }
 
-    Result<Patch<N, P>> insert(const Patch<N, P>& s) const {
+    Result<void> insert() {
         std::vector<double> sorted = o_.knots;
         std::sort(sorted.begin(), sorted.end());
-        return insert_knots(s, int(axis_or(0)), sorted);
+        return each("--insert-knots", [&](const Shape& s) { return with_knots(s, int(axis_or(0)), sorted); });
     }
 
-    Result<Patch<N, P>> elevate_all(const Patch<N, P>& s) const {
-        Result<Patch<N, P>> out = s;
-        for (std::size_t d = 0; d < N && out; ++d)
-            if (o_.axis.empty() || axis_or(0) == d) out = elevate(*out, int(d), *o_.elevate);
-        return out;
+    Result<void> elevate_all() {
+        Result<void> ok;
+        for (std::size_t d = 0; d < axes_ && ok; ++d)
+            if (o_.axis.empty() || axis_or(0) == d)
+                ok = each("--elevate", [&](const Shape& s) { return elevated(s, int(d), *o_.elevate); });
+        return ok;
     }
 
     // Each axis may use what the ones before have left of the tolerance, so that the sum stays within it.
     Result<void> reduce() {
-        for (std::size_t d = 0; d < N; ++d) {
+        for (std::size_t d = 0; d < axes_; ++d) {
             if (!o_.axis.empty() && axis_or(0) != d) continue;
-            auto thin = remove_knots(parts_[0].patch, int(d), std::max(*o_.reduce - bound_, 0.0));
+            double bound = 0;
+            int removed = 0;
+            Shape& shape = all_.pieces[0].shape;
+            auto thin = reduced(shape, int(d), std::max(*o_.reduce - all_.bound, 0.0), bound, removed);
             if (!thin) return about("--reduce", thin.error());
-            parts_[0].patch = std::move(thin->patch);
-            bound_ = thin->bound == 0 ? bound_ : std::nextafter(bound_ + thin->bound, 1e308);
-            removed_ += thin->removed;
+            shape = *std::move(thin);
+            all_.bound = bound == 0 ? all_.bound : std::nextafter(all_.bound + bound, 1e308);
+            all_.removed += removed;
         }
         return {};
     }
 
     Result<void> split() {
-        std::vector<Part> halves;
-        const int axis = int(axis_or(0));
-        for (const auto& part : parts_) {
-            const Interval on = part.patch.basis(axis).domain();
+        Pieces halves;
+        const std::size_t axis = axis_or(0);
+        for (const Piece& piece : all_.pieces) {
+            const Interval on = bases_of(piece.shape)[axis].domain();
             if (!(on.lo < *o_.split && *o_.split < on.hi))
                 return refuse(RefusalKind::out_of_domain, "--split",
                               text(*o_.split, " is not inside the domain [", on.lo, ", ", on.hi, "]"));
             int k = 0;
             for (const Interval half : {Interval{on.lo, *o_.split}, Interval{*o_.split, on.hi}}) {
-                auto s = restrict_to(part.patch, axis, half);
+                auto s = restricted(piece.shape, int(axis), half);
                 if (!s) return about("--split", s.error());
-                halves.push_back({text(part.suffix, k++ == 0 ? ".a" : ".b"), std::move(*s)});
+                halves.push_back({text(piece.suffix, k++ == 0 ? ".a" : ".b"), *std::move(s)});
             }
         }
-        parts_ = std::move(halves);
+        all_.pieces = std::move(halves);
         return {};
     }
 
     void to_bezier() {
-        std::vector<Part> all;
-        for (const auto& part : parts_) {
-            const auto pieces = decompose(part.patch);
-            const bool one = count_of(pieces.extent()) == 1;
-            each_index(pieces.extent(), [&](const Index<N>& at) {
-                const auto piece = pieces.piece(at);
-                auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
-                    return std::array<BSplineBasis, N>{
-                        *BSplineBasis::bezier(piece.basis(int(I)).degree(), piece.basis(int(I)).domain())...};
-                }
-                (std::make_index_sequence<N>{});
-                std::string suffix = part.suffix;
-                if (!one)
-                    for (const int i : at) suffix += text(".", i);
-                all.push_back({std::move(suffix), Patch<N, P>::trusted(std::move(bases), piece.net())});
-            });
-        }
-        parts_ = std::move(all);
+        Pieces all;
+        for (const Piece& piece : all_.pieces)
+            std::visit(
+                [&](const auto& s) {
+                    if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
+                        add_bezier_pieces(s, piece.suffix, all);
+                },
+                piece.shape);
+        all_.pieces = std::move(all);
     }
 
     const Options& o_;
-    std::vector<Part> parts_;
-    double bound_ = 0;
-    int removed_ = 0;
+    std::size_t axes_;
+    Changed all_;
 };
 
 // Of the changes, a triangle knows elevation, and a Bezier patch it is.
-template <class P>
-Result<Pieces> changed_triangle(const Triangle<P>& s, const Options& o) {
+Result<Changed> changed_triangle(const Shape& shape, const Options& o) {
     if (o.reverse || o.split || o.reduce || !o.knots.empty() || !o.axis.empty())
         return refuse(RefusalKind::no_answer, "", "is a triangle; of the changes it knows --elevate only");
-    Result<Triangle<P>> out = s;
-    for (int i = 0; i < o.elevate.value_or(0) && out; ++i) out = elevate(*out);
-    if (!out) return refuse(RefusalKind::no_answer, "--elevate", out.error().message);
-    return Pieces{{"", std::move(*out)}};
-}
-
-Result<Pieces> changed(const Shape& shape, const Options& options) {
-    return std::visit(
-        [&](const auto& s) -> Result<Pieces> {
+    auto found = std::visit(
+        [&](const auto& s) -> Result<Shape> {
             using S = std::remove_cvref_t<decltype(s)>;
-            if constexpr (TensorPatch<S>)
-                return Changes<S::kParams, typename S::Coefficients>(options, s).run();
-            else if constexpr (TriangularPatch<S>)
-                return changed_triangle(s, options);
-            else
-                return refuse(RefusalKind::no_answer, "",
-                              text("is a ", type_name(shape),
-                                   "; the options that change a shape are for curves, surfaces and volumes"));
+            if constexpr (TriangularPatch<S>) {
+                Result<S> out = s;
+                for (int i = 0; i < o.elevate.value_or(0) && out; ++i) out = elevate(*out);
+                if (!out) return std::unexpected(std::move(out.error()));
+                return Result<Shape>(std::in_place, *std::move(out));
+            } else {
+                return shape;
+            }
         },
         shape);
+    if (!found) return refuse(RefusalKind::no_answer, "--elevate", found.error().message);
+    Changed all;
+    all.pieces.push_back({"", *std::move(found)});
+    return all;
+}
+
+Result<Changed> changed(const Shape& shape, const Options& options) {
+    const std::string_view type = type_name(shape);
+    if (type == "triangle") return changed_triangle(shape, options);
+    if (type == "trimmed" || type == "model")
+        return refuse(
+            RefusalKind::no_answer, "",
+            text("is a ", type, "; the options that change a shape are for curves, surfaces and volumes"));
+    return Changes(options, shape).run();
 }
 
 struct Reduction {
@@ -195,28 +240,25 @@ struct Reduction {
     int removed = 0;
 };
 
-Result<Document> changed(const Document& document, const Options& options, Reduction& reduction) {
-    const auto objects = selected(document, options.object);
-    if (!objects) return std::unexpected(objects.error());
+Result<Document> changed(const Input& input, const Options& options, Reduction& reduction) {
+    const Document& document = *input.document;
     Document out;
     out.unit = document.unit;
-    for (const std::size_t i : *objects) {
+    for (const std::size_t i : input.chosen) {
         const Object& o = document.objects[i];
         if (!options.changes()) {
             out.objects.push_back(o);
             continue;
         }
-        auto pieces = changed(o.shape, options);
-        if (!pieces) {
-            Refusal r = pieces.error();
+        auto made = changed(o.shape, options);
+        if (!made) {
+            Refusal r = made.error();
             r.where = text(object_label(document, i), r.where.empty() ? "" : ": ", r.where);
             return std::unexpected(std::move(r));
         }
-        if (!pieces->empty()) {
-            reduction.bound = std::max(reduction.bound, pieces->front().bound);
-            reduction.removed += pieces->front().removed;
-        }
-        for (Piece& p : *pieces) {
+        reduction.bound = std::max(reduction.bound, made->bound);
+        reduction.removed += made->removed;
+        for (Piece& p : made->pieces) {
             const std::string name =
                 p.suffix.empty() || !o.name.empty() ? o.name + p.suffix : text(i, p.suffix);
             out.objects.push_back({name, std::move(p.shape), {}});
@@ -244,10 +286,10 @@ Result<void> run(const Context& context, const Options& options) {
                          format == "stl" || format == "obj" || format == "ply" || format == "glb"
                              ? "; freiform tessellate writes triangles"
                              : ""));
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
     Reduction reduction;
-    const auto out = changed(*document, options, reduction);
+    const auto out = changed(*input, options, reduction);
     if (!out) {
         Refusal r = out.error();
         if (r.where.starts_with("objects[")) r.where = text(shown(options.file), ": ", r.where);
@@ -275,38 +317,33 @@ Result<void> run(const Context& context, const Options& options) {
 
 }  // namespace
 
-void add_convert(CLI::App& app, Context& context) {
+void add_convert(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        add_command(app, context, "convert",
-                    "Read any known format, write any that can hold it, change splines on the way",
-                    "  freiform convert teapot.bpt -o teapot.json\n"
-                    "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
-                    "  freiform convert surface.json --to-bezier -o patches.bpt\n"
-                    "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
-                    "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
-                    "--reverse, --to-bezier.\n"
-                    "--elevate and --reduce change all directions, --insert-knots, --split and --reverse the "
-                    "first, unless\n"
-                    "--axis says which.");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    add_output(*command, context, "The file to write: .json or .bpt");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_flag("--to-bezier", options->to_bezier,
-                      "Cut splines into their Bezier pieces, an object for each");
-    add_count(*command, "--elevate", options->elevate, 0, kMaxDegree,
-              "Raise the degree by N; the shape stays");
-    add_numbers(*command, "--insert-knots", options->knots, "Insert knots; the shape stays");
-    add_number(*command, "--reduce", options->reduce,
-               "Remove knots as long as no point moves by more than this; the bound reached is printed");
-    add_number(*command, "--split", options->split, "Cut at a parameter, an object for each side");
-    command->add_flag("--reverse", options->reverse, "Run through the parameter backwards");
-    command->add_option("--axis", options->axis, "Which parameter the changes are for")
-        ->check(CLI::IsMember({"u", "v", "w"}));
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    const Command command =
+        line.add("convert", "Read any known format, write any that can hold it, change splines on the way",
+                 "  freiform convert teapot.bpt -o teapot.json\n"
+                 "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
+                 "  freiform convert surface.json --to-bezier -o patches.bpt\n"
+                 "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
+                 "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
+                 "--reverse, --to-bezier.\n"
+                 "--elevate and --reduce change all directions, --insert-knots, --split and --reverse the "
+                 "first, unless\n"
+                 "--axis says which.");
+    command.file(options->file);
+    command.output("The file to write: .json or .bpt");
+    command.object(options->object);
+    command.flag("--to-bezier", options->to_bezier,
+                 "Cut splines into their Bezier pieces, an object for each");
+    command.count("--elevate", options->elevate, 0, kMaxDegree, "Raise the degree by N; the shape stays");
+    command.numbers("--insert-knots", options->knots, "Insert knots; the shape stays");
+    command.number("--reduce", options->reduce,
+                   "Remove knots as long as no point moves by more than this; the bound reached is printed");
+    command.number("--split", options->split, "Cut at a parameter, an object for each side");
+    command.flag("--reverse", options->reverse, "Run through the parameter backwards");
+    command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

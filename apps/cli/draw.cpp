@@ -1,5 +1,5 @@
 // draw: a picture: lines (curves, surfaces, models) as SVG, PDF or PNG, or shaded surfaces as PNG.
-#include "command.hpp"
+#include "input.hpp"
 
 #include <freiform/io/drawing.hpp>
 #include <freiform/io/mesh_file.hpp>
@@ -160,17 +160,16 @@ Result<std::string> picture(const Context& context, const Options& options, cons
         return not_built(".png of surfaces", "libegl-dev libepoxy-dev libpng-dev", ", or write .svg");
 #endif
     }
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
-    const bool faces = format == "png" && std::ranges::any_of(*objects, [&](std::size_t i) {
-                           return has_faces(document->objects[i].shape);
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    const Document& document = *input->document;
+    const bool faces = format == "png" && std::ranges::any_of(input->chosen, [&](std::size_t i) {
+                           return has_faces(document.objects[i].shape);
                        });
     refuse_other_kind(options, faces);
-    if (!faces) return drawn(*document, *objects, options, view, format);
+    if (!faces) return drawn(document, input->chosen, options, view, format);
 #if FREIFORM_HAS_GL
-    const auto mesh = mesh_of(*document, *objects, context, options);
+    const auto mesh = mesh_of(document, input->chosen, context, options);
     if (!mesh) return std::unexpected(mesh.error());
     return shaded(*mesh, options, view);
 #else
@@ -190,68 +189,61 @@ Result<void> run(const Context& context, const Options& options) {
     return emit(context, *bytes);
 }
 
-void add_line_options(CLI::App& command, Options& o) {
-    command.add_flag("--control", o.control,
-                     "Also control polygons and nets; the area of a point is as its weight");
-    command.add_option("--names", o.names, "Name the control points of curves: b0, b1, .. or P1, P2, ..")
-        ->type_name("b0|P1")
-        ->check(CLI::IsMember({"b0", "P1"}));
-    command.add_flag("--knots", o.knots, "Also the places of the knots on curves, multiple ones larger");
-    command.add_flag("--comb", o.comb, "Also the curvature of curves, as needles away from its centre");
-    add_number(command, "--construction", o.construction,
-               "Also the points of the de Casteljau or de Boor scheme at this parameter");
-    add_number(command, "--tangent", o.tangent, "Also tangent and normal of curves at this parameter");
-    add_number(command, "--osculating", o.osculating,
-               "Also the circle of curvature of curves at this parameter");
-    command.add_flag("--hull", o.hull, "Also the convex hull of the control points of curves");
-    command.add_flag("--box", o.box, "Also the boxes of curves");
-    command.add_flag("--joints", o.joints, "Also the order of continuity at knots and where curves meet");
-    command.add_flag("--a-frames", o.a_frames,
-                     "Also the A-frames at inner knots of curves of degree 2 or more");
-    command.add_flag("--hodograph", o.hodograph, "A panel with the curve of the derivatives");
-    command.add_flag("--basis", o.basis, "A panel with the basis functions and the knots of curves");
-    command.add_flag("--axes", o.axes, "Axes with ticks");
-    command.add_flag("--grid", o.grid, "Axes with ticks, and a grid");
-    command.add_flag("--legend", o.legend, "What is what");
-    command.add_option("--title", o.title, "Above the drawing")->type_name("TEXT");
+void add_line_options(const Command& command, Options& o) {
+    command.flag("--control", o.control,
+                 "Also control polygons and nets; the area of a point is as its weight");
+    command.word("--names", o.names, "Name the control points of curves: b0, b1, .. or P1, P2, ..")
+        .shown_as("b0|P1")
+        .one_of({"b0", "P1"});
+    command.flag("--knots", o.knots, "Also the places of the knots on curves, multiple ones larger");
+    command.flag("--comb", o.comb, "Also the curvature of curves, as needles away from its centre");
+    command.number("--construction", o.construction,
+                   "Also the points of the de Casteljau or de Boor scheme at this parameter");
+    command.number("--tangent", o.tangent, "Also tangent and normal of curves at this parameter");
+    command.number("--osculating", o.osculating, "Also the circle of curvature of curves at this parameter");
+    command.flag("--hull", o.hull, "Also the convex hull of the control points of curves");
+    command.flag("--box", o.box, "Also the boxes of curves");
+    command.flag("--joints", o.joints, "Also the order of continuity at knots and where curves meet");
+    command.flag("--a-frames", o.a_frames, "Also the A-frames at inner knots of curves of degree 2 or more");
+    command.flag("--hodograph", o.hodograph, "A panel with the curve of the derivatives");
+    command.flag("--basis", o.basis, "A panel with the basis functions and the knots of curves");
+    command.flag("--axes", o.axes, "Axes with ticks");
+    command.flag("--grid", o.grid, "Axes with ticks, and a grid");
+    command.flag("--legend", o.legend, "What is what");
+    command.word("--title", o.title, "Above the drawing").shown_as("TEXT");
 }
 
 }  // namespace
 
-void add_draw(CLI::App& app, Context& context) {
+void add_draw(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        add_command(app, context, "draw", "A picture of curves, surfaces, a model or a mesh",
-                    "  freiform draw curves.json -o curves.svg --control --knots\n"
-                    "  freiform draw curves.json -o curve.pdf --object cubic --names b0 "
-                    "--construction 0.4 --hull\n"
-                    "  freiform draw curves.json -o curve.svg --object closed --comb --basis\n"
-                    "  freiform draw teapot.bpt -o teapot.png\n"
-                    "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
-                    "  freiform draw part.glb -o part.png --edges");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    add_output(*command, context,
-               "The picture: .svg and .pdf of lines; .png shaded, or lines where there are only curves");
+    const Command command =
+        line.add("draw", "A picture of curves, surfaces, a model or a mesh",
+                 "  freiform draw curves.json -o curves.svg --control --knots\n"
+                 "  freiform draw curves.json -o curve.pdf --object cubic --names b0 "
+                 "--construction 0.4 --hull\n"
+                 "  freiform draw curves.json -o curve.svg --object closed --comb --basis\n"
+                 "  freiform draw teapot.bpt -o teapot.png\n"
+                 "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
+                 "  freiform draw part.glb -o part.png --edges");
+    command.file(options->file);
+    command.output("The picture: .svg and .pdf of lines; .png shaded, or lines where there are only curves");
     command
-        ->add_option("--view", options->view,
-                     "iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees "
-                     "(default: plane curves as they are, others from iso)")
-        ->type_name("VIEW");
-    add_line_options(*command, *options);
-    add_number(*command, "--tolerance", options->tolerance,
-               "Of the mesh that is drawn (default: below a pixel)");
-    add_count(*command, "--width", options->width, 1, 16384, "Pixels");
-    add_count(*command, "--height", options->height, 1, 16384, "Pixels");
-    command->add_flag("--edges", options->edges, "Also the edges of the triangles");
-    command->add_flag("--zebra", options->zebra,
-                      "Reflected stripes, which show breaks of tangent and curvature");
-    command->add_flag("--perspective", options->perspective, "Perspective instead of a parallel view");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    add_limits(*command, context);
-    add_triangle_limit(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+        .word("--view", options->view,
+              "iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees "
+              "(default: plane curves as they are, others from iso)")
+        .shown_as("VIEW");
+    add_line_options(command, *options);
+    command.number("--tolerance", options->tolerance, "Of the mesh that is drawn (default: below a pixel)");
+    command.count("--width", options->width, 1, 16384, "Pixels");
+    command.count("--height", options->height, 1, 16384, "Pixels");
+    command.flag("--edges", options->edges, "Also the edges of the triangles");
+    command.flag("--zebra", options->zebra, "Reflected stripes, which show breaks of tangent and curvature");
+    command.flag("--perspective", options->perspective, "Perspective instead of a parallel view");
+    command.object(options->object);
+    command.limits();
+    command.triangle_limit();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

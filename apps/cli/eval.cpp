@@ -1,10 +1,11 @@
 // eval: points and derivatives at parameters.
-#include "command.hpp"
+#include "input.hpp"
 
 #include <freiform/core/scan.hpp>
-#include <freiform/io/bpt.hpp>
 #include <freiform/io/points.hpp>
 #include <freiform/spline/accurate.hpp>
+
+#include <cmath>
 
 namespace freiform::cli {
 
@@ -49,145 +50,153 @@ Result<Parameters> parameters(const Options& options, const ReadOptions& limits)
     return all;
 }
 
-class Evaluation {
-public:
-    Evaluation(json::Writer& w, const Parameters& at, int derivatives, bool accurate,
-               std::optional<std::size_t> object)
-        : w_(w), at_(at), derivatives_(derivatives), accurate_(accurate), object_(object) {}
+// Values of one object, each of its kind's own type, as numbers.
+struct Answer {
+    std::vector<double> point, bound;  // a bound for each coordinate, if asked for
+    std::vector<std::vector<double>> derivatives;
+};
+
+struct Question {
+    const std::vector<double>& at;
+    std::size_t index;  // among the parameters that were given
+    int derivatives;
+    bool accurate;
+};
+
+template <int D>
+std::vector<double> numbers_of(const Vec<D>& v) {
+    return {v.c.begin(), v.c.end()};
+}
+
+Result<void> check_count(const Question& q, std::size_t n) {
+    if (q.at.size() == n) return {};
+    return refuse(RefusalKind::no_answer, text("at[", q.index, "]"),
+                  text("has ", q.at.size(), q.at.size() == 1 ? " number" : " numbers", ", the object has ", n,
+                       n == 1 ? " parameter" : " parameters"));
+}
+
+// The patch was asked for one parameter, number 0; the question had many.
+std::unexpected<Refusal> moved(Refusal r, std::size_t index) {
+    if (r.where.starts_with("at[0]")) r.where = text("at[", index, "]", r.where.substr(5));
+    return std::unexpected(std::move(r));
+}
+
+// The value; its bound only if that is wanted.
+template <class S>
+Result<void> evaluate(const S& patch, const Param<S::kParams>& u, bool accurate,
+                      Accurate<typename S::Point>& out) {
+    if (!accurate) return patch.evaluate(std::span(&u, 1), std::span(&out.value, 1));
+    if constexpr (TensorPatch<S>)
+        return evaluate_accurate(patch, std::span(&u, 1), std::span(&out, 1));
+    else
+        return refuse(RefusalKind::unsupported, "--accurate", "triangular patches have no accurate values");
+}
+
+struct Evaluation {
+    const Question& q;
 
     template <class S>
-    requires(TensorPatch<S> || TriangularPatch<S>) Result<void>
-    operator()(const S& patch) {
-        constexpr std::size_t N = S::kParams;
-        for (std::size_t i = 0; i < at_.size(); ++i) {
-            Param<N> u{};
-            if (auto ok = fill<N>(i, u); !ok) return ok;
-            Accurate<typename S::Point> value;
-            auto& point = value.value;
-            if (auto ok = answer(patch, u, value); !ok) return moved(ok.error(), i);
-            const auto all = patch.derivatives(u, derivatives_);
-            for (const auto& d : all)
-                if (!is_finite(d) || !is_finite(point))
-                    return refuse(RefusalKind::ill_conditioned, text("at[", i, "]"),
-                                  "a value or derivative there leaves the range of double");
-            write(i, value, std::span(all).subspan(1));
-        }
-        return {};
+    requires(TensorPatch<S> || TriangularPatch<S>) Result<Answer>
+    operator()(const S& patch) const {
+        Param<S::kParams> u{};
+        if constexpr (S::kParams == 1)
+            u = q.at[0];
+        else
+            std::copy(q.at.begin(), q.at.end(), u.begin());
+        Accurate<typename S::Point> value;
+        if (auto ok = evaluate(patch, u, q.accurate, value); !ok) return std::unexpected(ok.error());
+        Answer answer{numbers_of(value.value), {}, {}};
+        if (q.accurate) answer.bound = numbers_of(value.bound);
+        if (q.derivatives > 0)
+            for (const auto& d : patch.derivatives(u, q.derivatives))
+                answer.derivatives.push_back(numbers_of(d));
+        return answer;
     }
-    Result<void> operator()(const TrimmedSurface& t) {
-        return std::visit([&](const auto& s) { return (*this)(s); }, t.surface);
-    }
-    Result<void> operator()(const Model&) const {
+    Result<Answer> operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
+    Result<Answer> operator()(const Model&) const { return {}; }
+};
+
+bool is_finite(std::span<const double> numbers) {
+    return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+}
+
+Result<Answer> answer(const Shape& shape, const Question& q) {
+    if (std::holds_alternative<Model>(shape))
         return refuse(RefusalKind::no_answer, "",
                       "is a model of many faces, which has no parameters of its own; eval needs a curve, "
                       "surface or volume");
-    }
+    const std::size_t parameters = bases_of(shape).empty() ? 2 : bases_of(shape).size();
+    if (auto ok = check_count(q, parameters); !ok) return std::unexpected(ok.error());
+    auto found = std::visit(Evaluation{q}, shape);
+    if (!found) return moved(std::move(found.error()), q.index);
+    if (!is_finite(found->point) || !std::ranges::all_of(found->derivatives, is_finite))
+        return refuse(RefusalKind::ill_conditioned, text("at[", q.index, "]"),
+                      "a value or derivative there leaves the range of double");
+    return found;
+}
 
-private:
-    // The value; its bound only if that is wanted.
-    template <class S>
-    Result<void> answer(const S& patch, const Param<S::kParams>& u, Accurate<typename S::Point>& out) const {
-        if (!accurate_) return patch.evaluate(std::span(&u, 1), std::span(&out.value, 1));
-        if constexpr (TensorPatch<S>)
-            return evaluate_accurate(patch, std::span(&u, 1), std::span(&out, 1));
-        else
-            return refuse(RefusalKind::unsupported, "--accurate",
-                          "triangular patches have no accurate values");
+void write(json::Writer& w, std::optional<std::size_t> object, const Question& q, const Answer& a) {
+    w.new_line(1).begin_object();
+    if (object) w.field("object", *object);
+    w.key("at").array(q.at).key("point").array(a.point);
+    if (q.accurate) w.key("bound").array(a.bound);
+    if (q.derivatives > 0) {
+        w.key("derivatives").begin_array();
+        for (const auto& d : std::span(a.derivatives).subspan(1)) w.array(d);
+        w.end_array();
     }
-    template <std::size_t N>
-    Result<void> fill(std::size_t i, Param<N>& u) const {
-        if (at_[i].size() != N)
-            return refuse(RefusalKind::no_answer, text("at[", i, "]"),
-                          text("has ", at_[i].size(), at_[i].size() == 1 ? " number" : " numbers",
-                               ", the object has ", N, N == 1 ? " parameter" : " parameters"));
-        if constexpr (N == 1)
-            u = at_[i][0];
-        else
-            for (std::size_t d = 0; d < N; ++d) u[d] = at_[i][d];
-        return {};
-    }
-    // The patch was asked for one parameter, number 0; the question had many.
-    static std::unexpected<Refusal> moved(Refusal r, std::size_t i) {
-        if (r.where.starts_with("at[0]")) r.where = text("at[", i, "]", r.where.substr(5));
-        return std::unexpected(std::move(r));
-    }
-    template <class Point>
-    void write(std::size_t i, const Accurate<Point>& value, std::span<const Point> derivatives) {
-        w_.new_line(1).begin_object();
-        if (object_) w_.field("object", *object_);
-        w_.key("at").array(at_[i]).key("point").array(value.value.c);
-        if (accurate_) w_.key("bound").array(value.bound.c);
-        if (derivatives_ > 0) {
-            w_.key("derivatives").begin_array();
-            for (const Point& d : derivatives) w_.array(d.c);
-            w_.end_array();
-        }
-        w_.end_object();
-    }
-
-    json::Writer& w_;
-    const Parameters& at_;
-    int derivatives_;
-    bool accurate_;
-    std::optional<std::size_t> object_;
-};
+    w.end_object();
+}
 
 Result<void> run(const Context& context, const Options& options) {
     const auto at = parameters(options, context.read_options());
     if (!at) return std::unexpected(at.error());
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
-    if (objects->empty())
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    if (input->chosen.empty())
         return refuse(RefusalKind::no_answer, shown(options.file), "there is no object to evaluate");
 
     json::Writer w;
     w.begin_object().key("results").begin_array();
-    for (const std::size_t i : *objects) {
-        Evaluation evaluate(w, *at, options.derivatives.value_or(0), options.accurate,
-                            document->objects.size() > 1 ? std::optional(i) : std::nullopt);
-        if (auto ok = std::visit(evaluate, document->objects[i].shape); !ok) {
-            Refusal r = ok.error();
-            const std::string label =
-                document->objects.size() > 1 ? object_label(*document, i) : shown(options.file);
-            r.where = r.where.empty() ? label : text(label, ": ", r.where);
-            return std::unexpected(std::move(r));
+    const bool several = input->document->objects.size() > 1;
+    for (const std::size_t o : input->chosen)
+        for (std::size_t i = 0; i < at->size(); ++i) {
+            const Question q{(*at)[i], i, options.derivatives.value_or(0), options.accurate};
+            const auto a = answer(input->object(o).shape, q);
+            if (!a) return input->about(o, a.error());
+            write(w, several ? std::optional(o) : std::nullopt, q, *a);
         }
-    }
     w.end_array().end_object();
     return emit(context, w.take() + "\n");
 }
 
 }  // namespace
 
-void add_eval(CLI::App& app, Context& context) {
+void add_eval(CommandLine& line) {
     constexpr int kMostDerivatives = 60;
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        add_command(app, context, "eval", "Points and derivatives at parameters, as JSON",
-                    "  freiform eval curve.json --at 0.5\n"
-                    "  freiform eval teapot.bpt --object 3 --at '0,0;0.5,0.25' --derivatives 2\n"
-                    "  freiform eval curve.json --at @parameters.csv\n"
-                    "  freiform eval curve.json --at 0.75 --accurate");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
+    const Command command =
+        line.add("eval", "Points and derivatives at parameters, as JSON",
+                 "  freiform eval curve.json --at 0.5\n"
+                 "  freiform eval teapot.bpt --object 3 --at '0,0;0.5,0.25' --derivatives 2\n"
+                 "  freiform eval curve.json --at @parameters.csv\n"
+                 "  freiform eval curve.json --at 0.75 --accurate");
+    command.file(options->file);
     command
-        ->add_option("--at", options->at,
-                     "Parameters in the object's own domain, or @FILE with a line for each; several objects "
-                     "are all asked")
-        ->type_name("U[,V[,W]][;...]")
-        ->required();
-    add_count(*command, "--derivatives", options->derivatives, 0, kMostDerivatives,
-              "Derivatives to this order; of a surface du, dv, duu, duv, dvv, ...");
-    command->add_flag(
+        .word("--at", options->at,
+              "Parameters in the object's own domain, or @FILE with a line for each; several objects "
+              "are all asked")
+        .shown_as("U[,V[,W]][;...]")
+        .required();
+    command.count("--derivatives", options->derivatives, 0, kMostDerivatives,
+                  "Derivatives to this order; of a surface du, dv, duu, duv, dvv, ...");
+    command.flag(
         "--accurate", options->accurate,
         "Points right to the last digit, each with a proven bound of its error, by coordinate; slower");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

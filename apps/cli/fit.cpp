@@ -46,6 +46,32 @@ Result<Fitted<D>> fitted(const std::vector<Vec<D>>& points, const Options& optio
     return approximate<D>(points, o, kept);
 }
 
+struct Answer {
+    std::size_t points;
+    const BSplineBasis& basis;
+    const FitReport& report;
+    const std::vector<double>& at;
+};
+
+Result<void> report(const Context& context, const Options& options, const std::string& format,
+                    const Answer& a, Document document) {
+    const FitReport& r = a.report;
+    json::Writer w;
+    w.begin_object().field("points", a.points).field("coefficients", a.basis.size());
+    w.field("degree", a.basis.degree()).field("closed", options.closed);
+    w.field("tolerance", *options.tolerance)
+        .field("bound", r.bound)
+        .field("polyline_bound", r.polyline_bound);
+    w.field("kept_bound", r.kept_bound).field("rms_error", r.rms_error).field("iterations", r.iterations);
+    w.key("parameters").array(a.at).field("output", context.output).end_object();
+    std::string s = text("points          ", a.points, "\ncoefficients    ", a.basis.size());
+    s += text("\nbound           ", r.bound, " (no point is farther from the curve; tolerance ",
+              *options.tolerance, ")\n");
+    s += text("polyline bound  ", r.polyline_bound, " (the curve from the polygon of the points)\n");
+    s += text("mean error      ", r.rms_error, "\nwritten to ", context.output, "\n");
+    return emit_spline(context, format, std::move(document), s, w.take() + "\n");
+}
+
 Result<void> run(const Context& context, const Options& options) {
     const std::string format = spline_format(context, "fit");
     if (!(*options.tolerance > 0)) wrong_usage("--tolerance needs a positive distance");
@@ -61,62 +87,45 @@ Result<void> run(const Context& context, const Options& options) {
     return with_points(*table, [&]<int D>(std::vector<Vec<D>> points) -> Result<void> {
         auto f = fitted<D>(points, options);
         if (!f) return about_file(f.error(), *table, options.file);
-        const FitReport& r = f->report;
-        const int coefficients = f->curve.basis().size();
-        json::Writer w;
-        w.begin_object().field("points", points.size()).field("coefficients", coefficients);
-        w.field("degree", f->curve.basis().degree()).field("closed", options.closed);
-        w.field("tolerance", *options.tolerance)
-            .field("bound", r.bound)
-            .field("polyline_bound", r.polyline_bound);
-        w.field("kept_bound", r.kept_bound).field("rms_error", r.rms_error).field("iterations", r.iterations);
-        w.key("parameters").array(f->at).field("output", context.output).end_object();
-        std::string s = text("points          ", points.size(), "\ncoefficients    ", coefficients);
-        s += text("\nbound           ", r.bound, " (no point is farther from the curve; tolerance ",
-                  *options.tolerance, ")\n");
-        s += text("polyline bound  ", r.polyline_bound, " (the curve from the polygon of the points)\n");
-        s += text("mean error      ", r.rms_error, "\nwritten to ", context.output, "\n");
+        const BSplineBasis basis = f->curve.basis();
         Document document;
         document.objects.push_back({"", std::move(f->curve), {}});
-        return emit_spline(context, format, std::move(document), s, w.take() + "\n");
+        return report(context, options, format, {points.size(), basis, f->report, f->at},
+                      std::move(document));
     });
 }
 
 }  // namespace
 
-void add_fit(CLI::App& app, Context& context) {
+void add_fit(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(
-        app, context, "fit", "The smallest spline found within a tolerance of points in order",
+    const Command command = line.add(
+        "fit", "The smallest spline found within a tolerance of points in order",
         "  freiform fit points.csv --tolerance 0.01 -o curve.json\n"
         "  freiform fit outline.csv --closed --tolerance 0.01 --degree 5 -o outline.json\n"
         "  freiform fit points.csv --tolerance 0.01 --keep-ends --tangents '1,0;0,1' -o curve.json\n"
         "Points are lines of 1 to 4 numbers, or JSON: [[x,y], ...]. The distance reached is proven, and\n"
         "reported in both directions: from the points to the curve, and from the curve to their polygon.");
-    command->add_option("POINTS", options->file, "The file with the points; - is standard input")->required();
-    add_output(*command, context, "The file to write: .json or .bpt");
-    add_number(*command, "--tolerance", options->tolerance,
-               "No point is to be farther from the curve than this")
-        ->required();
-    add_count(*command, "--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
-    command->add_flag("--closed", options->closed, "The curve closes smoothly");
+    command.points_file(options->file);
+    command.output("The file to write: .json or .bpt");
+    command.number("--tolerance", options->tolerance, "No point is to be farther from the curve than this")
+        .required();
+    command.count("--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
+    command.flag("--closed", options->closed, "The curve closes smoothly");
+    command.word("--parameters", options->spacing, "To begin with: uniform, chordal (default) or centripetal")
+        .shown_as("WAY");
+    command.flag("--keep-parameters", options->keep_parameters,
+                 "Do not move parameters to where the curve is nearest");
+    command.flag("--keep-ends", options->keep_ends,
+                 "The curve begins and ends exactly at the first and the last point");
     command
-        ->add_option("--parameters", options->spacing,
-                     "To begin with: uniform, chordal (default) or centripetal")
-        ->type_name("WAY");
-    command->add_flag("--keep-parameters", options->keep_parameters,
-                      "Do not move parameters to where the curve is nearest");
-    command->add_flag("--keep-ends", options->keep_ends,
-                      "The curve begins and ends exactly at the first and the last point");
-    command
-        ->add_option("--tangents", options->tangents,
-                     "Derivatives by the parameter to keep at the start and at the end")
-        ->type_name("X,Y;X,Y");
-    add_number(*command, "--smoothing", options->smoothing,
-               "Add this many times the integral of the squared second derivative");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+        .word("--tangents", options->tangents,
+              "Derivatives by the parameter to keep at the start and at the end")
+        .shown_as("X,Y;X,Y");
+    command.number("--smoothing", options->smoothing,
+                   "Add this many times the integral of the squared second derivative");
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,5 +1,5 @@
 // flatten: curves as polylines, within a distance that is proven.
-#include "command.hpp"
+#include "input.hpp"
 
 #include <freiform/core/spelling.hpp>
 #include <freiform/io/bpt.hpp>
@@ -42,15 +42,6 @@ void add_lines(const Polyline<D>& p, std::size_t object, const std::string& name
     }
 }
 
-template <class P>
-Result<void> add_curve(const Curve<P>& curve, std::size_t object, const FlattenOptions& how,
-                       const std::string& name, std::vector<Line>& out) {
-    const auto line = flatten(curve, how);
-    if (!line) return std::unexpected(line.error());
-    add_lines(*line, object, name, out);
-    return {};
-}
-
 // The edges of a model that have a curve of their own.
 Result<void> add_edges(const Model& model, std::size_t object, const FlattenOptions& how,
                        std::vector<Line>& out) {
@@ -69,39 +60,6 @@ Result<void> add_edges(const Model& model, std::size_t object, const FlattenOpti
         for (std::size_t k = first; k < out.size(); ++k) out[k].edge = e;
     }
     if (without > 0) remark(text(without, " edges have no curve in space of their own, and are left out"));
-    return {};
-}
-
-template <class F>
-Result<void> each_curve(const Document& document, const std::vector<std::size_t>& objects,
-                        const std::string& file, F&& f) {
-    std::size_t curves = 0;
-    for (const std::size_t i : objects) {
-        const auto done = std::visit(
-            [&](const auto& s) -> Result<void> {
-                using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (TensorPatch<S>)
-                    if constexpr (S::kParams == 1) {
-                        ++curves;
-                        return f(i, s);
-                    }
-                if constexpr (std::same_as<S, Model> && requires { f(i, s); }) {
-                    ++curves;
-                    return f(i, s);
-                }
-                remark(text(object_label(document, i), ": is a ", type_name(document.objects[i].shape),
-                            ", not a curve, and left out"));
-                return {};
-            },
-            document.objects[i].shape);
-        if (!done) {
-            Refusal r = done.error();
-            const std::string label = document.objects.size() > 1 ? object_label(document, i) : shown(file);
-            r.where = r.where.empty() ? label : text(label, ": ", r.where);
-            return std::unexpected(std::move(r));
-        }
-    }
-    if (curves == 0) return refuse(RefusalKind::no_answer, shown(file), "there is no curve to flatten");
     return {};
 }
 
@@ -165,34 +123,52 @@ Result<std::string> to_svg(const std::vector<Line>& lines, const std::string& fi
     return s + "</svg>\n";
 }
 
-Result<void> compare(const Context& context, const Options& options, const Document& document,
-                     const std::vector<std::size_t>& objects) {
+void add_comparison(const std::vector<FlattenComparison>& rows, std::size_t object, const std::string& label,
+                    json::Writer& w, std::string& table) {
+    w.new_line(1).begin_object().field("object", object).key("methods").begin_array();
+    table += text(label, "\n  method            segments  largest distance (measured)  bound\n");
+    for (const FlattenComparison& r : rows) {
+        std::string name = text(name_of(r.method), r.polygons ? ", polygons" : "");
+        w.begin_object().field("method", name).field("segments", r.segments);
+        w.field("measured", r.measured).field("error_bound", r.bound).end_object();
+        name.resize(18, ' ');
+        std::string n = text(r.segments), m = text(r.measured);
+        n.resize(10, ' ');
+        m.resize(29, ' ');
+        table += text("  ", name, n, m, r.bound, "\n");
+    }
+    w.end_array().end_object();
+}
+
+Result<void> compare(const Context& context, const Options& options, const Input& input) {
     json::Writer w;
     std::string table;
     w.begin_object().key("objects").begin_array();
-    const auto done = each_curve(
-        document, objects, options.file, [&]<class P>(std::size_t i, const Curve<P>& curve) -> Result<void> {
-            const auto rows = compare_flattening(curve, *options.compare);
-            if (!rows) return std::unexpected(rows.error());
-            w.new_line(1).begin_object().field("object", i).key("methods").begin_array();
-            table += text(object_label(document, i),
-                          "\n  method            segments  largest distance (measured)  bound\n");
-            for (const FlattenComparison& r : *rows) {
-                std::string name = text(name_of(r.method), r.polygons ? ", polygons" : "");
-                w.begin_object().field("method", name).field("segments", r.segments);
-                w.field("measured", r.measured).field("error_bound", r.bound).end_object();
-                name.resize(18, ' ');
-                std::string n = text(r.segments), m = text(r.measured);
-                n.resize(10, ' ');
-                m.resize(29, ' ');
-                table += text("  ", name, n, m, r.bound, "\n");
-            }
-            w.end_array().end_object();
-            return {};
-        });
+    const auto done = each_curve(input, "flatten", [&](std::size_t i, const auto& curve) -> Result<void> {
+        const auto rows = compare_flattening(curve, *options.compare);
+        if (!rows) return std::unexpected(rows.error());
+        add_comparison(*rows, i, object_label(*input.document, i), w, table);
+        return {};
+    });
     if (!done) return done;
     w.end_array().end_object();
     return emit(context, context.json ? w.take() + "\n" : table);
+}
+
+// Of all curves and models that were chosen.
+Result<std::vector<Line>> lines_of(const Input& input, const FlattenOptions& how) {
+    std::vector<Line> lines;
+    const auto done = each_curve(
+        input, "flatten",
+        [&](std::size_t i, const auto& curve) -> Result<void> {
+            const auto line = flatten(curve, how);
+            if (!line) return std::unexpected(line.error());
+            add_lines(*line, i, input.object(i).name, lines);
+            return {};
+        },
+        [&](std::size_t i, const Model& model) { return add_edges(model, i, how, lines); });
+    if (!done) return std::unexpected(done.error());
+    return lines;
 }
 
 Result<void> run(const Context& context, const Options& options) {
@@ -211,11 +187,9 @@ Result<void> run(const Context& context, const Options& options) {
         wrong_usage("one of --tolerance and --segments says how fine the polyline is");
     if (options.tolerance && !(*options.tolerance > 0))
         wrong_usage(text("--tolerance needs a positive number, found ", *options.tolerance));
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
-    if (options.compare) return compare(context, options, *document, *objects);
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    if (options.compare) return compare(context, options, *input);
 
     FlattenOptions how;
     how.method = FlattenMethod(method - std::begin(kMethods));
@@ -224,50 +198,40 @@ Result<void> run(const Context& context, const Options& options) {
     how.polygons = options.polygons;
     if (how.polygons && how.method != FlattenMethod::halving)
         wrong_usage("--polygons draws the control polygons of --method halving");
-    std::vector<Line> lines;
-    const auto done =
-        each_curve(*document, *objects, options.file, [&](std::size_t i, const auto& curve) -> Result<void> {
-            if constexpr (requires { curve.edges; })
-                return add_edges(curve, i, how, lines);
-            else
-                return add_curve(curve, i, how, document->objects[i].name, lines);
-        });
-    if (!done) return done;
-    if (format == "json") return emit(context, to_json(lines, *document));
-    if (format == "csv") return emit(context, to_csv(lines));
-    const auto svg = to_svg(lines, options.file);
+    const auto lines = lines_of(*input, how);
+    if (!lines) return std::unexpected(lines.error());
+    if (format == "json") return emit(context, to_json(*lines, *input->document));
+    if (format == "csv") return emit(context, to_csv(*lines));
+    const auto svg = to_svg(*lines, options.file);
     return svg ? emit(context, *svg) : std::unexpected(svg.error());
 }
 
 }  // namespace
 
-void add_flatten(CLI::App& app, Context& context) {
+void add_flatten(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command =
-        add_command(app, context, "flatten",
-                    "Curves, and edges of models, as polylines, within a distance that is proven",
-                    "  freiform flatten curves.json --tolerance 0.01 -o curves.svg\n"
-                    "  freiform flatten curve.json --segments 64 --method forward\n"
-                    "  freiform flatten curve.json --compare 16");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    add_number(*command, "--tolerance", options->tolerance,
-               "Largest distance between curve and polyline, in the unit of the file");
-    add_count(*command, "--segments", options->segments, 1, 10'000'000,
-              "Number of segments instead of a tolerance; error_bound says what it reached");
+    const Command command =
+        line.add("flatten", "Curves, and edges of models, as polylines, within a distance that is proven",
+                 "  freiform flatten curves.json --tolerance 0.01 -o curves.svg\n"
+                 "  freiform flatten curve.json --segments 64 --method forward\n"
+                 "  freiform flatten curve.json --compare 16");
+    command.file(options->file);
+    command.number("--tolerance", options->tolerance,
+                   "Largest distance between curve and polyline, in the unit of the file");
+    command.count("--segments", options->segments, 1, 10'000'000,
+                  "Number of segments instead of a tolerance; error_bound says what it reached");
     command
-        ->add_option("--method", options->method,
-                     "adaptive: as few segments as possible (default); uniform: equal parameter steps; "
-                     "forward: forward differences; halving: halved until flat")
-        ->type_name("METHOD");
-    command->add_flag("--polygons", options->polygons, "halving: the control polygons of the last level");
-    add_count(*command, "--compare", options->compare, 1, 1'000'000,
-              "A table of what every method reaches with this number of segments");
-    add_output(*command, context, "The polylines: .json, .csv or .svg");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+        .word("--method", options->method,
+              "adaptive: as few segments as possible (default); uniform: equal parameter steps; "
+              "forward: forward differences; halving: halved until flat")
+        .shown_as("METHOD");
+    command.flag("--polygons", options->polygons, "halving: the control polygons of the last level");
+    command.count("--compare", options->compare, 1, 1'000'000,
+                  "A table of what every method reaches with this number of segments");
+    command.output("The polylines: .json, .csv or .svg");
+    command.object(options->object);
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

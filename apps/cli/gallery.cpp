@@ -151,17 +151,16 @@ Result<void> run(const Context& context, const Options& options) {
 
 }  // namespace
 
-void add_gallery(CLI::App& app, Context& context) {
+void add_gallery(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(app, context, "gallery", "Figures of what freiform knows about curves",
-                                    "  freiform gallery -o figures        (then open figures/index.html)\n"
-                                    "  freiform gallery -o figures --only R15 --to pdf");
-    command->add_option("-o,--output", context.output, "The folder; it is made if it is not there")
-        ->type_name("FOLDER");
-    command->add_option("--to", context.to, "svg (default), pdf or png")->type_name("FORMAT");
-    command->add_option("--only", options->only, "Only this figure: R01 to R20")->type_name("ROW");
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    const Command command = line.add("gallery", "Figures of what freiform knows about curves",
+                                     "  freiform gallery -o figures        (then open figures/index.html)\n"
+                                     "  freiform gallery -o figures --only R15 --to pdf");
+    command.word("-o,--output", line.context().output, "The folder; it is made if it is not there")
+        .shown_as("FOLDER");
+    command.word("--to", line.context().to, "svg (default), pdf or png").shown_as("FORMAT");
+    command.word("--only", options->only, "Only this figure: R01 to R20").shown_as("ROW");
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

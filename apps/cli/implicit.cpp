@@ -1,5 +1,5 @@
 // implicit: the equations of plane curves.
-#include "command.hpp"
+#include "input.hpp"
 #include "point_commands.hpp"
 
 #include <freiform/io/bpt.hpp>
@@ -99,22 +99,19 @@ private:
 
 Result<void> run(const Context& context, const Options& options) {
     auto at = parse_vectors("--at", options.at, 2);
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
     json::Writer w;
     std::string lines;
     w.begin_object().key("results").begin_array();
     Equations equations(w, lines, std::move(at));
-    for (const std::size_t i : *objects) {
-        const std::string name = text(shown(options.file), ": ", object_label(*document, i));
-        const auto done = std::visit(
-            [&](const auto& s) -> Result<void> {
-                if constexpr (requires { equations.curve(s, name, i); }) return equations.curve(s, name, i);
-                return {};
-            },
-            document->objects[i].shape);
+    for (const std::size_t i : input->chosen) {
+        const std::string name = text(shown(options.file), ": ", object_label(*input->document, i));
+        Result<void> done;
+        with_curve(input->object(i).shape, [&](const auto& curve) {
+            if constexpr (requires { equations.curve(curve, name, i); })
+                done = equations.curve(curve, name, i);
+        });
         if (!done) return done;
     }
     if (equations.written == 0)
@@ -126,20 +123,17 @@ Result<void> run(const Context& context, const Options& options) {
 
 }  // namespace
 
-void add_implicit(CLI::App& app, Context& context) {
+void add_implicit(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(app, context, "implicit", "The equation F(x, y) = 0 of plane curves",
-                                    "  freiform implicit arc.json\n"
-                                    "  freiform implicit curve.json --at '0,0;1.5,2' --json");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    command->add_option("--at", options->at, "Points; of each, the sign of F, exactly")
-        ->type_name("X,Y[;...]");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    const Command command = line.add("implicit", "The equation F(x, y) = 0 of plane curves",
+                                     "  freiform implicit arc.json\n"
+                                     "  freiform implicit curve.json --at '0,0;1.5,2' --json");
+    command.file(options->file);
+    command.word("--at", options->at, "Points; of each, the sign of F, exactly").shown_as("X,Y[;...]");
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,5 +1,5 @@
 // info: what a file contains.
-#include "command.hpp"
+#include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
 
@@ -11,58 +11,84 @@ namespace {
 
 constexpr char kAxis[] = "uvw";
 
-template <int D>
-void write_box(json::Writer& w, const Box<D>& box) {
-    if (box.is_empty()) {
-        w.key("box").null();
-        return;
-    }
-    w.key("box").begin_object().key("min").array(box.lo.c).key("max").array(box.hi.c).end_object();
+void write_box(json::Writer& w, const ControlBox& box) {
+    w.key("box");
+    if (box.lo.empty())
+        w.null();
+    else
+        w.begin_object().key("min").array(box.lo).key("max").array(box.hi).end_object();
 }
 
-template <std::size_t N, class P>
-auto box_of(const Patch<N, P>& s) {
-    Box<Space<P>::kDim> box;
-    for (const auto& p : points(s)) box.add(p);
-    return box;
+ControlBox as_control_box(const Box<3>& box) {
+    if (box.is_empty()) return {};
+    return {{box.lo.c.begin(), box.lo.c.end()}, {box.hi.c.begin(), box.hi.c.end()}, box.diagonal()};
 }
 
-template <class P>
-auto box_of(const Triangle<P>& s) {
-    Box<Space<P>::kDim> box;
-    for (const P& p : s.coefficients()) box.add(project(p));
-    return box;
+// What patches, trimmed surfaces and triangles say about themselves.
+struct Facts {
+    std::span<const BSplineBasis> bases;  // of a triangle none, but
+    int degree = 0;
+    std::size_t points = 0;
+    int dimension = 3;
+    bool rational = false;
+    std::optional<std::size_t> loops;
+};
+
+template <class S>
+Facts facts_about(const S& s) {
+    Facts f;
+    if constexpr (TensorPatch<S>)
+        f.bases = s.bases();
+    else
+        f.degree = s.degree(), f.points = s.coefficients().size();
+    f.dimension = Space<typename S::Coefficients>::kDim;
+    f.rational = Space<typename S::Coefficients>::kRational;
+    return f;
 }
 
-template <class P>
-void write_triangle_info(json::Writer& w, const Triangle<P>& s) {
-    w.field("degree", s.degree()).field("dimension", Space<P>::kDim).field("rational", Space<P>::kRational);
-    w.key("points").array(std::array{s.coefficients().size()});
+Facts facts_of(const Shape& shape) {
+    return std::visit(
+        [](const auto& s) -> Facts {
+            using S = std::remove_cvref_t<decltype(s)>;
+            if constexpr (TensorPatch<S> || TriangularPatch<S>) {
+                return facts_about(s);
+            } else if constexpr (std::same_as<S, TrimmedSurface>) {
+                Facts f = std::visit([](const auto& surface) { return facts_about(surface); }, s.surface);
+                f.loops = s.loops.size();
+                return f;
+            } else {
+                return {};
+            }
+        },
+        shape);
+}
+
+void write_triangle_info(json::Writer& w, const Facts& f) {
+    w.field("degree", f.degree).field("dimension", f.dimension).field("rational", f.rational);
+    w.key("points").array(std::array{f.points});
     w.key("domain").begin_array();
-    for (const Interval& on : s.domain()) w.array(std::array{on.lo, on.hi});
+    for (int d = 0; d < 2; ++d) w.array(std::array{0.0, 1.0});
     w.end_array();
-    write_box(w, box_of(s));
 }
 
-template <std::size_t N, class P>
-void write_patch_info(json::Writer& w, const Patch<N, P>& s) {
+void write_patch_info(json::Writer& w, const Facts& f) {
     const auto per_axis = [&](std::string_view name, auto&& content) {
         w.key(name).begin_array();
-        for (const BSplineBasis& b : s.bases()) content(b);
+        for (const BSplineBasis& b : f.bases) content(b);
         w.end_array();
     };
-    if (N == 1)
-        w.field("degree", s.basis(0).degree());
+    if (f.loops) w.field("loops", *f.loops);
+    if (f.bases.size() == 1)
+        w.field("degree", f.bases[0].degree());
     else
         per_axis("degrees", [&](const BSplineBasis& b) { w.value(b.degree()); });
-    w.field("dimension", Space<P>::kDim).field("rational", Space<P>::kRational);
+    w.field("dimension", f.dimension).field("rational", f.rational);
     per_axis("points", [&](const BSplineBasis& b) { w.value(b.size()); });
     per_axis("pieces", [&](const BSplineBasis& b) { w.value(b.breaks().size() - 1); });
     per_axis("closed", [&](const BSplineBasis& b) { w.value(b.is_closed()); });
     per_axis("domain", [&](const BSplineBasis& b) {
         w.begin_array().value(b.domain().lo).value(b.domain().hi).end_array();
     });
-    write_box(w, box_of(s));
 }
 
 using Counts = std::map<std::string, int, std::less<>>;
@@ -103,7 +129,7 @@ void write_model_info(json::Writer& w, const Model& m) {
     w.end_array().key("approximations").begin_array();
     for (const Approximation& a : m.approximations) write_approximation(w, a);
     w.end_array();
-    write_box(w, s.box);
+    write_box(w, as_control_box(s.box));
 }
 
 std::string json_info(const Document& d, const std::string& file, const std::vector<std::size_t>& objects) {
@@ -120,57 +146,46 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
             .field("index", i)
             .field("name", o.name)
             .field("type", type_name(o.shape));
-        std::visit(
-            [&](const auto& s) {
-                using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (TensorPatch<S>) {
-                    write_patch_info(w, s);
-                } else if constexpr (TriangularPatch<S>) {
-                    write_triangle_info(w, s);
-                } else if constexpr (std::same_as<S, TrimmedSurface>) {
-                    w.field("loops", s.loops.size());
-                    std::visit([&](const auto& surface) { write_patch_info(w, surface); }, s.surface);
-                } else {
-                    write_model_info(w, s);
-                }
-            },
-            o.shape);
+        if (const Model* m = std::get_if<Model>(&o.shape)) {
+            write_model_info(w, *m);
+        } else {
+            const Facts f = facts_of(o.shape);
+            f.bases.empty() ? write_triangle_info(w, f) : write_patch_info(w, f);
+            write_box(w, control_box(o.shape));
+        }
         w.end_object();
     }
     w.end_array().end_object();
     return w.take() + "\n";
 }
 
-template <int D>
-std::string box_text(const Box<D>& box) {
-    if (box.is_empty()) return "  box      empty\n";
+std::string box_text(const ControlBox& box) {
+    if (box.lo.empty()) return "  box      empty\n";
     std::string s = "  box      ";
-    for (int i = 0; i < D; ++i) s += text(i ? " x [" : "[", box.lo[i], ", ", box.hi[i], "]");
+    for (std::size_t i = 0; i < box.lo.size(); ++i)
+        s += text(i ? " x [" : "[", box.lo[i], ", ", box.hi[i], "]");
     return s + "\n";
 }
 
-template <std::size_t N, class P>
-std::string patch_text(const Patch<N, P>& s) {
+std::string patch_text(const Facts& f) {
     std::string degrees, counts, domains, closed;
-    for (std::size_t d = 0; d < N; ++d) {
-        const BSplineBasis& b = s.basis(int(d));
+    for (std::size_t d = 0; d < f.bases.size(); ++d) {
+        const BSplineBasis& b = f.bases[d];
         const std::string_view between = d ? " x " : "";
         degrees += text(between, b.degree());
         counts += text(between, b.size());
         domains += text(between, "[", b.domain().lo, ", ", b.domain().hi, "]");
         if (b.is_closed())
-            closed += text(closed.empty() ? ", closed" : " and", N == 1 ? "" : text(" along ", kAxis[d]));
+            closed += text(closed.empty() ? ", closed" : " and",
+                           f.bases.size() == 1 ? "" : text(" along ", kAxis[d]));
     }
-    return text("  degree   ", degrees, ", ", counts, " points of ", Space<P>::kDim,
-                Space<P>::kRational ? " coordinates, rational" : " coordinates", closed, "\n  domain   ",
-                domains, "\n", box_text(box_of(s)));
-}
-
-template <class P>
-std::string triangle_text(const Triangle<P>& s) {
-    return text("  degree   ", s.degree(), ", ", s.coefficients().size(), " points of ", Space<P>::kDim,
-                Space<P>::kRational ? " coordinates, rational" : " coordinates",
-                "\n  domain   u >= 0, v >= 0, u + v <= 1\n", box_text(box_of(s)));
+    if (f.bases.empty()) {
+        degrees = text(f.degree), counts = text(f.points);
+        domains = "u >= 0, v >= 0, u + v <= 1";
+    }
+    return text("  degree   ", degrees, ", ", counts, " points of ", f.dimension,
+                f.rational ? " coordinates, rational" : " coordinates", closed, "\n  domain   ", domains,
+                "\n");
 }
 
 std::string kinds_text(const Counts& counts) {
@@ -186,7 +201,7 @@ std::string model_text(const Model& m) {
     t += text("  edges    ", s.edges, kinds_text(edge_kinds(m)), ", ", s.open_edges, " open, ", s.seams,
               " seams\n");
     t += text("  vertices ", s.vertices, "\n");
-    t += box_text(s.box);
+    t += box_text(as_control_box(s.box));
     for (const Refusal& r : m.refused)
         t += text("  refused  ", r.where, ": ", r.message, " (", name_of(r.kind), ")\n");
     for (const Approximation& a : m.approximations)
@@ -200,21 +215,13 @@ std::string text_info(const Document& d, const std::string& file, const std::vec
     for (const std::size_t i : objects) {
         const Object& o = d.objects[i];
         s += text(object_label(d, i), ": ", type_name(o.shape), "\n");
-        s += std::visit(
-            [](const auto& shape) -> std::string {
-                using S = std::remove_cvref_t<decltype(shape)>;
-                if constexpr (TensorPatch<S>)
-                    return patch_text(shape);
-                else if constexpr (TriangularPatch<S>)
-                    return triangle_text(shape);
-                else if constexpr (std::same_as<S, TrimmedSurface>)
-                    return std::visit([](const auto& surface) { return patch_text(surface); },
-                                      shape.surface) +
-                           text("  loops    ", shape.loops.size(), "\n");
-                else
-                    return model_text(shape);
-            },
-            o.shape);
+        if (const Model* m = std::get_if<Model>(&o.shape)) {
+            s += model_text(*m);
+            continue;
+        }
+        const Facts f = facts_of(o.shape);
+        s += patch_text(f) + box_text(control_box(o.shape));
+        if (f.loops) s += text("  loops    ", *f.loops, "\n");
     }
     return s;
 }
@@ -224,31 +231,28 @@ struct Options {
 };
 
 Result<void> run(const Context& context, const Options& options) {
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    const Document& document = *input->document;
     const std::string file = shown(options.file);
-    return emit(context,
-                context.json ? json_info(*document, file, *objects) : text_info(*document, file, *objects));
+    return emit(context, context.json ? json_info(document, file, input->chosen)
+                                      : text_info(document, file, input->chosen));
 }
 
 }  // namespace
 
-void add_info(CLI::App& app, Context& context) {
+void add_info(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(app, context, "info",
-                                    "What a file contains: counts, types, degrees, domains, boxes, unit",
-                                    "  freiform info teapot.bpt\n"
-                                    "  freiform info part.step --json\n"
-                                    "  freiform info - < curve.json");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    const Command command =
+        line.add("info", "What a file contains: counts, types, degrees, domains, boxes, unit",
+                 "  freiform info teapot.bpt\n"
+                 "  freiform info part.step --json\n"
+                 "  freiform info - < curve.json");
+    command.file(options->file);
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,7 +1,6 @@
 // inside: which points lie in a trimmed face, a closed plane curve or a closed body.
-#include "command.hpp"
+#include "input.hpp"
 
-#include <freiform/io/bpt.hpp>
 #include <freiform/io/points.hpp>
 #include <freiform/model/inside.hpp>
 
@@ -101,30 +100,23 @@ private:
 };
 
 Result<void> run(const Context& context, const Options& options) {
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
     const auto lines = read_number_lines(options.points, context.read_options());
     if (!lines) return std::unexpected(lines.error());
     const Asking ask(lines->row, options.tolerance, (long long)(context.limits.max_triangles));
+    const bool several = input->document->objects.size() > 1;
     json::Writer w;
     std::string plain;
     w.begin_object().key("results").begin_array();
-    for (const std::size_t o : *objects) {
-        const auto rows = std::visit(ask, document->objects[o].shape);
-        if (!rows) {
-            const std::string label =
-                document->objects.size() > 1 ? object_label(*document, o) : shown(options.file);
-            Refusal r = rows.error();
-            r.where = r.where.empty() ? label : text(label, ": ", r.where);
-            return std::unexpected(std::move(r));
-        }
+    for (const std::size_t o : input->chosen) {
+        const auto rows = std::visit(ask, input->object(o).shape);
+        if (!rows) return input->about(o, rows.error());
         for (std::size_t i = 0; i < rows->size(); ++i) {
             const Row& row = (*rows)[i];
             const std::string_view place = kPlaces[std::size_t(row.place)];
             w.new_line(1).begin_object();
-            if (document->objects.size() > 1) w.field("object", o);
+            if (several) w.field("object", o);
             w.key("point")
                 .array(lines->row[i])
                 .field("place", place)
@@ -143,29 +135,28 @@ Result<void> run(const Context& context, const Options& options) {
 
 }  // namespace
 
-void add_inside(CLI::App& app, Context& context) {
+void add_inside(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(app, context, "inside",
-                                    "Which points lie inside a trimmed face, a closed curve or a solid",
-                                    "  freiform inside face.json --points uv.csv\n"
-                                    "  freiform inside bracket.step --points xyz.csv --json");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
+    const Command command =
+        line.add("inside", "Which points lie inside a trimmed face, a closed curve or a solid",
+                 "  freiform inside face.json --points uv.csv\n"
+                 "  freiform inside bracket.step --points xyz.csv --json");
+    command.file(options->file);
     command
-        ->add_option("--points", options->points,
-                     "A line of numbers for each: parameters of a trimmed face, x,y or x,y,z")
-        ->type_name("FILE.csv")
-        ->required();
-    add_number(*command, "--tolerance", options->tolerance,
-               "Of a solid: points nearer than this to its surface may be called boundary (default 1e-6 of "
-               "the diagonal); of "
-               "loops: gaps that are closed (default: what their file format allows)");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    command->add_option("-o,--output", context.output, "Where the answer goes")->type_name("FILE");
-    add_limits(*command, context);
-    add_triangle_limit(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+        .word("--points", options->points,
+              "A line of numbers for each: parameters of a trimmed face, x,y or x,y,z")
+        .shown_as("FILE.csv")
+        .required();
+    command.number(
+        "--tolerance", options->tolerance,
+        "Of a solid: points nearer than this to its surface may be called boundary (default 1e-6 of "
+        "the diagonal); of "
+        "loops: gaps that are closed (default: what their file format allows)");
+    command.object(options->object);
+    command.answer_file();
+    command.limits();
+    command.triangle_limit();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

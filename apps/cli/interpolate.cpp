@@ -45,103 +45,128 @@ std::vector<Scheme> schemes(const Options& options, std::size_t axes) {
 bool is_local(Scheme s) { return s >= Scheme::catmull_rom; }
 bool is_closed(Scheme s, const Options& o) { return s == Scheme::periodic || (o.closed && is_local(s)); }
 
-template <std::size_t N>
 struct Answer {
     Document document;
     double bound = 0;
     std::optional<double> condition;
-    std::array<std::vector<double>, N> at;
-    Index<N> coefficients{};
+    std::vector<int> coefficients;
+    std::vector<std::vector<double>> at;  // per axis
 };
 
 template <std::size_t N, int D>
-Result<Answer<N>> answer(Patch<N, Vec<D>> patch, double bound, std::optional<double> condition,
-                         std::array<std::vector<double>, N> at) {
-    Answer<N> a;
-    a.bound = bound, a.condition = condition, a.at = std::move(at);
-    a.coefficients = patch.net().extent();
+Answer answer(Patch<N, Vec<D>> patch, double bound = 0, std::optional<double> condition = {}) {
+    Answer a;
+    a.bound = bound, a.condition = condition;
+    a.coefficients.assign(patch.net().extent().begin(), patch.net().extent().end());
     a.document.objects.push_back({"", std::move(patch), {}});
     return a;
 }
 
+std::vector<double> given_parameters(std::string_view rest) {
+    std::vector<double> at;
+    while (!rest.empty()) {
+        const auto x = scan_number<double>(trimmed(next_part(rest, ',')));
+        if (!x) wrong_usage("--at needs numbers separated by commas");
+        at.push_back(*x);
+    }
+    return at;
+}
+
+Spacing spacing_of(const Options& options, Scheme way) {
+    const std::string word = !options.spacing.empty()     ? options.spacing
+                             : way == Scheme::catmull_rom ? "uniform"
+                                                          : "chordal";
+    return Spacing(index_of("--parameters", word, kSpacings));
+}
+
+// The derivatives at both ends, in one list; as many as clamped ends need.
+std::vector<std::vector<double>> given_tangents(const Options& options, Scheme way, int degree, int dim) {
+    auto given = parse_vectors("--tangents", options.tangents, dim);
+    if (way == Scheme::clamped && given.size() != 2 * std::size_t(degree / 2))
+        wrong_usage(text("clamped ends of degree ", degree, " need --tangents with ", 2 * (degree / 2),
+                         " vectors: the derivatives at the start, then those at the end"));
+    return given;
+}
+
 template <std::size_t N, int D>
-Result<Answer<N>> solve(const Net<N, Vec<D>>& points, const Options& options,
-                        const std::vector<Scheme>& ways) {
-    std::array<std::vector<double>, N> at;
-    std::array<bool, N> closed{};
-    for (std::size_t d = 0; d < N; ++d) {
-        closed[d] = is_closed(ways[d], options);
-        const std::string word = !options.spacing.empty()         ? options.spacing
-                                 : ways[d] == Scheme::catmull_rom ? "uniform"
-                                                                  : "chordal";
-        if (N == 1 && !options.at.empty()) {
-            std::string_view rest = options.at;
-            while (!rest.empty()) {
-                const auto x = scan_number<double>(trimmed(next_part(rest, ',')));
-                if (!x) wrong_usage("--at needs numbers separated by commas");
-                at[d].push_back(*x);
-            }
-            continue;
-        }
-        auto found =
-            parameters(points, int(d), Spacing(index_of("--parameters", word, kSpacings)), closed[d]);
-        if (!found) return std::unexpected(found.error());
-        at[d] = std::move(*found);
-    }
-    if (is_local(ways[0])) {
-        if (ways[0] == Scheme::catmull_rom) {
-            std::array<std::span<const double>, N> spans;
-            for (std::size_t d = 0; d < N; ++d) spans[d] = at[d];
-            auto patch = catmull_rom(points, spans, closed);
-            if (!patch) return std::unexpected(patch.error());
-            return answer<N, D>(std::move(*patch), 0, std::nullopt, std::move(at));
-        }
-        if constexpr (N == 1) {
-            const std::span<const Vec<D>> q = points.flat();
-            const auto kind = ways[0] == Scheme::akima      ? LocalSlopes::akima
-                              : ways[0] == Scheme::monotone ? LocalSlopes::monotone
-                                                            : LocalSlopes::fritsch_carlson;
-            const auto slopes = local_slopes<D>(q, at[0], kind, closed[0]);
-            if (!slopes) return std::unexpected(slopes.error());
-            auto curve = cubic_through<D>(q, *slopes, at[0], closed[0]);
-            if (!curve) return std::unexpected(curve.error());
-            return answer<N, D>(std::move(*curve), 0, std::nullopt, std::move(at));
-        }
-    }
+Result<Answer> through(const Net<N, Vec<D>>& points, const std::vector<std::vector<double>>& at,
+                       const std::array<bool, N>& closed) {
+    std::array<std::span<const double>, N> spans;
+    for (std::size_t d = 0; d < N; ++d) spans[d] = at[d];
+    auto patch = catmull_rom(points, spans, closed);
+    if (!patch) return std::unexpected(patch.error());
+    return answer<N, D>(std::move(*patch));
+}
+
+template <int D>
+Result<Answer> with_local_slopes(std::span<const Vec<D>> q, std::span<const double> at, Scheme way,
+                                 bool closed) {
+    const auto kind = way == Scheme::akima      ? LocalSlopes::akima
+                      : way == Scheme::monotone ? LocalSlopes::monotone
+                                                : LocalSlopes::fritsch_carlson;
+    const auto slopes = local_slopes<D>(q, at, kind, closed);
+    if (!slopes) return std::unexpected(slopes.error());
+    auto curve = cubic_through<D>(q, *slopes, at, closed);
+    if (!curve) return std::unexpected(curve.error());
+    return answer<1, D>(std::move(*curve));
+}
+
+template <std::size_t N, int D>
+Result<Answer> global(const Net<N, Vec<D>>& points, const Options& options,
+                      const std::vector<std::vector<double>>& at, const std::vector<Scheme>& ways) {
     std::array<AxisSpline, N> axes;
     for (std::size_t d = 0; d < N; ++d)
         axes[d] = {options.degree.value_or(3), SplineEnds(int(ways[d])), at[d]};
-    auto found = [&]() -> Result<Interpolant<N, D>> {
-        if constexpr (N == 1) {
-            std::vector<Vec<D>> start, end;
-            const auto given = parse_vectors("--tangents", options.tangents, D);
-            if (ways[0] == Scheme::clamped && given.size() != 2 * std::size_t(axes[0].degree / 2))
-                wrong_usage(text("clamped ends of degree ", axes[0].degree, " need --tangents with ",
-                                 2 * (axes[0].degree / 2),
-                                 " vectors: the derivatives at the start, then those at the end"));
-            for (std::size_t i = 0; i < given.size(); ++i) {
-                Vec<D> v;
-                for (int c = 0; c < D; ++c) v[c] = given[i][std::size_t(c)];
-                (i < given.size() / 2 ? start : end).push_back(v);
-            }
-            return interpolate<D>(points.flat(), axes[0], start, end);
-        } else {
-            return interpolate<N, D>(points, axes);
-        }
-    }();
-    if (!found) return std::unexpected(found.error());
-    return answer<N, D>(std::move(found->patch), found->bound, found->condition_estimate, std::move(at));
+    std::optional<Result<Interpolant<N, D>>> found;
+    if constexpr (N == 1) {
+        const auto given = given_tangents(options, ways[0], axes[0].degree, D);
+        std::vector<Vec<D>> tangents(given.size());
+        for (std::size_t i = 0; i < given.size(); ++i)
+            std::copy(given[i].begin(), given[i].end(), tangents[i].c.begin());
+        const std::span<const Vec<D>> all = tangents;
+        const std::size_t half = given.size() / 2;
+        found = interpolate<D>(points.flat(), axes[0], all.first(half), all.subspan(half));
+    } else {
+        found = interpolate<N, D>(points, axes);
+    }
+    if (!*found) return std::unexpected(found->error());
+    return answer<N, D>(std::move((*found)->patch), (*found)->bound, (*found)->condition_estimate);
 }
 
-template <std::size_t N>
+template <std::size_t N, int D>
+Result<Answer> solve(const Net<N, Vec<D>>& points, const Options& options, const std::vector<Scheme>& ways) {
+    std::vector<std::vector<double>> at(N);
+    std::array<bool, N> closed{};
+    for (std::size_t d = 0; d < N; ++d) {
+        closed[d] = is_closed(ways[d], options);
+        if (N == 1 && !options.at.empty()) {
+            at[d] = given_parameters(options.at);
+            continue;
+        }
+        auto found = parameters(points, int(d), spacing_of(options, ways[d]), closed[d]);
+        if (!found) return std::unexpected(found.error());
+        at[d] = std::move(*found);
+    }
+    Result<Answer> a;
+    if (ways[0] == Scheme::catmull_rom)
+        a = through<N, D>(points, at, closed);
+    else if (!is_local(ways[0]))
+        a = global<N, D>(points, options, at, ways);
+    else if constexpr (N == 1)
+        a = with_local_slopes<D>(points.flat(), at[0], ways[0], closed[0]);
+    if (a) a->at = std::move(at);
+    return a;
+}
+
 Result<void> report(const Context& context, const Options& options, const std::string& format,
-                    const PointTable& table, Answer<N> a) {
+                    const PointTable& table, Answer a) {
+    const bool curve = a.at.size() == 1;
     json::Writer w;
     w.begin_object().field("points", table.place.size()).key("coefficients").array(a.coefficients);
     w.field("ends", options.ends).field("bound", a.bound);
     if (a.condition) w.field("condition_estimate", *a.condition);
     w.key("parameters");
-    if (N == 1) {
+    if (curve) {
         w.array(a.at[0]);
     } else {
         w.begin_array();
@@ -150,8 +175,8 @@ Result<void> report(const Context& context, const Options& options, const std::s
     }
     w.field("output", context.output).end_object();
     std::string s = text("points          ", table.place.size(), "\ncoefficients    ", a.coefficients[0]);
-    for (std::size_t d = 1; d < N; ++d) s += text(" x ", a.coefficients[d]);
-    s += text("\nbound           ", a.bound, " (no point is farther from the ", N == 1 ? "curve" : "surface",
+    for (std::size_t d = 1; d < a.at.size(); ++d) s += text(" x ", a.coefficients[d]);
+    s += text("\nbound           ", a.bound, " (no point is farther from the ", curve ? "curve" : "surface",
               ")\n");
     if (a.condition) s += text("condition       ", *a.condition, " (estimate)\n");
     s += text("written to ", context.output, "\n");
@@ -186,9 +211,9 @@ Result<void> run(const Context& context, const Options& options) {
     if (axes == 2 && !options.at.empty()) wrong_usage("--at is for curves");
     return with_points(*table, [&]<int D>(std::vector<Vec<D>> points) -> Result<void> {
         if (table->grid) {
-            const auto a = solve<2, D>(Net<2, Vec<D>>(table->extent, std::move(points)), options, ways);
+            auto a = solve<2, D>(Net<2, Vec<D>>(table->extent, std::move(points)), options, ways);
             if (!a) return about_file(a.error(), *table, options.file);
-            return report<2>(context, options, format, *table, *a);
+            return report(context, options, format, *table, *std::move(a));
         }
         // A closed polygon is often written with its first point again at the end.
         if (is_closed(ways[0], options) && options.at.empty() && points.size() > 2 &&
@@ -197,18 +222,18 @@ Result<void> run(const Context& context, const Options& options) {
             remark("the last point repeats the first; the curve closes there");
         }
         const int n = int(points.size());
-        const auto a = solve<1, D>(Net<1, Vec<D>>({n}, std::move(points)), options, ways);
+        auto a = solve<1, D>(Net<1, Vec<D>>({n}, std::move(points)), options, ways);
         if (!a) return about_file(a.error(), *table, options.file);
-        return report<1>(context, options, format, *table, *a);
+        return report(context, options, format, *table, *std::move(a));
     });
 }
 
 }  // namespace
 
-void add_interpolate(CLI::App& app, Context& context) {
+void add_interpolate(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(
-        app, context, "interpolate", "A spline through points: a curve, or a surface through a grid",
+    const Command command = line.add(
+        "interpolate", "A spline through points: a curve, or a surface through a grid",
         "  freiform interpolate points.csv -o curve.json\n"
         "  freiform interpolate points.csv --ends catmull-rom -o curve.json\n"
         "  freiform interpolate ring.csv --ends periodic --degree 5 -o ring.json\n"
@@ -219,29 +244,27 @@ void add_interpolate(CLI::App& app, Context& context) {
         "catmull-rom, akima, monotone and fritsch-carlson are cubic with continuous first derivatives and "
         "local.\n"
         "Without --parameters: chordal; uniform for catmull-rom.");
-    command->add_option("POINTS", options->file, "The file with the points; - is standard input")->required();
-    add_output(*command, context, "The file to write: .json or .bpt");
-    add_count(*command, "--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
+    command.points_file(options->file);
+    command.output("The file to write: .json or .bpt");
+    command.count("--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
     command
-        ->add_option("--ends", options->ends,
-                     "natural, clamped, not-a-knot, periodic, catmull-rom, akima, monotone or "
-                     "fritsch-carlson; of a grid one "
-                     "for each direction")
-        ->type_name("WAY[,WAY]");
-    command->add_option("--parameters", options->spacing, "uniform, chordal or centripetal")
-        ->type_name("WAY");
+        .word("--ends", options->ends,
+              "natural, clamped, not-a-knot, periodic, catmull-rom, akima, monotone or "
+              "fritsch-carlson; of a grid one "
+              "for each direction")
+        .shown_as("WAY[,WAY]");
+    command.word("--parameters", options->spacing, "uniform, chordal or centripetal").shown_as("WAY");
     command
-        ->add_option("--at", options->at,
-                     "The parameters themselves, one for each point (closed: and the period's end)")
-        ->type_name("NUMBER,...");
+        .word("--at", options->at,
+              "The parameters themselves, one for each point (closed: and the period's end)")
+        .shown_as("NUMBER,...");
     command
-        ->add_option("--tangents", options->tangents,
-                     "With clamped: derivatives by the parameter at the start, then at the end")
-        ->type_name("X,Y;X,Y");
-    command->add_flag("--closed", options->closed, "Close a curve of a local scheme (catmull-rom, ...)");
-    add_limits(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+        .word("--tangents", options->tangents,
+              "With clamped: derivatives by the parameter at the start, then at the end")
+        .shown_as("X,Y;X,Y");
+    command.flag("--closed", options->closed, "Close a curve of a local scheme (catmull-rom, ...)");
+    command.limits();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

@@ -1,5 +1,5 @@
 // tessellate: a file to a mesh within a tolerance, and a report of what was reached.
-#include "command.hpp"
+#include "input.hpp"
 #include "progress.hpp"
 
 #include <freiform/io/mesh_file.hpp>
@@ -111,11 +111,9 @@ Result<void> run(Context& context, const Options& options) {
     }
     if (output == "-" && context.json) wrong_usage("--json and -o - both want standard output");
 
-    const auto document = read_any(options.file, context.read_options());
-    if (!document) return std::unexpected(document.error());
-    const auto objects = selected(*document, options.object);
-    if (!objects) return std::unexpected(objects.error());
-    const auto model = scene_of(*document, *objects);
+    const auto input = read_input(context, options.file, options.object);
+    if (!input) return std::unexpected(input.error());
+    const auto model = scene_of(*input->document, input->chosen);
     if (!model) return std::unexpected(model.error());
     Times times;
     times.read = now() - start;
@@ -162,24 +160,22 @@ Result<void> run(Context& context, const Options& options) {
 
 }  // namespace
 
-void add_tessellate(CLI::App& app, Context& context) {
+void add_tessellate(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    CLI::App* command = add_command(
-        app, context, "tessellate", "Triangles within a tolerance, watertight where the model is closed",
-        "  freiform tessellate teapot.bpt --tolerance 0.01 -o teapot.glb\n"
-        "  freiform tessellate part.step --tolerance 0.05 -o part.stl --json\n"
-        "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply");
-    command->add_option("FILE", options->file, "The file; - is standard input")->required();
-    add_number(
-        *command, "--tolerance", options->tolerance,
+    const Command command =
+        line.add("tessellate", "Triangles within a tolerance, watertight where the model is closed",
+                 "  freiform tessellate teapot.bpt --tolerance 0.01 -o teapot.glb\n"
+                 "  freiform tessellate part.step --tolerance 0.05 -o part.stl --json\n"
+                 "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply");
+    command.file(options->file);
+    command.number(
+        "--tolerance", options->tolerance,
         "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box)");
-    command->add_option("--object", options->object, "Only the object of this name or index")
-        ->type_name("NAME|INDEX");
-    add_output(*command, context, "The mesh: .glb, .stl, .obj or .ply");
-    add_limits(*command, context);
-    add_triangle_limit(*command, context);
-    command->callback(
-        [&context, options] { context.action = [&context, options] { return run(context, *options); }; });
+    command.object(options->object);
+    command.output("The mesh: .glb, .stl, .obj or .ply");
+    command.limits();
+    command.triangle_limit();
+    command.action(options, run);
 }
 
 }  // namespace freiform::cli

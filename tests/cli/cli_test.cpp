@@ -191,6 +191,12 @@ TEST_F(Cli, wrong_usage_is_told_from_wrong_files) {
                                            {{"eval", "-", "--at", "nan"}, "found \"nan\""},
                                            {{"eval", "-", "--at", "0", "--derivatives", "-1"}, "from 0 to"},
                                            {{"convert", "-", "--elevate", "1.5"}, "whole number"},
+                                           {{"convert", "-", "--axis", "x"}, "x not in {u,v,w}"},
+                                           {{"convert", "-", "--split", "left"}, "needs a number"},
+                                           {{"convert", "-", "--insert-knots", "0,,1"}, "commas, found"},
+                                           {{"convert", "-", "--split"}, "1 required NUMBER missing"},
+                                           {{"convert", "-", "-", "-"}, "(freiform convert --help)"},
+                                           {{"tessellate", "-", "--max-triangles", "-1"}, "whole number"},
                                            {{"info", "-", "--timeout", "0"}, "positive number"},
                                            {{"info", "-", "--max-memory", "x"}, "number of bytes"}}) {
         const Ran r = run(c.arguments, kCurve);
@@ -318,6 +324,18 @@ TEST_F(Cli, a_closed_pipe_is_quiet) {
         std::string(FREIFORM_BINARY) + " convert " + kTeapot + " 2> " + path("err") + " | true";
     EXPECT_EQ(std::system(command.c_str()), 0);
     EXPECT_EQ(content(path("err")), "");
+}
+
+TEST_F(Cli, help_says_which_values_an_option_takes) {
+    const std::string help = run({"convert", "--help"}).out;
+    for (const char* part :
+         {"FILE TEXT REQUIRED", "--json ", "-o,--output FILE", "--to FORMAT", "--object NAME|INDEX",
+          "--to-bezier ", "--elevate N", "--insert-knots NUMBER,...", "--split NUMBER", "--axis TEXT:{u,v,w}",
+          "--timeout SECONDS", "--max-memory BYTES",
+          "Examples:\n  freiform convert teapot.bpt -o teapot.json"})
+        EXPECT_NE(help.find(part), std::string::npos) << part << " is not in\n" << help;
+    EXPECT_NE(run({"tessellate", "--help"}).out.find("--max-triangles N"), std::string::npos);
+    EXPECT_NE(run({"--help"}).out.find("Exit codes: 0 done"), std::string::npos);
 }
 
 TEST_F(Cli, help_and_version_go_to_standard_output) {

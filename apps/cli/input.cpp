@@ -1,0 +1,72 @@
+#include "input.hpp"
+
+#include <freiform/io/bpt.hpp>
+
+namespace freiform::cli {
+
+std::string Input::label(std::size_t i) const {
+    return document->objects.size() > 1 ? object_label(*document, i) : shown(file);
+}
+
+std::unexpected<Refusal> Input::about(std::size_t i, Refusal r) const {
+    r.where = r.where.empty() ? label(i) : text(label(i), ": ", r.where);
+    return std::unexpected(std::move(r));
+}
+
+Result<Input> read_input(const Context& context, const std::string& file, const std::string& object) {
+    auto document = read_any(file, context.read_options());
+    if (!document) return std::unexpected(document.error());
+    auto chosen = selected(*document, object);
+    if (!chosen) return std::unexpected(chosen.error());
+    return Input{file, std::make_shared<const Document>(*std::move(document)), *std::move(chosen)};
+}
+
+void remark_left_out(const Input& input, std::size_t i) {
+    remark(text(object_label(*input.document, i), ": is a ", type_name(input.object(i).shape),
+                ", not a curve, and left out"));
+}
+
+std::span<const BSplineBasis> bases_of(const Shape& shape) {
+    return std::visit(
+        [](const auto& s) -> std::span<const BSplineBasis> {
+            using S = std::remove_cvref_t<decltype(s)>;
+            if constexpr (TensorPatch<S>)
+                return s.bases();
+            else if constexpr (std::same_as<S, TrimmedSurface>)
+                return std::visit(
+                    [](const auto& surface) -> std::span<const BSplineBasis> { return surface.bases(); },
+                    s.surface);
+            else
+                return {};
+        },
+        shape);
+}
+
+namespace {
+
+template <class P>
+ControlBox box_of(std::span<const P> coefficients) {
+    Box<Space<P>::kDim> box;
+    for (const P& p : coefficients) box.add(project(p));
+    if (box.is_empty()) return {};
+    return {{box.lo.c.begin(), box.lo.c.end()}, {box.hi.c.begin(), box.hi.c.end()}, box.diagonal()};
+}
+
+struct Boxing {
+    template <TensorPatch S>
+    ControlBox operator()(const S& s) const {
+        return box_of<typename S::Coefficients>(s.net().flat());
+    }
+    template <TriangularPatch S>
+    ControlBox operator()(const S& s) const {
+        return box_of<typename S::Coefficients>(s.coefficients());
+    }
+    ControlBox operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
+    ControlBox operator()(const Model&) const { return {}; }
+};
+
+}  // namespace
+
+ControlBox control_box(const Shape& shape) { return std::visit(Boxing(), shape); }
+
+}  // namespace freiform::cli

@@ -1,0 +1,69 @@
+// What a command was asked about: a file, and the objects of it that --object chose.
+#pragma once
+#include "command.hpp"
+
+namespace freiform::cli {
+
+struct Input {
+    std::string file;  // as it was given
+    std::shared_ptr<const Document> document;
+    std::vector<std::size_t> chosen;  // indices of objects
+
+    const Object& object(std::size_t i) const { return document->objects[i]; }
+    // For people: of one object among several its index and name, else the file.
+    std::string label(std::size_t i) const;
+    // A refusal about object i, said with its label: "objects[0] "c1": at[3]".
+    std::unexpected<Refusal> about(std::size_t i, Refusal r) const;
+};
+Result<Input> read_input(const Context& context, const std::string& file, const std::string& object);
+
+// "Is a model, not a curve, and left out".
+void remark_left_out(const Input& input, std::size_t i);
+
+// Calls f(curve) if the shape is a curve; whether it is. Most questions are about curves only, and the other
+// two dozen shapes need no code of their own.
+template <class F>
+bool with_curve(const Shape& shape, F&& f) {
+    return std::visit(
+        [&](const auto& s) {
+            if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
+                if constexpr (std::remove_cvref_t<decltype(s)>::kParams == 1) return f(s), true;
+            return false;
+        },
+        shape);
+}
+
+// Calls of_curve(index, curve) for the curves among the chosen objects, and if there is an of_model, that for
+// the models; what else there is, is remarked on. Refuses if there is none "to PURPOSE".
+using OfModel = std::function<Result<void>(std::size_t index, const Model& model)>;
+template <class F>
+Result<void> each_curve(const Input& input, std::string_view purpose, F&& of_curve,
+                        const OfModel& of_model = {}) {
+    std::size_t curves = 0;
+    for (const std::size_t i : input.chosen) {
+        const Shape& shape = input.object(i).shape;
+        Result<void> done;
+        if (with_curve(shape, [&](const auto& curve) { done = of_curve(i, curve); }))
+            ++curves;
+        else if (const Model* model = std::get_if<Model>(&shape); model && of_model)
+            ++curves, done = of_model(i, *model);
+        else
+            remark_left_out(input, i);
+        if (!done) return input.about(i, done.error());
+    }
+    if (curves == 0)
+        return refuse(RefusalKind::no_answer, shown(input.file), text("there is no curve to ", purpose));
+    return {};
+}
+
+// Of a curve, surface, volume or the surface that is trimmed; else none.
+std::span<const BSplineBasis> bases_of(const Shape& shape);
+
+// The box of the control points of these and of triangles; `lo` is empty if there are none.
+struct ControlBox {
+    std::vector<double> lo, hi;
+    double diagonal = 0;
+};
+ControlBox control_box(const Shape& shape);
+
+}  // namespace freiform::cli
