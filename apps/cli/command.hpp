@@ -144,6 +144,7 @@ void add_interpolate(CommandLine& line);
 void add_flatten(CommandLine& line);
 void add_length(CommandLine& line);
 void add_fit(CommandLine& line);
+void add_revolve(CommandLine& line);
 void add_gallery(CommandLine& line);
 
 // Of `wrong_usage`; nothing else is thrown.

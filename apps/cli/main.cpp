@@ -27,6 +27,7 @@ void add_commands(CommandLine& line) {
     add_flatten(line);
     add_length(line);
     add_fit(line);
+    add_revolve(line);
     add_gallery(line);
 }
 

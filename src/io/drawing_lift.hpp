@@ -2,22 +2,11 @@
 // Plane ones lie in z = 0; those of one coordinate become graphs over their parameters.
 #pragma once
 #include <freiform/spline/bezier.hpp>
+#include <freiform/spline/in_space.hpp>
 
-#include <type_traits>
 #include <vector>
 
 namespace freiform::drawing {
-
-template <class P>
-using InSpace = std::conditional_t<Space<P>::kRational, Hom<3>, Vec<3>>;
-
-template <class P>
-InSpace<P> in_space(const P& p) {
-    InSpace<P> q{};
-    for (int i = 0; i < Space<P>::kDim; ++i) q[i] = p[i];
-    if constexpr (Space<P>::kRational) q[3] = p.weight();
-    return q;
-}
 
 // The coefficient of u itself that belongs to coefficient i: u is a spline of every degree >= 1.
 inline double greville(const BSplineBasis& basis, int i) {
@@ -76,10 +65,7 @@ Result<Curve<InSpace<P>>> lifted(const Curve<P>& curve) {
         const int n = int(c.size());
         return Curve<InSpace<P>>::trusted(open->bases(), Net<1, InSpace<P>>({n}, std::move(c)));
     } else {
-        std::vector<InSpace<P>> c;
-        for (const P& p : curve.net().flat()) c.push_back(in_space(p));
-        return Curve<InSpace<P>>::trusted(curve.bases(),
-                                          Net<1, InSpace<P>>(curve.net().extent(), std::move(c)));
+        return in_space(curve);
     }
 }
 
@@ -91,9 +77,9 @@ Result<Patch<N, InSpace<P>>> lifted(const Patch<N, P>& patch) {
                       text("its points have ", Space<P>::kDim, " coordinates, a drawing needs ",
                            N == 3 ? "3" : "2 or 3"));
     } else {
-        Patch<N, P> open = patch;
-        std::vector<InSpace<P>> c;
         if constexpr (Space<P>::kDim == 1) {
+            Patch<N, P> open = patch;
+            std::vector<InSpace<P>> c;
             if (Space<P>::kRational || patch.basis(0).degree() == 0 || patch.basis(1).degree() == 0)
                 return refuse(RefusalKind::unsupported, "",
                               "a surface of one coordinate is drawn as a graph if it is polynomial and of "
@@ -109,11 +95,11 @@ Result<Patch<N, InSpace<P>>> lifted(const Patch<N, P>& patch) {
                 c.back()[1] = greville(open.basis(1), at[1]);
                 c.back()[2] = open.net().view()(at)[0];
             });
+            return Patch<N, InSpace<P>>::trusted(open.bases(),
+                                                 Net<N, InSpace<P>>(open.net().extent(), std::move(c)));
         } else {
-            for (const P& p : patch.net().flat()) c.push_back(in_space(p));
+            return in_space(patch);
         }
-        return Patch<N, InSpace<P>>::trusted(open.bases(),
-                                             Net<N, InSpace<P>>(open.net().extent(), std::move(c)));
     }
 }
 

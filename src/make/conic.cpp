@@ -19,9 +19,7 @@
 // runs once around: (p^2 - q^2, 2 p q) / (p^2 + q^2), a quartic with the weights 1 0 1/3 0 1, elevated once
 // and multiplied by 5.
 //
-// Accuracy: all is computed with bounds (bounded.hpp). With errors e_i of numerators and d_i of weights, the
-// difference of the stored curve f and the exact one g is sum B_i (e_i - g d_i) / sum B_i w_i, hence at most
-//     max_i (|e_i| + |g| |d_i|) / w_i,    |g| <= max |P_i| + |f - g|.
+// Accuracy: all is computed with bounds (bounded.hpp), what they mean for points is in rounding_detail.hpp.
 // sin and cos of the C library are taken to be off by at most one unit in the last place, sinh and cosh by
 // two, as glibc and musl state. Weights that reach the curve are above cos 45 degrees, unless `widest` allows
 // less.
@@ -30,7 +28,8 @@
 //
 // Why not the fewest pieces that exist, 3 for a circle? Control points would be twice as far away. `widest`
 // allows it.
-#include <freiform/core/bounded.hpp>
+#include "rounding_detail.hpp"
+
 #include <freiform/make/conic.hpp>
 #include <freiform/poly/predicates.hpp>
 
@@ -42,7 +41,10 @@ namespace freiform {
 
 namespace {
 
-constexpr double kUnit = 0x1p-53, kTwoPi = 2 * std::numbers::pi;
+using detail::cosine;
+using detail::sine;
+
+constexpr double kUnit = detail::kRoundUnit, kTwoPi = 2 * std::numbers::pi;
 
 template <int D>
 using Vector = std::array<Bounded, std::size_t(D)>;
@@ -93,7 +95,7 @@ struct Assembled {
 template <int D>
 Assembled<D> assembled(const std::vector<Piece<D>>& pieces) {
     Assembled<D> out;
-    double reach = 0, moved = 0, rho = 0;
+    detail::MovedBound moved;
     for (const Piece<D>& piece : pieces)
         for (std::size_t i = 0; i < piece.weight.size(); ++i) {
             if (i == 0 && !out.net.empty()) continue;
@@ -106,12 +108,9 @@ Assembled<D> assembled(const std::vector<Piece<D>>& pieces) {
             }
             h[D] = w;
             out.net.push_back(h);
-            reach = std::max(reach, norm(project(h)));
-            moved = std::max(moved, norm(e));
-            rho = std::max(rho, piece.weight[i].bound / w);
+            moved.add(project(h), norm(e), piece.weight[i].bound / w);
         }
-    out.bound = rho < 0.5 ? (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnit)
-                          : std::numeric_limits<double>::infinity();
+    out.bound = moved.value();
     return out;
 }
 
@@ -142,9 +141,6 @@ Result<ConicArc<D>> spline_of(const std::vector<Piece<D>>& pieces, bool closed =
                     closed ? BSplineBasis::periodic(2, std::move(t)) : BSplineBasis::make(2, std::move(t)));
 }
 
-Bounded off_by_an_ulp(double x, double more) { return {x, std::abs(x) * (2.01 * kUnit) + more}; }
-Bounded cosine(const Bounded& t) { return off_by_an_ulp(std::cos(t.value), t.bound); }
-Bounded sine(const Bounded& t) { return off_by_an_ulp(std::sin(t.value), t.bound); }
 Bounded hyperbolic_cosine(const Bounded& t) {
     const double c = std::cosh(t.value);
     return {c,

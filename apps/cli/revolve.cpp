@@ -1,0 +1,136 @@
+// revolve: surfaces of revolution of the curves of a file.
+#include "command.hpp"
+#include "point_commands.hpp"
+
+#include <freiform/io/bpt.hpp>
+#include <freiform/make/revolve.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+namespace freiform::cli {
+
+namespace {
+
+struct Options {
+    std::string file, object;
+    std::vector<double> axis;
+    std::optional<double> angle, polynomial;
+    bool closed = false;
+
+    Seam seam() const { return closed ? Seam::closed : Seam::open; }
+};
+
+struct Answer {
+    Document document;
+    double bound = 0;
+    std::vector<int> pieces;  // of polynomial surfaces, along u
+};
+
+class Revolving {
+public:
+    Revolving(const Options& options, Answer& answer) : options_(options), answer_(answer) {
+        std::copy_n(options.axis.begin(), 3, axis_.origin.c.begin());
+        std::copy_n(options.axis.begin() + 3, 3, axis_.direction.c.begin());
+        angle_ = options.angle.value_or(360) / 180 * std::numbers::pi;  // in this order, 360 gives 2 pi
+    }
+
+    template <class P>
+    requires(Space<P>::kDim == 2 || Space<P>::kDim == 3) Result<void> curve(const Curve<P>& c,
+                                                                            const std::string& name) {
+        if (options_.polynomial) return polynomial(c, name);
+        auto made = revolve(c, axis_, angle_, options_.seam());
+        if (!made) return std::unexpected(made.error());
+        return add(name, std::move(made->surface), made->bound);
+    }
+
+private:
+    template <class P>
+    Result<void> polynomial(const Curve<P>& c, const std::string& name) {
+        if constexpr (Space<P>::kRational) {
+            return refuse(RefusalKind::unsupported, "--polynomial",
+                          "the curve is rational; its surface is exact without this option");
+        } else {
+            auto made = revolve_polynomial(c, axis_, angle_, *options_.polynomial, options_.seam());
+            if (!made) return std::unexpected(made.error());
+            answer_.pieces.push_back(made->pieces);
+            return add(name, std::move(made->surface), made->bound);
+        }
+    }
+    template <class S>
+    Result<void> add(const std::string& name, S surface, double bound) {
+        answer_.document.objects.push_back({name, std::move(surface), {}});
+        answer_.bound = std::max(answer_.bound, bound);
+        return {};
+    }
+
+    const Options& options_;
+    Answer& answer_;
+    Axis axis_;
+    double angle_ = 0;
+};
+
+std::string json_report(const Answer& a) {
+    json::Writer w;
+    w.begin_object().field("surfaces", a.document.objects.size()).field("bound", a.bound);
+    if (!a.pieces.empty()) w.key("pieces").array(a.pieces);
+    w.end_object();
+    return w.take() + "\n";
+}
+
+std::string text_report(const Answer& a) {
+    const std::size_t n = a.document.objects.size();
+    return text(n, n == 1 ? " surface" : " surfaces", " within ", a.bound, " of the surface",
+                n == 1 ? "" : "s", " of revolution\n");
+}
+
+Result<void> run(const Context& context, const Options& options) {
+    if (options.axis.size() != 6)
+        wrong_usage("--axis needs six numbers: a point and a direction, px,py,pz,dx,dy,dz");
+    const std::string format = spline_format(context, "revolve");
+    const auto document = read_any(options.file, context.read_options());
+    if (!document) return std::unexpected(document.error());
+    const auto objects = selected(*document, options.object);
+    if (!objects) return std::unexpected(objects.error());
+    Answer answer;
+    answer.document.unit = document->unit;
+    Revolving revolving(options, answer);
+    for (const std::size_t i : *objects) {
+        const Object& object = document->objects[i];
+        const auto done = std::visit(
+            [&](const auto& s) -> Result<void> {
+                if constexpr (requires { revolving.curve(s, object.name); })
+                    return revolving.curve(s, object.name);
+                return refuse(RefusalKind::no_answer, "",
+                              text("is a ", type_name(object.shape),
+                                   "; curves of two or three coordinates are revolved (--object)"));
+            },
+            object.shape);
+        if (!done)
+            return refuse_within(text(shown(options.file), ": ", object_label(*document, i)), done.error());
+    }
+    return emit_spline(context, format, answer.document, text_report(answer), json_report(answer));
+}
+
+}  // namespace
+
+void add_revolve(CommandLine& line) {
+    const auto options = std::make_shared<Options>();
+    const Command command = line.add("revolve", "Surfaces of revolution of curves, exact (rational) or polynomial",
+        "  freiform revolve outline.json --axis 0,0,0,0,1,0 -o vase.json\n"
+        "  freiform revolve outline.json --axis 0,0,0,0,1,0 --angle 90 --polynomial 0.001 -o quarter.bpt");
+    command.word("FILE", options->file, "Curves; - is standard input").required();
+    command.numbers("--axis", options->axis, "A point of the axis and its direction").shown_as("PX,PY,PZ,DX,DY,DZ").required();
+    command.number("--angle", options->angle,
+        "Degrees, counter-clockwise seen from the tip of the axis; negative ones clockwise (default 360)");
+    command.number("--polynomial", options->polynomial,
+               "Not exact, but polynomial within this distance; the bound reached is printed");
+    command.flag("--closed", options->closed,
+                      "Write a full turn on closed knots instead of open ones whose ends coincide");
+    command.object(options->object);
+    command.output("Where the surfaces go (.json, .bpt)");
+    command.limits();
+    command.action(options, run);
+}
+
+}  // namespace freiform::cli

@@ -1,0 +1,247 @@
+// Coons patches.
+//
+// Idea: a Boolean sum (boolean_sum.hpp) with the functions 1 - v, v, or the four cubic Hermite functions. In
+// both cases row k of T is what the functionals "value (and derivative) at the ends" give for curve k.
+//
+// Method: curves of one direction get one basis, which also holds the functions of that direction: degree 1
+// or 3 at least. Elements of T are means of what the two curves say; with differences d of positions the
+// boundary v = 0 is u0 + (1-u) d00 / 2 + u d10 / 2, which is nearer to u0 than half of the largest gap.
+//
+// Accuracy: Bounded throughout. Where all corners agree to the bit and the curves were not changed by their
+// common basis, the outer rows of the net are theirs and replace those that were computed; the exact patch
+// has them, too, so its bound still holds.
+//
+// References: [Coons 1967], [Farin 2002, ch. 22].
+//
+// Why not twists that are made compatible (rational ones, by Gregory)? Such a surface is no spline.
+#include <freiform/make/boolean_sum.hpp>
+#include <freiform/make/coons.hpp>
+#include <freiform/spline/compatible.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace freiform {
+
+namespace {
+
+using Row = std::vector<BoundedVec<3>>;
+
+constexpr const char* kCorner[2][2] = {{"lower u, lower v", "lower u, upper v"},
+                                       {"upper u, lower v", "upper u, upper v"}};
+
+// Curves of one direction on one basis, and which of their ends are known to be exact.
+struct Direction {
+    Compatible<Vec<3>> same;
+    std::vector<std::array<bool, 2>> exact;
+
+    const BSplineBasis& basis() const { return same.curves[0].basis(); }
+    bool unchanged() const { return same.relative[0] == 0 && same.relative[1] == 0; }
+    Row row(std::size_t k) const {
+        const auto net = same.curves[k].net().flat();
+        double largest = 0;
+        for (const Vec<3>& p : net) largest = std::max(largest, max_abs(p));
+        Row out;
+        for (std::size_t i = 0; i < net.size(); ++i) {
+            const bool sure = (i == 0 && exact[k][0]) || (i + 1 == net.size() && exact[k][1]);
+            const double e = sure ? 0 : same.relative[k] * largest * (1 + 0x1p-40);
+            out.push_back({Bounded(net[i][0], e), {net[i][1], e}, {net[i][2], e}});
+        }
+        return out;
+    }
+};
+
+// Curves of one direction on one basis of at least `degree`, in space.
+template <int D>
+Result<Direction> in_one_basis(std::initializer_list<const Curve<Vec<D>>*> curves, int degree) {
+    std::vector<Curve<Vec<3>>> all;
+    for (const auto* c : curves) {
+        if (c->basis().degree() < 1)
+            return refuse(RefusalKind::unsupported, "degree", "a boundary of degree 0 joins nothing");
+        auto open = restrict_to(in_space(*c), 0, c->domain()[0]);
+        if (!open) return std::unexpected(open.error());
+        all.push_back(c->basis().is_closed() ? std::move(*open) : in_space(*c));
+    }
+    // Something of the degree that the blending functions have.
+    const Interval on = all[0].domain()[0];
+    const auto basis = BSplineBasis::bezier(degree, on);
+    if (!basis) return std::unexpected(basis.error());
+    all.push_back(Curve<Vec<3>>::trusted({*basis}, Net<1, Vec<3>>({degree + 1})));
+    auto same = compatible(std::span<const Curve<Vec<3>>>(all));
+    if (!same) return std::unexpected(same.error());
+    // The end of a clamped curve is its last control point, in every basis.
+    Direction out{std::move(*same), {}};
+    for (std::size_t k = 0; k + 1 < all.size(); ++k) {
+        const auto was = all[k].net().flat(), is = out.same.curves[k].net().flat();
+        const BSplineBasis& b = all[k].basis();
+        out.exact.push_back({b.multiplicity(b.domain().lo) > b.degree() && was.front() == is.front(),
+                             b.multiplicity(b.domain().hi) > b.degree() && was.back() == is.back()});
+    }
+    out.same.curves.pop_back();
+    out.same.relative.pop_back();
+    return out;
+}
+
+BoundedVec<3> mean(const BoundedVec<3>& a, const BoundedVec<3>& b) {
+    BoundedVec<3> m;
+    for (std::size_t i = 0; i < 3; ++i) m[i] = a[i] == b[i] ? a[i] : Bounded(0.5) * (a[i] + b[i]);
+    return m;
+}
+double gap(const BoundedVec<3>& a, const BoundedVec<3>& b) {
+    Vec<3> d;
+    for (int i = 0; i < 3; ++i) {
+        const Bounded x = a[std::size_t(i)] - b[std::size_t(i)];
+        d[i] = std::abs(x.value) + x.bound;
+    }
+    return norm(d) * (1 + 0x1p-48);
+}
+
+// The derivative at an end, by a parameter that runs from 0 to 1 over the domain.
+BoundedVec<3> end_derivative(const BSplineBasis& b, const Row& row, int end) {
+    const int p = b.degree(), n = b.size(), i = end == 0 ? 0 : n - 2;
+    const Bounded span = Bounded(b.knot(i + 1 + p)) - Bounded(b.knot(i + 1)),
+                  length = Bounded(b.domain().hi) - Bounded(b.domain().lo), f = Bounded(p) * length / span;
+    BoundedVec<3> d;
+    for (std::size_t c = 0; c < 3; ++c) d[c] = f * (row[std::size_t(i) + 1][c] - row[std::size_t(i)][c]);
+    return d;
+}
+
+Result<void> check_gap(const char* what, double found, double allowed, int i, int j) {
+    if (found <= allowed) return {};
+    return refuse(RefusalKind::invalid, kCorner[i][j],
+                  text(what, " differ by ", found, ", more than the tolerance ", allowed));
+}
+
+// The outer rows of the net become those of the boundaries.
+void set_boundaries(Surface<Vec<3>>& s, const Direction& u, const Direction& v) {
+    const auto net = s.net().view();
+    Net<2, Vec<3>> out = s.net();
+    const int n = net.extent[0], m = net.extent[1];
+    for (int i = 0; i < n; ++i)
+        for (int side = 0; side < 2; ++side)
+            out.view()({i, side * (m - 1)}) = u.same.curves[std::size_t(side)].net().flat()[std::size_t(i)];
+    for (int j = 0; j < m; ++j)
+        for (int side = 0; side < 2; ++side)
+            out.view()({side * (n - 1), j}) = v.same.curves[std::size_t(side)].net().flat()[std::size_t(j)];
+    s = Surface<Vec<3>>::trusted(s.bases(), std::move(out));
+}
+
+// h_0 = 1 - 3 x^2 + 2 x^3, h_1 = 3 x^2 - 2 x^3, h_2 = x - 2 x^2 + x^3, h_3 = x^3 - x^2.
+std::vector<std::vector<Bounded>> hermite_functions(const BSplineBasis& basis) {
+    const auto x = powers_on(basis, 3);
+    std::vector<std::vector<Bounded>> h(4);
+    for (std::size_t i = 0; i < x[0].size(); ++i) {
+        const Bounded smooth = Bounded(3) * x[2][i] - Bounded(2) * x[3][i];
+        h[0].push_back(x[0][i] - smooth);
+        h[1].push_back(smooth);
+        h[2].push_back(x[1][i] - Bounded(2) * x[2][i] + x[3][i]);
+        h[3].push_back(x[3][i] - x[2][i]);
+    }
+    return h;
+}
+
+Row times(const Bounded& s, Row r) {
+    for (auto& x : r)
+        for (Bounded& c : x) c = s * c;
+    return r;
+}
+
+}  // namespace
+
+template <int D>
+Result<CoonsPatch> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
+                         const Curve<Vec<D>>& v1, double tolerance) {
+    const auto u = in_one_basis<D>({&u0, &u1}, 1), v = in_one_basis<D>({&v0, &v1}, 1);
+    if (!u) return refuse_within("u0, u1", u.error());
+    if (!v) return refuse_within("v0, v1", v.error());
+    if (!(tolerance >= 0)) return refuse(RefusalKind::invalid, "tolerance", "is not a distance");
+    BlendedFamily a{u->basis(), {}, {}}, b{v->basis(), {}, {}};
+    for (std::size_t k = 0; k < 2; ++k) {
+        a.curves.push_back(u->row(k));
+        b.curves.push_back(v->row(k));
+    }
+    for (auto* f : {&a, &b}) {
+        const auto x = powers_on(f == &a ? b.basis : a.basis, 1);
+        f->functions = {x[0], x[1]};
+        for (std::size_t i = 0; i < x[0].size(); ++i) f->functions[0][i] -= x[1][i];
+    }
+    std::vector<std::vector<BoundedVec<3>>> T(2, std::vector<BoundedVec<3>>(2));
+    double most = 0;
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) {
+            const auto &row = a.curves[std::size_t(j)], &column = b.curves[std::size_t(i)];
+            const auto &p = i == 0 ? row.front() : row.back(), &q = j == 0 ? column.front() : column.back();
+            const double g = gap(p, q);
+            if (auto ok = check_gap("positions", g, tolerance, i, j); !ok) return std::unexpected(ok.error());
+            most = std::max(most, g);
+            T[std::size_t(j)][std::size_t(i)] = mean(p, q);
+        }
+    auto made = boolean_sum(a, b, T);
+    if (!made) return std::unexpected(made.error());
+    if (most == 0 && u->unchanged() && v->unchanged()) set_boundaries(made->surface, *u, *v);
+    return CoonsPatch{std::move(made->surface), made->bound, most, 0, 0};
+}
+
+template <int D>
+Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1, const CoonsEdge<D>& v0,
+                                 const CoonsEdge<D>& v1, const CoonsTolerance& tolerance) {
+    const auto u = in_one_basis<D>({&u0.curve, &u1.curve, &u0.across, &u1.across}, 3);
+    const auto v = in_one_basis<D>({&v0.curve, &v1.curve, &v0.across, &v1.across}, 3);
+    if (!u) return refuse_within("u0, u1", u.error());
+    if (!v) return refuse_within("v0, v1", v.error());
+    if (!(tolerance.distance >= 0 && tolerance.tangent >= 0 && tolerance.twist >= 0))
+        return refuse(RefusalKind::invalid, "tolerance", "is not a positive number");
+    BlendedFamily a{u->basis(), {}, {}}, b{v->basis(), {}, {}};
+    // Derivatives by parameters from 0 to 1: across u-edges that is v.
+    const Bounded in_u = Bounded(a.basis.domain().hi) - Bounded(a.basis.domain().lo),
+                  in_v = Bounded(b.basis.domain().hi) - Bounded(b.basis.domain().lo);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Row p = u->row(k), q = v->row(k);
+        a.curves.push_back(k < 2 ? p : times(in_v, p));
+        b.curves.push_back(k < 2 ? q : times(in_u, q));
+    }
+    a.functions = hermite_functions(b.basis);
+    b.functions = hermite_functions(a.basis);
+    CoonsPatch out{
+        Surface<Vec<3>>::trusted({a.basis, b.basis}, Net<2, Vec<3>>({a.basis.size(), b.basis.size()}))};
+    std::vector<std::vector<BoundedVec<3>>> T(4, std::vector<BoundedVec<3>>(4));
+    // Functional l < 2: the value at end l; else the derivative at end l - 2.
+    const auto apply = [](const BlendedFamily& f, std::size_t curve, std::size_t l) {
+        const Row& row = f.curves[curve];
+        return l == 0 ? row.front() : l == 1 ? row.back() : end_derivative(f.basis, row, int(l) - 2);
+    };
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t l = 0; l < 4; ++l) {
+            const BoundedVec<3> p = apply(a, k, l), q = apply(b, l, k);
+            const int order = int(k >= 2) + int(l >= 2);
+            // Back to derivatives by the parameters of the surface.
+            double scale = 1;
+            if (l >= 2) scale *= in_u.value;
+            if (k >= 2) scale *= in_v.value;
+            const double g = gap(p, q) / scale;
+            double& most = order == 0 ? out.corner_gap : order == 1 ? out.tangent_gap : out.twist_gap;
+            const double allowed = order == 0   ? tolerance.distance
+                                   : order == 1 ? tolerance.tangent
+                                                : tolerance.twist;
+            const char* what = order == 0 ? "positions" : order == 1 ? "tangents" : "twists";
+            if (auto ok = check_gap(what, g, allowed, int(l % 2), int(k % 2)); !ok)
+                return std::unexpected(ok.error());
+            most = std::max(most, g);
+            T[k][l] = mean(p, q);
+        }
+    auto made = boolean_sum(a, b, T);
+    if (!made) return std::unexpected(made.error());
+    out.surface = std::move(made->surface);
+    out.bound = made->bound;
+    return out;
+}
+
+#define FF_COONS(D)                                                                                          \
+    template Result<CoonsPatch> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&, const Curve<Vec<D>>&,      \
+                                      const Curve<Vec<D>>&, double);                                         \
+    template Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>&, const CoonsEdge<D>&, const CoonsEdge<D>&, \
+                                              const CoonsEdge<D>&, const CoonsTolerance&);
+FF_COONS(2)
+FF_COONS(3)
+
+}  // namespace freiform

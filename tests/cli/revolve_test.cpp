@@ -1,0 +1,58 @@
+#include "run.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+using Cli = Program;
+
+const std::string kLine = R"({"name":"side","type":"curve","points":[[2,0,0],[2,0,3]]})";
+
+TEST_F(Cli, revolve_makes_a_cylinder_of_a_line) {
+    const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,2", "-o", "c.json"}, kLine);
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.out.find("1 surface within "), std::string::npos) << r.out;
+    const Json surface = Json::parse(content(path("c.json")))["objects"][0];
+    EXPECT_EQ(surface["knots"][0].size(), surface["points"].size() + 3);  // open: also for other programs
+    EXPECT_EQ(surface["points"].front(), surface["points"].back());
+    const Json e = Json::parse(run({"eval", "c.json", "--at", "0,0;0.25,0.5;0.3,1"}).out)["results"];
+    EXPECT_EQ(e[0]["point"], Json::parse("[2.0,0.0,0.0]"));
+    EXPECT_NEAR(e[1]["point"][1].get<double>(), 2, 1e-15);
+    EXPECT_NEAR(std::hypot(e[2]["point"][0].get<double>(), e[2]["point"][1].get<double>()), 2, 1e-15);
+    EXPECT_EQ(e[2]["point"][2], 3.0);
+    ASSERT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,2", "--closed", "-o", "c.json"}, kLine).code, 0);
+    EXPECT_EQ(Json::parse(content(path("c.json")))["objects"][0]["points"].size(), 8u);
+}
+
+TEST_F(Cli, revolve_takes_an_angle_in_degrees_and_a_tolerance) {
+    const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,1", "--angle", "-90", "--polynomial", "1e-3",
+                       "-o", "c.json", "--json"},
+                      kLine);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json report = Json::parse(r.out);
+    EXPECT_EQ(report["surfaces"], 1);
+    EXPECT_EQ(report["pieces"], Json::parse("[1]"));
+    EXPECT_LE(report["bound"].get<double>(), 1e-3);
+    EXPECT_GT(report["bound"].get<double>(), 5e-4);
+    const Json e = Json::parse(run({"eval", "c.json", "--at", "1,0"}).out)["results"];
+    EXPECT_NEAR(e[0]["point"][1].get<double>(), -2, 1e-15);
+}
+
+TEST_F(Cli, revolve_says_what_is_wrong) {
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0", "-o", "c.json"}, kLine).code, 2);
+    EXPECT_EQ(run({"revolve", "-", "-o", "c.json"}, kLine).code, 2);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,0", "-o", "c.json"}, kLine).code, 3);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "2,0,0,0,0,1", "-o", "c.json"}, kLine).code, 1);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,1", "--angle", "400", "-o", "c.json"}, kLine).code,
+              3);
+    const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,1", "-o", "c.json"},
+                      R"({"type":"surface","points":[[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]})");
+    EXPECT_EQ(r.code, 1);
+    EXPECT_NE(r.err.find("is a surface"), std::string::npos) << r.err;
+}
+
+}  // namespace
+}  // namespace freiform::test
