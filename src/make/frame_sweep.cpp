@@ -305,10 +305,11 @@ Result<FrameSweep> sweep(const Curve<Vec<2>>& profile, const Curve<Vec<3>>& rail
         auto made = placed(profile, powers, parts, frame, std::size_t(std::max(3, rail.basis().degree())));
         if (!made) return std::unexpected(made.error());
         const double bound = (turned + made->bound) * (1 + 0x1p-48);
-        if (!(bound <= options.tolerance))
+        if (2 * made->bound > options.tolerance)
             return refuse(RefusalKind::ill_conditioned, "tolerance",
                           text(options.tolerance, " is too small beside rounding, which may move points by ",
                                made->bound));
+        if (!(bound <= options.tolerance)) continue;
         return FrameSweep{std::move(made->surface), bound, int(parts.size())};
     }
     return refuse(RefusalKind::limit, "tolerance",
