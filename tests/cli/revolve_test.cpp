@@ -22,7 +22,7 @@ TEST_F(Cli, revolve_makes_a_cylinder_of_a_line) {
     EXPECT_EQ(e[0]["point"], Json::parse("[2.0,0.0,0.0]"));
     EXPECT_NEAR(e[1]["point"][1].get<double>(), 2, 1e-15);
     EXPECT_NEAR(std::hypot(e[2]["point"][0].get<double>(), e[2]["point"][1].get<double>()), 2, 1e-15);
-    EXPECT_EQ(e[2]["point"][2], 3.0);
+    EXPECT_NEAR(e[2]["point"][2].get<double>(), 3, 1e-15);
     ASSERT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,2", "--closed", "-o", "c.json"}, kLine).code, 0);
     EXPECT_EQ(Json::parse(content(path("c.json")))["objects"][0]["points"].size(), 8u);
 }
