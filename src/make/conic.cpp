@@ -19,7 +19,8 @@
 // runs once around: (p^2 - q^2, 2 p q) / (p^2 + q^2), a quartic with the weights 1 0 1/3 0 1, elevated once
 // and multiplied by 5.
 //
-// Accuracy: all is computed with bounds (bounded.hpp), what they mean for points is in rounding_detail.hpp.
+// Accuracy: all is computed with bounds (bounded.hpp), and so is what the rounding of the coefficients moves
+// (bounded_net_detail.hpp).
 // sin and cos of the C library are taken to be off by at most one unit in the last place, sinh and cosh by
 // two, as glibc and musl state. Weights that reach the curve are above cos 45 degrees, unless `widest` allows
 // less.
@@ -28,7 +29,7 @@
 //
 // Why not the fewest pieces that exist, 3 for a circle? Control points would be twice as far away. `widest`
 // allows it.
-#include "rounding_detail.hpp"
+#include "bounded_net_detail.hpp"
 
 #include <freiform/make/conic.hpp>
 #include <freiform/poly/predicates.hpp>
@@ -46,34 +47,11 @@ using detail::sine;
 
 constexpr double kUnit = detail::kRoundUnit, kTwoPi = 2 * std::numbers::pi;
 
-template <int D>
-using Vector = std::array<Bounded, std::size_t(D)>;
-
-template <int D>
-Vector<D> bounded(const Vec<D>& v, double bound = 0) {
-    Vector<D> b;
-    for (int i = 0; i < D; ++i) b[std::size_t(i)] = {v[i], bound};
-    return b;
-}
-template <std::size_t D>
-std::array<Bounded, D> operator+(std::array<Bounded, D> a, const std::array<Bounded, D>& b) {
-    for (std::size_t i = 0; i < D; ++i) a[i] = a[i] + b[i];
-    return a;
-}
-template <std::size_t D>
-std::array<Bounded, D> operator-(std::array<Bounded, D> a, const std::array<Bounded, D>& b) {
-    for (std::size_t i = 0; i < D; ++i) a[i] = a[i] - b[i];
-    return a;
-}
-template <std::size_t D>
-std::array<Bounded, D> operator*(const Bounded& s, std::array<Bounded, D> a) {
-    for (Bounded& x : a) x = x == Bounded(0) ? x : s * x;
-    return a;
-}
-template <std::size_t D>
-Bounded length(const std::array<Bounded, D>& a) {
-    return sqrt(dot(a, a));
-}
+using bounded::length;
+using bounded::Vector;
+using bounded::operator+;
+using bounded::operator-;
+using bounded::operator*;
 
 // A rational quadratic with end weights 1, or any Bezier piece: numerators and weights.
 template <int D>
@@ -86,44 +64,29 @@ Piece<D> quadratic(const Vector<D>& a, const Vector<D>& v, const Bounded& w, con
     return {{a, v, c}, {1, w, 1}};
 }
 
-// The coefficients of pieces that follow each other, ends shared, with the bound of the essay.
+// The coefficients of pieces that follow each other, ends shared.
 template <int D>
-struct Assembled {
-    std::vector<Hom<D>> net;
-    double bound = 0;
-};
+using Assembled = bounded::RoundedNet<D>;
 template <int D>
 Assembled<D> assembled(const std::vector<Piece<D>>& pieces) {
     Assembled<D> out;
-    detail::MovedBound moved;
     for (const Piece<D>& piece : pieces)
-        for (std::size_t i = 0; i < piece.weight.size(); ++i) {
-            if (i == 0 && !out.net.empty()) continue;
-            Hom<D> h;
-            Vec<D> e;
-            const double w = piece.weight[i].value;
-            for (int k = 0; k < D; ++k) {
-                const Bounded& x = piece.numerator[i][std::size_t(k)];
-                h[k] = x.value, e[k] = x.bound / w;
-            }
-            h[D] = w;
-            out.net.push_back(h);
-            moved.add(project(h), norm(e), piece.weight[i].bound / w);
-        }
-    out.bound = moved.value();
+        for (std::size_t i = out.net.empty() ? 0 : 1; i < piece.weight.size(); ++i)
+            out.add(piece.numerator[i], piece.weight[i]);
     return out;
 }
 
 template <int D>
 Result<ConicArc<D>> finished(Assembled<D> parts, Result<BSplineBasis> basis) {
     if (!basis) return std::unexpected(basis.error());
-    if (!std::isfinite(parts.bound))
+    const double bound = parts.bound();
+    if (!std::isfinite(bound))
         return refuse(RefusalKind::ill_conditioned, "conic",
                       "rounding leaves nothing of the weights or of the axes of this conic");
     const int n = int(parts.net.size());
     auto curve = Curve<Hom<D>>::make({std::move(*basis)}, Net<1, Hom<D>>({n}, std::move(parts.net)));
     if (!curve) return std::unexpected(curve.error());
-    return ConicArc<D>{std::move(*curve), parts.bound};
+    return ConicArc<D>{std::move(*curve), bound};
 }
 
 // Quadratic pieces on [0, 1], all of the same length.
@@ -171,7 +134,8 @@ Result<Axes<D>> checked(const FoundConic<D>& f) {
     if (auto ok = check(CurveGeometry<D>(c)); !ok) return std::unexpected(ok.error());
     if (collinear(Vec<D>{}, c.x, c.y))
         return refuse(RefusalKind::invalid, "conic", "x and y are parallel: it is flat");
-    return Axes<D>{bounded(c.centre, f.centre_bound), bounded(c.x, f.x_bound), bounded(c.y, f.y_bound)};
+    return Axes<D>{bounded::vector(c.centre, f.centre_bound), bounded::vector(c.x, f.x_bound),
+                   bounded::vector(c.y, f.y_bound)};
 }
 
 // The four quarters from parameter 0 on.
@@ -350,7 +314,7 @@ Result<FoundConic<3>> circle(const Vec<3>& centre, const Vec<3>& normal, double 
     // x is orthogonal to n and to the axis that n is farthest from; y = n x x / |n|.
     Vec<3> side;
     side[(least + 1) % 3] = -n[(least + 2) % 3], side[(least + 2) % 3] = n[(least + 1) % 3];
-    const Vector<3> across = bounded(side), up = cross(bounded(n), across);
+    const Vector<3> across = bounded::vector(side), up = cross(bounded::vector(n), across);
     const Vector<3> x = Bounded(radius) / length(across) * across, y = Bounded(radius) / length(up) * up;
     FoundConic<3> found{{ConicKind::ellipse, centre, {}, {}}, 0, 0, 0};
     for (int i = 0; i < 3; ++i) {
@@ -367,7 +331,8 @@ Result<ConicArc<D>> arc_through(const Vec<D>& a, const Vec<D>& b, const Vec<D>& 
     if (auto ok = check_widest(widest); !ok) return std::unexpected(ok.error());
     if (collinear(a, b, c)) return refuse(RefusalKind::invalid, "b", "a, b and c are on one line");
     const int e = exponent_of<D>({a, b, c});
-    const Vector<D> A = bounded(scaled(a, -e)), B = bounded(scaled(b, -e)), C = bounded(scaled(c, -e));
+    const Vector<D> A = bounded::vector(scaled(a, -e)), B = bounded::vector(scaled(b, -e)),
+                    C = bounded::vector(scaled(c, -e));
     const Vector<D> to_a = A - B, to_c = C - B, chord = C - A;
     const Bounded size = length(to_a) * length(to_c), w = -(dot(to_a, to_c) / size);
     // The part of b - a that is orthogonal to the chord; its length is sin(angle) |to_a| |to_c| / |chord|.
@@ -389,7 +354,8 @@ Result<ConicArc<D>> weighted_arc(const Vec<D>& a, const Vec<D>& corner, const Ve
     if (collinear(a, corner, c))
         return refuse(RefusalKind::invalid, "corner", "a, corner and c are on one line");
     const Bounded w = weight;
-    return halves<D>(bounded(a), w * bounded(corner), w, bounded(c), weight > 0 ? 0 : std::sqrt(0.5));
+    return halves<D>(bounded::vector(a), w * bounded::vector(corner), w, bounded::vector(c),
+                     weight > 0 ? 0 : std::sqrt(0.5));
 }
 
 Result<ConicArc<2>> tangent_arc(const Vec<2>& a, const Vec<2>& at_a, const Vec<2>& c, const Vec<2>& at_c,
@@ -407,9 +373,10 @@ Result<ConicArc<2>> tangent_arc(const Vec<2>& a, const Vec<2>& at_a, const Vec<2
                       "rounding does not tell on which side of the tangents or the chord it is");
     };
     const int e = exponent_of<2>({a, c, through});
-    const Vector<2> A = bounded(scaled(a, -e)), C = bounded(scaled(c, -e)), P = bounded(scaled(through, -e));
+    const Vector<2> A = bounded::vector(scaled(a, -e)), C = bounded::vector(scaled(c, -e)),
+                    P = bounded::vector(scaled(through, -e));
     const Vec<2> ta = scaled(at_a, -std::ilogb(max_abs(at_a))), tc = scaled(at_c, -std::ilogb(max_abs(at_c)));
-    const Vector<2> s = bounded(ta), t = bounded(tc), chord = C - A, to_p = P - A;
+    const Vector<2> s = bounded::vector(ta), t = bounded::vector(tc), chord = C - A, to_p = P - A;
     const auto turn = [](const Vector<2>& u, const Vector<2>& v) { return u[0] * v[1] - u[1] * v[0]; };
     constexpr double kLeast = 0x1.6a09e667f3bcp-1;  // a little less than cos 45 degrees
 
