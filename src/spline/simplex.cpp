@@ -23,6 +23,7 @@
 //
 // Why not the form of Horner: it is O(n^2) a point instead of O(n^3), but loses the bound near corners.
 #include <freiform/spline/simplex.hpp>
+#include <freiform/spline/simplex_convert.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -231,6 +232,12 @@ SimplexPatch<2, P> restrict_to(const SimplexPatch<2, P>& s, const std::array<Par
 }
 
 template <class P>
+SimplexPatch<2, P> restrict_to(const SimplexPatch<2, P>& s,
+                               const std::array<std::array<double, 3>, 3>& corners) {
+    return over(s, corners);
+}
+
+template <class P>
 std::array<SimplexPatch<2, P>, 3> split_at(const SimplexPatch<2, P>& s, const Param<2>& u) {
     const Barycentric t = s.barycentric(u);
     return {over(s, {t, kCorner[1], kCorner[2]}), over(s, {kCorner[0], t, kCorner[2]}),
@@ -279,6 +286,8 @@ requires(Space<P>::kDim == 3) Result<Vec<3>> normal(const SimplexPatch<2, P>& s,
     template class SimplexPatch<2, P>;                                                                  \
     template Result<SimplexPatch<2, P>> elevate(const SimplexPatch<2, P>&);                             \
     template SimplexPatch<2, P> restrict_to(const SimplexPatch<2, P>&, const std::array<Param<2>, 3>&); \
+    template SimplexPatch<2, P> restrict_to(const SimplexPatch<2, P>&,                                  \
+                                            const std::array<std::array<double, 3>, 3>&);               \
     template std::array<SimplexPatch<2, P>, 3> split_at(const SimplexPatch<2, P>&, const Param<2>&);    \
     template std::array<SimplexPatch<2, P>, 4> split_in_four(const SimplexPatch<2, P>&);                \
     template Curve<P, Bernstein> boundary(const SimplexPatch<2, P>&, int);

@@ -161,6 +161,14 @@ TEST(Quadric, poles_and_apices_are_single_points_and_closed_turns_close) {
     // About the origin a pole has no rounding in it at all.
     const auto own = must(sphere({}, 3));
     for (const auto& p : points(boundary(own.surface, 1, 1))) EXPECT_EQ(p, (Vec<3>{{0, 0, 3}}));
+    const auto cap = must(sphere({}, 3, {{0, 1}}, {0.2, kPi / 2}));
+    for (const auto& p : points(boundary(cap.surface, 1, 1))) EXPECT_EQ(p, (Vec<3>{{0, 0, 3}}));
+    // A cylinder of radius 1 rounds only the weights of its circle.
+    const auto thin = must(cylinder({}, 1, {0, 1}));
+    const auto q = exact_point(thin.surface, {0.125, 0.5});
+    const double off = to_double(abs(sqrt(q[0] * q[0] + q[1] * q[1]) - 1));
+    EXPECT_GT(off, 1e-18);
+    EXPECT_LE(off, thin.bound);
     const auto closed = must(torus(f, 2, 1, {.form = EllipseForm::closed}, {.form = EllipseForm::closed}));
     EXPECT_TRUE(closed.surface.basis(0).is_closed() && closed.surface.basis(1).is_closed());
     EXPECT_EQ(closed.surface(0, 0.3), closed.surface(1, 0.3));
