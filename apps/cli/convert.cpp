@@ -6,6 +6,7 @@
 #include <freiform/io/document.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/refine.hpp>
+#include <freiform/spline/simplex_convert.hpp>
 
 namespace freiform::cli {
 
@@ -15,12 +16,15 @@ constexpr std::string_view kAxisNames = "uvw";
 
 struct Options {
     std::string file, object, axis;
-    bool to_bezier = false, reverse = false;
+    bool to_bezier = false, reverse = false, to_triangles = false, to_surfaces = false;
     std::optional<int> elevate;
     std::optional<double> split, reduce;
     std::vector<double> knots;
 
-    bool changes() const { return to_bezier || reverse || elevate || split || reduce || !knots.empty(); }
+    bool changes() const {
+        return to_bezier || reverse || elevate || split || reduce || !knots.empty() || to_triangles ||
+               to_surfaces;
+    }
 };
 
 // One patch becomes one or more; `suffix` tells them apart.
@@ -111,7 +115,9 @@ public:
         if (ok && o_.reverse)
             ok = each("--reverse", [&](const Shape& s) { return reversed(s, int(axis_or(0))); });
         if (!ok) return std::unexpected(ok.error());
-        if (o_.to_bezier) to_bezier();
+        if (o_.to_bezier || o_.to_triangles) to_bezier();
+        if (o_.to_triangles) ok = to_triangle_pairs();
+        if (!ok) return std::unexpected(ok.error());
         return std::move(all_);
     }
 
@@ -185,6 +191,32 @@ private:
         return {};
     }
 
+    // Bezier patches as their two halves.
+    Result<void> to_triangle_pairs() {
+        Pieces all;
+        double worst = 0;
+        for (const Piece& piece : all_.pieces) {
+            const auto done = std::visit(
+                [&](const auto& s) -> Result<void> {
+                    if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
+                        if constexpr (std::remove_cvref_t<decltype(s)>::kParams == 2) {
+                            auto two = to_triangles(BezierPieces(s).piece({0, 0}));
+                            if (!two) return about("--to-triangles", two.error());
+                            for (std::size_t i = 0; i < 2; ++i)
+                                all.push_back({text(piece.suffix, i == 0 ? ".a" : ".b"), std::move(two->parts[i])});
+                            worst = std::max(worst, two->bound);
+                            return {};
+                        }
+                    return refuse(RefusalKind::no_answer, "--to-triangles", "is for surfaces");
+                },
+                piece.shape);
+            if (!done) return done;
+        }
+        all_.pieces = std::move(all);
+        if (worst > 0) all_.bound = std::nextafter(all_.bound + worst, 1e308);
+        return {};
+    }
+
     void to_bezier() {
         Pieces all;
         for (const Piece& piece : all_.pieces)
@@ -202,37 +234,64 @@ private:
     Changed all_;
 };
 
-// Of the changes, a triangle knows elevation, and a Bezier patch it is.
-Result<Changed> changed_triangle(const Shape& shape, const Options& o) {
-    if (o.reverse || o.split || o.reduce || !o.knots.empty() || !o.axis.empty())
-        return refuse(RefusalKind::no_answer, "", "is a triangle; of the changes it knows --elevate only");
-    auto found = std::visit(
-        [&](const auto& s) -> Result<Shape> {
-            using S = std::remove_cvref_t<decltype(s)>;
-            if constexpr (TriangularPatch<S>) {
-                Result<S> out = s;
-                for (int i = 0; i < o.elevate.value_or(0) && out; ++i) out = elevate(*out);
-                if (!out) return std::unexpected(std::move(out.error()));
-                return Result<Shape>(std::in_place, *std::move(out));
-            } else {
-                return shape;
-            }
-        },
-        shape);
-    if (!found) return refuse(RefusalKind::no_answer, "--elevate", found.error().message);
+// A triangle is a Bezier patch already. It is cut from a corner to the opposite edge: u and v run along those
+// of the axes, w from u = 1 to v = 1.
+template <class P>
+Result<Changed> changed_triangle(const Triangle<P>& s, const Options& o) {
+    if (!o.knots.empty())
+        return refuse(RefusalKind::no_answer, "--insert-knots", "is a triangle, which has no knots");
+    if (!o.axis.empty() && !o.split)
+        return refuse(RefusalKind::no_answer, "--axis", "is a triangle; there, it is for --split");
+    Result<Triangle<P>> out = s;
+    for (int i = 0; i < o.elevate.value_or(0) && out; ++i) out = elevate(*out);
+    if (!out) return refuse(RefusalKind::no_answer, "--elevate", out.error().message);
+    double bound = 0;
+    while (o.reduce && out->degree() > 1) {
+        auto lower = reduce_degree(*out, std::max(*o.reduce - bound, 0.0));
+        if (!lower) break;
+        out = std::move(lower->patch);
+        bound = std::nextafter(bound + lower->bound, 1e308);
+    }
+    std::vector<std::pair<std::string, Triangle<P>>> parts{{"", *out}};
+    if (o.split) {
+        if (!(*o.split > 0 && *o.split < 1))
+            return refuse(RefusalKind::out_of_domain, "--split", text(*o.split, " is not inside (0, 1)"));
+        const int edge = o.axis == "v" ? 1 : o.axis == "w" ? 0 : 2;
+        auto two = split_edge(*out, edge, edge == 1 ? 1 - *o.split : *o.split);
+        parts = {{".a", std::move(two[edge == 1])}, {".b", std::move(two[edge != 1])}};
+    }
     Changed all;
-    all.pieces.push_back({"", *std::move(found)});
+    double cut_bound = 0;
+    for (auto& [suffix, part] : parts) {
+        if (o.reverse) part = reversed(part);
+        if (!o.to_surfaces) {
+            all.pieces.push_back({suffix, std::move(part)});
+            continue;
+        }
+        auto three = to_three_surfaces(part);
+        if (!three) return refuse_within("--to-surfaces", three.error());
+        for (std::size_t i = 0; i < 3; ++i)
+            all.pieces.push_back({text(suffix, ".", i), std::move(three->parts[i])});
+        cut_bound = std::max(cut_bound, three->bound);
+    }
+    all.bound = cut_bound > 0 ? std::nextafter(bound + cut_bound, 1e308) : bound;
     return all;
 }
 
 Result<Changed> changed(const Shape& shape, const Options& options) {
     const std::string_view type = type_name(shape);
-    if (type == "triangle") return changed_triangle(shape, options);
     if (type == "trimmed" || type == "model")
         return refuse(
             RefusalKind::no_answer, "",
             text("is a ", type, "; the options that change a shape are for curves, surfaces and volumes"));
-    return Changes(options, shape).run();
+    return std::visit(
+        [&](const auto& s) -> Result<Changed> {
+            if constexpr (TriangularPatch<std::remove_cvref_t<decltype(s)>>)
+                return changed_triangle(s, options);
+            else
+                return Changes(options, shape).run();
+        },
+        shape);
 }
 
 struct Reduction {
@@ -329,7 +388,9 @@ void add_convert(CommandLine& line) {
                  "--reverse, --to-bezier.\n"
                  "--elevate and --reduce change all directions, --insert-knots, --split and --reverse the "
                  "first, unless\n"
-                 "--axis says which.");
+                 "--axis says which. Of triangles --reduce lowers the degree, --split cuts from a corner to the "
+                 "opposite\n"
+                 "edge: --axis u, v or w.");
     command.file(options->file);
     command.output("The file to write: .json or .bpt");
     command.object(options->object);
@@ -340,6 +401,10 @@ void add_convert(CommandLine& line) {
     command.number("--reduce", options->reduce,
                    "Remove knots as long as no point moves by more than this; the bound reached is printed");
     command.number("--split", options->split, "Cut at a parameter, an object for each side");
+    command.flag("--to-triangles", options->to_triangles,
+                 "Cut surfaces into Bezier triangles, two for each piece");
+    command.flag("--to-surfaces", options->to_surfaces,
+                 "Cut triangles into three surfaces each; others stay");
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
     command.limits();

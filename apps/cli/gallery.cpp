@@ -86,10 +86,11 @@ footer { color: var(--grey); font-size: 15px; padding-bottom: 50px; }
 std::string page_of(std::span<const Entry* const> shown, const std::string& format) {
     std::string s = text(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-        "content=\"width=device-width, initial-scale=1\">\n<title>freiform: curves in "
-        "figures</title>\n<style>",
-        kStyle, "</style>\n</head>\n<body>\n<header>\n<h1>Curves in figures</h1>\n",
-        "<p>What freiform knows about curves, one figure for each subject. All are drawn by the program "
+        "content=\"width=device-width, initial-scale=1\">\n<title>freiform: curves and surfaces "
+        "in figures</title>\n<style>",
+        kStyle, "</style>\n</head>\n<body>\n<header>\n<h1>Curves and surfaces in figures</h1>\n",
+        "<p>What freiform knows about curves and surfaces, one figure for each subject. All are drawn by the "
+        "program "
         "itself "
         "from the small documents beside this page; the commands below each figure draw it "
         "again.</p>\n<nav>\n");
@@ -153,13 +154,13 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_gallery(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    const Command command = line.add("gallery", "Figures of what freiform knows about curves",
+    const Command command = line.add("gallery", "Figures of what freiform knows about curves and surfaces",
                                      "  freiform gallery -o figures        (then open figures/index.html)\n"
                                      "  freiform gallery -o figures --only R15 --to pdf");
     command.word("-o,--output", line.context().output, "The folder; it is made if it is not there")
         .shown_as("FOLDER");
     command.word("--to", line.context().to, "svg (default), pdf or png").shown_as("FORMAT");
-    command.word("--only", options->only, "Only this figure: R01 to R20").shown_as("ROW");
+    command.word("--only", options->only, "Only this figure: R01, R02, ..").shown_as("ROW");
     command.action(options, run);
 }
 

@@ -4,7 +4,7 @@
 namespace freiform::cli::gallery {
 
 std::span<const Entry> entries() {
-    static constexpr std::array<Entry, 20> kEntries{{
+    static constexpr std::array<Entry, 22> kEntries{{
         {"R01", "Three descriptions",
          "An explicit curve is the graph of a function, an implicit one the zeros of a function of the "
          "plane, a parametric "
@@ -109,6 +109,16 @@ std::span<const Entry> entries() {
          "inverse of the arc "
          "length puts points at equal distances along the curve.",
          "--control", equal_distances},
+        {"R28", "Rational surfaces",
+         "Spheres, cylinders, cones and tori are rational splines, exactly; a sphere needs no irrational "
+         "number, "
+         "and six patches have no pole. All lines are curves of constant parameter.",
+         "--control", rational_surfaces},
+        {"R29", "Triangles",
+         "A triangular patch of degree 3 has ten control points. Each step of de Casteljau replaces every "
+         "small "
+         "triangle by one point in it; the last triangle spans the tangent plane.",
+         "--control", triangles},
     }};
     return kEntries;
 }

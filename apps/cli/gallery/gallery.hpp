@@ -44,5 +44,8 @@ Figure properties(const Document&);
 Figure forward_differences(const Document&);
 Figure halving(const Document&);
 Figure equal_distances(const Document&);
+// surfaces.cpp
+Figure rational_surfaces(const Document&);
+Figure triangles(const Document&);
 
 }  // namespace freiform::cli::gallery
