@@ -6,18 +6,21 @@ namespace freiform::test {
 namespace {
 
 using Json = nlohmann::json;
-using TriangleCommands = Program;
 
 const std::string kTriangle =
     R"({"name": "t", "type": "triangle", "degree": 2, "points": [[0,0,0],[1,0,1],[0,1,1],[2,0,0],[1,1,1],[0,2,0]]})";
 
-// The point of an object of a document.
-std::vector<double> point(const std::string& document, const std::string& object, const std::string& at) {
-    const Ran r = run({"eval", document, "--object", object, "--at", at});
-    const Json j = Json::parse(r.out, nullptr, false);
-    EXPECT_EQ(r.code, 0) << r.err;
-    return j["results"][0]["point"].get<std::vector<double>>();
-}
+class TriangleCommands : public Program {
+protected:
+    // The point of an object of a document.
+    std::vector<double> point(const std::string& document, const std::string& object, const std::string& at) {
+        const Ran r = run({"eval", document, "--object", object, "--at", at});
+        const Json j = Json::parse(r.out, nullptr, false);
+        EXPECT_EQ(r.code, 0) << r.err;
+        return j["results"][0]["point"].get<std::vector<double>>();
+    }
+};
+
 void expect_near(const std::vector<double>& a, const std::vector<double>& b) {
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-14);
