@@ -9,6 +9,7 @@
 // Rational curves are judged by their points, not by their homogeneous coefficients.
 #pragma once
 #include <freiform/core/bounded.hpp>
+#include <freiform/spline/edge.hpp>
 #include <freiform/spline/patch.hpp>
 
 #include <optional>
@@ -78,8 +79,6 @@ struct Continuity {
     std::optional<Jump> first_c_jump() const;
     std::optional<Jump> first_g_jump() const;
 };
-
-enum class End { start, end };
 
 // A curve at one of its parameters, seen from one side: its derivatives there with bounds. What joints are
 // made of; curves of the same dimension, polynomial or rational, can be compared.
