@@ -1,5 +1,6 @@
-// continuity: how smooth curves are at their knots, and how smoothly neighbouring curves join.
+// continuity: how smooth curves and surfaces are at their knots, and how smoothly neighbours join.
 #include "input.hpp"
+#include "surface_joints.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/query/continuity.hpp>
@@ -36,6 +37,7 @@ struct Answer {
     std::vector<Found> objects;
     std::vector<std::size_t> curve;  // object of each curve that joints are counted by
     std::vector<CurveJoint> joints;
+    SurfaceNeighbours surfaces;
 };
 
 // Curves, surfaces and volumes.
@@ -108,6 +110,7 @@ Result<Answer> answer(const Document& document, const std::vector<std::size_t>& 
         auto found = look_at(shape, i, a.options);
         if (!found) return refuse_within(object_label(document, i), found.error());
         a.objects.push_back(*std::move(found));
+        a.surfaces.add(shape, i, a.options);
         with_curve(shape, [&](const auto& curve) {
             ends.push_back(ends_of(curve, a.options)), a.curve.push_back(i);
         });
@@ -121,6 +124,7 @@ Result<Answer> answer(const Document& document, const std::vector<std::size_t>& 
     // A curve that comes back to its start is among its own knots, as the seam.
     for (CurveJoint& j : *found)
         if (j.meeting.first != j.meeting.second || j.joint.c_order < 0) a.joints.push_back(std::move(j));
+    if (auto ok = a.surfaces.find(a.gap, a.options); !ok) return std::unexpected(ok.error());
     return a;
 }
 
@@ -239,6 +243,7 @@ std::string json_of(const Answer& a) {
         write_joint(w, d, j.joint);
         w.end_object();
     }
+    write_joints(w, d, a.surfaces);
     w.end_array().end_object();
     return w.take() + "\n";
 }
@@ -310,7 +315,7 @@ std::string text_of(const Answer& a) {
     std::string s =
         text("tolerance ", rounded(a.options.tolerance), " ", unit_of(d),
              a.tolerance_given ? "" : text(" (", kToleranceOfBox, " of the size of the largest object)"),
-             ", ends nearer than ", rounded(a.gap), " ", unit_of(d), " are joined\n");
+             ", ends and edges nearer than ", rounded(a.gap), " ", unit_of(d), " are joined\n");
     const std::vector<std::string> head{"", "C", "G", "first jump of C", "first jump of G"};
     for (const Found& f : a.objects) {
         s += text(object_label(d, f.object), ": ", type_name(d.objects[f.object].shape));
@@ -323,7 +328,7 @@ std::string text_of(const Answer& a) {
              : none             ? ", no inner knots\n"
                                 : "\n" + table.text_of();
     }
-    if (a.joints.empty()) return s;
+    if (a.joints.empty() && a.surfaces.joints.empty()) return s;
     Table table;
     table.row(head);
     for (const CurveJoint& j : a.joints)
@@ -331,6 +336,7 @@ std::string text_of(const Answer& a) {
                   text(object_label(d, a.curve[j.meeting.first]), " ", end_name(j.meeting.first_end), " - ",
                        object_label(d, a.curve[j.meeting.second]), " ", end_name(j.meeting.second_end)),
                   j.joint);
+    for (auto& row : joint_rows(d, a.surfaces)) table.row(std::move(row));
     return s + "joints\n" + table.text_of();
 }
 
@@ -361,7 +367,8 @@ void add_continuity(CommandLine& line) {
         "0: only rounding (1e-9 of the size of the largest object)");
     command.number("--angle", options->angle, "Degrees that tangents may differ by all the same (0)");
     command.number("--gap", options->gap,
-                   "Ends of curves nearer than this are a joint (1e-3 of the size of the largest object)");
+                   "Ends of curves and edges of surfaces nearer than this are a joint (1e-3 of the size of the "
+                   "largest object)");
     command.count("--orders", options->orders, 0, kMaxDegree, "Highest order of G to look at (3)");
     command.object(options->object);
     command.answer_file();

@@ -3,6 +3,7 @@
 
 #include <freiform/core/scan.hpp>
 #include <freiform/core/spelling.hpp>
+#include <freiform/fit/bicubic.hpp>
 #include <freiform/fit/interpolate.hpp>
 #include <freiform/fit/local.hpp>
 
@@ -10,13 +11,25 @@ namespace freiform::cli {
 
 namespace {
 
-enum class Scheme { natural, clamped, not_a_knot, periodic, catmull_rom, akima, monotone, fritsch_carlson };
-constexpr std::string_view kSchemes[] = {"natural",     "clamped", "not-a-knot", "periodic",
-                                         "catmull-rom", "akima",   "monotone",   "fritsch-carlson"};
+enum class Scheme {
+    natural,
+    clamped,
+    not_a_knot,
+    periodic,
+    catmull_rom,
+    akima,
+    monotone,
+    fritsch_carlson,
+    catmull_rom_periodic
+};
+constexpr std::string_view kSchemes[] = {"natural",  "clamped",         "not-a-knot",
+                                         "periodic", "catmull-rom",     "akima",
+                                         "monotone", "fritsch-carlson", "catmull-rom-periodic"};
+constexpr std::string_view kTwists[] = {"tensor", "zero", "adini", "bessel"};
 constexpr std::string_view kSpacings[] = {"uniform", "chordal", "centripetal"};
 
 struct Options {
-    std::string file, ends = "natural", spacing, at, tangents;
+    std::string file, ends = "natural", spacing, at, tangents, twists;
     std::optional<int> degree;
     bool closed = false;
 };
@@ -43,7 +56,10 @@ std::vector<Scheme> schemes(const Options& options, std::size_t axes) {
 }
 
 bool is_local(Scheme s) { return s >= Scheme::catmull_rom; }
-bool is_closed(Scheme s, const Options& o) { return s == Scheme::periodic || (o.closed && is_local(s)); }
+bool is_catmull_rom(Scheme s) { return s == Scheme::catmull_rom || s == Scheme::catmull_rom_periodic; }
+bool is_closed(Scheme s, const Options& o) {
+    return s == Scheme::periodic || s == Scheme::catmull_rom_periodic || (o.closed && is_local(s));
+}
 
 struct Answer {
     Document document;
@@ -74,7 +90,7 @@ std::vector<double> given_parameters(std::string_view rest) {
 
 Spacing spacing_of(const Options& options, Scheme way) {
     const std::string word = !options.spacing.empty()     ? options.spacing
-                             : way == Scheme::catmull_rom ? "uniform"
+                             : is_catmull_rom(way) ? "uniform"
                                                           : "chordal";
     return Spacing(index_of("--parameters", word, kSpacings));
 }
@@ -90,10 +106,14 @@ std::vector<std::vector<double>> given_tangents(const Options& options, Scheme w
 
 template <std::size_t N, int D>
 Result<Answer> through(const Net<N, Vec<D>>& points, const std::vector<std::vector<double>>& at,
-                       const std::array<bool, N>& closed) {
+                       const std::array<bool, N>& closed, Twists twists) {
     std::array<std::span<const double>, N> spans;
     for (std::size_t d = 0; d < N; ++d) spans[d] = at[d];
-    auto patch = catmull_rom(points, spans, closed);
+    auto patch = [&]() -> Result<Patch<N, Vec<D>>> {
+        if constexpr (N == 2)
+            if (twists != Twists::tensor) return bicubic_through<D>(points, spans, closed, twists);
+        return catmull_rom(points, spans, closed);
+    }();
     if (!patch) return std::unexpected(patch.error());
     return answer<N, D>(std::move(*patch));
 }
@@ -148,8 +168,9 @@ Result<Answer> solve(const Net<N, Vec<D>>& points, const Options& options, const
         at[d] = std::move(*found);
     }
     Result<Answer> a;
-    if (ways[0] == Scheme::catmull_rom)
-        a = through<N, D>(points, at, closed);
+    if (is_catmull_rom(ways[0]))
+        a = through<N, D>(points, at, closed,
+                          Twists(options.twists.empty() ? 0 : index_of("--twists", options.twists, kTwists)));
     else if (!is_local(ways[0]))
         a = global<N, D>(points, options, at, ways);
     else if constexpr (N == 1)
@@ -189,18 +210,20 @@ Result<void> run(const Context& context, const Options& options) {
     if (!options.spacing.empty() && !options.at.empty())
         wrong_usage("--parameters and --at exclude each other");
     (void)schemes(options, 2);
+    if (!options.twists.empty()) (void)index_of("--twists", options.twists, kTwists);
     const auto table = read_points(options.file, context.read_options());
     if (!table) return std::unexpected(table.error());
     const std::size_t axes = table->grid ? 2 : 1;
     const auto ways = schemes(options, axes);
     for (const Scheme s : ways) {
-        if (is_local(s) != is_local(ways[0]) || (is_local(s) && s != ways[0]))
+        if (is_local(s) != is_local(ways[0]) || is_catmull_rom(s) != is_catmull_rom(ways[0]))
             wrong_usage("--ends mixes schemes that do not go together");
         if (is_local(s) && options.degree && *options.degree != 3)
             wrong_usage(text(kSchemes[int(s)], " is for degree 3"));
-        if (axes == 2 && ((is_local(s) && s != Scheme::catmull_rom) || s == Scheme::clamped))
+        if (axes == 2 && ((is_local(s) && !is_catmull_rom(s)) || s == Scheme::clamped))
             wrong_usage(text(kSchemes[int(s)],
-                             " is for curves; a grid takes natural, not-a-knot, periodic or catmull-rom"));
+                             " is for curves; a grid takes natural, not-a-knot, periodic, catmull-rom or "
+                             "catmull-rom-periodic"));
         if (s != Scheme::clamped && !options.tangents.empty())
             wrong_usage("--tangents goes with --ends clamped");
         if (!is_local(s) && options.closed && s != Scheme::periodic)
@@ -209,6 +232,8 @@ Result<void> run(const Context& context, const Options& options) {
                 "periodic");
     }
     if (axes == 2 && !options.at.empty()) wrong_usage("--at is for curves");
+    if (!options.twists.empty() && (axes == 1 || !is_catmull_rom(ways[0])))
+        wrong_usage("--twists is for grids with --ends catmull-rom or catmull-rom-periodic");
     return with_points(*table, [&]<int D>(std::vector<Vec<D>> points) -> Result<void> {
         if (table->grid) {
             auto a = solve<2, D>(Net<2, Vec<D>>(table->extent, std::move(points)), options, ways);
@@ -239,6 +264,7 @@ void add_interpolate(CommandLine& line) {
         "  freiform interpolate ring.csv --ends periodic --degree 5 -o ring.json\n"
         "  freiform interpolate points.csv --ends clamped --tangents '1,0;0,1' -o curve.json\n"
         "  freiform interpolate grid.json --ends natural,periodic -o tube.json\n"
+        "  freiform interpolate grid.json --ends catmull-rom --twists adini -o patches.json\n"
         "Points are lines of 1 to 4 numbers, or JSON: [[x,y], ...], of a grid [[[x,y,z], ...], ...].\n"
         "natural, clamped, not-a-knot and periodic have degree - 1 continuous derivatives;\n"
         "catmull-rom, akima, monotone and fritsch-carlson are cubic with continuous first derivatives and "
@@ -249,9 +275,8 @@ void add_interpolate(CommandLine& line) {
     command.count("--degree", options->degree, 1, kMaxDegree, "Degree of the spline (3)");
     command
         .word("--ends", options->ends,
-              "natural, clamped, not-a-knot, periodic, catmull-rom, akima, monotone or "
-              "fritsch-carlson; of a grid one "
-              "for each direction")
+              "natural, clamped, not-a-knot, periodic, catmull-rom, catmull-rom-periodic, akima, monotone or "
+              "fritsch-carlson; of a grid one for each direction")
         .shown_as("WAY[,WAY]");
     command.word("--parameters", options->spacing, "uniform, chordal or centripetal").shown_as("WAY");
     command
@@ -263,6 +288,10 @@ void add_interpolate(CommandLine& line) {
               "With clamped: derivatives by the parameter at the start, then at the end")
         .shown_as("X,Y;X,Y");
     command.flag("--closed", options->closed, "Close a curve of a local scheme (catmull-rom, ...)");
+    command
+        .word("--twists", options->twists,
+              "Mixed derivatives of a grid with catmull-rom: tensor (default), zero, adini or bessel")
+        .shown_as("WAY");
     command.limits();
     command.action(options, run);
 }

@@ -144,5 +144,40 @@ TEST_F(ContinuityCommand, a_seam_is_a_knot_and_a_knot_without_a_jump_can_be_remo
         true);
 }
 
+// Two patches, flat on the left and rising on the right, whose common edge is u end of the one and u
+// start of the other; and a third that is beside the second along v, run the other way.
+TEST_F(ContinuityCommand, reports_joints_of_neighbouring_surfaces) {
+    const std::string patches = R"({"freiform": 1, "unit": "mm", "objects": [
+      {"name": "left", "type": "surface", "points": [[[0,0,0],[0,2,0]],[[2,0,0],[2,2,0]]]},
+      {"name": "right", "type": "surface", "points": [[[2,0,0],[2,2,0]],[[3,0,0],[3,2,0]],[[4,0,1],[4,2,2]]]},
+      {"name": "up", "type": "surface", "points": [[[4,2,2],[4,4,5]],[[3,2,0],[3,4,0]],[[2,2,0],[2,4,0]]]},
+      {"name": "line", "type": "curve", "points": [[9,9,9],[8,9,9]]}]})";
+    const std::string path = file("patches.json", patches);
+    const Json all = Json::parse(run({"continuity", path, "--json"}).out)["joints"];
+    ASSERT_EQ(all.size(), 2u) << all;
+    EXPECT_EQ(all[0]["first"], 0);
+    EXPECT_EQ(all[0]["first_edge"], "u end");
+    EXPECT_EQ(all[0]["second_edge"], "u start");
+    EXPECT_EQ(all[0]["against"], false);
+    EXPECT_EQ(all[0]["c_order"], 1);
+    EXPECT_EQ(all[0]["g_order"], 1);
+    // z = (1 + v) (x - 2)^2 / 4: curvature (1 + v) / 2, largest at v = 1.
+    EXPECT_EQ(all[0]["first_g_jump"]["order"], 2);
+    EXPECT_NEAR(all[0]["first_g_jump"]["size"], 1, all[0]["first_g_jump"]["bound"].get<double>());
+    EXPECT_EQ(all[0]["first_g_jump"]["unit"], "1/mm");
+    EXPECT_EQ(all[0]["first_g_jump"]["at"], 1);
+    EXPECT_EQ(all[1]["first_edge"], "v end");
+    EXPECT_EQ(all[1]["second_edge"], "v start");
+    EXPECT_EQ(all[1]["against"], true);
+    EXPECT_EQ(all[1]["g_order"], 0);
+    const Ran words = run({"continuity", path});
+    EXPECT_NE(words.out.find("\"left\" u end - objects[1] \"right\" u start"), std::string::npos)
+        << words.out;
+    EXPECT_NE(words.out.find("G2 by 1 1/mm at 1"), std::string::npos) << words.out;
+    // A millimetre allows all of it.
+    const Json wide = Json::parse(run({"continuity", path, "--json", "--tolerance", "3"}).out)["joints"];
+    EXPECT_EQ(wide[0]["g_order"], 2);
+}
+
 }  // namespace
 }  // namespace freiform::test

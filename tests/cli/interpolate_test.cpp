@@ -139,5 +139,27 @@ TEST_F(Interpolate, the_report_holds_the_parameters_of_all_points) {
     EXPECT_EQ(given, chordal);
 }
 
+// R24.
+TEST_F(Interpolate, twists_of_a_grid_are_chosen_and_one_direction_may_be_closed) {
+    const std::string grid =
+        "[[[0,0,0],[1,0,1],[2,0,0]],[[0,1,2],[1,1,0],[2,1,1]],[[0,2,0],[1,2,3],[2,2,1]]]";
+    const Json flat = curve({"--ends", "catmull-rom", "--twists", "zero"}, grid);
+    ASSERT_EQ(flat["points"].size(), 7u);
+    // b11 = b10 + b01 - b00 without a twist.
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto b = [&](int i, int j) { return flat["points"][i][j][k].get<double>(); };
+        EXPECT_NEAR(b(4, 4), b(4, 3) + b(3, 4) - b(3, 3), 1e-15);
+        EXPECT_NEAR(b(1, 1), b(1, 0) + b(0, 1) - b(0, 0), 1e-15);
+    }
+    const Json tensor = curve({"--ends", "catmull-rom"}, grid);
+    EXPECT_NE(tensor["points"][4][4], flat["points"][4][4]);
+    EXPECT_EQ(tensor["points"][3][4], flat["points"][3][4]);
+    const Json tube = curve({"--ends", "catmull-rom-periodic,catmull-rom", "--twists", "adini"}, grid);
+    EXPECT_EQ(tube["points"].size() == 9u || tube["points"].size() == 10u, true) << tube["points"].size();
+    EXPECT_EQ(tube["points"][0].size(), 7u);
+    EXPECT_EQ(run({"interpolate", "-", "--twists", "adini"}, grid).code, 2);
+    EXPECT_EQ(run({"interpolate", "-", "--ends", "catmull-rom", "--twists", "coons"}, grid).code, 2);
+}
+
 }  // namespace
 }  // namespace freiform::test

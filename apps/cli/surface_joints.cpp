@@ -1,0 +1,105 @@
+#include "surface_joints.hpp"
+
+#include "command.hpp"
+
+#include <freiform/io/bpt.hpp>
+
+#include <charconv>
+
+namespace freiform::cli {
+
+namespace {
+
+std::string edge_name(SurfaceEdge e) {
+    return text(e.axis == 0 ? 'u' : 'v', e.end == End::start ? " start" : " end");
+}
+std::string unit_of(const Document& d) { return d.unit.empty() ? "unit" : d.unit; }
+std::string c_unit(const Document& d, int order) {
+    return order == 0 ? unit_of(d) : order == 1 ? text(unit_of(d), "/t") : text(unit_of(d), "/t^", order);
+}
+std::string g_unit(const Document& d, int order) {
+    return order == 0 ? unit_of(d) : order == 1 ? "rad" : text("1/", unit_of(d));
+}
+std::string order_text(char kind, int order) { return order < 0 ? "-" : text(kind, order); }
+// Six digits are enough to read; --json has all.
+std::string rounded(double x) {
+    char buffer[40];
+    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, 6).ptr};
+}
+
+void write_jump(json::Writer& w, const LargestJump& j, int order, const std::string& unit) {
+    w.begin_object().field("order", order).field("size", j.size).field("bound", j.bound);
+    w.field("unit", unit).field("at", j.at).end_object();
+}
+template <class Unit>
+void write_jumps(json::Writer& w, const char* kind, const std::vector<LargestJump>& jumps, int order,
+                 Unit&& unit) {
+    w.key(text("first_", kind, "_jump"));
+    if (order + 1 < int(jumps.size()))
+        write_jump(w, jumps[std::size_t(order + 1)], order + 1, unit(order + 1));
+    else
+        w.null();
+    w.key(text(kind, "_jumps")).begin_array();
+    for (std::size_t k = 0; k < jumps.size(); ++k) write_jump(w, jumps[k], int(k), unit(int(k)));
+    w.end_array();
+}
+
+template <class Unit>
+std::string first_text(char kind, const std::vector<LargestJump>& jumps, int order, Unit&& unit) {
+    if (order + 1 >= int(jumps.size())) return "";
+    const LargestJump& j = jumps[std::size_t(order + 1)];
+    return text(kind, order + 1, " by ", rounded(j.size), " ", unit(order + 1), " at ", rounded(j.at));
+}
+
+}  // namespace
+
+void SurfaceNeighbours::add(const Shape& shape, std::size_t index, const ContinuityOptions& options) {
+    std::visit(
+        [&](const auto& s) {
+            using S = std::remove_cvref_t<decltype(s)>;
+            if constexpr (TensorPatch<S>)
+                if constexpr (S::kParams == 2) object.push_back(index), edges.push_back(edges_of(s, options));
+        },
+        shape);
+}
+
+Result<void> SurfaceNeighbours::find(double gap, const ContinuityOptions& options) {
+    auto found = freiform::joints(edges, gap, options);
+    if (!found) return std::unexpected(found.error());
+    joints = *std::move(found);
+    return {};
+}
+
+void write_joints(json::Writer& w, const Document& d, const SurfaceNeighbours& all) {
+    for (const SurfaceJoint& s : all.joints) {
+        const SurfaceMeeting& m = s.meeting;
+        const SurfaceContinuity& j = s.joint;
+        w.new_line(1).begin_object().field("first", all.object[m.first]);
+        w.field("first_edge", edge_name(m.first_edge)).field("second", all.object[m.second]);
+        w.field("second_edge", edge_name(m.second_edge)).field("against", m.against);
+        w.field("distance", m.distance).field("c_order", j.c_order).field("g_order", j.g_order);
+        write_jumps(w, "c", j.c, j.c_order, [&](int k) { return c_unit(d, k); });
+        write_jumps(w, "g", j.g, j.g_order, [&](int k) { return g_unit(d, k); });
+        w.field("opposed", j.opposed).key("singular").begin_array();
+        for (const Interval& x : j.singular) w.array(std::array{x.lo, x.hi});
+        w.end_array().end_object();
+    }
+}
+
+std::vector<std::vector<std::string>> joint_rows(const Document& d, const SurfaceNeighbours& all) {
+    std::vector<std::vector<std::string>> rows;
+    for (const SurfaceJoint& s : all.joints) {
+        const SurfaceMeeting& m = s.meeting;
+        const SurfaceContinuity& j = s.joint;
+        std::string remark = j.opposed ? "turns back" : "";
+        if (!j.singular.empty()) remark += remark.empty() ? "has a pole" : ", has a pole";
+        rows.push_back({text(object_label(d, all.object[m.first]), " ", edge_name(m.first_edge), " - ",
+                             object_label(d, all.object[m.second]), " ", edge_name(m.second_edge)),
+                        order_text('C', j.c_order), order_text('G', j.g_order),
+                        first_text('C', j.c, j.c_order, [&](int k) { return c_unit(d, k); }),
+                        first_text('G', j.g, j.g_order, [&](int k) { return g_unit(d, k); }), remark});
+    }
+    return rows;
+}
+
+}  // namespace freiform::cli

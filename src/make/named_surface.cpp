@@ -1,0 +1,90 @@
+// Bicubic patches from geometry and two basis matrices.
+//
+// Idea: a basis function sum c_k t^k has the Bernstein coefficients b_j = sum_k C(j, k) / C(3, k) c_k. These
+// of all four functions are a 4 x 4 matrix, and the tensor product of two of them carries the geometry to a
+// Bezier net.
+//
+// Accuracy: all in numbers of 106 bits, rounded at the end; a sum of 16 terms loses less than 2^-94 of the
+// sum of their sizes. Cost: 2 x 64 products.
+//
+// Why not one axis after the other with doubles: the net between would be rounded, and its rounding
+// multiplied.
+//
+// References: [Foley van Dam Feiner & Hughes 1990].
+#include <freiform/core/double_double.hpp>
+#include <freiform/make/named_surface.hpp>
+
+namespace freiform {
+
+namespace {
+
+using DD = DoubleDouble;
+using Weights = std::array<std::array<DD, 4>, 4>;
+
+// [i][j]: Bernstein coefficient j of basis function i.
+Weights to_bernstein(const Matrix4& m) {
+    Weights b{};
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            for (std::size_t k = 0; k <= j; ++k)  // the coefficient of t^k stands in column 3 - k
+                b[i][j] += DD(m[i][3 - k]) * DD(binomial(int(j), int(k))) / DD(binomial(3, int(k)));
+    return b;
+}
+
+}  // namespace
+
+template <Coefficient P>
+Result<Surface<P>> bicubic(const std::array<std::array<P, 4>, 4>& geometry, const Matrix4& along_u,
+                           const Matrix4& along_v) {
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            if (!is_finite(geometry[i][j]))
+                return refuse(RefusalKind::nonfinite, text("geometry[", i, "][", j, "]"),
+                              "a coordinate is not finite");
+    const Weights f = to_bernstein(along_u), g = to_bernstein(along_v);
+    Net<2, P> net({4, 4});
+    each_index(net.extent(), [&](const Index<2>& at) {
+        const std::size_t r = std::size_t(at[0]), s = std::size_t(at[1]);
+        for (int c = 0; c < P::kCoords; ++c) {
+            DD sum(0);
+            for (std::size_t i = 0; i < 4; ++i)
+                for (std::size_t j = 0; j < 4; ++j) sum += f[i][r] * g[j][s] * DD(geometry[i][j][c]);
+            net.view()(at)[c] = sum.rounded();
+        }
+    });
+    auto basis = BSplineBasis::bezier(3);
+    if (!basis) return std::unexpected(basis.error());
+    return Surface<P>::make({*basis, *basis}, std::move(net));
+}
+
+template <Coefficient P>
+std::array<P, 4> curve_of_curves(const std::array<std::array<P, 4>, 4>& geometry, const Matrix4& along_u,
+                                 double u) {
+    std::array<P, 4> out{};
+    for (std::size_t j = 0; j < 4; ++j)
+        for (int c = 0; c < P::kCoords; ++c) {
+            DD sum(0);
+            for (std::size_t i = 0; i < 4; ++i) {
+                DD f(0);
+                for (std::size_t k = 0; k < 4; ++k) f = f * DD(u) + DD(along_u[i][k]);
+                sum += f * DD(geometry[i][j][c]);
+            }
+            out[j][c] = sum.rounded();
+        }
+    return out;
+}
+
+#define FF_INSTANTIATE_BICUBIC(P)                                                               \
+    template Result<Surface<P>> bicubic(const std::array<std::array<P, 4>, 4>&, const Matrix4&, \
+                                        const Matrix4&);                                        \
+    template std::array<P, 4> curve_of_curves(const std::array<std::array<P, 4>, 4>&, const Matrix4&, double);
+FF_INSTANTIATE_BICUBIC(Vec<1>)
+FF_INSTANTIATE_BICUBIC(Vec<2>)
+FF_INSTANTIATE_BICUBIC(Vec<3>)
+FF_INSTANTIATE_BICUBIC(Vec<4>)
+FF_INSTANTIATE_BICUBIC(Hom<1>)
+FF_INSTANTIATE_BICUBIC(Hom<2>)
+FF_INSTANTIATE_BICUBIC(Hom<3>)
+FF_INSTANTIATE_BICUBIC(Hom<4>)
+
+}  // namespace freiform
