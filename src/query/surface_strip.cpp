@@ -22,7 +22,6 @@ std::vector<LineMatch> parts_of(const SurfaceSide& a, const SurfaceSide& b, doub
     const double grant = roundings * (a.uncertainty + b.uncertainty);
     std::vector<LineMatch> all;
     std::array<Bounded, 2> from{Bounded(0), Bounded(0)};  // of the current pieces
-    Bounded start(0);
     for (std::size_t i = 0, j = 0; i < a.pieces.size() && j < b.pieces.size();) {
         const auto &p = a.pieces[i], &q = b.pieces[j];
         const Bounded apart = p.to - q.to;
