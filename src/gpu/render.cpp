@@ -31,6 +31,14 @@ Result<void> check(const RenderOptions& o) {
         return refuse(RefusalKind::invalid, "supersampling", text(o.supersampling, ", expected 1 to 4"));
     if (!(o.margin >= 0 && o.margin <= 0.4))
         return refuse(RefusalKind::invalid, "margin", text(o.margin, ", expected 0 to 0.4"));
+    if (!(o.room >= 0 && o.room <= 0.5 * o.width))
+        return refuse(RefusalKind::invalid, "room", text(o.room, ", expected 0 to half the width"));
+    if (!(std::isfinite(o.range.lo) && std::isfinite(o.range.hi) && o.range.lo <= o.range.hi))
+        return refuse(RefusalKind::invalid, "range", text("[", o.range.lo, ", ", o.range.hi, "]"));
+    for (const RenderLines& lines : o.lines)
+        for (const auto& [from, to] : lines.segments)
+            if (!is_finite(from) || !is_finite(to))
+                return refuse(RefusalKind::nonfinite, "lines", "a coordinate is not a finite number");
     if (!std::isfinite(o.view.azimuth) || !std::isfinite(o.view.elevation))
         return refuse(RefusalKind::nonfinite, "view", "an angle is not a finite number");
     for (const Colour& c : {o.colour, o.top, o.bottom})
@@ -103,6 +111,23 @@ Result<void> draw_background(const RenderOptions& options) {
     return {};
 }
 
+// As the texture that the programs read.
+void load_map(MapKind kind) {
+    std::vector<unsigned char> texels;
+    const ColourMap map(kind);
+    for (const Colour& c : map.colours())
+        for (const double x : {c.r, c.g, c.b})
+            texels.push_back(static_cast<unsigned char>(std::lround(255 * x)));
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_1D, texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage1D(GL_TEXTURE_1D, 0, GL_RGB8, ColourMap::kSize, 0, GL_RGB, GL_UNSIGNED_BYTE, texels.data());
+    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_1D, filter, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+}
+
 Result<void> draw_surface(const Scene& scene, const RenderOptions& options) {
     const auto program = compile(kSurfaceVertex, kSurfaceFragment);
     if (!program) return std::unexpected(program.error());
@@ -111,6 +136,11 @@ Result<void> draw_surface(const Scene& scene, const RenderOptions& options) {
     glUniform3f(place(*program, "sky"), scene.rotation[6], scene.rotation[7], scene.rotation[8]);
     glUniform1f(place(*program, "inverse_distance"), scene.inverse_distance);
     glUniform1i(place(*program, "zebra"), options.zebra);
+    glUniform1i(place(*program, "isophotes"), options.isophotes);
+    const bool mapped = options.painting == Painting::sequential || options.painting == Painting::diverging;
+    glUniform1i(place(*program, "painting"), mapped ? 1 : options.painting == Painting::normals ? 2 : 0);
+    set_colour(*program, "no_value", kNoValue);
+    if (mapped) load_map(options.painting == Painting::diverging ? MapKind::diverging : MapKind::sequential);
     new_vertex_array();
     fill_buffer(GL_ARRAY_BUFFER, scene.vertices);
     fill_buffer(GL_ELEMENT_ARRAY_BUFFER, scene.indices);
@@ -118,6 +148,7 @@ Result<void> draw_surface(const Scene& scene, const RenderOptions& options) {
     attribute(0, 3, GL_FLOAT, kStride, offsetof(SceneVertex, position), 0);
     attribute(1, 3, GL_FLOAT, kStride, offsetof(SceneVertex, normal), 0);
     attribute(2, 4, GL_UNSIGNED_BYTE, kStride, offsetof(SceneVertex, colour), 0);
+    attribute(3, 2, GL_FLOAT, kStride, offsetof(SceneVertex, field), 0);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(float(options.supersampling), 1);
     // In pieces: a count of indices is a GLsizei.
@@ -133,6 +164,7 @@ struct Pen {
     double width = 1;  // pixels of the picture
     std::array<float, 4> ink{};
     float nearer = 0;
+    bool round_ends = false, behind = false;
 };
 
 Result<void> draw_lines(const Scene& scene, const std::vector<SceneLine>& lines, const Pen& pen,
@@ -147,6 +179,8 @@ Result<void> draw_lines(const Scene& scene, const std::vector<SceneLine>& lines,
     glUniform1f(place(*program, "width"), float(pen.width * s));
     glUniform1f(place(*program, "nearer"), pen.nearer);
     glUniform4fv(place(*program, "ink"), 1, pen.ink.data());
+    glUniform1i(place(*program, "round_ends"), pen.round_ends);
+    glDepthFunc(pen.behind ? GL_GREATER : GL_LESS);
     new_vertex_array();
     fill_buffer(GL_ARRAY_BUFFER, lines);
     attribute(0, 3, GL_FLOAT, sizeof(SceneLine), offsetof(SceneLine, from), 1);
@@ -156,6 +190,7 @@ Result<void> draw_lines(const Scene& scene, const std::vector<SceneLine>& lines,
     glDepthMask(GL_FALSE);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(lines.size()));
     glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
     glDisable(GL_BLEND);
     return {};
 }
@@ -200,7 +235,21 @@ Result<void> draw(const Scene& scene, const RenderOptions& options) {
     if (auto r = draw_surface(scene, options); !r) return r;
     if (auto r = draw_lines(scene, scene.edges, {0.9, {0.05f, 0.07f, 0.10f, 0.65f}, 2e-4f}, options); !r)
         return r;
-    return draw_lines(scene, scene.outlines, {1.4, {0.05f, 0.06f, 0.08f, 1}, 4e-4f}, options);
+    if (auto r = draw_lines(scene, scene.outlines, {1.4, {0.05f, 0.06f, 0.08f, 1}, 4e-4f}, options); !r)
+        return r;
+    for (const bool behind : {true, false})
+        for (std::size_t i = 0; i < scene.lines.size(); ++i) {
+            const RenderLines& l = options.lines[i];
+            if (behind && l.behind <= 0) continue;
+            const Pen pen{
+                l.width,
+                {float(l.colour.r), float(l.colour.g), float(l.colour.b), float(behind ? l.behind : 1)},
+                6e-4f,
+                true,
+                behind};
+            if (auto r = draw_lines(scene, scene.lines[i], pen, options); !r) return r;
+        }
+    return {};
 }
 
 }  // namespace
@@ -208,6 +257,9 @@ Result<void> draw(const Scene& scene, const RenderOptions& options) {
 Result<Image> render(const TriangleMesh& mesh, const RenderOptions& options) {
     if (auto r = validate(mesh); !r) return std::unexpected(r.error());
     if (auto r = check(options); !r) return std::unexpected(r.error());
+    if (!options.field.empty() && options.field.size() != mesh.vertices.size())
+        return refuse(RefusalKind::invalid, "field",
+                      text(options.field.size(), " values for ", mesh.vertices.size(), " vertices"));
     const Scene scene = make_scene(mesh, options);
     const auto context = GlContext::make();
     if (!context) return std::unexpected(context.error());

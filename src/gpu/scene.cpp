@@ -12,6 +12,7 @@ namespace freiform {
 namespace {
 
 constexpr double kInverseDistance = 0.2;  // the eye is 5 half sides away: mild, and always outside the model
+constexpr double kNearest = 0.1;          // lines that come nearer to the eye, or behind it, are cut off
 constexpr double kDepthUsed = 0.98;       // the rest is for lines, which are drawn a little nearer
 
 struct Axes {
@@ -25,21 +26,40 @@ Axes axes_of(const View& view) {
     return {right, cross(eye, right), eye};
 }
 
-std::vector<Vec<3>> centred(const TriangleMesh& mesh) {
+// Maps to the coordinates of the scene.
+struct Centring {
+    Vec<3> middle{};
+    double size = 0;
+    Vec<3> operator()(const Vec<3>& p) const {
+        Vec<3> q{};
+        for (int d = 0; d < 3; ++d) q[d] = size > 0 ? (p[d] - middle[d]) / size : 0;
+        return q;
+    }
+};
+
+Centring centring_of(const TriangleMesh& mesh) {
     Box<3> box;
     for (const auto& t : mesh.triangles)
         for (int v : t) box.add(mesh.points[std::size_t(mesh.vertices[std::size_t(v)].point)]);
-    std::vector<Vec<3>> out(mesh.points.size());
-    if (box.is_empty()) return out;
-    Vec<3> middle, half;
+    Centring c;
+    if (box.is_empty()) return c;
+    Vec<3> half;
     for (int d = 0; d < 3; ++d) {
-        middle[d] = box.lo[d] / 2 + box.hi[d] / 2;
+        c.middle[d] = box.lo[d] / 2 + box.hi[d] / 2;
         half[d] = box.hi[d] / 2 - box.lo[d] / 2;
     }
-    const double size = max_abs(half);
-    for (std::size_t i = 0; i < out.size(); ++i)
-        for (int d = 0; d < 3; ++d) out[i][d] = size > 0 ? (mesh.points[i][d] - middle[d]) / size : 0;
-    return out;
+    c.size = max_abs(half);
+    return c;
+}
+
+// Where a value lies on the map, not yet held to [0, 1]: that would bend what is interpolated.
+std::array<float, 2> on_map(double value, const RenderOptions& o) {
+    if (!std::isfinite(value)) return {0, 0};
+    const double most = std::max(std::abs(o.range.lo), std::abs(o.range.hi));
+    const double t = o.painting == Painting::diverging ? (most > 0 ? 0.5 + value / most / 2 : 0.5)
+                     : o.range.length() > 0            ? (value - o.range.lo) / o.range.length()
+                                                       : 0;
+    return {float(std::clamp(t, -1e4, 1e4)), 1};
 }
 
 std::array<float, 3> to_floats(const Vec<3>& p) { return {float(p[0]), float(p[1]), float(p[2])}; }
@@ -51,7 +71,8 @@ std::array<std::uint8_t, 4> to_bytes(const Colour& c) {
 
 // Vertices are copied per part, so that each copy can have the colour of its part.
 void add_triangles(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
-                   const Colour& uncoloured) {
+                   const RenderOptions& options) {
+    const Colour& uncoloured = options.colour;
     std::vector<std::pair<int, std::uint32_t>> copy(mesh.vertices.size(), {-1, 0});
     scene.vertices.reserve(mesh.vertices.size());
     scene.indices.reserve(3 * mesh.triangles.size());
@@ -63,7 +84,11 @@ void add_triangles(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec
                     const MeshVertex& from = mesh.vertices[std::size_t(v)];
                     index = std::uint32_t(scene.vertices.size());
                     scene.vertices.push_back({to_floats(points[std::size_t(from.point)]),
-                                              to_floats(unit(from.normal)), to_bytes(colour)});
+                                              to_floats(unit(from.normal)),
+                                              to_bytes(colour),
+                                              {}});
+                    if (!options.field.empty())
+                        scene.vertices.back().field = on_map(options.field[std::size_t(v)], options);
                     owner = part;
                 }
                 scene.indices.push_back(index);
@@ -99,18 +124,24 @@ void set_camera(Scene& scene, const RenderOptions& options) {
     const std::array<Vec<3>, 3> rows{axes.right, axes.up, axes.eye};
     const double k = options.perspective ? kInverseDistance : 0;
     Box<3> box;
-    for (const SceneVertex& v : scene.vertices) {
-        const Vec<3> p{{v.position[0], v.position[1], v.position[2]}};
+    const auto add = [&](const std::array<float, 3>& at) {
+        const Vec<3> p{{at[0], at[1], at[2]}};
         const double z = dot(axes.eye, p), w = 1 - k * z;
-        box.add(Vec<3>{{dot(axes.right, p) / w, dot(axes.up, p) / w, z}});
-    }
+        if (w > kNearest) box.add(Vec<3>{{dot(axes.right, p) / w, dot(axes.up, p) / w, z}});
+    };
+    for (const SceneVertex& v : scene.vertices) add(v.position);
+    for (const auto& lines : scene.lines)
+        for (const SceneLine& line : lines) add(line.from), add(line.to);
     if (box.is_empty()) box.add(Vec<3>{{0, 0, 0}});
-    const double usable = 1 - 2 * options.margin * std::min(options.width, options.height) / options.width;
+    const double share = options.room / options.width;  // taken away at the right
+    const double usable =
+        1 - share - 2 * options.margin * std::min(options.width, options.height) / options.width;
     const double usable_y = 1 - 2 * options.margin * std::min(options.width, options.height) / options.height;
     const double wide = box.hi[0] - box.lo[0], high = box.hi[1] - box.lo[1], deep = box.hi[2] - box.lo[2];
     const double tiny = 1e-6;  // of a model of size 2: one seen edge on still gets a finite scale
     const double scale = std::min(usable * options.width / std::max(wide, tiny),
                                   usable_y * options.height / std::max(high, tiny));
+    const double shift = -share;  // of the middle, in half widths
     const double sx = 2 * scale / options.width, sy = 2 * scale / options.height;
     const double cx = (box.lo[0] + box.hi[0]) / 2, cy = (box.lo[1] + box.hi[1]) / 2;
     // Depth a z + b over 1 - k z is -kDepthUsed at the nearest point and kDepthUsed at the farthest.
@@ -122,8 +153,8 @@ void set_camera(Scene& scene, const RenderOptions& options) {
     }
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) scene.rotation[3 * j + i] = float(rows[i].c[j]);
-    const std::array<double, 16> m{sx,          0,           0, 0,  0,        sy,       0, 0,
-                                   k * cx * sx, k * cy * sy, a, -k, -cx * sx, -cy * sy, b, 1};
+    const std::array<double, 16> m{
+        sx, 0, 0, 0, 0, sy, 0, 0, k * (cx * sx - shift), k * cy * sy, a, -k, shift - cx * sx, -cy * sy, b, 1};
     std::transform(m.begin(), m.end(), scene.projection.begin(), [](double x) { return float(x); });
     scene.inverse_distance = float(k);
 }
@@ -132,8 +163,15 @@ void set_camera(Scene& scene, const RenderOptions& options) {
 
 Scene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
     Scene scene;
-    const std::vector<Vec<3>> points = centred(mesh);
-    add_triangles(scene, mesh, points, options.colour);
+    const Centring centred = centring_of(mesh);
+    std::vector<Vec<3>> points;
+    for (const Vec<3>& p : mesh.points) points.push_back(centred(p));
+    for (const RenderLines& lines : options.lines) {
+        scene.lines.emplace_back();
+        for (const auto& [from, to] : lines.segments)
+            scene.lines.back().push_back({to_floats(centred(from)), to_floats(centred(to))});
+    }
+    add_triangles(scene, mesh, points, options);
     add_lines(scene, mesh, points, options);
     set_camera(scene, options);
     return scene;

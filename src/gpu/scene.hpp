@@ -12,6 +12,7 @@ struct SceneVertex {
     std::array<float, 3> position{};  // in [-1, 1]
     std::array<float, 3> normal{};    // zero: that of the triangle is taken
     std::array<std::uint8_t, 4> colour{};
+    std::array<float, 2> field{};  // place on the map; 1 where there is a value, else 0
 };
 
 struct SceneLine {
@@ -22,9 +23,10 @@ struct Scene {
     std::vector<SceneVertex> vertices;
     std::vector<std::uint32_t> indices;
     std::vector<SceneLine> outlines, edges;
-    std::array<float, 9> rotation{};     // to right, up, towards the eye; by columns
-    std::array<float, 16> projection{};  // of rotated positions, by columns
-    float inverse_distance = 0;          // of the eye from the origin; 0 without perspective
+    std::vector<std::vector<SceneLine>> lines;  // as RenderOptions::lines
+    std::array<float, 9> rotation{};            // to right, up, towards the eye; by columns
+    std::array<float, 16> projection{};         // of rotated positions, by columns
+    float inverse_distance = 0;                 // of the eye from the origin; 0 without perspective
 };
 
 // REQUIRES a mesh that `validate` accepts.

@@ -59,10 +59,19 @@ void extend(Extent& extent, const Shape& shape) {
     std::visit(visit, shape);
 }
 
+// `hides`: surfaces hide what is behind them; `corners`: gets a box of points of them in the first round.
 Result<Sketch> compose(const Document& document, std::span<const std::size_t> objects, const Plane& plane,
-                       double tolerance, double size, const DrawingOptions& options) {
+                       double tolerance, double size, const DrawingOptions& options, bool hides,
+                       Box<2>& corners) {
     Sketch sketch(plane, tolerance, size, options);
+    std::vector<std::size_t> faced;
+    for (const std::size_t i : objects)
+        if (hides && has_faces(document.objects[i].shape)) faced.push_back(i);
+    if (!faced.empty() && size > 0) add_faces(sketch, document, faced);
+    if (!faced.empty() && size == 0) corners = box_of_faces(sketch, document, faced);
+    if (sketch.failure) return std::unexpected(*sketch.failure);
     for (const std::size_t i : objects) {
+        if (std::ranges::find(faced, i) != faced.end()) continue;
         add_object(sketch, document, i);
         if (sketch.failure) return std::unexpected(*sketch.failure);
         if (sketch.used >= kMostSegments)
@@ -83,6 +92,8 @@ Result<void> check(const DrawingOptions& o) {
         if (u && !std::isfinite(*u)) return refuse(RefusalKind::nonfinite, name, "is not a finite number");
         return {};
     };
+    if (o.isolines && (*o.isolines < 0 || *o.isolines > 1000))
+        return refuse(RefusalKind::invalid, "isolines", text(*o.isolines, "; expected 0 to 1000"));
     if (auto ok = finite(o.construction, "construction"); !ok) return ok;
     if (auto ok = finite(o.tangent, "tangent"); !ok) return ok;
     if (auto ok = finite(o.osculating, "osculating"); !ok) return ok;
@@ -121,14 +132,17 @@ Result<std::vector<Panel>> panels_of(const Document& document, std::span<const s
 
     const double coarse = hull > 0 ? hull / 1000 : 1;
     const DrawingOptions only_curves = bare(options);
-    const auto first = compose(document, all, plane, coarse, 0, only_curves);
+    const bool hides = options.hidden != HiddenLines::shown && (!extent.all_plane || options.view);
+    Box<2> corners;
+    const auto first = compose(document, all, plane, coarse, 0, only_curves, hides, corners);
     if (!first) return std::unexpected(first.error());
-    const Box<2> inner = inner_box(first->groups);
+    Box<2> inner = inner_box(first->groups);
+    inner.add(corners);
     const double size = inner.is_empty() ? 0 : max_abs(inner.hi - inner.lo);
     // s <= side of the picture / size, whatever else is drawn.
     const double fine =
         size > 0 ? 0.999 * kDrawingTolerance * size / std::max(options.width, options.height) : coarse / 1e4;
-    auto composed = compose(document, all, plane, fine, size, options);
+    auto composed = compose(document, all, plane, fine, size, options, hides, corners);
     if (!composed) return std::unexpected(composed.error());
     const bool drawn = std::ranges::any_of(
         composed->groups, [](const DrawnGroup& g) { return !g.paths.empty() || !g.discs.empty(); });

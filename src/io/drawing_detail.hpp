@@ -152,6 +152,14 @@ void join_curves(Sketch& sketch);
 template <class P>
 void add_a_frames(Sketch& sketch, const Curve<P>& curve);
 
+// Surfaces, trimmed surfaces, models, triangles in space.
+bool has_faces(const Shape& shape);
+// All of these objects together, since each may hide the others; what cannot be drawn goes to left_out, what
+// spoils the whole to failure.
+void add_faces(Sketch& sketch, const Document& document, std::span<const std::size_t> objects);
+// A box around points of the faces, in the plane.
+Box<2> box_of_faces(Sketch& sketch, const Document& document, std::span<const std::size_t> objects);
+
 // Adds an object; what of it cannot be drawn goes to left_out.
 void add_object(Sketch& sketch, const Document& document, std::size_t index);
 

@@ -125,7 +125,13 @@ void add_group(std::string& s, const DrawnGroup& g, Ids& ids) {
     if (g.fill > 0) s += text(" fill-opacity=\"", g.fill, "\"");
     s += ">\n";
     if (!g.name.empty()) s += text("<title>", xml(g.name), "</title>\n");
+    std::string_view part;
     for (const DrawnPath& path : g.paths) {
+        if (path.part != part) {
+            if (!part.empty()) s += "</g>\n";
+            part = path.part;
+            if (!part.empty()) s += text("<g id=\"", ids(text(part, " ", g.role)), "\">\n");
+        }
         s += text("<path d=\"", data_of(path), "\"");
         if (path.solid)
             s += text(" stroke=\"none\" fill-opacity=\"1\" fill=\"", colour, "\"");
@@ -133,6 +139,7 @@ void add_group(std::string& s, const DrawnGroup& g, Ids& ids) {
             s += text(" fill=\"", colour, "\"");
         s += "/>\n";
     }
+    if (!part.empty()) s += "</g>\n";
     for (const DrawnDisc& disc : g.discs)
         s += text("<circle cx=\"", disc.centre[0], "\" cy=\"", disc.centre[1], "\" r=\"", disc.radius,
                   "\" fill-opacity=\"1\" ",

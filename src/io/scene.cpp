@@ -71,23 +71,26 @@ void append(Model& to, Model from) {
     move_all(to.approximations, from.approximations);
 }
 
-class Scene {
+class SceneBuilder {
 public:
-    explicit Scene(const Document& document) : document_(document), builder_(document.unit) {}
+    explicit SceneBuilder(const Document& document) : document_(document), builder_(document.unit) {}
 
     Result<void> add(std::size_t index) {
         return std::visit([&](const auto& s) { return add_shape(index, s); }, document_.objects[index].shape);
     }
 
-    Result<Model> finish() && {
-        Model all;
+    Result<Scene> finish() && {
+        Scene scene;
+        Model& all = scene.model;
         all.unit = document_.unit;
         if (has_surfaces_) {
             auto loose = std::move(builder_).finish();
-            if (!loose) return loose;
+            if (!loose) return std::unexpected(loose.error());
             append(all, std::move(*loose));
+            scene.object_of_face = loose_;
         }
-        for (const Model* m : models_) {
+        for (const auto& [index, m] : models_) {
+            scene.object_of_face.insert(scene.object_of_face.end(), m->faces.size(), index);
             if (!m->unit.empty() && !all.unit.empty() && m->unit != all.unit)
                 return refuse(RefusalKind::unsupported, "unit",
                               text("a model in ", m->unit, " cannot be joined with others in ", all.unit));
@@ -97,7 +100,10 @@ public:
         all.refused.insert(all.refused.end(), without_faces_.begin(), without_faces_.end());
         if (all.faces.empty())
             return refuse(RefusalKind::no_answer, "objects", "there is no surface among them");
-        return make_model(std::move(all));
+        auto checked = make_model(std::move(all));
+        if (!checked) return std::unexpected(checked.error());
+        scene.model = std::move(*checked);
+        return scene;
     }
 
 private:
@@ -125,7 +131,7 @@ private:
             added = s.loops.empty() ? builder_.add(s.surface, name)
                                     : builder_.add_trimmed(s.surface, s.loops, name);
         } else if constexpr (std::same_as<S, Model>) {
-            models_.push_back(&s);
+            models_.emplace_back(index, &s);
             return {};
         } else {
             without_faces_.push_back(
@@ -135,28 +141,31 @@ private:
         }
         if (!added) return refuse_within(object_label(document_, index), added.error());
         has_surfaces_ = true;
+        loose_.resize(std::size_t(*added) + 1, index);
         return {};
     }
 
     const Document& document_;
     ModelBuilder builder_;
     bool has_surfaces_ = false;
-    std::vector<const Model*> models_;
+    std::vector<std::size_t> loose_;  // the objects of the faces of builder_
+    std::vector<std::pair<std::size_t, const Model*>> models_;
     std::vector<Refusal> without_faces_;
 };
 
 }  // namespace
 
-Result<Model> scene_of(const Document& document, std::span<const std::size_t> objects) {
-    Scene scene(document);
-    if (objects.empty()) {
-        for (std::size_t i = 0; i < document.objects.size(); ++i)
-            if (auto ok = scene.add(i); !ok) return std::unexpected(ok.error());
-    } else {
-        for (const std::size_t i : objects)
-            if (auto ok = scene.add(i); !ok) return std::unexpected(ok.error());
-    }
+Result<Scene> scene_with_owners(const Document& document, std::span<const std::size_t> objects) {
+    SceneBuilder scene(document);
+    for (std::size_t k = 0; k < (objects.empty() ? document.objects.size() : objects.size()); ++k)
+        if (auto ok = scene.add(objects.empty() ? k : objects[k]); !ok) return std::unexpected(ok.error());
     return std::move(scene).finish();
+}
+
+Result<Model> scene_of(const Document& document, std::span<const std::size_t> objects) {
+    auto scene = scene_with_owners(document, objects);
+    if (!scene) return std::unexpected(scene.error());
+    return std::move(scene->model);
 }
 
 }  // namespace freiform

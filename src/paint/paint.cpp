@@ -6,6 +6,8 @@
 
 #include <cairo-pdf.h>
 #include <cairo.h>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 
 namespace freiform {
@@ -129,11 +131,13 @@ void draw_group(cairo_t* c, const DrawnGroup& g) {
     for (const DrawnLabel& label : g.labels) draw_label(c, g, label);
 }
 
-Result<void> paint(cairo_surface_t* surface, const Drawing& d, double scale) {
+Result<void> paint(cairo_surface_t* surface, const Drawing& d, double scale, bool over = false) {
     const Pen pen(cairo_create(surface), &cairo_destroy);
     cairo_scale(pen.get(), scale, scale);
-    cairo_set_source_rgb(pen.get(), 1, 1, 1);
-    cairo_paint(pen.get());
+    if (!over) {
+        cairo_set_source_rgb(pen.get(), 1, 1, 1);
+        cairo_paint(pen.get());
+    }
     for (const DrawnGroup& g : d.groups) draw_group(pen.get(), g);
     cairo_show_page(pen.get());
     const cairo_status_t status = cairo_status(pen.get());
@@ -173,6 +177,39 @@ Result<std::string> to_png(const Drawing& d) {
     const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), take, &bytes);
     if (status != CAIRO_STATUS_SUCCESS) return refuse(RefusalKind::io, "png", cairo_status_to_string(status));
     return bytes;
+}
+
+Result<void> paint_over(Image& picture, const Drawing& d) {
+    const std::size_t pixels = std::size_t(picture.width) * std::size_t(picture.height);
+    if (picture.width != d.width || picture.height != d.height || picture.rgb.size() != 3 * pixels)
+        return refuse(RefusalKind::invalid, "size",
+                      text("a drawing of ", d.width, " x ", d.height, " over a picture of ", picture.width,
+                           " x ", picture.height));
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, d.width, d.height),
+                          &cairo_surface_destroy);
+    if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
+        return refuse(RefusalKind::limit, "cairo", cairo_status_to_string(status));
+    unsigned char* const bytes = cairo_image_surface_get_data(surface.get());
+    const auto stride = std::size_t(cairo_image_surface_get_stride(surface.get()));
+    const auto each = [&](const auto& f) {
+        for (std::size_t y = 0; y < std::size_t(d.height); ++y)
+            for (std::size_t x = 0; x < std::size_t(d.width); ++x)
+                f(picture.rgb.data() + 3 * (y * std::size_t(d.width) + x), bytes + y * stride + 4 * x);
+    };
+    // A pixel of cairo is a 32-bit number, red above green above blue.
+    each([](const unsigned char* rgb, unsigned char* at) {
+        const std::uint32_t word = std::uint32_t(rgb[0]) << 16 | std::uint32_t(rgb[1]) << 8 | rgb[2];
+        std::memcpy(at, &word, 4);
+    });
+    cairo_surface_mark_dirty(surface.get());
+    if (auto ok = paint(surface.get(), d, 1, true); !ok) return ok;
+    cairo_surface_flush(surface.get());
+    each([](unsigned char* rgb, const unsigned char* at) {
+        std::uint32_t word = 0;
+        std::memcpy(&word, at, 4);
+        for (int c = 0; c < 3; ++c) rgb[c] = static_cast<unsigned char>(word >> (16 - 8 * c) & 0xff);
+    });
+    return {};
 }
 
 }  // namespace freiform

@@ -60,6 +60,37 @@ TEST_F(Draw, surfaces_become_lines_in_svg) {
     const Ran r = run({"draw", kTeapot, "-o", "t.svg", "--control", "--view", "30,20"});
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_NE(content(path("t.svg")).find("class=\"isolines\""), std::string::npos);
+    EXPECT_EQ(content(path("t.svg")).find("class=\"hidden\""), std::string::npos);
+    const std::string flat = R"({"freiform": 1, "objects": [
+        {"name": "low", "type": "surface", "degree": [1, 1], "points": [[[0,0,0],[0,2,0]],[[2,0,0],[2,2,0]]]},
+        {"name": "high", "type": "surface", "degree": [1, 1], "points": [[[0,0,1],[0,2,1]],[[2,0,1],[2,2,1]]]}]})";
+    ASSERT_EQ(run({"draw", "-", "-o", "h.svg", "--hidden", "--view", "30,60"}, flat).code, 0);
+    EXPECT_NE(content(path("h.svg")).find("id=\"low-hidden\""), std::string::npos);
+    ASSERT_EQ(run({"draw", "-", "-o", "w.svg", "--wireframe", "--view", "30,60"}, flat).code, 0);
+    EXPECT_EQ(content(path("w.svg")).find("class=\"hidden\""), std::string::npos);
+}
+
+TEST_F(Draw, surfaces_are_coloured_and_the_range_is_said) {
+    // A part of a cylinder of radius 1: mean curvature 1/2 with either sign.
+    const std::string pipe = R"({"unit": "mm", "type": "surface", "degree": [2, 1],
+        "points": [[[1,0,0],[1,0,3]],[[1,1,0],[1,1,3]],[[0,1,0],[0,1,3]]],
+        "weights": [[1,1],[0.7071067811865476,0.7071067811865476],[1,1]]})";
+    const Ran r = run({"draw", "-", "-o", "p.png", "--colour", "mean", "--json", "--width", "400", "--height",
+                       "300", "--isolines", "3", "--control", "--normals", "4"},
+                      pipe);
+    if (r.code == 3 && r.out.find("libegl") != std::string::npos) GTEST_SKIP() << r.out;
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_TRUE(content(path("p.png")).starts_with("\x89PNG"));
+    const Json said = Json::parse(r.out, nullptr, false);
+    EXPECT_NEAR(std::abs(said.value("least", 0.0)), 0.5, 1e-9) << r.out;
+    EXPECT_NEAR(said["range"][1].get<double>(), 0.5, 1e-9);
+    EXPECT_EQ(said["range"][0].get<double>(), -said["range"][1].get<double>());
+    const Ran asked =
+        run({"draw", "-", "-o", "p.png", "--colour", "gauss", "--range", "-2,3", "--json"}, pipe);
+    ASSERT_EQ(asked.code, 0) << asked.err;
+    EXPECT_EQ(Json::parse(asked.out)["range"], Json::parse("[-2, 3]"));
+    for (const char* way : {"error", "normal"})
+        EXPECT_EQ(run({"draw", "-", "-o", "p.png", "--colour", way, "--isophotes"}, pipe).code, 0) << way;
 }
 
 TEST_F(Draw, an_object_can_be_chosen) {
@@ -70,20 +101,24 @@ TEST_F(Draw, an_object_can_be_chosen) {
 }
 
 TEST_F(Draw, wrong_combinations_are_wrong_usage) {
-    for (const std::vector<std::string>& a :
-         std::vector<std::vector<std::string>>{{"draw", kExample, "-o", "c.gif"},
-                                               {"draw", kExample},
-                                               {"draw", kExample, "-o", "c.svg", "--zebra"},
-                                               {"draw", kExample, "-o", "c.pdf", "--perspective"},
-                                               {"draw", kExample, "-o", "c.png", "--edges"},
-                                               {"draw", kExample, "-o", "c.svg", "--tolerance", "0.1"},
-                                               {"draw", kExample, "-o", "c.svg", "--view", "askew"},
-                                               {"draw", kExample, "-o", "c.svg", "--width", "0"},
-                                               {"draw", kExample, "-o", "c.svg", "--construction", "middle"},
-                                               {"draw", kExample, "-o", "c.svg", "--names", "Q1"},
-                                               {"draw", kTeapot, "-o", "t.png", "--basis"},
-                                               {"draw", kTeapot, "-o", "t.png", "--control"},
-                                               {"draw", kTeapot, "-o", "t.png", "--comb"}}) {
+    for (const std::vector<std::string>& a : std::vector<std::vector<std::string>>{
+             {"draw", kExample, "-o", "c.gif"},
+             {"draw", kExample},
+             {"draw", kExample, "-o", "c.svg", "--zebra"},
+             {"draw", kExample, "-o", "c.pdf", "--perspective"},
+             {"draw", kExample, "-o", "c.png", "--edges"},
+             {"draw", kExample, "-o", "c.svg", "--tolerance", "0.1"},
+             {"draw", kExample, "-o", "c.svg", "--view", "askew"},
+             {"draw", kExample, "-o", "c.svg", "--width", "0"},
+             {"draw", kExample, "-o", "c.svg", "--construction", "middle"},
+             {"draw", kExample, "-o", "c.svg", "--names", "Q1"},
+             {"draw", kTeapot, "-o", "t.png", "--basis"},
+             {"draw", kTeapot, "-o", "t.png", "--range", "0,1"},
+             {"draw", kTeapot, "-o", "t.png", "--colour", "green"},
+             {"draw", kTeapot, "-o", "t.png", "--colour", "mean", "--range", "1,0"},
+             {"draw", kTeapot, "-o", "t.svg", "--colour", "mean"},
+             {"draw", kTeapot, "-o", "t.svg", "--isophotes"},
+             {"draw", kTeapot, "-o", "t.png", "--comb"}}) {
         const Ran r = run(a);
         EXPECT_EQ(r.code, 2) << a.back() << ": " << r.err;
         EXPECT_FALSE(std::filesystem::exists(path("c.svg")));

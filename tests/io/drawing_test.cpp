@@ -319,6 +319,7 @@ TEST(Drawing, surfaces_are_drawn_by_isolines_through_their_knots) {
     DrawingOptions how;
     how.control = true;
     how.view = *parse_view("top");
+    how.hidden = HiddenLines::shown;
     const auto d = draw(with(s), {}, how);
     ASSERT_TRUE(d);
     expect_inside(*d);
@@ -342,6 +343,7 @@ TEST(Drawing, loops_of_trimmed_surfaces_stay_within_the_tolerance) {
     ASSERT_TRUE(trimmed);
     DrawingOptions how;
     how.view = *parse_view("top");
+    how.hidden = HiddenLines::shown;
     const auto d = draw(with(*trimmed), {}, how);
     ASSERT_TRUE(d) << d.error().message;
     expect_inside(*d);
@@ -359,6 +361,7 @@ TEST(Drawing, loops_on_flat_surfaces_bend_by_their_own_curvature) {
     const CurveGeometry<2> loop = Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.4, 0}}, {{0, 0.4}}};
     DrawingOptions how;
     how.view = *parse_view("top");
+    how.hidden = HiddenLines::shown;
     const auto d = draw(with(*TrimmedSurface::make(plane, {{loop}})), {}, how);
     ASSERT_TRUE(d) << d.error().message;
     double worst = 0;

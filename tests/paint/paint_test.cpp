@@ -68,3 +68,28 @@ TEST(Png, refuses_what_would_fill_the_memory) {
     EXPECT_EQ(png.error().kind, RefusalKind::limit);
     EXPECT_NE(png.error().message.find("268435456"), std::string::npos) << png.error().message;
 }
+
+TEST(PaintOver, leaves_pixels_that_the_drawing_does_not_touch) {
+    Image picture{4, 3, {}};
+    for (int i = 0; i < 36; ++i) picture.rgb.push_back(static_cast<unsigned char>(7 * i));
+    const Image before = picture;
+    Drawing d;
+    d.width = 4, d.height = 3;
+    ASSERT_TRUE(paint_over(picture, d));
+    EXPECT_EQ(picture.rgb, before.rgb);
+    DrawnGroup g{"", "", {1, 0.5, 0, 1}, 0, {}, {}, {}};
+    DrawnPath pixel{
+        {{1, 1}}, {{1, {Vec<2>{{2, 1}}}}, {1, {Vec<2>{{2, 2}}}}, {1, {Vec<2>{{1, 2}}}}}, true, true};
+    g.paths.push_back(pixel);
+    d.groups.push_back(g);
+    ASSERT_TRUE(paint_over(picture, d));
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 4; ++x)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_EQ(picture.pixel(x, y)[c], x == 1 && y == 1 ? (c == 0   ? 255
+                                                                      : c == 1 ? 128
+                                                                               : 0)
+                                                                   : before.pixel(x, y)[c]);
+    d.width = 5;
+    EXPECT_EQ(paint_over(picture, d).error().where, "size");
+}

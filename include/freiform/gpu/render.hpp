@@ -1,24 +1,29 @@
 // Pictures of meshes, drawn without a window: on the graphics card where there is one, else by the processor.
 #pragma once
-#include <freiform/core/colour.hpp>
+#include <freiform/colour/colour_map.hpp>
+#include <freiform/core/image.hpp>
+#include <freiform/core/interval.hpp>
 #include <freiform/core/result.hpp>
 #include <freiform/core/view.hpp>
 #include <freiform/mesh/triangle_mesh.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace freiform {
 
-// Rows from the top, three sRGB bytes per pixel.
-struct Image {
-    int width = 0, height = 0;
-    std::vector<unsigned char> rgb;
+// What the colours of the surface say: nothing (those of the parts), a field, or the direction of the normal
+// with x, y, z as red, green, blue.
+enum class Painting { parts, sequential, diverging, normals };
 
-    const unsigned char* pixel(int x, int y) const {
-        return &rgb[3 * (std::size_t(y) * std::size_t(width) + std::size_t(x))];
-    }
+// Segments in space, drawn over the surface where they are not behind it; of length 0: round dots.
+struct RenderLines {
+    std::vector<std::array<Vec<3>, 2>> segments;
+    Colour colour{0.05, 0.06, 0.08, 1};
+    double width = 1;   // pixels
+    double behind = 0;  // opacity of what is behind the surface
 };
 
 struct RenderOptions {
@@ -28,8 +33,14 @@ struct RenderOptions {
     bool outlines = true;      // boundaries between parts, open edges
     bool edges = false;        // all edges of triangles
     bool zebra = false;        // reflected stripes, which show breaks of tangent and curvature
-    int supersampling = 2;     // 1 to 4 per direction, on top of what the hardware smooths by itself
-    double margin = 0.04;      // of the smaller side of the picture, in [0, 0.4]
+    bool isophotes = false;    // lines along which n makes an angle of 10, 20, .. degrees with the light
+    Painting painting = Painting::parts;
+    std::span<const double> field{};  // one number for each vertex of the mesh; NaN: kNoValue
+    Interval range{0, 1};             // what the map runs over; diverging: 0 has the middle colour
+    std::span<const RenderLines> lines{};
+    double room = 0;        // pixels at the right that the model leaves free
+    int supersampling = 2;  // 1 to 4 per direction, on top of what the hardware smooths by itself
+    double margin = 0.04;   // of the smaller side of the picture, in [0, 0.4]
     Colour colour{0.60, 0.67, 0.76, 1};                                // of parts without a colour
     Colour top{0.985, 0.988, 0.992, 1}, bottom{0.90, 0.915, 0.93, 1};  // background
 };

@@ -1,8 +1,11 @@
-// Drawings of documents: curves with what defines and explains them, surfaces and models as lines.
+// Drawings of documents: curves with what defines and explains them, surfaces and models as lines: borders,
+// outlines and isolines, without what is behind.
 //
 // Polynomial curves of degree <= 3 are drawn exactly (drawings have lines and Bezier curves); everything else
 // as a polyline that is nowhere further than kDrawingTolerance from the curve, rounding aside. Exceptions:
-// hodographs of rational curves are polylines through 400 points of each piece.
+// hodographs of rational curves are polylines through 400 points of each piece; lines of surfaces in space
+// are within three times the tolerance, and hidden where a surface is in front of them by more than eight
+// times (in the sense of mesh/visibility.hpp).
 #pragma once
 #include <freiform/core/view.hpp>
 #include <freiform/io/figure.hpp>
@@ -21,6 +24,9 @@ inline constexpr double kDrawingTolerance = 0.05;  // pixels
 // ..).
 enum class PointNames { none, from_zero, from_one };
 
+// What is behind a surface: left out, dashed (of edges and outlines), or drawn as if surfaces were of glass.
+enum class HiddenLines { removed, dashed, shown };
+
 struct DrawingOptions {
     int width = 1200, height = 900;  // pixels, 16 to 16384
     std::optional<View> view;        // none: plane objects as they are, others from iso
@@ -32,6 +38,10 @@ struct DrawingOptions {
 
     bool control = false;                 // control polygons and nets; the area of a point is as its weight
     PointNames names = PointNames::none;  // of control points of curves; implies control
+    // Of surfaces in space:
+    HiddenLines hidden = HiddenLines::removed;
+    std::optional<int> isolines;  // of each face in both directions, 0 to 1000; none: as the knots of
+                                  // surfaces suggest, none on models
     // Of curves:
     bool knots = false;     // places of the knots, larger where they are multiple
     bool comb = false;      // curvature: needles away from the centre, of length as the curvature

@@ -37,6 +37,8 @@ struct DrawnPath {
     std::vector<DrawnSegment> segments;
     bool closed = false;
     bool solid = false;  // filled with the colour of the lines, and without one around it
+    std::string
+        part{};  // what it belongs to within its group, as a face; neighbours of one part are together
 };
 
 struct DrawnDisc {

@@ -1,5 +1,6 @@
 // Drawings as PDF and PNG, through cairo.
 #pragma once
+#include <freiform/core/image.hpp>
 #include <freiform/io/paper.hpp>
 
 namespace freiform {
@@ -10,5 +11,8 @@ Result<std::string> to_pdf(const Drawing& drawing);
 
 // Smoothed, on white. Refuses (limit) more than 2^26 pixels.
 Result<std::string> to_png(const Drawing& drawing);
+
+// The drawing over the picture, which has its size; nothing is put behind it.
+Result<void> paint_over(Image& picture, const Drawing& drawing);
 
 }  // namespace freiform

@@ -1,0 +1,191 @@
+#include "../support/solids.hpp"
+
+#include <freiform/core/parallel.hpp>
+#include <freiform/io/drawing.hpp>
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace freiform {
+namespace {
+
+constexpr double kSurfaceTolerance = 3 * kDrawingTolerance;
+
+Document with(std::vector<Shape> shapes) {
+    Document d;
+    for (Shape& s : shapes) d.objects.push_back({text("object", int(d.objects.size())), std::move(s), {}});
+    return d;
+}
+
+Surface<Vec<3>> bilinear(const std::array<Vec<3>, 4>& c) {
+    return *Surface<Vec<3>>::make({*BSplineBasis::bezier(1), *BSplineBasis::bezier(1)},
+                                  Net<2, Vec<3>>({2, 2}, {c[0], c[1], c[2], c[3]}));
+}
+Surface<Vec<3>> square(double z, double a) {
+    return bilinear({{{{-a, -a, z}}, {{-a, a, z}}, {{a, -a, z}}, {{a, a, z}}}});
+}
+
+// Small, because the mesh is as fine as a tenth of a pixel.
+Drawing drawn(const Document& d, DrawingOptions how) {
+    how.width = 320, how.height = 240;
+    auto r = draw(d, {}, how);
+    EXPECT_TRUE(r) << (r ? "" : r.error().message);
+    return r ? *r : Drawing{};
+}
+
+// Calls f(a, b) for all segments of the groups of a role.
+template <class F>
+void each_segment(const Drawing& d, std::string_view role, const F& f) {
+    for (const DrawnGroup& g : d.groups) {
+        if (g.role != role) continue;
+        for (const DrawnPath& path : g.paths) {
+            Vec<2> from = path.start;
+            for (const DrawnSegment& s : path.segments) f(from, end_of(s)), from = end_of(s);
+            if (path.closed) f(from, path.start);
+        }
+    }
+}
+double length_of(const Drawing& d, std::string_view role) {
+    double sum = 0;
+    each_segment(d, role, [&](const Vec<2>& a, const Vec<2>& b) { sum += norm(b - a); });
+    return sum;
+}
+Vec<2> plane(const Drawing& d, const Vec<2>& pixel) {
+    return {{(pixel[0] - d.origin[0]) / d.scale, (d.origin[1] - pixel[1]) / d.scale}};
+}
+
+TEST(HiddenLines, the_outline_of_a_sphere_is_a_circle_of_its_radius) {
+    for (const char* view : {"top", "17,-35"})
+        for (const double r : {1.0, view[0] == 't' ? 0x1p-200 : 1e100}) {
+            DrawingOptions how;
+            how.view = *parse_view(view);
+            const Drawing d = drawn(with({test::sphere({{0, 0, 0}}, r)}), how);
+            double worst = 0, thinnest = 1e300;
+            each_segment(d, "silhouettes", [&](const Vec<2>& a, const Vec<2>& b) {
+                for (const Vec<2>& p : {a, 0.5 * (a + b)}) {
+                    const double rho = norm(p - d.origin);
+                    worst = std::max(worst, std::abs(rho - r * d.scale));
+                }
+                thinnest = std::min(thinnest, norm(b - a));
+            });
+            EXPECT_LE(worst, kSurfaceTolerance) << view;
+            EXPECT_NEAR(length_of(d, "silhouettes"), 2 * test::kPi * r * d.scale, 2) << view;
+            EXPECT_GT(thinnest, 0.1) << "no zigzag";
+            EXPECT_GT(r * d.scale, 100);
+        }
+}
+
+TEST(HiddenLines, of_a_torus_the_upper_half_is_seen_from_above) {
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    how.isolines = 8;  // none of them lies on an outline
+    const Drawing d = drawn(with({test::torus(2, 0.7)}), how);
+    // Each of the circles in planes through the axis is seen from 1.3 to 2.7 once, and of the 8 around it at
+    // equal angles those above the middle.
+    double radial = 0, around = 0, outline = 0;
+    each_segment(d, "isolines", [&](const Vec<2>& a, const Vec<2>& b) {
+        const Vec<2> p = plane(d, a), q = plane(d, b);
+        const double along = std::abs(norm(q) - norm(p));
+        (along > 0.5 * norm(q - p) ? radial : around) += norm(q - p);
+    });
+    double expected = 0;
+    for (int k = 1; k <= 8; ++k) {
+        const double v = 2 * test::kPi * k / 9;
+        if (std::sin(v) > 0) expected += 2 * test::kPi * (2 + 0.7 * std::cos(v));
+    }
+    each_segment(d, "silhouettes",
+                 [&](const Vec<2>& a, const Vec<2>& b) { outline += norm(plane(d, b) - plane(d, a)); });
+    EXPECT_NEAR(radial, 8 * 1.4, 8 * 4 / d.scale);
+    EXPECT_NEAR(around, expected, 0.05);
+    EXPECT_NEAR(outline, 2 * test::kPi * 4, 0.05);
+}
+
+TEST(HiddenLines, an_edge_ends_where_another_face_begins_to_hide_it) {
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    const Document d = with({square(0, 2), square(1, 1), square(-1, 1.5)});
+    const Drawing plain = drawn(d, how);
+    const double unit = plain.scale;
+    EXPECT_NEAR(length_of(plain, "edges"), (16 + 8) * unit, 0.01) << "the lowest is hidden wholly";
+    EXPECT_EQ(length_of(plain, "hidden"), 0);
+    how.hidden = HiddenLines::dashed;
+    const Drawing dashed = drawn(d, how);
+    EXPECT_NEAR(length_of(dashed, "hidden"), 12 * unit, 0.01);
+    for (const DrawnGroup& g : dashed.groups) EXPECT_EQ(g.role == "hidden", !g.dashes.empty());
+    how.hidden = HiddenLines::shown;
+    EXPECT_NEAR(length_of(drawn(d, how), "edges"), 36 * unit, 0.01);
+    // From below the lowest is in front.
+    how.hidden = HiddenLines::removed;
+    how.view = *parse_view("bottom");
+    EXPECT_NEAR(length_of(drawn(d, how), "edges"), (12 + 16) * unit, 0.01);
+}
+
+TEST(HiddenLines, a_line_is_cut_at_the_very_place) {
+    DrawingOptions how;
+    how.view = *parse_view("front");
+    const auto upright = [](double x, double y, double z) {
+        return bilinear(
+            {{{{x - 1, y, z - 1}}, {{x - 1, y, z + 1}}, {{x + 1, y, z - 1}}, {{x + 1, y, z + 1}}}});
+    };
+    const Drawing d = drawn(with({upright(0.75, -5, 0.5), upright(0, 0, 0)}), how);
+    std::vector<double> ends;
+    each_segment(d, "edges", [&](const Vec<2>& a, const Vec<2>& b) {
+        for (const Vec<2>& p : {plane(d, a), plane(d, b)})
+            if (std::abs(p[1] - 1) < 1e-6) ends.push_back(p[0]);
+    });
+    std::ranges::sort(ends);
+    ASSERT_FALSE(ends.empty());
+    EXPECT_NEAR(ends.front(), -1, 1e-9);
+    EXPECT_NEAR(ends.back(), -0.25, 1e-9);
+}
+
+TEST(HiddenLines, control_nets_are_dimmed_behind) {
+    DrawingOptions how;
+    how.control = true;
+    how.view = *parse_view("top");
+    const Drawing d = drawn(with({square(1, 1), square(0, 0.5)}), how);
+    EXPECT_NEAR(length_of(d, "control"), 8 * d.scale, 0.01);
+    EXPECT_NEAR(length_of(d, "control-behind"), 4 * d.scale, 0.01);
+}
+
+TEST(HiddenLines, do_not_depend_on_threads_and_have_ids_per_face) {
+    const Document d = with({test::torus(2, 0.7), test::sphere({{0, 0, 3}}, 1)});
+    DrawingOptions how;
+    how.isolines = 3;
+    const std::string one = to_svg(drawn(d, how));
+    const int before = max_threads();
+    set_max_threads(1);
+    const std::string again = to_svg(drawn(d, how));
+    set_max_threads(before);
+    EXPECT_EQ(one, again);
+    EXPECT_NE(one.find("<g id=\"object0-face-0-isolines\">"), std::string::npos);
+    EXPECT_NE(one.find("id=\"object1-silhouettes\""), std::string::npos);
+    std::size_t open = 0, close = 0;
+    for (std::size_t i = 0; (i = one.find("<g ", i)) != std::string::npos; ++i) ++open;
+    for (std::size_t i = 0; (i = one.find("</g>", i)) != std::string::npos; ++i) ++close;
+    EXPECT_EQ(open, close);
+}
+
+TEST(HiddenLines, refuse_counts_that_make_no_sense) {
+    DrawingOptions how;
+    how.isolines = -1;
+    EXPECT_EQ(draw(with({test::torus(2, 0.7)}), {}, how).error().where, "isolines");
+    how.isolines = 1001;
+    EXPECT_EQ(draw(with({test::torus(2, 0.7)}), {}, how).error().where, "isolines");
+}
+
+TEST(HiddenLines, of_a_graph_in_space_hide_each_other) {
+    // z = 8 u (1 - u), seen from the side: the hill hides nothing of itself but its back.
+    const auto graph =
+        *Surface<Vec<1>>::make({*BSplineBasis::bezier(2), *BSplineBasis::bezier(1)},
+                               Net<2, Vec<1>>({3, 2}, {{{0}}, {{0}}, {{4}}, {{4}}, {{0}}, {{0}}}));
+    DrawingOptions how;
+    how.view = *parse_view("0,20");  // from x, a little above
+    const Drawing d = drawn(with({graph}), how);
+    EXPECT_NEAR(length_of(d, "silhouettes"), d.scale, 0.3) << "the ridge, as seen from there";
+    how.hidden = HiddenLines::dashed;
+    EXPECT_GT(length_of(drawn(with({graph}), how), "hidden"), 0.5 * d.scale);
+}
+
+}  // namespace
+}  // namespace freiform
