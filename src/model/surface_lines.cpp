@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace freiform {
 
@@ -137,6 +138,7 @@ std::vector<SurfaceNormal> surface_normals(const TriangleMesh& mesh, int count) 
     std::vector<SurfaceNormal> out;
     for (const MeshPart& part : mesh.parts) {
         const Box<2> box = parameters_of(mesh, part);
+        std::set<std::pair<double, double>> taken;
         const Vec<2> step = (1.0 / count) * (box.hi - box.lo);
         if (!(step[0] > 0 && step[1] > 0)) continue;
         for (int i = part.first; i < part.first + part.count; ++i) {
@@ -158,8 +160,8 @@ std::vector<SurfaceNormal> surface_normals(const TriangleMesh& mesh, int count) 
                     const Vec<2> at{{x, y}};
                     const std::array<double, 3> w{area(at, q[1], q[2]) / whole, area(q[0], at, q[2]) / whole,
                                                   area(q[0], q[1], at) / whole};
-                    // On a side between two triangles both may say yes: twice the same needle.
-                    if (!(w[0] >= 0 && w[1] >= 0 && w[2] >= 0)) continue;
+                    // On a side between two triangles both may say yes.
+                    if (!(w[0] >= 0 && w[1] >= 0 && w[2] >= 0) || !taken.insert({x, y}).second) continue;
                     SurfaceNormal n{part.face, {}, {}};
                     for (std::size_t k = 0; k < 3; ++k) {
                         n.foot += w[k] * mesh.points[std::size_t(v[k]->point)];
