@@ -62,8 +62,8 @@ TEST_F(Draw, surfaces_become_lines_in_svg) {
     EXPECT_NE(content(path("t.svg")).find("class=\"isolines\""), std::string::npos);
     EXPECT_EQ(content(path("t.svg")).find("class=\"hidden\""), std::string::npos);
     const std::string flat = R"({"freiform": 1, "objects": [
-        {"name": "low", "type": "surface", "degree": [1, 1], "points": [[[0,0,0],[0,2,0]],[[2,0,0],[2,2,0]]]},
-        {"name": "high", "type": "surface", "degree": [1, 1], "points": [[[0,0,1],[0,2,1]],[[2,0,1],[2,2,1]]]}]})";
+        {"name": "low", "type": "surface", "degrees": [1, 1], "points": [[[0,0,0],[0,2,0]],[[2,0,0],[2,2,0]]]},
+        {"name": "high", "type": "surface", "degrees": [1, 1], "points": [[[0,0,1],[0,2,1]],[[2,0,1],[2,2,1]]]}]})";
     ASSERT_EQ(run({"draw", "-", "-o", "h.svg", "--hidden", "--view", "30,60"}, flat).code, 0);
     EXPECT_NE(content(path("h.svg")).find("id=\"low-hidden\""), std::string::npos);
     ASSERT_EQ(run({"draw", "-", "-o", "w.svg", "--wireframe", "--view", "30,60"}, flat).code, 0);
@@ -72,7 +72,7 @@ TEST_F(Draw, surfaces_become_lines_in_svg) {
 
 TEST_F(Draw, surfaces_are_coloured_and_the_range_is_said) {
     // A part of a cylinder of radius 1: mean curvature 1/2 with either sign.
-    const std::string pipe = R"({"unit": "mm", "type": "surface", "degree": [2, 1],
+    const std::string pipe = R"({"type": "surface", "degrees": [2, 1],
         "points": [[[1,0,0],[1,0,3]],[[1,1,0],[1,1,3]],[[0,1,0],[0,1,3]]],
         "weights": [[1,1],[0.7071067811865476,0.7071067811865476],[1,1]]})";
     const Ran r = run({"draw", "-", "-o", "p.png", "--colour", "mean", "--json", "--width", "400", "--height",
