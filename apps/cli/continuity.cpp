@@ -366,9 +366,10 @@ void add_continuity(CommandLine& line) {
         "A jump counts as none if it moves no point of a neighbouring piece by more than this distance; "
         "0: only rounding (1e-9 of the size of the largest object)");
     command.number("--angle", options->angle, "Degrees that tangents may differ by all the same (0)");
-    command.number("--gap", options->gap,
-                   "Ends of curves and edges of surfaces nearer than this are a joint (1e-3 of the size of the "
-                   "largest object)");
+    command.number(
+        "--gap", options->gap,
+        "Ends of curves and edges of surfaces nearer than this are a joint (1e-3 of the size of the "
+        "largest object)");
     command.count("--orders", options->orders, 0, kMaxDegree, "Highest order of G to look at (3)");
     command.object(options->object);
     command.answer_file();

@@ -203,7 +203,8 @@ private:
                             auto two = to_triangles(BezierPieces(s).piece({0, 0}));
                             if (!two) return about("--to-triangles", two.error());
                             for (std::size_t i = 0; i < 2; ++i)
-                                all.push_back({text(piece.suffix, i == 0 ? ".a" : ".b"), std::move(two->parts[i])});
+                                all.push_back(
+                                    {text(piece.suffix, i == 0 ? ".a" : ".b"), std::move(two->parts[i])});
                             worst = std::max(worst, two->bound);
                             return {};
                         }
@@ -378,19 +379,19 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_convert(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    const Command command =
-        line.add("convert", "Read any known format, write any that can hold it, change splines on the way",
-                 "  freiform convert teapot.bpt -o teapot.json\n"
-                 "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
-                 "  freiform convert surface.json --to-bezier -o patches.bpt\n"
-                 "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
-                 "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
-                 "--reverse, --to-bezier.\n"
-                 "--elevate and --reduce change all directions, --insert-knots, --split and --reverse the "
-                 "first, unless\n"
-                 "--axis says which. Of triangles --reduce lowers the degree, --split cuts from a corner to the "
-                 "opposite\n"
-                 "edge: --axis u, v or w.");
+    const Command command = line.add(
+        "convert", "Read any known format, write any that can hold it, change splines on the way",
+        "  freiform convert teapot.bpt -o teapot.json\n"
+        "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
+        "  freiform convert surface.json --to-bezier -o patches.bpt\n"
+        "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
+        "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
+        "--reverse, --to-bezier.\n"
+        "--elevate and --reduce change all directions, --insert-knots, --split and --reverse the "
+        "first, unless\n"
+        "--axis says which. Of triangles --reduce lowers the degree, --split cuts from a corner to the "
+        "opposite\n"
+        "edge: --axis u, v or w.");
     command.file(options->file);
     command.output("The file to write: .json or .bpt");
     command.object(options->object);

@@ -176,20 +176,20 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_line_options(const Command& command, Options& o) {
     command.flag("--control", o.control,
-                     "Also control polygons and nets; the area of a point is as its weight");
-    command.word("--names", o.names, "Name the control points of curves: b0, b1, .. or P1, P2, ..").shown_as("b0|P1").one_of({"b0", "P1"});
+                 "Also control polygons and nets; the area of a point is as its weight");
+    command.word("--names", o.names, "Name the control points of curves: b0, b1, .. or P1, P2, ..")
+        .shown_as("b0|P1")
+        .one_of({"b0", "P1"});
     command.flag("--knots", o.knots, "Also the places of the knots on curves, multiple ones larger");
     command.flag("--comb", o.comb, "Also the curvature of curves, as needles away from its centre");
     command.number("--construction", o.construction,
-               "Also the points of the de Casteljau or de Boor scheme at this parameter");
+                   "Also the points of the de Casteljau or de Boor scheme at this parameter");
     command.number("--tangent", o.tangent, "Also tangent and normal of curves at this parameter");
-    command.number("--osculating", o.osculating,
-               "Also the circle of curvature of curves at this parameter");
+    command.number("--osculating", o.osculating, "Also the circle of curvature of curves at this parameter");
     command.flag("--hull", o.hull, "Also the convex hull of the control points of curves");
     command.flag("--box", o.box, "Also the boxes of curves");
     command.flag("--joints", o.joints, "Also the order of continuity at knots and where curves meet");
-    command.flag("--a-frames", o.a_frames,
-                     "Also the A-frames at inner knots of curves of degree 2 or more");
+    command.flag("--a-frames", o.a_frames, "Also the A-frames at inner knots of curves of degree 2 or more");
     command.flag("--hodograph", o.hodograph, "A panel with the curve of the derivatives");
     command.flag("--basis", o.basis, "A panel with the basis functions and the knots of curves");
     command.flag("--axes", o.axes, "Axes with ticks");
@@ -205,41 +205,44 @@ void add_line_options(const Command& command, Options& o) {
 
 void add_draw(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    const Command command = line.add("draw", "A picture of curves, surfaces, a model or a mesh",
-                    "  freiform draw curves.json -o curves.svg --control --knots\n"
-                    "  freiform draw curves.json -o curve.pdf --object cubic --names b0 "
-                    "--construction 0.4 --hull\n"
-                    "  freiform draw curves.json -o curve.svg --object closed --comb --basis\n"
-                    "  freiform draw teapot.bpt -o teapot.png\n"
-                    "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
-                    "  freiform draw part.step -o part.svg --hidden\n"
-                    "  freiform draw teapot.bpt -o curvature.png --colour mean --isolines 5\n"
-                    "  freiform draw part.glb -o part.png --edges");
+    const Command command =
+        line.add("draw", "A picture of curves, surfaces, a model or a mesh",
+                 "  freiform draw curves.json -o curves.svg --control --knots\n"
+                 "  freiform draw curves.json -o curve.pdf --object cubic --names b0 "
+                 "--construction 0.4 --hull\n"
+                 "  freiform draw curves.json -o curve.svg --object closed --comb --basis\n"
+                 "  freiform draw teapot.bpt -o teapot.png\n"
+                 "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
+                 "  freiform draw part.step -o part.svg --hidden\n"
+                 "  freiform draw teapot.bpt -o curvature.png --colour mean --isolines 5\n"
+                 "  freiform draw part.glb -o part.png --edges");
     command.file(options->file);
     command.output("The picture: .svg and .pdf of lines; .png shaded, or lines where there are only curves");
-    command.word("--view", options->view,
-                     "iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees "
-                     "(default: plane curves as they are, others from iso)").shown_as("VIEW");
+    command
+        .word("--view", options->view,
+              "iso, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees "
+              "(default: plane curves as they are, others from iso)")
+        .shown_as("VIEW");
     add_line_options(command, *options);
-    command.number("--tolerance", options->tolerance,
-               "Of the mesh that is drawn (default: below a pixel)");
+    command.number("--tolerance", options->tolerance, "Of the mesh that is drawn (default: below a pixel)");
     command.count("--isolines", options->isolines, 0, 1000,
-              "Isolines of every face in each direction (default: as the knots of surfaces suggest)");
+                  "Isolines of every face in each direction (default: as the knots of surfaces suggest)");
     command.count("--width", options->width, 1, 16384, "Pixels");
     command.count("--height", options->height, 1, 16384, "Pixels");
     command.flag("--edges", options->edges, "Also the edges of the triangles");
-    command.flag("--zebra", options->zebra,
-                      "Reflected stripes, which show breaks of tangent and curvature");
+    command.flag("--zebra", options->zebra, "Reflected stripes, which show breaks of tangent and curvature");
     command.flag("--isophotes", options->isophotes,
-                      "Lines along which the normal makes the same angle with the light");
-    command.word(
-            "--colour", options->colour,
-            "Colour surfaces by Gauss, mean, greatest or least curvature, by the error of the mesh, or "
-            "by their normals").shown_as("gauss|mean|greatest|least|error|normal").one_of({"gauss", "mean", "greatest", "least", "error", "normal"});
+                 "Lines along which the normal makes the same angle with the light");
+    command
+        .word("--colour", options->colour,
+              "Colour surfaces by Gauss, mean, greatest or least curvature, by the error of the mesh, or "
+              "by their normals")
+        .shown_as("gauss|mean|greatest|least|error|normal")
+        .one_of({"gauss", "mean", "greatest", "least", "error", "normal"});
     command.numbers("--range", options->range,
-                "LEAST,GREATEST of the colours (default: so that 90 % of the area are inside)");
+                    "LEAST,GREATEST of the colours (default: so that 90 % of the area are inside)");
     command.count("--normals", options->normals, 1, 200,
-              "Normals of every face, this many in each direction");
+                  "Normals of every face, this many in each direction");
     command.flag("--perspective", options->perspective, "Perspective instead of a parallel view");
     command.object(options->object);
     command.limits();

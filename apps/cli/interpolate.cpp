@@ -89,9 +89,9 @@ std::vector<double> given_parameters(std::string_view rest) {
 }
 
 Spacing spacing_of(const Options& options, Scheme way) {
-    const std::string word = !options.spacing.empty()     ? options.spacing
-                             : is_catmull_rom(way) ? "uniform"
-                                                          : "chordal";
+    const std::string word = !options.spacing.empty() ? options.spacing
+                             : is_catmull_rom(way)    ? "uniform"
+                                                      : "chordal";
     return Spacing(index_of("--parameters", word, kSpacings));
 }
 

@@ -116,17 +116,21 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_revolve(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    const Command command = line.add("revolve", "Surfaces of revolution of curves, exact (rational) or polynomial",
+    const Command command = line.add(
+        "revolve", "Surfaces of revolution of curves, exact (rational) or polynomial",
         "  freiform revolve outline.json --axis 0,0,0,0,1,0 -o vase.json\n"
         "  freiform revolve outline.json --axis 0,0,0,0,1,0 --angle 90 --polynomial 0.001 -o quarter.bpt");
     command.word("FILE", options->file, "Curves; - is standard input").required();
-    command.numbers("--axis", options->axis, "A point of the axis and its direction").shown_as("PX,PY,PZ,DX,DY,DZ").required();
-    command.number("--angle", options->angle,
+    command.numbers("--axis", options->axis, "A point of the axis and its direction")
+        .shown_as("PX,PY,PZ,DX,DY,DZ")
+        .required();
+    command.number(
+        "--angle", options->angle,
         "Degrees, counter-clockwise seen from the tip of the axis; negative ones clockwise (default 360)");
     command.number("--polynomial", options->polynomial,
-               "Not exact, but polynomial within this distance; the bound reached is printed");
+                   "Not exact, but polynomial within this distance; the bound reached is printed");
     command.flag("--closed", options->closed,
-                      "Write a full turn on closed knots instead of open ones whose ends coincide");
+                 "Write a full turn on closed knots instead of open ones whose ends coincide");
     command.object(options->object);
     command.output("Where the surfaces go (.json, .bpt)");
     command.limits();

@@ -1,51 +1,12 @@
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/assemble.hpp>
+#include <freiform/spline/in_space.hpp>
+#include <freiform/spline/simplex_convert.hpp>
 
 namespace freiform {
 
 namespace {
-
-// The same surface in the plane z = 0.
-template <class P>
-auto in_space(const Surface<P>& s) {
-    constexpr bool rational = Space<P>::kRational;
-    using Q = std::conditional_t<rational, Hom<3>, Vec<3>>;
-    std::vector<Q> c;
-    for (const P& p : s.net().flat()) {
-        Q q{};
-        q[0] = p[0];
-        q[1] = p[1];
-        if constexpr (rational) q[3] = p.weight();
-        c.push_back(q);
-    }
-    return Surface<Q>::trusted(s.bases(), Net<2, Q>(s.net().extent(), std::move(c)));
-}
-
-// A triangular patch as a surface of degree n x n with a pole at corner 1: with (u, v) at the barycentric
-// coordinates (1 - u, u (1 - v), u v), row j + k = a of its coefficients is a Bezier curve of degree a in v,
-// raised to degree n. The three sides keep their control points to the bit.
-template <class P>
-Surface<P> as_surface(const Triangle<P>& t) {
-    const int n = t.degree();
-    std::vector<P> net;
-    for (int a = 0; a <= n; ++a) {
-        std::vector<P> row;
-        for (int k = 0; k <= a; ++k) row.push_back(t.coefficient(a - k, k));
-        for (int m = a + 1; m <= n; ++m) {
-            std::vector<P> raised{row.front()};
-            for (int k = 1; k < m; ++k)
-                raised.push_back(a == 0 ? row.front()
-                                        : (double(k) / m) * row[std::size_t(k - 1)] +
-                                              (double(m - k) / m) * row[std::size_t(k)]);
-            raised.push_back(row.back());
-            row = std::move(raised);
-        }
-        net.insert(net.end(), row.begin(), row.end());
-    }
-    const auto basis = *BSplineBasis::bezier(n);
-    return Surface<P>::trusted({basis, basis}, Net<2, P>({n + 1, n + 1}, std::move(net)));
-}
 
 // Appends a model; indices move up by what is there.
 void append(Model& to, Model from) {
@@ -97,6 +58,7 @@ public:
             if (all.unit.empty()) all.unit = m->unit;
             append(all, *m);
         }
+        all.approximations.insert(all.approximations.end(), approximations_.begin(), approximations_.end());
         all.refused.insert(all.refused.end(), without_faces_.begin(), without_faces_.end());
         if (all.faces.empty())
             return refuse(RefusalKind::no_answer, "objects", "there is no surface among them");
@@ -126,7 +88,7 @@ private:
                                       project(s.coefficient(0, 1))},
                                      name);
             else
-                added = builder_.add(as_surface(s), name);
+                added = add_triangle(index, s);
         } else if constexpr (std::same_as<S, TrimmedSurface>) {
             added = s.loops.empty() ? builder_.add(s.surface, name)
                                     : builder_.add_trimmed(s.surface, s.loops, name);
@@ -145,12 +107,23 @@ private:
         return {};
     }
 
+    // As a surface with a pole; what rounding moves is told.
+    template <class P>
+    Result<int> add_triangle(std::size_t index, const Triangle<P>& s) {
+        auto surface = to_surface(s);
+        if (surface.bound > 0)
+            approximations_.push_back(
+                {object_label(document_, index), "a triangle, as a surface with a pole", surface.bound, 0});
+        return builder_.add(std::move(surface.parts[0]), document_.objects[index].name);
+    }
+
     const Document& document_;
     ModelBuilder builder_;
     bool has_surfaces_ = false;
     std::vector<std::size_t> loose_;  // the objects of the faces of builder_
     std::vector<std::pair<std::size_t, const Model*>> models_;
     std::vector<Refusal> without_faces_;
+    std::vector<Approximation> approximations_;
 };
 
 }  // namespace

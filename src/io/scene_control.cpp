@@ -1,6 +1,7 @@
 #include "io/drawing_lift.hpp"
 
 #include <freiform/io/scene.hpp>
+#include <freiform/spline/in_space.hpp>
 
 namespace freiform {
 
@@ -28,13 +29,13 @@ void add_net(ControlNet& to, const Surface<P>& s) {
 
 template <class P>
 void add_net(ControlNet& to, const Triangle<P>& t) {
-    const auto at = [&](int j, int k) { return project(drawing::in_space(t.coefficient(j, k))); };
+    const auto at = [&](int j, int k) { return project(in_space(t.coefficient(j, k))); };
     for (int row = 1; row <= t.degree(); ++row)  // rows j + k; the small triangles that point away
         for (int k = 0; k < row; ++k) {
             const int j = row - 1 - k;
             to.lines.push_back({at(j, k), at(j + 1, k), at(j, k + 1), at(j, k)});
         }
-    for (const P& p : t.coefficients()) add_point(to, drawing::in_space(p));
+    for (const P& p : t.coefficients()) add_point(to, in_space(p));
 }
 
 void add_shape(ControlNet& to, const Shape& shape) {
@@ -42,7 +43,7 @@ void add_shape(ControlNet& to, const Shape& shape) {
         using S = std::remove_cvref_t<decltype(s)>;
         if constexpr (TensorPatch<S>) {
             if constexpr (S::kParams == 2)
-                if (const auto in_space = drawing::lifted(s)) add_net(to, *in_space);
+                if (const auto lifted = drawing::lifted(s)) add_net(to, *lifted);
         } else if constexpr (TriangularPatch<S>) {
             if constexpr (Space<typename S::Coefficients>::kDim < 4) add_net(to, s);
         } else if constexpr (std::same_as<S, TrimmedSurface>) {
