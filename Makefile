@@ -28,9 +28,9 @@ build:
 demo:
 	@source tools/steps.sh; \
 	step "Packages" tools/setup.sh demo; \
-	step "Configure" cmake --preset release --log-level=WARNING; \
-	step "Build" cmake --build --preset release; \
-	step "Demo" tools/demo.sh
+	step "Configure" cmake --preset demo --log-level=WARNING; \
+	step "Build" cmake --build --preset demo; \
+	step "Demo" env FREIFORM=build-demo/bin/freiform tools/demo.sh
 
 test:
 	@source tools/steps.sh; \

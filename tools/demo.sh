@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Shows what the program does on two models and checks what it says: out/*.glb, out/*.png and a table.
-# Fails if a bound is above the tolerance that was asked for, or if the solid is not closed.
+# FREIFORM names the program. Fails if a bound is above the tolerance that was asked for, or if the solid is not closed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 freiform=${FREIFORM:-build/bin/freiform}
@@ -54,3 +54,5 @@ echo "Written: "
 for file in out/teapot.glb out/teapot.png out/teapot.json out/solid.glb out/solid.png out/solid.json; do
     echo "  $(pwd)/$file"
 done
+[ "$freiform" = build/bin/freiform ] ||
+    echo "This program was built quickly, with little optimisation: \`make build\` makes the fast one, build/bin/freiform."

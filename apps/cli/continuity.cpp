@@ -6,6 +6,7 @@
 #include <freiform/query/continuity.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <numbers>
 
 namespace freiform::cli {

@@ -51,7 +51,7 @@ std::vector<double> ticks(const Interval& on) {
         if (at(1) < least) continue;
         for (double i = std::ceil(on.lo / at(1) - 1e-9);
              at(i) <= on.hi + 1e-9 * on.length() && out.size() < 20; ++i)
-            out.push_back(at(i));
+            out.push_back(at(i) + 0.0);  // not "-0"
         break;
     }
     return out;

@@ -1,5 +1,6 @@
 #include <freiform/core/result.hpp>
 
+#include <charconv>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>

@@ -40,6 +40,15 @@ TEST(ColourBar, has_ticks_at_round_numbers_inside_the_range_at_their_place) {
     EXPECT_NEAR(most + least, 2 * zero, 1e-9);
 }
 
+TEST(ColourBar, zero_has_no_sign) {
+    ColourBar bar;
+    bar.map = MapKind::sequential;
+    bar.range = {0, 0.043};
+    const auto said = words(drawing_of(bar, 800, 600));
+    EXPECT_TRUE(has(said, "0"));
+    EXPECT_FALSE(has(said, "-0") || has(said, "\u22120"));
+}
+
 TEST(ColourBar, shows_the_colours_of_the_map_over_the_range_asked_for) {
     ColourBar bar;
     bar.map = MapKind::diverging;

@@ -1,5 +1,6 @@
 #include <freiform/io/drawing.hpp>
 
+#include <charconv>
 #include <gtest/gtest.h>
 #include <set>
 

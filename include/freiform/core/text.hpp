@@ -1,31 +1,51 @@
-// Text from parts, independent of the locale; doubles in the shortest form that reads back to the same bits.
+// Text from parts, independent of the locale; numbers in the shortest form that reads back to the same bits.
 #pragma once
-#include <charconv>
 #include <concepts>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace freiform {
 
-inline void append_text(std::string& s, std::string_view part) { s += part; }
-inline void append_text(std::string& s, char part) { s += part; }
-template <class T>
-requires(std::integral<T> || std::floating_point<T>) &&
-    (!std::same_as<T, char>)void append_text(std::string& s, T number) {
-    if constexpr (std::same_as<T, bool>) {
-        s += number ? "true" : "false";
-    } else {
-        char buffer[40];
-        const auto end = std::to_chars(buffer, buffer + sizeof buffer, number).ptr;
-        s.append(buffer, end);
-    }
-}
+// A part of a text: characters that live elsewhere, or a number. Small enough to be made at every call; what
+// is to be done with it is compiled once.
+class TextPart {
+public:
+    TextPart(std::string_view s) : kind_(Kind::characters), characters_(s) {}
+    TextPart(const std::string& s) : TextPart(std::string_view(s)) {}
+    TextPart(const char* s) : TextPart(std::string_view(s)) {}
+    TextPart(char c) : kind_(Kind::character), character_(c) {}
+    TextPart(bool b) : TextPart(b ? "true" : "false") {}
+    TextPart(double x) : kind_(Kind::real), real_(x) {}
+    TextPart(float x) : kind_(Kind::single), single_(x) {}
+    template <std::signed_integral T>
+    TextPart(T i) : kind_(Kind::integer), integer_(i) {}
+    template <std::unsigned_integral T>
+    TextPart(T i) : kind_(Kind::natural), natural_(i) {}
 
+    friend void append_text(std::string& s, const TextPart& part);
+
+private:
+    enum class Kind : unsigned char { characters, character, integer, natural, real, single };
+    Kind kind_;
+    union {
+        std::string_view characters_;
+        char character_;
+        long long integer_;
+        unsigned long long natural_;
+        double real_;
+        float single_;
+    };
+};
+
+void append_text(std::string& s, const TextPart& part);
+std::string joined(std::span<const TextPart> parts);
+
+// text("row ", 3, ": ", 0.25)
 template <class... Parts>
 std::string text(const Parts&... parts) {
-    std::string s;
-    (append_text(s, parts), ...);
-    return s;
+    const TextPart list[] = {TextPart(parts)...};
+    return joined(list);
 }
 
 }  // namespace freiform
