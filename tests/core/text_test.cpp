@@ -28,7 +28,7 @@ TEST(Text, is_appended_behind_what_is_there) {
     append_text(s, 2.5);
     append_text(s, ';');
     append_text(s, " done");
-    EXPECT_EQ(s, "x = 2.5;");
+    EXPECT_EQ(s, "x = 2.5; done");
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ constexpr SurfaceEdge kU0{0, End::start}, kU1{0, End::end}, kV0{1, End::start}, 
 
 template <class P>
 P random_point(Random& random, double x, double y) {
+    const double weight = random.real(0.95, 1.05);  // first: compilers differ in the order of arguments
     return Space<P>::lift({{x + random.real(-0.2, 0.2), y + random.real(-0.2, 0.2), random.real(-1, 1)}},
-                          random.real(0.95, 1.05));
+                          weight);
 }
 template <class P>
 Net<2, P> random_net(Random& random, int n, int m, double x0 = 0) {
