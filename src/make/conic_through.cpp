@@ -39,7 +39,8 @@ Result<Vec<2>> tangent(const FoundEquation& q, const Vec<2>& p, const Vec<2>& in
     return Vec<2>{{-sign * fy.value, sign * fx.value}};
 }
 
-// A proven bound of |curve(at) - p| for a spline of quadratic pieces.
+// A proven bound of |curve(at) - p| for a spline of quadratic pieces: all in Bounded, and hypot is off by at
+// most one unit in the last place, which `above` covers.
 double distance_at(const Curve<Hom<2>>& curve, std::size_t piece, double at, const Vec<2>& p) {
     const auto& breaks = curve.basis().breaks();
     const auto& net = curve.net().flat();

@@ -19,8 +19,8 @@
 // computed frame; e(v0) is its distance from an orthonormal one: |q . T| + | |q| - 1 |, for s also |s - T x
 // r|. The surface is off by at most |x| |e_r| + |y| |e_s|, with x and y in the hull of the profile, and the
 // rounding of its net.
-//     The bound is of third order in 1/m, the error of fourth: where many pieces are needed the bound is some
-// ten times what can be measured.
+//     The bound is of third order in 1/m, the error of fourth: the more pieces are needed, the more the
+// bound exceeds what can be measured.
 //
 // References: [Bishop 1975], [Wang et al. 2008], [Farin 2002].
 //

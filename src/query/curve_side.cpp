@@ -29,13 +29,9 @@ namespace freiform {
 
 namespace {
 
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+using detail::span_before;
 
-int span_before(const BSplineBasis& basis, double at) {
-    int s = basis.span(at);
-    while (s > basis.degree() && basis.knot(s) >= at) --s;
-    return s;
-}
+constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 template <class P>
 CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,

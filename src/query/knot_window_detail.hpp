@@ -13,6 +13,13 @@
 
 namespace freiform::detail {
 
+// The span that ends at `at`: of two that meet there the lower one.
+inline int span_before(const BSplineBasis& basis, double at) {
+    int s = basis.span(at);
+    while (s > basis.degree() && basis.knot(s) >= at) --s;
+    return s;
+}
+
 // Models what weights_in_span asks of a basis, for the span it was made for.
 class KnotWindow {
 public:

@@ -25,7 +25,7 @@
 //
 // Accuracy: `Bounded` arithmetic from the control points on; enclosures are rounded outwards by 2^-45, many
 // times what their few operations on numbers >= 0 can lose. Cost: degrees of K (N.N') |T'|^2 |N'|^2: 40 for
-// bicubics, 97 for rational ones; about a millisecond per piece of a bicubic joint.
+// bicubics, 97 for rational ones.
 //
 // Why not sampling: no bound. Why not intervals for k and k' each: their width does not vanish with the jump,
 // and a smooth joint would need intervals as short as the bound is to be small. Why not solve for the

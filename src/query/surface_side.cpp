@@ -25,13 +25,9 @@ namespace freiform {
 
 namespace {
 
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+using detail::span_before;
 
-int span_before(const BSplineBasis& basis, double at) {
-    int s = basis.span(at);
-    while (s > basis.degree() && basis.knot(s) >= at) --s;
-    return s;
-}
+constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // The control points of the derivatives across: [order * (D + 1) + coordinate][j].
 using Rows = std::vector<std::vector<Bounded>>;

@@ -14,8 +14,8 @@
 // Lower degree: with E the elevation, E^T E is solved by Cholesky for what is not a corner. Its condition is
 // about the degree. The bound is that of E x - b, whatever x is.
 //
-// Accuracy: counted as it happens (bounded.hpp). Cost: O(n^5) for three surfaces (n^3 blossoms), 0.2 s at
-// degree 25; everything else O(n^4) or less.
+// Accuracy: counted as it happens (bounded.hpp). Cost: O(n^5) for three surfaces (n^3 blossoms),
+// everything else O(n^4) or less.
 //
 // References: [Ramshaw 1989], [Goldman & Filip 1987], [Hu 1996], [Farin 1986].
 //
