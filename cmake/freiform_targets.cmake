@@ -36,6 +36,13 @@ function(freiform_common target)
     endif()
 endfunction()
 
+# Of a target that computes little. After freiform_common.
+function(freiform_quick target)
+    if(FREIFORM_QUICK)
+        target_compile_options(${target} PRIVATE -O0)
+    endif()
+endfunction()
+
 set_property(GLOBAL PROPERTY FREIFORM_COMPONENTS "")
 
 function(freiform_library name)
