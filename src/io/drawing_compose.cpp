@@ -179,14 +179,30 @@ private:
     Sketch& s_;
 };
 
+// Before what is seen of the object, so that it lies over it.
+void add_behind(Sketch& s) {
+    Behind& b = s.behind;
+    if (!b.paths.empty() && s.options.hidden == HiddenLines::dashed) {
+        DrawnGroup& g = s.group("hidden", mixed(s.colour, {1, 1, 1, 1}, 0.45), 1);
+        g.paths = std::move(b.paths);
+        g.dashes = {4, 3};
+    }
+    if (b.net.empty() && b.points.empty()) return;
+    DrawnGroup& g = s.group("control-behind", mixed(s.colour, {1, 1, 1, 1}, 0.75), 0.8);
+    g.paths = std::move(b.net);
+    g.discs = std::move(b.points);
+}
+
 }  // namespace
 
 void add_object(Sketch& sketch, const Document& document, std::size_t index) {
     sketch.label = object_label(document, index);
     const std::string& name = document.objects[index].name;
     sketch.name = name.empty() ? sketch.label : name;
-    sketch.colour = sketch.options.colour.value_or(kPalette[index % kPalette.size()]);
+    sketch.colour = sketch.colour_of(index);
+    sketch.behind = {};
     std::visit([&](const auto& s) { Composer(sketch).add_shape(s); }, document.objects[index].shape);
+    add_behind(sketch);
 }
 
 }  // namespace freiform::drawing

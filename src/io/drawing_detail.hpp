@@ -2,6 +2,7 @@
 // on.
 #pragma once
 #include <freiform/io/drawing.hpp>
+#include <freiform/mesh/visibility.hpp>
 #include <freiform/query/continuity.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -23,6 +24,11 @@ struct Plane {
     Vec<2> operator()(const Vec<3>& p) const {
         const Vec<3> q = scaled(p);
         return {{dot(right, q), dot(up, q)}};
+    }
+    // With the third coordinate towards the eye.
+    Vec<3> deep(const Vec<3>& p) const {
+        const Vec<3> q = scaled(p);
+        return {{dot(right, q), dot(up, q), dot(cross(right, up), q)}};
     }
     // A linear map commutes with weights.
     Hom<2> operator()(const Hom<3>& p) const {
@@ -87,6 +93,12 @@ std::optional<std::vector<DrawnPath>> paths_of(const Curve<P>& curve, const Plan
     return paths;
 }
 
+// What surfaces are in front of, of lines that are not theirs.
+struct Behind {
+    std::vector<DrawnPath> paths, net;  // of curves and edges; of control polygons
+    std::vector<DrawnDisc> points;      // control points
+};
+
 // What is drawn so far, and of which object.
 class Sketch {
 public:
@@ -106,12 +118,26 @@ public:
         if (!path) return leave_out(text(what, " cannot be followed in double precision"));
         take(to, std::move(*path));
     }
+    Colour colour_of(std::size_t object) const {
+        const auto& own = options.palette;
+        return own.empty() ? kPalette[object % kPalette.size()] : own[object % own.size()];
+    }
     std::size_t rest() const { return kMostSegments - std::min(used, kMostSegments); }
+    // What is behind a surface goes to `behind`.
     template <class P>
     void add_paths(DrawnGroup& to, const Curve<P>& curve) {
+        if constexpr (Space<P>::kDim == 3)
+            if (occluders && add_seen(to, curve)) return;
         auto paths = paths_of(curve, plane, tolerance, rest());
         if (!paths) return leave_out("a curve of it cannot be followed in double precision");
         for (DrawnPath& path : *paths) take(to, std::move(path));
+    }
+
+    // The polygon through these points, to `net` where it is behind a surface.
+    void add_polygon(DrawnGroup& to, std::span<const Vec<3>> points, bool closed);
+    bool is_behind(const Vec<3>& p) const {
+        const Vec<3> q = plane.deep(p);
+        return occluders && !occluders->hidden(q, q).empty();
     }
 
     const Plane plane;
@@ -129,6 +155,13 @@ public:
     std::vector<CurveEnds> ends;  // of the curves
     std::size_t joints = 0;       // marked so far
     bool answered = false;        // a curve was there for what is asked at a parameter
+    std::optional<Occluders> occluders;  // the surfaces, once they are there
+    Behind behind;                       // of the object
+
+private:
+    // False where none of the curve is hidden, or it cannot be told.
+    template <class P>
+    bool add_seen(DrawnGroup& to, const Curve<P>& curve);
 };
 
 // Everything that the options ask for of a curve in space. `basis`: of the curve as it was given, which

@@ -74,10 +74,11 @@ char letter_of(const Sketch& s) {
 template <class P>
 void add_control(Sketch& s, const Curve<P>& curve) {
     DrawnGroup& g = s.group("control", mixed(s.colour, kGrey, 0.65), 1.1);
+    std::vector<Vec<3>> points;
     std::vector<Vec<2>> line;
-    for (const P& c : curve.net().flat()) line.push_back(s.plane(project(c)));
+    for (const P& c : curve.net().flat()) points.push_back(project(c)), line.push_back(s.plane(points.back()));
     const bool closed = curve.basis().is_closed();
-    s.take(g, line_through(line, closed));
+    s.add_polygon(g, points, closed);
     g.legend = plain_text("control polygon");
     add_points(s, g, curve.net().flat());
     if (s.options.names == PointNames::none) return;
@@ -92,7 +93,8 @@ void add_knots(Sketch& s, const Curve<P>& curve, const BSplineBasis& basis) {
     DrawnGroup& g = s.group("knots", mixed(s.colour, {0, 0, 0, 1}, 0.3), 1.5);
     g.legend = plain_text("knots");
     for (const double u : basis.breaks())
-        g.discs.push_back({s.plane(curve(u)), 2.2 + 0.9 * basis.multiplicity(u), true});
+        if (const auto p = curve(u); !s.is_behind(p))
+            g.discs.push_back({s.plane(p), 2.2 + 0.9 * basis.multiplicity(u), true});
 }
 
 struct Needle {
@@ -252,10 +254,11 @@ template <class P>
 void add_points(Sketch& s, DrawnGroup& g, std::span<const P> coefficients) {
     double mean = 0;
     for (const P& c : coefficients) mean += Space<P>::weight(c) / double(coefficients.size());
-    for (const P& c : coefficients)
-        g.discs.push_back(
-            {s.plane(project(c)),
-             std::clamp(kPointRadius * std::sqrt(Space<P>::weight(c) / mean), 1.5, 3 * kPointRadius), false});
+    for (const P& c : coefficients) {
+        const double radius =
+            std::clamp(kPointRadius * std::sqrt(Space<P>::weight(c) / mean), 1.5, 3 * kPointRadius);
+        (s.is_behind(project(c)) ? s.behind.points : g.discs).push_back({s.plane(project(c)), radius, false});
+    }
 }
 
 template <class P>

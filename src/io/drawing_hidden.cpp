@@ -53,16 +53,6 @@ struct Line {
     std::vector<Vec<3>> points;  // in the view
 };
 
-struct View3 {
-    explicit View3(const Plane& p) : plane(p), eye(cross(p.right, p.up)) {}
-    Vec<3> operator()(const Vec<3>& p) const {
-        const Vec<3> q = plane.scaled(p);
-        return {{dot(plane.right, q), dot(plane.up, q), dot(eye, q)}};
-    }
-    const Plane& plane;
-    Vec<3> eye;
-};
-
 double distance(const Vec<2>& p, const Vec<2>& a, const Vec<2>& b) {
     const Vec<2> d = b - a;
     const double square = dot(d, d);
@@ -115,7 +105,7 @@ Document in_space(const Document& document, std::span<const std::size_t> objects
 class Faces {
 public:
     Faces(Sketch& s, const Document& document, std::span<const std::size_t> objects)
-        : s_(s), document_(document), objects_(objects), view_(s.plane) {}
+        : s_(s), document_(document), objects_(objects) {}
 
     bool mesh(double tolerance) {
         const Document lifted = in_space(document_, objects_);
@@ -141,7 +131,7 @@ public:
             const auto p = mesh_.points_of(i);
             triangles.push_back({point(p[0]), point(p[1]), point(p[2])});
         }
-        const Occluders occluders(std::move(triangles), kInFront * s_.tolerance);
+        const Occluders& occluders = s_.occluders.emplace(std::move(triangles), kInFront * s_.tolerance);
         add_lines();
         std::vector<std::vector<SeenPart>> seen(lines_.size());
         parallel_for(lines_.size(), 16,
@@ -149,7 +139,7 @@ public:
         make_groups();
         for (std::size_t i = 0; i < lines_.size(); ++i)
             for (SeenPart& part : seen[i]) put(lines_[i], part);
-        if (s_.options.control) add_points(occluders);
+        if (s_.options.control) add_points();
         for (DrawnGroup& g : groups_)
             if (!g.paths.empty() || !g.discs.empty()) s_.groups.push_back(std::move(g));
     }
@@ -162,7 +152,7 @@ private:
                          : why;
         return false;
     }
-    Vec<3> point(int i) const { return view_(mesh_.points[std::size_t(i)]); }
+    Vec<3> point(int i) const { return s_.plane.deep(mesh_.points[std::size_t(i)]); }
 
     bool of_model(int face) const {
         const std::size_t object = scene_.object_of_face[std::size_t(face)];
@@ -179,13 +169,13 @@ private:
     }
     void add_line(Role role, int face, std::string part, std::span<const Vec<3>> points) {
         Line line{role, scene_.object_of_face[std::size_t(face)], std::move(part), {}};
-        for (const Vec<3>& p : points) line.points.push_back(view_(p));
+        for (const Vec<3>& p : points) line.points.push_back(s_.plane.deep(p));
         lines_.push_back(std::move(line));
     }
     void add_lines() {
         for (const SurfaceLine& l : isolines(scene_.model, mesh_, s_.options.isolines))
             if (s_.options.isolines || !of_model(l.face)) add_line(iso, l.face, name_of(l.face), l.points);
-        for (const SurfaceLine& l : silhouettes(scene_.model, mesh_, view_.eye))
+        for (const SurfaceLine& l : silhouettes(scene_.model, mesh_, cross(s_.plane.right, s_.plane.up)))
             add_line(outline, l.face, name_of(l.face), l.points);
         for (const Outline& o : outlines(mesh_, kCrease)) {
             const int face = mesh_.parts[std::size_t(o.parts[0])].face;
@@ -202,20 +192,19 @@ private:
             const auto object = std::size_t(std::ranges::find(objects_, net.object) - objects_.begin());
             for (const auto& points : net.lines) {
                 Line line{nets, object, {}, {}};
-                for (const Vec<3>& p : points) line.points.push_back(view_(p));
+                for (const Vec<3>& p : points) line.points.push_back(s_.plane.deep(p));
                 lines_.push_back(std::move(line));
             }
         }
     }
 
-    bool alike() const { return objects_.size() > kMostColours; }
+    bool alike() const { return objects_.size() > kMostColours && s_.options.palette.empty(); }
     void make_groups() {
         for (const Style& style : kStyles)
             for (std::size_t k = 0; k < (alike() ? 1 : objects_.size()); ++k) {
                 const std::size_t index = objects_[k];
                 const std::string& own = document_.objects[index].name;
-                const Colour ink =
-                    s_.options.colour.value_or(alike() ? kPalette[0] : kPalette[index % kPalette.size()]);
+                const Colour ink = alike() ? kPalette[0] : s_.colour_of(index);
                 DrawnGroup g{
                     alike()       ? std::string("surfaces")
                     : own.empty() ? object_label(document_, index)
@@ -253,17 +242,17 @@ private:
         path.part = line.part;
         s_.take(group(role, line.object), std::move(path));
     }
-    void add_points(const Occluders& occluders) {
+    void add_points() {
         for (const ControlNet& net : nets_) {
             const auto object = std::size_t(std::ranges::find(objects_, net.object) - objects_.begin());
             double mean = 0;
             for (const double w : net.weights) mean += w / double(net.weights.size());
             for (std::size_t i = 0; i < net.points.size(); ++i) {
-                const Vec<3> p = view_(net.points[i]);
-                const bool behind = !occluders.hidden(p, p).empty();
+                const Vec<2> p = s_.plane(net.points[i]);
+                const bool behind = s_.is_behind(net.points[i]);
                 const double radius = std::clamp(2.6 * std::sqrt(net.weights[i] / mean), 1.5, 8.0);
                 group(behind ? hidden_nets : nets, object)
-                    .discs.push_back({{{p[0], p[1]}}, behind ? 0.8 * radius : radius, false});
+                    .discs.push_back({p, behind ? 0.8 * radius : radius, false});
             }
         }
     }
@@ -271,7 +260,6 @@ private:
     Sketch& s_;
     const Document& document_;
     const std::span<const std::size_t> objects_;
-    View3 view_;
     Scene scene_;
     TriangleMesh mesh_;
     std::vector<Line> lines_;

@@ -148,6 +148,101 @@ TEST(HiddenLines, control_nets_are_dimmed_behind) {
     EXPECT_NEAR(length_of(d, "control-behind"), 4 * d.scale, 0.01);
 }
 
+Curve<Vec<3>> bezier3(std::vector<Vec<3>> c) {
+    const int n = int(c.size());
+    return *Curve<Vec<3>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Vec<3>>({n}, std::move(c)));
+}
+
+TEST(HiddenLines, surfaces_hide_curves_and_their_polygons) {
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    // From x = -2 to 2 below a square from -1 to 1.
+    const Document below =
+        with({square(1, 1), bezier3({{{-2, 0.3, 0}}, {{-0.5, 0.3, 0}}, {{1, 0.3, 0}}, {{2, 0.3, 0}}})});
+    const Drawing seen = drawn(below, how);
+    EXPECT_NEAR(length_of(seen, "curve"), 2 * seen.scale, 0.01);
+    EXPECT_EQ(length_of(seen, "hidden"), 0);
+    each_segment(seen, "curve", [&](const Vec<2>& a, const Vec<2>& b) {
+        EXPECT_GE(std::abs(plane(seen, 0.5 * (a + b))[0]), 1) << "outside of the square";
+    });
+    how.control = true;
+    how.hidden = HiddenLines::dashed;
+    const Drawing dashed = drawn(below, how);
+    EXPECT_NEAR(length_of(dashed, "hidden"), 2 * dashed.scale, 0.01);
+    EXPECT_NEAR(length_of(dashed, "control"), (8 + 2) * dashed.scale, 0.01) << "the square's net and the ends";
+    EXPECT_NEAR(length_of(dashed, "control-behind"), 2 * dashed.scale, 0.01);
+    std::size_t points = 0, dimmed = 0;
+    for (const DrawnGroup& g : dashed.groups)
+        (g.role == "control" ? points : dimmed) += g.role.starts_with("control") ? g.discs.size() : 0;
+    EXPECT_EQ(points, 4u + 2u);
+    EXPECT_EQ(dimmed, 2u);
+    how.hidden = HiddenLines::shown;
+    EXPECT_NEAR(length_of(drawn(below, how), "curve"), 4 * dashed.scale, 0.01);
+}
+
+TEST(HiddenLines, curves_that_nothing_hides_stay_curves) {
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    how.knots = true;
+    const auto cubic = bezier3({{{-2, 0.3, 2}}, {{-1, 1.5, 2}}, {{1, -1.5, 2}}, {{2, 0.3, 2}}});
+    const Drawing above = drawn(with({square(1, 1), cubic}), how);
+    std::size_t paths = 0, knots = 0;
+    for (const DrawnGroup& g : above.groups) {
+        knots += g.role == "knots" ? g.discs.size() : 0;
+        if (g.role != "curve") continue;
+        paths += g.paths.size();
+        for (const DrawnPath& path : g.paths)
+            for (const DrawnSegment& s : path.segments) EXPECT_EQ(s.degree, 3);
+    }
+    EXPECT_EQ(paths, 1u);
+    EXPECT_EQ(knots, 2u);
+    how.view = *parse_view("bottom");
+    EXPECT_EQ(length_of(drawn(with({square(1, 3), cubic}), how), "curve"), 0);
+    std::size_t left = 0;
+    for (const DrawnGroup& g : drawn(with({square(1, 3), cubic}), how).groups) left += g.role == "knots";
+    EXPECT_EQ(left, 0u) << "knots of a hidden curve";
+}
+
+TEST(HiddenLines, a_curve_on_a_surface_is_seen_where_the_surface_faces_the_eye) {
+    // A parallel circle of a sphere, seen from -y, from 0, 20 and 50 degrees above.
+    const double z = 0.6, r = 0.8, w = std::sqrt(0.5);
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < 9; ++i) {
+        const double a = test::kPi / 4 * i, far = i % 2 ? r / w : r;
+        c.push_back(weighted(Vec<3>{{far * std::cos(a), far * std::sin(a), z}}, i % 2 ? w : 1));
+    }
+    const auto circle = *Curve<Hom<3>>::make({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4})},
+                                             Net<1, Hom<3>>({9}, c));
+    DrawingOptions how;
+    for (const auto& [view, elevation] : {std::pair("front", 0.0), {"-90,20", 20.0}, {"-90,50", 50.0}}) {
+        how.view = *parse_view(view);
+        how.hidden = HiddenLines::dashed;
+        const Drawing d = drawn(with({test::sphere({{0, 0, 0}}, 1), circle}), how);
+        // The point at the angle a is seen where (r cos a, r sin a, z) . eye > 0, eye = (0, -ce, se).
+        const double e = elevation * test::kPi / 180, limit = z * std::sin(e) / (r * std::cos(e));
+        double front = 0, back = 0;
+        for (int i = 0; i < 100000; ++i) {
+            const double a = 2 * test::kPi * (i + 0.5) / 100000;
+            const double step = 2 * test::kPi / 100000 * r * std::hypot(std::sin(a), std::cos(a) * std::sin(e));
+            (std::sin(a) < limit ? front : back) += step;
+        }
+        EXPECT_NEAR(length_of(d, "curve"), front * d.scale, 3) << view;
+        EXPECT_NEAR(length_of(d, "hidden"), back * d.scale, 3) << view;
+    }
+}
+
+TEST(HiddenLines, edges_of_a_volume_are_hidden_by_a_surface_beside_it) {
+    std::vector<Vec<3>> corners;
+    for (int i = 0; i < 8; ++i)
+        corners.push_back({{i & 4 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 1 ? -1.0 : -2.0}});
+    const auto line = *BSplineBasis::bezier(1);
+    const auto block = *Volume<Vec<3>>::make({line, line, line}, Net<3, Vec<3>>({2, 2, 2}, corners));
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    const Drawing d = drawn(with({square(0, 1), block}), how);
+    EXPECT_NEAR(length_of(d, "edges"), 8 * d.scale, 0.01) << "those of the square";
+}
+
 TEST(HiddenLines, do_not_depend_on_threads_and_have_ids_per_face) {
     const Document d = with({test::torus(2, 0.7), test::sphere({{0, 0, 3}}, 1)});
     DrawingOptions how;

@@ -4,7 +4,7 @@
 namespace freiform::cli::gallery {
 
 std::span<const Entry> entries() {
-    static constexpr std::array<Entry, 22> kEntries{{
+    static constexpr std::array<Entry, 30> kEntries{{
         {"R01", "Three descriptions",
          "An explicit curve is the graph of a function, an implicit one the zeros of a function of the "
          "plane, a parametric "
@@ -109,6 +109,36 @@ std::span<const Entry> entries() {
          "inverse of the arc "
          "length puts points at equal distances along the curve.",
          "--control", equal_distances},
+        {"R21", "Bicubic patches",
+         "Sixteen points are the geometry of a curve whose control points move on curves. As with curves, the "
+         "same points make another patch with another matrix, and each direction may have its own.",
+         "--control --isolines 7", bicubic_patches},
+        {"R22", "Tensor products",
+         "Any degree and any scheme of curves along one parameter goes with any along the other. The corners "
+         "are interpolated where both curves do so, and three control points span the tangent plane there.",
+         "--object degrees --control --isolines 7", tensor_products},
+        {"R23", "De Casteljau on surfaces",
+         "Bilinear interpolation of all small quadrangles, again and again, ends at the point of the surface; "
+         "so do the rows first and their points as a column. The outer points of each row's scheme are the nets "
+         "of the two parts.",
+         "--control --isolines 3", surface_steps},
+        {"R24", "Patches through points",
+         "Points and tangents leave one vector free at each point: the twist. Zero is the simplest choice and "
+         "makes flat spots; better ones look at the neighbours. All join with one continuous derivative.",
+         "--control", interpolating_patches},
+        {"R25", "Bodies of revolution and sweeps",
+         "Turning a curve is exact with weights, and within a proven distance without. A frame that does not "
+         "turn about its rail carries a curve along it without twisting the pipe.",
+         "--object rail --control --view -62,30", revolution},
+        {"R26", "Curved walls of games",
+         "Quake 3 builds curved walls of patches of degree 2 by 2, whose grids share their boundary points. "
+         "Read as one spline they are the same walls, and neighbours are tessellated without cracks.",
+         "--control --isolines 3 --view -50,30", curved_walls},
+        {"R27", "Trimming",
+         "Loops of curves in the plane of the parameters say what is kept: where a half-line crosses them an "
+         "odd number of times. Vertices and edges on the half-line and tangents that it touches are decided "
+         "exactly.",
+         "--object surface --isolines 9 --view -60,38", trimming},
         {"R28", "Rational surfaces",
          "Spheres, cylinders, cones and tori are rational splines, exactly; a sphere needs no irrational "
          "number, "
@@ -119,6 +149,10 @@ std::span<const Entry> entries() {
          "small "
          "triangle by one point in it; the last triangle spans the tangent plane.",
          "--control", triangles},
+        {"R31", "Smooth joints",
+         "Reflections show how surfaces meet: stripes that break have an edge below them, stripes with kinks "
+         "a jump of curvature. The first rows of the neighbour decide.",
+         "--isolines 5 --control", surface_joints},
     }};
     return kEntries;
 }

@@ -1,4 +1,4 @@
-// The figures: one for each row of what freiform knows about curves.
+// The figures: one for each row of what freiform knows about curves and surfaces.
 #pragma once
 #include "gallery/plot.hpp"
 
@@ -44,6 +44,17 @@ Figure properties(const Document&);
 Figure forward_differences(const Document&);
 Figure halving(const Document&);
 Figure equal_distances(const Document&);
+// tensor_products.cpp
+Figure bicubic_patches(const Document&);
+Figure tensor_products(const Document&);
+Figure surface_steps(const Document&);
+Figure interpolating_patches(const Document&);
+// made_surfaces.cpp
+Figure revolution(const Document&);
+Figure curved_walls(const Document&);
+Figure surface_joints(const Document&);
+// trimming.cpp
+Figure trimming(const Document&);
 // surfaces.cpp
 Figure rational_surfaces(const Document&);
 Figure triangles(const Document&);

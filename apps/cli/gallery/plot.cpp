@@ -33,7 +33,7 @@ Plot& Plot::shape(const Shape& shape, DrawingOptions how, const Colour& colour) 
     Document document;
     document.objects.push_back({"", shape, {}});
     how.width = how.height = kFineness;
-    how.colour = colour;
+    how.palette = {colour};
     std::vector<Refusal> left_out;
     for (Panel& p : sure(panels_of(document, {}, how, left_out))) {
         if (!p.name.empty()) continue;  // further panels

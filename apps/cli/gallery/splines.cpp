@@ -84,7 +84,8 @@ Figure conics(const Document& d) {
     const Points p = points_of(curve_in<Hom<2>>(d, "arc"));
     Plot a("weights", "one weight *w* makes all arcs of conics");
     a.share(1.25);
-    a.polygon(p, thin(kGrey), {"*P*_0", "*P*_1", "*P*_2"});
+    a.polygon(p, thin(kGrey), {"", "*P*_1", "*P*_2"});
+    a.note(p[0], "*P*_0", {{-1, 0}}, mixed(kGrey, kInk, 0.4));
     struct Case {
         double w;
         Colour colour;
@@ -93,8 +94,7 @@ Figure conics(const Document& d) {
     for (const Case& c : {Case{0, kGrey, "*w* = 0: line"},
                           {0.4, kGreen, "*w* < 1: ellipse"},
                           {1, kBlue, "*w* = 1: parabola"},
-                          {1.8, kOrange, "*w* > 1: hyperbola"},
-                          {5, kOrange, ""}}) {
+                          {2, kOrange, "*w* > 1: hyperbola"}}) {
         const Look look{c.colour, c.w == 1 ? 3.0 : 2.0, c.legend, {}};
         if (c.w == 0) {
             a.lines({p[0], p[2]}, look);

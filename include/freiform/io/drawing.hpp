@@ -25,6 +25,8 @@ inline constexpr double kDrawingTolerance = 0.05;  // pixels
 enum class PointNames { none, from_zero, from_one };
 
 // What is behind a surface: left out, dashed (of edges and outlines), or drawn as if surfaces were of glass.
+// Surfaces hide curves, control polygons and edges of volumes too, which hide nothing; what explains a curve
+// (combs, tangents, hulls, ..) is drawn over all.
 enum class HiddenLines { removed, dashed, shown };
 
 struct DrawingOptions {
@@ -32,7 +34,7 @@ struct DrawingOptions {
     std::optional<View> view;        // none: plane objects as they are, others from iso
     double margin = 0.05;            // of the smaller side of the picture, in [0, 0.4]
     std::string title;
-    std::optional<Colour> colour;  // of all objects; none: another one for each
+    std::vector<Colour> palette;  // of the objects in turn; empty: kPalette, and many surfaces alike
     bool legend = false;
     Axes axes = Axes::none;
 
