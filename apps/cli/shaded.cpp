@@ -156,6 +156,7 @@ Painted painted(const Subject& s, const TriangleMesh& mesh, const Field& f, cons
     const std::string unit = unit_of(f, mesh.unit);
     if (!unit.empty()) p.bar.remarks.push_back(plain_text(text("in ", unit)));
     if (o.range.empty() && f.power != -1) p.bar.remarks.push_back(plain_text("90 % of the area"));
+    if (f.power != -1) p.bar.remarks.push_back(plain_text("estimated at vertices"));
     if (f.power == -1) {
         p.bar.remarks.push_back(plain_text("measured; proven:"));
         p.bar.remarks.push_back(plain_text(text("at most ", rounded(s.tessellation.error_bound))));
