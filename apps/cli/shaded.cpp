@@ -75,6 +75,11 @@ Result<Subject> subject_of(const Document& document, std::span<const std::size_t
     auto t = tessellate(s.scene.model, how);
     if (!t) return std::unexpected(t.error());
     s.tessellation = std::move(*t);
+    if (s.tessellation.mesh.triangles.empty() && !s.tessellation.refused.empty()) {
+        const RefusedFace& r = s.tessellation.refused[0];
+        return refuse(RefusalKind::no_answer, text("face ", r.face, " ", r.name),
+                      text("nothing can be drawn: ", r.reason.message));
+    }
     for (const RefusedFace& r : s.tessellation.refused)
         remark(text("face ", r.face, " is missing: ", r.reason.where, ": ", r.reason.message));
     for (const Refusal& r : s.scene.model.refused) remark(text(r.where, " is missing: ", r.message));
@@ -105,7 +110,9 @@ std::vector<RenderLines> overlays(const Document& document, std::span<const std:
     if (o.isolines)
         out.push_back(polylines(isolines(s.scene.model, mesh, o.isolines), {0.12, 0.14, 0.18, 1}, 0.9));
     if (o.normals) {
-        RenderLines needles{{}, {0.05, 0.30, 0.62, 1}, 1.2, 0}, feet{{}, {0.05, 0.30, 0.62, 1}, 3.5, 0};
+        // Blue on grey; on the colours of a field, which have blue among them, ink.
+        const Colour colour = o.colour.empty() ? Colour{0.05, 0.30, 0.62, 1} : Colour{0.05, 0.05, 0.06, 1};
+        RenderLines needles{{}, colour, 1.2, 0}, feet{{}, colour, 3.5, 0};
         for (const SurfaceNormal& n : surface_normals(mesh, *o.normals)) {
             needles.segments.push_back({n.foot, n.foot + kNeedle * s.size * n.normal});
             feet.segments.push_back({n.foot, n.foot});

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kInverseDistance = 0.2;  // the eye is 5 half sides away: mild, and always outside the model
 constexpr double kNearest = 0.1;          // lines that come nearer to the eye, or behind it, are cut off
+constexpr double kFlat = 1 - 1e-9;        // cosine of the angle between triangles of one plane
 constexpr double kDepthUsed = 0.98;       // the rest is for lines, which are drawn a little nearer
 
 struct Axes {
@@ -107,9 +108,18 @@ void add_lines(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>
     std::vector<int> part_of(mesh.triangles.size(), 0);
     for (std::size_t i = 0; i < mesh.parts.size(); ++i)
         std::fill_n(part_of.begin() + mesh.parts[i].first, mesh.parts[i].count, int(i));
+    // A flat area of a level is many faces of one triangle with one name: their sides are no borders.
+    const auto one_area = [&](int first, int second) {
+        const MeshPart &p = mesh.parts[std::size_t(part_of[std::size_t(first)])],
+                       &q = mesh.parts[std::size_t(part_of[std::size_t(second)])];
+        return p.count == 1 && q.count == 1 && !p.name.empty() && p.name == q.name &&
+               dot(triangle_normal(mesh, std::size_t(first)), triangle_normal(mesh, std::size_t(second))) >
+                   kFlat;
+    };
     for (const MeshEdge& edge : edges(mesh)) {
         const auto [first, second] = edge.triangles;
-        const bool outline = second < 0 || part_of[std::size_t(first)] != part_of[std::size_t(second)];
+        const bool outline = second < 0 || (part_of[std::size_t(first)] != part_of[std::size_t(second)] &&
+                                            !one_area(first, second));
         const SceneLine line{to_floats(points[std::size_t(edge.a)]), to_floats(points[std::size_t(edge.b)])};
         if (outline && options.outlines) {
             scene.outlines.push_back(line);

@@ -2,6 +2,7 @@
 #include <freiform/io/figure.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace freiform {
@@ -57,6 +58,19 @@ std::vector<double> ticks(const Interval& on) {
     return out;
 }
 
+// Without a power of ten where the range is not far from 1: 0.0005 beside 0.001.
+DrawnText number(double value, const Interval& range) {
+    const double most = std::max(std::abs(range.lo), std::abs(range.hi));
+    std::string digits = text(std::abs(value));
+    if (most >= 1e-4 && most < 1e6) {
+        std::array<char, 400> buffer{};  // a double has less than 350 digits
+        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value),
+                                       std::chars_format::fixed);
+        digits.assign(buffer.data(), end.ptr);
+    }
+    return plain_text(value < 0 ? text("\u2212", digits) : digits);
+}
+
 }  // namespace
 
 Drawing drawing_of(const ColourBar& bar, int width, int height) {
@@ -91,7 +105,7 @@ Drawing drawing_of(const ColourBar& bar, int width, int height) {
             frame.paths.push_back(
                 line_through(std::array{Vec<2>{{left + kWidth, at}}, Vec<2>{{left + kWidth + 5, at}}}));
             words.labels.push_back({{{left + kWidth + 9, at + 0.33 * kSize}},
-                                    plain_text(value < 0 ? text("\u2212", -value) : text(value)),
+                                    number(value, bar.range),
                                     kSize});
         }
         d.groups.push_back(std::move(frame));

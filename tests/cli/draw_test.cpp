@@ -93,6 +93,20 @@ TEST_F(Draw, surfaces_are_coloured_and_the_range_is_said) {
         EXPECT_EQ(run({"draw", "-", "-o", "p.png", "--colour", way, "--isophotes"}, pipe).code, 0) << way;
 }
 
+TEST_F(Draw, pictures_of_nothing_are_refused) {
+    // A whole sphere without a loop: a face of a model needs one.
+    const std::string bare = R"({"type": "model", "faces": [{"surface": {"type": "revolution",
+        "profile": {"type": "ellipse", "centre": [0,0,0], "x": [1,0,0], "y": [0,0,1]},
+        "origin": [0,0,0], "axis": [0,0,1], "kind": "sphere"}}]})";
+    for (const char* to : {"n.png", "n.svg"}) {
+        const Ran r = run({"draw", "-", "-o", to, "--json"}, bare);
+        if (r.code == 3 && r.out.find("libegl") != std::string::npos) GTEST_SKIP() << r.out;
+        EXPECT_EQ(r.code, 1) << to << r.err;
+        EXPECT_NE(error_of(r).value("message", "").find("no boundary"), std::string::npos) << r.out;
+        EXPECT_FALSE(std::filesystem::exists(path(to)));
+    }
+}
+
 TEST_F(Draw, an_object_can_be_chosen) {
     ASSERT_EQ(run({"draw", kExample, "-o", "c.svg", "--object", "circle"}).code, 0);
     const std::string s = content(path("c.svg"));

@@ -173,6 +173,26 @@ TEST_F(Render, nearer_faces_hide_farther_ones_and_outlines_are_drawn_on_them) {
     EXPECT_GT(brightness(picture(test::cube()).pixel(200, 220)), 120);
 }
 
+TEST_F(Render, sides_between_triangles_of_one_flat_area_are_no_borders) {
+    options_.view = *parse_view("top");
+    const auto square = [](const char* first, const char* second, double corner) {
+        TriangleMesh mesh;
+        const std::array<Vec<3>, 4> p{{{{-1, -1, 0}}, {{1, -1, 0}}, {{1, 1, 0}}, {{-1, 1, corner}}}};
+        mesh.points.assign(p.begin(), p.end());
+        for (const int i : {0, 1, 2, 0, 2, 3}) mesh.vertices.push_back({i, {}, {}});
+        mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+        mesh.parts = {{first, std::nullopt, 0, 1, 0}, {second, std::nullopt, 1, 1, 1}};
+        return mesh;
+    };
+    const auto dark = [&](const TriangleMesh& mesh) {
+        return brightness(picture(mesh).pixel(200, 149)) < 200;  // on the diagonal
+    };
+    EXPECT_FALSE(dark(square("face 7", "face 7", 0)));
+    EXPECT_TRUE(dark(square("face 7", "face 8", 0)));
+    EXPECT_TRUE(dark(square("", "", 0)));
+    EXPECT_TRUE(dark(square("face 7", "face 7", 0.3))) << "not flat";
+}
+
 TEST_F(Render, size_and_place_of_the_model_play_no_part) {
     options_.edges = true;
     const TriangleMesh mesh = test::torus(40, 20);

@@ -49,6 +49,16 @@ TEST(ColourBar, zero_has_no_sign) {
     EXPECT_FALSE(has(said, "-0") || has(said, "\u22120"));
 }
 
+TEST(ColourBar, writes_all_ticks_of_a_range_in_one_way) {
+    ColourBar bar;
+    bar.map = MapKind::sequential;
+    bar.range = {0, 0.0024};
+    const auto said = words(drawing_of(bar, 800, 600));
+    for (const char* one : {"0", "0.0005", "0.001", "0.002"}) EXPECT_TRUE(has(said, one)) << one;
+    bar.range = {0, 2.4e-7};
+    EXPECT_TRUE(has(words(drawing_of(bar, 800, 600)), "5e-08"));
+}
+
 TEST(ColourBar, shows_the_colours_of_the_map_over_the_range_asked_for) {
     ColourBar bar;
     bar.map = MapKind::diverging;

@@ -6,8 +6,9 @@ namespace freiform::cli::gallery {
 
 namespace {
 
-// Curves are followed for pictures of this size, whatever the panel will have.
-constexpr int kFineness = 1600;
+// Curves are followed for pictures of this size, whatever the panel will have; surfaces, whose lines cost far
+// more, for pictures of about the size of a panel.
+constexpr int kFineness = 1600, kSurfaceFineness = 600;
 
 }  // namespace
 
@@ -32,7 +33,7 @@ DrawnGroup& Plot::group(std::string role, const Look& look) {
 Plot& Plot::shape(const Shape& shape, DrawingOptions how, const Colour& colour) {
     Document document;
     document.objects.push_back({"", shape, {}});
-    how.width = how.height = kFineness;
+    how.width = how.height = type_name(shape) == "curve" ? kFineness : kSurfaceFineness;
     how.palette = {colour};
     std::vector<Refusal> left_out;
     for (Panel& p : sure(panels_of(document, {}, how, left_out))) {
