@@ -267,7 +267,7 @@ void add_curve(Sketch& s, const Curve<P>& curve, const BSplineBasis& basis) {
     const bool names = o.names != PointNames::none;
     DrawnGroup drawn{s.name, "curve", s.colour, 2.4, {}, {}, {}};
     s.add_paths(drawn, curve);
-    drawn.legend = plain_text(s.name);
+    if (!drawn.paths.empty()) drawn.legend = plain_text(s.name);
     if (o.hull) add_hull(s, curve);
     if (o.box) add_box(s, drawn);
     if (o.comb && s.size > 0) add_comb(s, curve);

@@ -55,7 +55,11 @@ TEST(LevelLines, end_at_the_border_of_their_part) {
     std::vector<double> z = heights(mesh, 2);
     const auto lines = level_lines(mesh, z, 0.5);
     EXPECT_EQ(lines.size(), 4u);
-    for (const LevelLine& line : lines) EXPECT_FALSE(line.closed);
+    for (const LevelLine& line : lines) {
+        EXPECT_FALSE(line.closed);
+        ASSERT_EQ(line.places.size(), 3u) << "through both triangles of a side";
+        EXPECT_NEAR(norm(at(mesh, line.places[0]) - at(mesh, line.places[2])), 1, 1e-15);
+    }
 }
 
 TEST(Outlines, of_a_cube_are_its_edges) {

@@ -26,6 +26,7 @@ TEST(Refined, keeps_the_shape_and_its_closedness_and_shortens_all_sides) {
         EXPECT_EQ(topology(fine).misoriented_edges, 0);
         for (const MeshEdge& e : edges(fine))
             EXPECT_LE(norm(fine.points[std::size_t(e.a)] - fine.points[std::size_t(e.b)]), 0.11);
+        for (const MeshVertex& v : fine.vertices) EXPECT_NEAR(norm(v.normal), 1, 1e-12);
         EXPECT_EQ(fine.parts.size(), mesh.parts.size());
         EXPECT_EQ(std::vector(fine.points.begin(), fine.points.begin() + long(mesh.points.size())),
                   mesh.points);

@@ -102,6 +102,7 @@ TEST(Occluders, edge_on_and_without_area_hide_nothing) {
     const Vec<3> a{{0, -1, 5}}, b{{0, 1, 5}}, c{{0, 0, 9}};
     const Occluders none({{a, b, c}, {a, a, b}, {a, a, a}}, 0);
     EXPECT_TRUE(none.hidden({{-1, 0, 0}}, {{1, 0, 0}}).empty());
+    EXPECT_TRUE(none.hidden({{0, -1, 0}}, {{0, 1, 0}}).empty()) << "below it, along it";
     EXPECT_TRUE(Occluders({}, 0).hidden({{-1, 0, 0}}, {{1, 0, 0}}).empty());
 }
 

@@ -42,8 +42,9 @@ Plot& together(Plot& plot, const std::vector<Shown>& shown, const Eye& eye, Draw
         const Look& look = shown[i].look;
         DrawnGroup* lines = nullptr;
         for (DrawnGroup& g : main.groups) {
-            if (g.name != text(i) || g.paths.empty()) continue;
+            if (g.name != text(i)) continue;
             g.legend.clear();
+            if (g.paths.empty()) continue;
             if (g.role == "curve" || g.role == "edges") {
                 g.width = look.width;
                 g.dashes = look.dashes;
