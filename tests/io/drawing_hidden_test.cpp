@@ -100,6 +100,17 @@ TEST(HiddenLines, of_a_torus_the_upper_half_is_seen_from_above) {
     EXPECT_NEAR(outline, 2 * test::kPi * 4, 0.05);
 }
 
+TEST(HiddenLines, hidden_outlines_are_dashed_too) {
+    DrawingOptions how;
+    how.view = *parse_view("0,20");
+    const Document d = with({test::torus(2, 0.7)});  // which has no borders
+    EXPECT_EQ(length_of(drawn(d, how), "hidden"), 0);
+    how.hidden = HiddenLines::dashed;
+    const Drawing dashed = drawn(d, how);
+    EXPECT_GT(length_of(dashed, "hidden"), dashed.scale) << "the hole behind the front";
+    EXPECT_EQ(length_of(dashed, "edges"), 0);
+}
+
 TEST(HiddenLines, an_edge_ends_where_another_face_begins_to_hide_it) {
     DrawingOptions how;
     how.view = *parse_view("top");
@@ -273,6 +284,25 @@ TEST(HiddenLines, do_not_depend_on_threads_and_have_ids_per_face) {
     for (std::size_t i = 0; (i = one.find("<g ", i)) != std::string::npos; ++i) ++open;
     for (std::size_t i = 0; (i = one.find("</g>", i)) != std::string::npos; ++i) ++close;
     EXPECT_EQ(open, close);
+}
+
+TEST(HiddenLines, objects_take_the_colours_of_the_palette_in_turn) {
+    std::vector<Shape> squares;
+    for (int i = 0; i < 5; ++i) squares.push_back(square(i, 6 - i));
+    DrawingOptions how;
+    how.view = *parse_view("top");
+    how.control = true;
+    const auto colours = [&] {
+        std::vector<Colour> out;
+        for (const DrawnGroup& g : drawn(with(squares), how).groups)
+            if (g.role == "control" && std::ranges::find(out, g.colour) == out.end()) out.push_back(g.colour);
+        return out;
+    };
+    EXPECT_EQ(colours().size(), 1u) << "many are drawn alike";
+    how.palette = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}};
+    const auto c = colours();
+    ASSERT_EQ(c.size(), 3u);
+    EXPECT_TRUE(c[0].r > c[0].g && c[1].g > c[1].r && c[2].b > c[2].r);
 }
 
 TEST(HiddenLines, refuse_counts_that_make_no_sense) {

@@ -1,6 +1,7 @@
 #include "support/solids.hpp"
 
 #include <freiform/mesh/refine.hpp>
+#include <freiform/model/assemble.hpp>
 #include <freiform/model/surface_field.hpp>
 #include <freiform/model/surface_lines.hpp>
 #include <freiform/model/tessellate.hpp>
@@ -51,6 +52,30 @@ TEST(SurfaceFields, of_a_torus_follow_its_formulas_for_outward_normals) {
         EXPECT_NEAR(greatest.values[i], along, 1e-9);
         EXPECT_NEAR(least.values[i], -1 / r, 1e-9);
     }
+}
+
+TEST(SurfaceFields, of_a_surface_seen_from_its_other_side_have_the_other_sign) {
+    Model torus = test::torus(2, 0.7);
+    const auto fields = [&](SurfaceField field) {
+        const TriangleMesh mesh = mesh_of(torus, 0.05);
+        const FieldValues f = surface_field(torus, mesh, field);
+        Box<1> range;
+        for (const double x : f.values) range.add(Vec<1>{{x}});
+        return range.side(0);
+    };
+    using enum SurfaceField;
+    const auto gauss_out = fields(gauss), mean_out = fields(mean), greatest_out = fields(greatest),
+               least_out = fields(least);
+    torus.faces[0].reversed = !torus.faces[0].reversed;
+    const auto near = [](const Interval& a, double lo, double hi) {
+        EXPECT_NEAR(a.lo, lo, 1e-9);
+        EXPECT_NEAR(a.hi, hi, 1e-9);
+    };
+    near(fields(gauss), gauss_out.lo, gauss_out.hi);
+    near(fields(mean), -mean_out.hi, -mean_out.lo);
+    near(fields(greatest), -least_out.hi, -least_out.lo);
+    near(fields(least), -greatest_out.hi, -greatest_out.lo);
+    EXPECT_GT(greatest_out.hi - least_out.lo, 1) << "they differ";
 }
 
 TEST(SurfaceFields, of_a_cylinder_and_its_lids) {
@@ -138,6 +163,23 @@ TEST(SurfaceLines, outlines_of_a_sphere_are_points_of_its_great_circle) {
     EXPECT_TRUE(
         silhouettes(test::frustum(1, 1, 2), mesh_of(test::frustum(1, 1, 2), 0.01), {{0, 0, 1}}).empty())
         << "a wall seen edge on";
+}
+
+TEST(SurfaceLines, a_curved_wall_seen_along_its_lines_has_no_outline_made_of_rounding) {
+    const Vec<3> along = unit(Vec<3>{{1, -2, 0.7}}), x = unit(cross(along, Vec<3>{{0, 0, 1}})), y = cross(along, x);
+    std::vector<Vec<3>> net;
+    for (const Vec<2>& p : {Vec<2>{{0, 0}}, {{1, 2}}, {{2, -2}}, {{3, 0.3}}})
+        for (const double t : {0.0, 3.0}) net.push_back(p[0] * x + p[1] * y + t * along);
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(*Surface<Vec<3>>::make({*BSplineBasis::bezier(3), *BSplineBasis::bezier(1)},
+                                                   Net<2, Vec<3>>({4, 2}, net))));
+    const Model wall = *std::move(builder).finish();
+    const TriangleMesh mesh = mesh_of(wall, 0.001);
+    int rounded = 0;
+    for (const MeshVertex& v : mesh.vertices) rounded += dot(v.normal, along) < 0;
+    EXPECT_GT(rounded, 0) << "the test is about rounding";
+    EXPECT_TRUE(silhouettes(wall, mesh, along).empty());
+    EXPECT_FALSE(silhouettes(wall, mesh, y).empty()) << "seen from the side it has some";
 }
 
 TEST(SurfaceLines, normals_stand_on_a_grid_of_parameters) {
