@@ -52,13 +52,14 @@ std::vector<double> ticks(const Interval& on) {
         if (at(1) < least) continue;
         for (double i = std::ceil(on.lo / at(1) - 1e-9);
              at(i) <= on.hi + 1e-9 * on.length() && out.size() < 20; ++i)
-            out.push_back(at(i) + 0.0);  // not "-0"
+            out.push_back(at(i));
         break;
     }
     return out;
 }
 
-// Without a power of ten where the range is not far from 1: 0.0005 beside 0.001.
+// A zero of either sign is "0"; without a power of ten where the range is not far from 1: 0.0005 beside
+// 0.001.
 DrawnText number(double value, const Interval& range) {
     const double most = std::max(std::abs(range.lo), std::abs(range.hi));
     std::string digits = text(std::abs(value));
@@ -104,9 +105,8 @@ Drawing drawing_of(const ColourBar& bar, int width, int height) {
                 bar.range.length() > 0 ? y((value - bar.range.lo) / bar.range.length()) : (top + bottom) / 2;
             frame.paths.push_back(
                 line_through(std::array{Vec<2>{{left + kWidth, at}}, Vec<2>{{left + kWidth + 5, at}}}));
-            words.labels.push_back({{{left + kWidth + 9, at + 0.33 * kSize}},
-                                    number(value, bar.range),
-                                    kSize});
+            words.labels.push_back(
+                {{{left + kWidth + 9, at + 0.33 * kSize}}, number(value, bar.range), kSize});
         }
         d.groups.push_back(std::move(frame));
     } else {

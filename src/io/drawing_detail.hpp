@@ -151,10 +151,10 @@ public:
     std::vector<Panel> more;  // further panels
     std::vector<Refusal> left_out;
     std::optional<Refusal> failure;
-    std::size_t used = 0;         // segments
-    std::vector<CurveEnds> ends;  // of the curves
-    std::size_t joints = 0;       // marked so far
-    bool answered = false;        // a curve was there for what is asked at a parameter
+    std::size_t used = 0;                // segments
+    std::vector<CurveEnds> ends;         // of the curves
+    std::size_t joints = 0;              // marked so far
+    bool answered = false;               // a curve was there for what is asked at a parameter
     std::optional<Occluders> occluders;  // the surfaces, once they are there
     Behind behind;                       // of the object
 

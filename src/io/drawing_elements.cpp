@@ -76,7 +76,8 @@ void add_control(Sketch& s, const Curve<P>& curve) {
     DrawnGroup& g = s.group("control", mixed(s.colour, kGrey, 0.65), 1.1);
     std::vector<Vec<3>> points;
     std::vector<Vec<2>> line;
-    for (const P& c : curve.net().flat()) points.push_back(project(c)), line.push_back(s.plane(points.back()));
+    for (const P& c : curve.net().flat())
+        points.push_back(project(c)), line.push_back(s.plane(points.back()));
     const bool closed = curve.basis().is_closed();
     s.add_polygon(g, points, closed);
     g.legend = plain_text("control polygon");

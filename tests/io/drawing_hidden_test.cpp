@@ -180,7 +180,8 @@ TEST(HiddenLines, surfaces_hide_curves_and_their_polygons) {
     how.hidden = HiddenLines::dashed;
     const Drawing dashed = drawn(below, how);
     EXPECT_NEAR(length_of(dashed, "hidden"), 2 * dashed.scale, 0.01);
-    EXPECT_NEAR(length_of(dashed, "control"), (8 + 2) * dashed.scale, 0.01) << "the square's net and the ends";
+    EXPECT_NEAR(length_of(dashed, "control"), (8 + 2) * dashed.scale, 0.01)
+        << "the square's net and the ends";
     EXPECT_NEAR(length_of(dashed, "control-behind"), 2 * dashed.scale, 0.01);
     std::size_t points = 0, dimmed = 0;
     for (const DrawnGroup& g : dashed.groups)
@@ -231,8 +232,8 @@ TEST(HiddenLines, a_curve_on_a_surface_is_seen_where_the_surface_faces_the_eye) 
         how.view = *parse_view(view);
         how.hidden = HiddenLines::dashed;
         const Drawing d = drawn(with({test::sphere({{0, 0, 0}}, 1), circle}), how);
-        // The point at the angle a is seen where (r cos a, r sin a, z) . eye > 0, eye = (0, -ce, se). Near the
-        // outline, where the curve leaves it, both is right.
+        // The point at the angle a is seen where (r cos a, r sin a, z) . eye > 0, eye = (0, -ce, se). Near
+        // the outline, where the curve leaves it, both is right.
         const double e = elevation * test::kPi / 180, limit = z * std::sin(e) / (r * std::cos(e));
         const auto inside = [&](const Vec<2>& p) { return norm(p) < 1 - 1.5 / d.scale; };
         const auto length = [&](std::string_view role) {

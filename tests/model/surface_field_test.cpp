@@ -166,7 +166,8 @@ TEST(SurfaceLines, outlines_of_a_sphere_are_points_of_its_great_circle) {
 }
 
 TEST(SurfaceLines, a_curved_wall_seen_along_its_lines_has_no_outline_made_of_rounding) {
-    const Vec<3> along = unit(Vec<3>{{1, -2, 0.7}}), x = unit(cross(along, Vec<3>{{0, 0, 1}})), y = cross(along, x);
+    const Vec<3> along = unit(Vec<3>{{1, -2, 0.7}}), x = unit(cross(along, Vec<3>{{0, 0, 1}})),
+                 y = cross(along, x);
     std::vector<Vec<3>> net;
     for (const Vec<2>& p : {Vec<2>{{0, 0}}, {{1, 2}}, {{2, -2}}, {{3, 0.3}}})
         for (const double t : {0.0, 3.0}) net.push_back(p[0] * x + p[1] * y + t * along);
@@ -179,7 +180,7 @@ TEST(SurfaceLines, a_curved_wall_seen_along_its_lines_has_no_outline_made_of_rou
     for (const MeshVertex& v : mesh.vertices) rounded += dot(v.normal, along) < 0;
     EXPECT_GT(rounded, 0) << "the test is about rounding";
     EXPECT_TRUE(silhouettes(wall, mesh, along).empty());
-    EXPECT_FALSE(silhouettes(wall, mesh, y).empty()) << "seen from the side it has some";
+    EXPECT_FALSE(silhouettes(wall, mesh, x).empty()) << "seen from its end it has some";
 }
 
 TEST(SurfaceLines, normals_stand_on_a_grid_of_parameters) {

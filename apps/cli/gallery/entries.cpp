@@ -110,7 +110,8 @@ std::span<const Entry> entries() {
          "length puts points at equal distances along the curve.",
          "--control", equal_distances},
         {"R21", "Bicubic patches",
-         "Sixteen points are the geometry of a curve whose control points move on curves. As with curves, the "
+         "Sixteen points are the geometry of a curve whose control points move on curves. As with curves, "
+         "the "
          "same points make another patch with another matrix, and each direction may have its own.",
          "--control --isolines 7", bicubic_patches},
         {"R22", "Tensor products",
@@ -118,12 +119,15 @@ std::span<const Entry> entries() {
          "are interpolated where both curves do so, and three control points span the tangent plane there.",
          "--object degrees --control --isolines 7", tensor_products},
         {"R23", "De Casteljau on surfaces",
-         "Bilinear interpolation of all small quadrangles, again and again, ends at the point of the surface; "
-         "so do the rows first and their points as a column. The outer points of each row's scheme are the nets "
+         "Bilinear interpolation of all small quadrangles, again and again, ends at the point of the "
+         "surface; "
+         "so do the rows first and their points as a column. The outer points of each row's scheme are the "
+         "nets "
          "of the two parts.",
          "--control --isolines 3", surface_steps},
         {"R24", "Patches through points",
-         "Points and tangents leave one vector free at each point: the twist. Zero is the simplest choice and "
+         "Points and tangents leave one vector free at each point: the twist. Zero is the simplest choice "
+         "and "
          "makes flat spots; better ones look at the neighbours. All join with one continuous derivative.",
          "--control", interpolating_patches},
         {"R25", "Bodies of revolution and sweeps",

@@ -1,6 +1,6 @@
 // R25, R26 and R31: surfaces that are made from others, and how they meet.
-#include "gallery/space.hpp"
 #include "gallery/gallery.hpp"
+#include "gallery/space.hpp"
 
 #include <freiform/io/scene.hpp>
 #include <freiform/make/frame_sweep.hpp>
@@ -157,7 +157,7 @@ Figure surface_joints(const Document& d) {
         const int order = found.g_order + 1;
         const auto two = [](double x) { return std::round(x * 100) / 100; };
         Plot zebra(text(c.name, " stripes"),
-                   !jump          ? std::string("no jump up to the curvature")
+                   !jump        ? std::string("no jump up to the curvature")
                    : order == 1 ? text("the angle jumps by ", two(jump->size * 180 / std::numbers::pi), "°")
                                 : text("the curvature jumps by ", two(jump->size)));
         const Vec<3> lamp{{-0.3, -0.4, 1}};

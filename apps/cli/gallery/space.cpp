@@ -115,7 +115,8 @@ Plot& triangles_of(Plot& plot, const TriangleMesh& mesh, const Eye& eye, const s
                 for (const SeenPart& seen : seen_parts(occluders, side))
                     if (!seen.hidden) {
                         const Vec<3>&a = seen.points.front(), &b = seen.points.back();
-                        g.paths.push_back(line_through(std::array{Vec<2>{{a[0], a[1]}}, Vec<2>{{b[0], b[1]}}}));
+                        g.paths.push_back(
+                            line_through(std::array{Vec<2>{{a[0], a[1]}}, Vec<2>{{b[0], b[1]}}}));
                     }
             }
         plot.panel.groups.push_back(std::move(g));
@@ -243,8 +244,7 @@ Plot& stripes(Plot& plot, const Surface3& s, const Eye& eye, const Vec<3>& light
     const auto [u, v] = s.domain();
     for (int i = 0; i <= kCells; ++i)
         for (int j = 0; j <= kCells; ++j) {
-            const auto jet =
-                s.jet<1>({u.lo + u.length() * i / kCells, v.lo + v.length() * j / kCells});
+            const auto jet = s.jet<1>({u.lo + u.length() * i / kCells, v.lo + v.length() * j / kCells});
             const Vec<3> normal = unit(cross(jet(1, 0), jet(0, 1)));
             at.push_back(eye(jet.value()));
             angle.push_back(std::acos(std::clamp(dot(normal, unit(light)), -1.0, 1.0)) * 180 /

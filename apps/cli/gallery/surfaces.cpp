@@ -65,7 +65,8 @@ Figure rational_surfaces(const Document& d) {
         panels.push_back(plot.panel);
     };
     add("a sphere of integers", shape_in(d, "sphere"), kBlue);
-    Plot six("six patches, no pole", "six patches, no pole"), eight("octants", "octants: triangles of degree 4");
+    Plot six("six patches, no pole", "six patches, no pole"),
+        eight("octants", "octants: triangles of degree 4");
     std::vector<Shown> tiles, octants;
     for (const auto& face : sure(sphere_in_six({}, 1)).faces) tiles.push_back({face, {kOrange, 1.8, "", {}}});
     for (const auto& o : sure(sphere_in_eight({}, 1)).octants) add_lines(octants, o, kGreen, 4);
@@ -91,8 +92,10 @@ Figure triangles(const Document& d) {
     control.dots(eye({s.coefficients().begin(), s.coefficients().end()}), kGrey, 3.2);
     Plot steps("de Casteljau", "de Casteljau at (0.4, 0.25, 0.35)");
     const auto all = sure(de_casteljau(s, {0.25, 0.35}));
-    shown = {{edge_of(s, 0), {kBlue, 2.2, "", {}}}, {edge_of(s, 1), {kBlue, 2.2, "", {}}},
-             {edge_of(s, 2), {kBlue, 2.2, "", {}}}, net(3, all.level(0), thin(kGrey)),
+    shown = {{edge_of(s, 0), {kBlue, 2.2, "", {}}},
+             {edge_of(s, 1), {kBlue, 2.2, "", {}}},
+             {edge_of(s, 2), {kBlue, 2.2, "", {}}},
+             net(3, all.level(0), thin(kGrey)),
              net(2, all.level(1), {kOrange, 1.4, "degree 2", {}}),
              net(1, all.level(2), {kGreen, 2, "degree 1: tangent plane", {}})};
     together(steps, shown, eye);

@@ -1,6 +1,6 @@
 // R21 to R24: curves of curves, and patches through points.
-#include "gallery/space.hpp"
 #include "gallery/gallery.hpp"
+#include "gallery/space.hpp"
 
 #include <freiform/fit/bicubic.hpp>
 #include <freiform/make/named_surface.hpp>
@@ -17,9 +17,8 @@ Colour light(const Colour& c) { return mixed(c, kWhite, 0.5); }
 
 Geometry sixteen(const Surface3& s) {
     Geometry g;
-    each_index(Index<2>{4, 4}, [&](const Index<2>& at) {
-        g[std::size_t(at[0])][std::size_t(at[1])] = s.net().view()(at);
-    });
+    each_index(Index<2>{4, 4},
+               [&](const Index<2>& at) { g[std::size_t(at[0])][std::size_t(at[1])] = s.net().view()(at); });
     return g;
 }
 
@@ -76,12 +75,13 @@ Figure bicubic_patches(const Document& d) {
     Plot spline_patch("B-spline", "uniform B-spline along both: the patch in the middle");
     Plot through("Catmull-Rom", "Catmull and Rom along both: through the inner four");
     const Shape net = net_of(s.net());
-    together(spline_patch,
-             {{sure(bicubic(g, kUniformBSpline, kUniformBSpline)), {kGreen, 1.8, "", {}}}, {net, thin(kGrey)}},
-             above, lines(7));
+    together(
+        spline_patch,
+        {{sure(bicubic(g, kUniformBSpline, kUniformBSpline)), {kGreen, 1.8, "", {}}}, {net, thin(kGrey)}},
+        above, lines(7));
     together(through,
-             {{sure(bicubic(g, kCatmullRom, kCatmullRom)), {kPurple, 1.8, "", {}}}, {net, thin(kGrey)}}, above,
-             lines(7));
+             {{sure(bicubic(g, kCatmullRom, kCatmullRom)), {kPurple, 1.8, "", {}}}, {net, thin(kGrey)}},
+             above, lines(7));
     through.dots(above({g[1][1], g[1][2], g[2][1], g[2][2]}), kPurple, 4.4);
     return page("*Q*(*s*, *t*) = *S*^T *M*^T *G* *M* *T*: sixteen points and a matrix",
                 {moving.panel, bezier_patch.panel, spline_patch.panel, through.panel}, 2, 1280, 1000);
@@ -102,8 +102,7 @@ Figure tensor_products(const Document& d) {
     Plot mixed_schemes("mixed", "Hermite along *u*, Bézier along *v*");
     const Surface3 m = sure(bicubic(g, kHermite, kBezier));
     std::vector<Shown> shown{{m, {kGreen, 1.8, "", {}}}};
-    for (std::size_t i = 0; i < 2; ++i)
-        shown.push_back({polyline({g[i].begin(), g[i].end()}), thin(kGrey)});
+    for (std::size_t i = 0; i < 2; ++i) shown.push_back({polyline({g[i].begin(), g[i].end()}), thin(kGrey)});
     together(mixed_schemes, shown, eye, lines(7));
     for (std::size_t i = 0; i < 2; ++i)
         for (std::size_t j = 0; j < 4; ++j) {
@@ -122,7 +121,8 @@ Figure tensor_products(const Document& d) {
     const Vec<3> far = p + du + dv;
     together(corner, {{s, {kBlue, 2.2, "boundary curves", {}}}}, eye, lines(0));
     corner.area(eye({p, p + du, far, p + dv}), kOrange, 0.25, "tangent plane");
-    corner.arrow(eye(p), eye(p + du), {kOrange, 1.6, "", {}}).arrow(eye(p), eye(p + dv), {kOrange, 1.6, "", {}});
+    corner.arrow(eye(p), eye(p + du), {kOrange, 1.6, "", {}})
+        .arrow(eye(p), eye(p + dv), {kOrange, 1.6, "", {}});
     corner.arrow(eye(p), eye(p + unit(cross(du, dv))), {kGreen, 1.8, "normal", {}}, "*N*");
     corner.dots(eye({p, p + du, p + dv}), kInk, 4);
     corner.note(eye(p), "*b*_{00}", {{-1, -1}}).note(eye(p + du), "*b*_{10}").note(eye(p + dv), "*b*_{01}");
@@ -143,7 +143,8 @@ Figure surface_steps(const Document& d) {
         if (r < 3)
             together(levels,
                      {{net_of(net),
-                       {colours[r], r == 0 ? 1.0 : 1.6,
+                       {colours[r],
+                        r == 0 ? 1.0 : 1.6,
                         r == 0   ? "control net"
                         : r == 1 ? "3 × 3 points"
                                  : "2 × 2: tangent plane",
@@ -232,8 +233,8 @@ Figure interpolating_patches(const Document& d) {
         together(plot, {{s, {kInk, 1, "", {}}}}, eye, lines(0));
         panels.push_back(plot.panel);
     }
-    return page("Through points with one continuous derivative; stripes show the twists", std::move(panels), 2,
-                1280, 1000);
+    return page("Through points with one continuous derivative; stripes show the twists", std::move(panels),
+                2, 1280, 1000);
 }
 
 }  // namespace freiform::cli::gallery

@@ -1,6 +1,6 @@
 // R27: loops in the plane of the parameters, and what they leave of a surface.
-#include "gallery/space.hpp"
 #include "gallery/gallery.hpp"
+#include "gallery/space.hpp"
 
 #include <freiform/trim/inside.hpp>
 
