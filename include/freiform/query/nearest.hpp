@@ -1,0 +1,83 @@
+// The point of curves, surfaces and volumes that is nearest to a given one: the nearest of all, with a lower
+// bound that proves it.
+#pragma once
+#include <freiform/spline/patch.hpp>
+#include <freiform/spline/simplex.hpp>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace freiform {
+
+template <int D>
+struct Nearest {
+    std::size_t object = 0;      // which of the objects, in the order in which they were given
+    std::array<double, 3> at{};  // its parameters there: one of a curve, two of surfaces and triangles
+    Vec<D> point{};
+    double distance = 0;  // to `point`
+    // bound: how far `point` may be from the object (rounding; the object itself comes within it).
+    double point_error = 0;
+    // bound: no point of any object is nearer than this. The true distance lies in
+    // [lower_bound, distance + point_error].
+    double lower_bound = 0;
+};
+
+struct NearestOptions {
+    // A distance: how far lower_bound may stay below `distance`. With 0 it is about 1e-15 of the largest
+    // coordinate, or 1e-8 of the size of a piece where the distance is as small as that.
+    double accuracy = 0;
+    // A backstop: parts of pieces that are looked at for one answer. Reached, `lower_bound` is what was
+    // proven until then. Ordinary points need a few dozen; points with a continuum of feet in no direction of
+    // the parameters need many.
+    int max_parts = 20000;
+};
+
+namespace detail {
+struct NearestSource;
+class NearestTree;
+}  // namespace detail
+
+// What NearestQuery is made from: the Bezier pieces of one object.
+class NearestObject {
+public:
+    template <std::size_t N, class P>
+    static NearestObject of(const Patch<N, P>& patch);
+    // A triangle as the tensor product surface that has its corner 1 as a degenerate edge; `at` is (u, v) of
+    // the triangle.
+    template <class P>
+    static NearestObject of(const SimplexPatch<2, P>& triangle);
+
+    const detail::NearestSource& source() const { return *source_; }
+
+private:
+    std::shared_ptr<const detail::NearestSource> source_;
+};
+
+// Prepared objects; const, to be asked from many threads.
+class NearestQuery {
+public:
+    // Refuses no objects, objects with different numbers of coordinates, and (limit) what needs more than
+    // max_bytes of memory: pieces x (2 p + 1)(2 q + 1) x (D + 2) numbers.
+    static Result<NearestQuery> make(std::span<const NearestObject> objects,
+                                     std::size_t max_bytes = std::size_t(2) << 30);
+
+    int coordinates() const;
+
+    // Many points, in parallel. REQUIRES out.size() == points.size(), D == coordinates(). Refuses, before any
+    // output, points that are not finite (with the index), a negative accuracy and max_parts < 1.
+    //   auto q = NearestQuery::make(std::array{NearestObject::of(curve)});
+    //   auto done = q->nearest<3>(points, out);
+    template <int D>
+    Result<void> nearest(std::span<const Vec<D>> points, std::span<Nearest<D>> out,
+                         const NearestOptions& options = {}) const;
+    // One point.
+    template <int D>
+    Result<Nearest<D>> nearest(const Vec<D>& point, const NearestOptions& options = {}) const;
+
+private:
+    std::shared_ptr<const detail::NearestTree> tree_;
+};
+
+}  // namespace freiform

@@ -1,0 +1,150 @@
+// From patches to numbers, and the batch.
+#include "query/nearest_detail.hpp"
+
+#include <freiform/basis/named.hpp>
+#include <freiform/core/parallel.hpp>
+#include <freiform/query/nearest.hpp>
+#include <freiform/spline/bezier.hpp>
+
+namespace freiform {
+
+namespace {
+
+template <class P>
+void append(std::vector<double>& out, const P& p) {
+    for (int k = 0; k < Space<P>::kDim; ++k) out.push_back(p[k]);
+    out.push_back(Space<P>::weight(p));
+}
+
+}  // namespace
+
+template <std::size_t N, class P>
+NearestObject NearestObject::of(const Patch<N, P>& patch) {
+    auto s = std::make_shared<detail::NearestSource>();
+    s->params = int(N);
+    s->coords = Space<P>::kDim;
+    s->rational = Space<P>::kRational;
+    const BezierPieces<N, P> pieces(patch);
+    for (int d = 0; d < int(N); ++d) {
+        s->degree[std::size_t(d)] = pieces.degree(d);
+        s->roundings += 6 * pieces.degree(d);  // chain.hpp
+    }
+    each_index(pieces.extent(), [&](const Index<N>& at) {
+        const auto box = pieces.box(at);
+        auto& b = s->boxes.emplace_back();
+        for (std::size_t d = 0; d < N; ++d) b[d] = box[d];
+        const auto net = pieces.net(at);
+        each_index(net.extent, [&](const Index<N>& i) { append(s->coefficients, net(i)); });
+    });
+    NearestObject o;
+    o.source_ = std::move(s);
+    return o;
+}
+
+// With t1 = 1 - u, t2 = u (1 - v), t3 = u v row i of the triangle (n - i = its power of t1) is a curve of
+// degree i in v, raised to degree n: each step is a convex combination of two, three roundings.
+template <class P>
+NearestObject NearestObject::of(const SimplexPatch<2, P>& triangle) {
+    auto s = std::make_shared<detail::NearestSource>();
+    const int n = triangle.degree();
+    s->params = 2;
+    s->coords = Space<P>::kDim;
+    s->rational = Space<P>::kRational;
+    s->triangle = true;
+    s->degree = {n, n, 0};
+    s->roundings = 4 * n;
+    s->boxes.push_back({Interval{0, 1}, Interval{0, 1}, Interval{}});
+    for (int i = 0; i <= n; ++i) {
+        std::vector<P> row;
+        for (int k = 0; k <= i; ++k) row.push_back(triangle.coefficient(i - k, k));
+        for (int m = i; m < n; ++m) {
+            row.push_back(row.back());
+            for (int k = m; k > 0; --k) {
+                const double share = double(k) / (m + 1);
+                row[std::size_t(k)] = share * row[std::size_t(k) - 1] + (1 - share) * row[std::size_t(k)];
+            }
+        }
+        for (const P& p : row) append(s->coefficients, p);
+    }
+    NearestObject o;
+    o.source_ = std::move(s);
+    return o;
+}
+
+Result<NearestQuery> NearestQuery::make(std::span<const NearestObject> objects, std::size_t max_bytes) {
+    if (objects.empty()) return refuse(RefusalKind::invalid, "objects", "there are none");
+    std::vector<const detail::NearestSource*> sources;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        sources.push_back(&objects[i].source());
+        if (sources[i]->coords != sources[0]->coords)
+            return refuse(
+                RefusalKind::invalid, text("objects[", i, "]"),
+                text("has ", sources[i]->coords, " coordinates, objects[0] has ", sources[0]->coords));
+    }
+    auto tree = detail::NearestTree::make(std::move(sources), max_bytes);
+    if (!tree) return std::unexpected(tree.error());
+    NearestQuery q;
+    q.tree_ = std::make_shared<const detail::NearestTree>(*std::move(tree));
+    return q;
+}
+
+int NearestQuery::coordinates() const { return tree_->coords(); }
+
+template <int D>
+Result<void> NearestQuery::nearest(std::span<const Vec<D>> points, std::span<Nearest<D>> out,
+                                   const NearestOptions& options) const {
+    FF_REQUIRE(out.size() == points.size());
+    FF_REQUIRE(D == coordinates());
+    if (!(options.accuracy >= 0))
+        return refuse(RefusalKind::invalid, "accuracy",
+                      text("is ", options.accuracy, ", a distance that is not negative is expected"));
+    if (options.max_parts < 1) return refuse(RefusalKind::invalid, "max_parts", "is below 1");
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (!is_finite(points[i]))
+            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
+                          "has a coordinate that is not finite");
+    constexpr std::size_t kChunk = 64;
+    parallel_for((points.size() + kChunk - 1) / kChunk, 1, [&](std::size_t c) {
+        detail::NearestTree::Scratch scratch;
+        for (std::size_t i = c * kChunk; i < std::min(points.size(), (c + 1) * kChunk); ++i) {
+            const auto f = tree_->find(points[i].c.data(), options.accuracy, options.max_parts, scratch);
+            Nearest<D>& n = out[i];
+            n = {f.object, f.at, {}, f.distance, f.point_error, f.lower_bound};
+            for (int k = 0; k < D; ++k) n.point[k] = f.point[std::size_t(k)];
+        }
+    });
+    return {};
+}
+
+template <int D>
+Result<Nearest<D>> NearestQuery::nearest(const Vec<D>& point, const NearestOptions& options) const {
+    Nearest<D> out;
+    if (auto done = nearest<D>(std::span(&point, 1), std::span(&out, 1), options); !done)
+        return std::unexpected(done.error());
+    return out;
+}
+
+#define FF_INSTANTIATE(P)                                         \
+    template NearestObject NearestObject::of(const Patch<1, P>&); \
+    template NearestObject NearestObject::of(const Patch<2, P>&); \
+    template NearestObject NearestObject::of(const Patch<3, P>&); \
+    template NearestObject NearestObject::of(const SimplexPatch<2, P>&);
+FF_INSTANTIATE(Vec<1>)
+FF_INSTANTIATE(Vec<2>)
+FF_INSTANTIATE(Vec<3>)
+FF_INSTANTIATE(Vec<4>)
+FF_INSTANTIATE(Hom<1>)
+FF_INSTANTIATE(Hom<2>)
+FF_INSTANTIATE(Hom<3>)
+FF_INSTANTIATE(Hom<4>)
+
+#define FF_DIMENSION(D)                                                                            \
+    template Result<void> NearestQuery::nearest<D>(std::span<const Vec<D>>, std::span<Nearest<D>>, \
+                                                   const NearestOptions&) const;                   \
+    template Result<Nearest<D>> NearestQuery::nearest<D>(const Vec<D>&, const NearestOptions&) const;
+FF_DIMENSION(1)
+FF_DIMENSION(2)
+FF_DIMENSION(3)
+FF_DIMENSION(4)
+
+}  // namespace freiform

@@ -1,0 +1,208 @@
+// The foot of a point on one Bezier piece: jets of the piece about its centre, and Newton's iteration.
+#pragma once
+#include "query/nearest_detail.hpp"
+
+#include <freiform/basis/bspline.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::detail {
+
+constexpr int kMostTaps = kMaxDegree + 1;
+
+// Bernstein polynomials of degree p at t with first and second derivatives.
+struct Bernsteins {
+    double b[3][2 * kMaxDegree + 1];
+
+    Bernsteins(int p, double t) {
+        const double s = 1 - t;
+        double* v = b[0];
+        v[0] = 1;
+        std::fill_n(b[1], p + 1, 0.0);
+        std::fill_n(b[2], p + 1, 0.0);
+        for (int k = 1; k <= p; ++k) {
+            // Here v has degree k - 1: differences of it are derivatives of degree p.
+            if (k == p - 1)
+                for (int i = 0; i <= p; ++i) {
+                    const double l = i >= 2 ? v[i - 2] : 0, m = i >= 1 && i <= k ? v[i - 1] : 0,
+                                 r = i < k ? v[i] : 0;
+                    b[2][i] = double(p) * (p - 1) * (l - 2 * m + r);
+                }
+            if (k == p)
+                for (int i = 0; i <= p; ++i) b[1][i] = p * ((i >= 1 ? v[i - 1] : 0) - (i < k ? v[i] : 0));
+            v[k] = t * v[k - 1];
+            for (int i = k - 1; i >= 1; --i) v[i] = t * v[i - 1] + s * v[i];
+            v[0] *= s;
+        }
+    }
+};
+
+// x = N / W (about the centre) with all derivatives up to order 2: first[d], second[d][e].
+struct LocalJet {
+    NearestTree::Coords value{};
+    std::array<NearestTree::Coords, kMostParams> first{};
+    std::array<std::array<NearestTree::Coords, kMostParams>, kMostParams> second{};
+};
+
+// Contracts the middle axis of an [outer][p + 1][kInner] array with weights.
+template <int kInner>
+void contract(const double* in, int outer, int p, const double* weights, double* out) {
+    for (int o = 0; o < outer; ++o, in += (p + 1) * kInner, out += kInner) {
+        double sum[kInner];
+        for (int k = 0; k < kInner; ++k) sum[k] = weights[0] * in[k];
+        for (int i = 1; i <= p; ++i)
+            for (int k = 0; k < kInner; ++k) sum[k] += weights[i] * in[i * kInner + k];
+        for (int k = 0; k < kInner; ++k) out[k] = sum[k];
+    }
+}
+
+// A piece, seen from a point q.
+template <int D>
+struct SeenPiece {
+    const NearestTree::Piece* piece = nullptr;
+    const double* coefficients = nullptr;
+    NearestTree::Coords local{};  // q about the centre of the piece
+
+    LocalJet jet(const NearestTree::Parameters& t) const {
+        const NearestTree::Piece& p = *piece;
+        constexpr int kStride = D + 1;
+        const std::array<Bernsteins, kMostParams> f{
+            Bernsteins(p.degree[0], t[0]), Bernsteins(p.degree[1], t[1]), Bernsteins(p.degree[2], t[2])};
+        // values[a][b][c]: derivative of orders a, b, c of (N, W).
+        double values[3][3][3][kMostCoords + 1];
+        double one[kMostTaps * kMostTaps * (kMostCoords + 1)], two[kMostTaps * (kMostCoords + 1)];
+        const double* n = coefficients;
+        const int p0 = p.degree[0], p1 = p.degree[1], p2 = p.degree[2];
+        for (int c = 0; c <= (p.params > 2 ? 2 : 0); ++c) {
+            const double* a = n;
+            if (p.params > 2) {
+                contract<kStride>(n, (p0 + 1) * (p1 + 1), p2, f[2].b[c], one);
+                a = one;
+            }
+            for (int b = 0; b <= (p.params > 1 ? 2 - c : 0); ++b) {
+                const double* row = a;
+                if (p.params > 1) {
+                    contract<kStride>(a, p0 + 1, p1, f[1].b[b], two);
+                    row = two;
+                }
+                for (int e = 0; e <= 2 - b - c; ++e)
+                    contract<kStride>(row, 1, p0, f[0].b[e], values[e][b][c]);
+            }
+        }
+        LocalJet j;
+        const double* v = values[0][0][0];
+        const double w = v[D];
+        for (int k = 0; k < D; ++k) j.value[std::size_t(k)] = v[k] / w;
+        std::array<const double*, kMostParams> first{};
+        for (int d = 0; d < p.params; ++d) {
+            const double* g = values[d == 0][d == 1][d == 2];
+            first[std::size_t(d)] = g;
+            for (int k = 0; k < D; ++k)
+                j.first[std::size_t(d)][std::size_t(k)] = (g[k] - g[D] * j.value[std::size_t(k)]) / w;
+        }
+        for (int d = 0; d < p.params; ++d)
+            for (int e = 0; e <= d; ++e) {
+                const double* h = values[(d == 0) + (e == 0)][(d == 1) + (e == 1)][(d == 2) + (e == 2)];
+                for (std::size_t k = 0; k < std::size_t(D); ++k) {
+                    const double s =
+                        (h[k] - first[std::size_t(d)][D] * j.first[std::size_t(e)][k] -
+                         first[std::size_t(e)][D] * j.first[std::size_t(d)][k] - h[D] * j.value[k]) /
+                        w;
+                    j.second[std::size_t(d)][std::size_t(e)][k] =
+                        j.second[std::size_t(e)][std::size_t(d)][k] = s;
+                }
+            }
+        return j;
+    }
+
+    double square(const LocalJet& j) const {
+        double s = 0;
+        for (std::size_t k = 0; k < std::size_t(D); ++k)
+            s += (j.value[k] - local[k]) * (j.value[k] - local[k]);
+        return s;
+    }
+
+    // Cholesky's method; whether the matrix (its lower half) is positive definite, clear of rounding.
+    static bool solve(double (&h)[kMostParams][kMostParams], std::size_t n, NearestTree::Parameters& x) {
+        for (std::size_t d = 0; d < n; ++d)
+            for (std::size_t e = 0; e <= d; ++e) {
+                double v = h[d][e];
+                for (std::size_t k = 0; k < e; ++k) v -= h[d][k] * h[e][k];
+                if (d == e) {
+                    if (!(v > 1e-14 * std::abs(h[d][d]))) return false;
+                    h[d][d] = std::sqrt(v);
+                } else {
+                    h[d][e] = v / h[e][e];
+                }
+            }
+        for (std::size_t d = 0; d < n; ++d) {
+            for (std::size_t k = 0; k < d; ++k) x[d] -= h[d][k] * x[k];
+            x[d] /= h[d][d];
+        }
+        for (std::size_t d = n; d-- > 0;) {
+            for (std::size_t k = d + 1; k < n; ++k) x[d] -= h[k][d] * x[k];
+            x[d] /= h[d][d];
+        }
+        return true;
+    }
+
+    // Newton's iteration for the least distance on the box [lo, hi], parameters at their limits held there
+    // while the gradient points outwards; from and to t.
+    double descend(const NearestTree::Parameters& lo, const NearestTree::Parameters& hi,
+                   NearestTree::Parameters& t) {
+        const std::size_t n = std::size_t(piece->params);
+        LocalJet j = jet(t);
+        double s = square(j);
+        for (int step = 0; step < 24; ++step) {  // a backstop: ordinary feet take four or five
+            NearestTree::Parameters g{}, move{};
+            std::array<bool, kMostParams> held{};
+            for (std::size_t d = 0; d < n; ++d) {
+                for (std::size_t k = 0; k < std::size_t(D); ++k)
+                    g[d] += (j.value[k] - local[k]) * j.first[d][k];
+                held[d] = (t[d] <= lo[d] && g[d] >= 0) || (t[d] >= hi[d] && g[d] <= 0);
+            }
+            // Newton's step; where the Hessian is not positive, Gauss and Newton's, which goes down too.
+            bool solved = false;
+            for (int with_bend = 1; with_bend >= 0 && !solved; --with_bend) {
+                double h[kMostParams][kMostParams];
+                for (std::size_t d = 0; d < n; ++d)
+                    for (std::size_t e = 0; e <= d; ++e) {
+                        double x = 0;
+                        for (std::size_t k = 0; k < std::size_t(D); ++k)
+                            x += j.first[d][k] * j.first[e][k] +
+                                 (with_bend ? (j.value[k] - local[k]) * j.second[d][e][k] : 0);
+                        h[d][e] = held[d] || held[e] ? (d == e ? 1 : 0) : x;
+                    }
+                for (std::size_t d = 0; d < n; ++d) move[d] = held[d] ? 0 : -g[d];
+                solved = solve(h, n, move);
+            }
+            if (!solved)
+                for (std::size_t d = 0; d < n; ++d)
+                    move[d] = held[d] || g[d] == 0 ? 0 : (g[d] > 0 ? -0.25 : 0.25) * (hi[d] - lo[d]);
+            bool better = false;
+            double factor = 1;
+            for (int half = 0; half < 8 && !better; ++half, factor *= 0.25) {
+                NearestTree::Parameters next = t;
+                bool moved = false;
+                for (std::size_t d = 0; d < n; ++d) {
+                    next[d] = std::clamp(t[d] + factor * move[d], lo[d], hi[d]);
+                    moved = moved || next[d] != t[d];
+                }
+                if (!moved) break;
+                const LocalJet there = jet(next);
+                const double s2 = square(there);
+                if (s2 < s) {
+                    better = s2 < s * (1 - 1e-15) || half == 0;
+                    t = next, j = there, s = s2;
+                } else if (s2 <= s * (1 + 4e-16)) {
+                    break;  // as good as doubles can say
+                }
+            }
+            if (!better) break;
+        }
+        return s;
+    }
+};
+
+}  // namespace freiform::detail

@@ -1,0 +1,29 @@
+// Polynomials of several parameters in Bernstein form on the unit box, of degree 2 p_d along axis d.
+#pragma once
+#include "query/nearest_foot_detail.hpp"
+
+#include <optional>
+
+namespace freiform::detail {
+
+struct NearestForm {
+    using Parameters = NearestTree::Parameters;
+
+    int params = 1;
+    std::array<int, kMostParams> degree{};  // p_d
+    int count = 1;                          // of coefficients
+    const double* f = nullptr;              // F, the last parameter fastest
+
+    // The parameters (Greville abscissae) of coefficient i, in a block over [lo, hi].
+    Parameters place(std::size_t i, const Parameters& lo, const Parameters& hi) const;
+    // Is F certainly convex? `eps` bounds the error of its coefficients.
+    bool convex(double eps) const;
+    // A lower bound of a convex F by its tangent at x.
+    double below_tangent(const Parameters& x, double eps) const;
+    // The corner with the least F, each parameter 0 or 1, if F is certainly negative there.
+    std::optional<Parameters> inner_corner(double eps) const;
+    // The axis along which F changes most.
+    int longest_axis() const;
+};
+
+}  // namespace freiform::detail

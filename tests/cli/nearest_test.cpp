@@ -1,0 +1,55 @@
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using NearestCommand = Program;
+
+constexpr const char* kTwo = R"({"freiform": 1, "objects": [
+    {"name": "line", "type": "curve", "points": [[0,0,0],[4,0,0]]},
+    {"name": "roof", "type": "surface", "degrees": [1, 1], "points": [[[0,0,9],[0,4,9]],[[4,0,9],[4,4,9]]]}]})";
+
+TEST_F(NearestCommand, says_object_parameters_point_distance_and_lower_bound) {
+    const std::string two = file("two.json", kTwo);
+    const Ran r = run({"nearest", two, "--points", file("p.csv", "1,3,4\n1,2,8\n"), "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto results = nlohmann::json::parse(r.out)["results"];
+    ASSERT_EQ(results.size(), 2u);
+    EXPECT_EQ(results[0]["object"], 0);
+    EXPECT_EQ(results[0]["parameters"], (std::vector<double>{0.25}));
+    EXPECT_EQ(results[0]["distance"], 5.0);
+    EXPECT_EQ(results[1]["name"], "roof");
+    EXPECT_EQ(results[1]["parameters"], (std::vector<double>{0.25, 0.5}));
+    EXPECT_EQ(results[1]["point"], (std::vector<double>{1, 2, 9}));
+    for (const auto& one : results) {
+        EXPECT_LE(one["lower_bound"], one["distance"]);
+        EXPECT_GE(one["lower_bound"].get<double>(), one["distance"].get<double>() - 1e-12);
+        EXPECT_LE(one["point_error"].get<double>(), 1e-13);
+    }
+    const Ran plain = run({"nearest", two, "--object", "line", "--points", path("p.csv")});
+    EXPECT_EQ(plain.code, 0);
+    EXPECT_NE(plain.out.find("at 0.25, point 1, 0, 0, distance 5, at least 4.99"), std::string::npos) << plain.out;
+}
+
+TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {
+    const std::string two = file("two.json", kTwo);
+    EXPECT_EQ(run({"nearest", two, "--points", file("p.csv", "1,2\n")}).code, 1);
+    EXPECT_EQ(run({"nearest", two}).code, 2);
+    EXPECT_EQ(run({"nearest", two, "--points", path("absent.csv")}).code, 5);
+    EXPECT_EQ(run({"nearest", two, "--points", path("p.csv"), "--accuracy", "-1"}).code, 2);
+    const Ran mixed = run({"nearest", file("mixed.json", R"({"freiform": 1, "objects": [
+        {"type": "curve", "points": [[0,0],[1,0]]}, {"type": "curve", "points": [[0,0,0],[1,0,0]]}]})"),
+                           "--points", path("p.csv"), "--json"});
+    EXPECT_EQ(mixed.code, 1);
+    EXPECT_NE(mixed.out.find("--object chooses"), std::string::npos) << mixed.out;
+    const Ran trimmed = run({"nearest", file("t.json", R"({"type": "trimmed",
+        "surface": {"degrees": [1, 1], "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "loops": []})"),
+                             "--points", path("p.csv")});
+    EXPECT_EQ(trimmed.code, 1);
+    EXPECT_NE(trimmed.err.find("trimmed"), std::string::npos) << trimmed.err;
+}
+
+}  // namespace
+}  // namespace freiform::test
