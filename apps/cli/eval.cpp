@@ -4,6 +4,7 @@
 #include <freiform/core/scan.hpp>
 #include <freiform/io/points.hpp>
 #include <freiform/spline/accurate.hpp>
+#include <freiform/spline/construction.hpp>
 
 #include <cmath>
 
@@ -14,7 +15,7 @@ namespace {
 struct Options {
     std::string file, object, at;
     std::optional<int> derivatives;
-    bool accurate = false;
+    bool accurate = false, construction = false;
 };
 
 using Parameters = std::vector<std::vector<double>>;
@@ -50,17 +51,29 @@ Result<Parameters> parameters(const Options& options, const ReadOptions& limits)
     return all;
 }
 
+// A net of the construction of de Casteljau and de Boor, as many steps deep along each axis as `level` says.
+struct Level {
+    std::vector<int> level, extent;
+    std::vector<double> points, weights;  // row by row; weights of rational patches
+};
+struct Levels {
+    std::vector<Level> all;
+    int dimension = 0;
+    double bound = 0;
+};
+
 // Values of one object, each of its kind's own type, as numbers.
 struct Answer {
     std::vector<double> point, bound;  // a bound for each coordinate, if asked for
     std::vector<std::vector<double>> derivatives;
+    std::optional<Levels> construction;
 };
 
 struct Question {
     const std::vector<double>& at;
     std::size_t index;  // among the parameters that were given
     int derivatives;
-    bool accurate;
+    bool accurate, construction;
 };
 
 template <int D>
@@ -92,6 +105,26 @@ Result<void> evaluate(const S& patch, const Param<S::kParams>& u, bool accurate,
         return refuse(RefusalKind::unsupported, "--accurate", "triangular patches have no accurate values");
 }
 
+template <std::size_t N, class P, class B>
+Result<Levels> levels_of(const Patch<N, P, B>& patch, const Param<N>& u) {
+    const auto c = de_boor(patch, u);
+    if (!c) return std::unexpected(c.error());
+    Levels out{{}, Space<P>::kDim, c->bound()};
+    Index<N> extent;
+    for (std::size_t d = 0; d < N; ++d) extent[d] = c->degree(int(d)) + 1;
+    each_index(extent, [&](const Index<N>& r) {
+        const auto net = c->level(r);
+        Level level{{r.begin(), r.end()}, {net.extent.begin(), net.extent.end()}, {}, {}};
+        each_index(net.extent, [&](const Index<N>& i) {
+            const auto p = project(net(i));
+            level.points.insert(level.points.end(), p.c.begin(), p.c.end());
+            if (Space<P>::kRational) level.weights.push_back(Space<P>::weight(net(i)));
+        });
+        out.all.push_back(std::move(level));
+    });
+    return out;
+}
+
 struct Evaluation {
     const Question& q;
 
@@ -110,6 +143,15 @@ struct Evaluation {
         if (q.derivatives > 0)
             for (const auto& d : patch.derivatives(u, q.derivatives))
                 answer.derivatives.push_back(numbers_of(d));
+        if (q.construction) {
+            if constexpr (TensorPatch<S>) {
+                auto levels = levels_of(patch, u);
+                if (!levels) return std::unexpected(levels.error());
+                answer.construction = *std::move(levels);
+            } else {
+                return refuse(RefusalKind::unsupported, "--construction", "is for tensor products");
+            }
+        }
         return answer;
     }
     Result<Answer> operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
@@ -135,6 +177,21 @@ Result<Answer> answer(const Shape& shape, const Question& q) {
     return found;
 }
 
+void write(json::Writer& w, const Levels& c) {
+    w.key("construction").begin_array();
+    for (const Level& level : c.all) {
+        w.new_line(2).begin_object();
+        w.key("level").array(level.level).key("extent").array(level.extent).key("points").begin_array();
+        const std::span<const double> points = level.points;
+        for (std::size_t i = 0; i < points.size(); i += std::size_t(c.dimension))
+            w.array(points.subspan(i, std::size_t(c.dimension)));
+        w.end_array();
+        if (!level.weights.empty()) w.key("weights").array(level.weights);
+        w.end_object();
+    }
+    w.end_array().field("construction_bound", c.bound);
+}
+
 void write(json::Writer& w, std::optional<std::size_t> object, const Question& q, const Answer& a) {
     w.new_line(1).begin_object();
     if (object) w.field("object", *object);
@@ -145,6 +202,7 @@ void write(json::Writer& w, std::optional<std::size_t> object, const Question& q
         for (const auto& d : std::span(a.derivatives).subspan(1)) w.array(d);
         w.end_array();
     }
+    if (a.construction) write(w, *a.construction);
     w.end_object();
 }
 
@@ -161,7 +219,8 @@ Result<void> run(const Context& context, const Options& options) {
     const bool several = input->document->objects.size() > 1;
     for (const std::size_t o : input->chosen)
         for (std::size_t i = 0; i < at->size(); ++i) {
-            const Question q{(*at)[i], i, options.derivatives.value_or(0), options.accurate};
+            const Question q{(*at)[i], i, options.derivatives.value_or(0), options.accurate,
+                             options.construction};
             const auto a = answer(input->object(o).shape, q);
             if (!a) return input->about(o, a.error());
             write(w, several ? std::optional(o) : std::nullopt, q, *a);
@@ -193,6 +252,9 @@ void add_eval(CommandLine& line) {
     command.flag(
         "--accurate", options->accurate,
         "Points right to the last digit, each with a proven bound of its error, by coordinate; slower");
+    command.flag("--construction", options->construction,
+                 "All intermediate points of de Casteljau and de Boor: of a surface the nets r steps deep along u "
+                 "and s along v, \"level\": [r, s]");
     command.object(options->object);
     command.answer_file();
     command.limits();

@@ -213,6 +213,13 @@ Table product(const Table& a, const Table& b) {
     return m;
 }
 
+Table transposed(const Table& a) {
+    Table m(a.cols, a.rows);
+    for (int i = 0; i < a.rows; ++i)
+        for (int j = 0; j < a.cols; ++j) m(j, i) = a(i, j);
+    return m;
+}
+
 // x of a x = b, by Gauss-Jordan elimination with row pivoting. Where a may be singular, entries get radii
 // that are not finite.
 Table solution(Table a, Table b) {
@@ -380,23 +387,43 @@ Result<BasisChange> change_basis(const PolynomialBasis& from, const PolynomialBa
 
 Result<ConvertedNumbers> convert_coefficients(const PolynomialBasis& from, const PolynomialBasis& to,
                                               std::span<const double> values, int columns) {
-    if (auto ok = check_degrees(from, to); !ok) return std::unexpected(ok.error());
-    const int n = from.size();
-    if (columns < 0 || values.size() != std::size_t(n) * std::size_t(columns))
+    return convert_coefficients(std::span(&from, 1), std::span(&to, 1), values, columns);
+}
+
+// After each change the axis goes to the end, behind the columns, so that the next one is in front.
+Result<ConvertedNumbers> convert_coefficients(std::span<const PolynomialBasis> from,
+                                              std::span<const PolynomialBasis> to,
+                                              std::span<const double> values, int columns) {
+    FF_REQUIRE(from.size() == to.size());
+    std::size_t count = 1;
+    for (std::size_t axis = 0; axis < from.size(); ++axis) {
+        if (auto ok = check_degrees(from[axis], to[axis]); !ok) return std::unexpected(ok.error());
+        count *= std::size_t(from[axis].size());
+    }
+    if (columns < 0 || values.size() != count * std::size_t(columns))
         return refuse(RefusalKind::invalid, "coefficients",
-                      text(values.size(), " numbers for ", n, " coefficients of ", columns, " coordinates"));
-    Table c(n, columns);
+                      text(values.size(), " numbers for ", count, " coefficients of ", columns, " coordinates"));
+    Table c(1, int(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!std::isfinite(values[i]))
             return refuse(RefusalKind::nonfinite, text("coefficients[", i / std::size_t(columns), "]"),
                           text(values[i], " is not a finite number"));
         c.a[i] = Ball(values[i]);
     }
-    auto out = to_doubles(converted(from, to, std::move(c)), from, to);
+    double condition = 1;
+    for (std::size_t axis = 0; axis < from.size(); ++axis) {
+        c.rows = from[axis].size();
+        c.cols = int(c.a.size()) / c.rows;
+        c = transposed(converted(from[axis], to[axis], std::move(c)));
+        const auto change = change_basis(from[axis], to[axis]);
+        if (!change) return std::unexpected(change.error());
+        condition *= change->condition;
+    }
+    c.rows = columns;
+    c.cols = int(count);
+    auto out = to_doubles(transposed(c), from.back(), to.back());
     if (!out) return std::unexpected(out.error());
-    const auto change = change_basis(from, to);
-    if (!change) return std::unexpected(change.error());
-    return ConvertedNumbers{std::move(*out), change->condition};
+    return ConvertedNumbers{std::move(*out), condition};
 }
 
 }  // namespace freiform

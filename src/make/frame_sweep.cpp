@@ -11,16 +11,20 @@
 // reflections [Wang et al. 2008], which is accurate to the fourth order; their derivatives are A times them.
 // m is doubled until the bound is within the tolerance.
 //
-// Accuracy: let e = q - r, r exact. e' = A e + d, and as A is skew, |e|' <= |d|. So
-//     |e(v)| <= |e(v0)| + integral of |d|,    no exponential of the curvature appears.
-// Over a part of the rail |c'|^2 d = |c'|^2 q' - c'' (c' . q) + c' (c'' . q) = g is a polynomial, computed in
-// Bernstein form with bounds of all roundings (bounded.hpp). Its norm has an integral of at most the mean of
-// the norms of its coefficients, and |c'|^2 is at least its smallest coefficient. At the start q is a
-// computed frame; e(v0) is its distance from an orthonormal one: |q . T| + | |q| - 1 |, for s also |s - T x
-// r|. The surface is off by at most |x| |e_r| + |y| |e_s|, with x and y in the hull of the profile, and the
-// rounding of its net.
-//     The bound is of third order in 1/m, the error of fourth: the more pieces are needed, the more the
-// bound exceeds what can be measured.
+// Accuracy: let e = q - r, r exact. e' = A e + d, and as A is skew, |e|' <= |d|: no exponential of the curvature
+// appears. But d is of third order in 1/m and changes its sign within each part, where e is of fourth order. So it
+// is integrated before its norm is taken. With U the rotation that solves U' = A U and D the integral of d from
+// the beginning of a part, by parts, as (U^-1)' = -U^-1 A:
+//     U^-1 e (v) - U^-1 e (v0) = integral of U^-1 d = U^-1 D (v) + integral of U^-1 A D.
+// Norms: a part adds |D| at its end + the integral of |A| |D|; inside it |e| is larger by the largest |D| at most.
+//     Over a part |c'|^2 d = |c'|^2 q' - c'' (c' . q) + c' (c'' . q) = g is a polynomial, computed in Bernstein
+// form with bounds of all roundings (bounded.hpp). With p the linear function through 1 / |c'|^2 at both ends,
+//     d = p g + (1 - p |c'|^2) g / |c'|^2,
+// the first term has a polynomial as integral, the second, of fifth order, is bounded by the largest coefficients
+// of its first factor, the mean of the norms of those of g, and the smallest of |c'|^2. |A| is |c' x c''| / |c'|^2.
+// Norms of polynomials are bounded by coefficients. At the start q is a computed frame; e(v0) is its distance from
+// an orthonormal one: |q . T| + | |q| - 1 |, for s also |s - T x r|. The surface is off by at most |x| |e_r| + |y|
+// |e_s|, with x and y in the hull of the profile, and the rounding of its net.
 //
 // References: [Bishop 1975], [Wang et al. 2008], [Farin 2002].
 //
@@ -127,28 +131,65 @@ Vec<3> turned(const Vec<3>& q, const Vec<3>& d1, const Vec<3>& d2) {
     return (dot(d1, q) / c) * d2 - (dot(d2, q) / c) * d1;
 }
 
-// The integral of |q' - A q| over a part; infinite where |c'|^2 is not proven positive.
-double defect(const Part& s, const Vector& q) {
+// What a part adds to the error of a vector at its end, and inside.
+struct Defect {
+    double at_end = 0, inside = 0;
+};
+
+// The integral from the lower end, of degree one more.
+Vector integral_of(const Vector& g) {
+    Vector sum(g.size() + 1);
+    const Bounded share = Bounded(1) / Bounded(double(g.size()));
+    for (std::size_t i = 0; i < g.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) sum[i + 1][k] = sum[i][k] + share * g[i][k];
+    return sum;
+}
+double mean_length(const Vector& g) {
+    double sum = 0;
+    for (const auto& x : g) sum += length_above(x);
+    return sum / double(g.size()) * (1 + 0x1p-44);
+}
+double largest_length(const Vector& g) {
+    double most = 0;
+    for (const auto& x : g) most = std::max(most, length_above(x));
+    return most;
+}
+
+// Infinite where |c'|^2 is not proven positive.
+Defect defect(const Part& s, const Vector& q) {
     const Scalar speed = inner(s.d1, s.d1);
     double least = std::numeric_limits<double>::infinity();
     for (const Bounded& x : speed) least = std::min(least, x.value - x.bound);
-    if (!(least > 0)) return std::numeric_limits<double>::infinity();
+    if (!(least > 0)) return {std::numeric_limits<double>::infinity(), 0};
     const Vector a = scaled_by(speed, derivative_of(q)), b = scaled_by(inner(s.d1, q), s.d2),
                  c = scaled_by(inner(s.d2, q), s.d1);
     const std::size_t n = std::max({a.size(), b.size(), c.size()});
     const Vector ea = elevated(a, n - 1), eb = elevated(b, n - 1), ec = elevated(c, n - 1);
-    double sum = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        BoundedVec<3> g;
-        for (std::size_t k = 0; k < 3; ++k) g[k] = ea[i][k] - eb[i][k] + ec[i][k];
-        sum += length_above(g);
+    Vector g(n);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < 3; ++k) g[i][k] = ea[i][k] - eb[i][k] + ec[i][k];
+    const Scalar p = {Bounded(1 / speed.front().value), Bounded(1 / speed.back().value)};
+    double off = 0;
+    for (const Bounded& x : product(p, speed, [](const Bounded& l, const Bounded& r) { return l * r; })) {
+        const Bounded rest = Bounded(1) - x;
+        off = std::max(off, std::abs(rest.value) + rest.bound);
     }
-    return sum / double(n) / least * (1 + 0x1p-44);
+    const double rest = off * mean_length(g) / least * (1 + 0x1p-44);
+    const Vector d = integral_of(scaled_by(p, g));
+    const Vector turning =
+        product(s.d1, s.d2, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return cross(x, y); });
+    const double by_turning =
+        largest_length(turning) / least * (mean_length(d) + rest) * (1 + 0x1p-44);
+    const Defect found{(length_above(d.back()) + rest + by_turning) * (1 + 0x1p-44),
+                       (largest_length(d) + rest + by_turning) * (1 + 0x1p-44)};
+    const double direct = mean_length(g) / least * (1 + 0x1p-44);  // the integral of |d|
+    return {std::min(direct, found.at_end), std::min(direct, found.inside)};
 }
 
 struct Framed {
     std::vector<Vector> r, s;  // for each part
-    double off_r = 0, off_s = 0;
+    double off_r = 0, off_s = 0;    // at the end of the last part
+    double most_r = 0, most_s = 0;  // anywhere
 };
 
 std::vector<Part> parts_of(const BezierPieces<1, Vec<3>>& pieces, int exponent, double relative, int m) {
@@ -223,10 +264,15 @@ Framed framed(const std::vector<Part>& parts, const Vec<3>& wanted) {
                      b2 = values(p.d2.back());
         out.r.push_back(hermite(r, turned(r, a1, a2), q, turned(q, b1, b2)));
         out.s.push_back(hermite(s, turned(s, a1, a2), side, turned(side, b1, b2)));
-        out.off_r += defect(p, out.r.back());
-        out.off_s += defect(p, out.s.back());
+        const Defect in_r = defect(p, out.r.back()), in_s = defect(p, out.s.back());
+        out.most_r = std::max(out.most_r, out.off_r + in_r.inside);
+        out.most_s = std::max(out.most_s, out.off_s + in_s.inside);
+        out.off_r += in_r.at_end;
+        out.off_s += in_s.at_end;
         r = q, t = next;
     }
+    out.most_r = std::max(out.most_r, out.off_r);
+    out.most_s = std::max(out.most_s, out.off_s);
     return out;
 }
 
@@ -296,7 +342,7 @@ Result<FrameSweep> sweep(const Curve<Vec<2>>& profile, const Curve<Vec<3>>& rail
     for (int m = 1; m * pieces.extent()[0] <= kMost; m *= 2) {
         const auto parts = parts_of(pieces, powers.point(), relative, m);
         const Framed frame = framed(parts, options.x_at_start);
-        const double turned = (x * frame.off_r + y * frame.off_s) * (1 + 0x1p-40);
+        const double turned = (x * frame.most_r + y * frame.most_s) * (1 + 0x1p-40);
         if (m == 64 && !std::isfinite(turned))
             return refuse(RefusalKind::ill_conditioned, "rail",
                           "its derivative cannot be told from zero everywhere");

@@ -18,6 +18,7 @@
 //
 // Why not matrices G M: they give the coefficients of powers of t, which no later step wants.
 #include <freiform/make/named_curve.hpp>
+#include <freiform/make/named_surface.hpp>
 
 #include <cmath>
 
@@ -167,14 +168,10 @@ Result<PolynomialCurve<P>> from_basis(const PolynomialBasis& basis, std::span<co
     if (coefficients.size() != std::size_t(basis.size()))
         return refuse(RefusalKind::invalid, "coefficients",
                       text(coefficients.size(), " coefficients for a basis of degree ", basis.degree()));
-    const auto bernstein = PolynomialBasis::bernstein(basis.degree(), on);
-    if (!bernstein) return std::unexpected(bernstein.error());
-    auto c = convert_coefficients(basis, *bernstein, coefficients);
-    if (!c) return std::unexpected(c.error());
-    auto curve =
-        curve_on(BSplineBasis::bezier(basis.degree(), on), std::move(c->coefficients), "coefficients");
-    if (!curve) return std::unexpected(curve.error());
-    return PolynomialCurve<P>{std::move(*curve), c->bound, c->condition};
+    auto made = from_bases<1, P>(
+        {basis}, Net<1, P>({basis.size()}, {coefficients.begin(), coefficients.end()}), {on});
+    if (!made) return std::unexpected(made.error());
+    return PolynomialCurve<P>{std::move(made->patch), made->bound, made->condition};
 }
 
 template <Coefficient P>

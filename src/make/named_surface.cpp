@@ -10,6 +10,8 @@
 // Why not one axis after the other with doubles: the net between would be rounded, and its rounding
 // multiplied.
 //
+// Of any degree: convert_coefficients in basis/polynomial_basis.cpp.
+//
 // References: [Foley van Dam Feiner & Hughes 1990].
 #include <freiform/core/double_double.hpp>
 #include <freiform/make/named_surface.hpp>
@@ -73,6 +75,53 @@ std::array<P, 4> curve_of_curves(const std::array<std::array<P, 4>, 4>& geometry
         }
     return out;
 }
+
+template <std::size_t N, Coefficient P>
+Result<PolynomialPatch<N, P>> from_bases(const std::array<PolynomialBasis, N>& bases,
+                                         const Net<N, P>& coefficients,
+                                         const std::array<Interval, N>& on) {
+    std::vector<PolynomialBasis> bernstein;
+    std::vector<BSplineBasis> splines;
+    for (std::size_t d = 0; d < N; ++d) {
+        if (coefficients.extent()[d] != bases[d].size())
+            return refuse(RefusalKind::invalid, "coefficients",
+                          text(coefficients.extent()[d], " coefficients along axis ", d,
+                               " for a basis of degree ", bases[d].degree()));
+        auto b = PolynomialBasis::bernstein(bases[d].degree(), on[d]);
+        if (!b) return refuse_within(text("on[", d, "]"), b.error());
+        auto s = BSplineBasis::bezier(bases[d].degree(), on[d]);
+        if (!s) return refuse_within(text("on[", d, "]"), s.error());
+        bernstein.push_back(*std::move(b)), splines.push_back(*std::move(s));
+    }
+    const auto c = convert_coefficients(bases, bernstein, numbers(coefficients.flat()), P::kCoords);
+    if (!c) return std::unexpected(c.error());
+    Net<N, P> net(coefficients.extent());
+    double bound = 0;
+    const auto to = numbers(net.flat());
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        to[i] = c->values[i].value;
+        bound = std::max(bound, c->values[i].bound);
+    }
+    auto patch = [&]<std::size_t... D>(std::index_sequence<D...>) {
+        return Patch<N, P>::make({splines[D]...}, std::move(net));
+    }
+    (std::make_index_sequence<N>{});
+    if (!patch) return std::unexpected(patch.error());
+    return PolynomialPatch<N, P>{*std::move(patch), bound, c->condition};
+}
+
+#define FF_INSTANTIATE_FROM_BASES(P)                                                                     \
+    template Result<PolynomialPatch<1, P>> from_bases(const std::array<PolynomialBasis, 1>&,             \
+                                                      const Net<1, P>&, const std::array<Interval, 1>&); \
+    template Result<PolynomialPatch<2, P>> from_bases(const std::array<PolynomialBasis, 2>&,             \
+                                                      const Net<2, P>&, const std::array<Interval, 2>&); \
+    template Result<PolynomialPatch<3, P>> from_bases(const std::array<PolynomialBasis, 3>&,             \
+                                                      const Net<3, P>&, const std::array<Interval, 3>&);
+#define FF_INSTANTIATE_FROM_BASES_OF(D) FF_INSTANTIATE_FROM_BASES(Vec<D>) FF_INSTANTIATE_FROM_BASES(Hom<D>)
+FF_INSTANTIATE_FROM_BASES_OF(1)
+FF_INSTANTIATE_FROM_BASES_OF(2)
+FF_INSTANTIATE_FROM_BASES_OF(3)
+FF_INSTANTIATE_FROM_BASES_OF(4)
 
 #define FF_INSTANTIATE_BICUBIC(P)                                                               \
     template Result<Surface<P>> bicubic(const std::array<std::array<P, 4>, 4>&, const Matrix4&, \

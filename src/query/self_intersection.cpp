@@ -34,13 +34,15 @@
 //
 // Why not elimination (implicit form, resultants)? Degree (n - 1)(n - 2) in one parameter, with coefficients
 // that doubles cannot hold for n > 4.
-#include <freiform/query/self_intersection.hpp>
+#include "query/self_intersection_detail.hpp"
+
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace freiform {
@@ -146,8 +148,14 @@ public:
     static constexpr int D = Space<P>::kDim;
     using Meeting = SelfIntersection<D>;
 
-    Search(const Curve<P>& curve, double accuracy, int max_pairs)
-        : curve_(curve), accuracy_(accuracy), max_pairs_(max_pairs) {
+    // `closed`: stretches of the domain at whose ends the curve is in the same place. `errors`: what the
+    // coefficients of each piece are off by; empty: nothing.
+    Search(const Curve<P>& curve, std::span<const Interval> closed, std::span<const double> errors,
+           double accuracy, int max_pairs)
+        : curve_(curve),
+          accuracy_(accuracy),
+          max_pairs_(max_pairs),
+          closed_(closed.begin(), closed.end()) {
         const BezierPieces<1, P> pieces(curve);
         const BSplineBasis& basis = curve.basis();
         const int p = basis.degree();
@@ -167,19 +175,19 @@ public:
             } else {
                 part.error = (12 * p + 8) * kU * most + 0x1p-1060;
             }
+            if (!errors.empty()) part.error += errors[std::size_t(i)];
             if (i > 0) jumps_.push_back(basis.multiplicity(part.arc.on.lo) > p);
             finish(part);
             parts_.push_back(std::move(part));
         }
-        is_closed_ = basis.is_closed();
         const Interval domain = basis.domain();
         parameter_error_ = 4 * kU * std::max(std::abs(domain.lo), std::abs(domain.hi));
         count_ = int(parts_.size());
     }
 
-    std::vector<Meeting> run() {
-        for (int i = 0; i < count_; ++i)
-            for (int j = i; j < count_; ++j) queue_.push_back({i, j});
+    // Of no more than `most` pairs of pieces that are near each other; else nothing.
+    std::optional<std::vector<Meeting>> run(std::size_t most) {
+        if (!queue_near_pieces(most)) return std::nullopt;
         for (int looked_at = 0; !queue_.empty(); ++looked_at) {
             const Pair pair = queue_.front();
             queue_.pop_front();
@@ -198,7 +206,44 @@ public:
 private:
     struct Pair {
         int a, b;  // a is left of b, or the same
+        friend auto operator<=>(const Pair&, const Pair&) = default;
     };
+
+    // Pieces whose boxes overlap along the first coordinate, found from left to right.
+    bool queue_near_pieces(std::size_t most) {
+        std::vector<int> order;
+        order.resize(std::size_t(count_));
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(),
+                  [&](int i, int j) { return arc(i).box.lo[0] < arc(j).box.lo[0]; });
+        double error = 0;
+        for (int i = 0; i < count_; ++i) error = std::max(error, 2.02 * arc(i).error);
+        std::vector<Pair> pairs;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            const int i = order[k];
+            pairs.push_back({i, i});
+            for (std::size_t l = k + 1; l < order.size(); ++l) {
+                const int j = order[l];
+                if (arc(j).box.lo[0] > arc(i).box.hi[0] + error) break;
+                if (!are_apart(arc(i), arc(j))) pairs.push_back({std::min(i, j), std::max(i, j)});
+            }
+            if (pairs.size() > most) return false;
+        }
+        std::sort(pairs.begin(), pairs.end());
+        queue_.assign(pairs.begin(), pairs.end());
+        return true;
+    }
+
+    // Where the curve goes on without a jump around t.
+    Interval stretch_around(double t) const {
+        Interval on = curve_.basis().domain();
+        for (int i = 1; i < count_; ++i) {
+            const double at = parts_[std::size_t(i)].arc.on.lo;
+            if (jumps_[std::size_t(i) - 1]) (at <= t ? on.lo : on.hi) = at;
+            if (at > t && on.hi == at) break;
+        }
+        return on;
+    }
     const Arc<D>& arc(int i) const { return parts_[std::size_t(i)].arc; }
 
     // By more than the ends of halves, whose parameters are rounded, may be off.
@@ -259,8 +304,9 @@ private:
                 if (parts_[std::size_t(i)].arc.on.lo == b.on.lo) return !jumps_[std::size_t(i) - 1];
             return true;
         }
-        const Interval domain = curve_.basis().domain();
-        return is_closed_ && a.on.lo == domain.lo && b.on.hi == domain.hi;
+        return std::any_of(closed_.begin(), closed_.end(), [&](const Interval& whole) {
+            return a.on.lo == whole.lo && b.on.hi == whole.hi;
+        });
     }
 
     static bool are_apart(const Arc<D>& a, const Arc<D>& b) {
@@ -379,7 +425,8 @@ private:
                     std::max(size / speed, 4 * kU * std::max(std::abs(whole.lo), std::abs(whole.hi)));
                 return Interval{std::max(whole.lo, x - r), std::min(whole.hi, x + r)};
             };
-            const Arc<2> p = arc_over(around(s, vs, domain)), q = arc_over(around(t, vt, domain));
+            const Arc<2> p = arc_over(around(s, vs, stretch_around(s))),
+                         q = arc_over(around(t, vt, stretch_around(t)));
             if (p.on.overlaps(q.on)) return false;
             if (!is_certainly_crossing(p, q)) continue;
             if (!overlap(p.on, a.on) || !overlap(q.on, b.on) || !meet_at_most_once({&a, &p}, {&b, &q}))
@@ -450,7 +497,7 @@ private:
     const Curve<P>& curve_;
     double accuracy_, parameter_error_ = 0;
     int max_pairs_, count_ = 0;
-    bool is_closed_ = false;
+    std::vector<Interval> closed_;
     std::deque<Part<P>> parts_;
     std::vector<char> jumps_;  // at the beginning of piece i + 1
     std::deque<Pair> queue_;
@@ -466,7 +513,17 @@ requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)
                                                                              double accuracy, int max_pairs) {
     if (!(accuracy > 0))
         return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a length > 0"));
-    return Search<P>(curve, accuracy, max_pairs).run();
+    const std::array<Interval, 1> whole = curve.domain();
+    return *Search<P>(curve, std::span(whole).first(curve.basis().is_closed() ? 1 : 0), {}, accuracy,
+                      max_pairs)
+                .run(std::numeric_limits<std::size_t>::max());
+}
+
+std::optional<std::vector<SelfIntersection<2>>> detail::meetings_of_chain(const Curve<Hom<2>>& chain,
+                                                           std::span<const Interval> closed,
+                                                           std::span<const double> errors, double accuracy,
+                                                           int max_pairs) {
+    return Search<Hom<2>>(chain, closed, errors, accuracy, max_pairs).run(std::size_t(max_pairs));
 }
 
 template Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Vec<2>>&, double, int);

@@ -5,6 +5,7 @@
 // inside, where no point of it was found outside. Cost: pieces only near places where the curve touches the
 // boundary.
 #include <freiform/spline/bezier.hpp>
+#include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
 #include <cmath>
@@ -118,6 +119,14 @@ Result<void> check_loop(const std::vector<CurveGeometry<2>>& loop, const Box<2>&
     return {};
 }
 
+Result<void> check_crossings(const Loops& loops, const Vec<2>& slack) {
+    if (loops.empty()) return {};
+    const double gap = norm(slack);
+    auto contacts = check_loops(loops, {gap, gap});
+    if (!contacts) return std::unexpected(contacts.error());
+    return {};
+}
+
 }  // namespace
 
 Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surface<Hom<3>>> surface,
@@ -132,6 +141,7 @@ Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surfac
     for (std::size_t i = 0; i < loops.size(); ++i)
         if (auto ok = check_loop(loops[i], box, slack); !ok)
             return refuse_within(text("loops[", i, "]"), ok.error());
+    if (auto ok = check_crossings(loops, slack); !ok) return std::unexpected(ok.error());
     return TrimmedSurface{std::move(surface), std::move(loops)};
 }
 

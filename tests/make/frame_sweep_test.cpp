@@ -34,20 +34,22 @@ const auto kProfile = bezier<Vec<2>>({{{0.5, 0}}, {{0.2, 0.4}}, {{-0.3, 0.3}}, {
 
 TEST(FrameSweep, is_within_its_bound_of_the_exact_swept_surface) {
     const Vec<3> x{{0, 0, 1}};  // orthogonal to the rail at its start
-    for (const double tolerance : {0.1, 1e-3, 1e-5}) {
+    for (const double tolerance : {0.1, 1e-3, 1e-5, 1e-7}) {
         const auto made = must(sweep(kProfile, kBend, {tolerance, x}));
         EXPECT_LE(made.bound, tolerance);
         double worst = 0;
         for (int j = 0; j <= 37; ++j) {
             const double v = j / 37.0;
-            const Vec<3> r = frame_at(kBend, x, v, 400), s = cross(unit(kBend.jet<1>(v).d[1]), r);
+            const Vec<3> r = frame_at(kBend, x, v, 1000), s = cross(unit(kBend.jet<1>(v).d[1]), r);
             for (double u : {0.0, 0.3, 0.6, 1.0}) {
                 const Vec<2> p = kProfile(u);
                 worst = std::max(worst, norm(made.surface(u, v) - kBend(v) - p[0] * r - p[1] * s));
             }
         }
         EXPECT_LE(worst, made.bound + 1e-11) << made.pieces;  // the judge's own error
-        EXPECT_GE(worst, 0.005 * made.bound) << made.pieces;
+        std::printf("sweep within %g: %d pieces, error / bound = %.3g\n", tolerance, made.pieces,
+                    worst / made.bound);
+        EXPECT_GE(worst, 0.05 * made.bound) << made.pieces;
     }
 }
 

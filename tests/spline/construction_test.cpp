@@ -113,5 +113,110 @@ TEST(Construction, refuses_what_is_not_finite_and_degrees_that_are_none) {
     EXPECT_EQ(de_casteljau(std::span<const Vec<1>>(b), 1e300).error().kind, RefusalKind::ill_conditioned);
 }
 
+// R23: repeated bilinear interpolation, literally.
+TEST(R23, bilinear_interpolation_repeated_makes_these_nets) {
+    Random random(61);
+    for (const int n : {1, 2, 3, 5}) {
+        const auto b = test::random_net<2, Vec<3>>(random, {n + 1, n + 1});
+        const double u = random.real(0, 1), v = random.real(0, 1);
+        const auto c = must(de_casteljau(b, {u, v}));
+        Net<2, Vec<3>> level = b;
+        for (int r = 1; r <= n; ++r) {
+            Net<2, Vec<3>> next({n - r + 1, n - r + 1});
+            each_index(next.extent(), [&](const Index<2>& at) {
+                const int i = at[0], j = at[1];
+                const auto p = [&](int k, int l) { return level.view()({k, l}); };
+                next.view()(at) = (1 - u) * (1 - v) * p(i, j) + u * (1 - v) * p(i + 1, j) +
+                                  (1 - u) * v * p(i, j + 1) + u * v * p(i + 1, j + 1);
+            });
+            level = next;
+            const auto made = c.level({r, r});
+            ASSERT_EQ(made.extent, level.extent());
+            each_index(made.extent,
+                       [&](const Index<2>& at) { EXPECT_LT(norm(made(at) - level.view()(at)), 1e-15 * 8 * n); });
+        }
+        EXPECT_LT(norm(c.point() - level.view()({0, 0})), 1e-15 * 8 * n);
+    }
+}
+
+// Level (r, s): r steps along u and s along v, in whatever order.
+TEST(Construction, of_a_surface_has_the_constructions_of_its_curves) {
+    Random random(62);
+    const auto s = test::random_patch_on<2, Hom<3>>(
+        random, {test::random_basis(random, 3, {test::Ends(0), 3, false, false}),
+                 test::random_basis(random, 2, {test::Ends(2), 3, false, false})});
+    const double u = s.domain()[0].middle(), v = s.domain()[1].middle();
+    const auto c = must(de_boor(s, {u, v}));
+    const auto along_v = must(de_boor(iso(s, 0, u), v)), along_u = must(de_boor(iso(s, 1, v), u));
+    for (int r = 0; r <= 2; ++r)
+        for (int i = 0; i <= 2 - r; ++i)
+            EXPECT_LT(max_abs(c({3, r}, {0, i}) - along_v(r, i)), 1e-14);
+    for (int r = 0; r <= 3; ++r)
+        for (int i = 0; i <= 3 - r; ++i)
+            EXPECT_LT(max_abs(c({r, 2}, {i, 0}) - along_u(r, i)), 1e-14);
+    EXPECT_LT(norm(project(c.point()) - s(u, v)), 1e-14);
+    EXPECT_LT(c.bound(), 1e-13);
+}
+
+TEST(R23, a_surface_is_cut_in_u_in_v_and_in_both) {
+    Random random(63);
+    const auto b = test::random_net<2, Vec<3>>(random, {4, 3});
+    const auto bases = std::array{must(BSplineBasis::bezier(3)), must(BSplineBasis::bezier(2))};
+    const auto s = must(Surface<Vec<3>>::make(bases, b));
+    const double u = 0.375, v = 0.75;
+    const auto c = must(de_casteljau(b, {u, v}));
+    const auto along_u = must(de_casteljau(b, {u, 1})), along_v = must(de_casteljau(b, {0, v}));
+    for (const int k : {0, 1})
+        for (const int l : {0, 1}) {
+            const auto quarter = must(Surface<Vec<3>>::make(bases, c.part({k, l})));
+            const auto half_u = must(Surface<Vec<3>>::make(bases, along_u.part({k, 0}))),
+                       half_v = must(Surface<Vec<3>>::make(bases, along_v.part({1, l})));
+            for (const double x : {0.0, 0.3, 1.0})
+                for (const double y : {0.0, 0.6, 1.0}) {
+                    const double at_u = k == 0 ? u * x : u + (1 - u) * x, at_v = l == 0 ? v * y : v + (1 - v) * y;
+                    EXPECT_LT(norm(quarter(x, y) - s(at_u, at_v)), 1e-14);
+                    EXPECT_LT(norm(half_u(x, y) - s(at_u, y)), 1e-14);
+                    EXPECT_LT(norm(half_v(x, y) - s(x, at_v)), 1e-14);
+                }
+        }
+}
+
+// The bound along both axes, against exact arithmetic.
+TEST(Construction, of_a_surface_keeps_its_bound) {
+    Random random(64);
+    double worst = 0;
+    for (int round = 0; round < 20; ++round) {
+        const auto b = test::random_net<2, Vec<1>>(random, {5, 4});
+        const double u = random.real(-0.2, 1.2), v = random.real(-0.2, 1.2);
+        const auto c = must(de_casteljau(b, {u, v}));
+        for (int r = 0; r <= 4; ++r)
+            for (int q = 0; q <= 3; ++q) {
+                const auto made = c.level({r, q});
+                each_index(made.extent, [&](const Index<2>& at) {
+                    Rational sum = 0;  // Bernstein polynomials of degree r and q of the window at `at`
+                    for (int i = 0; i <= r; ++i)
+                        for (int j = 0; j <= q; ++j) {
+                            Rational f = Rational(binomial(r, i) * binomial(q, j)) *
+                                         Rational(b.view()({at[0] + i, at[1] + j})[0]);
+                            for (int k = 0; k < r; ++k) f *= k < i ? Rational(u) : 1 - Rational(u);
+                            for (int k = 0; k < q; ++k) f *= k < j ? Rational(v) : 1 - Rational(v);
+                            sum += f;
+                        }
+                    const double error = test::gap(made(at)[0], sum);
+                    ASSERT_LE(error, c.bound());
+                    worst = std::max(worst, error / c.bound());
+                });
+            }
+    }
+    std::printf("construction of surfaces: observed error / bound = %.3g\n", worst);
+    EXPECT_GT(worst, 0.001);
+}
+
+TEST(Construction, of_many_parameters_refuses_more_points_than_memory_should_take) {
+    const auto basis = must(Bernstein::make(25));
+    const auto v = must(Volume<Vec<3>, Bernstein>::make({basis, basis, basis}, Net<3, Vec<3>>({26, 26, 26})));
+    EXPECT_EQ(de_boor(v, {0.5, 0.5, 0.5}).error().kind, RefusalKind::limit);
+}
+
 }  // namespace
 }  // namespace freiform

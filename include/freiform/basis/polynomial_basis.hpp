@@ -93,6 +93,11 @@ struct ConvertedNumbers {
 };
 Result<ConvertedNumbers> convert_coefficients(const PolynomialBasis& from, const PolynomialBasis& to,
                                               std::span<const double> values, int columns);
+// Of a tensor product: along axis k from from[k] to to[k]. `values` as a net has them, `columns` numbers for
+// each coefficient. Nothing is rounded between the axes. REQUIRES as many bases here as there, at least one.
+Result<ConvertedNumbers> convert_coefficients(std::span<const PolynomialBasis> from,
+                                              std::span<const PolynomialBasis> to,
+                                              std::span<const double> values, int columns);
 
 template <Coefficient P>
 struct Converted {

@@ -1,4 +1,4 @@
-// Curves of the named schemes: Hermite, cardinal, Catmull-Rom, Kochanek-Bartels, uniform B-splines, and
+// Curves of the named schemes (surfaces: named_surface.hpp): Hermite, cardinal, Catmull-Rom, Kochanek-Bartels, uniform B-splines, and
 // polynomials given by coefficients in any basis. All are splines afterwards; nothing remembers where it came
 // from.
 //
