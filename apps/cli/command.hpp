@@ -146,6 +146,12 @@ void add_flatten(CommandLine& line);
 void add_length(CommandLine& line);
 void add_fit(CommandLine& line);
 void add_revolve(CommandLine& line);
+void add_extrude(CommandLine& line);
+void add_ruled(CommandLine& line);
+void add_sweep(CommandLine& line);
+void add_loft(CommandLine& line);
+void add_coons(CommandLine& line);
+void add_quadric(CommandLine& line);
 void add_gallery(CommandLine& line);
 
 // Of `wrong_usage`; nothing else is thrown.

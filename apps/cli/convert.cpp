@@ -7,6 +7,7 @@
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/refine.hpp>
 #include <freiform/spline/simplex_convert.hpp>
+#include <freiform/trim/loops.hpp>
 
 namespace freiform::cli {
 
@@ -16,7 +17,7 @@ constexpr std::string_view kAxisNames = "uvw";
 
 struct Options {
     std::string file, object, axis;
-    bool to_bezier = false, reverse = false, to_triangles = false, to_surfaces = false;
+    bool to_bezier = false, reverse = false, to_triangles = false, to_surfaces = false, orient_loops = false;
     std::optional<int> elevate;
     std::optional<double> split, reduce;
     std::vector<double> knots;
@@ -295,12 +296,22 @@ Result<Changed> changed(const Shape& shape, const Options& options) {
         shape);
 }
 
-struct Reduction {
+struct Report {
     double bound = 0;  // the largest of all objects
     int removed = 0;
+    std::vector<std::string> turned;  // loops, as objects[i].loops[j]
 };
 
-Result<Document> changed(const Input& input, const Options& options, Reduction& reduction) {
+Result<TrimmedSurface> oriented(const TrimmedSurface& t, const std::string& label, Report& report) {
+    const auto sides = std::visit([](const auto& s) { return s.domain(); }, t.surface);
+    const double gap = TrimmedSurface::kSlack * std::hypot(sides[0].length(), sides[1].length());
+    auto done = orient_loops(t.loops, {gap, gap});
+    if (!done) return std::unexpected(done.error());
+    for (const std::size_t l : done->reversed) report.turned.push_back(text(label, ": loops[", l, "]"));
+    return TrimmedSurface{t.surface, std::move(done->loops)};
+}
+
+Result<Document> changed(const Input& input, const Options& options, Report& report) {
     const Document& document = *input.document;
     Document out;
     out.unit = document.unit;
@@ -308,6 +319,11 @@ Result<Document> changed(const Input& input, const Options& options, Reduction& 
         const Object& o = document.objects[i];
         if (!options.changes()) {
             out.objects.push_back(o);
+            if (const auto* t = std::get_if<TrimmedSurface>(&o.shape); t && options.orient_loops) {
+                auto turned = oriented(*t, object_label(document, i), report);
+                if (!turned) return input.about(i, turned.error());
+                out.objects.back().shape = *std::move(turned);
+            }
             continue;
         }
         auto made = changed(o.shape, options);
@@ -316,8 +332,8 @@ Result<Document> changed(const Input& input, const Options& options, Reduction& 
             r.where = text(object_label(document, i), r.where.empty() ? "" : ": ", r.where);
             return std::unexpected(std::move(r));
         }
-        reduction.bound = std::max(reduction.bound, made->bound);
-        reduction.removed += made->removed;
+        report.bound = std::max(report.bound, made->bound);
+        report.removed += made->removed;
         for (Piece& p : made->pieces) {
             const std::string name =
                 p.suffix.empty() || !o.name.empty() ? o.name + p.suffix : text(i, p.suffix);
@@ -348,8 +364,8 @@ Result<void> run(const Context& context, const Options& options) {
                              : ""));
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
-    Reduction reduction;
-    const auto out = changed(*input, options, reduction);
+    Report report;
+    const auto out = changed(*input, options, report);
     if (!out) {
         Refusal r = out.error();
         if (r.where.starts_with("objects[")) r.where = text(shown(options.file), ": ", r.where);
@@ -363,14 +379,23 @@ Result<void> run(const Context& context, const Options& options) {
     }
     if (auto ok = emit(context, *bytes); !ok) return ok;
     if (options.reduce && !context.json)
-        remark(text(reduction.removed, " knots removed, no point moved by more than ", reduction.bound));
+        remark(text(report.removed, " knots removed, no point moved by more than ", report.bound));
+    if (options.orient_loops && !context.json) {
+        for (const std::string& loop : report.turned) remark(loop + " turned round");
+        if (report.turned.empty()) remark("all loops are turned as they should be");
+    }
     if (!context.json || context.output.empty() || context.output == "-") return {};
     json::Writer w;
     w.begin_object()
         .field("output", context.output)
         .field("format", format)
         .field("objects", out->objects.size());
-    if (options.reduce) w.field("removed_knots", reduction.removed).field("bound", reduction.bound);
+    if (options.reduce) w.field("removed_knots", report.removed).field("bound", report.bound);
+    if (options.orient_loops) {
+        w.key("turned_loops").begin_array();
+        for (const std::string& loop : report.turned) w.value(loop);
+        w.end_array();
+    }
     w.end_object();
     return emit({}, w.take() + "\n");
 }
@@ -406,6 +431,9 @@ void add_convert(CommandLine& line) {
                  "Cut surfaces into Bezier triangles, two for each piece");
     command.flag("--to-surfaces", options->to_surfaces,
                  "Cut triangles into three surfaces each; others stay");
+    command.flag("--orient-loops", options->orient_loops,
+                 "Turn loops of trimmed surfaces: outer ones counter-clockwise, holes clockwise; says which were "
+                 "turned");
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
     command.limits();

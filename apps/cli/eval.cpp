@@ -66,7 +66,7 @@ struct Levels {
 struct Answer {
     std::vector<double> point, bound;  // a bound for each coordinate, if asked for
     std::vector<std::vector<double>> derivatives;
-    std::optional<Levels> construction;
+    std::optional<Levels> construction = {};
 };
 
 struct Question {

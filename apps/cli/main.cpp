@@ -29,6 +29,12 @@ void add_commands(CommandLine& line) {
     add_length(line);
     add_fit(line);
     add_revolve(line);
+    add_extrude(line);
+    add_ruled(line);
+    add_sweep(line);
+    add_loft(line);
+    add_coons(line);
+    add_quadric(line);
     add_gallery(line);
 }
 

@@ -149,7 +149,7 @@ Row times(const Bounded& s, Row r) {
 }  // namespace
 
 template <int D>
-Result<CoonsPatch> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
+Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
                          const Curve<Vec<D>>& v1, double tolerance) {
     const auto u = in_one_basis<D>({&u0, &u1}, 1), v = in_one_basis<D>({&v0, &v1}, 1);
     if (!u) return refuse_within("u0, u1", u.error());
@@ -179,12 +179,54 @@ Result<CoonsPatch> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const
     auto made = boolean_sum(a, b, T);
     if (!made) return std::unexpected(made.error());
     if (most == 0 && u->unchanged() && v->unchanged()) set_boundaries(made->surface, *u, *v);
-    return CoonsPatch{std::move(made->surface), made->bound, most, 0, 0};
+    return CoonsPatch<Vec<3>>{std::move(made->surface), made->bound, most, 0, 0};
 }
 
 template <int D>
-Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1, const CoonsEdge<D>& v0,
-                                 const CoonsEdge<D>& v1, const CoonsTolerance& tolerance) {
+Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>& u0, const Curve<Hom<D>>& u1, const Curve<Hom<D>>& v0,
+                                 const Curve<Hom<D>>& v1, double tolerance) {
+    if (!(tolerance >= 0)) return refuse(RefusalKind::invalid, "tolerance", "is not a distance");
+    const auto over_one = [](const Curve<Hom<D>>& a, const Curve<Hom<D>>& b) -> Result<OverOne> {
+        if (a.basis().degree() < 1 || b.basis().degree() < 1)
+            return refuse(RefusalKind::unsupported, "degree", "a boundary of degree 0 joins nothing");
+        const auto linear = BSplineBasis::bezier(1, a.domain()[0]);
+        if (!linear) return std::unexpected(linear.error());
+        const Curve<Hom<3>> curves[] = {in_space(a), in_space(b)};
+        const Curve<Vec<1>> functions[] = {
+            Curve<Vec<1>>::trusted({*linear}, Net<1, Vec<1>>({2}, {{{1}}, {{0}}})),
+            Curve<Vec<1>>::trusted({*linear}, Net<1, Vec<1>>({2}, {{{0}}, {{1}}}))};
+        return over_one_denominator(curves, functions);
+    };
+    const auto u = over_one(u0, u1), v = over_one(v0, v1);
+    if (!u) return refuse_within("u0, u1", u.error());
+    if (!v) return refuse_within("v0, v1", v.error());
+    const auto end = [](const OverOne& o, std::size_t curve, int side) {
+        BoundedVec<3> p = side == 0 ? o.curves[curve].front() : o.curves[curve].back();
+        for (Bounded& x : p) x /= side == 0 ? o.denominator.front() : o.denominator.back();
+        return p;
+    };
+    std::vector<std::vector<BoundedVec<3>>> T(2, std::vector<BoundedVec<3>>(2));
+    double most = 0;
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i) {
+            const auto p = end(*u, std::size_t(j), i), q = end(*v, std::size_t(i), j);
+            Vec<3> apart, rounding;
+            for (std::size_t c = 0; c < 3; ++c)
+                apart[int(c)] = p[c].value - q[c].value, rounding[int(c)] = p[c].bound + q[c].bound;
+            if (auto ok = check_gap("positions", norm(apart) - 2 * norm(rounding), tolerance, i, j); !ok)
+                return std::unexpected(ok.error());
+            most = std::max(most, gap(p, q));
+            T[std::size_t(j)][std::size_t(i)] = mean(p, q);
+        }
+    auto made = boolean_sum(*u, *v, T);
+    if (!made) return std::unexpected(made.error());
+    return CoonsPatch<Hom<3>>{std::move(made->surface), made->bound, most, 0, 0};
+}
+
+template <int D>
+Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1,
+                                         const CoonsEdge<D>& v0, const CoonsEdge<D>& v1,
+                                         const CoonsTolerance& tolerance) {
     const auto u = in_one_basis<D>({&u0.curve, &u1.curve, &u0.across, &u1.across}, 3);
     const auto v = in_one_basis<D>({&v0.curve, &v1.curve, &v0.across, &v1.across}, 3);
     if (!u) return refuse_within("u0, u1", u.error());
@@ -202,7 +244,7 @@ Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1,
     }
     a.functions = hermite_functions(b.basis);
     b.functions = hermite_functions(a.basis);
-    CoonsPatch out{
+    CoonsPatch<Vec<3>> out{
         Surface<Vec<3>>::trusted({a.basis, b.basis}, Net<2, Vec<3>>({a.basis.size(), b.basis.size()}))};
     std::vector<std::vector<BoundedVec<3>>> T(4, std::vector<BoundedVec<3>>(4));
     // Functional l < 2: the value at end l; else the derivative at end l - 2.
@@ -237,10 +279,13 @@ Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1,
 }
 
 #define FF_COONS(D)                                                                                          \
-    template Result<CoonsPatch> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&, const Curve<Vec<D>>&,      \
-                                      const Curve<Vec<D>>&, double);                                         \
-    template Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>&, const CoonsEdge<D>&, const CoonsEdge<D>&, \
-                                              const CoonsEdge<D>&, const CoonsTolerance&);
+    template Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&,                    \
+                                              const Curve<Vec<D>>&, const Curve<Vec<D>>&, double);           \
+    template Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>&, const Curve<Hom<D>>&,                    \
+                                              const Curve<Hom<D>>&, const Curve<Hom<D>>&, double);           \
+    template Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>&, const CoonsEdge<D>&,              \
+                                                      const CoonsEdge<D>&, const CoonsEdge<D>&,              \
+                                                      const CoonsTolerance&);
 FF_COONS(2)
 FF_COONS(3)
 

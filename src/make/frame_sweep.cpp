@@ -26,11 +26,16 @@
 // an orthonormal one: |q . T| + | |q| - 1 |, for s also |s - T x r|. The surface is off by at most |x| |e_r| + |y|
 // |e_s|, with x and y in the hull of the profile, and the rounding of its net.
 //
+// Rational rails c = C / w. A depends on c' only up to a positive factor, which may vary, so c' and c'' are replaced
+// by N = C' w - C w' and N', polynomials of degree 2 p - 1. The surface has the numerators w_p C + w (X r + Y s) for
+// a coefficient (X, Y, w_p) of the profile, and the weights w_p w: rational, with nothing more to approximate.
+//
 // References: [Bishop 1975], [Wang et al. 2008], [Farin 2002].
 //
 // Why not the Frenet frame? It turns about the rail, and jumps where the curvature vanishes. Why not
 // Gronwall's inequality for r' = -(T' . r) T? Its matrix is not skew, and the bound grows with exp of the
 // total curvature.
+#include "bernstein_detail.hpp"
 #include "rounding_detail.hpp"
 
 #include <freiform/make/frame_sweep.hpp>
@@ -42,47 +47,19 @@ namespace freiform {
 
 namespace {
 
-// Polynomials on [0, 1] in Bernstein form.
-using Scalar = std::vector<Bounded>;
-using Vector = std::vector<BoundedVec<3>>;
+using Scalar = detail::BernsteinScalar;
+using Vector = detail::BernsteinVector;
+using detail::elevated;
+using detail::scaled_by;
 
-template <class A, class B, class F>
-auto product(const std::vector<A>& a, const std::vector<B>& b, F&& times) {
-    using C = decltype(times(a[0], b[0]));
-    const int p = int(a.size()) - 1, q = int(b.size()) - 1;
-    std::vector<C> out(std::size_t(p + q) + 1);
-    for (int i = 0; i <= p; ++i)
-        for (int j = 0; j <= q; ++j) {
-            const Bounded w =
-                Bounded(binomial(p, i)) * Bounded(binomial(q, j)) / Bounded(binomial(p + q, i + j));
-            const C c = times(a[std::size_t(i)], b[std::size_t(j)]);
-            C& sum = out[std::size_t(i + j)];
-            if constexpr (std::same_as<C, Bounded>)
-                sum += w * c;
-            else
-                for (std::size_t k = 0; k < 3; ++k) sum[k] += w * c[k];
-        }
-    return out;
-}
 Scalar inner(const Vector& a, const Vector& b) {
-    return product(a, b, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return dot(x, y); });
-}
-Vector scaled_by(const Scalar& s, const Vector& v) {
-    return product(s, v, [](const Bounded& x, BoundedVec<3> y) {
-        for (Bounded& c : y) c = x * c;
-        return y;
-    });
+    return detail::bernstein_product(a, b, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return dot(x, y); });
 }
 Vector derivative_of(const Vector& v) {
     Vector d(std::max<std::size_t>(v.size() - 1, 1));
     for (std::size_t i = 0; i + 1 < v.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) d[i][k] = Bounded(double(v.size() - 1)) * (v[i + 1][k] - v[i][k]);
     return d;
-}
-Vector elevated(const Vector& v, std::size_t degree) {
-    if (v.size() > degree) return v;
-    const Scalar one(degree + 2 - v.size(), Bounded(1));
-    return scaled_by(one, v);
 }
 // The part over [i / m, (i + 1) / m], by de Casteljau with bounds.
 Vector part(Vector b, int i, int m) {
@@ -114,10 +91,17 @@ Vec<3> reflected(const Vec<3>& x, const Vec<3>& normal) {
     return c > 0 ? x - (2 * dot(normal, x) / c) * normal : x;
 }
 
-// c and its derivatives over one part of the rail, by a parameter from 0 to 1.
+// The rail c / w over one part, by a parameter from 0 to 1; N and N' (of polynomial rails c' and c'').
 struct Part {
     Vector c, d1, d2;
+    Scalar w;
     Interval on;  // of the rail's parameter
+
+    Vec<3> from() const { return point(c.front(), w.front()); }
+    Vec<3> to() const { return point(c.back(), w.back()); }
+
+private:
+    static Vec<3> point(const BoundedVec<3>& x, const Bounded& weight) { return (1 / weight.value) * values(x); }
 };
 
 // A vector of the frame as a cubic.
@@ -170,14 +154,14 @@ Defect defect(const Part& s, const Vector& q) {
         for (std::size_t k = 0; k < 3; ++k) g[i][k] = ea[i][k] - eb[i][k] + ec[i][k];
     const Scalar p = {Bounded(1 / speed.front().value), Bounded(1 / speed.back().value)};
     double off = 0;
-    for (const Bounded& x : product(p, speed, [](const Bounded& l, const Bounded& r) { return l * r; })) {
+    for (const Bounded& x : scaled_by(p, speed)) {
         const Bounded rest = Bounded(1) - x;
         off = std::max(off, std::abs(rest.value) + rest.bound);
     }
     const double rest = off * mean_length(g) / least * (1 + 0x1p-44);
     const Vector d = integral_of(scaled_by(p, g));
     const Vector turning =
-        product(s.d1, s.d2, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return cross(x, y); });
+        detail::bernstein_product(s.d1, s.d2, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return cross(x, y); });
     const double by_turning =
         largest_length(turning) / least * (mean_length(d) + rest) * (1 + 0x1p-44);
     const Defect found{(length_above(d.back()) + rest + by_turning) * (1 + 0x1p-44),
@@ -192,38 +176,70 @@ struct Framed {
     double most_r = 0, most_s = 0;  // anywhere
 };
 
-std::vector<Part> parts_of(const BezierPieces<1, Vec<3>>& pieces, int exponent, double relative, int m) {
-    std::vector<Part> out;
-    double largest = 0;
-    for (int i = 0; i < pieces.extent()[0]; ++i)
-        for (int k = 0; k <= pieces.degree(0); ++k)
-            largest = std::max(largest, max_abs(pieces.net({i})({k})));
-    const double e = std::scalbn(largest, -exponent) * relative;
+// The pieces of a rail, in divided units.
+struct Rail {
+    struct Piece {
+        Vector c, d1, d2;
+        Scalar w;  // {1} if the rail is polynomial
+        Interval on;
+    };
+    std::vector<Piece> pieces;
+};
+
+template <class R>
+Rail rail_of(const Curve<R>& rail, const detail::Powers& powers, double relative) {
+    const BezierPieces<1, R> pieces(rail);
+    Rail out;
+    double largest = 0, heaviest = 0;
     for (int i = 0; i < pieces.extent()[0]; ++i) {
-        Vector whole;
+        Rail::Piece piece{{}, {}, {}, {}, pieces.box({i})[0]};
         for (int k = 0; k <= pieces.degree(0); ++k) {
-            const Vec<3>& p = pieces.net({i})({k});
-            BoundedVec<3> b;
-            for (int c = 0; c < 3; ++c) {
-                b[std::size_t(c)] = detail::scaled(p[c], -exponent);
-                b[std::size_t(c)].bound += e;
-            }
-            whole.push_back(b);
+            const auto q = powers.coefficient(pieces.net({i})({k}));
+            piece.c.push_back(q.x), piece.w.push_back(q.w);
+            largest = std::max(largest, max_abs(values(q.x)));
+            heaviest = std::max(heaviest, q.w.value);
         }
-        const Vector d1 = derivative_of(whole), d2 = derivative_of(d1);
-        const Interval on = pieces.box({i})[0];
+        out.pieces.push_back(std::move(piece));
+    }
+    for (Rail::Piece& piece : out.pieces) {
+        for (auto& x : piece.c)
+            for (Bounded& b : x) b.bound += relative * largest;
+        if constexpr (!Space<R>::kRational) {
+            piece.w = {Bounded(1)};
+            piece.d1 = derivative_of(piece.c);
+        } else {
+            for (Bounded& w : piece.w) w.bound += relative * heaviest;
+            Scalar slope(std::max<std::size_t>(piece.w.size() - 1, 1));
+            for (std::size_t i = 0; i + 1 < piece.w.size(); ++i)
+                slope[i] = Bounded(double(piece.w.size() - 1)) * (piece.w[i + 1] - piece.w[i]);
+            piece.d1 = scaled_by(piece.w, derivative_of(piece.c));
+            const Vector other = scaled_by(slope, piece.c);
+            for (std::size_t i = 0; i < other.size(); ++i)
+                for (std::size_t k = 0; k < 3; ++k) piece.d1[i][k] = piece.d1[i][k] - other[i][k];
+        }
+        piece.d2 = derivative_of(piece.d1);
+    }
+    return out;
+}
+
+std::vector<Part> parts_of(const Rail& rail, int m) {
+    std::vector<Part> out;
+    const Bounded h = Bounded(1) / Bounded(m);
+    for (const Rail::Piece& piece : rail.pieces)
         for (int k = 0; k < m; ++k) {
-            Part s{part(whole, k, m), part(d1, k, m), part(d2, k, m), {}};
-            const Bounded h = Bounded(1) / Bounded(m);
+            Part s{part(piece.c, k, m), part(piece.d1, k, m), part(piece.d2, k, m), {}, {}};
+            Vector w;  // as the first coordinate
+            for (const Bounded& x : piece.w) w.push_back({x, Bounded(0), Bounded(0)});
+            for (const auto& x : part(std::move(w), k, m)) s.w.push_back(x[0]);
             for (auto& v : s.d1)
                 for (Bounded& x : v) x = h * x;
             for (auto& v : s.d2)
                 for (Bounded& x : v) x = h * h * x;
+            const Interval on = piece.on;
             s.on = {k == 0 ? on.lo : on.lo + on.length() * k / m,
                     k + 1 == m ? on.hi : on.lo + on.length() * (k + 1) / m};
             out.push_back(std::move(s));
         }
-    }
     return out;
 }
 
@@ -257,7 +273,7 @@ Framed framed(const std::vector<Part>& parts, const Vec<3>& wanted) {
     Vec<3> t = unit(values(parts[0].d1[0])), r = first_direction(t, wanted);
     measure_start(parts[0], r, cross(t, r), out);
     for (const Part& p : parts) {
-        const Vec<3> from = values(p.c.front()), to = values(p.c.back()), next = unit(values(p.d1.back()));
+        const Vec<3> from = p.from(), to = p.to(), next = unit(values(p.d1.back()));
         const Vec<3> half = reflected(r, to - from), half_t = reflected(t, to - from);
         const Vec<3> q = reflected(half, next - half_t), s = cross(t, r), side = cross(next, q);
         const Vec<3> a1 = values(p.d1.front()), a2 = values(p.d2.front()), b1 = values(p.d1.back()),
@@ -276,43 +292,45 @@ Framed framed(const std::vector<Part>& parts, const Vec<3>& wanted) {
     return out;
 }
 
-Result<MadeSurface<Vec<3>>> placed(const Curve<Vec<2>>& profile, const detail::Powers& powers,
-                                   const std::vector<Part>& parts, const Framed& frame, std::size_t degree) {
-    detail::SurfaceNet<Vec<3>> net(powers);
+template <class Q>
+Result<MadeSurface<Q>> placed(const BSplineBasis& u, const std::vector<detail::SpaceCoefficient>& profile,
+                              const detail::Powers& powers, const std::vector<Part>& parts, const Framed& frame,
+                              std::size_t degree) {
+    detail::SurfaceNet<Q> net(powers);
     std::vector<double> t(degree + 1, parts[0].on.lo);
     for (const Part& p : parts) t.insert(t.end(), degree, p.on.hi);
     t.push_back(parts.back().on.hi);
     std::vector<Vector> rail, r, s;
+    std::vector<Scalar> w;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         rail.push_back(elevated(parts[i].c, degree));
-        r.push_back(elevated(frame.r[i], degree));
-        s.push_back(elevated(frame.s[i], degree));
+        r.push_back(elevated(scaled_by(parts[i].w, frame.r[i]), degree));
+        s.push_back(elevated(scaled_by(parts[i].w, frame.s[i]), degree));
+        w.push_back(elevated(parts[i].w, degree));
     }
-    for (const Vec<2>& p : profile.net().flat()) {
-        const Bounded x = detail::scaled(p[0], -powers.point()), y = detail::scaled(p[1], -powers.point());
+    for (const detail::SpaceCoefficient& p : profile)
         for (std::size_t i = 0; i < parts.size(); ++i)
             for (std::size_t k = i == 0 ? 0 : 1; k <= degree; ++k) {
                 detail::SpaceCoefficient c;
-                for (std::size_t a = 0; a < 3; ++a) c.x[a] = rail[i][k][a] + x * r[i][k][a] + y * s[i][k][a];
+                for (std::size_t a = 0; a < 3; ++a)
+                    c.x[a] = p.w * rail[i][k][a] + p.x[0] * r[i][k][a] + p.x[1] * s[i][k][a];
+                c.w = p.w * w[i][k];
                 net.add(c);
             }
-    }
     auto basis = BSplineBasis::make(int(degree), std::move(t));
     if (!basis) return std::unexpected(basis.error());
     const double bound = net.bound();
-    const Index<2> extent{profile.basis().size(), basis->size()};
-    auto surface =
-        Surface<Vec<3>>::make({profile.basis(), std::move(*basis)}, Net<2, Vec<3>>(extent, net.take()));
+    const Index<2> extent{u.size(), basis->size()};
+    auto surface = Surface<Q>::make({u, std::move(*basis)}, Net<2, Q>(extent, net.take()));
     if (!surface) return std::unexpected(surface.error());
-    return MadeSurface<Vec<3>>{std::move(*surface), bound};
+    return MadeSurface<Q>{std::move(*surface), bound};
 }
 
-Result<void> check(const Curve<Vec<3>>& rail, const FrameSweepOptions& options) {
+Result<void> check(const BSplineBasis& b, const FrameSweepOptions& options) {
     if (!is_finite(options.x_at_start)) return refuse(RefusalKind::nonfinite, "x_at_start", "is not finite");
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance",
                       text(options.tolerance, " is not a positive distance"));
-    const BSplineBasis& b = rail.basis();
     if (b.degree() < 1) return refuse(RefusalKind::unsupported, "rail", "has degree 0");
     for (const double t : b.breaks())
         if (t != b.domain().lo && t != b.domain().hi && b.multiplicity(t) >= b.degree())
@@ -324,23 +342,34 @@ Result<void> check(const Curve<Vec<3>>& rail, const FrameSweepOptions& options) 
 
 }  // namespace
 
-Result<FrameSweep> sweep(const Curve<Vec<2>>& profile, const Curve<Vec<3>>& rail,
-                         const FrameSweepOptions& options) {
-    if (auto ok = check(rail, options); !ok) return std::unexpected(ok.error());
+template <class P, class R>
+Result<FrameSweep<Swept<P, R>>> sweep(const Curve<P>& profile, const Curve<R>& rail,
+                                      const FrameSweepOptions& options) {
+    if (auto ok = check(rail.basis(), options); !ok) return std::unexpected(ok.error());
+    // Of the weights, products are taken; so each curve has its own power of two.
     detail::Powers powers;
     powers.include(profile);
     powers.include(rail);
-    const BezierPieces<1, Vec<3>> pieces(rail);
-    const bool one = pieces.extent()[0] == 1 && rail.basis().size() == rail.basis().degree() + 1 &&
-                     !rail.basis().is_closed() &&
-                     rail.basis().multiplicity(rail.domain()[0].lo) > rail.basis().degree();
-    const double relative = one ? 0 : 1.01 * refinement_error(rail.basis().degree());
+    detail::Powers of_rail = powers, of_profile = powers;
+    of_rail.heaviest = of_profile.heaviest = 0;
+    of_rail.include(rail), of_profile.include(profile);
+    powers.heaviest = std::scalbn(1.0, of_profile.weight() + of_rail.weight());
+    const BSplineBasis& basis = rail.basis();
+    const int p = basis.degree();
+    const bool one = basis.size() == p + 1 && !basis.is_closed() &&
+                     basis.multiplicity(basis.domain().lo) > p && basis.multiplicity(basis.domain().hi) > p;
+    const Rail pieces = rail_of(rail, of_rail, one ? 0 : 1.01 * refinement_error(p));
+    const int degree = Space<R>::kRational ? p + 3 : std::max(3, p);
+    std::vector<detail::SpaceCoefficient> net;
     double x = 0, y = 0, reached = 0;
-    for (const Vec<2>& p : profile.net().flat())
-        x = std::max(x, std::abs(p[0])), y = std::max(y, std::abs(p[1]));
+    for (const P& c : profile.net().flat()) {
+        net.push_back(of_profile.coefficient(c));
+        const Vec<2> q = project(c);
+        x = std::max(x, std::abs(q[0]) * (1 + 0x1p-52)), y = std::max(y, std::abs(q[1]) * (1 + 0x1p-52));
+    }
     constexpr int kMost = 1 << 14;
-    for (int m = 1; m * pieces.extent()[0] <= kMost; m *= 2) {
-        const auto parts = parts_of(pieces, powers.point(), relative, m);
+    for (int m = 1; m * int(pieces.pieces.size()) <= kMost; m *= 2) {
+        const auto parts = parts_of(pieces, m);
         const Framed frame = framed(parts, options.x_at_start);
         const double turned = (x * frame.most_r + y * frame.most_s) * (1 + 0x1p-40);
         if (m == 64 && !std::isfinite(turned))
@@ -348,7 +377,7 @@ Result<FrameSweep> sweep(const Curve<Vec<2>>& profile, const Curve<Vec<3>>& rail
                           "its derivative cannot be told from zero everywhere");
         reached = turned;
         if (!(turned <= options.tolerance)) continue;
-        auto made = placed(profile, powers, parts, frame, std::size_t(std::max(3, rail.basis().degree())));
+        auto made = placed<Swept<P, R>>(profile.basis(), net, powers, parts, frame, std::size_t(degree));
         if (!made) return std::unexpected(made.error());
         const double bound = (turned + made->bound) * (1 + 0x1p-48);
         if (2 * made->bound > options.tolerance)
@@ -356,10 +385,17 @@ Result<FrameSweep> sweep(const Curve<Vec<2>>& profile, const Curve<Vec<3>>& rail
                           text(options.tolerance, " is too small beside rounding, which may move points by ",
                                made->bound));
         if (!(bound <= options.tolerance)) continue;
-        return FrameSweep{std::move(made->surface), bound, int(parts.size())};
+        return FrameSweep<Swept<P, R>>{std::move(made->surface), bound, int(parts.size())};
     }
     return refuse(RefusalKind::limit, "tolerance",
                   text(options.tolerance, " was not reached with ", kMost, " pieces, but ", reached));
 }
+
+#define FF_FRAME_SWEEP(P, R) \
+    template Result<FrameSweep<Swept<P, R>>> sweep(const Curve<P>&, const Curve<R>&, const FrameSweepOptions&);
+FF_FRAME_SWEEP(Vec<2>, Vec<3>)
+FF_FRAME_SWEEP(Hom<2>, Vec<3>)
+FF_FRAME_SWEEP(Vec<2>, Hom<3>)
+FF_FRAME_SWEEP(Hom<2>, Hom<3>)
 
 }  // namespace freiform

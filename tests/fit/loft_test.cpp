@@ -166,7 +166,7 @@ Network network_of(const Surface<Vec<3>>& s, std::vector<double> at_v, std::vect
     for (double u : at_u) n.v.push_back(iso(s, 0, u));
     return n;
 }
-Result<GordonSurface> gordon_of(const Network& n, double tolerance) {
+Result<GordonSurface<Vec<3>>> gordon_of(const Network& n, double tolerance) {
     return gordon<3>(n.u, n.at_v, n.v, n.at_u, tolerance);
 }
 
@@ -224,6 +224,46 @@ TEST(Gordon, says_which_curves_miss_each_other_where_and_by_how_much) {
     }
     EXPECT_LE(worst, made.bound);
     EXPECT_GT(worst, 0.25 * made.bound);
+}
+
+// Of a surface of revolution, along u arcs that share their weights, along v other rational curves.
+TEST(Gordon, contains_every_curve_of_a_rational_network) {
+    const double s = std::sqrt(0.5);
+    Net<2, Hom<3>> net({3, 3});
+    const double radius[3] = {1, 2, 1.5}, weight[3] = {1, 0.7, 1.3};
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const double x = i < 2 ? radius[j] : 0, y = i > 0 ? radius[j] : 0;
+            net.view()({i, j}) = weighted(Vec<3>{{x, y, double(j)}}, (i == 1 ? s : 1) * weight[j]);
+        }
+    const auto vase = must(Surface<Hom<3>>::make({must(BSplineBasis::bezier(2)), must(BSplineBasis::bezier(2))}, net));
+    std::vector<Curve<Hom<3>>> along_u, along_v;
+    const std::vector<double> at_v = {0, 0.25, 0.625, 1}, at_u = {0, 0.5, 1};
+    for (double v : at_v) along_u.push_back(iso(vase, 1, v));
+    for (double u : at_u) along_v.push_back(iso(vase, 0, u));
+    const auto made = must(gordon<3>(along_u, at_v, along_v, at_u, 1e-12));
+    EXPECT_LT(made.bound, 1e-11);
+    EXPECT_EQ(made.surface.basis(0).degree(), 2 + 2);  // one denominator and cardinal functions of degree 2
+    double worst = 0;
+    for (double t : kAt) {
+        for (std::size_t k = 0; k < along_u.size(); ++k)
+            worst = std::max(worst, norm(made.surface(t, at_v[k]) - along_u[k](t)));
+        for (std::size_t l = 0; l < along_v.size(); ++l)
+            worst = std::max(worst, norm(made.surface(at_u[l], t) - along_v[l](t)));
+    }
+    EXPECT_LE(worst, made.bound + 1e-14);
+    EXPECT_GT(norm(made.surface(0.3, 0.4) - vase(0.3, 0.4)), 1e-6);
+    // Too many different weights are refused, and it says what to do.
+    for (std::size_t k = 0; k < along_u.size(); ++k) {
+        auto other = along_u[k].net();
+        other.flat()[1] *= 1 + 0.1 * double(k);
+        auto up = must(elevate(must(Curve<Hom<3>>::make(along_u[k].bases(), other)), 0, 5));
+        along_u[k] = up;
+    }
+    const auto refused = gordon<3>(along_u, at_v, along_v, at_u, 10);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, RefusalKind::unsupported);
+    EXPECT_NE(refused.error().message.find("share their weights"), std::string::npos) << refused.error().message;
 }
 
 TEST(Gordon, refuses_parameters_that_do_not_fit) {

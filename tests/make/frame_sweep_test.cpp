@@ -1,6 +1,7 @@
 #include "support/bezier.hpp"
 #include "support/random.hpp"
 
+#include <freiform/make/conic.hpp>
 #include <freiform/make/frame_sweep.hpp>
 
 #include <gtest/gtest.h>
@@ -113,6 +114,47 @@ TEST(FrameSweep, scales_with_powers_of_two) {
         for (std::size_t i = 0; i < made.surface.net().flat().size(); ++i)
             for (int c = 0; c < 3; ++c)
                 EXPECT_EQ(far.surface.net().flat()[i][c], std::scalbn(made.surface.net().flat()[i][c], e));
+    }
+}
+
+// A rational rail and profile: a circle swept along a circle about z is a torus, turned nowhere about the rail.
+TEST(FrameSweep, a_circle_along_a_circle_is_a_torus) {
+    const auto ring = must(full_ellipse(Conic<3>{ConicKind::ellipse, {}, {{3, 0, 0}}, {{0, 3, 0}}},
+                                        EllipseForm::quintic));
+    const auto tube =
+        must(full_ellipse(Conic<2>{ConicKind::ellipse, {}, {{1, 0}}, {{0, 1}}}, EllipseForm::open));
+    for (const double tolerance : {1e-2, 1e-5}) {
+        const auto made = must(sweep(tube.curve, ring.curve, {tolerance, {{0, 0, 1}}}));
+        EXPECT_LE(made.bound, tolerance);
+        double worst = 0;
+        for (int i = 0; i <= 16; ++i)
+            for (int j = 0; j <= 59; ++j) {
+                const double u = i / 16.0, v = j / 59.0;
+                const Vec<3> c = ring.curve(v), out = (1.0 / 3) * c;
+                const Vec<2> p = tube.curve(u);
+                // x of the profile stays z; y = tangent x z is outwards.
+                worst = std::max(worst, norm(made.surface(u, v) - (c + p[0] * Vec<3>{{0, 0, 1}} + p[1] * out)));
+            }
+        std::printf("torus within %g: %d pieces, error / bound = %.3g\n", tolerance, made.pieces,
+                    worst / made.bound);
+        EXPECT_LE(worst, made.bound);
+        EXPECT_GE(worst, 0.05 * made.bound);
+    }
+}
+
+TEST(FrameSweep, rational_curves_of_weight_one_sweep_what_polynomial_ones_do) {
+    const auto a = must(sweep(kProfile, kBend, {1e-4}));
+    const auto rational = must(sweep(to_rational(kProfile), to_rational(kBend), {1e-4}));
+    EXPECT_EQ(rational.pieces, a.pieces);
+    for (double u : {0.0, 0.4, 1.0})
+        for (double v : {0.0, 0.3, 0.9}) EXPECT_LE(norm(rational.surface(u, v) - a.surface(u, v)), 1e-13);
+    // Weights that are no constant, the same curve: (1 + v) times all.
+    const auto line = bezier<Hom<3>>({{{0, 0, 0, 1}}, {{1, 0, 2, 2}}});
+    const auto along = must(sweep(kProfile, line, {1e-9, {{1, 0, 0}}}));
+    for (double v : {0.0, 0.5, 1.0}) {
+        const Vec<3> c = line(v), t = unit(Vec<3>{{1, 0, 2}}), r = unit(Vec<3>{{2, 0, -1}}), s = cross(t, r);
+        const Vec<2> p = kProfile(0.25);
+        EXPECT_LE(norm(along.surface(0.25, v) - (c + p[0] * r + p[1] * s)), along.bound + 1e-15);
     }
 }
 

@@ -25,6 +25,26 @@ struct BlendedFamily {
 Result<MadeSurface<Vec<3>>> boolean_sum(const BlendedFamily& u, const BlendedFamily& v,
                                         const std::vector<std::vector<BoundedVec<3>>>& T);
 
+// Rational curves, and functions of the same parameter, over one denominator; in the Bezier form of pieces that are
+// joined continuously.
+struct OverOne {
+    BSplineBasis basis;
+    std::vector<std::vector<BoundedVec<3>>> curves;  // numerators
+    std::vector<std::vector<Bounded>> functions;     // times the denominator
+    std::vector<Bounded> denominator;                // positive
+};
+
+// The denominator is the product of those of the curves that are not multiples of each other (up to rounding, which
+// the bounds contain), so curves that share their weights, as parallel arcs do, keep the degree low: with m different denominators of
+// degree p and functions of degree q it is m p + q (m p + p if that is more, and a denominator is constant). Functions are on the domain of the first
+// curve. Refuses (unsupported) degrees that no basis has, and curves that jump.
+Result<OverOne> over_one_denominator(std::span<const Curve<Hom<3>>> curves,
+                                     std::span<const Curve<Vec<1>>> functions);
+
+// The sum of rational curves. Curve k of `u` is multiplied by function k of `v`, and the other way round.
+Result<MadeSurface<Hom<3>>> boolean_sum(const OverOne& u, const OverOne& v,
+                                        const std::vector<std::vector<BoundedVec<3>>>& T);
+
 // The coefficients of x^m on `basis`, where x runs from 0 to 1 over the domain: of x^0 .. x^most. REQUIRES an
 // open basis of degree >= most.
 std::vector<std::vector<Bounded>> powers_on(const BSplineBasis& basis, int most);

@@ -5,14 +5,15 @@
 //      v0  |               |  v1      ("lower end": of the domain of v0, of u0)
 //          +---------------+
 //                  u0
-// Curves are polynomial, of degree at least 1; closed ones are opened.
+// Curves have a degree of at least 1; closed ones are opened.
 #pragma once
 #include <freiform/make/made_surface.hpp>
 
 namespace freiform {
 
+template <class Q>
 struct CoonsPatch {
-    Surface<Vec<3>> surface;
+    Surface<Q> surface;
     double bound = 0;  // distance of every point from that of the exact patch at the same parameters
     // Curves that should meet are not farther apart than this at corners; the patch takes the middle, so no
     // boundary is farther than half of it, and `bound`, from its curve. 0: boundaries are the curves.
@@ -25,8 +26,15 @@ struct CoonsPatch {
 // domains. Refuses (invalid, naming the corner) curves that meet less closely than `tolerance`.
 //   auto patch = coons(bottom, top, left, right, 1e-9);
 template <int D>
-Result<CoonsPatch> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
+Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
                          const Curve<Vec<D>>& v1, double tolerance);
+
+// The same sum of rational curves: exact, rational, over the product of their denominators, of degree 2 p + 1 (p + 1
+// where opposite curves have the same weights, as parallel arcs do). Its knots are breaks of that multiplicity.
+// Refuses as above, and (unsupported) degrees that no basis has.
+template <int D>
+Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>& u0, const Curve<Hom<D>>& u1, const Curve<Hom<D>>& v0,
+                                 const Curve<Hom<D>>& v1, double tolerance);
 
 // A boundary and the derivative across it: by v along u0 and u1, by u along v0 and v1. The derivatives are by
 // the parameters of the surface; degrees of at least 1, domain as the curve's.
@@ -43,9 +51,10 @@ struct CoonsTolerance {
 // Each corner has a position, two tangents and a twist S_uv, and each of them comes from two curves; where
 // those disagree by more than the tolerance that is refused (invalid, with the corner and the amount),
 // because then no such surface exists. `twist` compares (d/du) of u-edges' cross derivative with (d/dv) of
-// v-edges'.
+// v-edges'. Polynomial curves only.
 template <int D>
-Result<CoonsPatch> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1, const CoonsEdge<D>& v0,
-                                 const CoonsEdge<D>& v1, const CoonsTolerance& tolerance);
+Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1,
+                                         const CoonsEdge<D>& v0, const CoonsEdge<D>& v1,
+                                         const CoonsTolerance& tolerance);
 
 }  // namespace freiform

@@ -1,0 +1,108 @@
+// sweep: a profile moved along a rail.
+#include "point_commands.hpp"
+#include "surface_commands.hpp"
+
+#include <freiform/make/frame_sweep.hpp>
+#include <freiform/make/sweep.hpp>
+
+namespace freiform::cli {
+
+namespace {
+
+struct Options {
+    std::string profile, rail, object;
+    std::optional<double> tolerance;
+    std::vector<double> x;
+    bool translate = false;
+};
+
+// z of the profile is 0: the frame has no third direction for it.
+template <class Q, class P>
+std::optional<Curve<Q>> flattened(const Curve<P>& c) {
+    std::vector<Q> net;
+    for (const P& p : c.net().flat()) {
+        if (p[2] != 0) return std::nullopt;
+        Q q{};
+        q[0] = p[0], q[1] = p[1];
+        if constexpr (Space<Q>::kRational) q[2] = p.weight();
+        net.push_back(q);
+    }
+    return Curve<Q>::trusted(c.bases(), Net<1, Q>(c.net().extent(), std::move(net)));
+}
+
+template <class P>
+using InPlane = std::conditional_t<Space<P>::kRational, Hom<2>, Vec<2>>;
+
+Result<void> run(const Context& context, const Options& options) {
+    if (options.translate == options.tolerance.has_value())
+        wrong_usage("either --tolerance (the profile turns with the rail) or --translate (it does not)");
+    if (options.translate && !options.x.empty()) wrong_usage("--x is for profiles that turn");
+    const std::string format = spline_format(context, "sweep");
+    const auto profiles = read_space_curves(context, options.profile, options.object, "swept");
+    if (!profiles) return std::unexpected(profiles.error());
+    const auto rail = read_space_curves(context, options.rail, 1, "taken as rail");
+    if (!rail) return std::unexpected(rail.error());
+    MadeSurfaces made{{profiles->unit, {}}, 0, "the swept surface", {}};
+    const FrameSweepOptions how{options.tolerance.value_or(0),
+                                options.x.empty() ? Vec<3>{} : parse_vector("--x", options.x)};
+    int pieces = 0;
+    const auto framed = [&](const auto& all, const auto& along) -> Result<void> {
+        using P = typename std::remove_cvref_t<decltype(all[0])>::Coefficients;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const auto flat = flattened<InPlane<P>>(all[i]);
+            if (!flat)
+                return refuse(RefusalKind::no_answer, profiles->labels[i],
+                              "is not in the plane z = 0, in which profiles are given that turn with the rail");
+            auto s = sweep(*flat, along, how);
+            if (!s) return refuse_within(profiles->labels[i], s.error());
+            made.add(profiles->names[i], std::move(s->surface), s->bound);
+            pieces += s->pieces;
+        }
+        return {};
+    };
+    Result<void> ok;
+    if (options.translate) {
+        SpaceCurves both = *profiles;  // of one kind with the rail
+        both.rational.push_back(rail->rational[0]);
+        if (!rail->polynomial.empty()) both.polynomial.push_back(rail->polynomial[0]);
+        ok = both.visit([&](const auto& all) -> Result<void> {
+            for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+                auto s = translate_along(all[i], all.back());
+                if (!s) return refuse_within(profiles->labels[i], s.error());
+                made.add(profiles->names[i], std::move(s->surface), s->bound);
+            }
+            return {};
+        });
+    } else {
+        ok = profiles->visit([&](const auto& all) {
+            return rail->visit([&](const auto& along) { return framed(all, along[0]); });
+        });
+        made.said.emplace_back("pieces", pieces);
+    }
+    if (!ok) return ok;
+    return emit_surfaces(context, format, std::move(made));
+}
+
+}  // namespace
+
+void add_sweep(CommandLine& line) {
+    const auto options = std::make_shared<Options>();
+    const Command command =
+        line.add("sweep", "Surfaces that profiles sweep along a rail",
+                 "  freiform sweep profile.json --rail rail.json --tolerance 0.001 -o pipe.json\n"
+                 "  freiform sweep profile.json --rail rail.json --translate -o surface.json\n"
+                 "Profiles that turn with the rail are plane curves (x, y); they stay orthogonal to the rail and "
+                 "do\nnot turn about it.");
+    command.word("FILE", options->profile, "Profiles; - is standard input").required();
+    command.word("--rail", options->rail, "The file of one curve").required();
+    command.number("--tolerance", options->tolerance, "What the surface may be off; the bound is printed");
+    command.numbers("--x", options->x, "Where x of the profile points to at the start of the rail")
+        .shown_as("X,Y,Z");
+    command.flag("--translate", options->translate, "Move profiles without turning them: exact");
+    command.object(options->object);
+    command.output("Where the surfaces go (.json, .bpt)");
+    command.limits();
+    command.action(options, run);
+}
+
+}  // namespace freiform::cli
