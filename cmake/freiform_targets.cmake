@@ -103,7 +103,7 @@ set(FREIFORM_COLD
     query/continuity query/features query/implicit query/knot_lines query/meetings query/reparametrise
     query/reparametrised query/self_intersection query/surface_curvature
     spline/a_frame spline/coefficients spline/transform spline/weights
-    trim/loops)
+    trim/loop_links trim/loops)
 function(freiform_cold)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
         return()

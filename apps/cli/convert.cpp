@@ -431,9 +431,10 @@ void add_convert(CommandLine& line) {
                  "Cut surfaces into Bezier triangles, two for each piece");
     command.flag("--to-surfaces", options->to_surfaces,
                  "Cut triangles into three surfaces each; others stay");
-    command.flag("--orient-loops", options->orient_loops,
-                 "Turn loops of trimmed surfaces: outer ones counter-clockwise, holes clockwise; says which were "
-                 "turned");
+    command.flag(
+        "--orient-loops", options->orient_loops,
+        "Turn loops of trimmed surfaces: outer ones counter-clockwise, holes clockwise; says which were "
+        "turned");
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
     command.limits();

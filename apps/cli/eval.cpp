@@ -252,9 +252,10 @@ void add_eval(CommandLine& line) {
     command.flag(
         "--accurate", options->accurate,
         "Points right to the last digit, each with a proven bound of its error, by coordinate; slower");
-    command.flag("--construction", options->construction,
-                 "All intermediate points of de Casteljau and de Boor: of a surface the nets r steps deep along u "
-                 "and s along v, \"level\": [r, s]");
+    command.flag(
+        "--construction", options->construction,
+        "All intermediate points of de Casteljau and de Boor: of a surface the nets r steps deep along u "
+        "and s along v, \"level\": [r, s]");
     command.object(options->object);
     command.answer_file();
     command.limits();

@@ -56,8 +56,8 @@ template <class P>
 Result<void> gordon_surface(std::span<const Curve<P>> c, const Patching& o, double tolerance,
                             MadeSurfaces& made) {
     const std::size_t n = o.at_v.size();
-    auto s = gordon(c.first(n), std::span<const double>(o.at_v), c.subspan(n), std::span<const double>(o.at_u),
-                    tolerance);
+    auto s = gordon(c.first(n), std::span<const double>(o.at_v), c.subspan(n),
+                    std::span<const double>(o.at_u), tolerance);
     if (!s) return std::unexpected(s.error());
     made.add("", std::move(s->surface), s->bound);
     made.said.emplace_back("gap", s->gap);
@@ -69,9 +69,9 @@ Result<void> patched(const Context& context, const Patching& options) {
     if (network && (options.at_u.empty() || options.at_v.empty()))
         wrong_usage("a network needs both --at-u and --at-v");
     const std::string format = spline_format(context, "coons");
-    const auto curves =
-        read_space_curves(context, options.file, network ? options.at_u.size() + options.at_v.size() : 4,
-                          network ? "expected for --at-v and --at-u" : "expected for a patch: u0, u1, v0, v1");
+    const auto curves = read_space_curves(
+        context, options.file, network ? options.at_u.size() + options.at_v.size() : 4,
+        network ? "expected for --at-v and --at-u" : "expected for a patch: u0, u1, v0, v1");
     if (!curves) return std::unexpected(curves.error());
     MadeSurfaces made{
         {curves->unit, {}}, 0, network ? "the curves of the network" : "the exact Coons patch", {}};
@@ -90,9 +90,10 @@ Result<void> patched(const Context& context, const Patching& options) {
 
 void add_loft(CommandLine& line) {
     const auto options = std::make_shared<Lofting>();
-    const Command command = line.add("loft", "A surface through sections",
-                                     "  freiform loft frames.json -o hull.json\n"
-                                     "  freiform loft rings.json --closed --spacing centripetal -o ring.json");
+    const Command command =
+        line.add("loft", "A surface through sections",
+                 "  freiform loft frames.json -o hull.json\n"
+                 "  freiform loft rings.json --closed --spacing centripetal -o ring.json");
     command.word("FILE", options->file, "Curves, in their order; - is standard input").required();
     command.count("--degree", options->degree, 1, 25, "Across the sections (default 3)");
     command.word("--spacing", options->spacing, "Of the sections (default chordal)")

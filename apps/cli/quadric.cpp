@@ -69,7 +69,8 @@ Result<void> make(const Options& o, MadeSurfaces& made) {
         for (auto& part : (*parts).*member) made.add(text(o.kind, ".", i++), std::move(part), parts->bound);
         return {};
     };
-    if (o.kind == "ellipsoid") return one(sphere(stretched(*frame, parse_numbers("--radii", o.radii, 3)), 1, turn));
+    if (o.kind == "ellipsoid")
+        return one(sphere(stretched(*frame, parse_numbers("--radii", o.radii, 3)), 1, turn));
     const double radius = needed(o.radius, o, "--radius");
     if (o.kind == "sphere") return one(sphere(*frame, radius, turn));
     if (o.kind == "sphere-in-six") return several(sphere_in_six(*frame, radius), &SphereInSix::faces);
@@ -91,14 +92,15 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_quadric(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    const Command command = line.add(
-        "quadric", "Spheres, ellipsoids, cylinders, cones and tori, exact (rational)",
-        "  freiform quadric sphere --radius 2 -o ball.json\n"
-        "  freiform quadric sphere-in-six --radius 2 -o tiles.bpt\n"
-        "  freiform quadric cone --radius 2 --top 1 --height 3 --axis 0,1,0 -o cup.json\n"
-        "  freiform quadric torus --radius 3 --tube 1 --angle 180 -o half.json\n"
-        "  freiform quadric ellipsoid --radii 3,2,1 -o pebble.json\n"
-        "sphere-in-six has no poles; sphere-in-eight are triangles, an octant each. The others turn about the axis.");
+    const Command command =
+        line.add("quadric", "Spheres, ellipsoids, cylinders, cones and tori, exact (rational)",
+                 "  freiform quadric sphere --radius 2 -o ball.json\n"
+                 "  freiform quadric sphere-in-six --radius 2 -o tiles.bpt\n"
+                 "  freiform quadric cone --radius 2 --top 1 --height 3 --axis 0,1,0 -o cup.json\n"
+                 "  freiform quadric torus --radius 3 --tube 1 --angle 180 -o half.json\n"
+                 "  freiform quadric ellipsoid --radii 3,2,1 -o pebble.json\n"
+                 "sphere-in-six has no poles; sphere-in-eight are triangles, an octant each. The others turn "
+                 "about the axis.");
     command.word("KIND", options->kind, "What to make")
         .one_of({"sphere", "sphere-in-six", "sphere-in-eight", "cylinder", "cone", "torus", "ellipsoid"})
         .required();
@@ -108,7 +110,9 @@ void add_quadric(CommandLine& line) {
     command.number("--tube", options->tube, "Radius of the tube of a torus");
     command.number("--height", options->height, "Of a cylinder or cone, from the origin along the axis");
     command.number("--angle", options->angle, "Degrees of the turn about the axis (default 360)");
-    command.word("--form", options->form, "Of a full turn: nine columns (default), eight on closed knots, or one piece")
+    command
+        .word("--form", options->form,
+              "Of a full turn: nine columns (default), eight on closed knots, or one piece")
         .one_of({"open", "closed", "quintic"});
     command.numbers("--origin", options->origin, "The centre, or where the axis begins").shown_as("X,Y,Z");
     command.numbers("--axis", options->axis, "Direction of the axis (default 0,0,1)").shown_as("X,Y,Z");

@@ -7,8 +7,8 @@
 
 namespace freiform::cli {
 
-Result<SpaceCurves> read_space_curves(const Context& context, const std::string& file, const std::string& object,
-                                      std::string_view purpose) {
+Result<SpaceCurves> read_space_curves(const Context& context, const std::string& file,
+                                      const std::string& object, std::string_view purpose) {
     const auto document = read_any(file, context.read_options());
     if (!document) return std::unexpected(document.error());
     const auto objects = selected(*document, object);
@@ -35,8 +35,9 @@ Result<SpaceCurves> read_space_curves(const Context& context, const std::string&
             },
             o.shape);
         if (!is_curve)
-            return refuse(RefusalKind::no_answer, text(shown(file), ": ", object_label(*document, i)),
-                          text("is a ", type_name(o.shape), "; curves of two or three coordinates are ", purpose));
+            return refuse(
+                RefusalKind::no_answer, text(shown(file), ": ", object_label(*document, i)),
+                text("is a ", type_name(o.shape), "; curves of two or three coordinates are ", purpose));
         all.names.push_back(o.name);
         all.labels.push_back(text(shown(file), ": ", object_label(*document, i)));
     }
@@ -47,9 +48,9 @@ Result<SpaceCurves> read_space_curves(const Context& context, const std::string&
                                       std::string_view purpose) {
     auto all = read_space_curves(context, file, "", purpose);
     if (all && all->size() != count)
-        return refuse(RefusalKind::no_answer, shown(file),
-                      text("has ", all->size(), all->size() == 1 ? " curve, " : " curves, ", count, " are ",
-                           purpose));
+        return refuse(
+            RefusalKind::no_answer, shown(file),
+            text("has ", all->size(), all->size() == 1 ? " curve, " : " curves, ", count, " are ", purpose));
     return all;
 }
 

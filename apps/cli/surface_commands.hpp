@@ -7,7 +7,7 @@ namespace freiform::cli {
 
 // All in space, polynomial if all of them are.
 struct SpaceCurves {
-    std::vector<std::string> names;  // of the objects
+    std::vector<std::string> names;   // of the objects
     std::vector<std::string> labels;  // for refusals
     std::vector<Curve<Hom<3>>> rational;
     std::vector<Curve<Vec<3>>> polynomial;  // as many, or none
@@ -22,8 +22,8 @@ struct SpaceCurves {
     }
 };
 // Refuses objects that are no such curves, "which are PURPOSE" ("extruded").
-Result<SpaceCurves> read_space_curves(const Context& context, const std::string& file, const std::string& object,
-                                      std::string_view purpose);
+Result<SpaceCurves> read_space_curves(const Context& context, const std::string& file,
+                                      const std::string& object, std::string_view purpose);
 // The same of a file that has to hold so many. Refuses others.
 Result<SpaceCurves> read_space_curves(const Context& context, const std::string& file, std::size_t count,
                                       std::string_view purpose);
@@ -31,7 +31,7 @@ Result<SpaceCurves> read_space_curves(const Context& context, const std::string&
 struct MadeSurfaces {
     Document document;
     double bound = 0;
-    std::string of = "what was asked for";  // "surfaces within BOUND of ..."
+    std::string of = "what was asked for";             // "surfaces within BOUND of ..."
     std::vector<std::pair<std::string, double>> said;  // more numbers for the report
 
     void add(std::string name, Shape surface, double off) {
@@ -42,7 +42,8 @@ struct MadeSurfaces {
 Result<void> emit_surfaces(const Context& context, const std::string& format, MadeSurfaces made);
 
 // Exactly so many numbers, or wrong usage.
-std::vector<double> parse_numbers(const std::string& option, const std::vector<double>& given, std::size_t count);
+std::vector<double> parse_numbers(const std::string& option, const std::vector<double>& given,
+                                  std::size_t count);
 Vec<3> parse_vector(const std::string& option, const std::vector<double>& given);
 
 }  // namespace freiform::cli

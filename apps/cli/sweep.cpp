@@ -51,8 +51,9 @@ Result<void> run(const Context& context, const Options& options) {
         for (std::size_t i = 0; i < all.size(); ++i) {
             const auto flat = flattened<InPlane<P>>(all[i]);
             if (!flat)
-                return refuse(RefusalKind::no_answer, profiles->labels[i],
-                              "is not in the plane z = 0, in which profiles are given that turn with the rail");
+                return refuse(
+                    RefusalKind::no_answer, profiles->labels[i],
+                    "is not in the plane z = 0, in which profiles are given that turn with the rail");
             auto s = sweep(*flat, along, how);
             if (!s) return refuse_within(profiles->labels[i], s.error());
             made.add(profiles->names[i], std::move(s->surface), s->bound);
@@ -87,12 +88,12 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_sweep(CommandLine& line) {
     const auto options = std::make_shared<Options>();
-    const Command command =
-        line.add("sweep", "Surfaces that profiles sweep along a rail",
-                 "  freiform sweep profile.json --rail rail.json --tolerance 0.001 -o pipe.json\n"
-                 "  freiform sweep profile.json --rail rail.json --translate -o surface.json\n"
-                 "Profiles that turn with the rail are plane curves (x, y); they stay orthogonal to the rail and "
-                 "do\nnot turn about it.");
+    const Command command = line.add(
+        "sweep", "Surfaces that profiles sweep along a rail",
+        "  freiform sweep profile.json --rail rail.json --tolerance 0.001 -o pipe.json\n"
+        "  freiform sweep profile.json --rail rail.json --translate -o surface.json\n"
+        "Profiles that turn with the rail are plane curves (x, y); they stay orthogonal to the rail and "
+        "do\nnot turn about it.");
     command.word("FILE", options->profile, "Profiles; - is standard input").required();
     command.word("--rail", options->rail, "The file of one curve").required();
     command.number("--tolerance", options->tolerance, "What the surface may be off; the bound is printed");

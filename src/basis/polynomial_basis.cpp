@@ -401,8 +401,9 @@ Result<ConvertedNumbers> convert_coefficients(std::span<const PolynomialBasis> f
         count *= std::size_t(from[axis].size());
     }
     if (columns < 0 || values.size() != count * std::size_t(columns))
-        return refuse(RefusalKind::invalid, "coefficients",
-                      text(values.size(), " numbers for ", count, " coefficients of ", columns, " coordinates"));
+        return refuse(
+            RefusalKind::invalid, "coefficients",
+            text(values.size(), " numbers for ", count, " coefficients of ", columns, " coordinates"));
     Table c(1, int(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!std::isfinite(values[i]))

@@ -140,9 +140,8 @@ Result<Meetings> meetings(const Compatible<Q>& u, std::span<const double> at_v, 
             const Vec<3> p = u.curves[k](at_u[l]), q = v.curves[l](at_v[k]);
             // Rounding of the values, and what common bases moved.
             const double e =
-                std::sqrt(3) *
-                (u.curves[k].value_error_bound() + v.curves[l].value_error_bound() +
-                 moved_by(u.curves[k], u.relative[k]) + moved_by(v.curves[l], v.relative[l]));
+                std::sqrt(3) * (u.curves[k].value_error_bound() + v.curves[l].value_error_bound() +
+                                moved_by(u.curves[k], u.relative[k]) + moved_by(v.curves[l], v.relative[l]));
             const double found = norm(p - q) * (1 + 0x1p-48) + e;
             if (found - 2 * e > tolerance)
                 return refuse(RefusalKind::invalid, text("u_curves[", k, "], v_curves[", l, "]"),
@@ -159,7 +158,8 @@ Result<Meetings> meetings(const Compatible<Q>& u, std::span<const double> at_v, 
 
 template <class P>
 Result<void> check_network(std::span<const Curve<P>> u_curves, std::span<const double> at_v,
-                           std::span<const Curve<P>> v_curves, std::span<const double> at_u, double tolerance) {
+                           std::span<const Curve<P>> v_curves, std::span<const double> at_u,
+                           double tolerance) {
     if (u_curves.empty() || v_curves.empty())
         return refuse(RefusalKind::invalid, "curves", "a network needs at least two of each family");
     if (auto ok = check_parameters(at_v, u_curves.size(), v_curves[0].domain()[0], "at_v"); !ok) return ok;
@@ -255,7 +255,7 @@ Result<GordonSurface<Vec<3>>> gordon(std::span<const Curve<Vec<D>>> u_curves, st
     return GordonSurface<Vec<3>>{std::move(made->surface), bound, met->gap};
 }
 
-#define FF_GORDON(D)                                                                               \
+#define FF_GORDON(D)                                                                                       \
     template Result<GordonSurface<Vec<3>>> gordon(std::span<const Curve<Vec<D>>>, std::span<const double>, \
                                                   std::span<const Curve<Vec<D>>>, std::span<const double>, \
                                                   double);                                                 \

@@ -24,8 +24,8 @@ namespace {
 
 // Calls add(i, j, coefficient) for the whole net.
 template <class F>
-void each_sum(const BlendedFamily& u, const BlendedFamily& v, const std::vector<std::vector<BoundedVec<3>>>& T,
-              F&& add) {
+void each_sum(const BlendedFamily& u, const BlendedFamily& v,
+              const std::vector<std::vector<BoundedVec<3>>>& T, F&& add) {
     std::vector<BoundedVec<3>> rest(v.curves.size());  // b_lj - sum_k h_kj T_kl
     for (int j = 0; j < v.basis.size(); ++j) {
         const std::size_t J = std::size_t(j);

@@ -150,7 +150,7 @@ Row times(const Bounded& s, Row r) {
 
 template <int D>
 Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
-                         const Curve<Vec<D>>& v1, double tolerance) {
+                                 const Curve<Vec<D>>& v1, double tolerance) {
     const auto u = in_one_basis<D>({&u0, &u1}, 1), v = in_one_basis<D>({&v0, &v1}, 1);
     if (!u) return refuse_within("u0, u1", u.error());
     if (!v) return refuse_within("v0, v1", v.error());
@@ -278,13 +278,13 @@ Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge
     return out;
 }
 
-#define FF_COONS(D)                                                                                          \
-    template Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&,                    \
-                                              const Curve<Vec<D>>&, const Curve<Vec<D>>&, double);           \
-    template Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>&, const Curve<Hom<D>>&,                    \
-                                              const Curve<Hom<D>>&, const Curve<Hom<D>>&, double);           \
-    template Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>&, const CoonsEdge<D>&,              \
-                                                      const CoonsEdge<D>&, const CoonsEdge<D>&,              \
+#define FF_COONS(D)                                                                                \
+    template Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&,          \
+                                              const Curve<Vec<D>>&, const Curve<Vec<D>>&, double); \
+    template Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>&, const Curve<Hom<D>>&,          \
+                                              const Curve<Hom<D>>&, const Curve<Hom<D>>&, double); \
+    template Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>&, const CoonsEdge<D>&,    \
+                                                      const CoonsEdge<D>&, const CoonsEdge<D>&,    \
                                                       const CoonsTolerance&);
 FF_COONS(2)
 FF_COONS(3)

@@ -11,24 +11,29 @@
 // reflections [Wang et al. 2008], which is accurate to the fourth order; their derivatives are A times them.
 // m is doubled until the bound is within the tolerance.
 //
-// Accuracy: let e = q - r, r exact. e' = A e + d, and as A is skew, |e|' <= |d|: no exponential of the curvature
-// appears. But d is of third order in 1/m and changes its sign within each part, where e is of fourth order. So it
-// is integrated before its norm is taken. With U the rotation that solves U' = A U and D the integral of d from
-// the beginning of a part, by parts, as (U^-1)' = -U^-1 A:
+// Accuracy: let e = q - r, r exact. e' = A e + d, and as A is skew, |e|' <= |d|: no exponential of the
+// curvature appears. But d is of third order in 1/m and changes its sign within each part, where e is of
+// fourth order. So it is integrated before its norm is taken. With U the rotation that solves U' = A U and D
+// the integral of d from the beginning of a part, by parts, as (U^-1)' = -U^-1 A:
 //     U^-1 e (v) - U^-1 e (v0) = integral of U^-1 d = U^-1 D (v) + integral of U^-1 A D.
-// Norms: a part adds |D| at its end + the integral of |A| |D|; inside it |e| is larger by the largest |D| at most.
-//     Over a part |c'|^2 d = |c'|^2 q' - c'' (c' . q) + c' (c'' . q) = g is a polynomial, computed in Bernstein
-// form with bounds of all roundings (bounded.hpp). With p the linear function through 1 / |c'|^2 at both ends,
+// Norms: a part adds |D| at its end + the integral of |A| |D|; inside it |e| is larger by the largest |D| at
+// most.
+//     Over a part |c'|^2 d = |c'|^2 q' - c'' (c' . q) + c' (c'' . q) = g is a polynomial, computed in
+//     Bernstein
+// form with bounds of all roundings (bounded.hpp). With p the linear function through 1 / |c'|^2 at both
+// ends,
 //     d = p g + (1 - p |c'|^2) g / |c'|^2,
-// the first term has a polynomial as integral, the second, of fifth order, is bounded by the largest coefficients
-// of its first factor, the mean of the norms of those of g, and the smallest of |c'|^2. |A| is |c' x c''| / |c'|^2.
-// Norms of polynomials are bounded by coefficients. At the start q is a computed frame; e(v0) is its distance from
-// an orthonormal one: |q . T| + | |q| - 1 |, for s also |s - T x r|. The surface is off by at most |x| |e_r| + |y|
-// |e_s|, with x and y in the hull of the profile, and the rounding of its net.
+// the first term has a polynomial as integral, the second, of fifth order, is bounded by the largest
+// coefficients of its first factor, the mean of the norms of those of g, and the smallest of |c'|^2. |A| is
+// |c' x c''| / |c'|^2. Norms of polynomials are bounded by coefficients. At the start q is a computed frame;
+// e(v0) is its distance from an orthonormal one: |q . T| + | |q| - 1 |, for s also |s - T x r|. The surface
+// is off by at most |x| |e_r| + |y| |e_s|, with x and y in the hull of the profile, and the rounding of its
+// net.
 //
-// Rational rails c = C / w. A depends on c' only up to a positive factor, which may vary, so c' and c'' are replaced
-// by N = C' w - C w' and N', polynomials of degree 2 p - 1. The surface has the numerators w_p C + w (X r + Y s) for
-// a coefficient (X, Y, w_p) of the profile, and the weights w_p w: rational, with nothing more to approximate.
+// Rational rails c = C / w. A depends on c' only up to a positive factor, which may vary, so c' and c'' are
+// replaced by N = C' w - C w' and N', polynomials of degree 2 p - 1. The surface has the numerators w_p C + w
+// (X r + Y s) for a coefficient (X, Y, w_p) of the profile, and the weights w_p w: rational, with nothing
+// more to approximate.
 //
 // References: [Bishop 1975], [Wang et al. 2008], [Farin 2002].
 //
@@ -53,7 +58,8 @@ using detail::elevated;
 using detail::scaled_by;
 
 Scalar inner(const Vector& a, const Vector& b) {
-    return detail::bernstein_product(a, b, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return dot(x, y); });
+    return detail::bernstein_product(
+        a, b, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return dot(x, y); });
 }
 Vector derivative_of(const Vector& v) {
     Vector d(std::max<std::size_t>(v.size() - 1, 1));
@@ -101,7 +107,9 @@ struct Part {
     Vec<3> to() const { return point(c.back(), w.back()); }
 
 private:
-    static Vec<3> point(const BoundedVec<3>& x, const Bounded& weight) { return (1 / weight.value) * values(x); }
+    static Vec<3> point(const BoundedVec<3>& x, const Bounded& weight) {
+        return (1 / weight.value) * values(x);
+    }
 };
 
 // A vector of the frame as a cubic.
@@ -160,10 +168,9 @@ Defect defect(const Part& s, const Vector& q) {
     }
     const double rest = off * mean_length(g) / least * (1 + 0x1p-44);
     const Vector d = integral_of(scaled_by(p, g));
-    const Vector turning =
-        detail::bernstein_product(s.d1, s.d2, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return cross(x, y); });
-    const double by_turning =
-        largest_length(turning) / least * (mean_length(d) + rest) * (1 + 0x1p-44);
+    const Vector turning = detail::bernstein_product(
+        s.d1, s.d2, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return cross(x, y); });
+    const double by_turning = largest_length(turning) / least * (mean_length(d) + rest) * (1 + 0x1p-44);
     const Defect found{(length_above(d.back()) + rest + by_turning) * (1 + 0x1p-44),
                        (largest_length(d) + rest + by_turning) * (1 + 0x1p-44)};
     const double direct = mean_length(g) / least * (1 + 0x1p-44);  // the integral of |d|
@@ -171,7 +178,7 @@ Defect defect(const Part& s, const Vector& q) {
 }
 
 struct Framed {
-    std::vector<Vector> r, s;  // for each part
+    std::vector<Vector> r, s;       // for each part
     double off_r = 0, off_s = 0;    // at the end of the last part
     double most_r = 0, most_s = 0;  // anywhere
 };
@@ -294,8 +301,8 @@ Framed framed(const std::vector<Part>& parts, const Vec<3>& wanted) {
 
 template <class Q>
 Result<MadeSurface<Q>> placed(const BSplineBasis& u, const std::vector<detail::SpaceCoefficient>& profile,
-                              const detail::Powers& powers, const std::vector<Part>& parts, const Framed& frame,
-                              std::size_t degree) {
+                              const detail::Powers& powers, const std::vector<Part>& parts,
+                              const Framed& frame, std::size_t degree) {
     detail::SurfaceNet<Q> net(powers);
     std::vector<double> t(degree + 1, parts[0].on.lo);
     for (const Part& p : parts) t.insert(t.end(), degree, p.on.hi);
@@ -391,8 +398,9 @@ Result<FrameSweep<Swept<P, R>>> sweep(const Curve<P>& profile, const Curve<R>& r
                   text(options.tolerance, " was not reached with ", kMost, " pieces, but ", reached));
 }
 
-#define FF_FRAME_SWEEP(P, R) \
-    template Result<FrameSweep<Swept<P, R>>> sweep(const Curve<P>&, const Curve<R>&, const FrameSweepOptions&);
+#define FF_FRAME_SWEEP(P, R)                                                         \
+    template Result<FrameSweep<Swept<P, R>>> sweep(const Curve<P>&, const Curve<R>&, \
+                                                   const FrameSweepOptions&);
 FF_FRAME_SWEEP(Vec<2>, Vec<3>)
 FF_FRAME_SWEEP(Hom<2>, Vec<3>)
 FF_FRAME_SWEEP(Vec<2>, Hom<3>)

@@ -168,8 +168,8 @@ Result<PolynomialCurve<P>> from_basis(const PolynomialBasis& basis, std::span<co
     if (coefficients.size() != std::size_t(basis.size()))
         return refuse(RefusalKind::invalid, "coefficients",
                       text(coefficients.size(), " coefficients for a basis of degree ", basis.degree()));
-    auto made = from_bases<1, P>(
-        {basis}, Net<1, P>({basis.size()}, {coefficients.begin(), coefficients.end()}), {on});
+    auto made = from_bases<1, P>({basis},
+                                 Net<1, P>({basis.size()}, {coefficients.begin(), coefficients.end()}), {on});
     if (!made) return std::unexpected(made.error());
     return PolynomialCurve<P>{std::move(made->patch), made->bound, made->condition};
 }

@@ -78,8 +78,7 @@ std::array<P, 4> curve_of_curves(const std::array<std::array<P, 4>, 4>& geometry
 
 template <std::size_t N, Coefficient P>
 Result<PolynomialPatch<N, P>> from_bases(const std::array<PolynomialBasis, N>& bases,
-                                         const Net<N, P>& coefficients,
-                                         const std::array<Interval, N>& on) {
+                                         const Net<N, P>& coefficients, const std::array<Interval, N>& on) {
     std::vector<PolynomialBasis> bernstein;
     std::vector<BSplineBasis> splines;
     for (std::size_t d = 0; d < N; ++d) {

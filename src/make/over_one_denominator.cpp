@@ -1,15 +1,15 @@
 // Rational curves over one denominator.
 //
-// Idea: with the different denominators d_1 .. d_m, W their product, curve k over d_s is the numerator times W / d_s
-// over W. Method: all curves on the breaks of all, piece by piece in Bernstein form, where products are exact but
-// for rounding, which is counted (bounded.hpp).
+// Idea: with the different denominators d_1 .. d_m, W their product, curve k over d_s is the numerator times
+// W / d_s over W. Method: all curves on the breaks of all, piece by piece in Bernstein form, where products
+// are exact but for rounding, which is counted (bounded.hpp).
 //
-// Accuracy: coefficients of pieces are off by what the common basis (compatible.hpp) and the extraction of pieces
-// moved. A denominator w that differs from f times another, d, by e at most, is replaced by d: the numerator over f
-// is then off by a factor of f d / w = 1 +- e / (w - e), which is added to its bound.
+// Accuracy: coefficients of pieces are off by what the common basis (compatible.hpp) and the extraction of
+// pieces moved. A denominator w that differs from f times another, d, by e at most, is replaced by d: the
+// numerator over f is then off by a factor of f d / w = 1 +- e / (w - e), which is added to its bound.
 //
-// Why not splines with the continuity that the products have? Their knots are known, but the coefficients cost a
-// system of equations or a blossom of p q terms, and the surface is the same.
+// Why not splines with the continuity that the products have? Their knots are known, but the coefficients
+// cost a system of equations or a blossom of p q terms, and the surface is the same.
 #include "bernstein_detail.hpp"
 
 #include <freiform/make/boolean_sum.hpp>
@@ -71,8 +71,8 @@ Pieces pieces_of(const Curve<P>& c, double relative) {
     return out;
 }
 
-// The curve over another denominator of which its own is a multiple, or over 1: numerators are divided by the factor
-// and widened by what the quotient may be off. False, and unchanged, where it is no multiple.
+// The curve over another denominator of which its own is a multiple, or over 1: numerators are divided by the
+// factor and widened by what the quotient may be off. False, and unchanged, where it is no multiple.
 bool share(Pieces& p, const Pieces* other) {
     const auto of_other = [&](std::size_t i, std::size_t j) {
         return other ? other->weight[i][j] : Bounded(1);
@@ -157,7 +157,8 @@ Result<OverOne> over_one_denominator(std::span<const Curve<Hom<3>>> curves,
     std::vector<int> denominator;  // of curve k; -1: none
     std::vector<std::size_t> first;
     for (std::size_t k = 0; k < curves.size(); ++k) {
-        const double opened = curves[k].basis().is_closed() ? refinement_error(curves[k].basis().degree()) : 0;
+        const double opened =
+            curves[k].basis().is_closed() ? refinement_error(curves[k].basis().degree()) : 0;
         pieces.push_back(pieces_of(same->curves[k], same->relative[k] + opened));
         Pieces& p = pieces.back();
         int found = share(p, nullptr) ? -1 : int(first.size());
@@ -172,8 +173,8 @@ Result<OverOne> over_one_denominator(std::span<const Curve<Hom<3>>> curves,
     const std::size_t degree = m * p + std::max(q, constant ? p : 0);
     if (degree > std::size_t(kMaxDegree))
         return refuse(RefusalKind::unsupported, "",
-                      text("have ", m, " different denominators of degree ", p, ": the surface would have degree ",
-                           degree, ", more than ", kMaxDegree,
+                      text("have ", m, " different denominators of degree ", p,
+                           ": the surface would have degree ", degree, ", more than ", kMaxDegree,
                            "; give curves that share their weights, or polynomial ones near them"));
     const auto times_all_but = [&](std::size_t piece, int s, auto polynomial) {
         for (std::size_t r = 0; r < m; ++r)
@@ -204,7 +205,8 @@ Result<OverOne> over_one_denominator(std::span<const Curve<Hom<3>>> curves,
         out.functions.push_back(joined(products, degree));
     }
     std::vector<BernsteinScalar> weights;
-    for (std::size_t i = 0; i < count; ++i) weights.push_back(times_all_but(i, -1, BernsteinScalar{Bounded(1)}));
+    for (std::size_t i = 0; i < count; ++i)
+        weights.push_back(times_all_but(i, -1, BernsteinScalar{Bounded(1)}));
     out.denominator = joined(weights, degree);
     return out;
 }

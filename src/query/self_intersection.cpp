@@ -34,8 +34,7 @@
 //
 // Why not elimination (implicit form, resultants)? Degree (n - 1)(n - 2) in one parameter, with coefficients
 // that doubles cannot hold for n > 4.
-#include "query/self_intersection_detail.hpp"
-
+#include <freiform/query/self_intersection.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -152,10 +151,7 @@ public:
     // coefficients of each piece are off by; empty: nothing.
     Search(const Curve<P>& curve, std::span<const Interval> closed, std::span<const double> errors,
            double accuracy, int max_pairs)
-        : curve_(curve),
-          accuracy_(accuracy),
-          max_pairs_(max_pairs),
-          closed_(closed.begin(), closed.end()) {
+        : curve_(curve), accuracy_(accuracy), max_pairs_(max_pairs), closed_(closed.begin(), closed.end()) {
         const BezierPieces<1, P> pieces(curve);
         const BSplineBasis& basis = curve.basis();
         const int p = basis.degree();
@@ -304,9 +300,8 @@ private:
                 if (parts_[std::size_t(i)].arc.on.lo == b.on.lo) return !jumps_[std::size_t(i) - 1];
             return true;
         }
-        return std::any_of(closed_.begin(), closed_.end(), [&](const Interval& whole) {
-            return a.on.lo == whole.lo && b.on.hi == whole.hi;
-        });
+        return std::any_of(closed_.begin(), closed_.end(),
+                           [&](const Interval& whole) { return a.on.lo == whole.lo && b.on.hi == whole.hi; });
     }
 
     static bool are_apart(const Arc<D>& a, const Arc<D>& b) {
@@ -519,11 +514,18 @@ requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)
                 .run(std::numeric_limits<std::size_t>::max());
 }
 
-std::optional<std::vector<SelfIntersection<2>>> detail::meetings_of_chain(const Curve<Hom<2>>& chain,
-                                                           std::span<const Interval> closed,
-                                                           std::span<const double> errors, double accuracy,
-                                                           int max_pairs) {
-    return Search<Hom<2>>(chain, closed, errors, accuracy, max_pairs).run(std::size_t(max_pairs));
+Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Hom<2>>& chains,
+                                                            std::span<const Interval> closed,
+                                                            std::span<const double> errors, double accuracy,
+                                                            int max_pairs) {
+    if (!(accuracy > 0))
+        return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a length > 0"));
+    auto found = Search<Hom<2>>(chains, closed, errors, accuracy, max_pairs).run(std::size_t(max_pairs));
+    if (!found)
+        return refuse(
+            RefusalKind::limit, "curve",
+            text("more than ", max_pairs, " pairs of its ", errors.size(), " pieces lie on each other"));
+    return *std::move(found);
 }
 
 template Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Vec<2>>&, double, int);

@@ -1,5 +1,5 @@
-// Neighbouring Bezier pieces of a spline begin and end in the same numbers, unless the spline jumps there: what
-// they have in common was computed twice, and rounded.
+// Neighbouring Bezier pieces of a spline begin and end in the same numbers, unless the spline jumps there:
+// what they have in common was computed twice, and rounded.
 #include "trim/chain_detail.hpp"
 
 #include <freiform/spline/bezier.hpp>

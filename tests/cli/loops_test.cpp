@@ -25,7 +25,8 @@ const std::vector<std::string> kClockwise = {"[0,0]", "[0,4]", "[4,4]", "[4,0]"}
                                kHole = {"[1,1]", "[2,1]", "[2,2]", "[1,2]"};
 
 TEST_F(Cli, convert_turns_loops_by_their_depth_and_says_which) {
-    const Ran r = run({"convert", "-", "--orient-loops", "-o", "f.json", "--json"}, face({kClockwise, kHole}));
+    const Ran r =
+        run({"convert", "-", "--orient-loops", "-o", "f.json", "--json"}, face({kClockwise, kHole}));
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_EQ(Json::parse(r.out)["turned_loops"].size(), 2u) << r.out;
     const Json loops = Json::parse(content(path("f.json")))["objects"][0]["loops"];

@@ -8,9 +8,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-
-const std::string kArc = R"({"type":"curve","degree":2,"points":[[1,0,0],[1,1,0],[0,1,0]],"weights":[1,0.7071067811865476,1]})";
-const std::string kTwo = R"({"objects":[{"name":"a","type":"curve","degree":2,"points":[[0,0,0],[1,1,0],[2,0,0]]},
+const std::string kArc =
+    R"({"type":"curve","degree":2,"points":[[1,0,0],[1,1,0],[0,1,0]],"weights":[1,0.7071067811865476,1]})";
+const std::string kTwo =
+    R"({"objects":[{"name":"a","type":"curve","degree":2,"points":[[0,0,0],[1,1,0],[2,0,0]]},
     {"name":"b","type":"curve","degree":1,"points":[[0,0,2],[2,0,3]]}]})";
 
 class Surfaces : public Program {
@@ -43,7 +44,8 @@ TEST_F(Surfaces, extrude_and_ruled_join_curves_by_straight_lines) {
 
 TEST_F(Surfaces, sweep_turns_with_the_rail_or_does_not) {
     file("rail.json", R"({"type":"curve","degree":2,"points":[[0,0,0],[4,0,0],[4,4,0]]})");
-    const Json report = made({"sweep", "-", "--rail", "rail.json", "--tolerance", "1e-4", "--x", "0,0,1"}, kArc);
+    const Json report =
+        made({"sweep", "-", "--rail", "rail.json", "--tolerance", "1e-4", "--x", "0,0,1"}, kArc);
     EXPECT_LE(report["bound"].get<double>(), 1e-4);
     EXPECT_GE(report["pieces"], 1);
     // In a plane x of the profile stays its normal z: (1, 0) goes there, all along.
@@ -62,10 +64,11 @@ TEST_F(Surfaces, sweep_turns_with_the_rail_or_does_not) {
 TEST_F(Surfaces, loft_contains_its_sections_and_says_how_smooth_it_is) {
     std::string rings = R"({"objects":[)";
     for (int i = 0; i < 5; ++i)
-        rings += (i > 0 ? "," : "") + std::string(R"({"type":"curve","degree":2,"weights":[1,0.7071067811865476,1],"points":[[)") +
-                 std::to_string(1 + i % 2) + ",0," + std::to_string(i) + "],[" + std::to_string(1 + i % 2) + "," +
-                 std::to_string(1 + i % 2) + "," + std::to_string(i) + "],[0," + std::to_string(1 + i % 2) + "," +
-                 std::to_string(i) + "]]}";
+        rings += (i > 0 ? "," : "") +
+                 std::string(R"({"type":"curve","degree":2,"weights":[1,0.7071067811865476,1],"points":[[)") +
+                 std::to_string(1 + i % 2) + ",0," + std::to_string(i) + "],[" + std::to_string(1 + i % 2) +
+                 "," + std::to_string(1 + i % 2) + "," + std::to_string(i) + "],[0," +
+                 std::to_string(1 + i % 2) + "," + std::to_string(i) + "]]}";
     rings += "]}";
     const Json report = made({"loft", "-", "--spacing", "uniform"}, rings);
     EXPECT_EQ(report["continuity"], 2);
@@ -85,7 +88,8 @@ TEST_F(Surfaces, coons_fills_four_curves_and_networks) {
     const auto p = point("s.json", "0.4,0");
     EXPECT_NEAR(std::hypot(p[0], p[1]), 1, 1e-13);
     EXPECT_NEAR(point("s.json", "1,0.5")[2], 1.5, 1e-13);
-    EXPECT_LE(made({"coons", "-", "--at-v", "0,1", "--at-u", "0,1", "--tolerance", "1e-9"}, four)["gap"].get<double>(),
+    EXPECT_LE(made({"coons", "-", "--at-v", "0,1", "--at-u", "0,1", "--tolerance", "1e-9"}, four)["gap"]
+                  .get<double>(),
               1e-12);
     EXPECT_NEAR(point("s.json", "1,0.5")[2], 1.5, 1e-13);
     EXPECT_EQ(run({"coons", "-", "-o", "s.json"}, kTwo).code, 1);
@@ -93,7 +97,8 @@ TEST_F(Surfaces, coons_fills_four_curves_and_networks) {
 }
 
 TEST_F(Surfaces, quadric_makes_every_kind_on_its_surface) {
-    const auto off = [&](std::vector<std::string> arguments, auto&& implicit, const std::string& at = "0.3,0.6") {
+    const auto off = [&](std::vector<std::string> arguments, auto&& implicit,
+                         const std::string& at = "0.3,0.6") {
         arguments.insert(arguments.begin(), "quadric");
         EXPECT_LE(made(arguments)["bound"].get<double>(), 1e-13) << arguments[1];
         const auto p = point("s.json", at);
@@ -107,9 +112,10 @@ TEST_F(Surfaces, quadric_makes_every_kind_on_its_surface) {
     EXPECT_LE(off({"cone", "--radius", "2", "--top", "1", "--height", "3", "--origin", "0,0,1"},
                   [](double x, double y, double z) { return std::hypot(x, y) - (2 - (z - 1) / 3); }),
               1e-14);
-    EXPECT_LE(off({"torus", "--radius", "3", "--tube", "1", "--angle", "180"},
-                  [](double x, double y, double z) { return std::hypot(std::hypot(x, y) - 3, z) - 1 + (y < 0); }),
-              1e-14);
+    EXPECT_LE(
+        off({"torus", "--radius", "3", "--tube", "1", "--angle", "180"},
+            [](double x, double y, double z) { return std::hypot(std::hypot(x, y) - 3, z) - 1 + (y < 0); }),
+        1e-14);
     EXPECT_LE(off({"ellipsoid", "--radii", "3,2,1", "--form", "quintic"},
                   [](double x, double y, double z) { return x * x / 9 + y * y / 4 + z * z - 1; }),
               1e-14);
@@ -130,8 +136,10 @@ TEST_F(Surfaces, eval_shows_the_nets_of_the_construction) {
     EXPECT_EQ(levels[1]["level"], Json::parse("[0,1]"));
     EXPECT_EQ(levels[1]["points"], Json::parse("[[0.0,2.0,0.0],[8.0,2.0,4.0]]"));
     EXPECT_EQ(levels[3]["points"], Json::parse("[[4.0,2.0,2.0]]"));
-    EXPECT_EQ(Json::parse(run({"eval", "-", "--at", "0.5", "--construction"}, kArc).out)["results"][0]
-                  ["construction"][1]["weights"].size(), 2u);
+    EXPECT_EQ(Json::parse(run({"eval", "-", "--at", "0.5", "--construction"}, kArc)
+                              .out)["results"][0]["construction"][1]["weights"]
+                  .size(),
+              2u);
 }
 
 }  // namespace

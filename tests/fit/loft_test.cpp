@@ -236,7 +236,8 @@ TEST(Gordon, contains_every_curve_of_a_rational_network) {
             const double x = i < 2 ? radius[j] : 0, y = i > 0 ? radius[j] : 0;
             net.view()({i, j}) = weighted(Vec<3>{{x, y, double(j)}}, (i == 1 ? s : 1) * weight[j]);
         }
-    const auto vase = must(Surface<Hom<3>>::make({must(BSplineBasis::bezier(2)), must(BSplineBasis::bezier(2))}, net));
+    const auto vase =
+        must(Surface<Hom<3>>::make({must(BSplineBasis::bezier(2)), must(BSplineBasis::bezier(2))}, net));
     std::vector<Curve<Hom<3>>> along_u, along_v;
     const std::vector<double> at_v = {0, 0.25, 0.625, 1}, at_u = {0, 0.5, 1};
     for (double v : at_v) along_u.push_back(iso(vase, 1, v));
@@ -263,7 +264,8 @@ TEST(Gordon, contains_every_curve_of_a_rational_network) {
     const auto refused = gordon<3>(along_u, at_v, along_v, at_u, 10);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, RefusalKind::unsupported);
-    EXPECT_NE(refused.error().message.find("share their weights"), std::string::npos) << refused.error().message;
+    EXPECT_NE(refused.error().message.find("share their weights"), std::string::npos)
+        << refused.error().message;
 }
 
 TEST(Gordon, refuses_parameters_that_do_not_fit) {

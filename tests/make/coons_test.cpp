@@ -240,14 +240,15 @@ TEST(R25, a_coons_patch_of_rational_curves_is_the_same_sum) {
 TEST(Coons, of_parallel_arcs_has_one_denominator) {
     const double s = std::sqrt(0.5);
     const auto arc = [&](double z, double factor) {
-        return test::bezier<Hom<3>>({weighted(Vec<3>{{1, 0, z}}, factor), weighted(Vec<3>{{1, 1, z}}, factor * s),
+        return test::bezier<Hom<3>>({weighted(Vec<3>{{1, 0, z}}, factor),
+                                     weighted(Vec<3>{{1, 1, z}}, factor * s),
                                      weighted(Vec<3>{{0, 1, z}}, factor)});
     };
     const auto line = [](const Vec<3>& p, const Vec<3>& q) {
         return test::bezier<Hom<3>>({weighted(p, 1), weighted(q, 1)});
     };
-    const auto patch = must(coons(arc(0, 1), arc(2, 3), line({{1, 0, 0}}, {{1, 0, 2}}),
-                                  line({{0, 1, 0}}, {{0, 1, 2}}), 0));
+    const auto patch =
+        must(coons(arc(0, 1), arc(2, 3), line({{1, 0, 0}}, {{1, 0, 2}}), line({{0, 1, 0}}, {{0, 1, 2}}), 0));
     EXPECT_EQ(patch.surface.basis(0).degree(), 3);
     EXPECT_EQ(patch.surface.basis(1).degree(), 1);
     for (double u : kAt)

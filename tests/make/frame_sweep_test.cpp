@@ -117,10 +117,11 @@ TEST(FrameSweep, scales_with_powers_of_two) {
     }
 }
 
-// A rational rail and profile: a circle swept along a circle about z is a torus, turned nowhere about the rail.
+// A rational rail and profile: a circle swept along a circle about z is a torus, turned nowhere about the
+// rail.
 TEST(FrameSweep, a_circle_along_a_circle_is_a_torus) {
-    const auto ring = must(full_ellipse(Conic<3>{ConicKind::ellipse, {}, {{3, 0, 0}}, {{0, 3, 0}}},
-                                        EllipseForm::quintic));
+    const auto ring =
+        must(full_ellipse(Conic<3>{ConicKind::ellipse, {}, {{3, 0, 0}}, {{0, 3, 0}}}, EllipseForm::quintic));
     const auto tube =
         must(full_ellipse(Conic<2>{ConicKind::ellipse, {}, {{1, 0}}, {{0, 1}}}, EllipseForm::open));
     for (const double tolerance : {1e-2, 1e-5}) {
@@ -133,7 +134,8 @@ TEST(FrameSweep, a_circle_along_a_circle_is_a_torus) {
                 const Vec<3> c = ring.curve(v), out = (1.0 / 3) * c;
                 const Vec<2> p = tube.curve(u);
                 // x of the profile stays z; y = tangent x z is outwards.
-                worst = std::max(worst, norm(made.surface(u, v) - (c + p[0] * Vec<3>{{0, 0, 1}} + p[1] * out)));
+                worst =
+                    std::max(worst, norm(made.surface(u, v) - (c + p[0] * Vec<3>{{0, 0, 1}} + p[1] * out)));
             }
         std::printf("torus within %g: %d pieces, error / bound = %.3g\n", tolerance, made.pieces,
                     worst / made.bound);

@@ -86,8 +86,8 @@ struct Written {
 };
 std::vector<Written> written_schemes() {
     std::vector<Written> all;
-    all.push_back({must(PolynomialBasis::hermite(3)),
-                   {{2, -3, 0, 1}, {-2, 3, 0, 0}, {1, -2, 1, 0}, {1, -1, 0, 0}}});
+    all.push_back(
+        {must(PolynomialBasis::hermite(3)), {{2, -3, 0, 1}, {-2, 3, 0, 0}, {1, -2, 1, 0}, {1, -1, 0, 0}}});
     all.push_back({must(PolynomialBasis::bernstein(2)), {{1, -2, 1}, {-2, 2, 0}, {1, 0, 0}}});
     all.push_back({must(PolynomialBasis::uniform_b_spline(2)), {{.5, -1, .5}, {-1, 1, .5}, {.5, 0, 0}}});
     all.push_back({must(PolynomialBasis::lagrange({0, 0.5, 1})), {{2, -3, 1}, {-4, 4, 0}, {2, -1, 0}}});
@@ -170,8 +170,8 @@ TEST(FromBases, nothing_is_lost_between_the_axes) {
 
 TEST(FromBases, a_volume_of_three_schemes_on_a_box) {
     Random random(13);
-    const std::array bases{must(PolynomialBasis::hermite(3, {-1, 2})), must(PolynomialBasis::lagrange({0, 2, 3})),
-                           must(PolynomialBasis::monomial(1, 5))};
+    const std::array bases{must(PolynomialBasis::hermite(3, {-1, 2})),
+                           must(PolynomialBasis::lagrange({0, 2, 3})), must(PolynomialBasis::monomial(1, 5))};
     Net<3, Vec<3>> g({4, 3, 2});
     for (Vec<3>& p : g.flat()) p = random_point(random);
     const std::array<Interval, 3> on{{{-1, 2}, {0, 3}, {4, 6}}};

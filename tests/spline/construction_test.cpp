@@ -132,8 +132,9 @@ TEST(R23, bilinear_interpolation_repeated_makes_these_nets) {
             level = next;
             const auto made = c.level({r, r});
             ASSERT_EQ(made.extent, level.extent());
-            each_index(made.extent,
-                       [&](const Index<2>& at) { EXPECT_LT(norm(made(at) - level.view()(at)), 1e-15 * 8 * n); });
+            each_index(made.extent, [&](const Index<2>& at) {
+                EXPECT_LT(norm(made(at) - level.view()(at)), 1e-15 * 8 * n);
+            });
         }
         EXPECT_LT(norm(c.point() - level.view()({0, 0})), 1e-15 * 8 * n);
     }
@@ -149,11 +150,9 @@ TEST(Construction, of_a_surface_has_the_constructions_of_its_curves) {
     const auto c = must(de_boor(s, {u, v}));
     const auto along_v = must(de_boor(iso(s, 0, u), v)), along_u = must(de_boor(iso(s, 1, v), u));
     for (int r = 0; r <= 2; ++r)
-        for (int i = 0; i <= 2 - r; ++i)
-            EXPECT_LT(max_abs(c({3, r}, {0, i}) - along_v(r, i)), 1e-14);
+        for (int i = 0; i <= 2 - r; ++i) EXPECT_LT(max_abs(c({3, r}, {0, i}) - along_v(r, i)), 1e-14);
     for (int r = 0; r <= 3; ++r)
-        for (int i = 0; i <= 3 - r; ++i)
-            EXPECT_LT(max_abs(c({r, 2}, {i, 0}) - along_u(r, i)), 1e-14);
+        for (int i = 0; i <= 3 - r; ++i) EXPECT_LT(max_abs(c({r, 2}, {i, 0}) - along_u(r, i)), 1e-14);
     EXPECT_LT(norm(project(c.point()) - s(u, v)), 1e-14);
     EXPECT_LT(c.bound(), 1e-13);
 }
@@ -173,7 +172,8 @@ TEST(R23, a_surface_is_cut_in_u_in_v_and_in_both) {
                        half_v = must(Surface<Vec<3>>::make(bases, along_v.part({1, l})));
             for (const double x : {0.0, 0.3, 1.0})
                 for (const double y : {0.0, 0.6, 1.0}) {
-                    const double at_u = k == 0 ? u * x : u + (1 - u) * x, at_v = l == 0 ? v * y : v + (1 - v) * y;
+                    const double at_u = k == 0 ? u * x : u + (1 - u) * x,
+                                 at_v = l == 0 ? v * y : v + (1 - v) * y;
                     EXPECT_LT(norm(quarter(x, y) - s(at_u, at_v)), 1e-14);
                     EXPECT_LT(norm(half_u(x, y) - s(at_u, y)), 1e-14);
                     EXPECT_LT(norm(half_v(x, y) - s(x, at_v)), 1e-14);

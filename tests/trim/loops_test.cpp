@@ -50,7 +50,8 @@ TEST(R27, loops_that_cross_themselves_are_refused_with_the_place) {
     EXPECT_TRUE(bow.starts_with("loops[0][0]: crosses loops[0][2] at (")) << bow;
     EXPECT_LE(norm(place(bow) - Vec<2>{{1, 1}}), 1e-9) << bow;
     // A cubic with a loop, closed by a segment: x = 3 t (1-t)(..), crosses itself where x = 0.5.
-    const std::string curl = refused({{bezier({{{0, 0}}, {{3, 2}}, {{-2, 2}}, {{1, 0}}}), bezier({{{1, 0}}, {{0, 0}}})}});
+    const std::string curl =
+        refused({{bezier({{{0, 0}}, {{3, 2}}, {{-2, 2}}, {{1, 0}}}), bezier({{{1, 0}}, {{0, 0}}})}});
     EXPECT_TRUE(curl.starts_with("loops[0][0]: crosses loops[0][0] at (")) << curl;
     EXPECT_NEAR(place(curl)[0], 0.5, 1e-9) << curl;
 }
@@ -77,10 +78,11 @@ TEST(Loops, simple_and_disjoint_ones_have_no_contact) {
     // Sharp and blunt corners, one Bezier piece, two pieces, a spline on a closed basis.
     EXPECT_EQ(contacts({polygon({{{0, 0}}, {{8, 1e-3}}, {{4, 1e-3}}, {{4, 5}}})}), 0u);
     EXPECT_EQ(contacts({{bezier({{{0, 0}}, {{3, 0}}, {{0, 3}}, {{0, 0}}})}}), 0u);
-    EXPECT_EQ(contacts({{bezier({{{0, 0}}, {{1, 1}}, {{2, 0}}}), bezier({{{2, 0}}, {{1, -1}}, {{0, 0}}})}}), 0u);
-    const Curve<Vec<2>> ring = *Curve<Vec<2>>::make(
-        {*BSplineBasis::periodic(3, {0, 1, 2, 3, 4, 5})},
-        Net<1, Vec<2>>({5}, {{{4, 0}}, {{1, 4}}, {{-3, 2}}, {{-3, -2}}, {{1, -4}}}));
+    EXPECT_EQ(contacts({{bezier({{{0, 0}}, {{1, 1}}, {{2, 0}}}), bezier({{{2, 0}}, {{1, -1}}, {{0, 0}}})}}),
+              0u);
+    const Curve<Vec<2>> ring =
+        *Curve<Vec<2>>::make({*BSplineBasis::periodic(3, {0, 1, 2, 3, 4, 5})},
+                             Net<1, Vec<2>>({5}, {{{4, 0}}, {{1, 4}}, {{-3, 2}}, {{-3, -2}}, {{1, -4}}}));
     EXPECT_EQ(contacts({{ring}}), 0u);
 }
 
@@ -100,13 +102,15 @@ TEST(Loops, what_touches_is_a_contact_and_what_crosses_in_a_vertex_a_crossing) {
     // A hole whose corner is on the outer edge, and one whose corner is a vertex of the outer loop.
     EXPECT_EQ(contacts({box(0, 0, 4, 4), polygon({{{0, 2}}, {{1, 1}}, {{1, 3}}})}), 1u);
     EXPECT_EQ(contacts({box(0, 0, 4, 4), polygon({{{0, 0}}, {{2, 1}}, {{1, 2}}})}), 1u);
-    // Two triangles tip to tip in one loop, run through so that it does not cross itself; and so that it does.
+    // Two triangles tip to tip in one loop, run through so that it does not cross itself; and so that it
+    // does.
     const Vec<2> o{}, a{{2, -1}}, b{{2, 1}}, c{{-2, 1}}, d{{-2, -1}};
     EXPECT_EQ(contacts({polygon({o, a, b, o, c, d})}), 1u);
     const std::string eight = refused({polygon({o, a, b, o, d, c})});
     EXPECT_TRUE(eight.find("at (0, 0), known within 0") != std::string::npos) << eight;
     // A corner of one on the edge of the other, and through.
-    const std::string through = refused({box(0, 0, 4, 4), polygon({{{0, 2}}, {{2, 1}}, {{2, 3}}, {{-1, 2.5}}})});
+    const std::string through =
+        refused({box(0, 0, 4, 4), polygon({{{0, 2}}, {{2, 1}}, {{2, 3}}, {{-1, 2.5}}})});
     EXPECT_TRUE(through.find("crosses loops[1]") != std::string::npos) << through;
     // Circles that touch, inside and outside; numbers that are exact.
     EXPECT_EQ(contacts({ellipse({}, {{2, 0}}, {{0, 2}}), ellipse({{1, 0}}, {{1, 0}}, {{0, 1}})}), 1u);
@@ -114,7 +118,8 @@ TEST(Loops, what_touches_is_a_contact_and_what_crosses_in_a_vertex_a_crossing) {
 }
 
 TEST(Loops, a_loop_that_goes_round_twice_is_refused_though_its_two_rounds_coincide) {
-    std::vector<Vec<2>> twice = {{{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}, {{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}};
+    std::vector<Vec<2>> twice = {{{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}},
+                                 {{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}};
     const std::string r = refused({polygon(twice)});
     EXPECT_TRUE(r.find("2 times") != std::string::npos) << r;
 }
@@ -134,9 +139,11 @@ TEST(Loops, decisions_scale_with_powers_of_two) {
         const LoopTolerance t{0, s * 1e-9};
         const Loop tie = polygon({{{0, 0}}, {{2 * s, 2 * s}}, {{2 * s, 0}}, {{0, 2 * s}}});
         EXPECT_FALSE(check_loops(Loops{tie}, t));
-        EXPECT_TRUE(check_loops(Loops{box(0, 0, s, s), ellipse({{s / 2, s / 2}}, {{s / 4, 0}}, {{0, s / 4}})}, t)
-                        ->empty());
-        EXPECT_FALSE(check_loops(Loops{box(0, 0, s, s), ellipse({{s, s / 2}}, {{s / 4, 0}}, {{0, s / 4}})}, t));
+        EXPECT_TRUE(
+            check_loops(Loops{box(0, 0, s, s), ellipse({{s / 2, s / 2}}, {{s / 4, 0}}, {{0, s / 4}})}, t)
+                ->empty());
+        EXPECT_FALSE(
+            check_loops(Loops{box(0, 0, s, s), ellipse({{s, s / 2}}, {{s / 4, 0}}, {{0, s / 4}})}, t));
     }
 }
 
@@ -152,7 +159,9 @@ TEST(Loops, polygons_of_whole_numbers_agree_with_brute_force) {
         }
         bool proper = false, touches = false;
         const auto sign = [](double v) { return (v > 0) - (v < 0); };
-        const auto side = [&](const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) { return sign(cross(b - a, c - a)); };
+        const auto side = [&](const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
+            return sign(cross(b - a, c - a));
+        };
         for (std::size_t i = 0; i < 5; ++i) {
             touches = touches || p[i] == p[(i + 1) % 5] ||
                       (side(p[i], p[(i + 1) % 5], p[(i + 2) % 5]) == 0 &&
@@ -160,7 +169,8 @@ TEST(Loops, polygons_of_whole_numbers_agree_with_brute_force) {
             for (const std::size_t j : {(i + 2) % 5, (i + 3) % 5}) {
                 const Vec<2> a = p[i], b = p[(i + 1) % 5], c = p[j], d = p[(j + 1) % 5];
                 const int s[4] = {side(a, b, c), side(a, b, d), side(c, d, a), side(c, d, b)};
-                if (s[0] * s[1] < 0 && s[2] * s[3] < 0) proper = true;
+                if (s[0] * s[1] < 0 && s[2] * s[3] < 0)
+                    proper = true;
                 else if (s[0] * s[1] <= 0 && s[2] * s[3] <= 0)
                     touches = true;  // or near it: collinear and apart
             }
@@ -221,9 +231,9 @@ TEST(Loops, refuses_tolerances_that_are_none) {
 }
 
 TEST(TrimmedSurface, refuses_loops_that_cross) {
-    const auto plane = *Surface<Vec<3>>::make(
-        {*BSplineBasis::bezier(1, {0, 4}), *BSplineBasis::bezier(1, {0, 4})},
-        Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 4, 0}}, {{4, 0, 0}}, {{4, 4, 0}}}));
+    const auto plane =
+        *Surface<Vec<3>>::make({*BSplineBasis::bezier(1, {0, 4}), *BSplineBasis::bezier(1, {0, 4})},
+                               Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 4, 0}}, {{4, 0, 0}}, {{4, 4, 0}}}));
     EXPECT_TRUE(TrimmedSurface::make(plane, {box(0, 0, 4, 4), box(0, 1, 1, 2)}));  // touches
     const auto r = TrimmedSurface::make(plane, {box(0, 0, 3, 3), box(2, 1, 4, 2)});
     ASSERT_FALSE(r);

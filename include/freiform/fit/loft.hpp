@@ -46,9 +46,9 @@ struct GordonSurface {
 
 // The surface through all curves of a network: u_curves[k] is its curve v = at_v[k], v_curves[l] its curve
 // u = at_u[l]. Parameters increase, from the lower to the upper end of the domain of the first curve of the
-// other family; other domains are mapped to that linearly. Curves have a degree of at least 1; closed ones are
-// opened. Between curves the surface is the Boolean sum with cardinal splines of degree 3 (of
-// fewer than four curves: 2 or 1) with not-a-knot ends, so networks of bicubic polynomials give these.
+// other family; other domains are mapped to that linearly. Curves have a degree of at least 1; closed ones
+// are opened. Between curves the surface is the Boolean sum with cardinal splines of degree 3 (of fewer than
+// four curves: 2 or 1) with not-a-knot ends, so networks of bicubic polynomials give these.
 //
 // Refuses (invalid), saying which two curves, where and by how much, if they meet less closely than
 // `tolerance`.
@@ -58,8 +58,8 @@ Result<GordonSurface<Vec<3>>> gordon(std::span<const Curve<Vec<D>>> u_curves, st
                                      double tolerance);
 
 // The same of rational curves: rational, over the product of their denominators (over_one_denominator in
-// make/boolean_sum.hpp), with breaks as knots of the multiplicity of the degree. Refuses as above, and (unsupported)
-// networks of so many different denominators that no basis has the degree.
+// make/boolean_sum.hpp), with breaks as knots of the multiplicity of the degree. Refuses as above, and
+// (unsupported) networks of so many different denominators that no basis has the degree.
 template <int D>
 Result<GordonSurface<Hom<3>>> gordon(std::span<const Curve<Hom<D>>> u_curves, std::span<const double> at_v,
                                      std::span<const Curve<Hom<D>>> v_curves, std::span<const double> at_u,

@@ -25,8 +25,8 @@ struct BlendedFamily {
 Result<MadeSurface<Vec<3>>> boolean_sum(const BlendedFamily& u, const BlendedFamily& v,
                                         const std::vector<std::vector<BoundedVec<3>>>& T);
 
-// Rational curves, and functions of the same parameter, over one denominator; in the Bezier form of pieces that are
-// joined continuously.
+// Rational curves, and functions of the same parameter, over one denominator; in the Bezier form of pieces
+// that are joined continuously.
 struct OverOne {
     BSplineBasis basis;
     std::vector<std::vector<BoundedVec<3>>> curves;  // numerators
@@ -34,10 +34,11 @@ struct OverOne {
     std::vector<Bounded> denominator;                // positive
 };
 
-// The denominator is the product of those of the curves that are not multiples of each other (up to rounding, which
-// the bounds contain), so curves that share their weights, as parallel arcs do, keep the degree low: with m different denominators of
-// degree p and functions of degree q it is m p + q (m p + p if that is more, and a denominator is constant). Functions are on the domain of the first
-// curve. Refuses (unsupported) degrees that no basis has, and curves that jump.
+// The denominator is the product of those of the curves that are not multiples of each other (up to rounding,
+// which the bounds contain), so curves that share their weights, as parallel arcs do, keep the degree low:
+// with m different denominators of degree p and functions of degree q it is m p + q (m p + p if that is more,
+// and a denominator is constant). Functions are on the domain of the first curve. Refuses (unsupported)
+// degrees that no basis has, and curves that jump.
 Result<OverOne> over_one_denominator(std::span<const Curve<Hom<3>>> curves,
                                      std::span<const Curve<Vec<1>>> functions);
 

@@ -27,11 +27,11 @@ struct CoonsPatch {
 //   auto patch = coons(bottom, top, left, right, 1e-9);
 template <int D>
 Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>& u0, const Curve<Vec<D>>& u1, const Curve<Vec<D>>& v0,
-                         const Curve<Vec<D>>& v1, double tolerance);
+                                 const Curve<Vec<D>>& v1, double tolerance);
 
-// The same sum of rational curves: exact, rational, over the product of their denominators, of degree 2 p + 1 (p + 1
-// where opposite curves have the same weights, as parallel arcs do). Its knots are breaks of that multiplicity.
-// Refuses as above, and (unsupported) degrees that no basis has.
+// The same sum of rational curves: exact, rational, over the product of their denominators, of degree 2 p + 1
+// (p + 1 where opposite curves have the same weights, as parallel arcs do). Its knots are breaks of that
+// multiplicity. Refuses as above, and (unsupported) degrees that no basis has.
 template <int D>
 Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>& u0, const Curve<Hom<D>>& u1, const Curve<Hom<D>>& v0,
                                  const Curve<Hom<D>>& v1, double tolerance);

@@ -1,6 +1,6 @@
-// Curves of the named schemes (surfaces: named_surface.hpp): Hermite, cardinal, Catmull-Rom, Kochanek-Bartels, uniform B-splines, and
-// polynomials given by coefficients in any basis. All are splines afterwards; nothing remembers where it came
-// from.
+// Curves of the named schemes (surfaces: named_surface.hpp): Hermite, cardinal, Catmull-Rom,
+// Kochanek-Bartels, uniform B-splines, and polynomials given by coefficients in any basis. All are splines
+// afterwards; nothing remembers where it came from.
 //
 // P is Vec<D> or Hom<D>, D = 1 .. 4. Of Hom the schemes work on homogeneous coordinates, so that a weighted
 // "tangent" is a derivative of (w x, w); results whose weights are not positive are refused.

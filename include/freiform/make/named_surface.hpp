@@ -43,17 +43,17 @@ struct PolynomialPatch {
     double bound = 0, condition = 0;
 };
 
-// The patch with these coefficients in the tensor product of any bases, of any degrees, in Bezier form on the box
-// `on`; in matrices
+// The patch with these coefficients in the tensor product of any bases, of any degrees, in Bezier form on the
+// box `on`; in matrices
 //
 //     Q(u, v) = T_u M_u G M_v^T T_v^T,      T_u = (u^m, .., u, 1),  T_v = (v^n, .., v, 1),
 //
-// the columns of M_u and M_v being the functions of both bases in powers. Coefficients count as the bases say: of
-// Hermite along u and Lagrange along v, G_2j is the derivative by u at the start, at the j-th node of v. Computed
-// in 512 binary digits and rounded once: no coordinate of a control point is farther than `bound` from the exact
-// one; `condition`: from_basis in named_curve.hpp, whose case N = 1 this is. Fix u, and sum_i f_i(u) G_ij are
-// the coefficients of a curve in the basis of v: the curve of curves. Refuses nets that do not fit the bases,
-// numbers that are not finite, empty intervals, and of Hom weights that are not positive.
+// the columns of M_u and M_v being the functions of both bases in powers. Coefficients count as the bases
+// say: of Hermite along u and Lagrange along v, G_2j is the derivative by u at the start, at the j-th node of
+// v. Computed in 512 binary digits and rounded once: no coordinate of a control point is farther than `bound`
+// from the exact one; `condition`: from_basis in named_curve.hpp, whose case N = 1 this is. Fix u, and sum_i
+// f_i(u) G_ij are the coefficients of a curve in the basis of v: the curve of curves. Refuses nets that do
+// not fit the bases, numbers that are not finite, empty intervals, and of Hom weights that are not positive.
 //   auto s = from_bases<2, Vec<3>>({*PolynomialBasis::hermite(3), *PolynomialBasis::bernstein(2)}, net);
 template <std::size_t N, Coefficient P>
 Result<PolynomialPatch<N, P>> from_bases(const std::array<PolynomialBasis, N>& bases,

@@ -2,6 +2,7 @@
 #pragma once
 #include <freiform/spline/patch.hpp>
 
+#include <span>
 #include <vector>
 
 namespace freiform {
@@ -30,5 +31,15 @@ requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)
     Result<std::vector<SelfIntersection<Space<P>::kDim>>> self_intersections(const Curve<P>& curve,
                                                                              double accuracy,
                                                                              int max_pairs = 200000);
+
+// The same of several closed chains at once, each with itself and with the others. They are one curve that
+// jumps between them (knots of multiplicity degree + 1); over each interval of `closed` it comes back to
+// where it began, which is not listed. What is certain is so for all coefficients of Bezier piece i that are
+// off by at most errors[i]. Refuses (limit) where more than max_pairs pairs of pieces are on top of each
+// other. REQUIRES an error for each piece.
+Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Hom<2>>& chains,
+                                                            std::span<const Interval> closed,
+                                                            std::span<const double> errors, double accuracy,
+                                                            int max_pairs);
 
 }  // namespace freiform

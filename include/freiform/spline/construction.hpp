@@ -13,9 +13,10 @@
 //     of
 //                                  the parts where u became a knot of multiplicity p).
 //
-// A patch of N parameters has a construction along each, and what one makes of the other's points: point (r, i)
-// with r = (r_0, ..), i = (i_0, ..) is r_d steps deep along axis d. Levels (r, 0) and (0, s) of a surface are the
-// nets of iso-curves' constructions; (r, r) is r steps of bilinear interpolation, each between four neighbours:
+// A patch of N parameters has a construction along each, and what one makes of the other's points: point (r,
+// i) with r = (r_0, ..), i = (i_0, ..) is r_d steps deep along axis d. Levels (r, 0) and (0, s) of a surface
+// are the nets of iso-curves' constructions; (r, r) is r steps of bilinear interpolation, each between four
+// neighbours:
 //
 //     (r, r; i, j) = (1-a) (1-b) (r-1, r-1; i, j)   + a (1-b) (r-1, r-1; i+1, j)
 //                  + (1-a) b     (r-1, r-1; i, j+1) + a b     (r-1, r-1; i+1, j+1)
@@ -45,7 +46,8 @@ public:
     // Level r, of extents degree(d) - r_d + 1; its point i. REQUIRES 0 <= r_d <= degree(d).
     NetView<N, const P> level(const Index<N>& r) const {
         Index<N> from, size;
-        for (std::size_t d = 0; d < N; ++d) from[d] = start(degree_[d], r[d]), size[d] = degree_[d] - r[d] + 1;
+        for (std::size_t d = 0; d < N; ++d)
+            from[d] = start(degree_[d], r[d]), size[d] = degree_[d] - r[d] + 1;
         return points_.view().window(from, size);
     }
     const P& operator()(const Index<N>& r, const Index<N>& i) const { return level(r)(i); }
@@ -81,8 +83,8 @@ public:
     static constexpr long long kMostPoints = 1 << 22;
 
     // Of the piece over the spans span[d] of bases[d]; coefficient(i) is the one that the piece sees at place
-    // i_d = 0 .. degree(d). Refuses, as "at", parameters that are not finite and results that leave the range of
-    // double, and (limit) more than kMostPoints.
+    // i_d = 0 .. degree(d). Refuses, as "at", parameters that are not finite and results that leave the range
+    // of double, and (limit) more than kMostPoints.
     template <class B, class F>
     static Result<Construction> make(const std::array<B, N>& bases, const Index<N>& span, const Param<N>& u,
                                      F&& coefficient) {
@@ -158,8 +160,9 @@ private:
     Net<N, P> points_;
 };
 
-// de Casteljau: of the Bezier patch on [0, 1] (^N) with these coefficients. Parameters may be any finite numbers;
-// outside [0, 1] the points are extrapolated. Refuses no or too many coefficients, and what is not finite.
+// de Casteljau: of the Bezier patch on [0, 1] (^N) with these coefficients. Parameters may be any finite
+// numbers; outside [0, 1] the points are extrapolated. Refuses no or too many coefficients, and what is not
+// finite.
 template <std::size_t N, Coefficient P>
 Result<Construction<N, P>> de_casteljau(const Net<N, P>& b, const Param<N>& u) {
     std::vector<Bernstein> bases;

@@ -1,6 +1,7 @@
 // Loops that bound a region: whether they close without crossing, and how they are turned and nested.
 //
-// A loop is what InsideQuery takes: a chain of splines, the end of each at the start of the next, or one ellipse.
+// A loop is what InsideQuery takes: a chain of splines, the end of each at the start of the next, or one
+// ellipse.
 #pragma once
 #include <freiform/trim/inside.hpp>
 
@@ -21,12 +22,13 @@ struct LoopTolerance {
     double accuracy = 0;  // > 0: crossings are known so well, and contacts told from passing by
 };
 
-// Refuses, with the place, loops that InsideQuery refuses and loops that cross themselves or each other: in the
-// middle of curves at an angle, in a vertex, in any way that makes a loop go round some point twice, or round two
-// points in different directions. Such a refusal is never wrong: it holds for all curves within `gap` of the given
-// ones at their ends. What is returned are all other places where loops meet, or where it is not certain that
-// they do not: where they touch, run along each other, or pass within `accuracy`. Nowhere else do they meet. Refuses
-// (limit) loops that are so much on top of each other that looking at all pairs of pieces would take too long.
+// Refuses, with the place, loops that InsideQuery refuses and loops that cross themselves or each other: in
+// the middle of curves at an angle, in a vertex, in any way that makes a loop go round some point twice, or
+// round two points in different directions. Such a refusal is never wrong: it holds for all curves within
+// `gap` of the given ones at their ends. What is returned are all other places where loops meet, or where it
+// is not certain that they do not: where they touch, run along each other, or pass within `accuracy`. Nowhere
+// else do they meet. Refuses (limit) loops that are so much on top of each other that looking at all pairs of
+// pieces would take too long.
 //   auto contacts = check_loops(loops, {0, 1e-9});   // empty: simple and disjoint, proven
 Result<std::vector<LoopContact>> check_loops(std::span<const std::vector<CurveGeometry<2>>> loops,
                                              const LoopTolerance& tolerance);
@@ -37,11 +39,11 @@ struct OrientedLoops {
     std::vector<std::size_t> reversed;  // which were turned round, in increasing order
 };
 
-// Loops in none or an even number of others become counter-clockwise, those in an odd number clockwise, so that
-// the region of the odd-even rule is on their left side and the winding number is 1 in it and 0 elsewhere. The
-// order of the loops stays; a loop that is turned has its curves in reverse order, each run through backwards.
-// Refuses what check_loops refuses, loops that enclose nothing, and (no_answer) loops of which it is not certain
-// on which side of each other they are.
+// Loops in none or an even number of others become counter-clockwise, those in an odd number clockwise, so
+// that the region of the odd-even rule is on their left side and the winding number is 1 in it and 0
+// elsewhere. The order of the loops stays; a loop that is turned has its curves in reverse order, each run
+// through backwards. Refuses what check_loops refuses, loops that enclose nothing, and (no_answer) loops of
+// which it is not certain on which side of each other they are.
 Result<OrientedLoops> orient_loops(std::vector<std::vector<CurveGeometry<2>>> loops,
                                    const LoopTolerance& tolerance);
 
