@@ -160,11 +160,23 @@ TEST(FromBases, nothing_is_lost_between_the_axes) {
     constant.view()({15, 15})[0] = 3;
     const auto c = must(from_bases<2, Vec<1>>({monomial, monomial}, constant));
     for (const Vec<1>& p : c.patch.net().flat()) EXPECT_EQ(p[0], 3);
-    // Values of 7 at all nodes of both axes: the constant again, though the change has large entries.
-    Net<2, Vec<1>> sevens({16, 16});
-    for (Vec<1>& p : sevens.flat()) p[0] = 7;
-    const auto s = must(from_bases<2, Vec<1>>({lagrange, lagrange}, sevens));
-    for (const Vec<1>& p : s.patch.net().flat()) EXPECT_EQ(p[0], 7);
+    // Values f(u) g(v), whole numbers: the net is the product of those of f and g, each rounded once.
+    Random random(14);
+    std::vector<Vec<1>> f(16), g(16);
+    Net<2, Vec<1>> values({16, 16});
+    for (Vec<1>& x : f) x[0] = random.integer(-1000, 1000);
+    for (Vec<1>& x : g) x[0] = random.integer(-1000, 1000);
+    for (int i = 0; i < 16; ++i)
+        for (int j = 0; j < 16; ++j) values.view()({i, j})[0] = f[std::size_t(i)][0] * g[std::size_t(j)][0];
+    const auto s = must(from_bases<2, Vec<1>>({lagrange, lagrange}, values));
+    const auto p = must(from_basis(lagrange, std::span<const Vec<1>>(f))),
+               q = must(from_basis(lagrange, std::span<const Vec<1>>(g)));
+    for (int i = 0; i < 16; ++i)
+        for (int j = 0; j < 16; ++j) {
+            const double exact =
+                p.curve.net().flat()[std::size_t(i)][0] * q.curve.net().flat()[std::size_t(j)][0];
+            EXPECT_NEAR(s.patch.net().view()({i, j})[0], exact, 0x1p-51 * std::abs(exact));
+        }
     EXPECT_GT(s.condition, 1e8);
 }
 
