@@ -46,7 +46,7 @@ void write_approximation(json::Writer& w, const Approximation& a) {
 
 std::string approximation_text(const Approximation& a) {
     return text(
-        a.where, ": ", a.what,
+        a.where, a.where.empty() ? "" : ": ", a.what,
         a.bound ? text(", within ", *a.bound) : text(", about ", a.estimate, ", which nothing proves"));
 }
 

@@ -14,11 +14,13 @@ namespace {
 struct Options {
     std::vector<double> equation, circle, angles, box;
     std::string points;
+    bool in_order = false;
 };
 
 struct Answer {
     std::optional<ConicEquation> equation;
     std::optional<ConicForm> form;
+    std::optional<FivePointArc> passing;  // five points, in their order
     Document document;
     double bound = 0;  // of the arcs
 
@@ -71,16 +73,28 @@ Result<Answer> through_three(const std::vector<std::vector<double>>& p) {
     return a;
 }
 
+Result<Answer> in_order(const std::array<Vec<2>, 5>& points) {
+    auto arc = arc_through(points);
+    if (!arc) return std::unexpected(arc.error());
+    Answer a;
+    a.document.objects.push_back({"", arc->curve, {}});
+    a.passing = std::move(*arc);
+    return a;
+}
+
 Result<Answer> by_points(const Options& options, bool wanted) {
     const std::string_view first = std::string_view(options.points).substr(0, options.points.find(';'));
     const int coords = 1 + int(std::count(first.begin(), first.end(), ','));
     const auto p = parse_vectors("--points", options.points, coords);
+    if (options.in_order && p.size() != 5)
+        wrong_usage(text("--in-order needs five points, found ", p.size()));
     if (p.size() == 3 && coords == 2) return through_three<2>(p);
     if (p.size() == 3 && coords == 3) return through_three<3>(p);
     if (p.size() != 5 || coords != 2)
         wrong_usage("--points needs three points of two or three coordinates, or five of two");
     std::array<Vec<2>, 5> five;
     for (std::size_t i = 0; i < 5; ++i) five[i] = {{p[i][0], p[i][1]}};
+    if (options.in_order) return in_order(five);
     const auto found = equation_through(five);
     if (!found) return std::unexpected(found.error());
     return by_equation(found->equation, options, wanted);
@@ -124,6 +138,11 @@ std::string json_report(const Answer& a) {
             w.end_array().field("bound", f.bound);
         }
     }
+    if (a.passing) {
+        w.field("type", name_of(a.passing->type)).key("at").array(a.passing->at);
+        w.field("points_bound", a.passing->bound).field("arcs", 1).end_object();
+        return w.take() + "\n";
+    }
     w.field("arcs", a.document.objects.size()).field("arc_bound", a.bound).end_object();
     return w.take() + "\n";
 }
@@ -137,6 +156,12 @@ std::string vector(const Vec<D>& v) {
 
 std::string text_report(const Answer& a) {
     std::string s;
+    if (a.passing) {
+        s = text("an arc of a", a.passing->type == ConicType::ellipse ? "n " : " ", name_of(a.passing->type),
+                 ", passes the points within ", a.passing->bound, " at");
+        for (const double t : a.passing->at) s += text(" ", t);
+        return s + "\n";
+    }
     if (a.form) {
         const ConicForm& f = *a.form;
         s += text(name_of(f.type), "\n");
@@ -165,6 +190,8 @@ Result<void> run(const Context& context, const Options& options) {
     count("--box", options.box, 4, "four numbers X0,Y0,X1,Y1");
     if (!options.equation.empty() + !options.circle.empty() + !options.points.empty() != 1)
         wrong_usage("conic needs one of --equation, --points and --circle");
+    if (options.in_order && (options.points.empty() || !options.box.empty()))
+        wrong_usage("--in-order goes with --points and without --box");
     const bool wanted = !context.output.empty() || !options.box.empty();
     ConicEquation equation;
     std::copy(options.equation.begin(), options.equation.end(), equation.c.begin());
@@ -188,6 +215,7 @@ void add_conic(CommandLine& line) {
                  "  freiform conic --equation 1,0,4,0,0,-4\n"
                  "  freiform conic --equation 0,1,0,0,0,-1 --box -3,-3,3,3 -o hyperbola.json\n"
                  "  freiform conic --points '1,0;0,1;-1,0' -o arc.json\n"
+                 "  freiform conic --points '5,0;4,3;3,4;0,5;-5,0' --in-order -o half.json\n"
                  "  freiform conic --circle 0,0,2 --angles 0,270 -o arc.json");
     command.numbers("--equation", options->equation, "A x^2 + B x y + C y^2 + D x + E y + F = 0")
         .shown_as("A,B,C,D,E,F");
@@ -195,6 +223,8 @@ void add_conic(CommandLine& line) {
         .word("--points", options->points,
               "Three points: the circular arc through them; five: the conic through them")
         .shown_as("X,Y;...");
+    command.flag("--in-order", options->in_order,
+                 "Of five points: the arc from the first to the last that passes them in their order");
     command.numbers("--circle", options->circle, "Centre and radius").shown_as("X,Y,R");
     command.numbers("--angles", options->angles, "Of the circle: from, to, in degrees").shown_as("A,B");
     command.numbers("--box", options->box, "Only the parts inside this box").shown_as("X0,Y0,X1,Y1");

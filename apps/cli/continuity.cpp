@@ -187,6 +187,7 @@ void write_joint(json::Writer& w, const Document& d, const Continuity& j) {
     write_first(w, "first_c_jump", j.c, j.c_order, c);
     write_first(w, "first_g_jump", j.g, j.g_order, g);
     w.field("singular", j.singular).field("opposed", j.opposed);
+    if (j.unbounded > 0) w.field("unbounded", j.unbounded);
     write_jumps(w, "c_jumps", j.c, c);
     write_jumps(w, "g_jumps", j.g, g);
     if (j.binormal) {
@@ -293,6 +294,7 @@ void joint_row(Table& table, const Document& d, std::string place, const Continu
     const auto add = [&](std::string_view what) { remark += text(remark.empty() ? "" : ", ", what); };
     if (j.opposed) add("turns back");
     if (j.singular) add("singular");
+    if (j.unbounded > 0) add(text("G", j.unbounded, " without bound"));
     table.row({std::move(place), order_text('C', j.c_order), order_text('G', j.g_order),
                first_text('C', j.c, j.c_order, c_unit(d, j.c_order + 1)),
                first_text('G', j.g, j.g_order, g_unit(d, j.g_order + 1)), remark});

@@ -37,8 +37,7 @@ Place place_of(const Crossing<D>& x) {
 }
 template <int D>
 Place place_of(const SelfIntersection<D>& m) {
-    return {m.is_certain ? "crossing" : "possible", m.first, m.second, false, {},
-            {m.point.c.begin(), m.point.c.end()},   m.bound};
+    return {name_of(m.kind), m.first, m.second, false, {}, {m.point.c.begin(), m.point.c.end()}, m.bound};
 }
 
 template <class T>

@@ -111,6 +111,12 @@ Counts edge_kinds(const Model& m) {
     return kinds;
 }
 
+void write_approximations(json::Writer& w, const std::vector<Approximation>& list) {
+    w.key("approximations").begin_array();
+    for (const Approximation& a : list) write_approximation(w, a);
+    w.end_array();
+}
+
 void write_model_info(json::Writer& w, const Model& m) {
     const ModelSummary s = summary(m);
     if (!m.unit.empty()) w.field("unit", m.unit);
@@ -126,9 +132,8 @@ void write_model_info(json::Writer& w, const Model& m) {
             .field("where", r.where)
             .field("message", r.message)
             .end_object();
-    w.end_array().key("approximations").begin_array();
-    for (const Approximation& a : m.approximations) write_approximation(w, a);
     w.end_array();
+    write_approximations(w, m.approximations);
     write_box(w, as_control_box(s.box));
 }
 
@@ -152,6 +157,7 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
             const Facts f = facts_of(o.shape);
             f.bases.empty() ? write_triangle_info(w, f) : write_patch_info(w, f);
             write_box(w, control_box(o.shape));
+            if (!o.approximations.empty()) write_approximations(w, o.approximations);
         }
         w.end_object();
     }
@@ -194,6 +200,12 @@ std::string kinds_text(const Counts& counts) {
     return s.empty() ? s : text(" (", s, ")");
 }
 
+std::string approximations_text(const std::vector<Approximation>& list) {
+    std::string t;
+    for (const Approximation& a : list) t += text("  approximated  ", approximation_text(a), "\n");
+    return t;
+}
+
 std::string model_text(const Model& m) {
     const ModelSummary s = summary(m);
     std::string t = text("  bodies   ", s.bodies, ", ", s.solids, " of them solid, ", s.shells, " shells\n");
@@ -204,9 +216,7 @@ std::string model_text(const Model& m) {
     t += box_text(as_control_box(s.box));
     for (const Refusal& r : m.refused)
         t += text("  refused  ", r.where, ": ", r.message, " (", name_of(r.kind), ")\n");
-    for (const Approximation& a : m.approximations)
-        t += text("  approximated  ", approximation_text(a), "\n");
-    return t;
+    return t + approximations_text(m.approximations);
 }
 
 std::string text_info(const Document& d, const std::string& file, const std::vector<std::size_t>& objects) {
@@ -222,6 +232,7 @@ std::string text_info(const Document& d, const std::string& file, const std::vec
         const Facts f = facts_of(o.shape);
         s += patch_text(f) + box_text(control_box(o.shape));
         if (f.loops) s += text("  loops    ", *f.loops, "\n");
+        s += approximations_text(o.approximations);
     }
     return s;
 }

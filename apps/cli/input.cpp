@@ -18,7 +18,14 @@ Result<Input> read_input(const Context& context, const std::string& file, const 
     if (!document) return std::unexpected(document.error());
     auto chosen = selected(*document, object);
     if (!chosen) return std::unexpected(chosen.error());
+    remark_changes(*document, *chosen);
     return Input{file, std::make_shared<const Document>(*std::move(document)), *std::move(chosen)};
+}
+
+void remark_changes(const Document& document, std::span<const std::size_t> objects) {
+    for (const std::size_t i : objects)
+        for (const Approximation& a : document.objects[i].approximations)
+            remark(text(object_label(document, i), ": ", approximation_text(a)));
 }
 
 void remark_left_out(const Input& input, std::size_t i) {

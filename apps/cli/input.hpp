@@ -17,6 +17,9 @@ struct Input {
 };
 Result<Input> read_input(const Context& context, const std::string& file, const std::string& object);
 
+// Says on standard error what reading had to change in these objects, and by how much.
+void remark_changes(const Document& document, std::span<const std::size_t> objects);
+
 // "Is a model, not a curve, and left out".
 void remark_left_out(const Input& input, std::size_t i);
 

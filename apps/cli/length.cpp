@@ -28,13 +28,12 @@ struct Measured {
 
 template <class P>
 Result<Measured> measured(const Curve<P>& curve, const Options& o) {
-    const ArcLength<P> s(curve, o.accuracy.value_or(0));
-    Measured out{s.total(), {}, {}, {}};
-    if (!o.range.empty()) {
-        const auto part = length(curve, Interval{o.range[0], o.range[1]}, o.accuracy.value_or(0));
-        if (!part) return std::unexpected(part.error());
-        out.length = *part;
-    }
+    const double accuracy = o.accuracy.value_or(0);
+    const ArcLength<P> s(curve, o.range.empty() ? accuracy : accuracy / 2);
+    const Interval on = o.range.empty() ? s.domain() : Interval{o.range[0], o.range[1]};
+    const auto length = s.total(on);
+    if (!length) return std::unexpected(length.error());
+    Measured out{*length, {}, {}, {}};
     const auto add = [&](double wanted, const PlaceAtLength& place) {
         out.wanted.push_back(wanted), out.places.push_back(place);
         const auto point = curve(place.parameter);
@@ -42,13 +41,13 @@ Result<Measured> measured(const Curve<P>& curve, const Options& o) {
     };
     if (!o.equal && !o.spacing) {
         for (const double x : o.at) {
-            const auto place = s.parameter(x);
+            const auto place = s.parameter(x, on);
             if (!place) return std::unexpected(place.error());
             add(x, *place);
         }
         return out;
     }
-    const auto all = o.equal ? s.equal_parts(*o.equal) : s.spaced(*o.spacing);
+    const auto all = o.equal ? s.equal_parts(*o.equal, on) : s.spaced(*o.spacing, on);
     if (!all) return std::unexpected(all.error());
     for (std::size_t k = 0; k < all->size(); ++k)
         add(o.equal ? out.length.value * double(k) / *o.equal
@@ -200,11 +199,12 @@ void add_length(CommandLine& line) {
     command.word("FILE", options->file, "The file; - is standard input");
     command
         .words("--at", options->places,
-               "Lengths from the start of the curve: prints the parameters and points there")
+               "Lengths from the start of the curve, or of its part: prints the parameters and points there")
         .shown_as("S...");
     command.count("--equal", options->equal, 1, 1'000'000, "The ends of this many parts of equal length");
     command.number("--spacing", options->spacing, "Places at this distance along the curve");
-    command.numbers("--range", options->range, "Only the part between these two parameters");
+    command.numbers("--range", options->range,
+                    "Only the part between these two parameters: its length, and places on it");
     command.number("--accuracy", options->accuracy,
                    "What the length may be off (default 0: as little as rounding allows)");
     command.number("--reparametrise", options->reparametrise,

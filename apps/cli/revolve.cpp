@@ -1,5 +1,5 @@
 // revolve: surfaces of revolution of the curves of a file.
-#include "command.hpp"
+#include "input.hpp"
 #include "point_commands.hpp"
 
 #include <freiform/io/bpt.hpp>
@@ -92,6 +92,7 @@ Result<void> run(const Context& context, const Options& options) {
     if (!document) return std::unexpected(document.error());
     const auto objects = selected(*document, options.object);
     if (!objects) return std::unexpected(objects.error());
+    remark_changes(*document, *objects);
     Answer answer;
     answer.document.unit = document->unit;
     Revolving revolving(options, answer);

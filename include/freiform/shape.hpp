@@ -69,6 +69,8 @@ struct Object {
     // point, in the order of the points.
     std::string material = {};
     std::vector<Colour> colours = {};
+    // What the reader had to change, with bounds; `where` counts from the object. A model carries its own.
+    std::vector<Approximation> approximations = {};
 };
 
 struct Document {

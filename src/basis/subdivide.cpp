@@ -30,6 +30,7 @@
 // Why not the doubling and averaging on nets of surfaces: the matrix goes through along() like every other
 // change, and its rows are what the text prints.
 #include <freiform/basis/subdivide.hpp>
+#include <freiform/core/bounded.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,7 @@ Result<Change<BSplineBasis>> insert_knot(const BSplineBasis& old, double u) {
     return Change<BSplineBasis>{std::move(*fresh), std::move(m)};
 }
 
-Result<Change<BSplineBasis>> extend_to(const BSplineBasis& old, Interval on) {
+Result<Extension> extend_to(const BSplineBasis& old, Interval on) {
     const Interval was = old.domain();
     const int p = old.degree(), width = p + 1;
     if (!std::isfinite(on.lo) || !std::isfinite(on.hi) || !std::isfinite(on.length()))
@@ -94,13 +95,14 @@ Result<Change<BSplineBasis>> extend_to(const BSplineBasis& old, Interval on) {
     const int n = fresh->size();
     BandMap m{old.size(), width, std::vector<int>(std::size_t(n)),
               std::vector<double>(std::size_t(n) * std::size_t(width))};
+    std::vector<double> entry_bound(m.entry.size());
     for (int j = 0; j < n; ++j) {
         const auto arguments = fresh->knots().subspan(std::size_t(j) + 1, std::size_t(p));
         const bool below = on.lo < was.lo && p > 0 && arguments.front() == on.lo;
         const bool above = on.hi > was.hi && p > 0 && arguments.back() == on.hi;
         const int s = old.span(below ? was.lo : above ? was.hi : fresh->knot(j));
         // Old knots from t_s downwards, then upwards, then the new ends.
-        double order[kMaxDegree + 1];
+        Bounded order[kMaxDegree + 1], row[kMaxDegree + 1];
         int k = 0;
         const auto take = [&](bool wanted, double x) {
             if (wanted) order[k++] = x;
@@ -111,13 +113,17 @@ Result<Change<BSplineBasis>> extend_to(const BSplineBasis& old, Interval on) {
         for (const double x : arguments) take(is_old(x) && x > old.knot(s), x);
         for (const double x : arguments) take(!is_old(x), x);
         m.first[std::size_t(j)] = s - p;
-        blossom(old, s, static_cast<const double*>(order), &m.entry[std::size_t(j) * std::size_t(width)]);
+        blossom(old, s, static_cast<const Bounded*>(order), row);
+        for (int i = 0; i < width; ++i) {
+            const std::size_t at = std::size_t(j) * std::size_t(width) + std::size_t(i);
+            m.entry[at] = row[i].value, entry_bound[at] = row[i].bound;
+        }
     }
-    for (const double w : m.entry)
-        if (!std::isfinite(w))
+    for (std::size_t i = 0; i < m.entry.size(); ++i)
+        if (!std::isfinite(m.entry[i]) || !std::isfinite(entry_bound[i]))
             return refuse(RefusalKind::ill_conditioned, "interval",
                           text("[", on.lo, ", ", on.hi, "] is too far from [", was.lo, ", ", was.hi, "]"));
-    return Change<BSplineBasis>{std::move(*fresh), std::move(m)};
+    return Extension{{std::move(*fresh), std::move(m)}, std::move(entry_bound)};
 }
 
 BandMap uniform_subdivision(int degree, int size, bool closed) {

@@ -3,7 +3,9 @@
 #include <freiform/io/document.hpp>
 #include <freiform/make/named_curve.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace freiform {
 
@@ -118,6 +120,11 @@ Result<Object> read_object(json::Value v) {
                   : *type == "trimmed"  ? object_of(read_trimmed(v))
                                         : object_of(read_model(v));
     if (!object) return object;
+    auto changes = changes_in(v);
+    if (Model* model = std::get_if<Model>(&object->shape))
+        std::ranges::move(changes, std::back_inserter(model->approximations));
+    else
+        object->approximations = std::move(changes);
     for (const json::Member& m : v.members())
         if (auto ok = read_attribute(m, *object); !ok) return std::unexpected(ok.error());
     return object;

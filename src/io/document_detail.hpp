@@ -81,10 +81,15 @@ auto read_list(json::Value v, Read&& read)
 struct ReadShape {
     Shape shape;
     std::vector<double> given_points;
+    // Knots that weights of zero and below needed, and how far from the function that was given the shape is.
+    int inserted = 0;
+    double moved = 0;
 };
 template <std::size_t N>
 Result<ReadShape> read_patch(json::Value v);  // a tensor product patch of N parameters
 Result<ReadShape> read_triangle(json::Value v);
+// The bases of a patch of n parameters, from "degree(s)", "closed" and "knots".
+Result<std::vector<BSplineBasis>> read_bases(const Fields& fields, std::size_t n, const Index<3>& points);
 
 // The same where a space of D coordinates is needed. `type` may be left out.
 Result<CurveGeometry<2>> read_plane_curve(json::Value v);
@@ -92,6 +97,10 @@ Result<CurveGeometry<3>> read_space_curve(json::Value v);
 Result<SurfaceGeometry> read_surface_geometry(json::Value v);
 Result<Shape> read_trimmed(json::Value v);
 Result<Shape> read_model(json::Value v);
+
+// What the readers above changed in the patches of an object that they have accepted: its own, or those of
+// its faces, edges and loops.
+std::vector<Approximation> changes_in(json::Value object);
 
 // The type of an object: its field `type`, or `otherwise` if there is none and that is not empty.
 Result<std::string> read_type(json::Value v, std::string_view otherwise,

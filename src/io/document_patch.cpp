@@ -1,9 +1,7 @@
 // Patches of a document: curves, surfaces and volumes, which differ in the number of nested arrays only.
 //
-// Rational patches. The document says points x and weights w, the patch holds h = fl(w x). Written is, for
-// each coordinate, the x with fl(w x) = h whose text is shortest among h / w and its neighbours. Not every h
-// has such an x (then the products are written too, as `weighted_points`), so that reading gives the same
-// bits in every case.
+// Rational patches. The document says points x and weights w, the patch holds h = fl(w x), or the product
+// that the document gives as well (document_patch_write.cpp says when it does).
 #include "document_detail.hpp"
 
 #include <freiform/core/scan.hpp>
@@ -11,11 +9,8 @@
 #include <freiform/spline/weights.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <functional>
-#include <limits>
 
 namespace freiform::document_detail {
 
@@ -113,67 +108,6 @@ struct ReadNet {
     }
 };
 
-// One array per axis; of a curve the array itself.
-template <class Read>
-auto read_per_axis(std::size_t axes, json::Value v, Read&& read)
-    -> Result<std::vector<typename decltype(read(std::declval<json::Value>()))::value_type>> {
-    if (axes == 1) {
-        auto one = read(v);
-        if (!one) return std::unexpected(one.error());
-        std::vector<typename decltype(read(std::declval<json::Value>()))::value_type> list;
-        list.push_back(std::move(*one));
-        return list;
-    }
-    if (!v.is(json::Kind::array) || v.size() != axes)
-        return expected(text("an array of ", axes, ", one entry per parameter"), v);
-    return read_list(v, read);
-}
-
-struct Axis {
-    int degree = -1;  // not given
-    bool closed = false;
-    std::optional<std::vector<double>> knots;
-};
-
-Result<BSplineBasis> make_basis(const Axis& a, int points, std::string_view degree_field,
-                                std::string_view knots_field) {
-    const auto fail = [&](std::string_view field, std::string message) {
-        return refuse(RefusalKind::invalid, std::string(field), std::move(message));
-    };
-    if (a.closed && a.degree < 0) return fail(degree_field, "is missing; a closed spline needs it");
-    if (!a.closed && !a.knots) {
-        if (a.degree >= 0 && points != a.degree + 1)
-            return fail(degree_field, text("without knots, degree ", a.degree, " needs ", a.degree + 1,
-                                           " points, found ", points));
-        if (points - 1 > kMaxDegree)
-            return refuse(RefusalKind::unsupported, std::string(knots_field),
-                          text("without knots, ", points, " points mean a Bezier curve of degree ",
-                               points - 1, "; the highest degree is ", kMaxDegree));
-        return BSplineBasis::bezier(points - 1);
-    }
-    std::vector<double> t;
-    if (a.knots) {
-        t = *a.knots;
-        if (!a.closed && a.degree < 0) return fail(degree_field, "is missing; with knots it is needed");
-        const long long wanted = a.closed ? points + 1LL : points + a.degree + 1LL;
-        if (t.size() != std::size_t(wanted))
-            return fail(
-                knots_field,
-                text(t.size(), a.closed ? " breaks for " : " knots for ", points, " points",
-                     a.closed ? ", a closed spline" : text(" of degree ", a.degree), " needs ", wanted));
-    } else {
-        for (int i = 0; i <= points; ++i) t.push_back(i);
-    }
-    auto basis = a.closed ? BSplineBasis::periodic(a.degree, std::move(t))
-                          : BSplineBasis::make(a.degree, std::move(t));
-    if (basis) return basis;
-    Refusal r = basis.error();  // its fields are "degree", "knots[i]", "breaks[i]"
-    const std::size_t bracket = r.where.find('[');
-    const std::string index = bracket == std::string::npos ? "" : r.where.substr(bracket);
-    r.where = text(r.where.starts_with("degree") ? degree_field : knots_field, index);
-    return std::unexpected(std::move(r));
-}
-
 // points[i][j][c] of the flat index.
 std::string point_name(std::size_t levels, const Index<3>& extent, std::size_t flat) {
     std::array<std::size_t, 3> at{};
@@ -182,10 +116,6 @@ std::string point_name(std::size_t levels, const Index<3>& extent, std::size_t f
     std::string s;
     for (std::size_t d = 0; d < levels; ++d) s += text("[", at[d], "]");
     return s;
-}
-
-bool same_bits(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 // Whether h is the product of x and w, or x the quotient of h and w: one rounding either way. A point at
@@ -297,56 +227,23 @@ inline constexpr std::array<std::string_view, 10> kPatchFields = {"type",
                                                                   "colours"};
 constexpr std::string_view kPatchNames[] = {"", "a curve", "a surface", "a volume"};
 
-Result<std::array<Axis, 3>> read_axes(const Fields& fields, std::size_t n) {
-    std::array<Axis, 3> axes;
-    const std::string_view degree = n == 1 ? "degree" : "degrees";
-    const auto whole = [](json::Value v) -> Result<int> {
-        const auto p = read_int(v);
-        if (p && *p < 0) return expected("a degree of at least 0", v);
-        return p;
-    };
-    if (fields.has(degree)) {
-        const auto d = fields.get(degree, [&](json::Value v) { return read_per_axis(n, v, whole); });
-        if (!d) return std::unexpected(d.error());
-        for (std::size_t i = 0; i < n; ++i) axes[i].degree = (*d)[i];
-    }
-    if (fields.has("closed")) {
-        const auto c = fields.get("closed", [&](json::Value v) { return read_per_axis(n, v, read_bool); });
-        if (!c) return std::unexpected(c.error());
-        for (std::size_t i = 0; i < n; ++i) axes[i].closed = (*c)[i];
-    }
-    if (fields.has("knots")) {
-        auto k = fields.get("knots", [&](json::Value v) { return read_per_axis(n, v, read_numbers); });
-        if (!k) return std::unexpected(k.error());
-        for (std::size_t i = 0; i < n; ++i) axes[i].knots = std::move((*k)[i]);
-    }
-    return axes;
-}
-
-Result<std::vector<BSplineBasis>> read_bases(const Fields& fields, const ReadNet& net) {
-    const auto axes = read_axes(fields, net.levels);
-    if (!axes) return std::unexpected(axes.error());
-    std::vector<BSplineBasis> made;
-    for (std::size_t d = 0; d < net.levels; ++d) {
-        const std::string index = net.levels == 1 ? "" : text("[", d, "]");
-        auto basis = make_basis((*axes)[d], net.points.extent[d],
-                                text(net.levels == 1 ? "degree" : "degrees", index), text("knots", index));
-        if (!basis) return std::unexpected(basis.error());
-        made.push_back(std::move(*basis));
-    }
-    return made;
-}
-
 bool all_positive(const std::vector<double>& weights) {
     return std::all_of(weights.begin(), weights.end(), [](double w) { return w > 0; });
 }
 
+// How a patch differs from what was given.
+struct Change {
+    int inserted = 0;
+    double moved = 0;
+};
+
 // Weights that are not positive are taken where the patch has no pole.
 template <std::size_t N, class P>
-Result<Patch<N, P>> make_patch(const std::array<BSplineBasis, N>& bases, Net<N, P> net) {
+Result<Patch<N, P>> make_patch(const std::array<BSplineBasis, N>& bases, Net<N, P> net, Change& change) {
     if constexpr (Space<P>::kRational) {
         auto form = positive_weights<N, Space<P>::kDim>(bases, net);
         if (!form) return std::unexpected(form.error());
+        change = {form->inserted, form->bound};
         return std::move(form->patch);
     } else {
         return Patch<N, P>::make(bases, std::move(net));
@@ -361,15 +258,17 @@ Result<ReadShape> read_patch(json::Value v) {
     if (!fields) return std::unexpected(fields.error());
     const auto net = read_net(*fields, N);
     if (!net) return std::unexpected(net.error());
-    auto made = read_bases(*fields, *net);
+    auto made = read_bases(*fields, N, net->points.extent);
     if (!made) return std::unexpected(made.error());
     const auto bases = [&]<std::size_t... I>(std::index_sequence<I...>) {
         return std::array<BSplineBasis, N>{std::move((*made)[I])...};
     }
     (std::make_index_sequence<N>{});
+    Change change;
     auto read = assemble(*net, [&]<class P>(std::vector<P> coefficients) {
-        return make_patch(bases, Net<N, P>(net->template extent<N>(), std::move(coefficients)));
+        return make_patch(bases, Net<N, P>(net->template extent<N>(), std::move(coefficients)), change);
     });
+    if (read) read->inserted = change.inserted, read->moved = change.moved;
     // Points that were given are those of the patch unless knots had to be inserted or signs changed.
     if (read && net->weights && !all_positive(*net->weights)) read->given_points.clear();
     return read;
@@ -400,102 +299,6 @@ Result<ReadShape> read_triangle(json::Value v) {
     return assemble(*net, [&]<class P>(std::vector<P> coefficients) {
         return Triangle<P>::make(*degree, std::move(coefficients));
     });
-}
-
-namespace {
-
-// `leaf(i)` writes entry i of the flat net of `levels` axes.
-void write_nested(json::Writer& w, std::size_t levels, const Index<3>& extent,
-                  const std::function<void(std::size_t)>& leaf) {
-    std::size_t i = 0;
-    each_index(extent, [&](const Index<3>& at) {
-        // A row begins where all inner indices are first, and ends where all are last.
-        std::size_t begins = levels, ends = levels;
-        while (begins > 0 && at[begins - 1] == 0) --begins;
-        while (ends > 0 && at[ends - 1] == extent[ends - 1] - 1) --ends;
-        for (std::size_t d = begins; d < levels; ++d) w.begin_array();
-        leaf(i++);
-        for (std::size_t d = ends; d < levels; ++d) w.end_array();
-    });
-}
-
-// The shortest x of h / w and its neighbours with fl(w x) = h; nothing if there is none.
-std::optional<double> point_of(double h, double w) {
-    const double quotient = h / w, infinity = std::numeric_limits<double>::infinity();
-    std::optional<double> best;
-    std::size_t least = 0;
-    for (const double x :
-         {quotient, std::nextafter(quotient, -infinity), std::nextafter(quotient, infinity)}) {
-        if (!std::isfinite(x) || !same_bits(w * x, h)) continue;
-        const std::size_t length = text(x).size();
-        if (best && length >= least) continue;
-        best = x;
-        least = length;
-    }
-    return best;
-}
-
-// The points of a rational net; sets `exact` to whether they and the weights give the coefficients back.
-std::vector<double> points_of(const Tuples& net, std::span<const double> given, bool& exact) {
-    const std::size_t dim = std::size_t(net.dim());
-    std::vector<double> x(net.count() * dim);
-    exact = given.size() == x.size();
-    for (std::size_t i = 0; i < x.size() && exact; ++i)
-        exact = same_bits(net.weight(i / dim) * given[i], net[i / dim][i % dim]);
-    if (exact) return {given.begin(), given.end()};
-    exact = true;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const double h = net[i / dim][i % dim], w = net.weight(i / dim);
-        const auto point = point_of(h, w);
-        exact = exact && point;
-        x[i] = point.value_or(h / w);
-    }
-    return x;
-}
-
-// The points, and of a rational net the weights.
-void write_net(json::Writer& w, std::size_t levels, const Index<3>& extent, const Tuples& net,
-               std::span<const double> given) {
-    const std::size_t dim = std::size_t(net.dim());
-    bool exact = true;
-    std::vector<double> own;
-    if (net.rational) own = points_of(net, given, exact);
-    const std::span<const double> x = net.rational ? std::span<const double>(own) : net.all;
-    w.key("points");
-    write_nested(w, levels, extent, [&](std::size_t i) { w.array(x.subspan(i * dim, dim)); });
-    if (!net.rational) return;
-    w.key("weights");
-    write_nested(w, levels, extent, [&](std::size_t i) { w.value(net.weight(i)); });
-    if (exact) return;
-    w.key("weighted_points");
-    write_nested(w, levels, extent, [&](std::size_t i) { w.array(std::span(net[i], dim)); });
-}
-
-}  // namespace
-
-void write_tensor(json::Writer& w, std::span<const BSplineBasis> bases, const Tuples& net,
-                  std::span<const double> given) {
-    const std::size_t n = bases.size();
-    const auto per_axis = [&](std::string_view field,
-                              const std::function<void(const BSplineBasis&)>& content) {
-        w.key(field);
-        if (n > 1) w.begin_array();
-        for (const BSplineBasis& b : bases) content(b);
-        if (n > 1) w.end_array();
-    };
-    per_axis(n == 1 ? "degree" : "degrees", [&](const BSplineBasis& b) { w.value(b.degree()); });
-    bool closed = false;
-    for (const BSplineBasis& b : bases) closed = closed || b.is_closed();
-    if (closed) per_axis("closed", [&](const BSplineBasis& b) { w.value(b.is_closed()); });
-    per_axis("knots", [&](const BSplineBasis& b) { w.array(b.defining()); });
-    Index<3> extent{1, 1, 1};
-    for (std::size_t d = 0; d < n; ++d) extent[d] = bases[d].size();
-    write_net(w, n, extent, net, given);
-}
-
-void write_triangle(json::Writer& w, int degree, const Tuples& net, std::span<const double> given) {
-    w.field("degree", degree);
-    write_net(w, 1, {int(net.count()), 1, 1}, net, given);
 }
 
 }  // namespace freiform::document_detail

@@ -39,28 +39,6 @@ struct Plane {
 
 Plane plane_of(const std::optional<View>& view, bool all_plane, double size);
 
-// Bisects `on` until chord_error(a, b) <= tolerance on each part and appends value(b) of each; value(on.lo)
-// is there already. False if that needs more than `most` parts or intervals that doubles cannot tell apart.
-template <class Value, class ChordError>
-bool flatten(const Interval& on, double tolerance, std::size_t most, const Value& value,
-             const ChordError& chord_error, DrawnPath& path) {
-    std::vector<double> ends{on.hi};
-    for (double a = on.lo; !ends.empty();) {
-        const double b = ends.back(), middle = a + (b - a) / 2;
-        if (!(chord_error(a, b) <= tolerance)) {
-            if (!(a < middle && middle < b) || ends.size() > 200) return false;
-            ends.push_back(middle);
-            continue;
-        }
-        const Vec<2> p = value(b);
-        if (!is_finite(p) || path.segments.size() >= most) return false;
-        path.segments.push_back({1, {p}});
-        a = b;
-        ends.pop_back();
-    }
-    return true;
-}
-
 // Appends a Bezier piece with these plane coefficients, exactly or flattened.
 bool add_piece(DrawnPath& path, std::span<const Vec<2>> b, double tolerance, std::size_t most);
 bool add_piece(DrawnPath& path, std::span<const Hom<2>> b, double tolerance, std::size_t most);

@@ -50,6 +50,16 @@ std::vector<Terms> end_expansion(const Curve<P>& curve, int k) {
     return x;
 }
 
+// Is the derivative of the points 0? That of a quotient: A' w - A w'.
+bool stands_still(const std::vector<Terms>& x, bool rational) {
+    const std::size_t dimension = x.size() - (rational ? 1 : 0);
+    for (std::size_t c = 0; c < dimension; ++c) {
+        const DoubleDouble d = rational ? x[c][1] * x.back()[0] - x[c][0] * x.back()[1] : x[c][1];
+        if (d.rounded() != 0) return false;
+    }
+    return true;
+}
+
 // The first coefficients of the Bezier form of degree n over an interval of length `length`.
 Terms first_coefficients(const Terms& expansion, int n, DoubleDouble length) {
     Terms difference = expansion, b(expansion.size());
@@ -158,6 +168,11 @@ Result<Curve<P>> next_c(const Curve<P>& previous, int order, const NextPiece<P>&
 
 template <class P>
 Result<Curve<P>> next_g(const Curve<P>& previous, std::span<const double> phi, const NextPiece<P>& next) {
+    if (!phi.empty() && !previous.basis().is_closed() &&
+        stands_still(end_expansion(previous, 1), Space<P>::kRational))
+        return refuse(
+            RefusalKind::no_answer, "previous",
+            "its derivative is 0 at its end; pieces that join there with C^k need not join with G^k");
     return joined<P>(previous, phi, next);
 }
 

@@ -40,9 +40,7 @@
 // Why not Bezier clipping [SederbergNishita1990]? It converges faster to one root, but Newton's method does
 // that here, and clipped ends are no dyadic numbers, for which later stages could repeat the cut exactly. Why
 // not eigenvalues of a companion matrix? They say neither how many roots are real nor that none was missed.
-#include "poly/roots_detail.hpp"
-
-#include <freiform/core/double_double.hpp>
+#include "poly/roots_search_detail.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,125 +50,6 @@ namespace freiform {
 namespace detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
-constexpr double kUnderflow = 0x1p-840;
-constexpr int kDepth = 52;
-
-// --- the two kinds of numbers ------------------------------------------------------------------------------
-
-double high(double x) { return x; }
-double high(const DoubleDouble& x) { return x.hi; }
-double mean(double a, double b) { return 0.5 * (a + b); }
-DoubleDouble mean(const DoubleDouble& a, const DoubleDouble& b) {
-    const DoubleDouble s = a + b;
-    return {0.5 * s.hi, 0.5 * s.lo};
-}
-template <class T>
-constexpr double kUnit = 0;
-template <>
-constexpr double kUnit<double> = kU;
-template <>
-constexpr double kUnit<DoubleDouble> = 0x1p-100;
-
-// --- signs -------------------------------------------------------------------------------------------------
-
-struct Signs {
-    int first = 0, last = 0;  // 0: not certain
-    int most = 0;             // variations
-    bool all_certain = true;
-    double max = 0;
-};
-
-template <class T>
-Signs signs_of(const T* b, int n, double error) {
-    Signs s;
-    int last = 0, gap = 0;  // the last certain sign, and how many uncertain ones followed it
-    for (int i = 0; i <= n; ++i) {
-        const double x = high(b[i]);
-        s.max = std::max(s.max, std::abs(x));
-        const int sign = x > error ? 1 : x < -error ? -1 : 0;
-        if (i == 0) s.first = sign;
-        if (sign == 0) {
-            ++gap;
-            continue;
-        }
-        // Between two certain signs the number of variations is odd if they differ.
-        const bool differ = sign != last;
-        s.most += last == 0 ? gap : gap + 1 - ((gap + 1) % 2 != int(differ));
-        s.all_certain = s.all_certain && gap == 0;
-        last = sign;
-        gap = 0;
-    }
-    s.last = gap == 0 ? last : 0;
-    s.most += last == 0 ? std::max(0, gap - 1) : gap;
-    s.all_certain = s.all_certain && gap == 0;
-    return s;
-}
-
-// What is known about a piece.
-struct Found {
-    Cell cell;
-    int most;  // 1 and decided: exactly one root
-    bool decided;
-    int before, after;  // signs at the ends, 0 if not certain
-};
-
-// Depth-first search of a piece.
-template <class T>
-class Search {
-public:
-    Search(const T* c, int n, double error, Cell cell) : n_(n) {
-        buffer_.assign(c, c + n + 1);
-        open_.push_back({cell, error});
-    }
-
-    // Appends what it finds, in order, without the pieces that have no roots.
-    void run(std::vector<Found>& found) {
-        const std::size_t width = std::size_t(n_) + 1;
-        while (!open_.empty()) {
-            const Open piece = open_.back();
-            T* b = buffer_.data() + (open_.size() - 1) * width;
-            const Signs s = signs_of(b, n_, piece.error);
-            if (s.all_certain && s.most == 0) {
-                open_.pop_back();
-            } else if (s.first * s.last < 0 && s.most == 1) {
-                found.push_back({piece.cell, 1, true, s.first, s.last});
-                open_.pop_back();
-            } else if (s.max <= 8 * piece.error || piece.cell.depth >= kDepth) {
-                found.push_back({piece.cell, s.most, false, s.first, s.last});
-                open_.pop_back();
-            } else {
-                halve(piece, s.max);
-            }
-        }
-    }
-
-private:
-    struct Open {
-        Cell cell;
-        double error;
-    };
-    // The right half replaces the piece, the left half goes on top of it.
-    void halve(const Open& piece, double max) {
-        const std::size_t width = std::size_t(n_) + 1, at = (open_.size() - 1) * width;
-        if (buffer_.size() < at + 2 * width) buffer_.resize(at + 2 * width);
-        T *b = buffer_.data() + at, *left = b + width;
-        left[0] = b[0];
-        for (int r = 1; r <= n_; ++r) {
-            for (int i = 0; i + r <= n_; ++i) b[i] = mean(b[i], b[i + 1]);
-            left[r] = b[0];
-        }
-        const double error = piece.error + 1.01 * n_ * kUnit<T> * max;
-        const Cell& c = piece.cell;
-        open_.back() = {{2 * c.cell + 1, c.depth + 1}, error};
-        open_.push_back({{2 * c.cell, c.depth + 1}, error});
-    }
-
-    int n_;
-    std::vector<T> buffer_;
-    std::vector<Open> open_;
-};
 
 Interval interval_of(const Cell& c) {
     return {std::scalbn(double(c.cell), -c.depth), std::scalbn(double(c.cell + 1), -c.depth)};
@@ -248,7 +127,7 @@ public:
         RealRoots out;
         if (p_.at_zero > 0) out.roots.push_back({{0, 0}, p_.at_zero, p_.at_zero, true, 0, 0});
         std::vector<Found> found;
-        Search<double>(p_.c.data(), p_.degree(), p_.error, {}).run(found);
+        RootSearch<double>(p_.c.data(), p_.degree(), p_.error, {}).run(found);
         if (p_.parts.empty()) {
             report_uncertain(found, out.roots);
             return out;
@@ -281,7 +160,7 @@ private:
             deepest = Arithmetic::doubled;
             double error = 0;
             const auto b = cut(p_, f.cell, error);
-            Search<DoubleDouble>(b.data(), p_.degree(), error, f.cell).run(all);
+            RootSearch<DoubleDouble>(b.data(), p_.degree(), error, f.cell).run(all);
         }
         found.clear();
         std::vector<Cell> undecided;
@@ -322,7 +201,7 @@ private:
         }
     }
     int certain_sign(double t) const {
-        const double v = value_at(p_.c, t).value, error = p_.error + 3.1 * p_.degree() * kU;
+        const double v = value_at(p_.c, t).value, error = p_.error + 3.1 * p_.degree() * kRootUnit;
         return v > error ? 1 : v < -error ? -1 : 0;
     }
 
@@ -354,7 +233,7 @@ void set_signs(std::vector<Root>& roots, int sign) {
 Interval refined(const Approximate& p, const ExactSign* exact, Interval at, int before, double width) {
     const double n = double(p.c.size()) - 1;
     if (p.c.size() < 2) return at;
-    const double error = p.error + 3.1 * n * kU;
+    const double error = p.error + 3.1 * n * kRootUnit;
     // Moves an end to x if the sign there is known; says whether it is.
     const auto put = [&](double x, double value, bool ask) {
         int s = value > error ? 1 : value < -error ? -1 : 0;
@@ -420,7 +299,7 @@ void divide_ends(Problem& p) {
     }
     // A factor carries 2 n roundings (the products of integers are exact), a coefficient one more; the
     // coefficients that were divided out are below 1.
-    p.error = (p.error + (2 * n + 2) * 1.01 * kU) * most;
+    p.error = (p.error + (2 * n + 2) * 1.01 * kRootUnit) * most;
     const int e = std::max(0, std::ilogb(most) + 1);
     for (double& x : c) x = std::scalbn(x, -e);
     p.error = std::scalbn(p.error, -e) + kUnderflow;
@@ -443,7 +322,7 @@ std::optional<Problem> scaled(std::span<const double> parts, int terms, double e
         p.c[i] = sum;
         largest = std::max(largest, std::abs(sum));
     }
-    p.error += std::scalbn(error, -p.exponent) + (terms > 1 ? terms * kU : 0);
+    p.error += std::scalbn(error, -p.exponent) + (terms > 1 ? terms * kRootUnit : 0);
     if (error > 0) return largest <= p.error ? std::nullopt : std::optional(std::move(p));
     const auto is_zero = [&](std::size_t i) {
         if (std::abs(p.c[i]) > p.error) return false;

@@ -19,7 +19,8 @@
 // Singular sides: where c' = 0, c'(t) = c^(r) t^(r-1) / (r-1)! + .. gives the limit of the tangent: c^(r)
 // after the joint, (-1)^(r-1) c^(r) before it. So a cusp (r = 2 in the middle of one polynomial) turns back:
 // C^infinity and not G^1, and so does the corner of a B-spline with a triple coefficient. "c' = 0" means that
-// c' . c' is not known to be positive. Curvature at such points is not looked at.
+// c' . c' is not known to be positive. The derivatives by arc length that have a limit there are found in
+// expansion.cpp, and compared like any other; where the first has none, no order of G from there on holds.
 //
 // Cost: O(degree^3) for the expansions, O(orders^4) for the inverse series.
 //
@@ -29,8 +30,8 @@
 // value, though the curves may well meet with G^3.
 //
 // References: [Farin 2002], [Barsky & DeRose 1989], [Higham 2002, 3.3].
-#include <freiform/poly/series.hpp>
-#include <freiform/query/continuity.hpp>
+#include "continuity_detail.hpp"
+#include "expansion_detail.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,62 +41,24 @@ namespace freiform {
 
 namespace {
 
+using detail::Expansion;
+using detail::inner;
+using detail::length;
+using detail::scaled;
+using detail::unit;
+using Vector = detail::BoundedVector;
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-using Vector = std::vector<Bounded>;
 
-Bounded scaled(const Bounded& a, int e) { return {std::scalbn(a.value, e), std::scalbn(a.bound, e)}; }
 Jump scaled(const Jump& a, int e) { return {std::scalbn(a.size, e), std::scalbn(a.bound, e)}; }
 
-// Length with bound: lengths differ by at most the length of the difference.
-Bounded length(const Vector& v) {
-    double most = 0;
-    for (const Bounded& x : v) {
-        if (!x.is_finite()) return {kInfinity, kInfinity};
-        most = std::max({most, std::abs(x.value), x.bound});
-    }
-    if (most == 0) return {};
-    const int e = std::ilogb(most);
-    double sum = 0, slack = 0;
-    for (const Bounded& x : v) {
-        const double a = std::scalbn(x.value, -e), b = std::scalbn(x.bound, -e);
-        sum += a * a;
-        slack += b * b;
-    }
-    const double size = std::sqrt(sum);
-    return scaled(Bounded(size, detail::above(std::sqrt(slack) +
-                                              double(v.size() + 2) * kRoundoff * (sum == 0 ? 0 : size))),
-                  e);
-}
 Jump jump_of(const Vector& a, const Vector& b, double factor = 1) {
     Vector d(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) d[i] = Bounded(factor) * (b[i] - a[i]);
     const Bounded l = length(d);
     return {l.value, l.bound};
 }
-Bounded inner(const Vector& a, const Vector& b) {
-    Bounded sum;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-    return sum;
-}
 Vector cross(const Vector& a, const Vector& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-// Empty where v may be 0.
-Vector unit(const Vector& v) {
-    double most = 0;
-    for (const Bounded& x : v) {
-        if (!x.is_finite()) return {};
-        most = std::max(most, std::abs(x.value));
-    }
-    if (most == 0) return {};
-    Vector u = v;
-    for (Bounded& x : u) x = scaled(x, -std::ilogb(most));
-    const Bounded square = inner(u, u);
-    if (!square.excludes_zero()) return {};
-    const Bounded l = sqrt(square);
-    for (Bounded& x : u) x = x / l;
-    return u;
 }
 std::vector<double> values(const Vector& v) {
     std::vector<double> out;
@@ -119,63 +82,10 @@ Jump angle_between(const Vector& a, const Vector& b) {
     return {std::numbers::pi - rest.size, detail::above(rest.bound + 4 * kRoundoff)};
 }
 
-// One side in scaled units: coordinates times 2^-length, parameters times 2^-time.
-struct Expansion {
-    int dimension = 0, time = 0;
-    std::vector<Series<Bounded>> point;      // per coordinate, terms of the power series
-    std::vector<Series<Bounded>> by_length;  // the same in arc length; empty at singular points
-    Series<Bounded> arc;                     // arc length of the (scaled) parameter
-    Vector tangent;
-    bool regular = false;
-
-    Vector derivative(const std::vector<Series<Bounded>>& of, std::size_t k) const {
-        double factorial = 1;
-        for (std::size_t i = 2; i <= k; ++i) factorial *= double(i);
-        Vector v;
-        for (const auto& x : of) v.push_back(x[k] * Bounded(factorial));
-        return v;
-    }
-};
-
-Vector derivative_of(const CurveSide& s, std::size_t k) {
-    const auto first = s.derivatives.begin() + std::ptrdiff_t(k) * s.dimension;
-    return {first, first + s.dimension};
-}
-std::size_t orders_of(const CurveSide& s) { return s.derivatives.size() / std::size_t(s.dimension); }
-
-Expansion expand(const CurveSide& side, std::size_t terms, int length_scale, bool after) {
-    Expansion x;
-    x.dimension = side.dimension;
-    x.time = side.span > 0 ? std::ilogb(side.span) : 0;
-    for (std::size_t k = 1; k < orders_of(side) && x.tangent.empty(); ++k) {
-        Vector v = derivative_of(side, k);
-        if (!after && k % 2 == 0)
-            for (Bounded& c : v) c = -c;
-        x.tangent = unit(v);
-        x.regular = k == 1 && !x.tangent.empty();
-    }
-    if (!x.regular || terms < 2) return x;
-    Series<Bounded> square(terms - 1);
-    for (int c = 0; c < side.dimension; ++c) {
-        std::vector<Bounded> d;
-        for (std::size_t k = 0; k < terms; ++k)
-            d.push_back(scaled(side.derivatives[k * std::size_t(side.dimension) + std::size_t(c)],
-                               int(k) * x.time - length_scale));
-        d[0] = Bounded(0);
-        x.point.push_back(series_of(std::span<const Bounded>(d)));
-        const Series<Bounded> speed = differentiated(x.point.back()), part = multiply(speed, speed);
-        for (std::size_t k = 0; k < square.size(); ++k) square[k] += part[k];
-    }
-    x.arc = integrated(square_root(square));
-    const Series<Bounded> back = inverse(x.arc);
-    for (const auto& c : x.point) x.by_length.push_back(compose(c, back));
-    return x;
-}
-
 // Empty outside of space, and where the curvature may be 0.
 Vector binormal_of(const Expansion& x) {
     if (x.dimension != 3 || x.by_length.empty() || x.by_length[0].size() < 3) return {};
-    return unit(cross(x.tangent, x.derivative(x.by_length, 2)));
+    return unit(cross(x.tangent, x.derivative(2)));
 }
 
 // What one side looks like. Lengths are in units of 2^scale.
@@ -183,14 +93,14 @@ SideGeometry geometry_of(const Expansion& x, int scale) {
     SideGeometry g;
     g.tangent = values(x.tangent);
     if (x.by_length.empty() || x.by_length[0].size() < 3) return g;
-    const Vector k = x.derivative(x.by_length, 2);
+    const Vector k = x.derivative(2);
     const auto turn = [&](const Vector& v) { return x.tangent[0] * v[1] - x.tangent[1] * v[0]; };
     const Bounded curvature = x.dimension == 2 ? turn(k) : length(k);
     g.curvature = scaled(curvature, -scale);
     const Vector binormal = binormal_of(x);
     g.binormal = values(binormal);
     if (x.by_length[0].size() < 4) return g;
-    const Vector third = x.derivative(x.by_length, 3);
+    const Vector third = x.derivative(3);
     if (x.dimension == 2)
         g.curvature_rate = scaled(turn(third), -2 * scale);
     else if (curvature.excludes_zero())
@@ -200,28 +110,35 @@ SideGeometry geometry_of(const Expansion& x, int scale) {
     return g;
 }
 
-// Jumps count as none up to bound + allowed(k).
-template <class Allowed>
-int order_of(const std::vector<Jump>& jumps, Allowed&& allowed) {
-    int order = -1;
-    for (const Jump& j : jumps) {
-        if (!(j.size <= j.bound + allowed(order + 1))) break;
-        ++order;
-    }
-    return order;
-}
-// The jump of a derivative of order k that moves a point by `distance` in h.
-double worth(double distance, double h, int k) {
-    for (int i = 1; i <= k && distance != 0; ++i) distance = distance * i / h;
-    return distance;
-}
-
 Result<void> check(const CurveSide& a, const CurveSide& b, const ContinuityOptions& o) {
     if (a.dimension != b.dimension)
         return refuse(RefusalKind::invalid, "second",
                       text("has ", b.dimension, " coordinates, the first curve has ", a.dimension));
     if (o.orders < 0 || o.orders > kMaxDegree)
         return refuse(RefusalKind::unsupported, "orders", text(o.orders, " is outside 0..", kMaxDegree));
+    return detail::check_allowances(o);
+}
+// The exponent of a length that the derivatives at the joint are measured in: of the first that are not 0, as
+// they move a point over the piece.
+int length_scale(const CurveSide& before, const CurveSide& after) {
+    double most = 0;
+    for (const CurveSide* s : {&before, &after}) {
+        const int r = detail::first_order(*s);
+        if (r == 0) continue;
+        for (const Bounded& x : detail::derivative_of(*s, std::size_t(r))) {
+            double moved = std::abs(x.value);
+            for (int k = 1; k <= r; ++k) moved *= s->span / k;
+            most = std::max(most, moved);
+        }
+    }
+    return most > 0 && std::isfinite(most) ? std::ilogb(most) : 0;
+}
+
+}  // namespace
+
+namespace detail {
+
+Result<void> check_allowances(const ContinuityOptions& o) {
     const std::pair<const char*, double> numbers[] = {{"tolerance", o.tolerance},
                                                       {"angle", o.angle},
                                                       {"curvature", o.curvature},
@@ -233,15 +150,18 @@ Result<void> check(const CurveSide& a, const CurveSide& b, const ContinuityOptio
                           text(x, " is not a finite number >= 0"));
     return {};
 }
-Result<void> check_finite(const std::vector<Jump>& jumps, const char* name) {
-    for (std::size_t k = 0; k < jumps.size(); ++k)
-        if (!std::isfinite(jumps[k].size) || !std::isfinite(jumps[k].bound))
-            return refuse(RefusalKind::ill_conditioned, text(name, "[", k, "]"),
-                          text("the derivative of order ", k, " or its error leaves the range of double"));
-    return {};
+
+std::unexpected<Refusal> out_of_range(std::string_view list, std::size_t order) {
+    return refuse(RefusalKind::ill_conditioned, text(list, "[", order, "]"),
+                  text("the jump of order ", order, " or its error leaves the range of double"));
 }
 
-}  // namespace
+double worth(double distance, double h, int k) {
+    for (int i = 1; i <= k && distance != 0; ++i) distance = distance * i / h;
+    return distance;
+}
+
+}  // namespace detail
 
 std::optional<Jump> Continuity::first_c_jump() const {
     return c_order + 1 < int(c.size()) ? std::optional(c[std::size_t(c_order + 1)]) : std::nullopt;
@@ -254,55 +174,57 @@ Result<Continuity> continuity(const CurveSide& before, const CurveSide& after,
                               const ContinuityOptions& options) {
     if (auto ok = check(before, after, options); !ok) return std::unexpected(ok.error());
     Continuity out;
-    const std::size_t known = std::min(orders_of(before), orders_of(after));
+    const std::size_t known = std::size_t(std::min(before.orders, after.orders)) + 1;
     const double h = std::min(before.span, after.span), reach = std::min(before.reach, after.reach);
 
     // Orders of C: term by term. The values are stored less an origin each, whose difference is added.
-    Vector start = derivative_of(after, 0);
+    Vector start = detail::derivative_of(after, 0);
     for (int i = 0; i < after.dimension; ++i) {
         const std::size_t c = std::size_t(i);
         start[c] += Bounded(after.origin[c]) - Bounded(before.origin[c]);
         out.point.push_back(before.origin[c] + before.derivatives[c].value);
     }
     for (std::size_t k = 0; k < known; ++k)
-        out.c.push_back(jump_of(derivative_of(before, k), k == 0 ? start : derivative_of(after, k)));
-    if (auto ok = check_finite(out.c, "c"); !ok) return std::unexpected(ok.error());
-    out.c_order = order_of(out.c, [&](int k) { return worth(options.tolerance, h, k); });
+        out.c.push_back(
+            jump_of(detail::derivative_of(before, k), k == 0 ? start : detail::derivative_of(after, k)));
+    if (auto ok = detail::check_finite(out.c, "c"); !ok) return std::unexpected(ok.error());
+    out.c_order = detail::order_of(out.c, [&](int k) { return detail::worth(options.tolerance, h, k); });
 
     // Orders of G: the same in arc length.
-    int scale = 0;
-    double most = 0;
-    for (const CurveSide* s : {&before, &after})
-        if (orders_of(*s) > 1)
-            for (const Bounded& x : derivative_of(*s, 1)) most = std::max(most, std::abs(x.value) * s->span);
-    if (most > 0 && std::isfinite(most)) scale = std::ilogb(most);
     const std::size_t terms = std::min(known, std::size_t(options.orders) + 1);
-    const Expansion a = expand(before, terms, scale, false), b = expand(after, terms, scale, true);
+    const int scale = length_scale(before, after);
+    const Expansion a = detail::expand(before, terms, scale, false, options.tolerance),
+                    b = detail::expand(after, terms, scale, true, options.tolerance);
     out.before = geometry_of(a, scale);
     out.after = geometry_of(b, scale);
-    out.singular = !a.regular || !b.regular;
+    out.singular = !a.is_regular() || !b.is_regular();
     out.g.push_back(out.c[0]);
     if (options.orders >= 1 && !a.tangent.empty() && !b.tangent.empty()) {
         out.g.push_back(angle_between(a.tangent, b.tangent));
         out.opposed = out.g[1].size + out.g[1].bound + options.angle >= std::numbers::pi;
     }
     if (!a.by_length.empty() && !b.by_length.empty()) {
-        for (std::size_t k = 2; k < terms; ++k)
-            out.g.push_back(scaled(jump_of(a.derivative(a.by_length, k), b.derivative(b.by_length, k)),
-                                   (1 - int(k)) * scale));
+        const std::size_t both = std::min({terms, a.by_length[0].size(), b.by_length[0].size()});
+        for (std::size_t k = 2; k < both; ++k)
+            out.g.push_back(scaled(jump_of(a.derivative(k), b.derivative(k)), (1 - int(k)) * scale));
+        for (const Expansion* side : {&a, &b})
+            if (side->unbounded > 0 && side->unbounded == int(out.g.size())) out.unbounded = side->unbounded;
+        const Vector b1 = binormal_of(a), b2 = binormal_of(b);
+        if (!b1.empty() && !b2.empty()) out.binormal = angle_between(b1, b2);
+    }
+    if (!out.singular && terms >= 2) {
         const auto phi = derivatives_of(compose(inverse(b.arc), a.arc));
         for (std::size_t k = 0; k < phi.size(); ++k) {
             const Bounded x = k == 0 ? Bounded(after.parameter) : scaled(phi[k], b.time - int(k) * a.time);
             out.phi.push_back(x.value);
             out.phi_bound.push_back(x.bound);
         }
-        const Vector b1 = binormal_of(a), b2 = binormal_of(b);
-        if (!b1.empty() && !b2.empty()) out.binormal = angle_between(b1, b2);
     }
-    if (auto ok = check_finite(out.g, "g"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_finite(out.g, "g"); !ok) return std::unexpected(ok.error());
     const double own[] = {0, options.angle, options.curvature, options.third};
-    out.g_order = order_of(
-        out.g, [&](int k) { return std::max(worth(options.tolerance, reach, k), k <= 3 ? own[k] : 0.0); });
+    out.g_order = detail::order_of(out.g, [&](int k) {
+        return std::max(detail::worth(options.tolerance, reach, k), k <= 3 ? own[k] : 0.0);
+    });
     return out;
 }
 

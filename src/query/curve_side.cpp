@@ -17,10 +17,8 @@
 // Why not Bezier pieces: their coefficients have been computed, so their rounding would look like jumps.
 //
 // References: [Ramshaw 1989], [PT97, 2.5, 4.3].
+#include "expansion_detail.hpp"
 #include "knot_window_detail.hpp"
-
-#include <freiform/poly/series.hpp>
-#include <freiform/query/continuity.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -32,13 +30,14 @@ namespace {
 using detail::span_before;
 
 constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+constexpr int kMostOrders = 100;  // 170! is the largest factorial that a double holds
 
 template <class P>
 CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
                     const ContinuityOptions& options) {
     constexpr int D = Space<P>::kDim;
     const BSplineBasis& basis = curve.basis();
-    const int p = basis.degree(), terms = std::clamp(options.orders, p, kMaxDegree) + 1;
+    const int p = basis.degree();
     const Interval piece{basis.knot(span), basis.knot(span + 1)};
     CurveSide side;
     side.dimension = D;
@@ -61,8 +60,7 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
     side.origin.assign(origin.c.begin(), origin.c.end());
 
     // Derivatives of A - o w and of w.
-    std::vector<Series<Bounded>> h(P::kCoords);
-    for (auto& x : h) x.resize(std::size_t(terms));
+    std::vector<Series<Bounded>> h(P::kCoords, Series<Bounded>(std::size_t(p) + 1));
     std::vector<Bounded> w(std::size_t(p) + 1);
     const Interval on = basis.domain();
     const detail::KnotWindow window(basis, span, at, basis.is_closed() && at == (after ? on.lo : on.hi));
@@ -78,15 +76,25 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
             if (Space<P>::kRational) h.back()[std::size_t(k)] += w[std::size_t(i)] * weight;
         }
     }
-    if (Space<P>::kRational) {
-        const Series<Bounded> weight = series_of(std::span<const Bounded>(h.back()));
-        for (int c = 0; c < D; ++c) {
-            auto& x = h[std::size_t(c)];
-            x = derivatives_of(divide(series_of(std::span<const Bounded>(x)), weight));
+    const auto expand_to = [&](int orders) {
+        std::vector<Series<Bounded>> x = h;
+        for (auto& one : x) one.resize(std::size_t(orders) + 1);
+        if (Space<P>::kRational) {
+            const Series<Bounded> weight = series_of(std::span<const Bounded>(x.back()));
+            for (int c = 0; c < D; ++c) {
+                auto& one = x[std::size_t(c)];
+                one = derivatives_of(divide(series_of(std::span<const Bounded>(one)), weight));
+            }
         }
-    }
-    for (int k = 0; k < terms; ++k)
-        for (int c = 0; c < D; ++c) side.derivatives.push_back(h[std::size_t(c)][std::size_t(k)]);
+        side.derivatives.clear();
+        for (int k = 0; k <= orders; ++k)
+            for (int c = 0; c < D; ++c) side.derivatives.push_back(x[std::size_t(c)][std::size_t(k)]);
+    };
+    side.orders = std::clamp(options.orders, p, kMaxDegree);
+    expand_to(side.orders);
+    // Where the first r - 1 derivatives are 0, the derivative of order k by arc length needs k r of them.
+    if (const int r = detail::first_order(side); r > 1)
+        expand_to(std::max(side.orders, std::min(r * options.orders, kMostOrders)));
     return side;
 }
 

@@ -261,41 +261,90 @@ Result<PlaceAtLength> ArcLength<P>::parameter(double length) const {
     return answer(t, length_to(table, t));
 }
 
+template <class P>
+Result<Measure> ArcLength<P>::total(Interval on) const {
+    if (on.lo > on.hi)
+        return refuse(RefusalKind::invalid, "on",
+                      text("the interval begins at ", on.lo, ", after its end ", on.hi));
+    if (on == domain()) return total();
+    const auto a = at(on.lo), b = at(on.hi);
+    for (const auto* end : {&a, &b})
+        if (!*end) return refuse(end->error().kind, "on", end->error().message);
+    const double value = std::max(0.0, b->value - a->value);
+    return Measure{value, a->bound + b->bound + kUnit * value};
+}
+
+// The parameter is found by its length from the beginning of the curve, where the part begins at a->value:
+// that is off by a->bound, and the sum is rounded. Clamping to the part brings the length nearer to the
+// wanted one, since lengths grow with the parameter.
+template <class P>
+Result<PlaceAtLength> ArcLength<P>::parameter(double length, Interval on) const {
+    if (on == domain()) return parameter(length);
+    const auto all = total(on);
+    if (!all) return std::unexpected(all.error());
+    if (!std::isfinite(length))
+        return refuse(RefusalKind::nonfinite, "length", text(length, " is not a finite number"));
+    if (length < 0 || length > all->value + all->bound)
+        return refuse(RefusalKind::out_of_domain, "length",
+                      text(length, " is outside [0, ", all->value, "], the length of the part"));
+    if (length == 0) return PlaceAtLength{on.lo, 0};
+    if (length >= all->value)
+        return PlaceAtLength{on.hi, (length - all->value) * (1 + 2 * kUnit) + all->bound};
+    const Measure before = *at(on.lo);
+    const double wanted = std::min(before.value + length, total().value);
+    auto place = parameter(wanted);
+    if (!place) return place;
+    place->parameter = clamped(place->parameter, on);
+    place->bound = (place->bound + before.bound + kUnit * wanted) * (1 + 4 * kUnit);
+    return place;
+}
+
 namespace {
 
 constexpr int kMostPlaces = 100'000'000;
 
-}  // namespace
-
-template <class P>
-Result<std::vector<PlaceAtLength>> ArcLength<P>::equal_parts(int n) const {
-    if (n < 1) return refuse(RefusalKind::invalid, "parts", text("must be positive, found ", n));
-    if (n > kMostPlaces) return refuse(RefusalKind::limit, "parts", text(n, " are more than ", kMostPlaces));
+// The places at all lengths(0), .., lengths(last).
+template <class P, class Lengths>
+Result<std::vector<PlaceAtLength>> places(const ArcLength<P>& s, Interval on, int last, Lengths&& lengths) {
     std::vector<PlaceAtLength> out;
-    const double all = total().value;
-    for (int i = 0; i <= n; ++i) {
-        const auto place = parameter(i == n ? all : all * (double(i) / n));
+    for (int i = 0; i <= last; ++i) {
+        const auto place = s.parameter(lengths(i), on);
         if (!place) return std::unexpected(place.error());
         out.push_back(*place);
     }
     return out;
 }
 
+}  // namespace
+
 template <class P>
-Result<std::vector<PlaceAtLength>> ArcLength<P>::spaced(double d) const {
+Result<std::vector<PlaceAtLength>> ArcLength<P>::equal_parts(int n, Interval on) const {
+    if (n < 1) return refuse(RefusalKind::invalid, "parts", text("must be positive, found ", n));
+    if (n > kMostPlaces) return refuse(RefusalKind::limit, "parts", text(n, " are more than ", kMostPlaces));
+    const auto all = total(on);
+    if (!all) return std::unexpected(all.error());
+    return places(*this, on, n, [&](int i) { return i == n ? all->value : all->value * (double(i) / n); });
+}
+template <class P>
+Result<std::vector<PlaceAtLength>> ArcLength<P>::equal_parts(int n) const {
+    return equal_parts(n, domain());
+}
+
+template <class P>
+Result<std::vector<PlaceAtLength>> ArcLength<P>::spaced(double d, Interval on) const {
     if (!(d > 0 && std::isfinite(d)))
         return refuse(RefusalKind::invalid, "distance", text("must be positive and finite, found ", d));
-    const double all = total().value, n = std::floor(all / d);
+    const auto all = total(on);
+    if (!all) return std::unexpected(all.error());
+    const double n = std::floor(all->value / d);
     if (n >= kMostPlaces)
         return refuse(RefusalKind::limit, "distance",
                       text(n, " places are needed, ", kMostPlaces, " may be asked for"));
-    std::vector<PlaceAtLength> out;
-    for (int i = 0; i <= int(n); ++i) {
-        const auto place = parameter(std::min(i * d, all));
-        if (!place) return std::unexpected(place.error());
-        out.push_back(*place);
-    }
-    return out;
+    return places(*this, on, int(n), [&](int i) { return std::min(i * d, all->value); });
+}
+template <class P>
+Result<std::vector<PlaceAtLength>> ArcLength<P>::spaced(double d) const {
+    return spaced(d, domain());
 }
 
 template <class P>
@@ -305,15 +354,7 @@ Measure length(const Curve<P>& curve, double accuracy) {
 
 template <class P>
 Result<Measure> length(const Curve<P>& curve, Interval on, double accuracy) {
-    if (on.lo > on.hi)
-        return refuse(RefusalKind::invalid, "on",
-                      text("the interval begins at ", on.lo, ", after its end ", on.hi));
-    const ArcLength<P> s(curve, accuracy / 2);
-    const auto a = s.at(on.lo), b = s.at(on.hi);
-    if (!a) return std::unexpected(a.error());
-    if (!b) return std::unexpected(b.error());
-    const double value = std::max(0.0, b->value - a->value);
-    return Measure{value, a->bound + b->bound + kUnit * value};
+    return ArcLength<P>(curve, accuracy / 2).total(on);
 }
 
 #define FF_INSTANTIATE(P)                             \

@@ -22,7 +22,12 @@
 //     exactly one. A pair is settled by a crossing found before if the arcs of both together are still "at
 //     most once".
 // Pairs are looked at breadth first. Pairs as small as the accuracy, or parallel and as flat, are given up as
-// uncertain; neighbouring ones are united.
+// uncertain; neighbouring ones are united. There the nearest pair of parameters is looked for, and whether
+// the curve meets itself at one of the simple numbers beside it is decided in integers (self_contact.cpp).
+//
+// In space: points of a plane are told apart without one of their coordinates, so a curve in a plane has the
+// meetings of its image. Distances in the plane are at most sqrt(3) times those in the image, if the
+// coordinate that is left out is the one in which the normal is longest.
 //
 // Accuracy. Errors of coefficients as in bounds.cpp; legs are off by 2 e in each coordinate, and a . leg by
 // 2 e |a|_1 and rounding; all comparisons leave that distance.
@@ -34,6 +39,9 @@
 //
 // Why not elimination (implicit form, resultants)? Degree (n - 1)(n - 2) in one parameter, with coefficients
 // that doubles cannot hold for n > 4.
+#include "arc_detail.hpp"
+#include "self_contact_detail.hpp"
+
 #include <freiform/query/self_intersection.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -43,21 +51,17 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <type_traits>
 
 namespace freiform {
 
 namespace {
 
-constexpr double kU = 0x1p-53;
-
-// Control points of an arc, of one part or several in a row, with what bounds them.
-template <int D>
-struct Arc {
-    Interval on;
-    std::vector<Vec<D>> points, legs;
-    double error = 0;  // of each coordinate of `points`
-    Box<D> box;
-};
+using detail::add_points;
+using detail::Arc;
+using detail::kU;
+using detail::meet_at_most_once;
+using detail::moves_on;
 
 template <class P>
 struct Part {
@@ -70,78 +74,6 @@ struct Part {
 };
 
 template <class P>
-void add_points(Arc<Space<P>::kDim>& arc, const std::vector<P>& b, double error, int skip_lo, int skip_hi) {
-    double x = 0, w = std::numeric_limits<double>::infinity();
-    const std::size_t first = arc.points.size();
-    for (const P& p : b) {
-        arc.points.push_back(project(p));
-        x = std::max(x, max_abs(arc.points.back()));
-        w = std::min(w, Space<P>::weight(p));
-    }
-    double e = error;
-    if (Space<P>::kRational)
-        e = w > 2 * error ? error * (1 + x) / (w - error) + 2 * kU * x
-                          : std::numeric_limits<double>::infinity();
-    arc.error = std::max(arc.error, 1.01 * e);
-    for (std::size_t i = first + std::size_t(skip_lo); i + 1 + std::size_t(skip_hi) < arc.points.size(); ++i)
-        arc.legs.push_back(arc.points[i + 1] - arc.points[i]);
-    for (std::size_t i = first; i < arc.points.size(); ++i) arc.box.add(arc.points[i]);
-}
-
-// The range of n . x over the arc, rounding included.
-template <int D>
-Interval range_along(const Arc<D>& arc, const Vec<D>& n) {
-    Interval r{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    double size = 0;
-    for (int k = 0; k < D; ++k) size += std::abs(n[k]);
-    for (const Vec<D>& p : arc.points) {
-        const double v = dot(n, p);
-        r = {std::min(r.lo, v), std::max(r.hi, v)};
-    }
-    const double slack = size * (1.01 * arc.error + (D + 1) * 1.01 * kU * arc.box.scale());
-    return {r.lo - slack, r.hi + slack};
-}
-
-template <int D>
-double leg_error(const Arc<D>& arc) {
-    return 2.02 * arc.error + 2 * kU * arc.box.scale();
-}
-
-// Do all legs of all arcs point into one open half-space?
-template <int D>
-bool moves_on(std::initializer_list<const Arc<D>*> arcs) {
-    Vec<D> a{};
-    for (const Arc<D>* arc : arcs)
-        for (const Vec<D>& leg : arc->legs) a += unit(leg);
-    a = unit(a);
-    for (const Arc<D>* arc : arcs) {
-        const double e = 2 * leg_error(*arc);  // |a|_1 <= sqrt(D) < 2
-        for (const Vec<D>& leg : arc->legs)
-            if (!(dot(a, leg) > e + 4 * kU * norm(leg))) return false;
-    }
-    return true;
-}
-
-// Is cross(leg of a, leg of b) of one sign for all legs?
-bool meet_at_most_once(std::initializer_list<const Arc<2>*> as, std::initializer_list<const Arc<2>*> bs) {
-    int sign = 0;
-    for (const Arc<2>* a : as)
-        for (const Arc<2>* b : bs) {
-            const double ea = leg_error(*a), eb = leg_error(*b);
-            for (const Vec<2>& p : a->legs)
-                for (const Vec<2>& q : b->legs) {
-                    const double c = cross(p, q), mp = std::abs(p[0]) + std::abs(p[1]),
-                                 mq = std::abs(q[0]) + std::abs(q[1]);
-                    const double e = ea * mq + eb * mp + 2 * ea * eb + 3 * kU * mp * mq;
-                    const int s = c > 1.01 * e ? 1 : c < -1.01 * e ? -1 : 0;
-                    if (s == 0 || (sign != 0 && s != sign)) return false;
-                    sign = s;
-                }
-        }
-    return sign != 0;
-}
-
-template <class P>
 class Search {
 public:
     static constexpr int D = Space<P>::kDim;
@@ -151,7 +83,11 @@ public:
     // coefficients of each piece are off by; empty: nothing.
     Search(const Curve<P>& curve, std::span<const Interval> closed, std::span<const double> errors,
            double accuracy, int max_pairs)
-        : curve_(curve), accuracy_(accuracy), max_pairs_(max_pairs), closed_(closed.begin(), closed.end()) {
+        : curve_(curve),
+          accuracy_(accuracy),
+          max_pairs_(max_pairs),
+          closed_(closed.begin(), closed.end()),
+          exact_(errors.empty()) {
         const BezierPieces<1, P> pieces(curve);
         const BSplineBasis& basis = curve.basis();
         const int p = basis.degree();
@@ -221,7 +157,7 @@ private:
             for (std::size_t l = k + 1; l < order.size(); ++l) {
                 const int j = order[l];
                 if (arc(j).box.lo[0] > arc(i).box.hi[0] + error) break;
-                if (!are_apart(arc(i), arc(j))) pairs.push_back({std::min(i, j), std::max(i, j)});
+                if (!detail::are_apart(arc(i), arc(j))) pairs.push_back({std::min(i, j), std::max(i, j)});
             }
             if (pairs.size() > most) return false;
         }
@@ -283,13 +219,20 @@ private:
     void look_at_one(int i, bool may_halve) {
         if (parts_[std::size_t(i)].b.size() < 2 || moves_on<D>({&arc(i)})) return;
         if (!may_halve || arc(i).box.diagonal() <= smallest(arc(i)) || !halve(i)) {
-            open_.push_back({false, arc(i).on, arc(i).on, {}, 0});
+            open_.push_back(given_up(may_halve, arc(i).on, arc(i).on));
             return;
         }
         const Part<P>& p = parts_[std::size_t(i)];
         queue_.push_back({p.left, p.left});
         queue_.push_back({p.right, p.right});
         queue_.push_back({p.left, p.right});
+    }
+
+    static Meeting given_up(bool looked_at, const Interval& a, const Interval& b) {
+        Meeting m;
+        m.kind = looked_at ? SelfContact::near : SelfContact::unresolved;
+        m.first = a, m.second = b;
+        return m;
     }
 
     double smallest(const Arc<D>& a) const { return std::max(accuracy_, 16 * a.error); }
@@ -304,33 +247,6 @@ private:
                            [&](const Interval& whole) { return a.on.lo == whole.lo && b.on.hi == whole.hi; });
     }
 
-    static bool are_apart(const Arc<D>& a, const Arc<D>& b) {
-        for (int k = 0; k < D; ++k) {
-            const double e = 1.01 * (a.error + b.error);
-            if (a.box.lo[k] > b.box.hi[k] + e || b.box.lo[k] > a.box.hi[k] + e) return true;
-        }
-        if constexpr (D == 2)
-            for (const Arc<2>* side : {&a, &b}) {
-                const Vec<2> chord = side->points.back() - side->points.front();
-                const Vec<2> n = unit(Vec<2>{{-chord[1], chord[0]}});
-                const Interval ra = range_along(a, n), rb = range_along(b, n);
-                if (ra.hi < rb.lo || rb.hi < ra.lo) return true;
-            }
-        return false;
-    }
-
-    // The width across its chord.
-    static double thickness(const Arc<D>& a) {
-        if constexpr (D != 2) return a.box.diagonal();
-        const Vec<D> chord = unit(a.points.back() - a.points.front());
-        double most = 0;
-        for (const Vec<D>& p : a.points) {
-            const Vec<D> d = p - a.points.front();
-            most = std::max(most, norm(d - dot(d, chord) * chord));
-        }
-        return most;
-    }
-
     void look_at_two(const Pair& pair, bool may_halve) {
         const Arc<D>&a = arc(pair.a), &b = arc(pair.b);
         const bool neighbours = are_neighbours(a, b);
@@ -338,7 +254,7 @@ private:
         if (neighbours) {
             if (a.on.hi == b.on.lo ? moves_on<D>({&a, &b}) : moves_on<D>({&b, &a})) return;
         } else {
-            if (are_apart(a, b)) return;
+            if (detail::are_apart(a, b)) return;
             if constexpr (D == 2) {
                 parallel = !meet_at_most_once({&a}, {&b});
                 if (!parallel && settle(a, b)) return;
@@ -347,10 +263,11 @@ private:
         const double size_a = a.box.diagonal(), size_b = b.box.diagonal(),
                      least = std::max(smallest(a), smallest(b));
         const bool small = std::max(size_a, size_b) <= least;
-        const bool flat = !neighbours && parallel && std::max(thickness(a), thickness(b)) <= least && D == 2;
+        const bool flat = !neighbours && parallel &&
+                          std::max(detail::thickness(a), detail::thickness(b)) <= least && D == 2;
         const int larger = size_a >= size_b ? pair.a : pair.b;
         if (!may_halve || small || flat || !halve(larger)) {
-            open_.push_back({false, arc(pair.a).on, arc(pair.b).on, {}, 0});
+            open_.push_back(given_up(may_halve, arc(pair.a).on, arc(pair.b).on));
             return;
         }
         const Part<P>& p = parts_[std::size_t(larger)];
@@ -423,31 +340,23 @@ private:
             const Arc<2> p = arc_over(around(s, vs, stretch_around(s))),
                          q = arc_over(around(t, vt, stretch_around(t)));
             if (p.on.overlaps(q.on)) return false;
-            if (!is_certainly_crossing(p, q)) continue;
+            if (!detail::is_certainly_crossing(p, q)) continue;
             if (!overlap(p.on, a.on) || !overlap(q.on, b.on) || !meet_at_most_once({&a, &p}, {&b, &q}))
                 return false;
             const Vec<2> x = curve_(s);
             double bound = 0;
             for (const Arc<2>* side : {&p, &q})
                 for (const Vec<2>& y : side->points) bound = std::max(bound, norm(y - x) + 2 * side->error);
-            found_.push_back({true, p.on, q.on, x, bound * (1 + 8 * kU) + 2 * curve_.value_error_bound()});
+            found_.push_back({SelfContact::crossing,
+                              p.on,
+                              q.on,
+                              x,
+                              bound * (1 + 8 * kU) + 2 * curve_.value_error_bound(),
+                              {s, t}});
             arcs_.push_back({p, q});
             return true;
         }
         return false;
-    }
-
-    static bool is_certainly_crossing(const Arc<2>& p, const Arc<2>& q) {
-        if (!meet_at_most_once({&p}, {&q})) return false;
-        const auto passes = [](const Arc<2>& through, const Arc<2>& strip) {
-            const Vec<2> chord = strip.points.back() - strip.points.front();
-            const Vec<2> n = unit(Vec<2>{{-chord[1], chord[0]}});
-            const Interval r = range_along(strip, n);
-            const double e = 2 * (1.01 * through.error + 4 * kU * through.box.scale());
-            const double from = dot(n, through.points.front()), to = dot(n, through.points.back());
-            return (from + e < r.lo && to - e > r.hi) || (to + e < r.lo && from - e > r.hi);
-        };
-        return passes(p, q) && passes(q, p);
     }
 
     // Pairs that were given up: those that touch are one answer.
@@ -464,6 +373,7 @@ private:
                 for (std::size_t i = 0; i < united.size(); ++i) {
                     const Meeting u = united[i];
                     if (!u.first.overlaps(all.first) || !u.second.overlaps(all.second)) continue;
+                    if (u.kind == SelfContact::unresolved) all.kind = u.kind;
                     all.first = hull(u.first, all.first);
                     all.second = hull(u.second, all.second);
                     united[i] = united.back();
@@ -485,6 +395,7 @@ private:
                 for (const Vec<D>& y : a.points) m.bound = std::max(m.bound, norm(y - m.point) + 2 * a.error);
             }
             m.bound = m.bound * (1 + 8 * kU) + 2 * curve_.value_error_bound();
+            if (exact_) detail::describe(curve_, m);
             found_.push_back(m);
         }
     }
@@ -493,6 +404,7 @@ private:
     double accuracy_, parameter_error_ = 0;
     int max_pairs_, count_ = 0;
     std::vector<Interval> closed_;
+    bool exact_;  // the coefficients are those given
     std::deque<Part<P>> parts_;
     std::vector<char> jumps_;  // at the beginning of piece i + 1
     std::deque<Pair> queue_;
@@ -500,7 +412,52 @@ private:
     std::vector<std::pair<Arc<D>, Arc<D>>> arcs_;  // of the certain ones in found_
 };
 
+template <class P>
+std::vector<SelfIntersection<Space<P>::kDim>> all_meetings(const Curve<P>& curve, double accuracy,
+                                                           int max_pairs) {
+    const std::array<Interval, 1> whole = curve.domain();
+    return *Search<P>(curve, std::span(whole).first(curve.basis().is_closed() ? 1 : 0), {}, accuracy,
+                      max_pairs)
+                .run(std::numeric_limits<std::size_t>::max());
+}
+
+// The image of a curve of three coordinates, without one of them. Exact.
+template <class P>
+auto without(const Curve<P>& curve, int coordinate) {
+    using Flat = std::conditional_t<Space<P>::kRational, Hom<2>, Vec<2>>;
+    std::vector<Flat> net;
+    for (const P& p : curve.net().flat()) {
+        Flat q;
+        for (int c = 0, k = 0; c < P::kCoords; ++c)
+            if (c != coordinate) q[k++] = p[c];
+        net.push_back(q);
+    }
+    return Curve<Flat>::make({curve.basis()}, Net<1, Flat>({curve.basis().size()}, std::move(net)));
+}
+
+// The meetings of a curve in a plane of space, from those of its image.
+template <class P>
+std::vector<SelfIntersection<3>> lifted(const Curve<P>& curve, const std::vector<SelfIntersection<2>>& image,
+                                        double image_error) {
+    const double error = 2 * curve.value_error_bound();  // of the distance of a point
+    std::vector<SelfIntersection<3>> out;
+    for (const SelfIntersection<2>& m : image) {
+        SelfIntersection<3> x{m.kind, m.first, m.second, curve(m.first.middle()), 0, m.at, 0};
+        // From the point over the middle of `first` to m.point and on: both in the image.
+        x.bound = 1.7320508075688774 * (2 * m.bound + 2 * image_error) * (1 + 8 * kU) + error;
+        if (m.kind == SelfContact::near)
+            x.distance = (norm(curve(m.at[0]) - curve(m.at[1])) + 2 * error) * (1 + 8 * kU);
+        out.push_back(x);
+    }
+    return out;
+}
+
 }  // namespace
+
+std::string_view name_of(SelfContact kind) {
+    constexpr std::string_view kNames[] = {"crossing", "meeting", "near", "cusp", "unresolved"};
+    return kNames[int(kind)];
+}
 
 template <class P>
 requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)
@@ -508,10 +465,12 @@ requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)
                                                                              double accuracy, int max_pairs) {
     if (!(accuracy > 0))
         return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a length > 0"));
-    const std::array<Interval, 1> whole = curve.domain();
-    return *Search<P>(curve, std::span(whole).first(curve.basis().is_closed() ? 1 : 0), {}, accuracy,
-                      max_pairs)
-                .run(std::numeric_limits<std::size_t>::max());
+    if constexpr (Space<P>::kDim == 3)
+        if (const auto spare = detail::spare_coordinate(tuples(curve.net().flat())))
+            if (const auto image = without(curve, *spare))
+                return lifted(curve, all_meetings(*image, accuracy / 4, max_pairs),
+                              2 * image->value_error_bound());
+    return all_meetings(curve, accuracy, max_pairs);
 }
 
 Result<std::vector<SelfIntersection<2>>> self_intersections(const Curve<Hom<2>>& chains,

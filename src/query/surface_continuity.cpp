@@ -32,6 +32,7 @@
 // connection functions of G^1: they are quotients, and small denominators decide nothing about the shape.
 //
 // References: [Pegna & Wolter 1992], [Farin 2002, ch. 20], [Ye, Liang & Nowacki 1996].
+#include "continuity_detail.hpp"
 #include "largest_detail.hpp"
 #include "piecewise_detail.hpp"
 #include "surface_strip_detail.hpp"
@@ -188,20 +189,6 @@ LinePart bend_part(const Interval& on, const Strip& sa, const Strip& sb, const F
 LargestJump scaled(const detail::Largest& x, int e) {
     return {std::scalbn(x.value, e), std::scalbn(x.bound, e), x.at};
 }
-double worth(double distance, double h, int k) {
-    for (int i = 1; i <= k && distance != 0; ++i) distance = distance * i / h;
-    return distance;
-}
-template <class Allowed>
-int order_of(const std::vector<LargestJump>& jumps, Allowed&& allowed) {
-    int order = -1;
-    for (const LargestJump& j : jumps) {
-        if (!(j.size <= j.bound + allowed(order + 1))) break;
-        ++order;
-    }
-    return order;
-}
-
 Result<void> check(const SurfaceSide& a, const SurfaceSide& b, const ContinuityOptions& o) {
     if (a.dimension != b.dimension)
         return refuse(RefusalKind::invalid, "second",
@@ -210,24 +197,8 @@ Result<void> check(const SurfaceSide& a, const SurfaceSide& b, const ContinuityO
         return refuse(RefusalKind::unsupported, "orders",
                       text(o.orders, " is outside 0..", std::min(a.orders, b.orders),
                            ", the orders that the sides were made for"));
-    const std::pair<const char*, double> numbers[] = {{"tolerance", o.tolerance},
-                                                      {"angle", o.angle},
-                                                      {"curvature", o.curvature},
-                                                      {"roundings", o.roundings}};
-    for (const auto& [name, x] : numbers)
-        if (!(x >= 0) || !std::isfinite(x))
-            return refuse(std::isfinite(x) ? RefusalKind::invalid : RefusalKind::nonfinite, name,
-                          text(x, " is not a finite number >= 0"));
-    return {};
+    return detail::check_allowances(o);
 }
-Result<void> check_finite(const std::vector<LargestJump>& jumps, const char* name) {
-    for (std::size_t k = 0; k < jumps.size(); ++k)
-        if (!std::isfinite(jumps[k].size) || !std::isfinite(jumps[k].bound))
-            return refuse(RefusalKind::ill_conditioned, text(name, "[", k, "]"),
-                          text("the jump of order ", k, " or its error leaves the range of double"));
-    return {};
-}
-
 void add_aside(std::vector<Interval>& all, const std::vector<Interval>& more) {
     for (Interval x : more) {
         if (x.lo > x.hi) std::swap(x.lo, x.hi);
@@ -282,7 +253,8 @@ void find_g(const JointStrips& j, SurfaceContinuity& out) {
     const double reach = std::min(j.a.reach, j.b.reach);
     const double own[] = {0, j.options.angle, j.options.curvature};
     const auto order = [&] {
-        return order_of(out.g, [&](int k) { return std::max(worth(j.options.tolerance, reach, k), own[k]); });
+        return detail::order_of(
+            out.g, [&](int k) { return std::max(detail::worth(j.options.tolerance, reach, k), own[k]); });
     };
     out.g.push_back(out.c[0]);
     out.g_order = order();
@@ -328,11 +300,11 @@ Result<SurfaceContinuity> continuity(const SurfaceSide& before, const SurfaceSid
     const JointStrips j = JointStrips::make(before, after, options);
     SurfaceContinuity out;
     find_c(j, out);
-    if (auto ok = check_finite(out.c, "c"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_finite(out.c, "c"); !ok) return std::unexpected(ok.error());
     const double h = std::min(before.span, after.span);
-    out.c_order = order_of(out.c, [&](int k) { return worth(options.tolerance, h, k); });
+    out.c_order = detail::order_of(out.c, [&](int k) { return detail::worth(options.tolerance, h, k); });
     find_g(j, out);
-    if (auto ok = check_finite(out.g, "g"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_finite(out.g, "g"); !ok) return std::unexpected(ok.error());
     return out;
 }
 

@@ -125,14 +125,26 @@ Result<Reduced<1, P>> join_pieces(std::span<const P> coefficients, int degree, s
                       text("degree ", degree, " is outside [0, ", kMaxDegree, "]"));
     const std::size_t pieces = breaks.size() - (breaks.empty() ? 0 : 1), order = std::size_t(degree) + 1;
     if (auto ok = check_pieces(coefficients, breaks, pieces * order); !ok) return std::unexpected(ok.error());
-    std::vector<double> knots;
-    for (const double x : breaks) knots.insert(knots.end(), order, x);
+    // A coefficient that neighbours have in common is written once, with one knot less: exactly the same
+    // curve.
+    std::vector<double> knots(order, breaks[0]);
+    std::vector<P> net(coefficients.begin(), coefficients.begin() + std::ptrdiff_t(order));
+    int shared = 0;
+    for (std::size_t i = 1; i < pieces; ++i) {
+        const bool same = degree > 0 && coefficients[i * order] == coefficients[i * order - 1];
+        shared += same;
+        knots.insert(knots.end(), order - std::size_t(same), breaks[i]);
+        net.insert(net.end(), coefficients.begin() + std::ptrdiff_t(i * order) + same,
+                   coefficients.begin() + std::ptrdiff_t((i + 1) * order));
+    }
+    knots.insert(knots.end(), order, breaks[pieces]);
     auto basis = BSplineBasis::make(degree, std::move(knots));
     if (!basis) return std::unexpected(basis.error());
-    auto curve = Curve<P>::make({std::move(*basis)}, Net<1, P>({int(coefficients.size())},
-                                                               {coefficients.begin(), coefficients.end()}));
+    auto curve = Curve<P>::make({std::move(*basis)}, Net<1, P>({int(net.size())}, net));
     if (!curve) return refuse(curve.error().kind, "points", curve.error().message);
-    return remove_knots(*curve, 0, tolerance);
+    auto reduced = remove_knots(*curve, 0, tolerance);
+    if (reduced) reduced->removed += shared;
+    return reduced;
 }
 
 #define FF_A_FRAMES(P)                                                                          \

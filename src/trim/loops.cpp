@@ -127,7 +127,7 @@ Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolera
                             {a.curve, b.curve},
                             out.links.given(m.point),
                             std::scalbn(m.bound, out.links.exponent)};
-        bool is_crossing = m.is_certain;
+        bool is_crossing = m.is_certain();
         if (const auto p =
                 is_crossing ? std::nullopt : detail::crossing_vertex(out.links, m.first, m.second)) {
             is_crossing = true;

@@ -49,7 +49,7 @@ TEST(Blossom, values_and_derivatives_are_those_of_cox_and_de_boor) {
         const auto t = test::knots_as<Rational>(b);
         double w[kMaxDegree + 1];
         const auto all = test::parameters(random, b, 1);
-        for (std::size_t k = 0; k < all.size(); k += p > 9 ? 17 : p > 5 ? 3 : 1)
+        for (std::size_t k = 0; k<all.size(); k += p> 9 ? 17 : p > 5 ? 3 : 1)
             for (int order : {0, 1, 2, p, p + 1}) {
                 if (order > p + 1) continue;
                 const int first = weights(b, all[k], order, w);

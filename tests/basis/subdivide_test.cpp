@@ -154,5 +154,34 @@ TEST(ExtendTo, continues_the_end_pieces_as_the_polynomials_that_they_are) {
     EXPECT_EQ(extend_to(must(BSplineBasis::bezier(2)), {0.5, 2}).error().kind, RefusalKind::out_of_domain);
 }
 
+// The largest observed / bound is below 1, and not so small that the bound says nothing.
+TEST(ExtendTo, bounds_the_error_of_every_entry) {
+    Random random(44);
+    double worst = 0;
+    for (int p = 1; p <= 9; ++p)
+        for (int k = 0; k < 10; ++k) {
+            const auto b =
+                test::random_basis(random, p, {k % 2 ? Ends::clamped : Ends::unclamped, 3, false, false});
+            const Interval was = b.domain();
+            const double left = random.real(0, 2), right = random.real(0, 2);
+            const auto change = must(extend_to(b, {was.lo - left, was.hi + right}));
+            // The first coefficient is the value at the new end, and the last.
+            for (const int j : {0, change.basis.size() - 1}) {
+                const double u = j == 0 ? change.basis.domain().lo : change.basis.domain().hi;
+                const int span = b.span(std::clamp(u, was.lo, was.hi));
+                std::vector<Rational> w(std::size_t(p) + 1);
+                weights_in_span(b, span, Rational(u), 0, w.data());
+                ASSERT_EQ(change.map.first[std::size_t(j)], span - p);
+                for (int i = 0; i <= p; ++i) {
+                    const std::size_t at = std::size_t(j * change.map.width + i);
+                    const double off = test::gap(change.map.entry[at], w[std::size_t(i)]);
+                    ASSERT_LE(off, change.entry_bound[at]) << p;
+                    if (off > 0) worst = std::max(worst, off / change.entry_bound[at]);
+                }
+            }
+        }
+    EXPECT_GT(worst, 0.05);
+}
+
 }  // namespace
 }  // namespace freiform

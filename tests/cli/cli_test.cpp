@@ -32,6 +32,23 @@ void expect_error(const Ran& r, int code, const std::string& kind, const std::st
     EXPECT_TRUE(r.err.starts_with("freiform: ")) << r.err;
 }
 
+TEST_F(Cli, knots_inserted_for_weights_that_are_not_positive_are_said_with_a_bound) {
+    const std::string half =
+        R"({"type":"curve","name":"half","points":[[0.3,0],[0,0.3],[-0.3,0]],"weights":[1,0,1],
+        "weighted_points":[[0.3,0],[0,0.3],[-0.3,0]]})";
+    const Ran r = run({"info", "-", "--json"}, half);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json a = Json::parse(r.out)["objects"][0]["approximations"];
+    ASSERT_EQ(a.size(), 1u);
+    EXPECT_EQ(a[0]["what"], "1 knot inserted to make all weights positive");
+    EXPECT_GT(a[0]["bound"].get<double>(), 0);
+    EXPECT_LT(a[0]["bound"].get<double>(), 1e-14);
+    EXPECT_NE(r.err.find("objects[0] \"half\": 1 knot inserted"), std::string::npos) << r.err;
+    EXPECT_NE(run({"info", "-"}, half).out.find("  approximated  1 knot inserted"), std::string::npos);
+    EXPECT_NE(run({"length", "-"}, half).err.find("1 knot inserted"), std::string::npos);
+    EXPECT_EQ(run({"info", "-"}, R"({"type":"curve","points":[[0],[1]],"weights":[1,2]})").err, "");
+}
+
 TEST_F(Cli, info_says_what_a_file_contains) {
     const Ran r = run({"info", file("c.json", kCurve)});
     EXPECT_EQ(r.code, 0);

@@ -68,6 +68,37 @@ TEST_F(Cli, conic_takes_points_and_circles) {
     EXPECT_EQ(run({"conic", "--circle", "1,1,-2"}).code, 3);
 }
 
+TEST_F(Cli, conic_through_five_points_in_order_is_the_arc_and_no_more) {
+    const std::string half = "5,0;4,3;3,4;0,5;-5,0";
+    const Json j = Json::parse(run({"conic", "--points", half, "--in-order", "--json"}).out);
+    EXPECT_EQ(j["type"], "circle");
+    EXPECT_EQ(j["arcs"], 1);
+    EXPECT_EQ(j["at"][0], 0.0);
+    EXPECT_EQ(j["at"][4], 1.0);
+    EXPECT_LT(j["points_bound"].get<double>(), 1e-13);
+    const Ran r = run({"conic", "--points", half, "--in-order", "-o", "half.json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.out.find("an arc of a circle, passes the points within "), std::string::npos) << r.out;
+    const double pi = 3.14159265358979323846;
+    EXPECT_NEAR(Json::parse(run({"length", "half.json", "--json"}).out)["value"].get<double>(), 5 * pi,
+                1e-12);
+    for (std::size_t i = 0; i < 5; ++i) {
+        const double at = j["at"][i].get<double>();
+        const Json p =
+            Json::parse(run({"eval", "half.json", "--at", Json(at).dump()}).out)["results"][0]["point"];
+        const double x[] = {5, 4, 3, 0, -5}, y[] = {0, 3, 4, 5, 0};
+        EXPECT_NEAR(p[0].get<double>(), x[i], 1e-13) << i;
+        EXPECT_NEAR(p[1].get<double>(), y[i], 1e-13) << i;
+    }
+    // The same circle in another order; three points; a box.
+    const Ran other = run({"conic", "--points", "5,0;0,5;-5,0;3,4;4,-3", "--in-order"});
+    EXPECT_EQ(other.code, 1);
+    EXPECT_NE(other.err.find("passes them in another order"), std::string::npos) << other.err;
+    EXPECT_EQ(run({"conic", "--points", "1,0;0,1;-1,0", "--in-order"}).code, 2);
+    EXPECT_EQ(run({"conic", "--points", half, "--in-order", "--box", "0,0,1,1"}).code, 2);
+    EXPECT_EQ(run({"conic", "--circle", "0,0,1", "--in-order"}).code, 2);
+}
+
 TEST_F(Cli, conic_reports_the_bound_and_the_number_of_its_arcs) {
     const Json two = Json::parse(
         run({"conic", "--equation", "0,1,0,0,0,-1", "--box", "-3,-3,3,3", "-o", "h.json", "--json"}).out);

@@ -30,6 +30,25 @@ TEST_F(LengthCommand, a_part_has_its_own_length) {
     EXPECT_FALSE(r["objects"][0].contains("at"));
 }
 
+TEST_F(LengthCommand, places_on_a_part_are_counted_from_its_beginning_and_inside_it) {
+    const auto at = [&](std::vector<std::string> how) {
+        how.insert(how.begin(), {"length", "-", "--range", "0.2,0.6", "--json"});
+        return Json::parse(run(how, kSegment).out)["objects"][0]["at"];
+    };
+    const Json thirds = at({"--equal", "4"}), spaced = at({"--spacing", "0.75"}), given = at({"--at", "0.5"});
+    ASSERT_EQ(thirds.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_NEAR(thirds[i]["length"].get<double>(), 0.5 * double(i), 1e-14);
+        EXPECT_NEAR(thirds[i]["parameter"].get<double>(), 0.2 + 0.1 * double(i), 1e-14);
+        EXPECT_NEAR(thirds[i]["point"][1].get<double>(), 4 * (0.2 + 0.1 * double(i)), 1e-14);
+    }
+    ASSERT_EQ(spaced.size(), 3u);  // 0, 0.75 and 1.5 of 2
+    EXPECT_NEAR(spaced[2]["parameter"].get<double>(), 0.5, 1e-14);
+    ASSERT_EQ(given.size(), 1u);
+    EXPECT_NEAR(given[0]["parameter"].get<double>(), 0.3, 1e-14);
+    EXPECT_EQ(run({"length", "-", "--range", "0.2,0.6", "--at", "2.5"}, kSegment).code, 1);
+}
+
 TEST_F(LengthCommand, lengths_of_several_curves_are_summed_and_what_is_no_curve_is_left_out) {
     const Ran r = run({"length", "-"}, kTwo);
     EXPECT_EQ(r.code, 0) << r.err;

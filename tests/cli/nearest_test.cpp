@@ -30,7 +30,8 @@ TEST_F(NearestCommand, says_object_parameters_point_distance_and_lower_bound) {
     }
     const Ran plain = run({"nearest", two, "--object", "line", "--points", path("p.csv")});
     EXPECT_EQ(plain.code, 0);
-    EXPECT_NE(plain.out.find("at 0.25, point 1, 0, 0, distance 5, at least 4.99"), std::string::npos) << plain.out;
+    EXPECT_NE(plain.out.find("at 0.25, point 1, 0, 0, distance 5, at least 4.99"), std::string::npos)
+        << plain.out;
 }
 
 TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {

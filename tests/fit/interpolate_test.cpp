@@ -1,5 +1,5 @@
 #include "fit/spline_system_detail.hpp"
-#include "support/random.hpp"
+#include "support/curves.hpp"
 #include "support/reference.hpp"
 
 #include <freiform/fit/interpolate.hpp>
@@ -11,19 +11,13 @@ namespace {
 
 using test::must;
 using test::Random;
+using test::random_points;
 using test::Rational;
 
 constexpr SplineEnds kAllEnds[] = {SplineEnds::natural, SplineEnds::clamped, SplineEnds::not_a_knot,
                                    SplineEnds::periodic};
 
 std::vector<double> sites(Random& random, int count) { return test::random_breaks(random, count, false); }
-
-template <int D>
-std::vector<Vec<D>> some_points(Random& random, std::size_t count, double offset = 0) {
-    std::vector<Vec<D>> q(count);
-    for (auto& p : q) p = test::random_coefficient<Vec<D>>(random, 1, offset);
-    return q;
-}
 
 // A curve through random points with these ends; the points and parameters come along.
 template <int D>
@@ -37,8 +31,8 @@ Case<D> random_case(Random& random, int degree, SplineEnds ends, int count, doub
     const int k = ends == SplineEnds::clamped ? degree / 2 : 0;
     const auto n = std::size_t(std::max(count, ends == SplineEnds::not_a_knot ? degree + 1 : 2));
     auto at = sites(random, int(n) + (ends == SplineEnds::periodic));
-    auto points = some_points<D>(random, n, offset);
-    auto start = some_points<D>(random, std::size_t(k)), end = some_points<D>(random, std::size_t(k));
+    auto points = random_points<D>(random, n, offset);
+    auto start = random_points<D>(random, std::size_t(k)), end = random_points<D>(random, std::size_t(k));
     auto got = must(interpolate<D>(points, {degree, ends, at}, start, end));
     return {std::move(at), std::move(points), std::move(start), std::move(end), std::move(got)};
 }
@@ -159,7 +153,7 @@ TEST(Interpolate, periodic_curves_close_with_all_derivatives_but_the_last) {
     Random random(6);
     for (int degree = 1; degree <= 6; ++degree) {
         std::vector<double> at{0, 1, 1.5, 3, 3.25, 4, 6, 6.5};
-        const auto q = some_points<2>(random, 7);
+        const auto q = random_points<2>(random, 7);
         const auto c = must(interpolate<2>(q, {degree, SplineEnds::periodic, at}));
         const Interval on = c.patch.basis().domain();
         const auto a = c.patch.derivatives(on.lo, degree), b = c.patch.derivatives(on.hi, degree);
@@ -206,7 +200,7 @@ TEST(Interpolate, scales_with_powers_of_two_to_the_bit) {
     Random random(7);
     for (const SplineEnds ends : {SplineEnds::natural, SplineEnds::not_a_knot, SplineEnds::periodic})
         for (const Spacing spacing : {Spacing::uniform, Spacing::chordal, Spacing::centripetal}) {
-            const auto q = some_points<2>(random, 9);
+            const auto q = random_points<2>(random, 9);
             std::vector<Vec<2>> scaled = q;
             for (auto& p : scaled) p *= 0x1p-301;
             const bool closed = ends == SplineEnds::periodic;
@@ -301,7 +295,7 @@ TEST(Interpolate, periodic_curves_do_not_depend_on_the_point_where_they_begin) {
     Random random(13);
     for (int degree = 1; degree <= 6; ++degree) {
         const std::vector<double> at{0, 1, 1.5, 3, 3.25, 4, 6, 6.5};
-        const auto q = some_points<2>(random, 7);
+        const auto q = random_points<2>(random, 7);
         const auto c = must(interpolate<2>(q, {degree, SplineEnds::periodic, at}));
         std::vector<double> later;
         std::vector<Vec<2>> turned;

@@ -1,4 +1,4 @@
-#include "support/random.hpp"
+#include "support/curves.hpp"
 
 #include <freiform/fit/local.hpp>
 #include <freiform/spline/bezier.hpp>
@@ -10,12 +10,8 @@ namespace {
 
 using test::must;
 using test::Random;
+using test::random_points;
 
-std::vector<Vec<3>> some_points(Random& random, int count) {
-    std::vector<Vec<3>> q;
-    for (int i = 0; i < count; ++i) q.push_back(test::random_coefficient<Vec<3>>(random));
-    return q;
-}
 std::vector<double> uniform(int count) {
     std::vector<double> at;
     for (int i = 0; i < count; ++i) at.push_back(i);
@@ -27,7 +23,7 @@ std::vector<double> uniform(int count) {
 TEST(R10, bezier_points_of_the_curve_through_l_points) {
     Random random(1);
     for (int l : {3, 4, 9}) {
-        const auto q = some_points(random, l);
+        const auto q = random_points<3>(random, std::size_t(l));
         std::vector<Vec<3>> p(std::size_t(3 * l - 2) + 1);
         const auto Q = [&](int i) { return q[std::size_t(i - 1)]; };
         const auto P = [&](int i) -> Vec<3>& { return p[std::size_t(i)]; };
@@ -71,7 +67,7 @@ TEST(CatmullRom, follows_the_parabola_of_three_points_at_any_parameters) {
 TEST(CatmullRom, closes_with_its_derivative) {
     Random random(2);
     for (int m : {2, 3, 6}) {
-        const auto q = some_points(random, m);
+        const auto q = random_points<3>(random, std::size_t(m));
         std::vector<double> at{0};
         for (int i = 0; i < m; ++i) at.push_back(at.back() + random.real(0.5, 2));
         const auto c = must(catmull_rom<1, 3>(Net<1, Vec<3>>({m}, q), {at}, {true}));
@@ -189,7 +185,7 @@ TEST(Akima, stays_straight_where_the_points_are) {
 TEST(Local, closed_slopes_see_around_the_seam) {
     Random random(5);
     for (const LocalSlopes kind : {LocalSlopes::akima, LocalSlopes::monotone, LocalSlopes::fritsch_carlson}) {
-        const auto q = some_points(random, 7);
+        const auto q = random_points<3>(random, 7);
         std::vector<double> at{0, 1, 3, 3.5, 4, 6, 7, 9};
         const auto slopes = must(local_slopes<3>(q, at, kind, true));
         // Begin at point 2 instead.

@@ -1,5 +1,5 @@
 #include "support/bezier.hpp"
-#include "support/random.hpp"
+#include "support/curves.hpp"
 #include "support/reference.hpp"
 
 #include <freiform/fit/loft.hpp>
@@ -14,17 +14,11 @@ namespace {
 using test::bezier;
 using test::must;
 using test::Random;
+using test::random_curve;
 using test::Rational;
 
 constexpr double kAt[] = {0, 0.1875, 0.5, 0.75, 1};
 
-template <class P>
-Curve<P> random_curve(Random& random, int degree, std::vector<double> inner = {}) {
-    std::vector<double> t(std::size_t(degree) + 1, 0.0);
-    t.insert(t.end(), inner.begin(), inner.end());
-    t.insert(t.end(), std::size_t(degree) + 1, 1.0);
-    return test::random_patch_on<1, P>(random, {must(BSplineBasis::make(degree, t))});
-}
 // Exact distance of surface and curve at these parameters.
 template <class P, class Q>
 double off(const Surface<Q>& s, double u, double v, const Curve<P>& c, double t) {

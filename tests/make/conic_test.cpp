@@ -1,10 +1,9 @@
 #include "support/random.hpp"
-#include "support/reference.hpp"
+#include "support/real.hpp"
 
 #include <freiform/make/conic.hpp>
 #include <freiform/make/graph.hpp>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
 namespace freiform {
@@ -13,7 +12,8 @@ namespace {
 using test::must;
 using test::Random;
 using test::Rational;
-using Real = boost::multiprecision::cpp_bin_float_100;
+using test::Real;
+using test::real;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -21,8 +21,7 @@ constexpr double kPi = std::numbers::pi;
 template <class P>
 std::vector<Real> exact_point(const Curve<P>& c, double t) {
     std::vector<Real> x;
-    for (const Rational& r : test::value_of<Rational>(c, t))
-        x.push_back(Real(numerator(r)) / Real(denominator(r)));
+    for (const Rational& r : test::value_of<Rational>(c, t)) x.push_back(real(r));
     return x;
 }
 template <int D>

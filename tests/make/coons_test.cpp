@@ -1,5 +1,5 @@
 #include "support/bezier.hpp"
-#include "support/random.hpp"
+#include "support/curves.hpp"
 #include "support/reference.hpp"
 
 #include <freiform/make/boolean_sum.hpp>
@@ -17,12 +17,8 @@ using test::Rational;
 
 constexpr double kAt[] = {0, 0.1875, 0.5, 0.75, 0.9375, 1};
 
-// Clamped on [0, 1].
 Curve<Vec<3>> random_curve(Random& random, int degree, std::vector<double> inner = {}) {
-    std::vector<double> t(std::size_t(degree) + 1, 0.0);
-    t.insert(t.end(), inner.begin(), inner.end());
-    t.insert(t.end(), std::size_t(degree) + 1, 1.0);
-    return test::random_patch_on<1, Vec<3>>(random, {must(BSplineBasis::make(degree, t))});
+    return test::random_curve<Vec<3>>(random, degree, std::move(inner));
 }
 Curve<Vec<3>> between(Curve<Vec<3>> c, const Vec<3>& from, const Vec<3>& to) {
     auto net = c.net();

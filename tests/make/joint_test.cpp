@@ -95,6 +95,23 @@ TEST(R04, joining_with_k_times_the_tangent_is_g1) {
     EXPECT_EQ(next_hermite(previous, 0, p7, r7).error().where, "k");
 }
 
+TEST(NextG, refuses_to_continue_what_stands_still) {
+    const double phi[] = {2};
+    const auto refused = [&](const auto& curve) {
+        using P = typename std::remove_cvref_t<decltype(curve)>::Coefficients;
+        const auto next = next_g(curve, phi, NextPiece<P>{{0, 1}, {}});
+        EXPECT_FALSE(next);
+        if (!next) EXPECT_EQ(next.error().where, "previous");
+        if (!next) EXPECT_EQ(next.error().kind, RefusalKind::no_answer);
+        EXPECT_TRUE(next_c(curve, 1, NextPiece<P>{{0, 1}, {}}));  // C1 is what it is
+        EXPECT_TRUE(next_g(curve, {}, NextPiece<P>{{0, 1}, {curve.net().flat()[0]}}));
+    };
+    refused(bezier<Vec<2>>({{{0, 0}}, {{1, 2}}, {{3, 1}}, {{3, 1}}}));
+    // The same point twice with different weights.
+    refused(bezier<Hom<2>>(
+        {weighted(Vec<2>{{0, 0}}, 1), weighted(Vec<2>{{3, 1}}, 1), weighted(Vec<2>{{3, 1}}, 0.75)}));
+}
+
 // The determined coefficients against the same formula in exact rationals, coefficient by coefficient.
 TEST(NextC, determined_coefficients_are_rounded_once) {
     using test::Rational;

@@ -1,10 +1,9 @@
 #include "support/random.hpp"
-#include "support/reference.hpp"
+#include "support/real.hpp"
 
 #include <freiform/make/quadric.hpp>
 #include <freiform/query/surface_curvature.hpp>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 #include <map>
 
@@ -14,12 +13,12 @@ namespace {
 using test::must;
 using test::Random;
 using test::Rational;
-using Real = boost::multiprecision::cpp_bin_float_100;
+using test::Real;
+using test::real;
 using Point = std::array<Real, 3>;
 
 constexpr double kPi = std::numbers::pi;
 
-Real real(const Rational& r) { return Real(numerator(r)) / Real(denominator(r)); }
 Point point(const Vec<3>& v) { return {Real(v[0]), Real(v[1]), Real(v[2])}; }
 Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Real dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -1,12 +1,11 @@
 #include "support/bezier.hpp"
 #include "support/random.hpp"
-#include "support/reference.hpp"
+#include "support/real.hpp"
 
 #include <freiform/make/conic.hpp>
 #include <freiform/make/revolve.hpp>
 
 #include <boost/math/constants/constants.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
 namespace freiform {
@@ -16,7 +15,8 @@ using test::bezier;
 using test::must;
 using test::Random;
 using test::Rational;
-using Real = boost::multiprecision::cpp_bin_float_100;
+using test::Real;
+using test::real;
 using Point = std::array<Real, 3>;
 
 constexpr double kPi = std::numbers::pi;
@@ -26,14 +26,14 @@ template <class P>
 Point exact_point(const Curve<P>& c, double t) {
     Point x{};
     const auto r = test::value_of<Rational>(c, t);
-    for (std::size_t i = 0; i < r.size(); ++i) x[i] = Real(numerator(r[i])) / Real(denominator(r[i]));
+    for (std::size_t i = 0; i < r.size(); ++i) x[i] = real(r[i]);
     return x;
 }
 template <class P>
 Point exact_point(const Surface<P>& s, double u, double v) {
     Point x{};
     const auto r = test::value_of<Rational>(s, {u, v});
-    for (std::size_t i = 0; i < 3; ++i) x[i] = Real(numerator(r[i])) / Real(denominator(r[i]));
+    for (std::size_t i = 0; i < 3; ++i) x[i] = real(r[i]);
     return x;
 }
 Real dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

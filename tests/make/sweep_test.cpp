@@ -1,5 +1,5 @@
 #include "support/bezier.hpp"
-#include "support/random.hpp"
+#include "support/curves.hpp"
 #include "support/reference.hpp"
 
 #include <freiform/make/conic.hpp>
@@ -14,6 +14,7 @@ namespace {
 using test::bezier;
 using test::must;
 using test::Random;
+using test::random_curve;
 using test::Rational;
 
 using Exact3 = std::array<Rational, 3>;
@@ -32,14 +33,7 @@ double distance(const Exact3& a, const Exact3& b) {
     }
     return std::sqrt(sum);
 }
-// A curve with weights and knots whose domain is [0, 1].
-template <class P>
-Curve<P> random_curve(Random& random, int degree, std::vector<double> inner = {}) {
-    std::vector<double> t(std::size_t(degree) + 1, 0.0);
-    t.insert(t.end(), inner.begin(), inner.end());
-    t.insert(t.end(), std::size_t(degree) + 1, 1.0);
-    return test::random_patch_on<1, P>(random, {must(BSplineBasis::make(degree, t))});
-}
+
 constexpr double kAt[] = {0, 0.1875, 0.5, 0.75, 0.9375, 1};
 
 template <class P>

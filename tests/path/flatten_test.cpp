@@ -404,5 +404,54 @@ TEST(Flatten, refuses_what_it_cannot_do_and_says_what_is_needed) {
     EXPECT_EQ(kind(flatten(kArch, o)), RefusalKind::invalid);
 }
 
+// A curve around a torus-like patch and on a cylinder: samples of it are as near to the polyline as was said.
+TEST(FlattenOn, follows_curves_on_surfaces_within_the_bound) {
+    Random random(91);
+    const SurfaceGeometry patch = random_patch<2, Hom<3>>(random, 3, {Ends::clamped, 2});
+    const auto uv = std::get<Surface<Hom<3>>>(patch).domain();
+    const auto at = [&](double x, double y) {
+        return Vec<2>{{uv[0].lo + x * uv[0].length(), uv[1].lo + y * uv[1].length()}};
+    };
+    const CurveGeometry<2> cubic = bezier<Vec<2>>({at(0.1, 0.2), at(0.9, 0.1), at(0.2, 0.9), at(0.8, 0.7)});
+    const SurfaceGeometry cylinder = Extrusion{
+        Conic<3>{ConicKind::ellipse, {}, {{2, 0, 0}}, {{0, 2, 0}}}, {{0, 0, 1}}, SurfaceKind::cylinder};
+    const CurveGeometry<2> helix = Line<2>{{{0, 0}}, {{1, 0.25}}};
+    const auto check = [&](const SurfaceGeometry& s, const CurveGeometry<2>& c, Interval on,
+                           double tolerance) {
+        const auto line = must(flatten_on(s, c, on, tolerance, 1'000'000));
+        EXPECT_LE(line.bound, tolerance);
+        EXPECT_EQ(line.parameters.front(), on.lo);
+        EXPECT_EQ(line.parameters.back(), on.hi);
+        double most = 0;
+        for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
+            for (int k = 0; k <= 8; ++k) {
+                const double t = line.parameters[i] + (line.parameters[i + 1] - line.parameters[i]) * k / 8;
+                const Vec<2> p = jet<0>(c, t).value();
+                most = std::max(most, distance_to_segment(jet<0>(s, {p[0], p[1]}).value(), line.points[i],
+                                                          line.points[i + 1]));
+            }
+        EXPECT_LE(most, line.bound);
+        return line.segments();
+    };
+    for (const double tolerance : {1e-1, 1e-3, 1e-5}) check(patch, cubic, {0, 1}, tolerance);
+    // A helix of radius 2 needs about (angle / 2) / acos(1 - tolerance / 2) segments.
+    const auto n = check(cylinder, helix, {0, 12}, 1e-4);
+    EXPECT_LT(double(n), 2.1 * 12 / (2 * std::acos(1 - 1e-4 / 2)));
+}
+
+TEST(FlattenOn, refuses_what_it_cannot_follow) {
+    const SurfaceGeometry plane = Extrusion{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+    const CurveGeometry<2> line = Line<2>{{{0, 0}}, {{1, 1}}};
+    const CurveGeometry<2> jump =
+        must(Curve<Vec<2>>::make({must(BSplineBasis::make(1, {0, 0, 1, 1, 2, 2}))},
+                                 Net<1, Vec<2>>({4}, {{{0, 0}}, {{1, 0}}, {{2, 2}}, {{3, 2}}})));
+    const CurveGeometry<2> circle = Conic<2>{ConicKind::ellipse, {}, {{1, 0}}, {{0, 1}}};
+    EXPECT_EQ(flatten_on(plane, line, {0, 1}, 0, 10).error().where, "tolerance");
+    EXPECT_EQ(flatten_on(plane, line, {1, 1}, 1, 10).error().where, "on");
+    EXPECT_EQ(flatten_on(plane, jump, {0, 2}, 1, 10).error().kind, RefusalKind::no_answer);
+    EXPECT_EQ(flatten_on(plane, circle, {0, 6}, 1e-6, 10).error().kind, RefusalKind::limit);
+    EXPECT_EQ(flatten_on(plane, circle, {0, 6}, 1e-17, 1000).error().kind, RefusalKind::ill_conditioned);
+}
+
 }  // namespace
 }  // namespace freiform::test

@@ -40,6 +40,19 @@ TEST(Series, the_inverse_and_the_quotient_undo_composition_and_product) {
     }
 }
 
+TEST(Series, powers_with_fractions_are_undone_by_their_inverse) {
+    Random random(5);
+    for (int terms = 1; terms <= 9; ++terms) {
+        auto f = random_series(random, terms);
+        f[0] = 1;
+        const auto third = power_of(f, -2, 3);  // f^(-2/3), three times, and f twice: 1
+        auto one = multiply(multiply(multiply(third, third), third), multiply(f, f));
+        EXPECT_EQ(one[0], 1);
+        for (std::size_t k = 1; k < one.size(); ++k) EXPECT_EQ(one[k], 0) << terms << ", " << k;
+        EXPECT_EQ(power_of(f, 2, 1), multiply(f, f));
+    }
+}
+
 TEST(Series, of_known_functions) {
     // exp t, its inverse less 1 is log(1 + t); sqrt(1 + t); sin o asin.
     Series<double> exponential, logarithm{0};

@@ -146,7 +146,9 @@ TEST(R11, a_tripled_control_point_is_c2_with_zero_derivative_and_not_g1) {
     EXPECT_EQ(j.c_order, 2);
     EXPECT_TRUE(j.singular);
     EXPECT_EQ(j.g_order, 0);
-    EXPECT_EQ(j.g.size(), 2u);
+    EXPECT_EQ(j.unbounded, 0);
+    ASSERT_EQ(j.g.size(), 4u);  // straight on both sides: curvature 0
+    EXPECT_EQ(j.g[2].size, 0);
     // The straight pieces run along (1, 2) and (2, -3).
     EXPECT_NEAR(j.g[1].size, std::acos((2 - 6) / std::sqrt(5 * 13)), 1e-14);
     EXPECT_EQ(all[0].joint.g_order, 2);
@@ -163,16 +165,98 @@ TEST(Continuity, a_cusp_turns_back_and_a_stop_does_not) {
     EXPECT_TRUE(cusp.singular);
     EXPECT_TRUE(cusp.opposed);
     EXPECT_EQ(cusp.g_order, 0);
+    EXPECT_EQ(cusp.unbounded, 2);  // its curvature is infinite
+    EXPECT_EQ(cusp.g.size(), 2u);
     EXPECT_TRUE(cusp.phi.empty());
     // (t^3, 0): stops and goes on.
     const auto stop = must(joint(half({{{-1, 0}}, {{0, 0}}, {{0, 0}}, {{0, 0}}}),
                                  half({{{0, 0}}, {{0, 0}}, {{0, 0}}, {{1, 0}}})));
-    EXPECT_EQ(stop.g_order, 1);
+    EXPECT_EQ(stop.g_order, 3);  // a straight line, whatever its speed is
     EXPECT_TRUE(stop.singular);
+    EXPECT_EQ(stop.unbounded, 0);
     // A piece that is one point has no tangent.
     const auto none = must(joint(in, bezier<Vec<2>>({{{0, 0}}, {{0, 0}}})));
     EXPECT_EQ(none.g.size(), 1u);
     EXPECT_EQ(none.g_order, 0);
+}
+
+// c(t^r) is singular and has the shape of c: every answer about the shape is that for c.
+TEST(Continuity, of_singular_sides_is_that_of_the_shape_run_through_regularly) {
+    Random random(77);
+    for (const int r : {2, 3, 4})
+        for (int round = 0; round < 6; ++round) {
+            // A cubic c with c' != 0 at both ends, and c(t^r) in Bezier form of degree 3 r, exactly:
+            // B_i^3(t^r) has the monomial coefficients of c at the powers of t^r.
+            const auto shape = [&] {
+                std::vector<Vec<3>> m(4);
+                for (auto& v : m) v = Vec<3>{{random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)}};
+                m[1] += Vec<3>{{2, 0, 0}};
+                return m;
+            };
+            const auto in_powers = [](const std::vector<Vec<3>>& m, int power) {
+                const int n = 3 * power;
+                std::vector<Vec<3>> b(std::size_t(n) + 1);
+                for (int i = 0; i <= n; ++i)
+                    for (int k = 0; k <= 3 && k * power <= i; ++k)
+                        b[std::size_t(i)] += double(binomial(i, k * power)) / double(binomial(n, k * power)) *
+                                             m[std::size_t(k)];
+                return bezier(std::move(b));
+            };
+            auto m1 = shape(), m2 = shape();
+            // The second starts like the first: from G0 to G2 in turn.
+            m2[0] = m1[0];
+            if (round % 3 > 0) m2[1] = -m1[1];
+            if (round % 3 > 1) m2[2] = m1[2];
+            const auto options = ContinuityOptions{.orders = 3, .tolerance = 1e-9, .roundings = 16};
+            const auto flipped = [&](const auto& c) { return must(leaving(c, End::start, options)); };
+            const auto arriving_at_start = [&](const auto& c) {
+                return must(arriving(c, End::start, options));
+            };
+            const auto plain = must(continuity(arriving_at_start(in_powers(m1, 1)), flipped(in_powers(m2, 1)),
+                                               options)),
+                       slow = must(continuity(arriving_at_start(in_powers(m1, r)), flipped(in_powers(m2, r)),
+                                              options)),
+                       one = must(continuity(arriving_at_start(in_powers(m1, 1)), flipped(in_powers(m2, r)),
+                                             options));
+            for (const auto* j : {&slow, &one}) {
+                EXPECT_TRUE(j->singular);
+                EXPECT_EQ(j->unbounded, 0);
+                EXPECT_EQ(j->g_order, plain.g_order) << r << ", " << round;
+                ASSERT_EQ(j->g.size(), plain.g.size());
+                for (std::size_t k = 0; k < j->g.size(); ++k) {
+                    EXPECT_LE(std::abs(j->g[k].size - plain.g[k].size), j->g[k].bound + plain.g[k].bound)
+                        << r << ", " << round << ", " << k;
+                    EXPECT_LE(j->g[k].bound, 1e-8);
+                }
+                ASSERT_TRUE(j->after.curvature && plain.after.curvature);
+                EXPECT_LE(std::abs(j->after.curvature->value - plain.after.curvature->value), 1e-10);
+                ASSERT_TRUE(j->after.torsion && plain.after.torsion);
+                EXPECT_LE(std::abs(j->after.torsion->value - plain.after.torsion->value), 1e-8);
+            }
+            EXPECT_EQ(plain.g_order, round % 3);
+        }
+}
+
+TEST(Continuity, of_singular_sides_ends_where_a_derivative_by_arc_length_is_infinite) {
+    const auto half = [](std::vector<Vec<2>> b) { return bezier(std::move(b)); };
+    // (t^3, t^4), y = x^(4/3), from both sides: the tangent goes on, the curvature is infinite.
+    const auto out = half({{{0, 0}}, {{0, 0}}, {{0, 0}}, {{0.25, 0}}, {{1, 1}}});
+    const auto in = half({{{-1, 1}}, {{-0.25, 0}}, {{0, 0}}, {{0, 0}}, {{0, 0}}});
+    const auto j = must(joint(in, out));
+    EXPECT_EQ(j.g_order, 1);
+    EXPECT_EQ(j.unbounded, 2);
+    EXPECT_EQ(j.g.size(), 2u);
+    EXPECT_FALSE(j.after.curvature);
+    // (t^2, t^5): s^(5/2), curvature 0 and a third derivative without limit.
+    const auto fifth = half({{{0, 0}}, {{0, 0}}, {{0.1, 0}}, {{0.3, 0}}, {{0.6, 0}}, {{1, 1}}});
+    const auto line = half({{{-1, 0}}, {{0, 0}}});
+    const auto third = must(joint(line, fifth));
+    EXPECT_EQ(third.g_order, 2);
+    EXPECT_EQ(third.unbounded, 3);
+    // (t^2, t^2 + t^3) within a tolerance: what bends it moves points by less.
+    const auto nearly = half({{{0, 0}}, {{0, 0}}, {{1.0 / 3, 0}}, {{1, 1e-8}}});
+    EXPECT_EQ(must(joint(line, nearly)).unbounded, 2);
+    EXPECT_EQ(must(joint(line, nearly, {.tolerance = 1e-7})).g_order, 3);
 }
 
 // Full circle of four arcs: C0 in homogeneous coordinates with these knots, G-infinity in the plane.

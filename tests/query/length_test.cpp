@@ -102,6 +102,40 @@ TEST(R20, points_at_equal_distance) {
     EXPECT_NEAR(must(s.at(spaced[2].parameter)).value, 3, 1e-13);
 }
 
+TEST(R20, places_on_a_part_are_those_of_the_curve_cut_out) {
+    const auto random = [](std::uint64_t seed) {
+        Random r(seed);
+        return random_patch<1, Hom<3>>(r, 4, {Ends::clamped, 4});
+    };
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const auto curve = random(seed);
+        const Interval whole = curve.basis().domain();
+        const Interval on{whole.lo + 0.21 * whole.length(), whole.lo + 0.83 * whole.length()};
+        const ArcLength s(curve, 0), cut(must(restrict_to(curve, 0, on)), 0);
+        const Measure all = must(s.total(on));
+        EXPECT_NEAR(all.value, cut.total().value, 1e-12);
+        const auto parts = must(s.equal_parts(7, on)), of_cut = must(cut.equal_parts(7));
+        ASSERT_EQ(parts.size(), 8u);
+        EXPECT_EQ(parts.front().parameter, on.lo);
+        EXPECT_EQ(parts.back().parameter, on.hi);
+        for (std::size_t i = 0; i < 8; ++i) {
+            EXPECT_NEAR(parts[i].parameter, of_cut[i].parameter, 1e-11) << seed << ", " << i;
+            const Measure here = must(length(curve, {on.lo, parts[i].parameter}, 0));
+            EXPECT_LE(std::abs(here.value - all.value * double(i) / 7),
+                      parts[i].bound + here.bound + all.bound + 1e-15 * all.value);
+            EXPECT_LT(parts[i].bound, 1e-9);
+        }
+        const auto spaced = must(s.spaced(all.value / 3.5, on));
+        ASSERT_EQ(spaced.size(), 4u);
+        EXPECT_NEAR(spaced[2].parameter, must(s.parameter(all.value / 1.75, on)).parameter, 1e-12);
+    }
+    const ArcLength s(kArch, 0);
+    EXPECT_EQ(s.parameter(3, {0, 0.5}).error().kind, RefusalKind::out_of_domain);
+    EXPECT_EQ(s.equal_parts(3, {0.5, 2}).error().where, "on");
+    EXPECT_EQ(s.total({0.5, 0.2}).error().where, "on");
+    EXPECT_EQ(must(s.equal_parts(3, s.domain())).back().parameter, 1);
+}
+
 TEST(Length, of_closed_forms) {
     for (const double accuracy : {1e-2, 1e-6, 1e-10, 0.0}) {
         const double within = std::max(accuracy, 3e-13);

@@ -111,6 +111,7 @@ TEST(R17, no_line_crosses_a_curve_more_often_than_its_control_polygon) {
 
 TEST(R17, no_plane_crosses_a_space_curve_more_often_than_its_control_polygon) {
     Random random(176);
+    int most = 0;
     for (int k = 0; k < 500; ++k) {
         const auto c = random_patch<1, Vec<3>>(random, 6, {Ends::clamped, 4});
         const Vec<3> normal{{random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)}};
@@ -120,7 +121,10 @@ TEST(R17, no_plane_crosses_a_space_curve_more_often_than_its_control_polygon) {
         for (std::size_t i = 0; i + 1 < p.size(); ++i)
             polygon += (dot(normal, p[i]) + 0.2) * (dot(normal, p[i + 1]) + 0.2) < 0;
         EXPECT_LE(curve, polygon);
+        EXPECT_EQ((polygon - curve) % 2, 0);
+        most = std::max(most, curve);
     }
+    EXPECT_GE(most, 3);
 }
 
 }  // namespace

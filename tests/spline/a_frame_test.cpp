@@ -112,8 +112,29 @@ TEST(JoinPieces, finds_the_lowest_multiplicities_that_the_joints_allow) {
             EXPECT_LE(joined.bound, 1e-10);
             for (double u : test::parameters(random, basis))
                 ASSERT_LE(norm(joined.patch(u) - curve(u)), joined.bound + 1e-14);
-            EXPECT_EQ(must(join_pieces<Vec<3>>(apart.flat(), p, breaks, 0)).removed, 0);
+            // Tolerance 0: only what changes nothing, the coefficient that neighbours have in common.
+            const auto exact = must(join_pieces<Vec<3>>(apart.flat(), p, breaks, 0));
+            EXPECT_EQ(exact.bound, 0);
+            int shared = 0;
+            for (std::size_t i = 1; i < 4; ++i) {
+                const std::size_t at = i * (std::size_t(p) + 1);
+                shared += apart.flat()[at - 1] == apart.flat()[at];
+            }
+            EXPECT_EQ(exact.removed, shared);
+            for (std::size_t i = 0; i < 4; ++i)
+                for (const double u : {i + 0.0, i + 0.3, i + 0.9})
+                    EXPECT_LE(norm(exact.patch(u) - curve(u)), 1e-13);
         }
+}
+
+TEST(JoinPieces, keeps_jumps_where_there_are_any) {
+    // Two segments that meet, and one elsewhere.
+    const std::vector<V2> b{{{0, 0}}, {{1, 0}}, {{1, 0}}, {{2, 1}}, {{5, 5}}, {{6, 5}}};
+    const auto joined = must(join_pieces<V2>(b, 1, std::vector<double>{0, 1, 2, 3}, 0));
+    EXPECT_EQ(joined.removed, 1);
+    EXPECT_EQ(joined.patch.basis().defining().size(), 7u);
+    EXPECT_EQ(joined.patch(2), (V2{{5, 5}}));
+    EXPECT_EQ(joined.patch(1), (V2{{1, 0}}));
 }
 
 TEST(AFrames, refuse_bad_input_by_name_and_index) {
@@ -149,7 +170,9 @@ void check_subdivision(Random& random) {
             continue;
         }
         for (const auto& at : test::parameters(random, s, 20))
-            ASSERT_LE(norm(must(longer)(at) - s(at)), 1e-7);
+            ASSERT_LE(norm(longer->patch(at) - s(at)),
+                      longer->bound + 2 * (s.value_error_bound() + longer->patch.value_error_bound()));
+        EXPECT_LT(longer->bound, 1e-6);
     }
     EXPECT_EQ(split(test::random_patch<N, P>(random, 3, {}), 0, 1e9).error().kind,
               RefusalKind::out_of_domain);

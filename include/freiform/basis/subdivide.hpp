@@ -15,8 +15,12 @@ Result<Change<BSplineBasis>> insert_knot(const BSplineBasis& old, double u);
 // The same function on a larger domain: the first and the last piece are continued as the polynomials that
 // they are. Clamped at both ends; inner knots stay. A closed basis is opened at its seam first. Extrapolation
 // amplifies errors of the coefficients: by up to about (2 x)^p where x is the new length in first (last)
-// spans. Refuses domains that do not contain the old one.
-Result<Change<BSplineBasis>> extend_to(const BSplineBasis& old, Interval on);
+// spans; `entry_bound` says what the entries of the map are off themselves, at most. Refuses domains that do
+// not contain the old one.
+struct Extension : Change<BSplineBasis> {
+    std::vector<double> entry_bound;  // as map.entry
+};
+Result<Extension> extend_to(const BSplineBasis& old, Interval on);
 
 // The matrix that refines n coefficients of a uniform B-spline of this degree to knots at half the distance.
 // Open: knots i = 0, 1, .., n + p without multiplicities, domain [p, n]; 2 n - p rows, the coefficients that

@@ -58,6 +58,13 @@ Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOpt
 template <int D>
 Result<Polyline<D>> flatten(const CurveGeometry<D>& curve, Interval on, const FlattenOptions& options);
 
+// A curve in the parameters of a surface, as the curve in space that it draws there, halved until it is
+// within the tolerance. Refuses (no_answer) curves and surfaces that jump, and points where the surface has
+// no value; tolerances and numbers of segments as above.
+//   auto line = flatten_on(surface, curve, domain(curve)[0], 0.01, 10'000'000);
+Result<Polyline<3>> flatten_on(const SurfaceGeometry& surface, const CurveGeometry<2>& curve, Interval on,
+                               double tolerance, std::size_t max_segments);
+
 inline constexpr double kCornerAngle = 1e-4;  // radians
 
 // "adaptive", "uniform", "forward", "halving".

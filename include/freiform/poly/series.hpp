@@ -54,6 +54,20 @@ Series<T> square_root(const Series<T>& a) {
     return c;
 }
 
+// a to the power m / n. REQUIRES a[0] == 1 (not looked at) and n > 0. From a b' = (m / n) a' b with b =
+// a^(m/n).
+template <class T>
+Series<T> power_of(const Series<T>& a, int m, int n) {
+    Series<T> b(a.size(), T(0));
+    if (b.empty()) return b;
+    b[0] = T(1);
+    for (std::size_t k = 1; k < b.size(); ++k) {
+        for (std::size_t i = 1; i <= k; ++i) b[k] += T(double(i) * (m + n) - double(k) * n) * a[i] * b[k - i];
+        b[k] = b[k] / T(double(k) * n);
+    }
+    return b;
+}
+
 // The derivative; its last term, which is not known, is left out.
 template <class T>
 Series<T> differentiated(const Series<T>& a) {

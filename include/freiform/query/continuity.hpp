@@ -43,7 +43,7 @@ struct ContinuityOptions {
 // The geometry of one side of a joint. Signed curvature in the plane (left turns > 0), else >= 0.
 struct SideGeometry {
     std::vector<double> tangent;       // unit vector; empty where there is none
-    std::optional<Bounded> curvature;  // 1/length; where the side is regular
+    std::optional<Bounded> curvature;  // 1/length; where it has a limit
     std::optional<Bounded>
         curvature_rate;              // by arc length, 1/length^2; in the plane, else where curvature != 0
     std::optional<Bounded> torsion;  // 1/length; in space, where the curvature is certainly not 0
@@ -55,16 +55,19 @@ struct Continuity {
     // c[k]: size of the jump of the derivative of order k; unit length / parameter^k.
     std::vector<Jump> c;
     // g[0]: distance; g[1]: angle between the tangents in radians, pi where they are opposite; g[k]: size of
-    // the jump of the derivative of order k by arc length, 1/length^(k-1). At a singular joint g ends with
-    // g[1], at one without tangent with g[0].
+    // the jump of the derivative of order k by arc length, 1/length^(k-1). At a joint without tangent g ends
+    // with g[0], and where `unbounded` is set, before that order.
     std::vector<Jump> g;
     // The highest order such that all jumps up to it count as none; -1: not even C0. At most c.size() - 1 and
     // g.size() - 1: a joint may be smoother than was looked at.
     int c_order = -1, g_order = -1;
     // A first derivative is 0 (as far as is known) on one side: a cusp, or a piece that starts with a double
-    // coefficient. Then tangents are limits of directions, C^k does not imply G^k, and orders of G above 1
-    // stay unanswered.
+    // coefficient. Then tangents and derivatives by arc length are limits, C^k does not imply G^k, and bounds
+    // hold with the derivatives that are 0 as far as is known taken for 0.
     bool singular = false;
+    // At a singular joint: the order k of the first derivative by arc length that has no limit on one of the
+    // sides (2: the curvature is infinite), so that the joint is certainly not G^k. 0: none was found.
+    int unbounded = 0;
     // The tangents are parallel with opposite sense, as far as is known: a G0 joint that turns back.
     bool opposed = false;
     SideGeometry before, after;    // to the orders looked at
@@ -89,10 +92,12 @@ struct CurveSide {
     double span = 0;                   // length of the piece in parameters
     double reach = 0;                  // estimate of the length of the piece (8 points), model units
     std::vector<double> origin;        // a point nearby
+    int orders = 0;                    // of C that are looked at
     std::vector<Bounded> derivatives;  // [order * dimension + coordinate]; of order 0: less `origin`
 };
-// Orders 0 .. max(options.orders, degree) of the curve on the piece before or after the parameter `at`.
-// REQUIRES at inside the domain, not at its lower end (before) or upper end (after).
+// Orders 0 .. max(options.orders, degree), and more where the first derivative is 0, of the curve on the
+// piece before or after the parameter `at`. REQUIRES at inside the domain, not at its lower end (before) or
+// upper end (after).
 template <class P>
 CurveSide side_before(const Curve<P>& curve, double at, const ContinuityOptions& options);
 template <class P>

@@ -12,7 +12,8 @@ struct Measure {
     double value = 0, bound = 0;
 };
 
-// A parameter; the exact arc length up to it differs from the wanted one by at most `bound` (model units).
+// A parameter; the exact arc length up to it, from where lengths are counted, differs from the wanted one by
+// at most `bound` (model units).
 struct PlaceAtLength {
     double parameter = 0, bound = 0;
 };
@@ -40,6 +41,13 @@ public:
     // The places at 0, d, 2 d, .. up to the end. Refuses d that is not positive and finite, and (limit)
     // more than 10^8 places.
     Result<std::vector<PlaceAtLength>> spaced(double d) const;
+
+    // The same of the part on an interval: lengths are counted from its beginning, and bounds include that of
+    // where it begins. Refuses, as "on", what is not an interval inside the domain.
+    Result<Measure> total(Interval on) const;
+    Result<PlaceAtLength> parameter(double length, Interval on) const;
+    Result<std::vector<PlaceAtLength>> equal_parts(int n, Interval on) const;
+    Result<std::vector<PlaceAtLength>> spaced(double d, Interval on) const;
 
 private:
     struct Table;

@@ -2,29 +2,47 @@
 #pragma once
 #include <freiform/spline/patch.hpp>
 
+#include <array>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace freiform {
 
+enum class SelfContact {
+    crossing,  // C(s) = C(t) for exactly one pair of s in `first`, t in `second`; at an angle
+    meeting,   // C(s) = C(t) for s, t = `at`, exactly; whether elsewhere in `first` and `second` is not known
+    near,      // |C(s) - C(t)| <= `distance` for s, t = `at`; whether it is 0 somewhere is not known
+    cusp,      // `first` reaches `second`: a cusp, or a loop so small that it is not told from one
+    unresolved,  // max_pairs were looked at, and nothing is known
+};
+std::string_view name_of(SelfContact kind);
+
 template <int D>
 struct SelfIntersection {
-    // True: the curve crosses itself exactly once with one parameter in `first` and the other in `second`.
-    // False: it may meet itself there, or come very near, or not be told from a cusp.
-    bool is_certain = false;
+    SelfContact kind = SelfContact::unresolved;
     Interval first, second;  // first is left of second, or reaches it (at a cusp)
     Vec<D> point{};
     double bound = 0;  // from `point` to all points of the curve over `first` and `second`, at most
+    // meeting: parameters that meet; near: parameters where the curve comes within `distance` of itself; else
+    // those in the middle of `first` and `second`.
+    std::array<double, 2> at{};
+    double distance = 0;  // near: rounding included; else 0
+
+    // Does the curve certainly meet itself there?
+    bool is_certain() const { return kind == SelfContact::crossing || kind == SelfContact::meeting; }
 };
 
 // All pairs of parameters s < t with C(s) = C(t), ordered by `first`. Outside the answers there is none, and
 // that is proven, rounding included. That the end of a closed curve meets its beginning, and a piece the next
-// one, is not listed; an open curve may end where it began, then that is listed as uncertain. Plane: where
-// the curve crosses itself at an angle, the answer is certain and `bound` <= accuracy + rounding; where it
-// touches itself, or has a cusp, it is not. Space: answers are uncertain always, since almost all curves pass
-// by themselves; they say where the distance may be zero, within about `accuracy`. `max_pairs` pairs of
-// pieces are looked at; what is left open then is listed as uncertain. Refuses an accuracy that is not above
-// 0.
+// one, is not listed; that an open curve ends where it began is.
+//
+// Plane curves, and curves in space whose control points lie in one plane exactly: where the curve crosses
+// itself at an angle, the answer is `crossing` and `bound` <= accuracy + rounding. Where it touches itself,
+// and in space, almost any change of the coefficients makes it pass by: that it meets itself is then an
+// answer only where exact arithmetic shows it, at parameters where the coefficients of the Bezier piece are
+// given numbers; else the answer says how near the curve comes. `max_pairs` pairs of pieces are looked at.
+// Refuses an accuracy that is not above 0.
 //   const auto loops = self_intersections(curve, 1e-9);
 template <class P>
 requires(Space<P>::kDim == 2 || Space<P>::kDim == 3)

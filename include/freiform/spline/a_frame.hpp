@@ -44,7 +44,8 @@ Result<Reduced<1, P>> de_boor_points(std::span<const P> bezier, std::span<const 
 // given twice): inner knots have the lowest multiplicity for which the proven distance to the pieces stays <=
 // tolerance, a distance in model units. So with m knots left at a joint the pieces are C^(degree - m) there
 // within the tolerance. The tolerance has to leave room for the bound of the rounding, a few hundred
-// roundings of the largest coordinate; 0 leaves degree + 1 knots everywhere.
+// roundings of the largest coordinate; 0 leaves degree + 1 knots, or degree where neighbours end and begin
+// with the same coefficient.
 template <Coefficient P>
 Result<Reduced<1, P>> join_pieces(std::span<const P> coefficients, int degree, std::span<const double> breaks,
                                   double tolerance);
