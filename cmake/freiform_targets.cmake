@@ -73,7 +73,8 @@ function(freiform_library name)
 endfunction()
 
 # src/kernel/*_avx2.cpp and *_avx512.cpp are compiled for the instructions that their name says; the precompiled
-# header is for other flags.
+# header is for other flags. In kernels products and sums are contracted where the processor can. Nothing that takes
+# a vector is called from another file, so how vectors are passed (psabi) does not matter.
 function(freiform_isa)
     foreach(file IN LISTS ARGN)
         set(flags "")
@@ -83,6 +84,9 @@ function(freiform_isa)
             elseif(file MATCHES "_avx512\\.cpp$")
                 set(flags -mavx512f -mavx512dq -mavx512vl -mfma)
             endif()
+        endif()
+        if(file MATCHES "/src/kernel/evaluate_")
+            list(APPEND flags -ffp-contract=fast -Wno-psabi)
         endif()
         if(flags)
             set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}" SKIP_PRECOMPILE_HEADERS ON)

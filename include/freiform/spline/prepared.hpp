@@ -1,0 +1,150 @@
+// A patch ready to be evaluated at many parameters, by vector instructions of the processor at hand.
+//
+//     const auto fast = PreparedPatch<2, Hom<3>>::make(surface);
+//     fast->evaluate(parameters, points);                       // scattered, in any order
+//     fast->evaluate_grid({us, vs}, points, normals);           // points[i * vs.size() + j]
+//
+// Immutable, shared between threads, cheap to copy. It keeps the net and a small matrix for every span of
+// every axis: of a surface of n x m coefficients 4 n m + 12 (p + 1) (n + m) numbers or so, of a curve 12 (p +
+// 1) n. Patch::evaluate makes one for itself where that pays; what is evaluated again and again should be
+// prepared once.
+//
+// Threads: more than kParallelFrom points are divided among the threads of core/parallel.hpp. The results are
+// the same bits for any number of threads and wherever in a batch a parameter is. Different processors may
+// give results that differ by up to twice value_error_bound().
+#pragma once
+#include <freiform/core/tuples.hpp>
+#include <freiform/spline/patch.hpp>
+
+#include <memory>
+
+namespace freiform {
+
+// Parameters that are not finite or (on open bases) outside the domain.
+enum class Outside {
+    refuse,  // the whole batch, with the index of the first, before anything is written
+    nan,     // give points and derivatives of NaN
+};
+
+namespace detail {
+
+// What PreparedPatch is for any number of parameters and coordinates. jets: for each parameter the first
+// `slots` partial derivatives, of order at most `order`; normals may be null.
+class PreparedNet {
+public:
+    static Result<PreparedNet> make(std::span<const BSplineBasis> bases, const Tuples& net);
+    Result<void> evaluate(std::span<const double> at, int order, std::size_t slots, double* jets, double* normals,
+                          Outside outside) const;
+    Result<void> evaluate_grid(std::span<const std::span<const double>> axes, int order, std::size_t slots,
+                               double* jets, double* normals) const;
+    Result<void> evaluate_single(std::span<const double> at, float* points, Outside outside) const;
+    double value_error_bound() const;
+
+    struct Tables;
+
+private:
+    explicit PreparedNet(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
+    std::shared_ptr<const Tables> tables_;
+};
+
+inline const BSplineBasis& spline_basis(const BSplineBasis& b) { return b; }
+inline BSplineBasis spline_basis(const Bernstein& b) { return *BSplineBasis::bezier(b.degree(), b.domain()); }
+
+}  // namespace detail
+
+// The name of the instruction set that evaluates: base, neon, simd128, avx2 or avx512. The environment
+// variable FREIFORM_ISA, read once, chooses another one that the processor has.
+std::string_view instruction_set();
+
+template <std::size_t N, Coefficient P>
+class PreparedPatch {
+public:
+    using Point = PointOf<P>;
+    static constexpr std::size_t kParallelFrom = 32768;
+
+    // Refuses (`unsupported`) patches with a span shorter than 2^-100 or longer than 2^100, coefficients
+    // above 2^100 or weights below 2^-100: such are left to Patch. So nothing overflows here.
+    template <Basis B>
+    static Result<PreparedPatch> make(const Patch<N, P, B>& patch) {
+        std::vector<BSplineBasis> bases;
+        for (const B& b : patch.bases()) bases.push_back(detail::spline_basis(b));
+        auto net = detail::PreparedNet::make(bases, tuples(patch.net().flat()));
+        if (!net) return std::unexpected(net.error());
+        return PreparedPatch(std::move(*net));
+    }
+
+    // REQUIRES out.size() == at.size().
+    Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out, Outside outside = Outside::refuse) const {
+        FF_REQUIRE(at.size() == out.size());
+        return net_.evaluate(plain(at), 0, 1, numbers(out).data(), nullptr, outside);
+    }
+    template <int K>
+    requires(K <= 2) Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out,
+                                           Outside outside = Outside::refuse) const {
+        FF_REQUIRE(at.size() == out.size());
+        return net_.evaluate(plain(at), K, jet_size(N, K), first(out), nullptr, outside);
+    }
+    // With the unit vector of S_u x S_v, to a few units in the last place of that product; zero where the
+    // product is zero.
+    Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out, std::span<Vec<3>> normals,
+                          Outside outside = Outside::refuse) const
+        requires(N == 2 && std::same_as<Point, Vec<3>>) {
+        FF_REQUIRE(at.size() == out.size() && at.size() == normals.size());
+        return net_.evaluate(plain(at), 1, 1, numbers(out).data(), numbers(normals).data(), outside);
+    }
+    template <int K>
+    requires(K == 1 || K == 2) Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out,
+                                                     std::span<Vec<3>> normals, Outside outside = Outside::refuse) const
+        requires(N == 2 && std::same_as<Point, Vec<3>>) {
+        FF_REQUIRE(at.size() == out.size() && at.size() == normals.size());
+        return net_.evaluate(plain(at), K, jet_size(N, K), first(out), numbers(normals).data(), outside);
+    }
+    // Rounded to single precision, kDim numbers for each parameter. REQUIRES out.size() == kDim * at.size().
+    Result<void> evaluate(std::span<const Param<N>> at, std::span<float> out, Outside outside = Outside::refuse) const {
+        FF_REQUIRE(at.size() * std::size_t(Point::kCoords) == out.size());
+        return net_.evaluate_single(plain(at), out.data(), outside);
+    }
+
+    // On a tensor grid, the last axis fastest. Refuses, as "axes[d][i]", parameters that are not finite or
+    // outside the domain. REQUIRES out.size() == the product of the sizes of the axes.
+    using Axes = std::array<std::span<const double>, N>;
+    Result<void> evaluate_grid(const Axes& axes, std::span<Point> out) const {
+        FF_REQUIRE(count(axes) == out.size());
+        return net_.evaluate_grid(axes, 0, 1, numbers(out).data(), nullptr);
+    }
+    template <int K>
+    requires(K <= 2) Result<void> evaluate_grid(const Axes& axes, std::span<Jet<N, K, Point>> out) const {
+        FF_REQUIRE(count(axes) == out.size());
+        return net_.evaluate_grid(axes, K, jet_size(N, K), first(out), nullptr);
+    }
+    Result<void> evaluate_grid(const Axes& axes, std::span<Point> out, std::span<Vec<3>> normals) const
+        requires(N == 2 && std::same_as<Point, Vec<3>>) {
+        FF_REQUIRE(count(axes) == out.size() && normals.size() == out.size());
+        return net_.evaluate_grid(axes, 1, 1, numbers(out).data(), numbers(normals).data());
+    }
+
+    // A bound of |computed - exact| in each coordinate of a value.
+    double value_error_bound() const { return net_.value_error_bound(); }
+
+private:
+    explicit PreparedPatch(detail::PreparedNet net) : net_(std::move(net)) {}
+    static std::span<const double> plain(std::span<const Param<N>> at) {
+        if constexpr (N == 1)
+            return at;
+        else
+            return {at.empty() ? nullptr : at.data()->data(), at.size() * N};
+    }
+    template <int K>
+    static double* first(std::span<Jet<N, K, Point>> out) {
+        static_assert(sizeof(Jet<N, K, Point>) == jet_size(N, K) * sizeof(Point));
+        return out.empty() ? nullptr : out[0].d[0].c.data();
+    }
+    static std::size_t count(const Axes& axes) {
+        std::size_t n = 1;
+        for (const auto& a : axes) n *= a.size();
+        return n;
+    }
+    detail::PreparedNet net_;
+};
+
+}  // namespace freiform

@@ -1,0 +1,65 @@
+// Which of the compiled kernels run.
+#include "evaluate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace freiform::kernel {
+
+int variants(Variant* out, int capacity) {
+    Variant all[3] = {{&kBase, true}};
+    int count = 1;
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512vl");
+    all[count++] = {&kAvx2, avx2};
+    all[count++] = {&kAvx512, avx512};
+#endif
+    for (int i = 0; i < count && i < capacity; ++i) out[i] = all[i];
+    return count;
+}
+
+const Kernels& kernels() {
+    static const Kernels& chosen = []() -> const Kernels& {
+        Variant all[3];
+        const int count = std::min(variants(all, 3), 3);
+        const char* wanted = std::getenv("FREIFORM_ISA");
+        const Kernels* best = &kBase;
+        for (int i = 0; i < count; ++i) {
+            if (!all[i].runs_here) continue;
+            if (wanted && std::strcmp(wanted, all[i].kernels->name) == 0) return *all[i].kernels;
+            best = all[i].kernels;
+        }
+        return *best;
+    }();
+    return chosen;
+}
+
+namespace {
+
+// a times the power of two that brings its largest coordinate into [1, 2); false if it is zero.
+bool scaled(const double* a, double* out) {
+    const double m = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
+    if (!(m > 0)) return false;
+    const int e = std::ilogb(m);
+    for (int i = 0; i < 3; ++i) out[i] = std::scalbn(a[i], -e);
+    return true;
+}
+
+}  // namespace
+
+void careful_normal(const double* a, const double* b, double* out) {
+    double u[3], v[3], n[3];
+    out[0] = out[1] = out[2] = 0;
+    if (!scaled(a, u) || !scaled(b, v)) return;
+    const double c[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    if (!scaled(c, n)) return;
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int i = 0; i < 3; ++i) out[i] = n[i] / length;
+}
+
+}  // namespace freiform::kernel

@@ -1,0 +1,245 @@
+// Tables for the evaluation of many points.
+//
+// Idea. On a span [a, b] with t = (x - a) / (b - a) the basis functions are combinations of Bernstein
+// polynomials, N_i = sum_k e_ik B_k(t), e_ik >= 0: row i of Bezier extraction, the weights of the blossom at
+// (a, .., a, b, .., b). These few numbers are made once, in doubled precision, so that a function costs a
+// product of a small matrix with polynomials that vectors of parameters compute side by side, without the
+// divisions of the recurrence. Derivatives: differences of the columns. Of a curve, the coefficients are
+// multiplied in, and what is left is its Bezier pieces.
+//
+// Accuracy of values. u = 2^-53, p_d degrees, parameters inside the domain; relative roundings, counted.
+//   t      x - a, the product with the inverse: 2. The inverse: b - a, the quotient, and an upward step of at
+//          most 2 u that makes (b - a) * inverse >= 1: 4. Together 6; likewise 1 - t. Cutting off at 1 brings
+//          both nearer. At the ends of the span both are exact.
+//   B_k    a level of the recurrence is a sum of two products of non-negative numbers: 6 + 2 more; the first
+//          has neither product nor sum: 8 p - 2.
+//   N_i    an entry e_ik rounded once from doubled precision (whose error, p 2^-95, the factor 1.01 below
+//          pays), a product, p sums: p + 2. Together n_d = 9 p_d; for degree 0 everything is exact.
+//   sums   curve: none but those of N_i, whose entries are the coefficients of the piece, each rounded
+//          once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights are
+//          multiplied, then summed in one go: (p_0 + 1) (p_1 + 1) + 1 along the outer two, p_2 + 1.
+// Contracted products and sums have fewer. So k = sum n_d + sums, g = 1.01 k u, and as for single values (see
+// patch_detail.hpp) |computed - exact| <= g c + e, e = h sum (p_d + 1) for underflow with h the smallest
+// denormal number; rational, with numerator and denominator off by g c W + e and g W + e,
+//     (2 g c + (1 + c) e / w_min) / (1 - g - e / w_min)
+// and 2.2 roundings of the quotient (reciprocal 1.2, product 1) instead of one.
+//
+// References: [Borden et al. 2011] extraction; [Higham 2002, ch. 3] counting.
+#include "coefficients_detail.hpp"
+#include "prepared_detail.hpp"
+
+#include <freiform/basis/blossom.hpp>
+#include <freiform/core/double_double.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace freiform::detail {
+
+namespace {
+
+// The knots of one basis, for blossom().
+struct Knots {
+    const BSplineBasis& basis;
+    int degree() const { return basis.degree(); }
+    double knot(int i) const { return basis.knot(i); }
+};
+
+// How far a lookup by equal buckets may be off: rounded up to 2^k - 1.
+void make_search(AxisTable& table) {
+    kernel::Axis& a = table.axis;
+    const Interval on{table.spans.front().lo, table.spans.back().hi};
+    a.lo = on.lo;
+    a.buckets = int(std::clamp<std::size_t>(8 * table.spans.size(), 1, 1 << 20));
+    a.scale = a.buckets / on.length();
+    // The same expression as in the kernels, which is monotone; so a parameter at or above the start of a
+    // span is in its bucket or a later one.
+    const auto bucket_of = [&](double x) { return std::min(int((x - a.lo) * a.scale), a.buckets - 1); };
+    table.bucket.assign(std::size_t(a.buckets), 0);
+    int most = 0;
+    for (std::size_t s = 0, b = 0; b < table.bucket.size(); ++b) {
+        while (s + 1 < table.spans.size() && bucket_of(table.spans[s + 1].lo) < int(b)) ++s;
+        table.bucket[b] = int(s);
+        int more = 0;
+        while (s + std::size_t(more) + 1 < table.spans.size() &&
+               bucket_of(table.spans[s + std::size_t(more) + 1].lo) <= int(b))
+            ++more;
+        most = std::max(most, more);
+    }
+    while (a.steps < most) a.steps = 2 * a.steps + 1;
+    for (const kernel::Span& s : table.spans) table.starts.push_back(s.lo);
+    table.starts.resize(table.spans.size() + std::size_t(a.steps), std::numeric_limits<double>::infinity());
+}
+
+kernel::Span span_between(double lo, double hi, int first) {
+    const double width = hi - lo;
+    double inverse = 1 / width;
+    while (width * inverse < 1) inverse = std::nextafter(inverse, std::numeric_limits<double>::infinity());
+    return {lo, hi, inverse, first};
+}
+
+}  // namespace
+
+AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, int lanes) {
+    AxisTable table{basis, {}, {}, {}, {}, {}};
+    const int p = basis.degree(), end = int(basis.knots().size()) - p - 1;
+    for (int s = p; s < end; ++s)
+        if (basis.knot(s) < basis.knot(s + 1))
+            table.spans.push_back(span_between(basis.knot(s), basis.knot(s + 1), s - p));
+    kernel::Axis& a = table.axis;
+    a.degree = p;
+    a.spans = int(table.spans.size());
+    a.lanes = lanes;
+    const int columns = a.columns(0) + a.columns(1) + a.columns(2);
+    a.stride = std::size_t(columns) * std::size_t(lanes);
+    table.matrix.assign(a.stride * table.spans.size(), 0);
+    make_search(table);
+
+    std::vector<DoubleDouble> args(std::size_t(std::max(p, 1))), weights(std::size_t(p) + 1);
+    std::vector<DoubleDouble> column(std::size_t((p + 1) * lanes));
+    for (std::size_t s = 0; s < table.spans.size(); ++s) {
+        const kernel::Span& span = table.spans[s];
+        std::ranges::fill(column, DoubleDouble());
+        for (int k = 0; k <= p; ++k) {
+            for (int i = 0; i < p; ++i) args[std::size_t(i)] = i < p - k ? span.lo : span.hi;
+            blossom(Knots{basis}, span.first + p, args.data(), weights.data());
+            DoubleDouble* to = &column[std::size_t(k * lanes)];
+            for (int i = 0; i <= p; ++i) {
+                if (curve.empty()) {
+                    to[i] = weights[std::size_t(i)];
+                    continue;
+                }
+                const double* from = curve.data() + std::size_t((span.first + i) % basis.size()) * std::size_t(lanes);
+                for (int c = 0; c < lanes; ++c) to[c] += weights[std::size_t(i)] * DoubleDouble(from[c]);
+            }
+        }
+        double* to = &table.matrix[s * a.stride];
+        const DoubleDouble width = DoubleDouble(span.hi) - DoubleDouble(span.lo);
+        for (int order = 0; order <= kernel::kMaxOrder && order <= p; ++order) {
+            const int count = a.columns(order);
+            if (order > 0) {
+                const DoubleDouble factor = DoubleDouble(count) / width;
+                for (int i = 0; i < count * lanes; ++i)
+                    column[std::size_t(i)] = factor * (column[std::size_t(i + lanes)] - column[std::size_t(i)]);
+            }
+            for (int i = 0; i < count * lanes; ++i) *to++ = column[std::size_t(i)].rounded();
+        }
+    }
+    return table;
+}
+
+kernel::Axis AxisTable::view() const {
+    kernel::Axis a = axis;
+    a.span = spans.data();
+    a.matrix = matrix.data();
+    a.bucket = bucket.data();
+    a.starts = starts.data();
+    return a;
+}
+
+kernel::Net PreparedNet::Tables::view() const {
+    kernel::Net n = net;
+    for (std::size_t d = 0; d < axis.size(); ++d) n.axis[d] = axis[d].view();
+    n.coefficients = coefficients.data();
+    return n;
+}
+
+bool PreparedNet::Tables::any_closed() const {
+    return std::ranges::any_of(axis, [](const AxisTable& a) { return a.basis.is_closed(); });
+}
+
+double batch_error_bound(std::span<const int> degrees, const Tuples& net) {
+    const double unit = std::numeric_limits<double>::epsilon() / 2;
+    const double denormal = std::numeric_limits<double>::denorm_min();
+    double roundings = 0, terms = 1;
+    for (const int p : degrees) roundings += 9 * p, terms += p + 1;
+    if (degrees.size() == 2) roundings += degrees[0] + degrees[1] + 2;
+    if (degrees.size() == 3) roundings += (degrees[0] + 1) * (degrees[1] + 1) + degrees[2] + 2;
+    const double g = 1.01 * roundings * unit, lost = terms * denormal;
+    const auto [c, w_min] = reach_of(net);
+    if (!net.rational) return g * c + lost;
+    return 1.02 * ((2 * g + 2.2 * unit) * c + (1 + c) * (lost / w_min)) + lost;
+}
+
+namespace {
+
+// What PreparedPatch::make promises about sizes.
+Result<void> check_range(std::span<const BSplineBasis> bases, const Tuples& net) {
+    constexpr double kLarge = 0x1p100, kSmall = 0x1p-100;
+    for (std::size_t d = 0; d < bases.size(); ++d) {
+        const auto knots = bases[d].knots();
+        for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+            const double width = knots[i + 1] - knots[i];
+            if (width != 0 && !(width >= kSmall && width <= kLarge))
+                return refuse(RefusalKind::unsupported, text("bases[", d, "].knots[", i, "]"),
+                              text("a span of length ", width, " is outside 2^-100 .. 2^100"));
+        }
+    }
+    for (std::size_t i = 0; i < net.all.size(); ++i)
+        if (!(std::abs(net.all[i]) <= kLarge))
+            return refuse(RefusalKind::unsupported, text("points[", i / std::size_t(net.size), "]"),
+                          text("a coefficient ", net.all[i], " is above 2^100"));
+    for (std::size_t i = 0; net.rational && i < net.count(); ++i)
+        if (!(net.weight(i) >= kSmall))
+            return refuse(RefusalKind::unsupported, text("weights[", i, "]"),
+                          text("a weight ", net.weight(i), " is below 2^-100"));
+    return {};
+}
+
+// One coefficient in its place of 4 numbers, or of 8 where there are four coordinates and a weight.
+void place(const Tuples& net, std::size_t i, double* first, double* second) {
+    const int dim = net.dim();
+    for (int c = 0; c < dim; ++c) first[c] = net[i][c];
+    if (net.rational) (dim == 4 ? second : first)[3] = net.weight(i);
+}
+
+}  // namespace
+
+Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const Tuples& net) {
+    if (auto ok = check_range(bases, net); !ok) return std::unexpected(ok.error());
+    auto tables = std::make_shared<Tables>();
+    kernel::Net& n = tables->net;
+    n.axes = int(bases.size());
+    n.dim = net.dim();
+    n.rational = net.rational;
+    const int lanes = 4 * n.planes();
+    std::vector<int> degrees;
+    for (const BSplineBasis& b : bases) degrees.push_back(b.degree());
+    tables->error = batch_error_bound(degrees, net);
+    if (bases.size() == 1) {
+        std::vector<double> curve(net.count() * std::size_t(lanes), 0.0);
+        for (std::size_t i = 0; i < net.count(); ++i)
+            place(net, i, &curve[i * std::size_t(lanes)], &curve[i * std::size_t(lanes) + std::size_t(lanes) - 4]);
+        tables->axis.push_back(make_axis(bases[0], curve, lanes));
+        return PreparedNet(std::move(tables));
+    }
+    Index<3> extent{1, 1, 1}, size{1, 1, 1};  // unwound, stored; the last axis last
+    const std::size_t skip = 3 - bases.size();
+    for (std::size_t d = 0; d < bases.size(); ++d) {
+        tables->axis.push_back(make_axis(bases[d], {}, (bases[d].degree() + 4) / 4 * 4));
+        extent[skip + d] = int(bases[d].knots().size()) - bases[d].degree() - 1;
+        size[skip + d] = bases[d].size();
+    }
+    for (std::size_t d = bases.size(), stride = 4; d-- > 0;) {
+        n.stride[d] = stride;
+        stride *= std::size_t(extent[skip + d]);
+    }
+    // Unwinding a closed net may repeat it; what comes out must still be counted by an int.
+    if (count_of(extent) < 0)
+        return refuse(RefusalKind::limit, "points", "the net has more than 2^31 coefficients when unwound");
+    const std::size_t all = std::size_t(count_of(extent)) * 4;
+    n.plane = n.planes() == 2 ? all + 8 : 0;
+    tables->coefficients.assign(n.plane + all + 8, 0.0);
+    std::size_t to = 0;
+    each_index(extent, [&](const Index<3>& at) {
+        std::size_t from = 0;
+        for (std::size_t d = 0; d < 3; ++d)
+            from = from * std::size_t(size[d]) + std::size_t(at[d] % size[d]);
+        place(net, from, &tables->coefficients[to], &tables->coefficients[to + n.plane]);
+        to += 4;
+    });
+    return PreparedNet(std::move(tables));
+}
+
+}  // namespace freiform::detail
