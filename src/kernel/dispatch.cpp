@@ -2,6 +2,7 @@
 #include "evaluate.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -23,23 +24,25 @@ int variants(Variant* out, int capacity) {
     return count;
 }
 
-const Kernels& kernels() {
-    static const Kernels& chosen = []() -> const Kernels& {
-        Variant all[3];
-        const int count = std::min(variants(all, 3), 3);
-        const char* wanted = std::getenv("FREIFORM_ISA");
-        const Kernels* best = &kBase;
-        for (int i = 0; i < count; ++i) {
-            if (!all[i].runs_here) continue;
-            if (wanted && std::strcmp(wanted, all[i].kernels->name) == 0) return *all[i].kernels;
-            best = all[i].kernels;
-        }
-        return *best;
-    }();
-    return chosen;
+namespace {
+
+const Kernels* first_choice() {
+    Variant all[3];
+    const int count = std::min(variants(all, 3), 3);
+    const char* wanted = std::getenv("FREIFORM_ISA");
+    const Kernels* best = &kBase;
+    for (int i = 0; i < count; ++i) {
+        if (!all[i].runs_here) continue;
+        if (wanted && std::strcmp(wanted, all[i].kernels->name) == 0) return all[i].kernels;
+        best = all[i].kernels;
+    }
+    return best;
 }
 
-namespace {
+std::atomic<const Kernels*>& chosen() {
+    static std::atomic<const Kernels*> kernels = first_choice();
+    return kernels;
+}
 
 // a times the power of two that brings its largest coordinate into [1, 2); false if it is zero.
 bool scaled(const double* a, double* out) {
@@ -51,6 +54,9 @@ bool scaled(const double* a, double* out) {
 }
 
 }  // namespace
+
+const Kernels& kernels() { return *chosen().load(std::memory_order_relaxed); }
+void choose(const Kernels& other) { chosen().store(&other); }
 
 void careful_normal(const double* a, const double* b, double* out) {
     double u[3], v[3], n[3];

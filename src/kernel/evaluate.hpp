@@ -115,6 +115,8 @@ struct Variant {
 int variants(Variant* out, int capacity);
 // The best one that runs here, or the one that the environment variable FREIFORM_ISA names, if it runs here.
 const Kernels& kernels();
+// Others from now on: for tests. REQUIRES that they run here.
+void choose(const Kernels& other);
 
 extern const Kernels kBase;
 #if defined(__x86_64__)

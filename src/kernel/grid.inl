@@ -8,12 +8,12 @@
 template <int P, int N, int K, int C>
 FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* outer, std::size_t row, int part,
                           int parts, const Output& out, double* jets, double* normals) {
-    constexpr int kCount = Slots<N, K>::kCount;
+    constexpr int kCount = Slots<N, K>::kCount, kEach = N < 3 ? kCount : -1;
     const int p = P >= 0 ? P : last.degree;
     // Where the weight is when it has a plane of its own.
     const std::size_t second = net.planes() == 2 ? row / 2 + 3 : 0;
     V s[kCount][4], weight[kCount];
-    each<kCount>(0, [&](int k) FF_BODY {
+    each<kEach>(kCount, [&](int k) FF_BODY {
         weight[k] = all(0);
         for (int c = 0; c < 4; ++c) s[k][c] = all(0);
     });
@@ -21,7 +21,7 @@ FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* ou
         const double* w = last.weights + std::size_t(i) * last.stride();
         const double* base = outer + std::size_t(last.part[i].first) * 4;
         each<P >= 0 ? P + 1 : -1>(p + 1, [&](int j) FF_BODY {
-            each<kCount>(0, [&](int k) FF_BODY {
+            each<kEach>(kCount, [&](int k) FF_BODY {
                 const V b = load(w + (kSlots<N, K>.last[k] * (p + 1) + j) * kWidth);
                 const double* from = base + std::size_t(kSlots<N, K>.outer[k]) * row + 4 * j;
                 each<C>(0, [&](int c) FF_BODY { s[k][c] += all(from[c]) * b; });
@@ -30,21 +30,20 @@ FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* ou
         });
     }
     if (net.rational) {
-        if (C < 4 || !second) each<kCount>(0, [&](int k) FF_BODY { weight[k] = s[k][3]; });
+        if (C < 4 || !second) each<kEach>(kCount, [&](int k) FF_BODY { weight[k] = s[k][3]; });
         const V r = reciprocal(weight[0]);
-        each<kCount>(0, [&](int k) FF_BODY {
+        each<kEach>(kCount, [&](int k) FF_BODY {
             each<C>(0, [&](int c) FF_BODY {
                 V v = s[k][c];
-                each<7>(0, [&](int t) FF_BODY {
-                    if (t >= kSlots<N, K>.terms[k]) return;
+                for (int t = 0; t < kSlots<N, K>.terms[k]; ++t) {
                     const auto& term = kSlots<N, K>.term[k][t];
                     v -= all(term.factor) * weight[term.weight] * s[term.rest][c];
-                });
+                }
                 s[k][c] = v * r;
             });
         });
     }
-    each<kCount>(0, [&](int k) FF_BODY {
+    each<kEach>(kCount, [&](int k) FF_BODY {
         if (k < out.slots) emit(jets + k * net.dim, s[k], net.dim, out.slots * net.dim);
     });
     if constexpr (N == 2 && K > 0) {
@@ -86,15 +85,17 @@ static void grid_row_of(const Net& net, const GridAxis& last, const double* oute
 }
 
 static void grid_row(const Net& net, const GridAxis& last, const double* outer, std::size_t row, const Output& out) {
-    const auto with_order = [&]<int P, int N, int C>() {
-        if (out.order == 0) return grid_row_of<P, N, 0, C>(net, last, outer, row, out);
-        if (out.order == 1) return grid_row_of<P, N, 1, C>(net, last, outer, row, out);
-        return grid_row_of<P, N, 2, C>(net, last, outer, row, out);
-    };
-    if (net.axes == 3) return with_order.template operator()<-1, 3, 4>();
+    const bool three = !net.rational && net.dim < 4;  // nothing is in the fourth place
+    if (net.axes == 3) {
+        if (out.order == 0) return grid_row_of<-1, 3, 0, 4>(net, last, outer, row, out);
+        if (out.order == 1) return grid_row_of<-1, 3, 1, 4>(net, last, outer, row, out);
+        return grid_row_of<-1, 3, 2, 4>(net, last, outer, row, out);
+    }
     with_degree(last.degree, [&]<int P>(Degree<P>) {
-        if (net.rational || net.dim == 4) return with_order.template operator()<P, 2, 4>();
-        return with_order.template operator()<P, 2, 3>();
+        if (out.order == 0 && three) return grid_row_of<P, 2, 0, 3>(net, last, outer, row, out);
+        if (out.order == 0) return grid_row_of<P, 2, 0, 4>(net, last, outer, row, out);
+        if (out.order == 1) return grid_row_of<P, 2, 1, 4>(net, last, outer, row, out);
+        return grid_row_of<P == 3 ? 3 : -1, 2, 2, 4>(net, last, outer, row, out);
     });
 }
 

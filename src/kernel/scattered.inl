@@ -168,7 +168,7 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
                     }
                 }
         }
-        each<kCount>(0, [&](int s) FF_BODY {
+        each<N < 3 ? kCount : -1>(kCount, [&](int s) FF_BODY {
             V total = all(0);
             each<kVectors>(vectors, [&](int v) FF_BODY {
                 const int j = v * kPerVector;
@@ -184,14 +184,13 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
 template <int N, int K>
 FF_INLINE void project(const Net& net, const double* h, double inverse, V4* out) {
     const int size = 4 * net.planes();
-    each<Slots<N, K>::kCount>(0, [&](int s) FF_BODY {
+    each<N < 3 ? Slots<N, K>::kCount : -1>(Slots<N, K>::kCount, [&](int s) FF_BODY {
         V4 v = load4(h + s * size);
         if (net.rational) {
-            each<7>(0, [&](int t) FF_BODY {
-                if (t >= kSlots<N, K>.terms[s]) return;
+            for (int t = 0; t < kSlots<N, K>.terms[s]; ++t) {
                 const auto& term = kSlots<N, K>.term[s][t];
                 v -= all4(term.factor * h[term.weight * size + size - 1]) * out[term.rest];
-            });
+            }
             v *= all4(inverse);
         }
         out[s] = v;
@@ -243,11 +242,10 @@ FF_INLINE void curve_run(const Net& net, const Local& l, int g, const Output& ou
         each<K + 1>(0, [&](int o) FF_BODY {
             for (int c = 0; c < 4; ++c) {
                 V v = s[o][c];
-                each<2>(0, [&](int t) FF_BODY {
-                    if (t >= kSlots<1, K>.terms[o]) return;
+                for (int t = 0; t < kSlots<1, K>.terms[o]; ++t) {
                     const auto& term = kSlots<1, K>.term[o][t];
                     v -= all(term.factor) * weight[term.weight] * s[term.rest][c];
-                });
+                }
                 s[o][c] = v * r;
             }
         });
@@ -272,7 +270,7 @@ FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output&
         V4 s[slots::kCount];
         project<N, K>(net, h + i * slots::kCount * size, net.rational ? inverse[i] : 1, s);
         double* to = out.jets + (from + std::size_t(i)) * std::size_t(out.slots * dim);
-        each<slots::kCount>(0, [&](int k) FF_BODY {
+        each<N < 3 ? slots::kCount : -1>(slots::kCount, [&](int k) FF_BODY {
             if (k >= out.slots) return;
             if (dim == 3)
                 store_three(to, s[k]);
@@ -338,7 +336,8 @@ static void scattered(const Net& net, const double* at, std::size_t n, const Out
     const auto with_order = [&]<int P, int N>() {
         if (out.order == 0) return scattered_of<P, N, 0>(net, at, n, out);
         if (out.order == 1) return scattered_of<P, N, 1>(net, at, n, out);
-        return scattered_of<P, N, 2>(net, at, n, out);
+        // Second derivatives of surfaces: of the most common degree alone, for the sake of compile time.
+        return scattered_of<N == 1 || P == 3 ? P : -1, N, 2>(net, at, n, out);
     };
     if (net.axes == 3) return with_order.template operator()<-1, 3>();
     const bool equal = net.axes == 1 || net.axis[0].degree == net.axis[1].degree;
