@@ -3,6 +3,8 @@
 #include "command.hpp"
 #include "signals.hpp"
 
+#include <freiform/spline/prepared.hpp>
+
 #include <algorithm>
 
 namespace freiform::cli {
@@ -51,6 +53,7 @@ std::string version(bool verbose) {
 #else
     s += "checks:     on\n";
 #endif
+    s += text("kernels:    ", instruction_set(), "\n");
 #if defined(FREIFORM_HAS_OCCT)
     s += "components: json bpt step iges brep";
 #else

@@ -23,12 +23,17 @@
 // denominator is above 0.99. The factor 1.02 below pays for it and for the rounding of c and of the bound
 // itself.
 //
+// Large batches are evaluated in another way, see prepared_tables.cpp; value_error_bound() is the larger bound of
+// the two.
+//
 // References: [Higham 2002, ch. 3] for the counting of roundings.
 #pragma once
 #include "coefficients_detail.hpp"
+#include "prepared_detail.hpp"
 
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/patch.hpp>
+#include <freiform/spline/prepared.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +71,21 @@ bool is_closed(const B& basis) {
         return basis.is_closed();
     else
         return false;
+}
+
+template <std::size_t N, Basis B>
+Result<PreparedNet> prepared(const std::array<B, N>& bases, const Tuples& net) {
+    std::vector<BSplineBasis> splines;
+    for (const B& b : bases) splines.push_back(spline_basis(b));
+    return PreparedNet::make(splines, net);
+}
+
+template <std::size_t N>
+std::span<const double> plain(std::span<const Param<N>> at) {
+    if constexpr (N == 1)
+        return at;
+    else
+        return {at.empty() ? nullptr : at.data()->data(), at.size() * N};
 }
 
 }  // namespace detail
@@ -116,10 +136,17 @@ typename Patch<N, P, B>::Point Patch<N, P, B>::operator()(const Param<N>& u) con
 template <std::size_t N, Coefficient P, Basis B>
 Result<void> Patch<N, P, B>::evaluate(std::span<const Param<N>> at, std::span<Point> out) const {
     FF_REQUIRE(at.size() == out.size());
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        if (auto ok = check(at[i], i); !ok) return ok;
-        out[i] = (*this)(at[i]);
+    // To prepare costs as much as this many points, or so.
+    std::size_t worth = 0;
+    for (const B& b : bases_) worth += 16 * std::size_t(b.degree() + 1) * std::size_t(b.size());
+    if (at.size() >= worth + net_.flat().size() / 4) {
+        if (const auto fast = detail::prepared(bases_, tuples(net_.flat())))
+            return fast->evaluate(detail::plain<N>(at), 0, 1, numbers(out).data(), nullptr,
+                                  Outside::refuse);
     }
+    for (std::size_t i = 0; i < at.size(); ++i)
+        if (auto ok = check(at[i], i); !ok) return ok;
+    for (std::size_t i = 0; i < at.size(); ++i) out[i] = (*this)(at[i]);
     return {};
 }
 
@@ -177,14 +204,17 @@ double Patch<N, P, B>::value_error_bound() const {
     const double unit = std::numeric_limits<double>::epsilon() / 2;
     const double denormal = std::numeric_limits<double>::denorm_min();
     double roundings = 0, terms = 1;
+    std::vector<int> degrees;
     for (const B& b : bases_) {
+        degrees.push_back(b.degree());
         roundings += std::max(0, 6 * b.degree() - 1);
         terms += b.degree() + 1;
     }
     const double g = 1.01 * roundings * unit, lost = terms * denormal;
     const auto [c, w_min] = detail::reach_of(tuples(net_.flat()));
-    if (!Space<P>::kRational) return g * c + lost;
-    return 1.02 * ((2 * g + unit) * c + (1 + c) * (lost / w_min)) + lost;
+    const double single =
+        Space<P>::kRational ? 1.02 * ((2 * g + unit) * c + (1 + c) * (lost / w_min)) + lost : g * c + lost;
+    return std::max(single, detail::batch_error_bound(degrees, tuples(net_.flat())));
 }
 
 template <std::size_t N, class P, Basis B>

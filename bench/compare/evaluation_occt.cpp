@@ -1,0 +1,93 @@
+// The tasks of evaluation.cpp with Open CASCADE: single values directly, rows and curves through the adaptors,
+// which keep the piece they were in.
+#include "occt_curve.hpp"
+
+#include <GeomAdaptor_Curve.hxx>
+#include <GeomAdaptor_Surface.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <TColStd_Array2OfReal.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <evaluation_inputs.hpp>
+
+namespace {
+
+using namespace freiform::bench;
+
+Handle(Geom_BSplineSurface) make_surface(const SurfaceInput& s) {
+    constexpr int n = SurfaceInput::kSize;
+    TColgp_Array2OfPnt points(1, n, 1, n);
+    TColStd_Array2OfReal weights(1, n, 1, n);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const std::size_t k = std::size_t(i * n + j);
+            points(i + 1, j + 1) = gp_Pnt(s.points[3 * k], s.points[3 * k + 1], s.points[3 * k + 2]);
+            weights(i + 1, j + 1) = s.weights[k];
+        }
+    const auto knots = [](const std::vector<double>& t) {  // simple ones inside
+        TColStd_Array1OfReal k(1, int(t.size()) - 6);
+        for (int i = 1; i <= k.Length(); ++i) k(i) = t[std::size_t(i + 2)];
+        return k;
+    };
+    TColStd_Array1OfInteger multiplicities(1, n - 2);
+    multiplicities.Init(1);
+    multiplicities(1) = multiplicities(n - 2) = 4;
+    return new Geom_BSplineSurface(points, weights, knots(s.knots_u), knots(s.knots_v), multiplicities, multiplicities,
+                                   3, 3);
+}
+
+gp_Vec normal_of(const gp_Vec& a, const gp_Vec& b) { return a.Crossed(b).Normalized(); }
+
+}  // namespace
+
+int main() {
+    const Handle(Geom_BSplineSurface) surface = make_surface(hills());
+    const GeomAdaptor_Surface adaptor(surface);
+    const auto c = helix();
+    std::vector<std::array<double, 4>> net;
+    for (std::size_t i = 0; i < c.weights.size(); ++i) {
+        const double w = c.weights[i];
+        net.push_back({w * c.points[3 * i], w * c.points[3 * i + 1], w * c.points[3 * i + 2], w});
+    }
+    const GeomAdaptor_Curve curve(bspline(Poles(net), c.knots, 3, true));
+    const auto u = scattered(2001), v = scattered(2002), axis = grid_axis();
+    const auto random = scattered(4001), in_order = sorted(random);
+    constexpr std::size_t kPlace = 123456, n = kPoints;
+    std::vector<gp_Pnt> out(n);
+    std::vector<gp_Vec> d1(n), d2(n), normals(n);
+    const auto x = [&] { return out[kPlace].X(); };
+    const auto normal_x = [&] { return normals[kPlace].X(); };
+    task("scattered", [&] {
+        for (std::size_t i = 0; i < n; ++i) surface->D0(u[i], v[i], out[i]);
+    }, x);
+    task("scattered_d1_normal", [&] {
+        for (std::size_t i = 0; i < n; ++i) {
+            surface->D1(u[i], v[i], out[i], d1[i], d2[i]);
+            normals[i] = normal_of(d1[i], d2[i]);
+        }
+    }, normal_x);
+    task("grid", [&] {
+        for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
+            for (std::size_t j = 0; j < axis.size(); ++j, ++k) adaptor.D0(axis[i], axis[j], out[k]);
+    }, x);
+    task("grid_normal", [&] {
+        for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
+            for (std::size_t j = 0; j < axis.size(); ++j, ++k) {
+                adaptor.D1(axis[i], axis[j], out[k], d1[k], d2[k]);
+                normals[k] = normal_of(d1[k], d2[k]);
+            }
+    }, normal_x);
+    const auto along = [&](const char* name, const std::vector<double>& at) {
+        task(name, [&] {
+            for (std::size_t i = 0; i < n; ++i) curve.D0(at[i], out[i]);
+        }, x);
+    };
+    const auto derivatives = [&](const char* name, const std::vector<double>& at) {
+        task(name, [&] {
+            for (std::size_t i = 0; i < n; ++i) curve.D2(at[i], out[i], d1[i], d2[i]);
+        }, [&] { return d2[kPlace].X(); });
+    };
+    along("curve_sorted", in_order);
+    along("curve_random", random);
+    derivatives("curve_sorted_d2", in_order);
+    derivatives("curve_random_d2", random);
+}

@@ -1,0 +1,73 @@
+// Many points of one surface and one curve.
+#include <freiform/core/parallel.hpp>
+#include <freiform/spline/prepared.hpp>
+
+#include <evaluation_inputs.hpp>
+
+namespace {
+
+using namespace freiform;
+
+template <std::size_t N>
+Net<N, Hom<3>> net_of(const Index<N>& extent, const std::vector<double>& points, const std::vector<double>& weights) {
+    std::vector<Hom<3>> c;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        c.push_back(weighted(Vec<3>{{points[3 * i], points[3 * i + 1], points[3 * i + 2]}}, weights[i]));
+    return {extent, std::move(c)};
+}
+
+constexpr std::size_t kPlace = 123456;  // of the sample
+
+int run() {
+    const auto s = bench::hills();
+    const auto c = bench::helix();
+    const int n = bench::SurfaceInput::kSize;
+    const auto surface = Surface<Hom<3>>::make({*BSplineBasis::make(3, s.knots_u), *BSplineBasis::make(3, s.knots_v)},
+                                               net_of<2>({n, n}, s.points, s.weights));
+    const auto curve = Curve<Hom<3>>::make({*BSplineBasis::make(3, c.knots)},
+                                           net_of<1>({bench::CurveInput::kSize}, c.points, c.weights));
+    if (!surface || !curve) return 1;
+    const auto fast = PreparedPatch<2, Hom<3>>::make(*surface);
+    const auto quick = PreparedPatch<1, Hom<3>>::make(*curve);
+    if (!fast || !quick) return 1;
+    const auto u = bench::scattered(2001), v = bench::scattered(2002);
+    std::vector<Param<2>> at;
+    for (std::size_t i = 0; i < u.size(); ++i) at.push_back({u[i], v[i]});
+    const auto axis = bench::grid_axis();
+    const std::array<std::span<const double>, 2> axes{axis, axis};
+
+    std::vector<Vec<3>> out(at.size()), normals(at.size());
+    std::vector<Jet<2, 1, Vec<3>>> jets(at.size());
+    std::vector<Jet<1, 2, Vec<3>>> curve_jets(at.size());
+    bool ok = true;
+    const auto x = [&] { return out[kPlace][0]; };
+    const auto normal_x = [&] { return normals[kPlace][0]; };
+    const auto second_x = [&] { return curve_jets[kPlace].d[2][0]; };
+    set_max_threads(1);
+    bench::task("scattered", [&] { ok = ok && fast->evaluate(at, out); }, x);
+    bench::task("scattered_unprepared", [&] { ok = ok && surface->evaluate(at, out); }, x);
+    bench::task("scattered_normal", [&] { ok = ok && fast->evaluate(at, out, normals); }, normal_x);
+    bench::task("scattered_d1_normal",
+                [&] { ok = ok && fast->evaluate(at, std::span(jets), std::span(normals)); }, normal_x);
+    bench::task("grid", [&] { ok = ok && fast->evaluate_grid(axes, out); }, x);
+    bench::task("grid_normal", [&] { ok = ok && fast->evaluate_grid(axes, out, normals); }, normal_x);
+    const auto random = bench::scattered(4001), sorted = bench::sorted(random);
+    bench::task("curve_sorted", [&] { ok = ok && quick->evaluate(sorted, out); }, x);
+    bench::task("curve_random", [&] { ok = ok && quick->evaluate(random, out); }, x);
+    bench::task("curve_sorted_d2", [&] { ok = ok && quick->evaluate(sorted, std::span(curve_jets)); }, second_x);
+    bench::task("curve_random_d2", [&] { ok = ok && quick->evaluate(random, std::span(curve_jets)); }, second_x);
+    set_max_threads(2);
+    bench::task("scattered_two_threads", [&] { ok = ok && fast->evaluate(at, out); }, x);
+    std::vector<float> single(3 * at.size());
+    set_max_threads(1);
+    bench::task("scattered_single_precision", [&] { ok = ok && fast->evaluate(at, std::span(single)); },
+                [&] { return single[3 * kPlace]; });
+    // How fast memory takes points of three doubles.
+    bench::task("store", [&] { std::fill(out.begin(), out.end(), Vec<3>{{1, 2, 3}}); }, x);
+    std::printf("# kernels %s bound %.3g\n", std::string(instruction_set()).c_str(), fast->value_error_bound());
+    return ok ? 0 : 1;
+}
+
+}  // namespace
+
+int main() { return run(); }
