@@ -2,10 +2,10 @@
 // program has the same bits: cubic, clamped on [0, 1], weights between 1/2 and 2.
 #pragma once
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <vector>
 
 namespace freiform::bench {
@@ -90,15 +90,20 @@ inline std::vector<double> grid_axis() {
 }
 
 // Prints the task and the quartiles of the time of a point, in nanoseconds, over some runs of `job`; `sample`
-// is a number of the result, by which programs are compared.
+// is a number of the result, by which programs are compared. Time of the processor, which other jobs of the
+// machine disturb less than that of the clock; of several threads (`wall`) by the clock.
 template <class Job, class Sample>
-void task(const char* name, Job&& job, Sample&& sample) {
-    using Clock = std::chrono::steady_clock;
+void task(const char* name, Job&& job, Sample&& sample, bool wall = false) {
+    const auto now = [&] {
+        timespec t{};
+        clock_gettime(wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &t);
+        return 1e9 * double(t.tv_sec) + double(t.tv_nsec);
+    };
     std::vector<double> ns;
     for (int i = 0; i < 9; ++i) {
-        const auto start = Clock::now();
+        const double start = now();
         job();
-        ns.push_back(std::chrono::duration<double, std::nano>(Clock::now() - start).count() / kPoints);
+        ns.push_back((now() - start) / kPoints);
     }
     std::sort(ns.begin(), ns.end());
     std::printf("%s %.6g %.6g %.6g %.6g %.17g\n", name, ns[0], ns[2], ns[4], ns[6], double(sample()));

@@ -56,8 +56,9 @@ int run() {
     bench::task("curve_random", [&] { ok = ok && quick->evaluate(random, out); }, x);
     bench::task("curve_sorted_d2", [&] { ok = ok && quick->evaluate(sorted, std::span(curve_jets)); }, second_x);
     bench::task("curve_random_d2", [&] { ok = ok && quick->evaluate(random, std::span(curve_jets)); }, second_x);
+    bench::task("scattered_one_thread", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
     set_max_threads(2);
-    bench::task("scattered_two_threads", [&] { ok = ok && fast->evaluate(at, out); }, x);
+    bench::task("scattered_two_threads", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
     std::vector<float> single(3 * at.size());
     set_max_threads(1);
     bench::task("scattered_single_precision", [&] { ok = ok && fast->evaluate(at, std::span(single)); },

@@ -10,8 +10,9 @@ FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* ou
                           int parts, const Output& out, double* jets, double* normals) {
     constexpr int kCount = Slots<N, K>::kCount, kEach = N < 3 ? kCount : -1;
     const int p = P >= 0 ? P : last.degree;
-    // Where the weight is when it has a plane of its own.
-    const std::size_t second = net.planes() == 2 ? row / 2 + 3 : 0;
+    // Coordinates, and those to be projected; C == 5: the weight is in the second plane.
+    constexpr int kCoords = C == 5 ? 4 : C, kProjected = C == 5 ? 4 : 3;
+    const std::size_t second = row / 2 + 3;
     V s[kCount][4], weight[kCount];
     each<kEach>(kCount, [&](int k) FF_BODY {
         weight[k] = all(0);
@@ -24,16 +25,16 @@ FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* ou
             each<kEach>(kCount, [&](int k) FF_BODY {
                 const V b = load(w + (kSlots<N, K>.last[k] * (p + 1) + j) * kWidth);
                 const double* from = base + std::size_t(kSlots<N, K>.outer[k]) * row + 4 * j;
-                each<C>(0, [&](int c) FF_BODY { s[k][c] += all(from[c]) * b; });
-                if (C == 4 && second) weight[k] += all(from[second]) * b;
+                each<kCoords>(0, [&](int c) FF_BODY { s[k][c] += all(from[c]) * b; });
+                if (C == 5) weight[k] += all(from[second]) * b;
             });
         });
     }
     if (net.rational) {
-        if (C < 4 || !second) each<kEach>(kCount, [&](int k) FF_BODY { weight[k] = s[k][3]; });
+        if (C < 5) each<kEach>(kCount, [&](int k) FF_BODY { weight[k] = s[k][3]; });
         const V r = reciprocal(weight[0]);
         each<kEach>(kCount, [&](int k) FF_BODY {
-            each<C>(0, [&](int c) FF_BODY {
+            each<kProjected>(0, [&](int c) FF_BODY {
                 V v = s[k][c];
                 for (int t = 0; t < kSlots<N, K>.terms[k]; ++t) {
                     const auto& term = kSlots<N, K>.term[k][t];
@@ -86,11 +87,14 @@ static void grid_row_of(const Net& net, const GridAxis& last, const double* oute
 
 static void grid_row(const Net& net, const GridAxis& last, const double* outer, std::size_t row, const Output& out) {
     const bool three = !net.rational && net.dim < 4;  // nothing is in the fourth place
-    if (net.axes == 3) {
-        if (out.order == 0) return grid_row_of<-1, 3, 0, 4>(net, last, outer, row, out);
-        if (out.order == 1) return grid_row_of<-1, 3, 1, 4>(net, last, outer, row, out);
-        return grid_row_of<-1, 3, 2, 4>(net, last, outer, row, out);
-    }
+    const auto rare = [&]<int N, int C>() {
+        if (out.order == 0) return grid_row_of<-1, N, 0, C>(net, last, outer, row, out);
+        if (out.order == 1) return grid_row_of<-1, N, 1, C>(net, last, outer, row, out);
+        return grid_row_of<-1, N, 2, C>(net, last, outer, row, out);
+    };
+    if (net.axes == 3 && net.planes() == 2) return rare.template operator()<3, 5>();
+    if (net.axes == 3) return rare.template operator()<3, 4>();
+    if (net.planes() == 2) return rare.template operator()<2, 5>();
     with_degree(last.degree, [&]<int P>(Degree<P>) {
         if (out.order == 0 && three) return grid_row_of<P, 2, 0, 3>(net, last, outer, row, out);
         if (out.order == 0) return grid_row_of<P, 2, 0, 4>(net, last, outer, row, out);

@@ -29,6 +29,10 @@ FF_INLINE int span_of(const Axis& axis, double x) {
 // Spans of the first n parameters of the tile; the rest of the last vector repeats the last one.
 FF_INLINE void locate(const Axis& axis, Local& l, int n, bool look_for_runs) {
     for (int i = n; i % kWidth != 0; ++i) l.x[i] = l.x[n - 1];
+    const Span* spans = axis.span;
+    const int* bucket = axis.bucket;
+    const double* starts = axis.starts;
+    const int last = axis.buckets - 1, steps = axis.steps;
     int known = -1;
     for (int g = 0; g < n; g += kWidth) {
         if (look_for_runs) {
@@ -44,9 +48,16 @@ FF_INLINE void locate(const Axis& axis, Local& l, int n, bool look_for_runs) {
                 continue;
             }
         }
-        for (int i = g; i < g + kWidth; ++i) {
-            const int at = span_of(axis, l.x[i]);
-            const Span& s = axis.span[at];
+        double place[kWidth];  // span_of() of every lane
+        store(place, (load(l.x + g) - all(axis.lo)) * all(axis.scale));
+        for (int k = 0; k < kWidth; ++k) {
+            const int i = g + k, b = int(place[k]);
+            int at = bucket[b < last ? b : last];
+            if (steps == 1)
+                at += l.x[i] >= starts[at + 1];
+            else
+                for (int h = (steps + 1) / 2; h > 0; h /= 2) at += l.x[i] >= starts[at + h] ? h : 0;
+            const Span& s = spans[at];
             l.span[i] = at, l.lo[i] = s.lo, l.hi[i] = s.hi, l.inverse[i] = s.inverse;
         }
     }
@@ -272,7 +283,10 @@ FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output&
         double* to = out.jets + (from + std::size_t(i)) * std::size_t(out.slots * dim);
         each<N < 3 ? slots::kCount : -1>(slots::kCount, [&](int k) FF_BODY {
             if (k >= out.slots) return;
-            if (dim == 3)
+            // A fourth number is overwritten by what comes next.
+            if (dim == 3 && (i + 1 < n || k + 1 < out.slots) && (N > 1 || !done[(i + 1) / kWidth]))
+                store4(to, s[k]);
+            else if (dim == 3)
                 store_three(to, s[k]);
             else if (dim == 4)
                 store4(to, s[k]);

@@ -176,6 +176,8 @@ FF_INLINE void emit(double* p, const V* x, int dim, long stride) {
             store_points_apart(p, x[0], x[1], x[2], stride);
         return;
     }
+    double copy[4][kWidth];  // so that x itself stays in registers
+    for (int c = 0; c < 4; ++c) store(copy[c], x[c]);
     for (int i = 0; i < kWidth; ++i)
-        for (int c = 0; c < dim; ++c) p[i * stride + c] = x[c][i];
+        for (int c = 0; c < dim; ++c) p[i * stride + c] = copy[c][i];
 }

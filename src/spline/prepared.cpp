@@ -20,6 +20,9 @@ using kernel::kernels;
 using Tables = PreparedNet::Tables;
 
 constexpr std::size_t kChunk = 4096;  // points that one thread takes at once
+// What does not stay in the cache goes past it: a store would first read what it overwrites.
+constexpr std::size_t kPastFrom = std::size_t(4) << 20;  // bytes
+constexpr std::size_t kBuffered = 256;                   // points, which stay in the first cache
 constexpr std::size_t kChunksFrom = PreparedPatch<1, Vec<1>>::kParallelFrom / kChunk;
 
 bool is_good(const BSplineBasis& basis, double x) {
@@ -92,6 +95,21 @@ void evaluate_chunk(const Tables& t, const kernel::Net& net, std::span<const dou
     }
 }
 
+// The same past the caches.
+void evaluate_past(const Tables& t, const kernel::Net& net, std::span<const double> at, bool wrapped,
+                   const kernel::Output& out) {
+    const std::size_t axes = t.axis.size(), n = at.size() / axes, size = std::size_t(out.slots * net.dim);
+    std::vector<double> jets(kBuffered * size), normals(out.normals ? kBuffered * 3 : 0);
+    for (std::size_t i = 0; i < n; i += kBuffered) {
+        const std::size_t count = std::min(kBuffered, n - i);
+        evaluate_chunk(t, net, at.subspan(i * axes, count * axes), wrapped,
+                       {out.order, out.slots, jets.data(), out.normals ? normals.data() : nullptr});
+        kernels().stream(out.jets + i * size, jets.data(), count * size);
+        if (out.normals) kernels().stream(out.normals + 3 * i, normals.data(), 3 * count);
+    }
+    kernels().flush();
+}
+
 // The weights of the outer axes of a grid: lanes numbers for each parameter and order.
 struct OuterAxis {
     std::vector<double> weights;
@@ -151,8 +169,10 @@ Result<void> PreparedNet::evaluate(std::span<const double> at, int order, std::s
     if (!plain && outside == Outside::refuse)
         if (auto ok = check(t, at); !ok) return ok;
     const kernel::Net net = t.view();
+    const std::size_t numbers = at.size() / axes * (slots * std::size_t(net.dim) + (normals ? 3 : 0));
+    const bool past = numbers * sizeof(double) > kPastFrom;
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
-        evaluate_chunk(t, net, at.subspan(first * axes, count * axes), !plain,
+        (past ? evaluate_past : evaluate_chunk)(t, net, at.subspan(first * axes, count * axes), !plain,
                        {order, int(slots), jets + first * slots * std::size_t(net.dim),
                         normals ? normals + 3 * first : nullptr});
     });
@@ -208,8 +228,7 @@ Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>>
     kernel::GridAxis view = last.view;
     view.part = last.part.data();
     view.weights = last.weights.data();
-    // What does not stay in the cache goes past it.
-    const bool past = rows * count * (size + (normals ? 3 : 0)) * sizeof(double) > (std::size_t(4) << 20);
+    const bool past = rows * count * (size + (normals ? 3 : 0)) * sizeof(double) > kPastFrom;
     const auto do_rows = [&](std::size_t begin, std::size_t end) {
         std::vector<double> sums(combinations * row + 8), buffer(past ? count * (size + (normals ? 3 : 0)) : 0), w;
         std::vector<const double*> from;
