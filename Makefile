@@ -44,9 +44,10 @@ bench:
 	step "Packages" tools/setup.sh bench; \
 	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
 	step "Build" cmake --build --preset release --target bench-tessellate bench-interpolate bench-tessellate-occt freiform-occt-import \
-		bench-curves bench-curves-occt bench-curves-boost; \
+		bench-curves bench-curves-occt bench-curves-boost bench-evaluation bench-evaluation-occt bench-evaluation-sisl; \
 	step "Compare" tools/bench_report.py; \
-	step "Compare curves" tools/bench_curves.py
+	step "Compare curves" tools/bench_curves.py; \
+	step "Compare evaluation" tools/bench_evaluation.py
 
 accuracy:
 	@source tools/steps.sh; \

@@ -1,5 +1,5 @@
-// The curve, the surface and the parameters of the comparison of evaluation, made from splitmix64, so that every
-// program has the same bits: cubic, clamped on [0, 1], weights between 1/2 and 2.
+// The curve, the surface and the parameters of the comparison of evaluation, made from splitmix64, so that
+// every program has the same bits: cubic, clamped on [0, 1], weights between 1/2 and 2.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// The tasks of evaluation.cpp with Open CASCADE: single values directly, rows and curves through the adaptors,
-// which keep the piece they were in.
+// The tasks of evaluation.cpp with Open CASCADE: single values directly, rows and curves through the
+// adaptors, which keep the piece they were in.
 #include "occt_curve.hpp"
 
 #include <GeomAdaptor_Curve.hxx>
@@ -31,8 +31,8 @@ Handle(Geom_BSplineSurface) make_surface(const SurfaceInput& s) {
     TColStd_Array1OfInteger multiplicities(1, n - 2);
     multiplicities.Init(1);
     multiplicities(1) = multiplicities(n - 2) = 4;
-    return new Geom_BSplineSurface(points, weights, knots(s.knots_u), knots(s.knots_v), multiplicities, multiplicities,
-                                   3, 3);
+    return new Geom_BSplineSurface(points, weights, knots(s.knots_u), knots(s.knots_v), multiplicities,
+                                   multiplicities, 3, 3);
 }
 
 gp_Vec normal_of(const gp_Vec& a, const gp_Vec& b) { return a.Crossed(b).Normalized(); }
@@ -56,35 +56,53 @@ int main() {
     std::vector<gp_Vec> d1(n), d2(n), normals(n);
     const auto x = [&] { return out[kPlace].X(); };
     const auto normal_x = [&] { return normals[kPlace].X(); };
-    task("scattered", [&] {
-        for (std::size_t i = 0; i < n; ++i) surface->D0(u[i], v[i], out[i]);
-    }, x);
-    task("scattered_d1_normal", [&] {
-        for (std::size_t i = 0; i < n; ++i) {
-            surface->D1(u[i], v[i], out[i], d1[i], d2[i]);
-            normals[i] = normal_of(d1[i], d2[i]);
-        }
-    }, normal_x);
-    task("grid", [&] {
-        for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
-            for (std::size_t j = 0; j < axis.size(); ++j, ++k) adaptor.D0(axis[i], axis[j], out[k]);
-    }, x);
-    task("grid_normal", [&] {
-        for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
-            for (std::size_t j = 0; j < axis.size(); ++j, ++k) {
-                adaptor.D1(axis[i], axis[j], out[k], d1[k], d2[k]);
-                normals[k] = normal_of(d1[k], d2[k]);
+    task(
+        "scattered",
+        [&] {
+            for (std::size_t i = 0; i < n; ++i) surface->D0(u[i], v[i], out[i]);
+        },
+        x);
+    task(
+        "scattered_d1_normal",
+        [&] {
+            for (std::size_t i = 0; i < n; ++i) {
+                surface->D1(u[i], v[i], out[i], d1[i], d2[i]);
+                normals[i] = normal_of(d1[i], d2[i]);
             }
-    }, normal_x);
+        },
+        normal_x);
+    task(
+        "grid",
+        [&] {
+            for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
+                for (std::size_t j = 0; j < axis.size(); ++j, ++k) adaptor.D0(axis[i], axis[j], out[k]);
+        },
+        x);
+    task(
+        "grid_normal",
+        [&] {
+            for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
+                for (std::size_t j = 0; j < axis.size(); ++j, ++k) {
+                    adaptor.D1(axis[i], axis[j], out[k], d1[k], d2[k]);
+                    normals[k] = normal_of(d1[k], d2[k]);
+                }
+        },
+        normal_x);
     const auto along = [&](const char* name, const std::vector<double>& at) {
-        task(name, [&] {
-            for (std::size_t i = 0; i < n; ++i) curve.D0(at[i], out[i]);
-        }, x);
+        task(
+            name,
+            [&] {
+                for (std::size_t i = 0; i < n; ++i) curve.D0(at[i], out[i]);
+            },
+            x);
     };
     const auto derivatives = [&](const char* name, const std::vector<double>& at) {
-        task(name, [&] {
-            for (std::size_t i = 0; i < n; ++i) curve.D2(at[i], out[i], d1[i], d2[i]);
-        }, [&] { return d2[kPlace].X(); });
+        task(
+            name,
+            [&] {
+                for (std::size_t i = 0; i < n; ++i) curve.D2(at[i], out[i], d1[i], d2[i]);
+            },
+            [&] { return d2[kPlace].X(); });
     };
     along("curve_sorted", in_order);
     along("curve_random", random);

@@ -17,8 +17,8 @@ int main() {
     };
     // SISL has the first parameter fastest: u and v are exchanged.
     auto net = homogeneous(s.points, s.weights), line = homogeneous(c.points, c.weights);
-    SISLSurf* surface = newSurf(SurfaceInput::kSize, SurfaceInput::kSize, 4, 4, s.knots_v.data(), s.knots_u.data(),
-                                net.data(), 2, 3, 1);
+    SISLSurf* surface = newSurf(SurfaceInput::kSize, SurfaceInput::kSize, 4, 4, s.knots_v.data(),
+                                s.knots_u.data(), net.data(), 2, 3, 1);
     SISLCurve* curve = newCurve(CurveInput::kSize, 4, c.knots.data(), line.data(), 2, 3, 1);
     if (!surface || !curve) return 1;
     const auto u = scattered(2001), v = scattered(2002), random = scattered(4001), in_order = sorted(random);
@@ -27,39 +27,55 @@ int main() {
     std::vector<double> out(9 * n), normals(3 * n);
     int left1 = 0, left2 = 0, status = 0;
     bool ok = true;
-    task("scattered", [&] {
-        for (std::size_t i = 0; i < n; ++i) {
-            double at[2] = {v[i], u[i]}, normal[3];
-            s1421(surface, 0, at, &left1, &left2, &out[3 * i], normal, &status);
+    task(
+        "scattered",
+        [&] {
+            for (std::size_t i = 0; i < n; ++i) {
+                double at[2] = {v[i], u[i]}, normal[3];
+                s1421(surface, 0, at, &left1, &left2, &out[3 * i], normal, &status);
+                ok = ok && status >= 0;
+            }
+        },
+        [&] { return out[3 * kPlace]; });
+    task(
+        "scattered_d1_normal",
+        [&] {
+            for (std::size_t i = 0; i < n; ++i) {
+                double at[2] = {v[i], u[i]}, normal[3];
+                s1421(surface, 1, at, &left1, &left2, &out[9 * i], normal, &status);
+                const double l =
+                    -1 / std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+                for (std::size_t k = 0; k < 3; ++k) normals[3 * i + k] = normal[k] * l;
+                ok = ok && status >= 0;
+            }
+        },
+        [&] { return normals[3 * kPlace]; });
+    task(
+        "grid",
+        [&] {
+            s1506(surface, 0, kGrid, axis.data(), kGrid, axis.data(), out.data(), normals.data(), &status);
             ok = ok && status >= 0;
-        }
-    }, [&] { return out[3 * kPlace]; });
-    task("scattered_d1_normal", [&] {
-        for (std::size_t i = 0; i < n; ++i) {
-            double at[2] = {v[i], u[i]}, normal[3];
-            s1421(surface, 1, at, &left1, &left2, &out[9 * i], normal, &status);
-            const double l = -1 / std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-            for (std::size_t k = 0; k < 3; ++k) normals[3 * i + k] = normal[k] * l;
+        },
+        [&] { return out[3 * kPlace]; });
+    task(
+        "grid_normal",
+        [&] {
+            s1506(surface, 1, kGrid, axis.data(), kGrid, axis.data(), out.data(), normals.data(), &status);
             ok = ok && status >= 0;
-        }
-    }, [&] { return normals[3 * kPlace]; });
-    task("grid", [&] {
-        s1506(surface, 0, kGrid, axis.data(), kGrid, axis.data(), out.data(), normals.data(), &status);
-        ok = ok && status >= 0;
-    }, [&] { return out[3 * kPlace]; });
-    task("grid_normal", [&] {
-        s1506(surface, 1, kGrid, axis.data(), kGrid, axis.data(), out.data(), normals.data(), &status);
-        ok = ok && status >= 0;
-    }, [&] { return -normals[3 * kPlace]; });
+        },
+        [&] { return -normals[3 * kPlace]; });
     const auto along = [&](const char* name, const std::vector<double>& at, int order) {
         const std::size_t size = 3 * std::size_t(order + 1);
         left1 = 0;
-        task(name, [&] {
-            for (std::size_t i = 0; i < n; ++i) {
-                s1227(curve, order, at[i], &left1, &out[size * i], &status);
-                ok = ok && status >= 0;
-            }
-        }, [&] { return out[size * kPlace + size - 3]; });
+        task(
+            name,
+            [&] {
+                for (std::size_t i = 0; i < n; ++i) {
+                    s1227(curve, order, at[i], &left1, &out[size * i], &status);
+                    ok = ok && status >= 0;
+                }
+            },
+            [&] { return out[size * kPlace + size - 3]; });
     };
     along("curve_sorted", in_order, 0);
     along("curve_random", random, 0);

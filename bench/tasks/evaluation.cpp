@@ -9,7 +9,8 @@ namespace {
 using namespace freiform;
 
 template <std::size_t N>
-Net<N, Hom<3>> net_of(const Index<N>& extent, const std::vector<double>& points, const std::vector<double>& weights) {
+Net<N, Hom<3>> net_of(const Index<N>& extent, const std::vector<double>& points,
+                      const std::vector<double>& weights) {
     std::vector<Hom<3>> c;
     for (std::size_t i = 0; i < weights.size(); ++i)
         c.push_back(weighted(Vec<3>{{points[3 * i], points[3 * i + 1], points[3 * i + 2]}}, weights[i]));
@@ -22,8 +23,9 @@ int run() {
     const auto s = bench::hills();
     const auto c = bench::helix();
     const int n = bench::SurfaceInput::kSize;
-    const auto surface = Surface<Hom<3>>::make({*BSplineBasis::make(3, s.knots_u), *BSplineBasis::make(3, s.knots_v)},
-                                               net_of<2>({n, n}, s.points, s.weights));
+    const auto surface =
+        Surface<Hom<3>>::make({*BSplineBasis::make(3, s.knots_u), *BSplineBasis::make(3, s.knots_v)},
+                              net_of<2>({n, n}, s.points, s.weights));
     const auto curve = Curve<Hom<3>>::make({*BSplineBasis::make(3, c.knots)},
                                            net_of<1>({bench::CurveInput::kSize}, c.points, c.weights));
     if (!surface || !curve) return 1;
@@ -44,28 +46,47 @@ int run() {
     const auto normal_x = [&] { return normals[kPlace][0]; };
     const auto second_x = [&] { return curve_jets[kPlace].d[2][0]; };
     set_max_threads(1);
-    bench::task("scattered", [&] { ok = ok && fast->evaluate(at, out); }, x);
-    bench::task("scattered_unprepared", [&] { ok = ok && surface->evaluate(at, out); }, x);
-    bench::task("scattered_normal", [&] { ok = ok && fast->evaluate(at, out, normals); }, normal_x);
-    bench::task("scattered_d1_normal",
-                [&] { ok = ok && fast->evaluate(at, std::span(jets), std::span(normals)); }, normal_x);
-    bench::task("grid", [&] { ok = ok && fast->evaluate_grid(axes, out); }, x);
-    bench::task("grid_normal", [&] { ok = ok && fast->evaluate_grid(axes, out, normals); }, normal_x);
+    bench::task(
+        "scattered", [&] { ok = ok && fast->evaluate(at, out); }, x);
+    bench::task(
+        "scattered_unprepared", [&] { ok = ok && surface->evaluate(at, out); }, x);
+    bench::task(
+        "scattered_normal", [&] { ok = ok && fast->evaluate(at, out, normals); }, normal_x);
+    bench::task(
+        "scattered_d1_normal", [&] { ok = ok && fast->evaluate(at, std::span(jets), std::span(normals)); },
+        normal_x);
+    bench::task(
+        "grid", [&] { ok = ok && fast->evaluate_grid(axes, out); }, x);
+    bench::task(
+        "grid_normal", [&] { ok = ok && fast->evaluate_grid(axes, out, normals); }, normal_x);
     const auto random = bench::scattered(4001), sorted = bench::sorted(random);
-    bench::task("curve_sorted", [&] { ok = ok && quick->evaluate(sorted, out); }, x);
-    bench::task("curve_random", [&] { ok = ok && quick->evaluate(random, out); }, x);
-    bench::task("curve_sorted_d2", [&] { ok = ok && quick->evaluate(sorted, std::span(curve_jets)); }, second_x);
-    bench::task("curve_random_d2", [&] { ok = ok && quick->evaluate(random, std::span(curve_jets)); }, second_x);
-    bench::task("scattered_one_thread", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
+    bench::task(
+        "curve_sorted", [&] { ok = ok && quick->evaluate(sorted, out); }, x);
+    bench::task(
+        "curve_random", [&] { ok = ok && quick->evaluate(random, out); }, x);
+    bench::task(
+        "curve_sorted_d2", [&] { ok = ok && quick->evaluate(sorted, std::span(curve_jets)); }, second_x);
+    bench::task(
+        "curve_random_d2", [&] { ok = ok && quick->evaluate(random, std::span(curve_jets)); }, second_x);
+    bench::task(
+        "scattered_one_thread", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
     set_max_threads(2);
-    bench::task("scattered_two_threads", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
+    bench::task(
+        "scattered_two_threads", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
     std::vector<float> single(3 * at.size());
     set_max_threads(1);
-    bench::task("scattered_single_precision", [&] { ok = ok && fast->evaluate(at, std::span(single)); },
-                [&] { return single[3 * kPlace]; });
+    bench::task(
+        "scattered_single_precision", [&] { ok = ok && fast->evaluate(at, std::span(single)); },
+        [&] { return single[3 * kPlace]; });
     // How fast memory takes points of three doubles.
-    bench::task("store", [&] { std::fill(out.begin(), out.end(), Vec<3>{{1, 2, 3}}); }, x);
-    std::printf("# kernels %s bound %.3g\n", std::string(instruction_set()).c_str(), fast->value_error_bound());
+    bench::task(
+        "store",
+        [&] {
+            std::fill(out.begin(), out.end(), Vec<3>{{1, 2, 3}});
+        },
+        x);
+    std::printf("# kernels %s bound %.3g\n", std::string(instruction_set()).c_str(),
+                fast->value_error_bound());
     return ok ? 0 : 1;
 }
 

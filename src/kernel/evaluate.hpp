@@ -30,8 +30,9 @@ struct Axis {
     const Span* span = nullptr;      // spans of them
     const double* matrix = nullptr;  // spans * stride numbers
     std::size_t stride = 0;          // columns(0) + columns(1) + columns(2), times lanes
-    // Search. x is in span s or one of the `steps` after it, s = bucket[min(int((x - lo) * scale), buckets - 1)];
-    // steps is 0 or 2^k - 1; starts[s] are the lower ends of the spans, followed by `steps` infinite numbers.
+    // Search. x is in span s or one of the `steps` after it, s = bucket[min(int((x - lo) * scale), buckets -
+    // 1)]; steps is 0 or 2^k - 1; starts[s] are the lower ends of the spans, followed by `steps` infinite
+    // numbers.
     double lo = 0, scale = 0;
     int buckets = 1, steps = 0;
     const int* bucket = nullptr;
@@ -39,7 +40,9 @@ struct Axis {
 
     int columns(int order) const { return order > degree ? 0 : degree + 1 - order; }
     std::size_t column(int order) const {  // of the first one, in a span
-        return std::size_t(lanes) * std::size_t(order == 0 ? 0 : order == 1 ? columns(0) : columns(0) + columns(1));
+        return std::size_t(lanes) * std::size_t(order == 0   ? 0
+                                                : order == 1 ? columns(0)
+                                                             : columns(0) + columns(1));
     }
 };
 
@@ -78,7 +81,9 @@ struct GridAxis {
     int parts = 0;
     const GridPart* part = nullptr;  // ascending by group
     const double* weights = nullptr;
-    std::size_t stride() const { return std::size_t(order + 1) * std::size_t(degree + 1) * std::size_t(width); }
+    std::size_t stride() const {
+        return std::size_t(order + 1) * std::size_t(degree + 1) * std::size_t(width);
+    }
 };
 
 // Everything that is compiled for one instruction set. Parameters must be finite and inside [lo, hi] of the

@@ -6,8 +6,8 @@
 // vectors of the output are full whatever the order of the parameters is.
 
 template <int P, int N, int K, int C>
-FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* outer, std::size_t row, int part,
-                          int parts, const Output& out, double* jets, double* normals) {
+FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* outer, std::size_t row,
+                          int part, int parts, const Output& out, double* jets, double* normals) {
     constexpr int kCount = Slots<N, K>::kCount, kEach = N < 3 ? kCount : -1;
     const int p = P >= 0 ? P : last.degree;
     // Coordinates, and those to be projected; C == 5: the weight is in the second plane.
@@ -64,7 +64,8 @@ FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* ou
 }
 
 template <int P, int N, int K, int C>
-static void grid_row_of(const Net& net, const GridAxis& last, const double* outer, std::size_t row, const Output& out) {
+static void grid_row_of(const Net& net, const GridAxis& last, const double* outer, std::size_t row,
+                        const Output& out) {
     const int size = out.slots * net.dim;
     for (int part = 0; part < last.parts;) {
         const int group = last.part[part].group;
@@ -77,7 +78,8 @@ static void grid_row_of(const Net& net, const GridAxis& last, const double* oute
             grid_group<P, N, K, C>(net, last, outer, row, part, end - part, out, jets, normals);
         } else {
             double some[kWidth * Slots<N, K>::kCount * 4] = {}, few[kWidth * 3] = {};
-            grid_group<P, N, K, C>(net, last, outer, row, part, end - part, out, some, normals ? few : nullptr);
+            grid_group<P, N, K, C>(net, last, outer, row, part, end - part, out, some,
+                                   normals ? few : nullptr);
             for (int i = 0; i < n * size; ++i) jets[i] = some[i];
             for (int i = 0; normals && i < 3 * n; ++i) normals[i] = few[i];
         }
@@ -85,7 +87,8 @@ static void grid_row_of(const Net& net, const GridAxis& last, const double* oute
     }
 }
 
-static void grid_row(const Net& net, const GridAxis& last, const double* outer, std::size_t row, const Output& out) {
+static void grid_row(const Net& net, const GridAxis& last, const double* outer, std::size_t row,
+                     const Output& out) {
     const bool three = !net.rational && net.dim < 4;  // nothing is in the fourth place
     const auto rare = [&]<int N, int C>() {
         if (out.order == 0) return grid_row_of<-1, N, 0, C>(net, last, outer, row, out);
@@ -99,7 +102,7 @@ static void grid_row(const Net& net, const GridAxis& last, const double* outer, 
         if (out.order == 0 && three) return grid_row_of<P, 2, 0, 3>(net, last, outer, row, out);
         if (out.order == 0) return grid_row_of<P, 2, 0, 4>(net, last, outer, row, out);
         if (out.order == 1) return grid_row_of<P, 2, 1, 4>(net, last, outer, row, out);
-        return grid_row_of<P == 3 ? 3 : -1, 2, 2, 4>(net, last, outer, row, out);
+        return grid_row_of < P == 3 ? 3 : -1, 2, 2, 4 > (net, last, outer, row, out);
     });
 }
 

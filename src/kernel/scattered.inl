@@ -133,7 +133,8 @@ FF_INLINE void contract_curve(const Net& net, const Local& l, int i, double* h) 
 
 template <int P, int N, int K>
 FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
-    constexpr int kGroups = P >= 0 ? (P + 4) / 4 : -1, kGroupsAtMost = P >= 0 ? kGroups : (kMaxDegree + 4) / 4;
+    constexpr int kGroups = P >= 0 ? (P + 4) / 4 : -1,
+                  kGroupsAtMost = P >= 0 ? kGroups : (kMaxDegree + 4) / 4;
     constexpr int kVectors = P >= 0 ? (P + kPerVector) / kPerVector : -1;
     constexpr int kVectorsAtMost = 4 * kGroupsAtMost / kPerVector, kCount = Slots<N, K>::kCount;
     const Axis& last = net.axis[N - 1];
@@ -148,16 +149,16 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
         const int some = P >= 0 ? kGroups : net.axis[d].lanes / 4;
         V4 f[(K + 1) * kGroupsAtMost];
         functions<P, kGroups, K>(net.axis[d], l[d], i, some, f);
-        each<P >= 0 ? (K + 1) * kGroups : -1>((K + 1) * some, [&](int k) FF_BODY { store4(outer[d] + 4 * k, f[k]); });
+        each<P >= 0 ? (K + 1) * kGroups : -1>((K + 1) * some,
+                                              [&](int k) FF_BODY { store4(outer[d] + 4 * k, f[k]); });
         lanes[d] = 4 * some;
     }
     const double* base = net.coefficients + std::size_t(last.span[l[N - 1].span[i]].first) * 4;
     for (int d = 0; d < N - 1; ++d) base += std::size_t(net.axis[d].span[l[d].span[i]].first) * net.stride[d];
     for (int q = 0; q < planes; ++q, base += net.plane) {
         V sum[Slots<N, K>::kOuter][kVectorsAtMost];
-        each<Slots<N, K>::kOuter>(0, [&](int o) FF_BODY {
-            each<kVectors>(vectors, [&](int v) FF_BODY { sum[o][v] = all(0); });
-        });
+        each<Slots<N, K>::kOuter>(
+            0, [&](int o) FF_BODY { each<kVectors>(vectors, [&](int v) FF_BODY { sum[o][v] = all(0); }); });
         if constexpr (N == 2) {
             each<P >= 0 ? P + 1 : -1>(net.axis[0].degree + 1, [&](int r) FF_BODY {
                 const double* row = base + std::size_t(r) * net.stride[0];
@@ -169,7 +170,8 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
         } else {
             for (int r = 0; r <= net.axis[0].degree; ++r)
                 for (int m = 0; m <= net.axis[1].degree; ++m) {
-                    const double* row = base + std::size_t(r) * net.stride[0] + std::size_t(m) * net.stride[1];
+                    const double* row =
+                        base + std::size_t(r) * net.stride[0] + std::size_t(m) * net.stride[1];
                     for (int s = 0; s < kCount; ++s) {
                         if (kSlots<N, K>.last[s] != 0) continue;
                         const V weight = all(outer[0][kSlots<N, K>.a[s] * lanes[0] + r] *
@@ -179,15 +181,17 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
                     }
                 }
         }
-        each<N < 3 ? kCount : -1>(kCount, [&](int s) FF_BODY {
-            V total = all(0);
-            each<kVectors>(vectors, [&](int v) FF_BODY {
-                const int j = v * kPerVector;
-                total += sum[kSlots<N, K>.outer[s]][v] *
-                         spread(w[kSlots<N, K>.last[s] * groups + j / 4], j % 4 / kPerVector);
-            });
-            store4(h + 4 * (s * planes + q), fold(total));
-        });
+        each < N<3 ? kCount : -1>(
+                   kCount,
+                   [&](int s) FF_BODY {
+                       V total = all(0);
+                       each<kVectors>(vectors, [&](int v) FF_BODY {
+                           const int j = v * kPerVector;
+                           total += sum[kSlots<N, K>.outer[s]][v] *
+                                    spread(w[kSlots<N, K>.last[s] * groups + j / 4], j % 4 / kPerVector);
+                       });
+                       store4(h + 4 * (s * planes + q), fold(total));
+                   });
     }
 }
 
@@ -195,17 +199,19 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, double* h) {
 template <int N, int K>
 FF_INLINE void project(const Net& net, const double* h, double inverse, V4* out) {
     const int size = 4 * net.planes();
-    each<N < 3 ? Slots<N, K>::kCount : -1>(Slots<N, K>::kCount, [&](int s) FF_BODY {
-        V4 v = load4(h + s * size);
-        if (net.rational) {
-            for (int t = 0; t < kSlots<N, K>.terms[s]; ++t) {
-                const auto& term = kSlots<N, K>.term[s][t];
-                v -= all4(term.factor * h[term.weight * size + size - 1]) * out[term.rest];
-            }
-            v *= all4(inverse);
-        }
-        out[s] = v;
-    });
+    each < N<3 ? Slots<N, K>::kCount : -1>(
+               Slots<N, K>::kCount,
+               [&](int s) FF_BODY {
+                   V4 v = load4(h + s * size);
+                   if (net.rational) {
+                       for (int t = 0; t < kSlots<N, K>.terms[s]; ++t) {
+                           const auto& term = kSlots<N, K>.term[s][t];
+                           v -= all4(term.factor * h[term.weight * size + size - 1]) * out[term.rest];
+                       }
+                       v *= all4(inverse);
+                   }
+                   out[s] = v;
+               });
 }
 
 FF_INLINE V4 cross4(V4 a, V4 b) {
@@ -214,9 +220,10 @@ FF_INLINE V4 cross4(V4 a, V4 b) {
     return __builtin_shufflevector(c, c, 1, 2, 0, 3);
 }
 
-// Unit normals of a tile from S_u x S_v (4 numbers each) and its squared length. Where that has left the range
-// in which it is good to a few roundings, from S_u and S_v themselves, 8 numbers each.
-FF_INLINE void finish_normals(const double* normal, const double* square, const double* tangents, int n, double* out) {
+// Unit normals of a tile from S_u x S_v (4 numbers each) and its squared length. Where that has left the
+// range in which it is good to a few roundings, from S_u and S_v themselves, 8 numbers each.
+FF_INLINE void finish_normals(const double* normal, const double* square, const double* tangents, int n,
+                              double* out) {
     double inverse[kTile];
     for (int g = 0; g < n; g += kWidth) store(inverse + g, reciprocal_root(load(square + g)));
     for (int i = 0; i < n; ++i) {
@@ -241,8 +248,7 @@ FF_INLINE void curve_run(const Net& net, const Local& l, int g, const Output& ou
         each<P >= 0 ? P + 1 : -1>(p + 1, [&](int k) FF_BODY {
             if (k > p - o) return;
             const V b = load(l.bernstein[o] + k * kTile + g);
-            for (int c = 0; c < 4; ++c)
-                s[o][c] = k == 0 ? all(column[c]) * b : s[o][c] + all(column[c]) * b;
+            for (int c = 0; c < 4; ++c) s[o][c] = k == 0 ? all(column[c]) * b : s[o][c] + all(column[c]) * b;
             if (axis.lanes == 8) w = k == 0 ? all(column[7]) * b : w + all(column[7]) * b;
             column += axis.lanes;
         });
@@ -267,7 +273,8 @@ FF_INLINE void curve_run(const Net& net, const Local& l, int g, const Output& ou
 }
 
 template <int N, int K>
-FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output& out, std::size_t from, const char* done) {
+FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output& out, std::size_t from,
+                           const char* done) {
     using slots = Slots<N, K>;
     const int size = 4 * net.planes(), dim = net.dim;
     double inverse[kTile], normal[4 * kTile], square[kTile], tangents[8 * kTile];
@@ -281,19 +288,21 @@ FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output&
         V4 s[slots::kCount];
         project<N, K>(net, h + i * slots::kCount * size, net.rational ? inverse[i] : 1, s);
         double* to = out.jets + (from + std::size_t(i)) * std::size_t(out.slots * dim);
-        each<N < 3 ? slots::kCount : -1>(slots::kCount, [&](int k) FF_BODY {
-            if (k >= out.slots) return;
-            // A fourth number is overwritten by what comes next.
-            if (dim == 3 && (i + 1 < n || k + 1 < out.slots) && (N > 1 || !done[(i + 1) / kWidth]))
-                store4(to, s[k]);
-            else if (dim == 3)
-                store_three(to, s[k]);
-            else if (dim == 4)
-                store4(to, s[k]);
-            else
-                for (int c = 0; c < dim; ++c) to[c] = s[k][c];
-            to += dim;
-        });
+        each < N<3 ? slots::kCount : -1>(
+                   slots::kCount,
+                   [&](int k) FF_BODY {
+                       if (k >= out.slots) return;
+                       // A fourth number is overwritten by what comes next.
+                       if (dim == 3 && (i + 1 < n || k + 1 < out.slots) && (N > 1 || !done[(i + 1) / kWidth]))
+                           store4(to, s[k]);
+                       else if (dim == 3)
+                           store_three(to, s[k]);
+                       else if (dim == 4)
+                           store4(to, s[k]);
+                       else
+                           for (int c = 0; c < dim; ++c) to[c] = s[k][c];
+                       to += dim;
+                   });
         if constexpr (N == 2 && K > 0) {
             if (!out.normals) continue;
             const V4 c = cross4(s[1], s[2]), d = c * c;
@@ -331,17 +340,19 @@ static void scattered_of(const Net& net, const double* at, std::size_t count, co
                                     out.jets + (from + std::size_t(g)) * std::size_t(out.slots * net.dim));
             }
         }
+        bool finished = true;
         for (int i = 0; i < n; ++i) {
             if (N == 1 && done[i / kWidth]) {
-                // Left for the reciprocals of the tile.
-                for (int k = 0; k < size; ++k) h[i * slots::kCount * size + k] = 1;
+                h[i * slots::kCount * size + size - 1] = 1;  // for the reciprocals of the tile
                 continue;
             }
+            finished = false;
             if constexpr (N == 1)
                 contract_curve<P, K>(net, local[0], i, h + i * slots::kCount * size);
             else
                 contract<P, N, K>(net, local, i, h + i * slots::kCount * size);
         }
+        if (finished) continue;
         finish_tile<N, K>(net, h, n, out, from, done);
     }
 }
@@ -351,7 +362,7 @@ static void scattered(const Net& net, const double* at, std::size_t n, const Out
         if (out.order == 0) return scattered_of<P, N, 0>(net, at, n, out);
         if (out.order == 1) return scattered_of<P, N, 1>(net, at, n, out);
         // Second derivatives of surfaces: of the most common degree alone, for the sake of compile time.
-        return scattered_of<N == 1 || P == 3 ? P : -1, N, 2>(net, at, n, out);
+        return scattered_of < N == 1 || P == 3 ? P : -1, N, 2 > (net, at, n, out);
     };
     if (net.axes == 3) return with_order.template operator()<-1, 3>();
     const bool equal = net.axes == 1 || net.axis[0].degree == net.axis[1].degree;
@@ -361,7 +372,8 @@ static void scattered(const Net& net, const double* at, std::size_t n, const Out
     });
 }
 
-static void weights(const Axis& axis, const double* at, std::size_t count, int order, double* out, int* first) {
+static void weights(const Axis& axis, const double* at, std::size_t count, int order, double* out,
+                    int* first) {
     Local l;
     V4 f[(kMaxOrder + 1) * (kMaxDegree + 4) / 4];
     const std::size_t size = std::size_t(order + 1) * std::size_t(axis.lanes);

@@ -9,14 +9,15 @@
 #define FF_INLINE static inline __attribute__((always_inline))
 #define FF_BODY __attribute__((always_inline))
 
-// f(0) .. f(count - 1): written out one after the other where the number is known when compiling (Count >= 0).
+// f(0) .. f(count - 1): written out one after the other where the number is known when compiling (Count >=
+// 0).
 template <int Count, class F>
 FF_INLINE void each(int count, F f) {
-    if constexpr (Count >= 0)
-        [&]<int... I>(std::integer_sequence<int, I...>) FF_BODY { (f(I), ...); }
+    if constexpr (Count >= 0) [&]<int... I>(std::integer_sequence<int, I...>) FF_BODY {
+            (f(I), ...);
+        }
     (std::make_integer_sequence<int, Count>{});
-    else
-        for (int i = 0; i < count; ++i) f(i);
+    else for (int i = 0; i < count; ++i) f(i);
 }
 
 #if defined(__AVX512F__)
@@ -100,8 +101,7 @@ FF_INLINE bool all_inside(V x, V lo, V hi, bool with_hi) {
 #elif defined(__AVX2__)
     const __m256d below = with_hi ? _mm256_cmp_pd((__m256d)x, (__m256d)hi, _CMP_LE_OQ)
                                   : _mm256_cmp_pd((__m256d)x, (__m256d)hi, _CMP_LT_OQ);
-    return _mm256_movemask_pd(
-               _mm256_and_pd(below, _mm256_cmp_pd((__m256d)x, (__m256d)lo, _CMP_GE_OQ))) == 15;
+    return _mm256_movemask_pd(_mm256_and_pd(below, _mm256_cmp_pd((__m256d)x, (__m256d)lo, _CMP_GE_OQ))) == 15;
 #else
     bool ok = true;
     for (int i = 0; i < kWidth; ++i) ok &= (x[i] >= lo[i]) & (with_hi ? x[i] <= hi[i] : x[i] < hi[i]);

@@ -23,8 +23,8 @@
 // denominator is above 0.99. The factor 1.02 below pays for it and for the rounding of c and of the bound
 // itself.
 //
-// Large batches are evaluated in another way, see prepared_tables.cpp; value_error_bound() is the larger bound of
-// the two.
+// Large batches are evaluated in another way, see prepared_tables.cpp; value_error_bound() is the larger
+// bound of the two.
 //
 // References: [Higham 2002, ch. 3] for the counting of roundings.
 #pragma once
@@ -141,8 +141,7 @@ Result<void> Patch<N, P, B>::evaluate(std::span<const Param<N>> at, std::span<Po
     for (const B& b : bases_) worth += 16 * std::size_t(b.degree() + 1) * std::size_t(b.size());
     if (at.size() >= worth + net_.flat().size() / 4) {
         if (const auto fast = detail::prepared(bases_, tuples(net_.flat())))
-            return fast->evaluate(detail::plain<N>(at), 0, 1, numbers(out).data(), nullptr,
-                                  Outside::refuse);
+            return fast->evaluate(detail::plain<N>(at), 0, 1, numbers(out).data(), nullptr, Outside::refuse);
     }
     for (std::size_t i = 0; i < at.size(); ++i)
         if (auto ok = check(at[i], i); !ok) return ok;

@@ -45,7 +45,8 @@ Result<void> check(const Tables& t, std::span<const double> at) {
     for (std::size_t i = 0; i < at.size(); ++i) {
         const BSplineBasis& basis = t.axis[i % axes].basis;
         if (!is_good(basis, at[i]))
-            return bad_parameter(at[i], basis.domain(), "at", i / axes, axes == 1 ? -1 : std::ptrdiff_t(i % axes));
+            return bad_parameter(at[i], basis.domain(), "at", i / axes,
+                                 axes == 1 ? -1 : std::ptrdiff_t(i % axes));
     }
     return {};
 }
@@ -62,7 +63,8 @@ void in_chunks(std::size_t n, const std::function<void(std::size_t, std::size_t)
 }
 
 // Parameters that the kernels can take: good ones, of closed axes wrapped, bad ones replaced.
-void make_good(const Tables& t, std::span<const double> at, std::vector<double>& good, std::vector<char>& bad) {
+void make_good(const Tables& t, std::span<const double> at, std::vector<double>& good,
+               std::vector<char>& bad) {
     const std::size_t axes = t.axis.size();
     good.assign(at.begin(), at.end());
     bad.assign(at.size() / axes, 0);
@@ -116,7 +118,8 @@ struct OuterAxis {
     std::vector<int> first;
 };
 OuterAxis outer_axis(const kernel::Axis& axis, std::span<const double> at, int order) {
-    OuterAxis a{std::vector<double>(at.size() * std::size_t((order + 1) * axis.lanes)), std::vector<int>(at.size())};
+    OuterAxis a{std::vector<double>(at.size() * std::size_t((order + 1) * axis.lanes)),
+                std::vector<int>(at.size())};
     kernels().weights(axis, at.data(), at.size(), order, a.weights.data(), a.first.data());
     return a;
 }
@@ -144,7 +147,8 @@ LastAxis last_axis(const kernel::Axis& axis, std::span<const double> at, int ord
             }
             double* to = &a.weights[k * stride] + i % width;
             for (int o = 0; o <= order; ++o) {
-                const double* from = &all.weights[(std::size_t(i) * std::size_t(order + 1) + std::size_t(o)) * lanes];
+                const double* from =
+                    &all.weights[(std::size_t(i) * std::size_t(order + 1) + std::size_t(o)) * lanes];
                 for (int j = 0; j <= axis.degree; ++j, to += width) *to = from[j];
             }
         }
@@ -153,7 +157,8 @@ LastAxis last_axis(const kernel::Axis& axis, std::span<const double> at, int ord
             if (n % width != 0 && (g + 1) * width > n && a.part[k].first == all.first.back())
                 for (std::size_t r = 0; r < stride; r += std::size_t(width))
                     for (int i = n % width; i < width; ++i)
-                        a.weights[k * stride + r + std::size_t(i)] = a.weights[k * stride + r + std::size_t(n % width - 1)];
+                        a.weights[k * stride + r + std::size_t(i)] =
+                            a.weights[k * stride + r + std::size_t(n % width - 1)];
     }
     a.view.parts = int(a.part.size());
     return a;
@@ -172,9 +177,10 @@ Result<void> PreparedNet::evaluate(std::span<const double> at, int order, std::s
     const std::size_t numbers = at.size() / axes * (slots * std::size_t(net.dim) + (normals ? 3 : 0));
     const bool past = numbers * sizeof(double) > kPastFrom;
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
-        (past ? evaluate_past : evaluate_chunk)(t, net, at.subspan(first * axes, count * axes), !plain,
-                       {order, int(slots), jets + first * slots * std::size_t(net.dim),
-                        normals ? normals + 3 * first : nullptr});
+        (past ? evaluate_past : evaluate_chunk)(
+            t, net, at.subspan(first * axes, count * axes), !plain,
+            {order, int(slots), jets + first * slots * std::size_t(net.dim),
+             normals ? normals + 3 * first : nullptr});
     });
     return {};
 }
@@ -197,8 +203,8 @@ Result<void> PreparedNet::evaluate_single(std::span<const double> at, float* poi
     return {};
 }
 
-Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>> axes, int order, std::size_t slots,
-                                        double* jets, double* normals) const {
+Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>> axes, int order,
+                                        std::size_t slots, double* jets, double* normals) const {
     const Tables& t = *tables_;
     const std::size_t n = t.axis.size();
     std::vector<std::vector<double>> wrapped(n);
@@ -222,15 +228,16 @@ Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>>
     for (std::size_t d = 0; d + 1 < n; ++d) outer.push_back(outer_axis(net.axis[d], wrapped[d], order));
     const auto orders = n == 2 ? std::vector<Index<2>>() : jet_orders<2>(order);
     const std::size_t combinations = n == 2 ? std::size_t(order) + 1 : orders.size();
-    const std::size_t along = std::size_t(t.axis[n - 1].basis.knots().size()) -
-                              std::size_t(t.axis[n - 1].basis.degree()) - 1;
+    const std::size_t along =
+        std::size_t(t.axis[n - 1].basis.knots().size()) - std::size_t(t.axis[n - 1].basis.degree()) - 1;
     const std::size_t planes = std::size_t(net.planes()), row = planes * along * 4;
     kernel::GridAxis view = last.view;
     view.part = last.part.data();
     view.weights = last.weights.data();
     const bool past = rows * count * (size + (normals ? 3 : 0)) * sizeof(double) > kPastFrom;
     const auto do_rows = [&](std::size_t begin, std::size_t end) {
-        std::vector<double> sums(combinations * row + 8), buffer(past ? count * (size + (normals ? 3 : 0)) : 0), w;
+        std::vector<double> sums(combinations * row + 8),
+            buffer(past ? count * (size + (normals ? 3 : 0)) : 0), w;
         std::vector<const double*> from;
         const auto contract = [&](const Index<2>& at, const Index<2>& o, std::size_t c) {
             w.clear(), from.clear();
@@ -244,10 +251,12 @@ Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>>
             for (int r = 0; r <= net.axis[0].degree; ++r)
                 for (int m = 0; m <= (n == 3 ? net.axis[1].degree : 0); ++m) {
                     w.push_back(n == 3 ? weights[0][r] * weights[1][m] : weights[0][r]);
-                    from.push_back(base + std::size_t(r) * net.stride[0] + (n == 3 ? std::size_t(m) * net.stride[1] : 0));
+                    from.push_back(base + std::size_t(r) * net.stride[0] +
+                                   (n == 3 ? std::size_t(m) * net.stride[1] : 0));
                 }
             for (std::size_t q = 0; q < planes; ++q) {
-                kernels().combine(from.data(), w.data(), int(w.size()), &sums[c * row + q * along * 4], along * 4);
+                kernels().combine(from.data(), w.data(), int(w.size()), &sums[c * row + q * along * 4],
+                                  along * 4);
                 for (const double*& f : from) f += net.plane;
             }
         };
@@ -273,9 +282,8 @@ Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>>
     if (rows * count < PreparedPatch<1, Vec<1>>::kParallelFrom) {
         do_rows(0, rows);
     } else {
-        parallel_for((rows + together - 1) / together, 1, [&](std::size_t i) {
-            do_rows(i * together, std::min(rows, (i + 1) * together));
-        });
+        parallel_for((rows + together - 1) / together, 1,
+                     [&](std::size_t i) { do_rows(i * together, std::min(rows, (i + 1) * together)); });
     }
     return {};
 }

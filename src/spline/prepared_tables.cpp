@@ -110,7 +110,8 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
                     to[i] = weights[std::size_t(i)];
                     continue;
                 }
-                const double* from = curve.data() + std::size_t((span.first + i) % basis.size()) * std::size_t(lanes);
+                const double* from =
+                    curve.data() + std::size_t((span.first + i) % basis.size()) * std::size_t(lanes);
                 for (int c = 0; c < lanes; ++c) to[c] += weights[std::size_t(i)] * DoubleDouble(from[c]);
             }
         }
@@ -121,7 +122,8 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
             if (order > 0) {
                 const DoubleDouble factor = DoubleDouble(count) / width;
                 for (int i = 0; i < count * lanes; ++i)
-                    column[std::size_t(i)] = factor * (column[std::size_t(i + lanes)] - column[std::size_t(i)]);
+                    column[std::size_t(i)] =
+                        factor * (column[std::size_t(i + lanes)] - column[std::size_t(i)]);
             }
             for (int i = 0; i < count * lanes; ++i) *to++ = column[std::size_t(i)].rounded();
         }
@@ -210,7 +212,8 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     if (bases.size() == 1) {
         std::vector<double> curve(net.count() * std::size_t(lanes), 0.0);
         for (std::size_t i = 0; i < net.count(); ++i)
-            place(net, i, &curve[i * std::size_t(lanes)], &curve[i * std::size_t(lanes) + std::size_t(lanes) - 4]);
+            place(net, i, &curve[i * std::size_t(lanes)],
+                  &curve[i * std::size_t(lanes) + std::size_t(lanes) - 4]);
         tables->axis.push_back(make_axis(bases[0], curve, lanes));
         return PreparedNet(std::move(tables));
     }
@@ -234,8 +237,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     std::size_t to = 0;
     each_index(extent, [&](const Index<3>& at) {
         std::size_t from = 0;
-        for (std::size_t d = 0; d < 3; ++d)
-            from = from * std::size_t(size[d]) + std::size_t(at[d] % size[d]);
+        for (std::size_t d = 0; d < 3; ++d) from = from * std::size_t(size[d]) + std::size_t(at[d] % size[d]);
         place(net, from, &tables->coefficients[to], &tables->coefficients[to + n.plane]);
         to += 4;
     });

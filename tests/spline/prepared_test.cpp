@@ -1,13 +1,12 @@
 #include <freiform/core/parallel.hpp>
 #include <freiform/spline/prepared.hpp>
 
+#include <bit>
 #include <gtest/gtest.h>
 #include <kernel/evaluate.hpp>
+#include <limits>
 #include <random.hpp>
 #include <reference.hpp>
-
-#include <bit>
-#include <limits>
 
 namespace freiform {
 namespace {
@@ -91,7 +90,8 @@ TEST(PreparedPatch, values_of_volumes_are_within_the_bound_of_exact_arithmetic) 
 TEST(PreparedPatch, surfaces_of_every_specialised_degree_are_within_the_bound) {
     Random random(31);
     for (const int p : {1, 2, 3, 5, 4}) {
-        auto one = test::random_basis(random, p, {.spans = 3}), two = test::random_basis(random, p, {.spans = 3});
+        auto one = test::random_basis(random, p, {.spans = 3}),
+             two = test::random_basis(random, p, {.spans = 3});
         const auto patch = test::random_patch_on<2, Hom<3>>(random, {one, two});
         const auto fast = prepared(patch);
         const auto at = test::parameters<2, Hom<3>>(random, patch, 10);
@@ -182,11 +182,11 @@ TEST(PreparedPatch, normals_of_tangents_that_vanish_or_leave_the_range_are_zero_
     const auto basis = *BSplineBasis::bezier(1);
     for (const double size : {1.0, 0x1p-80, 0x1p99}) {
         const auto patch = *Surface<Vec<3>>::make(
-            {basis, basis},
-            Net<2, Vec<3>>({2, 2}, {Vec<3>{{0, 0, 0}}, Vec<3>{{0, 0, 0}}, Vec<3>{{size, 0, 0}}, Vec<3>{{size, size, 0}}}));
+            {basis, basis}, Net<2, Vec<3>>({2, 2}, {Vec<3>{{0, 0, 0}}, Vec<3>{{0, 0, 0}},
+                                                    Vec<3>{{size, 0, 0}}, Vec<3>{{size, size, 0}}}));
         const auto fast = prepared(patch);
         const std::vector<Param<2>> at{{0, 0.5}, {0.5, 0.5}, {1, 0}};
-        std::vector<Vec<3>> out(3), normals(3);
+        std::vector<Vec<3>> out(3), normals(3, Vec<3>{{7, 7, 7}});
         with_every_variant([&] {
             ASSERT_TRUE(fast.evaluate(at, out, normals));
             EXPECT_EQ(normals[0], (Vec<3>{{0, 0, 0}}));
@@ -289,11 +289,12 @@ TEST(PreparedPatch, results_do_not_depend_on_place_in_the_batch_nor_on_threads) 
 TEST(PreparedPatch, refuses_bad_parameters_before_it_writes_or_gives_nan_where_asked) {
     Random random(81);
     const auto patch = test::random_patch<2, Hom<3>>(random, 3, {.ends = test::Ends::clamped});
-    const auto closed = test::random_patch_on<1, Vec<2>>(random, {*BSplineBasis::periodic(2, {0, 1, 2, 3, 4})});
+    const auto closed =
+        test::random_patch_on<1, Vec<2>>(random, {*BSplineBasis::periodic(2, {0, 1, 2, 3, 4})});
     const auto on = patch.domain();
     const double inf = std::numeric_limits<double>::infinity();
-    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), inf, -inf, std::nextafter(on[1].hi, inf),
-                             std::nextafter(on[1].lo, -inf)}) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), inf, -inf,
+                             std::nextafter(on[1].hi, inf), std::nextafter(on[1].lo, -inf)}) {
         std::vector<Param<2>> at(100, {on[0].lo, on[1].lo});
         at[97][1] = bad;
         const auto fast = prepared(patch);
@@ -303,7 +304,8 @@ TEST(PreparedPatch, refuses_bad_parameters_before_it_writes_or_gives_nan_where_a
             const auto answer = fast.evaluate(at, out);
             ASSERT_FALSE(answer);
             EXPECT_EQ(answer.error().where, "at[97][1]");
-            EXPECT_EQ(answer.error().kind, std::isfinite(bad) ? RefusalKind::out_of_domain : RefusalKind::nonfinite);
+            EXPECT_EQ(answer.error().kind,
+                      std::isfinite(bad) ? RefusalKind::out_of_domain : RefusalKind::nonfinite);
             EXPECT_EQ(out, std::vector<Vec<3>>(at.size(), Vec<3>{{7, 7, 7}}));
             ASSERT_TRUE(fast.evaluate(at, out, normals, Outside::nan));
             EXPECT_EQ(out[96], out[98]);
@@ -336,7 +338,8 @@ TEST(PreparedPatch, finds_spans_however_unevenly_they_are_spread) {
         std::vector<Vec<1>> out(at.size());
         ASSERT_TRUE(fast.evaluate(at, out));
         for (std::size_t i = 0; i < at.size(); ++i)
-            ASSERT_LE(test::gap(out[i][0], test::value_of<test::Rational>(patch, at[i])[0]), fast.value_error_bound())
+            ASSERT_LE(test::gap(out[i][0], test::value_of<test::Rational>(patch, at[i])[0]),
+                      fast.value_error_bound())
                 << at[i];
     });
 }
@@ -377,7 +380,8 @@ TEST(PreparedPatch, leaves_extreme_patches_to_the_slow_way) {
     const auto basis = *BSplineBasis::bezier(1);
     const auto large = *Curve<Vec<1>>::make({basis}, Net<1, Vec<1>>({2}, {Vec<1>{{0}}, Vec<1>{{0x1p101}}}));
     EXPECT_EQ((PreparedPatch<1, Vec<1>>::make(large).error().where), "points[1]");
-    const auto light = *Curve<Hom<1>>::make({basis}, Net<1, Hom<1>>({2}, {Hom<1>{{0, 1}}, Hom<1>{{0, 0x1p-101}}}));
+    const auto light =
+        *Curve<Hom<1>>::make({basis}, Net<1, Hom<1>>({2}, {Hom<1>{{0, 1}}, Hom<1>{{0, 0x1p-101}}}));
     EXPECT_EQ((PreparedPatch<1, Hom<1>>::make(light).error().where), "weights[1]");
 }
 

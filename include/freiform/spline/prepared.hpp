@@ -33,8 +33,8 @@ namespace detail {
 class PreparedNet {
 public:
     static Result<PreparedNet> make(std::span<const BSplineBasis> bases, const Tuples& net);
-    Result<void> evaluate(std::span<const double> at, int order, std::size_t slots, double* jets, double* normals,
-                          Outside outside) const;
+    Result<void> evaluate(std::span<const double> at, int order, std::size_t slots, double* jets,
+                          double* normals, Outside outside) const;
     Result<void> evaluate_grid(std::span<const std::span<const double>> axes, int order, std::size_t slots,
                                double* jets, double* normals) const;
     Result<void> evaluate_single(std::span<const double> at, float* points, Outside outside) const;
@@ -74,13 +74,15 @@ public:
     }
 
     // REQUIRES out.size() == at.size().
-    Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out, Outside outside = Outside::refuse) const {
+    Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out,
+                          Outside outside = Outside::refuse) const {
         FF_REQUIRE(at.size() == out.size());
         return net_.evaluate(plain(at), 0, 1, numbers(out).data(), nullptr, outside);
     }
     template <int K>
     requires(K <= 2) Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out,
-                                           Outside outside = Outside::refuse) const {
+                                           Outside outside = Outside::refuse)
+    const {
         FF_REQUIRE(at.size() == out.size());
         return net_.evaluate(plain(at), K, jet_size(N, K), first(out), nullptr, outside);
     }
@@ -93,14 +95,16 @@ public:
         return net_.evaluate(plain(at), 1, 1, numbers(out).data(), numbers(normals).data(), outside);
     }
     template <int K>
-    requires(K == 1 || K == 2) Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out,
-                                                     std::span<Vec<3>> normals, Outside outside = Outside::refuse) const
-        requires(N == 2 && std::same_as<Point, Vec<3>>) {
+    requires(K == 1 ||
+             K == 2) Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out,
+                                           std::span<Vec<3>> normals, Outside outside = Outside::refuse)
+    const requires(N == 2 && std::same_as<Point, Vec<3>>) {
         FF_REQUIRE(at.size() == out.size() && at.size() == normals.size());
         return net_.evaluate(plain(at), K, jet_size(N, K), first(out), numbers(normals).data(), outside);
     }
     // Rounded to single precision, kDim numbers for each parameter. REQUIRES out.size() == kDim * at.size().
-    Result<void> evaluate(std::span<const Param<N>> at, std::span<float> out, Outside outside = Outside::refuse) const {
+    Result<void> evaluate(std::span<const Param<N>> at, std::span<float> out,
+                          Outside outside = Outside::refuse) const {
         FF_REQUIRE(at.size() * std::size_t(Point::kCoords) == out.size());
         return net_.evaluate_single(plain(at), out.data(), outside);
     }
@@ -113,7 +117,8 @@ public:
         return net_.evaluate_grid(axes, 0, 1, numbers(out).data(), nullptr);
     }
     template <int K>
-    requires(K <= 2) Result<void> evaluate_grid(const Axes& axes, std::span<Jet<N, K, Point>> out) const {
+    requires(K <= 2) Result<void> evaluate_grid(const Axes& axes, std::span<Jet<N, K, Point>> out)
+    const {
         FF_REQUIRE(count(axes) == out.size());
         return net_.evaluate_grid(axes, K, jet_size(N, K), first(out), nullptr);
     }
