@@ -64,8 +64,8 @@ FF_INLINE void grid_group(const Net& net, const GridAxis& last, const double* ou
 }
 
 template <int P, int N, int K, int C>
-static void grid_row_of(const Net& net, const GridAxis& last, const double* outer, std::size_t row,
-                        const Output& out) {
+__attribute__((noinline)) static void grid_row_of(const Net& net, const GridAxis& last, const double* outer,
+                                                  std::size_t row, const Output& out) {
     const int size = out.slots * net.dim;
     for (int part = 0; part < last.parts;) {
         const int group = last.part[part].group;

@@ -288,21 +288,22 @@ FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output&
         V4 s[slots::kCount];
         project<N, K>(net, h + i * slots::kCount * size, net.rational ? inverse[i] : 1, s);
         double* to = out.jets + (from + std::size_t(i)) * std::size_t(out.slots * dim);
-        each < N<3 ? slots::kCount : -1>(
-                   slots::kCount,
-                   [&](int k) FF_BODY {
-                       if (k >= out.slots) return;
-                       // A fourth number is overwritten by what comes next.
-                       if (dim == 3 && (i + 1 < n || k + 1 < out.slots) && (N > 1 || !done[(i + 1) / kWidth]))
-                           store4(to, s[k]);
-                       else if (dim == 3)
-                           store_three(to, s[k]);
-                       else if (dim == 4)
-                           store4(to, s[k]);
-                       else
-                           for (int c = 0; c < dim; ++c) to[c] = s[k][c];
-                       to += dim;
-                   });
+        each <
+            N<3 ? slots::kCount : -1>(
+                slots::kCount,
+                [&](int k) FF_BODY {
+                    if (k >= out.slots) return;
+                    // A fourth number is overwritten by what comes next.
+                    if (dim == 3 && (k + 1 < out.slots || (i + 1 < n && (N > 1 || !done[(i + 1) / kWidth]))))
+                        store4(to, s[k]);
+                    else if (dim == 3)
+                        store_three(to, s[k]);
+                    else if (dim == 4)
+                        store4(to, s[k]);
+                    else
+                        for (int c = 0; c < dim; ++c) to[c] = s[k][c];
+                    to += dim;
+                });
         if constexpr (N == 2 && K > 0) {
             if (!out.normals) continue;
             const V4 c = cross4(s[1], s[2]), d = c * c;
@@ -319,7 +320,8 @@ FF_INLINE void finish_tile(const Net& net, const double* h, int n, const Output&
 }
 
 template <int P, int N, int K>
-static void scattered_of(const Net& net, const double* at, std::size_t count, const Output& out) {
+__attribute__((noinline)) static void scattered_of(const Net& net, const double* at, std::size_t count,
+                                                   const Output& out) {
     using slots = Slots<N, K>;
     const int size = 4 * net.planes();
     Local local[N];
