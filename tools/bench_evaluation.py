@@ -184,8 +184,7 @@ BSpline with four coordinates. Points here are Patch coefficients prepared once 
 
 ## What was tried, and what would be next
 
-- Grids come down to stores: what the line on memory above says bounds them, and more arithmetic would not be seen. Of a
-  smaller grid, which stays in the cache, arithmetic is about two thirds.
+- Grids come down to stores: what the line on memory above says bounds them, and less arithmetic would hardly be seen.
 - Scattered points of a surface, profiled: a third of the time finds spans and fetches their ends, half contracts, the rest
   projects and stores. Buckets computed for a vector of parameters at once changed nothing; storing past the caches saves a
   fifth on curves and next to nothing on surfaces; a curve's vectors of parameters in one span, worked on side by side and
@@ -196,7 +195,7 @@ BSpline with four coordinates. Points here are Patch coefficients prepared once 
 """
 
 
-def others(rounds):
+def others(rounds, processors):
     def quotient(a, b):
         return statistics.median(r["freiform"][a]["median"] / r["freiform"][b]["median"] for r in rounds)
 
@@ -205,7 +204,7 @@ def others(rounds):
 
     return "\n".join([
         f"- Two threads: {quotient('scattered_one_thread', 'scattered_two_threads'):.2f} times as fast as one on scattered parameters, by the clock ({own('scattered_two_threads')} ns); "
-        "1.8 were asked for, 1.95 hoped for.",
+        f"1.8 were asked for, 1.95 hoped for. Two threads that only count got {processors} processors of this machine at that time.",
         f"- `Patch::evaluate`, which prepares for the one call: {own('scattered_unprepared')} ns; single precision: {own('scattered_single_precision')} ns; "
         f"points and normals without derivatives: {own('scattered_normal')} ns.",
         f"- Memory: storing points that are not computed takes {own('store')} ns each ({quotient('grid', 'store'):.2f} of which a grid takes); "
@@ -253,7 +252,7 @@ def main():
     day = datetime.date.today().isoformat()
     page = PAGE.format(when=day, machine=cpu, build=f"{build.get('compiler', '')} {build.get('flags', '')}".strip(),
                        kernels=words.get("kernels", "?"), load=load, cores=os.cpu_count(), points=POINTS, rounds=options.rounds,
-                       table=table(rounds, names), others=others(rounds), bound=words.get("bound", "?"),
+                       table=table(rounds, names), others=others(rounds, words.get("processors", "?")), bound=words.get("bound", "?"),
                        losses=losses(rounds, names))
     if options.only_print:
         print(page)
