@@ -72,7 +72,7 @@ void set_colour(GLuint program, const char* name, const Colour& c) {
     glUniform3f(place(program, name), float(c.r), float(c.g), float(c.b));
 }
 
-void set_camera(GLuint program, const Scene& scene) {
+void set_camera(GLuint program, const GpuScene& scene) {
     glUniformMatrix3fv(place(program, "rotation"), 1, GL_FALSE, scene.rotation.data());
     glUniformMatrix4fv(place(program, "projection"), 1, GL_FALSE, scene.projection.data());
 }
@@ -128,7 +128,7 @@ void load_map(MapKind kind) {
     glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
 }
 
-Result<void> draw_surface(const Scene& scene, const RenderOptions& options) {
+Result<void> draw_surface(const GpuScene& scene, const RenderOptions& options) {
     const auto program = compile(kSurfaceVertex, kSurfaceFragment);
     if (!program) return std::unexpected(program.error());
     glUseProgram(*program);
@@ -167,7 +167,7 @@ struct Pen {
     bool round_ends = false, behind = false;
 };
 
-Result<void> draw_lines(const Scene& scene, const std::vector<SceneLine>& lines, const Pen& pen,
+Result<void> draw_lines(const GpuScene& scene, const std::vector<SceneLine>& lines, const Pen& pen,
                         const RenderOptions& options) {
     if (lines.empty()) return {};
     const auto program = compile(kLineVertex, kLineFragment);
@@ -229,7 +229,7 @@ Image averaged(const std::vector<unsigned char>& rgba, const RenderOptions& o) {
     return image;
 }
 
-Result<void> draw(const Scene& scene, const RenderOptions& options) {
+Result<void> draw(const GpuScene& scene, const RenderOptions& options) {
     glClear(GL_DEPTH_BUFFER_BIT);
     if (auto r = draw_background(options); !r) return r;
     if (auto r = draw_surface(scene, options); !r) return r;
@@ -260,7 +260,7 @@ Result<Image> render(const TriangleMesh& mesh, const RenderOptions& options) {
     if (!options.field.empty() && options.field.size() != mesh.vertices.size())
         return refuse(RefusalKind::invalid, "field",
                       text(options.field.size(), " values for ", mesh.vertices.size(), " vertices"));
-    const Scene scene = make_scene(mesh, options);
+    const GpuScene scene = make_scene(mesh, options);
     const auto context = GlContext::make();
     if (!context) return std::unexpected(context.error());
 

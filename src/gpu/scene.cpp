@@ -71,7 +71,7 @@ std::array<std::uint8_t, 4> to_bytes(const Colour& c) {
 }
 
 // Vertices are copied per part, so that each copy can have the colour of its part.
-void add_triangles(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
+void add_triangles(GpuScene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
                    const RenderOptions& options) {
     const Colour& uncoloured = options.colour;
     std::vector<std::pair<int, std::uint32_t>> copy(mesh.vertices.size(), {-1, 0});
@@ -102,7 +102,7 @@ void add_triangles(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec
     }
 }
 
-void add_lines(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
+void add_lines(GpuScene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
                const RenderOptions& options) {
     if (!options.edges && !options.outlines) return;
     std::vector<int> part_of(mesh.triangles.size(), 0);
@@ -129,7 +129,7 @@ void add_lines(Scene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>
     }
 }
 
-void set_camera(Scene& scene, const RenderOptions& options) {
+void set_camera(GpuScene& scene, const RenderOptions& options) {
     const Axes axes = axes_of(options.view);
     const std::array<Vec<3>, 3> rows{axes.right, axes.up, axes.eye};
     const double k = options.perspective ? kInverseDistance : 0;
@@ -171,8 +171,8 @@ void set_camera(Scene& scene, const RenderOptions& options) {
 
 }  // namespace
 
-Scene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
-    Scene scene;
+GpuScene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
+    GpuScene scene;
     const Centring centred = centring_of(mesh);
     std::vector<Vec<3>> points;
     for (const Vec<3>& p : mesh.points) points.push_back(centred(p));

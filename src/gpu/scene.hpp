@@ -19,7 +19,7 @@ struct SceneLine {
     std::array<float, 3> from{}, to{};
 };
 
-struct Scene {
+struct GpuScene {
     std::vector<SceneVertex> vertices;
     std::vector<std::uint32_t> indices;
     std::vector<SceneLine> outlines, edges;
@@ -30,6 +30,6 @@ struct Scene {
 };
 
 // REQUIRES a mesh that `validate` accepts.
-Scene make_scene(const TriangleMesh& mesh, const RenderOptions& options);
+GpuScene make_scene(const TriangleMesh& mesh, const RenderOptions& options);
 
 }  // namespace freiform
