@@ -50,7 +50,7 @@ struct NearestSearch {
 
     // The best so far: squared distance, piece and parameters in it.
     double best = std::numeric_limits<double>::infinity();
-    int best_piece = -1;
+    int best_piece = 0;
     Parameters best_at{};
     double proven = std::numeric_limits<double>::infinity();  // least of what ended parts have proven
 

@@ -1,5 +1,7 @@
 // Nearest points against many samples of the objects, their proofs, and what is known of circles, spheres and
 // planes.
+#include "query/nearest_form_detail.hpp"
+
 #include <freiform/make/conic.hpp>
 #include <freiform/query/nearest.hpp>
 
@@ -164,7 +166,7 @@ TEST(Nearest, scaling_by_powers_of_two_scales_the_answer_and_changes_nothing_els
     Random random(12);
     const auto patch = random_patch<2, Hom<3>>(rng, {3, 2}, 2);
     const auto query = must(NearestQuery::make(std::array{NearestObject::of(patch)}));
-    for (const int e : {-200, -1, 37, 200}) {
+    for (const int e : {-540, -200, -1, 37, 200, 540}) {
         Net<2, Hom<3>> net = patch.net();
         for (Hom<3>& c : net.flat())
             for (int k = 0; k < 3; ++k) c[k] = std::scalbn(c[k], e);
@@ -209,6 +211,24 @@ TEST(Nearest, a_backstop_leaves_a_lower_bound_that_holds) {
         const auto few = must(query.nearest<3>(q, {.max_parts = 1})), all = must(query.nearest<3>(q));
         EXPECT_LE(few.lower_bound, all.distance + 1e-14);
         EXPECT_GE(few.distance, all.lower_bound);
+    }
+}
+
+// u^2 + v^2 - c u v, as a polynomial of degree 2 by 2: convex for |c| < 2, a saddle beyond.
+TEST(NearestForm, is_convex_only_with_its_mixed_derivative) {
+    for (const double c : {0.0, 1.0, -1.5, 1.9, 2.1, -2.5, 3.0}) {
+        const double square[] = {0, 0, 1};
+        std::vector<double> f;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) f.push_back(square[i] + square[j] - c * i * j / 4);
+        const detail::NearestForm form{2, {1, 1, 0}, 9, f.data()};
+        EXPECT_EQ(form.convex(1e-15), std::abs(c) < 2) << c;
+        if (std::abs(c) < 2) {
+            const double low = form.below_tangent({0.5, 0.5}, 1e-15);
+            for (double u = 0; u <= 1; u += 0.125)
+                for (double v = 0; v <= 1; v += 0.125) EXPECT_GE(u * u + v * v - c * u * v, low);
+            EXPECT_GE(low, -1);
+        }
     }
 }
 
