@@ -169,6 +169,7 @@ struct NearestSearch {
             length += seen.local[k] * seen.local[k];
         }
         length = std::sqrt(length) * (1 + 8 * kUnit);
+        const double squared_weight = piece->lightest * piece->lightest;
         const double reach = piece->radius + length * piece->heaviest;
         magnitude = reach * reach;
         double terms = 8 * piece->params + 4 * D + 24, most = 0;
@@ -201,8 +202,7 @@ struct NearestSearch {
             }
             // What this part has proven even if nothing more is done: F0 / W^2 >= T + F / W^2.
             const double lowest = least.value - eps;
-            const double w = lowest < 0 ? piece->lightest : piece->heaviest;
-            const double by_coefficients = t + lowest / (w * w) * (1 + 8 * kUnit);
+            const double by_coefficients = t + std::min(lowest, 0.0) / squared_weight * (1 + 8 * kUnit);
             const double room = 32 * (1 + most) * eps;
             if (lowest > -room || parts_left <= 0) {
                 proven = std::min(proven, by_coefficients);
@@ -238,8 +238,7 @@ struct NearestSearch {
                     low = form.below_tangent(in_block(at, h), eps);
                 }
                 if (low > -room) {
-                    const double v = low < 0 ? piece->lightest : piece->heaviest;
-                    proven = std::min(proven, low < 0 ? t + low / (v * v) * (1 + 8 * kUnit) : t);
+                    proven = std::min(proven, t + std::min(low, 0.0) / squared_weight * (1 + 8 * kUnit));
                     heads.pop_back();
                     continue;
                 }
