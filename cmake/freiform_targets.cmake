@@ -44,6 +44,30 @@ function(freiform_quick target)
     endif()
 endfunction()
 
+# freiform_unity(TARGET SIZE FILE...): files of one folder are compiled SIZE at a time as one, so that what they share
+# is parsed and instantiated once; half the time of a cold build. After freiform_isa and freiform_cold: a file with
+# options of its own stays by itself. The names of a folder's files must differ, also those that only one file sees.
+function(freiform_unity target size)
+    if(NOT FREIFORM_UNITY)
+        return()
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    # g++ takes a file that is included for a header, where types that only one file sees would be wrong.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    set(last "")
+    foreach(file IN LISTS ARGN)
+        get_filename_component(folder ${file} DIRECTORY)
+        if(NOT folder STREQUAL last)
+            set(last ${folder})
+            set(count 0)
+        endif()
+        get_filename_component(name ${folder} NAME)
+        math(EXPR group "${count} / ${size}")
+        math(EXPR count "${count} + 1")
+        set_source_files_properties(${file} PROPERTIES UNITY_GROUP ${name}_${group})
+    endforeach()
+endfunction()
+
 set_property(GLOBAL PROPERTY FREIFORM_COMPONENTS "")
 
 function(freiform_library name)
@@ -57,6 +81,7 @@ function(freiform_library name)
     freiform_common(freiform_${name})
     freiform_isa(${sources})
     freiform_cold(${sources})
+    freiform_unity(freiform_${name} 6 ${sources})
     target_include_directories(freiform_${name}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
         PRIVATE ${PROJECT_SOURCE_DIR}/src)
@@ -112,7 +137,7 @@ set(FREIFORM_COLD
     spline/a_frame spline/coefficients spline/transform spline/weights
     trim/loop_links trim/loops)
 function(freiform_cold)
-    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU OR NOT (CMAKE_CONFIGURATION_TYPES OR CMAKE_BUILD_TYPE STREQUAL Release))
         return()
     endif()
     foreach(name IN LISTS FREIFORM_COLD)

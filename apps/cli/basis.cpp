@@ -7,13 +7,13 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct BasisArguments {
     std::string file, object, scheme;
     std::optional<double> origin;
     std::vector<double> nodes;
 };
 
-Result<PolynomialBasis> wanted(const Options& o, int degree, Interval on) {
+Result<PolynomialBasis> wanted(const BasisArguments& o, int degree, Interval on) {
     if (o.scheme == "monomial") return PolynomialBasis::monomial(degree, o.origin.value_or(on.lo));
     if (o.scheme == "bernstein") return PolynomialBasis::bernstein(degree, on);
     if (o.scheme == "hermite") return PolynomialBasis::hermite(degree, on);
@@ -95,7 +95,7 @@ std::unexpected<Refusal> about_piece(std::size_t index, Refusal r) {
     return refuse_within(text("piece ", index), std::move(r));
 }
 
-Result<std::vector<Piece>> pieces_of(const Shape& shape, const Options& options) {
+Result<std::vector<Piece>> pieces_of(const Shape& shape, const BasisArguments& options) {
     const std::span<const BSplineBasis> bases = bases_of(shape);
     if (type_name(shape) != "curve")
         return refuse(RefusalKind::no_answer, "", "is no curve; basis is for curves");
@@ -114,7 +114,7 @@ Result<std::vector<Piece>> pieces_of(const Shape& shape, const Options& options)
     return pieces;
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_basis(const Context& context, const BasisArguments& options) {
     if (options.origin && options.scheme != "monomial") wrong_usage("--origin is for --to-basis monomial");
     if (!options.nodes.empty() && options.scheme != "lagrange" && options.scheme != "newton")
         wrong_usage("--nodes is for --to-basis lagrange or newton");
@@ -141,7 +141,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_basis(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BasisArguments>();
     const Command command = line.add(
         "basis", "Coefficients of curves in another basis, with a bound and the condition",
         "  freiform basis curve.json --to-basis monomial --origin 0\n"
@@ -160,7 +160,7 @@ void add_basis(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_basis);
 }
 
 }  // namespace freiform::cli

@@ -12,20 +12,20 @@ namespace freiform::cli {
 namespace {
 
 // A box of up to four coordinates, and how far each side may be from the object.
-struct Answer {
+struct BoundsAnswer {
     std::vector<double> lo, hi;
     double bound = 0;
 };
 
 template <int D>
-Answer answer_of(const Box<D>& box, double bound) {
+BoundsAnswer answer_of(const Box<D>& box, double bound) {
     if (box.is_empty()) return {{}, {}, 0};
     return {{box.lo.c.begin(), box.lo.c.end()}, {box.hi.c.begin(), box.hi.c.end()}, bound};
 }
 
 // What an object contains for certain, against the box that contains it.
 template <int D>
-Answer answer_of(const Box<D>& outer, const Box<D>& inner) {
+BoundsAnswer answer_of(const Box<D>& outer, const Box<D>& inner) {
     double bound = inner.is_empty() && !outer.is_empty() ? std::numeric_limits<double>::infinity() : 0;
     for (int i = 0; i < D && !inner.is_empty(); ++i)
         bound = std::max({bound, inner.lo[i] - outer.lo[i], outer.hi[i] - inner.hi[i]});
@@ -44,18 +44,18 @@ public:
     explicit Bounding(std::optional<double> accuracy) : accuracy_(accuracy) {}
 
     template <TensorPatch S>
-    Result<Answer> operator()(const S& s) const {
+    Result<BoundsAnswer> operator()(const S& s) const {
         return bounded(s, s.net().flat(), S::kParams == 1 ? 1e-12 : 1e-7);
     }
     template <TriangularPatch S>
-    Result<Answer> operator()(const S& s) const {
+    Result<BoundsAnswer> operator()(const S& s) const {
         return bounded(s, s.coefficients(), 1e-7);
     }
     // The surface over the box of the loops contains the face; the loops are part of it.
-    Result<Answer> operator()(const TrimmedSurface& t) const {
+    Result<BoundsAnswer> operator()(const TrimmedSurface& t) const {
         if (t.loops.empty()) return std::visit(*this, t.surface);
         return std::visit(
-            [&](const auto& s) -> Result<Answer> {
+            [&](const auto& s) -> Result<BoundsAnswer> {
                 const auto domain = s.domain();
                 Box<3> inner;
                 Box<2> in_domain;
@@ -84,7 +84,7 @@ public:
             },
             t.surface);
     }
-    Result<Answer> operator()(const Model& m) const {
+    Result<BoundsAnswer> operator()(const Model& m) const {
         Box<3> inner;
         for (const Vertex& v : m.vertices) inner.add(v.point);
         for (const Edge& e : m.edges) {
@@ -100,7 +100,7 @@ private:
 
     // Where no accuracy was asked for, this fraction of the control points' box.
     template <class S, class P>
-    Result<Answer> bounded(const S& s, std::span<const P> control, double fraction) const {
+    Result<BoundsAnswer> bounded(const S& s, std::span<const P> control, double fraction) const {
         const auto b = tight_box(s, accuracy_ ? *accuracy_ : fraction * diagonal(control));
         if (!b) return std::unexpected(b.error());
         return answer_of(b->box, b->slack);
@@ -130,12 +130,12 @@ private:
     std::optional<double> accuracy_;
 };
 
-struct Options {
+struct BoundsArguments {
     std::string file, object;
     std::optional<double> accuracy;
 };
 
-void add_to(Answer& all, const Answer& a, bool first) {
+void add_to(BoundsAnswer& all, const BoundsAnswer& a, bool first) {
     if (first) {
         all = a;
         return;
@@ -151,7 +151,7 @@ void add_to(Answer& all, const Answer& a, bool first) {
     all.bound = std::max(all.bound, a.bound);
 }
 
-void write_box(json::Writer& w, const Answer& a) {
+void write_box(json::Writer& w, const BoundsAnswer& a) {
     w.key("box");
     if (a.lo.empty()) {
         w.null();
@@ -160,14 +160,14 @@ void write_box(json::Writer& w, const Answer& a) {
     w.begin_object().key("min").array(a.lo).key("max").array(a.hi).end_object().field("bound", a.bound);
 }
 
-std::string box_text(const Answer& a) {
+std::string box_text(const BoundsAnswer& a) {
     if (a.lo.empty()) return "none";
     std::string s;
     for (std::size_t i = 0; i < a.lo.size(); ++i) s += text(i ? " x [" : "[", a.lo[i], ", ", a.hi[i], "]");
     return s + text(", each side within ", a.bound);
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_bounds(const Context& context, const BoundsArguments& options) {
     if (options.accuracy && !(*options.accuracy >= 0)) wrong_usage("--accuracy needs a length >= 0");
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
@@ -175,7 +175,7 @@ Result<void> run(const Context& context, const Options& options) {
 
     json::Writer w;
     std::string s;
-    Answer all;
+    BoundsAnswer all;
     w.begin_object()
         .field("file", shown(options.file))
         .field("unit", document.unit)
@@ -206,7 +206,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_bounds(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BoundsArguments>();
     const Command command = line.add(
         "bounds", "Tight boxes: they contain the object, and the object comes within `bound` of every side",
         "  freiform bounds curve.json\n"
@@ -220,7 +220,7 @@ void add_bounds(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_bounds);
 }
 
 }  // namespace freiform::cli

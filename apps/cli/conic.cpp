@@ -11,13 +11,13 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct ConicArguments {
     std::vector<double> equation, circle, angles, box;
     std::string points;
     bool in_order = false;
 };
 
-struct Answer {
+struct ConicAnswer {
     std::optional<ConicEquation> equation;
     std::optional<ConicForm> form;
     std::optional<FivePointArc> passing;  // five points, in their order
@@ -34,7 +34,7 @@ struct Answer {
 double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
 
 // The arcs of a form: inside the box, or a whole ellipse.
-Result<void> add_arcs(Answer& a, const Options& options, bool wanted) {
+Result<void> add_arcs(ConicAnswer& a, const ConicArguments& options, bool wanted) {
     if (!wanted || !a.form->conic) return {};
     if (options.box.empty()) {
         if (a.form->conic->conic.kind != ConicKind::ellipse)
@@ -52,8 +52,8 @@ Result<void> add_arcs(Answer& a, const Options& options, bool wanted) {
     return {};
 }
 
-Result<Answer> by_equation(const ConicEquation& equation, const Options& options, bool wanted) {
-    Answer a;
+Result<ConicAnswer> by_equation(const ConicEquation& equation, const ConicArguments& options, bool wanted) {
+    ConicAnswer a;
     a.equation = equation;
     auto form = solve(equation);
     if (!form) return std::unexpected(form.error());
@@ -63,26 +63,26 @@ Result<Answer> by_equation(const ConicEquation& equation, const Options& options
 }
 
 template <int D>
-Result<Answer> through_three(const std::vector<std::vector<double>>& p) {
+Result<ConicAnswer> through_three(const std::vector<std::vector<double>>& p) {
     Vec<D> v[3];
     for (std::size_t i = 0; i < 3; ++i) std::copy(p[i].begin(), p[i].end(), v[i].c.begin());
     const auto arc = arc_through(v[0], v[1], v[2]);
     if (!arc) return std::unexpected(arc.error());
-    Answer a;
+    ConicAnswer a;
     a.add(*arc);
     return a;
 }
 
-Result<Answer> in_order(const std::array<Vec<2>, 5>& points) {
+Result<ConicAnswer> in_order(const std::array<Vec<2>, 5>& points) {
     auto arc = arc_through(points);
     if (!arc) return std::unexpected(arc.error());
-    Answer a;
+    ConicAnswer a;
     a.document.objects.push_back({"", arc->curve, {}});
     a.passing = std::move(*arc);
     return a;
 }
 
-Result<Answer> by_points(const Options& options, bool wanted) {
+Result<ConicAnswer> by_points(const ConicArguments& options, bool wanted) {
     const std::string_view first = std::string_view(options.points).substr(0, options.points.find(';'));
     const int coords = 1 + int(std::count(first.begin(), first.end(), ','));
     const auto p = parse_vectors("--points", options.points, coords);
@@ -100,7 +100,7 @@ Result<Answer> by_points(const Options& options, bool wanted) {
     return by_equation(found->equation, options, wanted);
 }
 
-Result<Answer> by_circle(const Options& options) {
+Result<ConicAnswer> by_circle(const ConicArguments& options) {
     const auto& c = options.circle;
     const auto conic = circle({{c[0], c[1]}}, c[2]);
     if (!conic) return std::unexpected(conic.error());
@@ -108,12 +108,12 @@ Result<Answer> by_circle(const Options& options) {
                          ? full_ellipse(*conic, EllipseForm::open)
                          : conic_arc(*conic, {radians(options.angles[0]), radians(options.angles[1])});
     if (!arc) return std::unexpected(arc.error());
-    Answer a;
+    ConicAnswer a;
     a.add(*arc);
     return a;
 }
 
-std::string json_report(const Answer& a) {
+std::string conic_json(const ConicAnswer& a) {
     json::Writer w;
     w.begin_object();
     if (a.equation) w.key("equation").array(a.equation->c).key("origin").array(a.equation->origin.c);
@@ -154,7 +154,7 @@ std::string vector(const Vec<D>& v) {
     return "(" + s + ")";
 }
 
-std::string text_report(const Answer& a) {
+std::string conic_text(const ConicAnswer& a) {
     std::string s;
     if (a.passing) {
         s = text("an arc of a", a.passing->type == ConicType::ellipse ? "n " : " ", name_of(a.passing->type),
@@ -179,7 +179,7 @@ std::string text_report(const Answer& a) {
     return s;
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_conic(const Context& context, const ConicArguments& options) {
     const auto count = [&](const char* name, const std::vector<double>& v, std::size_t n, const char* form) {
         if (!v.empty() && v.size() != n) wrong_usage(text(name, " needs ", form));
     };
@@ -199,17 +199,17 @@ Result<void> run(const Context& context, const Options& options) {
              : !options.points.empty() ? by_points(options, wanted)
                                        : by_circle(options);
     if (!a) return std::unexpected(a.error());
-    if (context.output.empty()) return emit(context, context.json ? json_report(*a) : text_report(*a));
+    if (context.output.empty()) return emit(context, context.json ? conic_json(*a) : conic_text(*a));
     if (a->document.objects.empty())
         return refuse(RefusalKind::no_answer, "conic", "there is no arc to write");
     const std::string format = spline_format(context, "conic");
-    return emit_spline(context, format, a->document, text_report(*a), json_report(*a));
+    return emit_spline(context, format, a->document, conic_text(*a), conic_json(*a));
 }
 
 }  // namespace
 
 void add_conic(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ConicArguments>();
     const Command command =
         line.add("conic", "Conics by equation or through points: what they are, and their arcs",
                  "  freiform conic --equation 1,0,4,0,0,-4\n"
@@ -229,7 +229,7 @@ void add_conic(CommandLine& line) {
     command.numbers("--angles", options->angles, "Of the circle: from, to, in degrees").shown_as("A,B");
     command.numbers("--box", options->box, "Only the parts inside this box").shown_as("X0,Y0,X1,Y1");
     command.output("Where the arcs go, as rational splines (.json, .bpt)");
-    command.action(options, run);
+    command.action(options, run_conic);
 }
 
 }  // namespace freiform::cli

@@ -1,12 +1,12 @@
 // continuity: how smooth curves and surfaces are at their knots, and how smoothly neighbours join.
 #include "input.hpp"
+#include "joint_units.hpp"
 #include "surface_joints.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/query/continuity.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <numbers>
 
 namespace freiform::cli {
@@ -14,9 +14,9 @@ namespace freiform::cli {
 namespace {
 
 constexpr double kToleranceOfBox = 1e-9, kGapOfBox = 1e-3;
-constexpr char kAxis[] = "uvw";
+constexpr char kAxisOf[] = "uvw";
 
-struct Options {
+struct ContinuityArguments {
     std::string file, object;
     std::optional<double> tolerance, gap, angle;
     std::optional<int> orders;
@@ -30,7 +30,7 @@ struct Found {
     std::string without;                       // why nothing was looked at
 };
 
-struct Answer {
+struct ContinuityAnswer {
     const Document* document = nullptr;
     ContinuityOptions options;
     double gap = 0;
@@ -47,7 +47,7 @@ bool has_knots(const Shape& shape) {
 }
 
 // The largest extent of any object, from its control points.
-double diagonal(const Document& document, const std::vector<std::size_t>& objects) {
+double diagonal_of_all(const Document& document, const std::vector<std::size_t>& objects) {
     double most = 0;
     for (const std::size_t i : objects) {
         const Shape& shape = document.objects[i].shape;
@@ -74,7 +74,7 @@ Result<std::vector<KnotLine>> lines_along(const Shape& shape, int axis, const Co
         shape);
 }
 
-Result<Found> look_at(const Shape& shape, std::size_t object, const ContinuityOptions& options) {
+Result<Found> look_at_joint(const Shape& shape, std::size_t object, const ContinuityOptions& options) {
     Found found;
     found.object = object;
     if (!has_knots(shape)) {
@@ -95,11 +95,11 @@ Result<Found> look_at(const Shape& shape, std::size_t object, const ContinuityOp
     return found;
 }
 
-Result<Answer> answer(const Document& document, const std::vector<std::size_t>& objects,
-                      const Options& given) {
-    Answer a;
+Result<ContinuityAnswer> answer_joint(const Document& document, const std::vector<std::size_t>& objects,
+                                      const ContinuityArguments& given) {
+    ContinuityAnswer a;
     a.document = &document;
-    const double size = diagonal(document, objects);
+    const double size = diagonal_of_all(document, objects);
     a.options.tolerance = given.tolerance.value_or(kToleranceOfBox * size);
     a.options.angle = given.angle.value_or(0) * (std::numbers::pi / 180);
     a.options.orders = given.orders.value_or(a.options.orders);
@@ -108,7 +108,7 @@ Result<Answer> answer(const Document& document, const std::vector<std::size_t>& 
     std::vector<CurveEnds> ends;
     for (const std::size_t i : objects) {
         const Shape& shape = document.objects[i].shape;
-        auto found = look_at(shape, i, a.options);
+        auto found = look_at_joint(shape, i, a.options);
         if (!found) return refuse_within(object_label(document, i), found.error());
         a.objects.push_back(*std::move(found));
         a.surfaces.add(shape, i, a.options);
@@ -129,21 +129,6 @@ Result<Answer> answer(const Document& document, const std::vector<std::size_t>& 
     return a;
 }
 
-// Units
-// ------------------------------------------------------------------------------------------------------
-
-std::string unit_of(const Document& d) { return d.unit.empty() ? "unit" : d.unit; }
-// Of the jump of a derivative by the parameter t, or by arc length.
-std::string c_unit(const Document& d, int order) {
-    return order == 0 ? unit_of(d) : order == 1 ? text(unit_of(d), "/t") : text(unit_of(d), "/t^", order);
-}
-std::string g_unit(const Document& d, int order) {
-    return order == 0   ? unit_of(d)
-           : order == 1 ? "rad"
-           : order == 2 ? text("1/", unit_of(d))
-                        : text("1/", unit_of(d), "^", order - 1);
-}
-std::string order_text(char kind, int order) { return order < 0 ? "-" : text(kind, order); }
 std::string_view end_name(End e) { return e == End::start ? "start" : "end"; }
 
 // JSON
@@ -207,7 +192,7 @@ void write_line(json::Writer& w, const Document& d, const KnotLine& line) {
     w.end_object();
 }
 
-std::string json_of(const Answer& a) {
+std::string json_of(const ContinuityAnswer& a) {
     const Document& d = *a.document;
     json::Writer w;
     w.begin_object().field("unit", d.unit).field("tolerance", a.options.tolerance).field("gap", a.gap);
@@ -253,11 +238,6 @@ std::string json_of(const Answer& a) {
 // Text
 // -------------------------------------------------------------------------------------------------------
 
-// Six digits are enough to read; --json has all.
-std::string rounded(double x) {
-    char buffer[40];
-    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, 6).ptr};
-}
 std::string first_text(char kind, const std::vector<Jump>& jumps, int order, const std::string& unit) {
     if (order + 1 >= int(jumps.size())) return "";
     const Jump& j = jumps[std::size_t(order + 1)];
@@ -307,13 +287,13 @@ void knot_rows(Table& table, const Document& d, const Found& f) {
                   k.joint, k.removable ? "removable" : "");
     for (std::size_t axis = 0; axis < f.lines.size(); ++axis)
         for (const KnotLine& line : f.lines[axis])
-            table.row({text(line.seam ? "seam " : "knot ", kAxis[axis], " = ", rounded(line.at),
+            table.row({text(line.seam ? "seam " : "knot ", kAxisOf[axis], " = ", rounded(line.at),
                             line.seam ? "" : text(" x", line.multiplicity)),
                        order_text('C', line.c_order), "",
                        first_text('C', line.c, line.c_order, c_unit(d, line.c_order + 1))});
 }
 
-std::string text_of(const Answer& a) {
+std::string text_of_joint(const ContinuityAnswer& a) {
     const Document& d = *a.document;
     std::string s =
         text("tolerance ", rounded(a.options.tolerance), " ", unit_of(d),
@@ -343,21 +323,21 @@ std::string text_of(const Answer& a) {
     return s + "joints\n" + table.text_of();
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_continuity(const Context& context, const ContinuityArguments& options) {
     for (const auto& [name, x] :
          {std::pair("--tolerance", options.tolerance), {"--gap", options.gap}, {"--angle", options.angle}})
         if (x && !(*x >= 0)) wrong_usage(text(name, " needs a number >= 0, found ", *x));
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
-    const auto a = answer(*input->document, input->chosen, options);
+    const auto a = answer_joint(*input->document, input->chosen, options);
     if (!a) return std::unexpected(a.error());
-    return emit(context, context.json ? json_of(*a) : text_of(*a));
+    return emit(context, context.json ? json_of(*a) : text_of_joint(*a));
 }
 
 }  // namespace
 
 void add_continuity(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ContinuityArguments>();
     const Command command =
         line.add("continuity", "The order of C and G that curves reach at inner knots and where they join",
                  "  freiform continuity path.json\n"
@@ -377,7 +357,7 @@ void add_continuity(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_continuity);
 }
 
 }  // namespace freiform::cli

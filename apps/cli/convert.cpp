@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kAxisNames = "uvw";
 
-struct Options {
+struct ConvertArguments {
     std::string file, object, axis;
     bool to_bezier = false, reverse = false, to_triangles = false, to_surfaces = false, orient_loops = false;
     std::optional<int> elevate;
@@ -29,11 +29,11 @@ struct Options {
 };
 
 // One patch becomes one or more; `suffix` tells them apart.
-struct Piece {
+struct ConvertedPiece {
     std::string suffix;
     Shape shape;
 };
-using Pieces = std::vector<Piece>;
+using Pieces = std::vector<ConvertedPiece>;
 
 // What became of an object.
 struct Changed {
@@ -48,9 +48,9 @@ Result<Shape> with_patch(const Shape& shape, F&& change) {
     return std::visit(
         [&](const auto& s) -> Result<Shape> {
             if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>) {
-                auto changed = change(s);
-                if (!changed) return std::unexpected(std::move(changed.error()));
-                return Result<Shape>(std::in_place, *std::move(changed));
+                auto converted = change(s);
+                if (!converted) return std::unexpected(std::move(converted.error()));
+                return Result<Shape>(std::in_place, *std::move(converted));
             } else {
                 return shape;
             }
@@ -99,7 +99,8 @@ void add_bezier_pieces(const Patch<N, P>& patch, const std::string& suffix, Piec
 
 class Changes {
 public:
-    Changes(const Options& options, const Shape& patch) : o_(options), axes_(bases_of(patch).size()) {
+    Changes(const ConvertArguments& options, const Shape& patch)
+        : o_(options), axes_(bases_of(patch).size()) {
         all_.pieces.push_back({"", patch});
     }
 
@@ -135,10 +136,10 @@ private:
     }
 
     Result<void> each(std::string_view option, const std::function<Result<Shape>(const Shape&)>& change) {
-        for (Piece& piece : all_.pieces) {
-            auto changed = change(piece.shape);
-            if (!changed) return about(option, changed.error());
-            piece.shape = *std::move(changed);
+        for (ConvertedPiece& piece : all_.pieces) {
+            auto converted = change(piece.shape);
+            if (!converted) return about(option, converted.error());
+            piece.shape = *std::move(converted);
         }
         return {};
     }
@@ -176,7 +177,7 @@ private:
     Result<void> split() {
         Pieces halves;
         const std::size_t axis = axis_or(0);
-        for (const Piece& piece : all_.pieces) {
+        for (const ConvertedPiece& piece : all_.pieces) {
             const Interval on = bases_of(piece.shape)[axis].domain();
             if (!(on.lo < *o_.split && *o_.split < on.hi))
                 return refuse(RefusalKind::out_of_domain, "--split",
@@ -196,7 +197,7 @@ private:
     Result<void> to_triangle_pairs() {
         Pieces all;
         double worst = 0;
-        for (const Piece& piece : all_.pieces) {
+        for (const ConvertedPiece& piece : all_.pieces) {
             const auto done = std::visit(
                 [&](const auto& s) -> Result<void> {
                     if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
@@ -221,7 +222,7 @@ private:
 
     void to_bezier() {
         Pieces all;
-        for (const Piece& piece : all_.pieces)
+        for (const ConvertedPiece& piece : all_.pieces)
             std::visit(
                 [&](const auto& s) {
                     if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
@@ -231,7 +232,7 @@ private:
         all_.pieces = std::move(all);
     }
 
-    const Options& o_;
+    const ConvertArguments& o_;
     std::size_t axes_;
     Changed all_;
 };
@@ -239,7 +240,7 @@ private:
 // A triangle is a Bezier patch already. It is cut from a corner to the opposite edge: u and v run along those
 // of the axes, w from u = 1 to v = 1.
 template <class P>
-Result<Changed> changed_triangle(const Triangle<P>& s, const Options& o) {
+Result<Changed> changed_triangle(const Triangle<P>& s, const ConvertArguments& o) {
     if (!o.knots.empty())
         return refuse(RefusalKind::no_answer, "--insert-knots", "is a triangle, which has no knots");
     if (!o.axis.empty() && !o.split)
@@ -280,7 +281,7 @@ Result<Changed> changed_triangle(const Triangle<P>& s, const Options& o) {
     return all;
 }
 
-Result<Changed> changed(const Shape& shape, const Options& options) {
+Result<Changed> converted(const Shape& shape, const ConvertArguments& options) {
     const std::string_view type = type_name(shape);
     if (type == "trimmed" || type == "model")
         return refuse(
@@ -311,7 +312,7 @@ Result<TrimmedSurface> oriented(const TrimmedSurface& t, const std::string& labe
     return TrimmedSurface{t.surface, std::move(done->loops)};
 }
 
-Result<Document> changed(const Input& input, const Options& options, Report& report) {
+Result<Document> converted(const Input& input, const ConvertArguments& options, Report& report) {
     const Document& document = *input.document;
     Document out;
     out.unit = document.unit;
@@ -326,7 +327,7 @@ Result<Document> changed(const Input& input, const Options& options, Report& rep
             }
             continue;
         }
-        auto made = changed(o.shape, options);
+        auto made = converted(o.shape, options);
         if (!made) {
             Refusal r = made.error();
             r.where = text(object_label(document, i), r.where.empty() ? "" : ": ", r.where);
@@ -334,7 +335,7 @@ Result<Document> changed(const Input& input, const Options& options, Report& rep
         }
         report.bound = std::max(report.bound, made->bound);
         report.removed += made->removed;
-        for (Piece& p : made->pieces) {
+        for (ConvertedPiece& p : made->pieces) {
             const std::string name =
                 p.suffix.empty() || !o.name.empty() ? o.name + p.suffix : text(i, p.suffix);
             out.objects.push_back({name, std::move(p.shape), {}});
@@ -353,7 +354,7 @@ std::string output_format(const Context& context) {
     return ending;
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_convert(const Context& context, const ConvertArguments& options) {
     if (options.reduce && !(*options.reduce >= 0))
         wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
@@ -365,7 +366,7 @@ Result<void> run(const Context& context, const Options& options) {
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     Report report;
-    const auto out = changed(*input, options, report);
+    const auto out = converted(*input, options, report);
     if (!out) {
         Refusal r = out.error();
         if (r.where.starts_with("objects[")) r.where = text(shown(options.file), ": ", r.where);
@@ -403,7 +404,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_convert(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ConvertArguments>();
     const Command command = line.add(
         "convert", "Read any known format, write any that can hold it, change splines on the way",
         "  freiform convert teapot.bpt -o teapot.json\n"
@@ -438,7 +439,7 @@ void add_convert(CommandLine& line) {
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
     command.limits();
-    command.action(options, run);
+    command.action(options, run_convert);
 }
 
 }  // namespace freiform::cli

@@ -1,18 +1,16 @@
 // draw: a picture: lines (curves, surfaces, models) as SVG, PDF or PNG, or shaded surfaces as PNG.
+#include "drawing_bytes.hpp"
 #include "input.hpp"
 #include "shaded.hpp"
 
 #include <freiform/io/drawing.hpp>
 #include <freiform/io/mesh_file.hpp>
-#if FREIFORM_HAS_CAIRO
-#include <freiform/paint/paint.hpp>
-#endif
 
 namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct DrawArguments {
     std::string file, object, view, title, names;
     std::optional<double> tolerance, construction, tangent, osculating;
     std::optional<int> width, height;
@@ -28,7 +26,7 @@ struct Options {
 };
 
 // Of options that belong to the other kind of picture the first one that was given.
-void refuse_other_kind(const Options& o, bool shaded) {
+void refuse_other_kind(const DrawArguments& o, bool shaded) {
     struct Given {
         bool is, of_shaded;
         std::string_view name;
@@ -71,24 +69,7 @@ bool has_faces(const Shape& shape) {
            std::holds_alternative<Surface<Vec<3>>>(shape) || std::holds_alternative<Surface<Hom<3>>>(shape);
 }
 
-[[maybe_unused]] std::unexpected<Refusal> not_built(std::string_view what, std::string_view packages,
-                                                    std::string_view instead) {
-    return refuse(
-        RefusalKind::unavailable, "draw",
-        text("this program was built without ", what, ": install ", packages, " and build again", instead));
-}
-
-// Of a drawing, in the format that is asked for.
-Result<std::string> encoded(const Drawing& drawing, const std::string& format) {
-    if (format == "svg") return to_svg(drawing);
-#if FREIFORM_HAS_CAIRO
-    return format == "pdf" ? to_pdf(drawing) : to_png(drawing);
-#else
-    return not_built(text(".", format, " of drawings"), "libcairo2-dev", ", or write .svg");
-#endif
-}
-
-DrawingOptions drawing_options(const Options& o, const std::optional<View>& view) {
+DrawingOptions drawing_options(const DrawArguments& o, const std::optional<View>& view) {
     DrawingOptions how;
     how.width = o.width.value_or(how.width);
     how.height = o.height.value_or(how.height);
@@ -107,15 +88,15 @@ DrawingOptions drawing_options(const Options& o, const std::optional<View>& view
 }
 
 Result<std::string> drawn(const Document& document, std::span<const std::size_t> objects,
-                          const Options& options, const std::optional<View>& view,
+                          const DrawArguments& options, const std::optional<View>& view,
                           const std::string& format) {
     const auto drawing = draw(document, objects, drawing_options(options, view));
     if (!drawing) return std::unexpected(drawing.error());
     for (const Refusal& r : drawing->left_out) remark(text(r.where, " is missing: ", r.message));
-    return encoded(*drawing, format);
+    return drawing_bytes(*drawing, format, "draw");
 }
 
-ShadedOptions shaded_options(const Options& o, const std::optional<View>& view) {
+ShadedOptions shaded_options(const DrawArguments& o, const std::optional<View>& view) {
     ShadedOptions how;
     how.colour = o.colour, how.range = o.range, how.tolerance = o.tolerance;
     how.width = o.width, how.height = o.height, how.isolines = o.isolines, how.normals = o.normals;
@@ -125,7 +106,8 @@ ShadedOptions shaded_options(const Options& o, const std::optional<View>& view) 
     return how;
 }
 
-Result<ShadedPicture> picture(const Context& context, const Options& options, const std::string& format) {
+Result<ShadedPicture> picture(const Context& context, const DrawArguments& options,
+                              const std::string& format) {
     std::optional<View> view;
     if (!options.view.empty()) {
         const auto parsed = parse_view(options.view);
@@ -155,7 +137,7 @@ Result<ShadedPicture> picture(const Context& context, const Options& options, co
     return ShadedPicture{std::move(*bytes), "{}\n"};
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_draw(const Context& context, const DrawArguments& options) {
     const std::string format =
         context.to.empty() ? context.output.substr(context.output.rfind('.') + 1) : context.to;
     if (context.output.empty()) wrong_usage("-o FILE says where the picture goes: .svg, .pdf or .png");
@@ -174,7 +156,7 @@ Result<void> run(const Context& context, const Options& options) {
     return emit(screen, made->report);
 }
 
-void add_line_options(const Command& command, Options& o) {
+void add_line_options(const Command& command, DrawArguments& o) {
     command.flag("--control", o.control,
                  "Also control polygons and nets; the area of a point is as its weight");
     command.word("--names", o.names, "Name the control points of curves: b0, b1, .. or P1, P2, ..")
@@ -204,7 +186,7 @@ void add_line_options(const Command& command, Options& o) {
 }  // namespace
 
 void add_draw(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DrawArguments>();
     const Command command =
         line.add("draw", "A picture of curves, surfaces, a model or a mesh",
                  "  freiform draw curves.json -o curves.svg --control --knots\n"
@@ -247,7 +229,7 @@ void add_draw(CommandLine& line) {
     command.object(options->object);
     command.limits();
     command.triangle_limit();
-    command.action(options, run);
+    command.action(options, run_draw);
 }
 
 }  // namespace freiform::cli

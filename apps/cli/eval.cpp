@@ -12,7 +12,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct EvalArguments {
     std::string file, object, at;
     std::optional<int> derivatives;
     bool accurate = false, construction = false;
@@ -31,7 +31,7 @@ std::optional<std::vector<double>> numbers(std::string_view s) {
     return out;
 }
 
-Result<Parameters> parameters(const Options& options, const ReadOptions& limits) {
+Result<Parameters> parameters(const EvalArguments& options, const ReadOptions& limits) {
     if (options.at.starts_with('@')) {
         auto lines = read_number_lines(options.at.substr(1), limits);
         if (!lines) return std::unexpected(lines.error());
@@ -63,7 +63,7 @@ struct Levels {
 };
 
 // Values of one object, each of its kind's own type, as numbers.
-struct Answer {
+struct EvalAnswer {
     std::vector<double> point, bound;  // a bound for each coordinate, if asked for
     std::vector<std::vector<double>> derivatives;
     std::optional<Levels> construction = {};
@@ -129,7 +129,7 @@ struct Evaluation {
     const Question& q;
 
     template <class S>
-    requires(TensorPatch<S> || TriangularPatch<S>) Result<Answer>
+    requires(TensorPatch<S> || TriangularPatch<S>) Result<EvalAnswer>
     operator()(const S& patch) const {
         Param<S::kParams> u{};
         if constexpr (S::kParams == 1)
@@ -138,31 +138,31 @@ struct Evaluation {
             std::copy(q.at.begin(), q.at.end(), u.begin());
         Accurate<typename S::Point> value;
         if (auto ok = evaluate(patch, u, q.accurate, value); !ok) return std::unexpected(ok.error());
-        Answer answer{numbers_of(value.value), {}, {}};
-        if (q.accurate) answer.bound = numbers_of(value.bound);
+        EvalAnswer answer_point{numbers_of(value.value), {}, {}};
+        if (q.accurate) answer_point.bound = numbers_of(value.bound);
         if (q.derivatives > 0)
             for (const auto& d : patch.derivatives(u, q.derivatives))
-                answer.derivatives.push_back(numbers_of(d));
+                answer_point.derivatives.push_back(numbers_of(d));
         if (q.construction) {
             if constexpr (TensorPatch<S>) {
                 auto levels = levels_of(patch, u);
                 if (!levels) return std::unexpected(levels.error());
-                answer.construction = *std::move(levels);
+                answer_point.construction = *std::move(levels);
             } else {
                 return refuse(RefusalKind::unsupported, "--construction", "is for tensor products");
             }
         }
-        return answer;
+        return answer_point;
     }
-    Result<Answer> operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
-    Result<Answer> operator()(const Model&) const { return {}; }
+    Result<EvalAnswer> operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
+    Result<EvalAnswer> operator()(const Model&) const { return {}; }
 };
 
 bool is_finite(std::span<const double> numbers) {
     return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
 }
 
-Result<Answer> answer(const Shape& shape, const Question& q) {
+Result<EvalAnswer> answer_point(const Shape& shape, const Question& q) {
     if (std::holds_alternative<Model>(shape))
         return refuse(RefusalKind::no_answer, "",
                       "is a model of many faces, which has no parameters of its own; eval needs a curve, "
@@ -177,7 +177,7 @@ Result<Answer> answer(const Shape& shape, const Question& q) {
     return found;
 }
 
-void write(json::Writer& w, const Levels& c) {
+void write_point(json::Writer& w, const Levels& c) {
     w.key("construction").begin_array();
     for (const Level& level : c.all) {
         w.new_line(2).begin_object();
@@ -192,7 +192,7 @@ void write(json::Writer& w, const Levels& c) {
     w.end_array().field("construction_bound", c.bound);
 }
 
-void write(json::Writer& w, std::optional<std::size_t> object, const Question& q, const Answer& a) {
+void write_point(json::Writer& w, std::optional<std::size_t> object, const Question& q, const EvalAnswer& a) {
     w.new_line(1).begin_object();
     if (object) w.field("object", *object);
     w.key("at").array(q.at).key("point").array(a.point);
@@ -202,11 +202,11 @@ void write(json::Writer& w, std::optional<std::size_t> object, const Question& q
         for (const auto& d : std::span(a.derivatives).subspan(1)) w.array(d);
         w.end_array();
     }
-    if (a.construction) write(w, *a.construction);
+    if (a.construction) write_point(w, *a.construction);
     w.end_object();
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_eval(const Context& context, const EvalArguments& options) {
     const auto at = parameters(options, context.read_options());
     if (!at) return std::unexpected(at.error());
     const auto input = read_input(context, options.file, options.object);
@@ -221,9 +221,9 @@ Result<void> run(const Context& context, const Options& options) {
         for (std::size_t i = 0; i < at->size(); ++i) {
             const Question q{(*at)[i], i, options.derivatives.value_or(0), options.accurate,
                              options.construction};
-            const auto a = answer(input->object(o).shape, q);
+            const auto a = answer_point(input->object(o).shape, q);
             if (!a) return input->about(o, a.error());
-            write(w, several ? std::optional(o) : std::nullopt, q, *a);
+            write_point(w, several ? std::optional(o) : std::nullopt, q, *a);
         }
     w.end_array().end_object();
     return emit(context, w.take() + "\n");
@@ -233,7 +233,7 @@ Result<void> run(const Context& context, const Options& options) {
 
 void add_eval(CommandLine& line) {
     constexpr int kMostDerivatives = 60;
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<EvalArguments>();
     const Command command =
         line.add("eval", "Points and derivatives at parameters, as JSON",
                  "  freiform eval curve.json --at 0.5\n"
@@ -259,7 +259,7 @@ void add_eval(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_eval);
 }
 
 }  // namespace freiform::cli

@@ -10,14 +10,14 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct FeaturesArguments {
     std::string file, object;
     std::optional<double> accuracy;
     std::vector<double> line, plane;
 };
 
 // Something that happens at a point of a curve, in any dimension.
-struct Place {
+struct CurveFeature {
     std::string_view kind;
     Interval at;
     std::optional<Interval> second;  // of a self-intersection
@@ -28,22 +28,22 @@ struct Place {
 };
 
 template <int D>
-Place place_of(const Feature<D>& f) {
+CurveFeature place_of(const Feature<D>& f) {
     return {name_of(f.kind), f.at, {}, f.at_knot, {}, {f.point.c.begin(), f.point.c.end()}, f.bound};
 }
 template <int D>
-Place place_of(const Crossing<D>& x) {
+CurveFeature place_of(const Crossing<D>& x) {
     return {name_of(x.kind), x.at, {}, false, x.most, {x.point.c.begin(), x.point.c.end()}, x.bound};
 }
 template <int D>
-Place place_of(const SelfIntersection<D>& m) {
+CurveFeature place_of(const SelfIntersection<D>& m) {
     return {name_of(m.kind), m.first, m.second, false, {}, {m.point.c.begin(), m.point.c.end()}, m.bound};
 }
 
 template <class T>
-Result<std::vector<Place>> places(const Result<std::vector<T>>& found) {
+Result<std::vector<CurveFeature>> places(const Result<std::vector<T>>& found) {
     if (!found) return std::unexpected(found.error());
-    std::vector<Place> out;
+    std::vector<CurveFeature> out;
     for (const T& x : *found) out.push_back(place_of(x));
     return out;
 }
@@ -53,7 +53,7 @@ class Lists {
 public:
     Lists(json::Writer& w, std::string& s) : w_(w), s_(s) {}
 
-    Result<void> add(std::string_view name, const Result<std::vector<Place>>& list) {
+    Result<void> add(std::string_view name, const Result<std::vector<CurveFeature>>& list) {
         if (!list) {
             // One question that has no answer (a degree that is too high) leaves the others theirs.
             if (list.error().kind != RefusalKind::unsupported) return refuse_within(name, list.error());
@@ -63,7 +63,7 @@ public:
         }
         w_.key(name).begin_array();
         if (list->empty()) s_ += text("  ", name, ": none\n");
-        for (const Place& x : *list) {
+        for (const CurveFeature& x : *list) {
             w_.new_line(2).begin_object();
             s_ += text("  ", name, ": ");
             write(x);
@@ -76,7 +76,7 @@ public:
     json::Writer& json() { return w_; }
 
 private:
-    void write(const Place& x) {
+    void write(const CurveFeature& x) {
         w_.field("kind", x.kind);
         s_ += text(x.kind, " ");
         interval(x.second ? "first" : "at", x.at);
@@ -125,7 +125,7 @@ Result<void> add_crossings(Lists& lists, const Curve<P>& c, const std::vector<do
     return lists.add("crossings", places(crossings(c, normal, plane.back(), accuracy)));
 }
 
-Result<void> look_at(Lists& lists, const Shape& shape, const Options& options) {
+Result<void> look_at(Lists& lists, const Shape& shape, const FeaturesArguments& options) {
     const ControlBox box = control_box(shape);
     const std::size_t dim = box.lo.size();
     if (type_name(shape) != "curve")
@@ -145,7 +145,7 @@ Result<void> look_at(Lists& lists, const Shape& shape, const Options& options) {
     return ok;
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_features(const Context& context, const FeaturesArguments& options) {
     if (options.accuracy && !(*options.accuracy > 0)) wrong_usage("--accuracy needs a length above 0");
     if (!options.line.empty() && options.line.size() != 3)
         wrong_usage("--line needs three numbers: A,B,C of A x + B y + C = 0");
@@ -179,7 +179,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_features(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<FeaturesArguments>();
     const Command command = line.add(
         "features",
         "Inflections, cusps, extrema, vertices, self-intersections of curves; crossings with a line or plane",
@@ -195,7 +195,7 @@ void add_features(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_features);
 }
 
 }  // namespace freiform::cli

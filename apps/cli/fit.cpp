@@ -7,7 +7,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct FitArguments {
     std::string file, spacing = "chordal", tangents;
     std::optional<double> tolerance, smoothing;
     std::optional<int> degree;
@@ -21,7 +21,7 @@ Spacing spacing_of(const std::string& word) {
 }
 
 template <int D>
-Result<Fitted<D>> fitted(const std::vector<Vec<D>>& points, const Options& options) {
+Result<Fitted<D>> fitted(const std::vector<Vec<D>>& points, const FitArguments& options) {
     std::vector<KeptPoint<D>> kept;
     const int last = int(points.size()) - 1;
     if (options.keep_ends && last >= 0) {
@@ -46,15 +46,15 @@ Result<Fitted<D>> fitted(const std::vector<Vec<D>>& points, const Options& optio
     return approximate<D>(points, o, kept);
 }
 
-struct Answer {
+struct FitAnswer {
     std::size_t points;
     const BSplineBasis& basis;
     const FitReport& report;
     const std::vector<double>& at;
 };
 
-Result<void> report(const Context& context, const Options& options, const std::string& format,
-                    const Answer& a, Document document) {
+Result<void> report_fit(const Context& context, const FitArguments& options, const std::string& format,
+                        const FitAnswer& a, Document document) {
     const FitReport& r = a.report;
     json::Writer w;
     w.begin_object().field("points", a.points).field("coefficients", a.basis.size());
@@ -72,7 +72,7 @@ Result<void> report(const Context& context, const Options& options, const std::s
     return emit_spline(context, format, std::move(document), s, w.take() + "\n");
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_fit(const Context& context, const FitArguments& options) {
     const std::string format = spline_format(context, "fit");
     if (!(*options.tolerance > 0)) wrong_usage("--tolerance needs a positive distance");
     if (options.smoothing && !(*options.smoothing >= 0))
@@ -90,15 +90,15 @@ Result<void> run(const Context& context, const Options& options) {
         const BSplineBasis basis = f->curve.basis();
         Document document;
         document.objects.push_back({"", std::move(f->curve), {}});
-        return report(context, options, format, {points.size(), basis, f->report, f->at},
-                      std::move(document));
+        return report_fit(context, options, format, {points.size(), basis, f->report, f->at},
+                          std::move(document));
     });
 }
 
 }  // namespace
 
 void add_fit(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<FitArguments>();
     const Command command = line.add(
         "fit", "The smallest spline found within a tolerance of points in order",
         "  freiform fit points.csv --tolerance 0.01 -o curve.json\n"
@@ -125,7 +125,7 @@ void add_fit(CommandLine& line) {
     command.number("--smoothing", options->smoothing,
                    "Add this many times the integral of the squared second derivative");
     command.limits();
-    command.action(options, run);
+    command.action(options, run_fit);
 }
 
 }  // namespace freiform::cli

@@ -9,7 +9,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct FlattenArguments {
     std::string file, object, method = "adaptive";
     std::optional<double> tolerance;
     std::optional<int> segments, compare;
@@ -140,7 +140,7 @@ void add_comparison(const std::vector<FlattenComparison>& rows, std::size_t obje
     w.end_array().end_object();
 }
 
-Result<void> compare(const Context& context, const Options& options, const Input& input) {
+Result<void> compare(const Context& context, const FlattenArguments& options, const Input& input) {
     json::Writer w;
     std::string table;
     w.begin_object().key("objects").begin_array();
@@ -171,7 +171,7 @@ Result<std::vector<Line>> lines_of(const Input& input, const FlattenOptions& how
     return lines;
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_flatten(const Context& context, const FlattenArguments& options) {
     const auto method = std::ranges::find(kMethods, options.method);
     if (method == std::end(kMethods))
         wrong_usage(text("--method is ", listed(kMethods), ", found \"", options.method, "\"",
@@ -209,7 +209,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_flatten(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<FlattenArguments>();
     const Command command =
         line.add("flatten", "Curves, and edges of models, as polylines, within a distance that is proven",
                  "  freiform flatten curves.json --tolerance 0.01 -o curves.svg\n"
@@ -231,7 +231,7 @@ void add_flatten(CommandLine& line) {
     command.output("The polylines: .json, .csv or .svg");
     command.object(options->object);
     command.limits();
-    command.action(options, run);
+    command.action(options, run_flatten);
 }
 
 }  // namespace freiform::cli

@@ -3,11 +3,9 @@
 #include "gallery/gallery.hpp"
 
 #include "command.hpp"
+#include "drawing_bytes.hpp"
 
 #include <freiform/io/file.hpp>
-#if FREIFORM_HAS_CAIRO
-#include <freiform/paint/paint.hpp>
-#endif
 
 #include <algorithm>
 #include <filesystem>
@@ -18,7 +16,7 @@ namespace {
 
 using gallery::Entry;
 
-struct Options {
+struct GalleryArguments {
     std::string only;
 };
 
@@ -39,17 +37,6 @@ std::string_view source_of(const Entry& e) {
     const auto all = gallery::sources();
     const auto found = std::ranges::find(all, e.row, &gallery::Source::row);
     return found == all.end() ? std::string_view() : found->json;
-}
-
-Result<std::string> encoded(const Drawing& drawing, const std::string& format) {
-    if (format == "svg") return to_svg(drawing);
-#if FREIFORM_HAS_CAIRO
-    return format == "pdf" ? to_pdf(drawing) : to_png(drawing);
-#else
-    return refuse(RefusalKind::unavailable, "gallery",
-                  text("this program was built without .", format,
-                       " of drawings: install libcairo2-dev and build again, or use --to svg"));
-#endif
 }
 
 // For HTML, where the words have no markup of their own.
@@ -118,13 +105,13 @@ Result<void> write_entry(const Entry& e, const std::string& folder, const std::s
     const std::string_view json = source_of(e);
     const auto document = read_document(json);
     if (!document) return refuse_within(e.row, document.error());
-    const auto bytes = encoded(arrange(e.figure(*document)), format);
+    const auto bytes = drawing_bytes(arrange(e.figure(*document)), format, "gallery");
     if (!bytes) return std::unexpected(bytes.error());
     if (auto ok = write_file(text(folder, "/", e.row, ".json"), json); !ok) return ok;
     return write_file(text(folder, "/", e.row, ".", format), *bytes);
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_gallery(const Context& context, const GalleryArguments& options) {
     if (context.output.empty() || context.output == "-") wrong_usage("-o FOLDER says where the figures go");
     const std::string format = context.to.empty() ? "svg" : context.to;
     if (format != "svg" && format != "pdf" && format != "png")
@@ -153,7 +140,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_gallery(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<GalleryArguments>();
     const Command command = line.add("gallery", "Figures of what freiform knows about curves and surfaces",
                                      "  freiform gallery -o figures        (then open figures/index.html)\n"
                                      "  freiform gallery -o figures --only R15 --to pdf");
@@ -161,7 +148,7 @@ void add_gallery(CommandLine& line) {
         .shown_as("FOLDER");
     command.word("--to", line.context().to, "svg (default), pdf or png").shown_as("FORMAT");
     command.word("--only", options->only, "Only this figure: R01, R02, ..").shown_as("ROW");
-    command.action(options, run);
+    command.action(options, run_gallery);
 }
 
 }  // namespace freiform::cli

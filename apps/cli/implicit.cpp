@@ -12,7 +12,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct ImplicitArguments {
     std::string file, object, at;
 };
 
@@ -97,7 +97,7 @@ private:
     std::vector<std::vector<double>> at_;
 };
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_implicit(const Context& context, const ImplicitArguments& options) {
     auto at = parse_vectors("--at", options.at, 2);
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
@@ -124,7 +124,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_implicit(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<ImplicitArguments>();
     const Command command = line.add("implicit", "The equation F(x, y) = 0 of plane curves",
                                      "  freiform implicit arc.json\n"
                                      "  freiform implicit curve.json --at '0,0;1.5,2' --json");
@@ -133,7 +133,7 @@ void add_implicit(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_implicit);
 }
 
 }  // namespace freiform::cli

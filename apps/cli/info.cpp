@@ -11,7 +11,7 @@ namespace {
 
 constexpr char kAxis[] = "uvw";
 
-void write_box(json::Writer& w, const ControlBox& box) {
+void write_range(json::Writer& w, const ControlBox& box) {
     w.key("box");
     if (box.lo.empty())
         w.null();
@@ -134,7 +134,7 @@ void write_model_info(json::Writer& w, const Model& m) {
             .end_object();
     w.end_array();
     write_approximations(w, m.approximations);
-    write_box(w, as_control_box(s.box));
+    write_range(w, as_control_box(s.box));
 }
 
 std::string json_info(const Document& d, const std::string& file, const std::vector<std::size_t>& objects) {
@@ -156,7 +156,7 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
         } else {
             const Facts f = facts_of(o.shape);
             f.bases.empty() ? write_triangle_info(w, f) : write_patch_info(w, f);
-            write_box(w, control_box(o.shape));
+            write_range(w, control_box(o.shape));
             if (!o.approximations.empty()) write_approximations(w, o.approximations);
         }
         w.end_object();
@@ -165,7 +165,7 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
     return w.take() + "\n";
 }
 
-std::string box_text(const ControlBox& box) {
+std::string range_text(const ControlBox& box) {
     if (box.lo.empty()) return "  box      empty\n";
     std::string s = "  box      ";
     for (std::size_t i = 0; i < box.lo.size(); ++i)
@@ -213,7 +213,7 @@ std::string model_text(const Model& m) {
     t += text("  edges    ", s.edges, kinds_text(edge_kinds(m)), ", ", s.open_edges, " open, ", s.seams,
               " seams\n");
     t += text("  vertices ", s.vertices, "\n");
-    t += box_text(as_control_box(s.box));
+    t += range_text(as_control_box(s.box));
     for (const Refusal& r : m.refused)
         t += text("  refused  ", r.where, ": ", r.message, " (", name_of(r.kind), ")\n");
     return t + approximations_text(m.approximations);
@@ -230,18 +230,18 @@ std::string text_info(const Document& d, const std::string& file, const std::vec
             continue;
         }
         const Facts f = facts_of(o.shape);
-        s += patch_text(f) + box_text(control_box(o.shape));
+        s += patch_text(f) + range_text(control_box(o.shape));
         if (f.loops) s += text("  loops    ", *f.loops, "\n");
         s += approximations_text(o.approximations);
     }
     return s;
 }
 
-struct Options {
+struct InfoArguments {
     std::string file, object;
 };
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_info(const Context& context, const InfoArguments& options) {
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     const Document& document = *input->document;
@@ -253,7 +253,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_info(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<InfoArguments>();
     const Command command =
         line.add("info", "What a file contains: counts, types, degrees, domains, boxes, unit",
                  "  freiform info teapot.bpt\n"
@@ -263,7 +263,7 @@ void add_info(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_info);
 }
 
 }  // namespace freiform::cli

@@ -8,7 +8,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct InsideArguments {
     std::string file, object, points;
     std::optional<double> tolerance;
 };
@@ -29,7 +29,7 @@ Result<std::vector<Vec<D>>> as_points(const std::vector<std::vector<double>>& ro
     return points;
 }
 
-struct Row {
+struct PointRow {
     std::size_t object;
     Place place;
     int winding;
@@ -42,7 +42,7 @@ public:
            long long max_triangles)
         : points_(points), tolerance_(tolerance), max_triangles_(max_triangles) {}
 
-    Result<std::vector<Row>> operator()(const TrimmedSurface& t) const {
+    Result<std::vector<PointRow>> operator()(const TrimmedSurface& t) const {
         std::vector<std::vector<CurveGeometry<2>>> loops = t.loops;
         Box<2> box;
         std::visit(
@@ -54,20 +54,20 @@ public:
         if (loops.empty()) loops.push_back(rectangle(box));
         return in_loops(loops, TrimmedSurface::kSlack * box.diagonal());
     }
-    Result<std::vector<Row>> operator()(const Curve<Vec<2>>& c) const { return in_loops({{c}}, 0); }
-    Result<std::vector<Row>> operator()(const Curve<Hom<2>>& c) const { return in_loops({{c}}, 0); }
-    Result<std::vector<Row>> operator()(const Model& m) const {
+    Result<std::vector<PointRow>> operator()(const Curve<Vec<2>>& c) const { return in_loops({{c}}, 0); }
+    Result<std::vector<PointRow>> operator()(const Curve<Hom<2>>& c) const { return in_loops({{c}}, 0); }
+    Result<std::vector<PointRow>> operator()(const Model& m) const {
         const auto points = as_points<3>(points_);
         if (!points) return std::unexpected(points.error());
         const double accuracy = tolerance_.value_or(1e-6 * summary(m).box.diagonal());
         const auto in = inside_solid(m, *points, accuracy, max_triangles_);
         if (!in) return std::unexpected(in.error());
-        std::vector<Row> rows;
+        std::vector<PointRow> rows;
         for (const SolidInside& i : *in) rows.push_back({0, i.place, i.winding, i.distance});
         return rows;
     }
     template <class S>
-    Result<std::vector<Row>> operator()(const S&) const {
+    Result<std::vector<PointRow>> operator()(const S&) const {
         return refuse(RefusalKind::no_answer, "",
                       "has no inside; asked are trimmed surfaces, closed plane curves and closed models");
     }
@@ -81,15 +81,15 @@ private:
                                                   Net<1, Vec<2>>({2}, {corner[i], corner[i + 1]})));
         return loop;
     }
-    Result<std::vector<Row>> in_loops(const std::vector<std::vector<CurveGeometry<2>>>& loops,
-                                      double gap) const {
+    Result<std::vector<PointRow>> in_loops(const std::vector<std::vector<CurveGeometry<2>>>& loops,
+                                           double gap) const {
         const auto points = as_points<2>(points_);
         if (!points) return std::unexpected(points.error());
         const auto query = InsideQuery::make(loops, tolerance_.value_or(gap));
         if (!query) return refuse(RefusalKind::no_answer, query.error().where, query.error().message);
         std::vector<Inside> in(points->size());
         query->at(*points, in);
-        std::vector<Row> rows;
+        std::vector<PointRow> rows;
         for (const Inside& i : in) rows.push_back({0, i.place, i.winding, std::nullopt});
         return rows;
     }
@@ -99,7 +99,7 @@ private:
     long long max_triangles_;
 };
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_inside(const Context& context, const InsideArguments& options) {
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     const auto lines = read_number_lines(options.points, context.read_options());
@@ -113,7 +113,7 @@ Result<void> run(const Context& context, const Options& options) {
         const auto rows = std::visit(ask, input->object(o).shape);
         if (!rows) return input->about(o, rows.error());
         for (std::size_t i = 0; i < rows->size(); ++i) {
-            const Row& row = (*rows)[i];
+            const PointRow& row = (*rows)[i];
             const std::string_view place = kPlaces[std::size_t(row.place)];
             w.new_line(1).begin_object();
             if (several) w.field("object", o);
@@ -136,7 +136,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_inside(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<InsideArguments>();
     const Command command =
         line.add("inside", "Which points lie inside a trimmed face, a closed curve or a solid",
                  "  freiform inside face.json --points uv.csv\n"
@@ -156,7 +156,7 @@ void add_inside(CommandLine& line) {
     command.answer_file();
     command.limits();
     command.triangle_limit();
-    command.action(options, run);
+    command.action(options, run_inside);
 }
 
 }  // namespace freiform::cli

@@ -28,7 +28,7 @@ constexpr std::string_view kSchemes[] = {"natural",  "clamped",         "not-a-k
 constexpr std::string_view kTwists[] = {"tensor", "zero", "adini", "bessel"};
 constexpr std::string_view kSpacings[] = {"uniform", "chordal", "centripetal"};
 
-struct Options {
+struct InterpolateArguments {
     std::string file, ends = "natural", spacing, at, tangents, twists;
     std::optional<int> degree;
     bool closed = false;
@@ -43,7 +43,7 @@ int index_of(const std::string& option, std::string_view word, const std::string
 }
 
 // One way per axis, "natural,periodic"; one for both, "natural".
-std::vector<Scheme> schemes(const Options& options, std::size_t axes) {
+std::vector<Scheme> schemes(const InterpolateArguments& options, std::size_t axes) {
     std::vector<Scheme> out;
     std::string_view rest = options.ends;
     do out.push_back(Scheme(index_of("--ends", trimmed(next_part(rest, ',')), kSchemes)));
@@ -57,11 +57,11 @@ std::vector<Scheme> schemes(const Options& options, std::size_t axes) {
 
 bool is_local(Scheme s) { return s >= Scheme::catmull_rom; }
 bool is_catmull_rom(Scheme s) { return s == Scheme::catmull_rom || s == Scheme::catmull_rom_periodic; }
-bool is_closed(Scheme s, const Options& o) {
+bool is_closed(Scheme s, const InterpolateArguments& o) {
     return s == Scheme::periodic || s == Scheme::catmull_rom_periodic || (o.closed && is_local(s));
 }
 
-struct Answer {
+struct InterpolateAnswer {
     Document document;
     double bound = 0;
     std::optional<double> condition;
@@ -70,8 +70,8 @@ struct Answer {
 };
 
 template <std::size_t N, int D>
-Answer answer(Patch<N, Vec<D>> patch, double bound = 0, std::optional<double> condition = {}) {
-    Answer a;
+InterpolateAnswer answer(Patch<N, Vec<D>> patch, double bound = 0, std::optional<double> condition = {}) {
+    InterpolateAnswer a;
     a.bound = bound, a.condition = condition;
     a.coefficients.assign(patch.net().extent().begin(), patch.net().extent().end());
     a.document.objects.push_back({"", std::move(patch), {}});
@@ -88,7 +88,7 @@ std::vector<double> given_parameters(std::string_view rest) {
     return at;
 }
 
-Spacing spacing_of(const Options& options, Scheme way) {
+Spacing spacing_called(const InterpolateArguments& options, Scheme way) {
     const std::string word = !options.spacing.empty() ? options.spacing
                              : is_catmull_rom(way)    ? "uniform"
                                                       : "chordal";
@@ -96,7 +96,8 @@ Spacing spacing_of(const Options& options, Scheme way) {
 }
 
 // The derivatives at both ends, in one list; as many as clamped ends need.
-std::vector<std::vector<double>> given_tangents(const Options& options, Scheme way, int degree, int dim) {
+std::vector<std::vector<double>> given_tangents(const InterpolateArguments& options, Scheme way, int degree,
+                                                int dim) {
     auto given = parse_vectors("--tangents", options.tangents, dim);
     if (way == Scheme::clamped && given.size() != 2 * std::size_t(degree / 2))
         wrong_usage(text("clamped ends of degree ", degree, " need --tangents with ", 2 * (degree / 2),
@@ -105,8 +106,8 @@ std::vector<std::vector<double>> given_tangents(const Options& options, Scheme w
 }
 
 template <std::size_t N, int D>
-Result<Answer> through(const Net<N, Vec<D>>& points, const std::vector<std::vector<double>>& at,
-                       const std::array<bool, N>& closed, Twists twists) {
+Result<InterpolateAnswer> through(const Net<N, Vec<D>>& points, const std::vector<std::vector<double>>& at,
+                                  const std::array<bool, N>& closed, Twists twists) {
     std::array<std::span<const double>, N> spans;
     for (std::size_t d = 0; d < N; ++d) spans[d] = at[d];
     auto patch = [&]() -> Result<Patch<N, Vec<D>>> {
@@ -119,8 +120,8 @@ Result<Answer> through(const Net<N, Vec<D>>& points, const std::vector<std::vect
 }
 
 template <int D>
-Result<Answer> with_local_slopes(std::span<const Vec<D>> q, std::span<const double> at, Scheme way,
-                                 bool closed) {
+Result<InterpolateAnswer> with_local_slopes(std::span<const Vec<D>> q, std::span<const double> at, Scheme way,
+                                            bool closed) {
     const auto kind = way == Scheme::akima      ? LocalSlopes::akima
                       : way == Scheme::monotone ? LocalSlopes::monotone
                                                 : LocalSlopes::fritsch_carlson;
@@ -132,8 +133,9 @@ Result<Answer> with_local_slopes(std::span<const Vec<D>> q, std::span<const doub
 }
 
 template <std::size_t N, int D>
-Result<Answer> global(const Net<N, Vec<D>>& points, const Options& options,
-                      const std::vector<std::vector<double>>& at, const std::vector<Scheme>& ways) {
+Result<InterpolateAnswer> global(const Net<N, Vec<D>>& points, const InterpolateArguments& options,
+                                 const std::vector<std::vector<double>>& at,
+                                 const std::vector<Scheme>& ways) {
     std::array<AxisSpline, N> axes;
     for (std::size_t d = 0; d < N; ++d)
         axes[d] = {options.degree.value_or(3), SplineEnds(int(ways[d])), at[d]};
@@ -154,7 +156,8 @@ Result<Answer> global(const Net<N, Vec<D>>& points, const Options& options,
 }
 
 template <std::size_t N, int D>
-Result<Answer> solve(const Net<N, Vec<D>>& points, const Options& options, const std::vector<Scheme>& ways) {
+Result<InterpolateAnswer> solve(const Net<N, Vec<D>>& points, const InterpolateArguments& options,
+                                const std::vector<Scheme>& ways) {
     std::vector<std::vector<double>> at(N);
     std::array<bool, N> closed{};
     for (std::size_t d = 0; d < N; ++d) {
@@ -163,11 +166,11 @@ Result<Answer> solve(const Net<N, Vec<D>>& points, const Options& options, const
             at[d] = given_parameters(options.at);
             continue;
         }
-        auto found = parameters(points, int(d), spacing_of(options, ways[d]), closed[d]);
+        auto found = parameters(points, int(d), spacing_called(options, ways[d]), closed[d]);
         if (!found) return std::unexpected(found.error());
         at[d] = std::move(*found);
     }
-    Result<Answer> a;
+    Result<InterpolateAnswer> a;
     if (is_catmull_rom(ways[0]))
         a = through<N, D>(points, at, closed,
                           Twists(options.twists.empty() ? 0 : index_of("--twists", options.twists, kTwists)));
@@ -179,8 +182,8 @@ Result<Answer> solve(const Net<N, Vec<D>>& points, const Options& options, const
     return a;
 }
 
-Result<void> report(const Context& context, const Options& options, const std::string& format,
-                    const PointTable& table, Answer a) {
+Result<void> report_spline(const Context& context, const InterpolateArguments& options,
+                           const std::string& format, const PointTable& table, InterpolateAnswer a) {
     const bool curve = a.at.size() == 1;
     json::Writer w;
     w.begin_object().field("points", table.place.size()).key("coefficients").array(a.coefficients);
@@ -204,7 +207,7 @@ Result<void> report(const Context& context, const Options& options, const std::s
     return emit_spline(context, format, std::move(a.document), s, w.take() + "\n");
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_interpolate(const Context& context, const InterpolateArguments& options) {
     const std::string format = spline_format(context, "interpolate");
     if (!options.spacing.empty()) (void)index_of("--parameters", options.spacing, kSpacings);
     if (!options.spacing.empty() && !options.at.empty())
@@ -238,7 +241,7 @@ Result<void> run(const Context& context, const Options& options) {
         if (table->grid) {
             auto a = solve<2, D>(Net<2, Vec<D>>(table->extent, std::move(points)), options, ways);
             if (!a) return about_file(a.error(), *table, options.file);
-            return report(context, options, format, *table, *std::move(a));
+            return report_spline(context, options, format, *table, *std::move(a));
         }
         // A closed polygon is often written with its first point again at the end.
         if (is_closed(ways[0], options) && options.at.empty() && points.size() > 2 &&
@@ -249,14 +252,14 @@ Result<void> run(const Context& context, const Options& options) {
         const int n = int(points.size());
         auto a = solve<1, D>(Net<1, Vec<D>>({n}, std::move(points)), options, ways);
         if (!a) return about_file(a.error(), *table, options.file);
-        return report(context, options, format, *table, *std::move(a));
+        return report_spline(context, options, format, *table, *std::move(a));
     });
 }
 
 }  // namespace
 
 void add_interpolate(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<InterpolateArguments>();
     const Command command = line.add(
         "interpolate", "A spline through points: a curve, or a surface through a grid",
         "  freiform interpolate points.csv -o curve.json\n"
@@ -293,7 +296,7 @@ void add_interpolate(CommandLine& line) {
               "Mixed derivatives of a grid with catmull-rom: tensor (default), zero, adini or bessel")
         .shown_as("WAY");
     command.limits();
-    command.action(options, run);
+    command.action(options, run_interpolate);
 }
 
 }  // namespace freiform::cli

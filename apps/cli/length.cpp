@@ -10,7 +10,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct LengthArguments {
     std::string file, object;
     std::vector<std::string> places;  // as they were given
     std::vector<double> at, range;
@@ -27,7 +27,7 @@ struct Measured {
 };
 
 template <class P>
-Result<Measured> measured(const Curve<P>& curve, const Options& o) {
+Result<Measured> measured(const Curve<P>& curve, const LengthArguments& o) {
     const double accuracy = o.accuracy.value_or(0);
     const ArcLength<P> s(curve, o.range.empty() ? accuracy : accuracy / 2);
     const Interval on = o.range.empty() ? s.domain() : Interval{o.range[0], o.range[1]};
@@ -114,7 +114,7 @@ private:
 };
 
 // The curves by their arc length, as a document; the report goes to standard output if the document does not.
-Result<void> reparametrise(const Context& context, const Options& options, const Input& input) {
+Result<void> reparametrise(const Context& context, const LengthArguments& options, const Input& input) {
     const Document& document = *input.document;
     Document out{document.unit, {}};
     json::Writer w;
@@ -143,7 +143,7 @@ Result<void> reparametrise(const Context& context, const Options& options, const
 }
 
 // `--at 1 2,3 FILE`: a list that takes all words up to the next option.
-void understand_places(Options& options) {
+void understand_places(LengthArguments& options) {
     if (options.file.empty() && options.places.size() > 1) {
         options.file = options.places.back();
         options.places.pop_back();
@@ -160,8 +160,8 @@ void understand_places(Options& options) {
     }
 }
 
-Result<void> run(const Context& context, const Options& given) {
-    Options options = given;
+Result<void> run_length(const Context& context, const LengthArguments& given) {
+    LengthArguments options = given;
     understand_places(options);
     if (!options.range.empty() && options.range.size() != 2)
         wrong_usage("--range needs two parameters, such as 0.25,0.75");
@@ -190,7 +190,7 @@ Result<void> run(const Context& context, const Options& given) {
 }  // namespace
 
 void add_length(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<LengthArguments>();
     const Command command = line.add("length", "Arc length, and places at lengths along a curve",
                                      "  freiform length curves.json\n"
                                      "  freiform length curve.json --at 0.5,1,2.5\n"
@@ -212,7 +212,7 @@ void add_length(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_length);
 }
 
 }  // namespace freiform::cli

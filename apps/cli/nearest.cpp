@@ -11,7 +11,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct NearestArguments {
     std::string file, object, points;
     std::optional<double> accuracy;
 };
@@ -71,7 +71,7 @@ Result<void> answer(const Input& input, const Asked& asked, const std::vector<st
     return {};
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_nearest(const Context& context, const NearestArguments& options) {
     const double accuracy = options.accuracy.value_or(0);
     if (!(accuracy >= 0)) wrong_usage("--accuracy needs a distance that is not negative");
     const auto input = read_input(context, options.file, options.object);
@@ -119,7 +119,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_nearest(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<NearestArguments>();
     const Command command = line.add(
         "nearest", "The nearest point of all objects, with a lower bound that proves it",
         "  freiform nearest curves.json --points queries.csv\n"
@@ -135,7 +135,7 @@ void add_nearest(CommandLine& line) {
     command.object(options->object);
     command.answer_file();
     command.limits();
-    command.action(options, run);
+    command.action(options, run_nearest);
 }
 
 }  // namespace freiform::cli

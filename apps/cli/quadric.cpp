@@ -11,18 +11,18 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct QuadricArguments {
     std::string kind, form;
     std::optional<double> radius, top, tube, height, angle;
     std::vector<double> radii, origin, axis, toward;
 };
 
-double needed(const std::optional<double>& value, const Options& o, std::string_view option) {
+double needed(const std::optional<double>& value, const QuadricArguments& o, std::string_view option) {
     if (!value) wrong_usage(text(o.kind, " needs ", option));
     return *value;
 }
 
-Result<FoundFrame> frame_of(const Options& o) {
+Result<FoundFrame> frame_of(const QuadricArguments& o) {
     FoundFrame frame;
     if (!o.origin.empty()) frame.origin = parse_vector("--origin", o.origin);
     if (o.axis.empty() && o.toward.empty()) return frame;
@@ -45,7 +45,7 @@ FoundFrame stretched(FoundFrame f, const std::vector<double>& radii) {
     return f;
 }
 
-Turn turn_of(const Options& o) {
+Turn turn_of(const QuadricArguments& o) {
     Turn turn;
     if (o.angle) turn.angle = {0, *o.angle / 180 * std::numbers::pi};  // in this order, 360 gives 2 pi
     turn.form = o.form == "closed"    ? EllipseForm::closed
@@ -54,7 +54,7 @@ Turn turn_of(const Options& o) {
     return turn;
 }
 
-Result<void> make(const Options& o, MadeSurfaces& made) {
+Result<void> make(const QuadricArguments& o, MadeSurfaces& made) {
     const auto frame = frame_of(o);
     if (!frame) return std::unexpected(frame.error());
     const Turn turn = turn_of(o);
@@ -81,7 +81,7 @@ Result<void> make(const Options& o, MadeSurfaces& made) {
     return one(cone(*frame, radius, o.top.value_or(0), height, turn));
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_quadric(const Context& context, const QuadricArguments& options) {
     const std::string format = spline_format(context, "quadric");
     MadeSurfaces made{{}, 0, text("the exact ", options.kind), {}};
     if (auto ok = make(options, made); !ok) return ok;
@@ -91,7 +91,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_quadric(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<QuadricArguments>();
     const Command command =
         line.add("quadric", "Spheres, ellipsoids, cylinders, cones and tori, exact (rational)",
                  "  freiform quadric sphere --radius 2 -o ball.json\n"
@@ -119,7 +119,7 @@ void add_quadric(CommandLine& line) {
     command.numbers("--toward", options->toward, "Where the turn begins").shown_as("X,Y,Z");
     command.output("Where the surfaces go (.json, .bpt)");
     command.limits();
-    command.action(options, run);
+    command.action(options, run_quadric);
 }
 
 }  // namespace freiform::cli

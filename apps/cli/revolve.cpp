@@ -12,7 +12,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct RevolveArguments {
     std::string file, object;
     std::vector<double> axis;
     std::optional<double> angle, polynomial;
@@ -21,7 +21,7 @@ struct Options {
     Seam seam() const { return closed ? Seam::closed : Seam::open; }
 };
 
-struct Answer {
+struct RevolveAnswer {
     Document document;
     double bound = 0;
     std::vector<int> pieces;  // of polynomial surfaces, along u
@@ -29,7 +29,7 @@ struct Answer {
 
 class Revolving {
 public:
-    Revolving(const Options& options, Answer& answer) : options_(options), answer_(answer) {
+    Revolving(const RevolveArguments& options, RevolveAnswer& answer) : options_(options), answer_(answer) {
         std::copy_n(options.axis.begin(), 3, axis_.origin.c.begin());
         std::copy_n(options.axis.begin() + 3, 3, axis_.direction.c.begin());
         angle_ = options.angle.value_or(360) / 180 * std::numbers::pi;  // in this order, 360 gives 2 pi
@@ -64,13 +64,13 @@ private:
         return {};
     }
 
-    const Options& options_;
-    Answer& answer_;
+    const RevolveArguments& options_;
+    RevolveAnswer& answer_;
     Axis axis_;
     double angle_ = 0;
 };
 
-std::string json_report(const Answer& a) {
+std::string revolve_json(const RevolveAnswer& a) {
     json::Writer w;
     w.begin_object().field("surfaces", a.document.objects.size()).field("bound", a.bound);
     if (!a.pieces.empty()) w.key("pieces").array(a.pieces);
@@ -78,13 +78,13 @@ std::string json_report(const Answer& a) {
     return w.take() + "\n";
 }
 
-std::string text_report(const Answer& a) {
+std::string revolve_text(const RevolveAnswer& a) {
     const std::size_t n = a.document.objects.size();
     return text(n, n == 1 ? " surface" : " surfaces", " within ", a.bound, " of the surface",
                 n == 1 ? "" : "s", " of revolution\n");
 }
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_revolve(const Context& context, const RevolveArguments& options) {
     if (options.axis.size() != 6)
         wrong_usage("--axis needs six numbers: a point and a direction, px,py,pz,dx,dy,dz");
     const std::string format = spline_format(context, "revolve");
@@ -93,7 +93,7 @@ Result<void> run(const Context& context, const Options& options) {
     const auto objects = selected(*document, options.object);
     if (!objects) return std::unexpected(objects.error());
     remark_changes(*document, *objects);
-    Answer answer;
+    RevolveAnswer answer;
     answer.document.unit = document->unit;
     Revolving revolving(options, answer);
     for (const std::size_t i : *objects) {
@@ -110,13 +110,13 @@ Result<void> run(const Context& context, const Options& options) {
         if (!done)
             return refuse_within(text(shown(options.file), ": ", object_label(*document, i)), done.error());
     }
-    return emit_spline(context, format, answer.document, text_report(answer), json_report(answer));
+    return emit_spline(context, format, answer.document, revolve_text(answer), revolve_json(answer));
 }
 
 }  // namespace
 
 void add_revolve(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<RevolveArguments>();
     const Command command = line.add(
         "revolve", "Surfaces of revolution of curves, exact (rational) or polynomial",
         "  freiform revolve outline.json --axis 0,0,0,0,1,0 -o vase.json\n"
@@ -135,7 +135,7 @@ void add_revolve(CommandLine& line) {
     command.object(options->object);
     command.output("Where the surfaces go (.json, .bpt)");
     command.limits();
-    command.action(options, run);
+    command.action(options, run_revolve);
 }
 
 }  // namespace freiform::cli

@@ -1,10 +1,9 @@
 #include "surface_joints.hpp"
 
 #include "command.hpp"
+#include "joint_units.hpp"
 
 #include <freiform/io/bpt.hpp>
-
-#include <charconv>
 
 namespace freiform::cli {
 
@@ -13,20 +12,6 @@ namespace {
 std::string edge_name(SurfaceEdge e) {
     return text(e.axis == 0 ? 'u' : 'v', e.end == End::start ? " start" : " end");
 }
-std::string unit_of(const Document& d) { return d.unit.empty() ? "unit" : d.unit; }
-std::string c_unit(const Document& d, int order) {
-    return order == 0 ? unit_of(d) : order == 1 ? text(unit_of(d), "/t") : text(unit_of(d), "/t^", order);
-}
-std::string g_unit(const Document& d, int order) {
-    return order == 0 ? unit_of(d) : order == 1 ? "rad" : text("1/", unit_of(d));
-}
-std::string order_text(char kind, int order) { return order < 0 ? "-" : text(kind, order); }
-// Six digits are enough to read; --json has all.
-std::string rounded(double x) {
-    char buffer[40];
-    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, 6).ptr};
-}
-
 void write_jump(json::Writer& w, const LargestJump& j, int order, const std::string& unit) {
     w.begin_object().field("order", order).field("size", j.size).field("bound", j.bound);
     w.field("unit", unit).field("at", j.at).end_object();

@@ -9,7 +9,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct SweepArguments {
     std::string profile, rail, object;
     std::optional<double> tolerance;
     std::vector<double> x;
@@ -33,7 +33,7 @@ std::optional<Curve<Q>> flattened(const Curve<P>& c) {
 template <class P>
 using InPlane = std::conditional_t<Space<P>::kRational, Hom<2>, Vec<2>>;
 
-Result<void> run(const Context& context, const Options& options) {
+Result<void> run_sweep(const Context& context, const SweepArguments& options) {
     if (options.translate == options.tolerance.has_value())
         wrong_usage("either --tolerance (the profile turns with the rail) or --translate (it does not)");
     if (options.translate && !options.x.empty()) wrong_usage("--x is for profiles that turn");
@@ -87,7 +87,7 @@ Result<void> run(const Context& context, const Options& options) {
 }  // namespace
 
 void add_sweep(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<SweepArguments>();
     const Command command = line.add(
         "sweep", "Surfaces that profiles sweep along a rail",
         "  freiform sweep profile.json --rail rail.json --tolerance 0.001 -o pipe.json\n"
@@ -103,7 +103,7 @@ void add_sweep(CommandLine& line) {
     command.object(options->object);
     command.output("Where the surfaces go (.json, .bpt)");
     command.limits();
-    command.action(options, run);
+    command.action(options, run_sweep);
 }
 
 }  // namespace freiform::cli

@@ -13,7 +13,7 @@ namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct TessellateArguments {
     std::string file, object;
     std::optional<double> tolerance;
 };
@@ -97,7 +97,7 @@ std::string text_report(const Tessellation& t, const Model& model, double tolera
     return s;
 }
 
-Result<void> run(Context& context, const Options& options) {
+Result<void> run_tessellate(Context& context, const TessellateArguments& options) {
     const double start = now();
     // The mesh may go to standard output; then the report does not.
     const std::string output = context.output;
@@ -161,7 +161,7 @@ Result<void> run(Context& context, const Options& options) {
 }  // namespace
 
 void add_tessellate(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<TessellateArguments>();
     const Command command =
         line.add("tessellate", "Triangles within a tolerance, watertight where the model is closed",
                  "  freiform tessellate teapot.bpt --tolerance 0.01 -o teapot.glb\n"
@@ -175,7 +175,7 @@ void add_tessellate(CommandLine& line) {
     command.output("The mesh: .glb, .stl, .obj or .ply");
     command.limits();
     command.triangle_limit();
-    command.action(options, run);
+    command.action(options, run_tessellate);
 }
 
 }  // namespace freiform::cli

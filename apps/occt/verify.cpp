@@ -10,7 +10,7 @@ namespace freiform::occt {
 
 namespace {
 
-Vec<3> vec(const gp_Pnt& p) { return {{p.X(), p.Y(), p.Z()}}; }
+Vec<3> vec_of(const gp_Pnt& p) { return {{p.X(), p.Y(), p.Z()}}; }
 
 struct Worst {
     double value = 0;
@@ -62,7 +62,7 @@ bool verify(const Conversion& c, const std::string& name) {
             const Vec<2> a = on_boundary[k], b = on_boundary[(k * 7 + 13) % on_boundary.size()];
             const Vec<2> uv = 0.5 * (a + b);
             for (const Vec<2>& at : {a, uv}) {
-                const Vec<3> p = jet<0>(f.surface, at.c).value(), q = vec(s->Value(at[0], at[1]));
+                const Vec<3> p = jet<0>(f.surface, at.c).value(), q = vec_of(s->Value(at[0], at[1]));
                 box.add(q);
                 surfaces.add(norm(p - q), kind_name(f.surface), i);
             }
@@ -75,7 +75,7 @@ bool verify(const Conversion& c, const std::string& name) {
         if (g.IsNull() || !e.curve) continue;
         for (int j = 0; j <= 64; ++j) {
             const double t = e.range.lo + e.range.length() * j / 64;
-            const Vec<3> q = vec(g->Value(t));
+            const Vec<3> q = vec_of(g->Value(t));
             curves.add(norm(jet<0>(*e.curve, t).value() - q), kind_name(*e.curve), i);
             box.add(q);
         }

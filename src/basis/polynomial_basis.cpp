@@ -30,6 +30,7 @@
 #include "basis/ball_detail.hpp"
 
 #include <freiform/basis/polynomial_basis.hpp>
+#include <freiform/core/constants.hpp>
 
 #include <algorithm>
 
@@ -362,8 +363,7 @@ Result<BasisChange> change_basis(const PolynomialBasis& from, const PolynomialBa
     const auto back = to_doubles(converted(to, from, identity(n)), to, from);
     if (!back) return std::unexpected(back.error());
     BasisChange change{from, to, {}, {}};
-    constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-    const double roundings = (n + 4) * kUnit;
+    const double roundings = (n + 4) * kUnitRoundoff;
     for (int i = 0; i < n; ++i) {
         double sum = 0;
         for (int j = 0; j < n; ++j) {

@@ -224,5 +224,6 @@ FF_BICUBIC(1)
 FF_BICUBIC(2)
 FF_BICUBIC(3)
 FF_BICUBIC(4)
+#undef FF_BICUBIC
 
 }  // namespace freiform

@@ -264,5 +264,6 @@ Result<GordonSurface<Vec<3>>> gordon(std::span<const Curve<Vec<D>>> u_curves, st
                                                   double);
 FF_GORDON(2)
 FF_GORDON(3)
+#undef FF_GORDON
 
 }  // namespace freiform

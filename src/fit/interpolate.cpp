@@ -28,6 +28,7 @@
 //
 // Why not elimination without pivoting, which total positivity allows [deBoor & Pinkus 1977]: natural ends
 // and derivatives are not covered, and as the interchanges are rare and predicted they cost nothing.
+#include "fit/checks_detail.hpp"
 #include "residual_detail.hpp"
 #include "spline_system_detail.hpp"
 
@@ -136,15 +137,6 @@ double norm_of(const SplineSystem& s) {
     return most;
 }
 
-template <int D>
-Result<void> check_points(std::span<const Vec<D>> points, std::string_view name) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i]))
-            return refuse(RefusalKind::nonfinite, text(name, "[", i, "]"),
-                          "has a coordinate that is not finite");
-    return {};
-}
-
 std::string axis_name(std::size_t dimensions, std::size_t d) {
     return dimensions == 1 ? "axis" : text("axes[", d, "]");
 }
@@ -192,7 +184,7 @@ double residual_of(const std::vector<SplineSystem>& systems, const Patch<N, Vec<
 template <std::size_t N, int D>
 Result<Interpolant<N, D>> through(std::span<const Vec<D>> points, Index<N> extent,
                                   const std::array<AxisSpline, N>& axes) {
-    if (auto ok = check_points<D>(points, "points"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points<D>(points, "points"); !ok) return std::unexpected(ok.error());
     const Index<N> given = extent;
     std::vector<SplineSystem> systems;
     for (std::size_t d = 0; d < N; ++d) {
@@ -237,8 +229,8 @@ template <int D>
 Result<Interpolant<1, D>> interpolate(std::span<const Vec<D>> points, const AxisSpline& axis,
                                       std::span<const Vec<D>> start, std::span<const Vec<D>> end) {
     if (points.size() > 0x20000000) return refuse(RefusalKind::limit, "points", "more than 2^29 points");
-    if (auto ok = check_points(start, "start"); !ok) return std::unexpected(ok.error());
-    if (auto ok = check_points(end, "end"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points(start, "start"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points(end, "end"); !ok) return std::unexpected(ok.error());
     const std::size_t wanted =
         axis.ends == SplineEnds::clamped && axis.degree > 0 ? std::size_t(axis.degree / 2) : 0;
     for (const auto& [given, name] : {std::pair(start.size(), "start"), std::pair(end.size(), "end")})
@@ -265,5 +257,6 @@ FF_INTERPOLATE(1)
 FF_INTERPOLATE(2)
 FF_INTERPOLATE(3)
 FF_INTERPOLATE(4)
+#undef FF_INTERPOLATE
 
 }  // namespace freiform

@@ -2,6 +2,7 @@
 //
 // A value that is kept at a clamped end of the domain is a coefficient; it is set to the bit afterwards,
 // which moves the curve by no more than the rounding of the solution.
+#include "fit/checks_detail.hpp"
 #include "fit_report_detail.hpp"
 #include "least_squares_detail.hpp"
 
@@ -32,16 +33,6 @@ Result<void> check_sites(const BSplineBasis& basis, std::span<const double> at, 
         if (i > 0 && at[i] < at[i - 1])
             return refuse(RefusalKind::invalid, where, text("decreases: ", at[i - 1], " -> ", at[i]));
     }
-    return {};
-}
-
-template <int D>
-Result<void> check_points(std::span<const Vec<D>> points) {
-    if (points.empty()) return refuse(RefusalKind::invalid, "points", "there are none");
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i]))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
-                          "has a coordinate that is not finite");
     return {};
 }
 
@@ -93,7 +84,8 @@ template <int D>
 Result<Fitted<D>> least_squares(const BSplineBasis& basis, std::span<const Vec<D>> points,
                                 std::span<const double> at, std::span<const Datum<D>> kept,
                                 const LeastSquaresOptions& options) {
-    if (auto ok = check_points(points); !ok) return std::unexpected(ok.error());
+    if (points.empty()) return refuse(RefusalKind::invalid, "points", "there are none");
+    if (auto ok = detail::check_points(points, "points"); !ok) return std::unexpected(ok.error());
     if (auto ok = check_sites(basis, at, points.size(), "at"); !ok) return std::unexpected(ok.error());
     if (auto ok = check_options(points.size(), options); !ok) return std::unexpected(ok.error());
     const auto rows = check_kept(basis, kept);
@@ -125,7 +117,8 @@ Result<Fitted<D>> least_squares(const BSplineBasis& basis, std::span<const Vec<D
 template <int D>
 Result<FittedSurface<D>> least_squares(const std::array<BSplineBasis, 2>& bases, const Net<2, Vec<D>>& points,
                                        const std::array<std::span<const double>, 2>& at) {
-    if (auto ok = check_points<D>(points.flat()); !ok) return std::unexpected(ok.error());
+    if (points.flat().empty()) return refuse(RefusalKind::invalid, "points", "there are none");
+    if (auto ok = detail::check_points<D>(points.flat(), "points"); !ok) return std::unexpected(ok.error());
     std::array<BandMap, 2> values;
     Net<2, Vec<D>> net = points;
     for (std::size_t d = 0; d < 2; ++d) {
@@ -175,5 +168,6 @@ FF_LEAST_SQUARES(1)
 FF_LEAST_SQUARES(2)
 FF_LEAST_SQUARES(3)
 FF_LEAST_SQUARES(4)
+#undef FF_LEAST_SQUARES
 
 }  // namespace freiform

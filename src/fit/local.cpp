@@ -20,6 +20,8 @@
 // 3 / sqrt(a^2 + b^2) [Fritsch & Carlson 1980]. Here a slope gets the smaller factor of its two pieces,
 // computed from what the slopes were before: shorter slopes of the same sign stay in the circle, and the
 // result does not depend on the order of the pieces, as theirs does.
+#include "fit/checks_detail.hpp"
+
 #include <freiform/fit/local.hpp>
 
 #include <algorithm>
@@ -44,15 +46,6 @@ Result<void> check(std::span<const double> at, std::size_t points, bool closed) 
             return refuse(RefusalKind::invalid, text("at[", i, "]"),
                           text("does not increase: ", at[i - 1], " -> ", at[i]));
     }
-    return {};
-}
-
-template <int D>
-Result<void> check_points(std::span<const Vec<D>> points, std::string_view name) {
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i]))
-            return refuse(RefusalKind::nonfinite, text(name, "[", i, "]"),
-                          "has a coordinate that is not finite");
     return {};
 }
 
@@ -146,7 +139,7 @@ template <std::size_t N, int D>
 Result<Patch<N, Vec<D>>> catmull_rom(const Net<N, Vec<D>>& points,
                                      const std::array<std::span<const double>, N>& at,
                                      const std::array<bool, N>& closed) {
-    if (auto ok = check_points<D>(points.flat(), "points"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points<D>(points.flat(), "points"); !ok) return std::unexpected(ok.error());
     Net<N, Vec<D>> net = points;
     std::vector<BSplineBasis> bases;
     Index<N> extent = points.extent();
@@ -175,8 +168,8 @@ Result<Curve<Vec<D>>> cubic_through(std::span<const Vec<D>> points, std::span<co
     if (derivatives.size() != points.size())
         return refuse(RefusalKind::invalid, "derivatives",
                       text(derivatives.size(), " derivatives for ", points.size(), " points"));
-    if (auto ok = check_points(points, "points"); !ok) return std::unexpected(ok.error());
-    if (auto ok = check_points(derivatives, "derivatives"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points(points, "points"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points(derivatives, "derivatives"); !ok) return std::unexpected(ok.error());
     auto basis = bezier_breaks(at, closed);
     if (!basis) return refuse_within("at", basis.error());
     std::vector<Vec<D>> net;
@@ -197,7 +190,7 @@ template <int D>
 Result<std::vector<Vec<D>>> local_slopes(std::span<const Vec<D>> points, std::span<const double> at,
                                          LocalSlopes kind, bool closed) {
     if (auto ok = check(at, points.size(), closed); !ok) return std::unexpected(ok.error());
-    if (auto ok = check_points(points, "points"); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_points(points, "points"); !ok) return std::unexpected(ok.error());
     const int m = int(points.size()), steps = int(at.size()) - 1;
     std::vector<Vec<D>> out(points.size());
     // d and h of steps -2 .. steps + 1, continued around the seam, or linearly beyond open ends.
@@ -248,7 +241,7 @@ Result<std::vector<Vec<D>>> local_slopes(std::span<const Vec<D>> points, std::sp
             out[std::size_t(i)][c] *= std::min(factor[std::size_t(before)], factor[std::size_t(after)]);
         }
     }
-    if (auto ok = check_points<D>(out, "points"); !ok)
+    if (auto ok = detail::check_points<D>(out, "points"); !ok)
         return refuse(RefusalKind::ill_conditioned, ok.error().where,
                       "the slope there leaves the range of double");
     return out;
@@ -267,5 +260,6 @@ FF_LOCAL(1)
 FF_LOCAL(2)
 FF_LOCAL(3)
 FF_LOCAL(4)
+#undef FF_LOCAL
 
 }  // namespace freiform

@@ -36,7 +36,7 @@ private:
     std::size_t number_ = 0;
 };
 
-std::string shown(std::string_view line) {
+std::string shown_line(std::string_view line) {
     std::string s = "\"";
     for (const char c : line.substr(0, 40)) s += c >= ' ' && c < 127 ? c : '?';
     return s + (line.size() > 40 ? "...\"" : "\"");
@@ -53,12 +53,12 @@ bool numbers(std::string_view line, std::array<T, K>& out) {
     return trimmed(line).empty();
 }
 
-Result<Shape> read_patch(Lines& lines, long long patch, long long patches) {
+Result<Shape> read_patch_lines(Lines& lines, long long patch, long long patches) {
     std::string_view line;
     if (!lines.next(line)) return lines.ended(text("patch ", patch + 1, " of ", patches));
     std::array<int, 2> degree{};
     if (!numbers(line, degree))
-        return lines.fail(text("expected the two degrees of a patch, found ", shown(line)));
+        return lines.fail(text("expected the two degrees of a patch, found ", shown_line(line)));
     for (const int p : degree)
         if (p < 0 || p > kMaxDegree) return lines.fail(text("degree ", p, " is outside 0..", kMaxDegree));
     Net<2, Vec<3>> net({degree[0] + 1, degree[1] + 1});
@@ -67,7 +67,7 @@ Result<Shape> read_patch(Lines& lines, long long patch, long long patches) {
         if (!lines.next(line)) return lines.ended(text("point ", i + 1, " of ", count));
         if (!numbers(line, net.flat()[i].c))
             return lines.fail(text("expected three finite numbers (point ", i + 1, " of ", count, "), found ",
-                                   shown(line)));
+                                   shown_line(line)));
     }
     auto surface =
         Surface<Vec<3>>::make({*BSplineBasis::bezier(degree[0]), *BSplineBasis::bezier(degree[1])}, net);
@@ -117,17 +117,18 @@ Result<Document> read_bpt(std::string_view bytes) {
     if (!lines.next(line)) return lines.ended("the number of patches");
     std::array<long long, 1> patches{};
     if (!numbers(line, patches) || patches[0] < 0)
-        return lines.fail(text("expected the number of patches, found ", shown(line)));
+        return lines.fail(text("expected the number of patches, found ", shown_line(line)));
     // A patch needs two degrees and a point: at least ten bytes.
     if (patches[0] > (long long)(lines.left() / 8))
         return lines.fail(text(patches[0], " patches are announced, ", lines.left(), " bytes follow"));
     Document document;
     for (long long i = 0; i < patches[0]; ++i) {
-        auto shape = read_patch(lines, i, patches[0]);
+        auto shape = read_patch_lines(lines, i, patches[0]);
         if (!shape) return std::unexpected(shape.error());
         document.objects.push_back({"", std::move(*shape), {}});
     }
-    if (lines.next(line)) return lines.fail(text("more follows the ", patches[0], " patches: ", shown(line)));
+    if (lines.next(line))
+        return lines.fail(text("more follows the ", patches[0], " patches: ", shown_line(line)));
     return document;
 }
 

@@ -53,17 +53,17 @@ constexpr std::size_t kMostWords = 64 << 10;  // of the child's standard error
 
 constexpr std::size_t kAddressesOfLibraries = 96 << 20;
 
-std::string reason(int error) { return std::generic_category().message(error); }
+std::string system_message(int error) { return std::generic_category().message(error); }
 
-class Descriptor {
+class PipeEnd {
 public:
-    explicit Descriptor(int fd = -1) : fd_(fd) {}
-    Descriptor(Descriptor&& o) noexcept : fd_(std::exchange(o.fd_, -1)) {}
-    Descriptor& operator=(Descriptor&& o) noexcept {
+    explicit PipeEnd(int fd = -1) : fd_(fd) {}
+    PipeEnd(PipeEnd&& o) noexcept : fd_(std::exchange(o.fd_, -1)) {}
+    PipeEnd& operator=(PipeEnd&& o) noexcept {
         std::swap(fd_, o.fd_);
         return *this;
     }
-    ~Descriptor() { close(); }
+    ~PipeEnd() { close(); }
     void close() {
         if (fd_ >= 0) ::close(std::exchange(fd_, -1));
     }
@@ -75,7 +75,7 @@ private:
 };
 
 // The first bytes as text for a message.
-std::string shown(std::string_view bytes) {
+std::string first_bytes(std::string_view bytes) {
     std::string s;
     for (char c : bytes.substr(0, 24)) s += c >= ' ' && c <= '~' ? c : '?';
     return s;
@@ -84,13 +84,14 @@ std::string shown(std::string_view bytes) {
 // The format that the first bytes are of: "step", "iges", "brep". An IGES file is told by column 73 of its
 // first line, after any comment lines of the flag section ('C' or 'B' are binary and compressed IGES).
 Result<std::string_view> format_of(const std::string& path) {
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    const PipeEnd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     struct stat info {};
-    if (!file.is_open() || ::fstat(*file, &info) != 0) return refuse(RefusalKind::io, path, reason(errno));
+    if (!file.is_open() || ::fstat(*file, &info) != 0)
+        return refuse(RefusalKind::io, path, system_message(errno));
     if (!S_ISREG(info.st_mode)) return refuse(RefusalKind::io, path, "is not a regular file");
     std::string head(4096, '\0');
     const ssize_t n = ::read(*file, head.data(), head.size());
-    if (n < 0) return refuse(RefusalKind::io, path, reason(errno));
+    if (n < 0) return refuse(RefusalKind::io, path, system_message(errno));
     head.resize(std::size_t(n));
     if (head.empty()) return refuse(RefusalKind::unreadable, path, "the file is empty");
     if (head.find("ISO-10303-21") != std::string::npos) return "step";
@@ -99,7 +100,7 @@ Result<std::string_view> format_of(const std::string& path) {
     if (head.size() > 72 && head[72] == 'S' && head.substr(0, 72).find('\n') == std::string::npos)
         return "iges";
     return refuse(RefusalKind::unreadable, path,
-                  text("begins with '", shown(head),
+                  text("begins with '", first_bytes(head),
                        "'; a STEP file begins with ISO-10303-21, an IGES file has an S in column 73 of its "
                        "first line, a BREP file says CASCADE Topology"));
 }
@@ -176,18 +177,18 @@ struct Outcome {
     ::_exit(126);
 }
 
-bool make_pipe(Descriptor& from, Descriptor& to) {
+bool make_pipe(PipeEnd& from, PipeEnd& to) {
     int ends[2];
     if (::pipe(ends) != 0) return false;
-    from = Descriptor(ends[0]);
-    to = Descriptor(ends[1]);
+    from = PipeEnd(ends[0]);
+    to = PipeEnd(ends[1]);
     for (int fd : ends)
         if (::fcntl(fd, F_SETFD, FD_CLOEXEC) != 0) return false;
     return ::fcntl(*from, F_SETFL, O_NONBLOCK) == 0;
 }
 
 // Takes what is there. False at the end of the stream.
-bool drain(const Descriptor& from, std::string& into, std::size_t most, bool& too_large) {
+bool drain(const PipeEnd& from, std::string& into, std::size_t most, bool& too_large) {
     char buffer[1 << 16];
     for (;;) {
         const ssize_t n = ::read(*from, buffer, sizeof buffer);
@@ -200,7 +201,7 @@ bool drain(const Descriptor& from, std::string& into, std::size_t most, bool& to
 }
 
 // Reads both pipes until the child closes them or its time is over.
-void listen(Outcome& o, std::array<Descriptor, 2>& from, const ImportLimits& limits) {
+void listen(Outcome& o, std::array<PipeEnd, 2>& from, const ImportLimits& limits) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     bool words_too_long = false;
@@ -218,16 +219,16 @@ void listen(Outcome& o, std::array<Descriptor, 2>& from, const ImportLimits& lim
 
 Result<Outcome> run(const std::string& program, const std::string& path, std::string_view format,
                     const ImportLimits& limits) {
-    std::array<Descriptor, 2> from, to;
+    std::array<PipeEnd, 2> from, to;
     for (std::size_t i = 0; i < 2; ++i)
-        if (!make_pipe(from[i], to[i])) return refuse(RefusalKind::io, "pipe", reason(errno));
+        if (!make_pipe(from[i], to[i])) return refuse(RefusalKind::io, "pipe", system_message(errno));
     const std::string format_text(format);
     const std::array<const char*, 6> arguments{program.c_str(), path.c_str(),        "-",
                                                "--format",      format_text.c_str(), nullptr};
     const pid_t parent = ::getpid(), child = ::fork();
-    if (child < 0) return refuse(RefusalKind::io, "fork", reason(errno));
+    if (child < 0) return refuse(RefusalKind::io, "fork", system_message(errno));
     if (child == 0) become_child(program.c_str(), arguments, *to[0], *to[1], parent, limits);
-    for (Descriptor& d : to) d.close();
+    for (PipeEnd& d : to) d.close();
     Outcome o;
     listen(o, from, limits);
     // All of its group, also when it has ended: it may have left something behind.
@@ -292,7 +293,7 @@ Refusal why(const Outcome& o, const std::string& path, const ImportLimits& limit
     if (code == 126 || code == 127)
         return {RefusalKind::unavailable, path,
                 text("the reader of STEP, IGES and BREP files cannot be started", o.words.empty() ? "" : ": ",
-                     shown(o.words))};
+                     first_bytes(o.words))};
     return {RefusalKind::unreadable, path, text("the reader ended with status ", code)};
 }
 

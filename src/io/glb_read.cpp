@@ -15,7 +15,7 @@ namespace freiform {
 namespace {
 
 // One accessor whose bytes have been found and measured.
-struct View {
+struct BufferView {
     const char* first = nullptr;
     std::size_t count = 0, stride = 0;
     int type = 0;
@@ -115,7 +115,7 @@ private:
         return missing;
     }
 
-    Result<Matrix> matrix_of(const Json& node, const std::string& where) const {
+    Result<NodeMatrix> matrix_of(const Json& node, const std::string& where) const {
         if (find(node, "matrix")) return numbers<16>(node, "matrix", kIdentity, where);
         const auto t = numbers<3>(node, "translation", {0, 0, 0}, where);
         const auto q = numbers<4>(node, "rotation", {0, 0, 0, 1}, where);
@@ -125,30 +125,30 @@ private:
         if (!s) return std::unexpected(s.error());
         const auto [x, y, z, w] = *q;
         const auto [a, b, c] = *s;
-        return Matrix{a * (1 - 2 * (y * y + z * z)),
-                      a * 2 * (x * y + z * w),
-                      a * 2 * (x * z - y * w),
-                      0,
-                      b * 2 * (x * y - z * w),
-                      b * (1 - 2 * (x * x + z * z)),
-                      b * 2 * (y * z + x * w),
-                      0,
-                      c * 2 * (x * z + y * w),
-                      c * 2 * (y * z - x * w),
-                      c * (1 - 2 * (x * x + y * y)),
-                      0,
-                      (*t)[0],
-                      (*t)[1],
-                      (*t)[2],
-                      1};
+        return NodeMatrix{a * (1 - 2 * (y * y + z * z)),
+                          a * 2 * (x * y + z * w),
+                          a * 2 * (x * z - y * w),
+                          0,
+                          b * 2 * (x * y - z * w),
+                          b * (1 - 2 * (x * x + z * z)),
+                          b * 2 * (y * z + x * w),
+                          0,
+                          c * 2 * (x * z + y * w),
+                          c * 2 * (y * z - x * w),
+                          c * (1 - 2 * (x * x + y * y)),
+                          0,
+                          (*t)[0],
+                          (*t)[1],
+                          (*t)[2],
+                          1};
     }
 
     struct Visit {
         std::size_t node = 0;
-        Matrix matrix = kYUpToZUp;
+        NodeMatrix matrix = kYUpToZUp;
     };
 
-    Result<void> push_nodes(const Json* list, const Matrix& matrix, std::vector<Visit>& stack,
+    Result<void> push_nodes(const Json* list, const NodeMatrix& matrix, std::vector<Visit>& stack,
                             const std::string& where) {
         if (!list) return {};
         if (!list->is_array()) return damaged(where, "expected a list of nodes");
@@ -180,7 +180,7 @@ private:
             met[visit.node] = true;
             const auto own = matrix_of(*node, where);
             if (!own) return std::unexpected(own.error());
-            Matrix matrix = product(visit.matrix, *own);
+            NodeMatrix matrix = product(visit.matrix, *own);
             if (at_root && single_root) {
                 unit_ = "m";
                 if (const Json* extras = find(*node, "extras"))
@@ -199,7 +199,7 @@ private:
         return {};
     }
 
-    Result<void> read_mesh_of(const Json& node, const Matrix& matrix, const std::string& where) {
+    Result<void> read_mesh_of(const Json& node, const NodeMatrix& matrix, const std::string& where) {
         const auto number = integer(node, "mesh", std::nullopt);
         const Json* mesh = number ? item("meshes", *number) : nullptr;
         if (!mesh) return damaged(text(where, ".mesh"), "there is no such mesh");
@@ -215,8 +215,8 @@ private:
         return {};
     }
 
-    Result<View> view_of(const Json& holder, const char* key, std::string_view type,
-                         const std::string& where) const {
+    Result<BufferView> view_of(const Json& holder, const char* key, std::string_view type,
+                               const std::string& where) const {
         const std::string here = text(where, ".", key);
         const auto number = integer(holder, key, std::nullopt);
         const Json* accessor = number ? item("accessors", *number) : nullptr;
@@ -261,7 +261,7 @@ private:
                            (*count - 1) > (*length - *offset - size) / *stride))
             return damaged(here,
                            text(*count, " items of ", *stride, " bytes do not fit into ", *length, " bytes"));
-        return View{binary_.data() + *view_offset + *offset, *count, *stride, int(*component)};
+        return BufferView{binary_.data() + *view_offset + *offset, *count, *stride, int(*component)};
     }
 
     std::optional<Colour> colour_of(const Json& primitive) const {
@@ -280,19 +280,19 @@ private:
                       std::clamp(encoded(b), 0.0, 1.0), std::clamp(a, 0.0, 1.0)};
     }
 
-    static Vec<3> vector_at(const View& view, std::size_t i) {
+    static Vec<3> vector_at(const BufferView& view, std::size_t i) {
         std::array<float, 3> x;
         std::memcpy(x.data(), view.first + i * view.stride, sizeof x);
         return {{x[0], x[1], x[2]}};
     }
-    static std::size_t index_at(const View& view, std::size_t i) {
+    static std::size_t index_at(const BufferView& view, std::size_t i) {
         const char* at = view.first + i * view.stride;
         std::uint32_t x = 0;
         std::memcpy(&x, at, view.type == 5121 ? 1 : view.type == 5123 ? 2 : 4);
         return x;
     }
 
-    Result<void> read_primitive(const Json& primitive, const std::string& part, const Matrix& matrix,
+    Result<void> read_primitive(const Json& primitive, const std::string& part, const NodeMatrix& matrix,
                                 const std::string& where) {
         const auto mode = integer(primitive, "mode", 4);
         if (!mode || *mode != 4)
@@ -302,7 +302,7 @@ private:
         if (!attributes) return damaged(where, "has no attributes");
         const auto positions = view_of(*attributes, "POSITION", "VEC3", where);
         if (!positions) return std::unexpected(positions.error());
-        std::optional<View> normals, indices;
+        std::optional<BufferView> normals, indices;
         if (find(*attributes, "NORMAL")) {
             auto view = view_of(*attributes, "NORMAL", "VEC3", where);
             if (!view) return std::unexpected(view.error());

@@ -20,7 +20,7 @@ namespace freiform {
 namespace {
 
 constexpr std::string_view kMagic{"FFMODEL\0", 8};
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kFormatVersion = 2;
 
 struct Writer {
     static constexpr bool kReading = false;
@@ -370,7 +370,7 @@ void describe(A& a, Model& m) {
 
 std::string to_binary(const Model& model) {
     Writer out{std::string(kMagic)};
-    out.number(kVersion);
+    out.number(kFormatVersion);
     Model copy = model;  // the descriptions serve reading too, so they take what they may change
     describe(out, copy);
     return std::move(out.bytes);
@@ -382,9 +382,9 @@ Result<Model> from_binary(std::string_view bytes) {
     Reader in{bytes, kMagic.size(), {}};
     std::uint32_t version = 0;
     in.number(version);
-    if (in.good() && version != kVersion)
+    if (in.good() && version != kFormatVersion)
         return refuse(RefusalKind::unsupported, "byte 8",
-                      text("version ", version, " of the format, this program knows ", kVersion));
+                      text("version ", version, " of the format, this program knows ", kFormatVersion));
     Model model;
     describe(in, model);
     if (in.left() > 0)

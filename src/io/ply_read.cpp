@@ -11,22 +11,22 @@ namespace {
 
 enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
 constexpr std::array<std::size_t, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
-constexpr std::array<std::pair<std::string_view, Type>, 16> kTypes{{{"char", Type::i8},
-                                                                    {"uchar", Type::u8},
-                                                                    {"short", Type::i16},
-                                                                    {"ushort", Type::u16},
-                                                                    {"int", Type::i32},
-                                                                    {"uint", Type::u32},
-                                                                    {"float", Type::f32},
-                                                                    {"double", Type::f64},
-                                                                    {"int8", Type::i8},
-                                                                    {"uint8", Type::u8},
-                                                                    {"int16", Type::i16},
-                                                                    {"uint16", Type::u16},
-                                                                    {"int32", Type::i32},
-                                                                    {"uint32", Type::u32},
-                                                                    {"float32", Type::f32},
-                                                                    {"float64", Type::f64}}};
+constexpr std::array<std::pair<std::string_view, Type>, 16> kPlyTypes{{{"char", Type::i8},
+                                                                       {"uchar", Type::u8},
+                                                                       {"short", Type::i16},
+                                                                       {"ushort", Type::u16},
+                                                                       {"int", Type::i32},
+                                                                       {"uint", Type::u32},
+                                                                       {"float", Type::f32},
+                                                                       {"double", Type::f64},
+                                                                       {"int8", Type::i8},
+                                                                       {"uint8", Type::u8},
+                                                                       {"int16", Type::i16},
+                                                                       {"uint16", Type::u16},
+                                                                       {"int32", Type::i32},
+                                                                       {"uint32", Type::u32},
+                                                                       {"float32", Type::f32},
+                                                                       {"float64", Type::f64}}};
 
 struct Property {
     std::string name;
@@ -117,7 +117,7 @@ private:
         Property property;
         const auto type = [this]() -> Result<Type> {
             const std::string_view word = words_.next();
-            for (const auto& [name, value] : kTypes)
+            for (const auto& [name, value] : kPlyTypes)
                 if (word == name) return value;
             return words_.refuse_here(text("not a type of PLY: ", shown(word)));
         };

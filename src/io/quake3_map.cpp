@@ -53,16 +53,16 @@ Result<Object> Grid::object(std::string name, std::string material) const {
 
 namespace {
 
-bool is_space(char c) { return is_blank(c) || c == '\n'; }
+bool is_white(char c) { return is_blank(c) || c == '\n'; }
 
-class Words {
+class MapWords {
 public:
-    explicit Words(std::string_view text) : rest_(text) {}
+    explicit MapWords(std::string_view text) : rest_(text) {}
 
     // The next word; empty at the end. Quotes stay.
     std::string_view next() {
         for (;;) {
-            while (!rest_.empty() && is_space(rest_[0])) skip(1);
+            while (!rest_.empty() && is_white(rest_[0])) skip(1);
             if (!rest_.starts_with("//")) break;
             skip(std::min(rest_.find('\n'), rest_.size()));
         }
@@ -72,7 +72,7 @@ public:
             while (n < rest_.size() && rest_[n] != '"' && rest_[n] != '\n') ++n;
             n = std::min(n + 1, rest_.size());
         } else {
-            while (n < rest_.size() && !is_space(rest_[n])) ++n;
+            while (n < rest_.size() && !is_white(rest_[n])) ++n;
         }
         const std::string_view word = rest_.substr(0, n);
         skip(n);
@@ -109,7 +109,7 @@ private:
 };
 
 // { texture ( width height and 3 or 5 numbers more ) ( ( ( x y z s t ) .. ) .. ) }
-Result<Object> read_patch(Words& words, std::string name, int more) {
+Result<Object> read_patch_words(MapWords& words, std::string name, int more) {
     if (auto ok = words.expect("{"); !ok) return std::unexpected(ok.error());
     const std::string material(words.next());
     if (auto ok = words.expect("("); !ok) return std::unexpected(ok.error());
@@ -152,7 +152,7 @@ Result<Object> read_patch(Words& words, std::string name, int more) {
 }  // namespace
 
 Result<Document> read_quake3_map(std::string_view bytes) {
-    Words words(bytes);
+    MapWords words(bytes);
     Document document;
     long long entity = -1, brush = -1;
     int depth = 0;  // 1 in an entity, 2 in a brush
@@ -165,8 +165,8 @@ Result<Document> read_quake3_map(std::string_view bytes) {
         } else if (depth == 0) {
             return words.expected("an entity: {", word);
         } else if (depth == 2 && (word == "patchDef2" || word == "patchDef3")) {
-            auto object =
-                read_patch(words, text("entity ", entity, " brush ", brush), word == "patchDef2" ? 3 : 5);
+            auto object = read_patch_words(words, text("entity ", entity, " brush ", brush),
+                                           word == "patchDef2" ? 3 : 5);
             if (!object) return std::unexpected(object.error());
             document.objects.push_back(std::move(*object));
         } else if (depth == 2 && word == "brushDef") {

@@ -8,12 +8,12 @@
 namespace freiform {
 namespace {
 
-constexpr std::size_t kHeader = 84, kFacet = 50;
+constexpr std::size_t kPreamble = 84, kFacetBytes = 50;
 
 std::uint64_t binary_size(std::string_view bytes) {
     std::uint32_t count = 0;
     std::memcpy(&count, bytes.data() + 80, sizeof count);
-    return kHeader + kFacet * std::uint64_t(count);
+    return kPreamble + kFacetBytes * std::uint64_t(count);
 }
 
 // "binary STL; unit mm; ..." as our writer has it.
@@ -27,13 +27,13 @@ std::string unit_in(std::string_view header) {
 
 Result<TriangleMesh> parse_binary(std::string_view bytes, const std::string& name,
                                   const MeshReadOptions& options) {
-    const std::size_t count = (bytes.size() - kHeader) / kFacet;
+    const std::size_t count = (bytes.size() - kPreamble) / kFacetBytes;
     if (count > options.max_triangles)
         return refuse(RefusalKind::limit, name,
                       text("has ", count, " triangles, the limit is ", options.max_triangles));
     MeshBuilder builder(options);
     for (std::size_t t = 0; t < count; ++t) {
-        const std::size_t at = kHeader + kFacet * t;
+        const std::size_t at = kPreamble + kFacetBytes * t;
         std::array<float, 9> x;
         std::memcpy(x.data(), bytes.data() + at + 12, sizeof x);
         std::array<int, 3> v;
@@ -108,13 +108,13 @@ Result<TriangleMesh> parse_text(std::string_view bytes, const std::string& name,
 
 Result<TriangleMesh> parse_stl(std::string_view bytes, const std::string& name,
                                const MeshReadOptions& options) {
-    if (bytes.size() >= kHeader && bytes.size() == binary_size(bytes))
+    if (bytes.size() >= kPreamble && bytes.size() == binary_size(bytes))
         return parse_binary(bytes, name, options);
     std::size_t begin = 0;
     while (begin < bytes.size() && (bytes[begin] == ' ' || (bytes[begin] >= '\t' && bytes[begin] <= '\r')))
         ++begin;
     if (equal_words(bytes.substr(begin, 5), "solid")) return parse_text(bytes, name, options);
-    if (bytes.size() < kHeader)
+    if (bytes.size() < kPreamble)
         return refuse(
             RefusalKind::unreadable, name,
             text("has ", bytes.size(), " bytes; an STL file begins with \"solid\" or has at least 84"));

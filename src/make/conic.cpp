@@ -31,12 +31,12 @@
 // allows it.
 #include "bounded_net_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/poly/predicates.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace freiform {
 
@@ -44,8 +44,6 @@ namespace {
 
 using detail::cosine;
 using detail::sine;
-
-constexpr double kUnit = detail::kRoundUnit, kTwoPi = 2 * std::numbers::pi;
 
 using bounded::length;
 using bounded::Vector;
@@ -106,12 +104,12 @@ Result<ConicArc<D>> spline_of(const std::vector<Piece<D>>& pieces, bool closed =
 
 Bounded hyperbolic_cosine(const Bounded& t) {
     const double c = std::cosh(t.value);
-    return {c,
-            2 * c * t.bound + 5 * kUnit * c};  // the derivative is at most cosh(t + 1/2) / cosh(t) < 2 larger
+    return {c, 2 * c * t.bound +
+                   5 * kUnitRoundoff * c};  // the derivative is at most cosh(t + 1/2) / cosh(t) < 2 larger
 }
 Bounded hyperbolic_sine(const Bounded& t) {
     const double c = std::cosh(t.value);
-    return {std::sinh(t.value), 2 * c * t.bound + 5 * kUnit * c};
+    return {std::sinh(t.value), 2 * c * t.bound + 5 * kUnitRoundoff * c};
 }
 
 // Do a, b, c lie on one line? Exact: they do if their shadows in all coordinate planes do.
@@ -141,7 +139,7 @@ Result<Axes<D>> checked(const FoundConic<D>& f) {
 // The four quarters from parameter 0 on.
 template <int D>
 std::vector<Piece<D>> quarters(const Axes<D>& axes) {
-    const Bounded w(std::sqrt(0.5), kUnit);
+    const Bounded w(std::sqrt(0.5), kUnitRoundoff);
     const Vector<D> zero{}, spokes[5] = {axes.x, axes.y, zero - axes.x, zero - axes.y, axes.x};
     std::vector<Piece<D>> pieces;
     for (int k = 0; k < 4; ++k)
@@ -338,7 +336,7 @@ Result<ConicArc<D>> arc_through(const Vec<D>& a, const Vec<D>& b, const Vec<D>& 
     // The part of b - a that is orthogonal to the chord; its length is sin(angle) |to_a| |to_c| / |chord|.
     const Vector<D> offset = (B - A) - dot(B - A, chord) / dot(chord, chord) * chord;
     const Vector<D> v = w * (Bounded(0.5) * (A + C)) + Bounded(0.5) * dot(chord, chord) / size * offset;
-    return scaled_back(halves<D>(A, v, w, C, std::cos(widest / 2) * (1 - 8 * kUnit)), e);
+    return scaled_back(halves<D>(A, v, w, C, std::cos(widest / 2) * (1 - 8 * kUnitRoundoff)), e);
 }
 
 template <int D>
@@ -419,5 +417,6 @@ Result<ConicArc<2>> tangent_arc(const Vec<2>& a, const Vec<2>& at_a, const Vec<2
     template Result<ConicArc<D>> weighted_arc(const Vec<D>&, const Vec<D>&, const Vec<D>&, double);
 FF_CONIC(2)
 FF_CONIC(3)
+#undef FF_CONIC
 
 }  // namespace freiform

@@ -28,6 +28,7 @@
 // References: [Salmon 1879, ch. 10-13].
 //
 // Why not an eigenvalue routine? Its rounding decides about kinds, and near parabolas it is always wrong.
+#include <freiform/core/constants.hpp>
 #include <freiform/make/conic_equation.hpp>
 #include <freiform/poly/determinant.hpp>
 #include <freiform/poly/exact.hpp>
@@ -248,7 +249,7 @@ std::vector<double> crossings(ConicKind kind, double p, double q, double s) {
         if (!(std::abs(s) <= size) || size == 0) return t;
         const double half = std::acos(s / size);
         t = {at - half, at + half};
-        for (double& x : t) x -= 2 * std::numbers::pi * std::floor(x / (2 * std::numbers::pi));
+        for (double& x : t) x -= kTwoPi * std::floor(x / (kTwoPi));
         return t;
     }
     // Hyperbola: with z = e^t, (p + q) z^2 - 2 s z + (p - q) = 0. Parabola: p t^2 + q t - s = 0.
@@ -330,9 +331,9 @@ Result<std::vector<ConicArc<2>>> arcs_inside(const ConicForm& form, const Box<2>
         const CurveGeometry<2> curve(found.conic);
         if (kind == ConicKind::ellipse) {
             if (t.empty())
-                t = {0, 2 * std::numbers::pi};
+                t = {0, kTwoPi};
             else
-                t.push_back(t.front() + 2 * std::numbers::pi);
+                t.push_back(t.front() + kTwoPi);
         }
         const auto is_inside = [&](std::size_t i) {
             return t[i] < t[i + 1] && box.contains(jet<0>(curve, Interval{t[i], t[i + 1]}.middle()).d[0]);
@@ -341,7 +342,7 @@ Result<std::vector<ConicArc<2>>> arcs_inside(const ConicForm& form, const Box<2>
             if (!is_inside(i)) continue;
             const double from = t[i];  // parts that follow each other inside are one arc: it touches a side
             while (i + 2 < t.size() && (is_inside(i + 1) || t[i + 1] == t[i + 2])) ++i;
-            auto arc = conic_arc(found, {from, std::min(t[i + 1], from + 2 * std::numbers::pi)});
+            auto arc = conic_arc(found, {from, std::min(t[i + 1], from + kTwoPi)});
             if (!arc) return std::unexpected(arc.error());
             arcs.push_back(std::move(*arc));
         }

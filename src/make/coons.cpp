@@ -288,5 +288,6 @@ Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge
                                                       const CoonsTolerance&);
 FF_COONS(2)
 FF_COONS(3)
+#undef FF_COONS
 
 }  // namespace freiform

@@ -53,22 +53,22 @@ namespace freiform {
 namespace {
 
 using Scalar = detail::BernsteinScalar;
-using Vector = detail::BernsteinVector;
+using SpaceVector = detail::BernsteinVector;
 using detail::elevated;
 using detail::scaled_by;
 
-Scalar inner(const Vector& a, const Vector& b) {
+Scalar inner(const SpaceVector& a, const SpaceVector& b) {
     return detail::bernstein_product(
         a, b, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return dot(x, y); });
 }
-Vector derivative_of(const Vector& v) {
-    Vector d(std::max<std::size_t>(v.size() - 1, 1));
+SpaceVector derivative_of(const SpaceVector& v) {
+    SpaceVector d(std::max<std::size_t>(v.size() - 1, 1));
     for (std::size_t i = 0; i + 1 < v.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) d[i][k] = Bounded(double(v.size() - 1)) * (v[i + 1][k] - v[i][k]);
     return d;
 }
 // The part over [i / m, (i + 1) / m], by de Casteljau with bounds.
-Vector part(Vector b, int i, int m) {
+SpaceVector part(SpaceVector b, int i, int m) {
     const std::size_t n = b.size();
     const auto mix = [](const BoundedVec<3>& x, const BoundedVec<3>& y, const Bounded& t) {
         BoundedVec<3> z;
@@ -99,7 +99,7 @@ Vec<3> reflected(const Vec<3>& x, const Vec<3>& normal) {
 
 // The rail c / w over one part, by a parameter from 0 to 1; N and N' (of polynomial rails c' and c'').
 struct Part {
-    Vector c, d1, d2;
+    SpaceVector c, d1, d2;
     Scalar w;
     Interval on;  // of the rail's parameter
 
@@ -113,7 +113,7 @@ private:
 };
 
 // A vector of the frame as a cubic.
-Vector hermite(const Vec<3>& q0, const Vec<3>& d0, const Vec<3>& q1, const Vec<3>& d1) {
+SpaceVector hermite(const Vec<3>& q0, const Vec<3>& d0, const Vec<3>& q1, const Vec<3>& d1) {
     const double third = 1.0 / 3;
     return {bounded(q0), bounded(q0 + third * d0), bounded(q1 - third * d1), bounded(q1)};
 }
@@ -129,35 +129,35 @@ struct Defect {
 };
 
 // The integral from the lower end, of degree one more.
-Vector integral_of(const Vector& g) {
-    Vector sum(g.size() + 1);
+SpaceVector integral_of(const SpaceVector& g) {
+    SpaceVector sum(g.size() + 1);
     const Bounded share = Bounded(1) / Bounded(double(g.size()));
     for (std::size_t i = 0; i < g.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) sum[i + 1][k] = sum[i][k] + share * g[i][k];
     return sum;
 }
-double mean_length(const Vector& g) {
+double mean_length(const SpaceVector& g) {
     double sum = 0;
     for (const auto& x : g) sum += length_above(x);
     return sum / double(g.size()) * (1 + 0x1p-44);
 }
-double largest_length(const Vector& g) {
+double largest_length(const SpaceVector& g) {
     double most = 0;
     for (const auto& x : g) most = std::max(most, length_above(x));
     return most;
 }
 
 // Infinite where |c'|^2 is not proven positive.
-Defect defect(const Part& s, const Vector& q) {
+Defect defect(const Part& s, const SpaceVector& q) {
     const Scalar speed = inner(s.d1, s.d1);
     double least = std::numeric_limits<double>::infinity();
     for (const Bounded& x : speed) least = std::min(least, x.value - x.bound);
     if (!(least > 0)) return {std::numeric_limits<double>::infinity(), 0};
-    const Vector a = scaled_by(speed, derivative_of(q)), b = scaled_by(inner(s.d1, q), s.d2),
-                 c = scaled_by(inner(s.d2, q), s.d1);
+    const SpaceVector a = scaled_by(speed, derivative_of(q)), b = scaled_by(inner(s.d1, q), s.d2),
+                      c = scaled_by(inner(s.d2, q), s.d1);
     const std::size_t n = std::max({a.size(), b.size(), c.size()});
-    const Vector ea = elevated(a, n - 1), eb = elevated(b, n - 1), ec = elevated(c, n - 1);
-    Vector g(n);
+    const SpaceVector ea = elevated(a, n - 1), eb = elevated(b, n - 1), ec = elevated(c, n - 1);
+    SpaceVector g(n);
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < 3; ++k) g[i][k] = ea[i][k] - eb[i][k] + ec[i][k];
     const Scalar p = {Bounded(1 / speed.front().value), Bounded(1 / speed.back().value)};
@@ -167,8 +167,8 @@ Defect defect(const Part& s, const Vector& q) {
         off = std::max(off, std::abs(rest.value) + rest.bound);
     }
     const double rest = off * mean_length(g) / least * (1 + 0x1p-44);
-    const Vector d = integral_of(scaled_by(p, g));
-    const Vector turning = detail::bernstein_product(
+    const SpaceVector d = integral_of(scaled_by(p, g));
+    const SpaceVector turning = detail::bernstein_product(
         s.d1, s.d2, [](const BoundedVec<3>& x, const BoundedVec<3>& y) { return cross(x, y); });
     const double by_turning = largest_length(turning) / least * (mean_length(d) + rest) * (1 + 0x1p-44);
     const Defect found{(length_above(d.back()) + rest + by_turning) * (1 + 0x1p-44),
@@ -178,7 +178,7 @@ Defect defect(const Part& s, const Vector& q) {
 }
 
 struct Framed {
-    std::vector<Vector> r, s;       // for each part
+    std::vector<SpaceVector> r, s;  // for each part
     double off_r = 0, off_s = 0;    // at the end of the last part
     double most_r = 0, most_s = 0;  // anywhere
 };
@@ -186,7 +186,7 @@ struct Framed {
 // The pieces of a rail, in divided units.
 struct Rail {
     struct Piece {
-        Vector c, d1, d2;
+        SpaceVector c, d1, d2;
         Scalar w;  // {1} if the rail is polynomial
         Interval on;
     };
@@ -220,7 +220,7 @@ Rail rail_of(const Curve<R>& rail, const detail::Powers& powers, double relative
             for (std::size_t i = 0; i + 1 < piece.w.size(); ++i)
                 slope[i] = Bounded(double(piece.w.size() - 1)) * (piece.w[i + 1] - piece.w[i]);
             piece.d1 = scaled_by(piece.w, derivative_of(piece.c));
-            const Vector other = scaled_by(slope, piece.c);
+            const SpaceVector other = scaled_by(slope, piece.c);
             for (std::size_t i = 0; i < other.size(); ++i)
                 for (std::size_t k = 0; k < 3; ++k) piece.d1[i][k] = piece.d1[i][k] - other[i][k];
         }
@@ -235,7 +235,7 @@ std::vector<Part> parts_of(const Rail& rail, int m) {
     for (const Rail::Piece& piece : rail.pieces)
         for (int k = 0; k < m; ++k) {
             Part s{part(piece.c, k, m), part(piece.d1, k, m), part(piece.d2, k, m), {}, {}};
-            Vector w;  // as the first coordinate
+            SpaceVector w;  // as the first coordinate
             for (const Bounded& x : piece.w) w.push_back({x, Bounded(0), Bounded(0)});
             for (const auto& x : part(std::move(w), k, m)) s.w.push_back(x[0]);
             for (auto& v : s.d1)
@@ -307,7 +307,7 @@ Result<MadeSurface<Q>> placed(const BSplineBasis& u, const std::vector<detail::S
     std::vector<double> t(degree + 1, parts[0].on.lo);
     for (const Part& p : parts) t.insert(t.end(), degree, p.on.hi);
     t.push_back(parts.back().on.hi);
-    std::vector<Vector> rail, r, s;
+    std::vector<SpaceVector> rail, r, s;
     std::vector<Scalar> w;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         rail.push_back(elevated(parts[i].c, degree));
@@ -405,5 +405,6 @@ FF_FRAME_SWEEP(Vec<2>, Vec<3>)
 FF_FRAME_SWEEP(Hom<2>, Vec<3>)
 FF_FRAME_SWEEP(Vec<2>, Hom<3>)
 FF_FRAME_SWEEP(Hom<2>, Hom<3>)
+#undef FF_FRAME_SWEEP
 
 }  // namespace freiform

@@ -220,5 +220,6 @@ Result<void> fill_rows(const EdgePieces& previous, const ShapeFunctions& shape, 
     template Result<void> fill_rows(const EdgePieces&, const ShapeFunctions&, const RowTarget&, Net<2, P>&);
 FF_INSTANTIATE_ROWS(Vec<3>)
 FF_INSTANTIATE_ROWS(Hom<3>)
+#undef FF_INSTANTIATE_ROWS
 
 }  // namespace freiform::detail

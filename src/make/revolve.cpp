@@ -36,6 +36,7 @@
 // off the circle, or their tangents are; so the surface would not begin at its profile.
 #include "rounding_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/make/revolve.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -48,7 +49,6 @@ namespace {
 using detail::cosine;
 using detail::sine;
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 // More arcs than that are never better: at 2^14 arcs of a full turn eps is 2^-83, far below rounding.
 constexpr int kMostPieces = 1 << 14;
 
@@ -185,7 +185,7 @@ Result<BSplineBasis> turning_basis(int degree, int n, bool closed) {
 // Of a full turn, to the sign of its sense: quarters, whose cosines and sines are 0, 1 and -1.
 std::vector<Station> full_turn(double sense, bool closed) {
     constexpr double kCos[] = {1, 0, -1, 0, 1}, kSin[] = {0, 1, 0, -1, 0};
-    const Bounded w(std::sqrt(0.5), detail::kRoundUnit);
+    const Bounded w(std::sqrt(0.5), kUnitRoundoff);
     std::vector<Station> out;
     for (int k = 0; k < 4; ++k) {
         out.push_back({1, kCos[k], sense * kSin[k], k == 0});
@@ -260,7 +260,7 @@ Result<RevolvedPolynomial> revolve_polynomial(const Curve<Vec<D>>& profile, cons
     const Turning<Vec<D>> turning(profile, axis);
     if (auto ok = turning.check_arms(); !ok) return std::unexpected(ok.error());
     const bool closed = std::abs(angle) == kTwoPi && seam == Seam::closed;
-    const double reach = turning.reach(), knots = 3 * detail::kRoundUnit * reach;
+    const double reach = turning.reach(), knots = 3 * kUnitRoundoff * reach;
     double room = tolerance;  // less what rounding moves, once that is known
     for (int round = 0; round < 8; ++round) {
         int n = fewest(angle, std::numbers::pi);

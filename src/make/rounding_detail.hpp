@@ -5,6 +5,7 @@
 //     max_i (|e_i| + |g| |d_i|) / w_i,    |g| <= max |P_i| + |f - g|.
 #pragma once
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/in_space.hpp>
 
 #include <algorithm>
@@ -12,8 +13,6 @@
 #include <limits>
 
 namespace freiform::detail {
-
-inline constexpr double kRoundUnit = 0x1p-53;
 
 // The bound above, coefficient by coefficient.
 class MovedBound {
@@ -27,7 +26,7 @@ public:
     }
     // Infinite where nothing is known.
     double value() const {
-        return rho_ < 0.5 ? (moved_ + reach_ * rho_) / (1 - rho_) * (1 + 32 * kRoundUnit)
+        return rho_ < 0.5 ? (moved_ + reach_ * rho_) / (1 - rho_) * (1 + 32 * kUnitRoundoff)
                           : std::numeric_limits<double>::infinity();
     }
 
@@ -37,7 +36,9 @@ private:
 
 // cos and sin of the C library are taken to be off by at most one unit in the last place, as glibc and musl
 // state; their derivatives are at most 1.
-inline Bounded off_by_an_ulp(double x, double more) { return {x, std::abs(x) * (2.01 * kRoundUnit) + more}; }
+inline Bounded off_by_an_ulp(double x, double more) {
+    return {x, std::abs(x) * (2.01 * kUnitRoundoff) + more};
+}
 inline Bounded cosine(const Bounded& t) { return off_by_an_ulp(std::cos(t.value), t.bound); }
 inline Bounded sine(const Bounded& t) { return off_by_an_ulp(std::sin(t.value), t.bound); }
 

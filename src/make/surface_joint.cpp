@@ -261,5 +261,6 @@ Result<Surface<P>> rejoined(const Surface<P>& previous, SurfaceEdge edge, const 
                                          bool, const ShapeFunctions&);
 FF_INSTANTIATE_SURFACE_JOINT(Vec<3>)
 FF_INSTANTIATE_SURFACE_JOINT(Hom<3>)
+#undef FF_INSTANTIATE_SURFACE_JOINT
 
 }  // namespace freiform

@@ -149,5 +149,6 @@ FF_SWEEP(Vec<2>)
 FF_SWEEP(Hom<2>)
 FF_SWEEP(Vec<3>)
 FF_SWEEP(Hom<3>)
+#undef FF_SWEEP
 
 }  // namespace freiform

@@ -14,6 +14,7 @@
 // Why not factors of higher degree, or a free one at B? Linear ones are what the ends of the edge determine,
 // and keep the degree down.
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/make/triangle_joint.hpp>
 
 #include <algorithm>
@@ -23,9 +24,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kUnit = 0x1p-53;
-
-std::unexpected<Refusal> invalid(std::string where, std::string message) {
+std::unexpected<Refusal> invalid_joint(std::string where, std::string message) {
     return refuse(RefusalKind::invalid, std::move(where), std::move(message));
 }
 
@@ -49,7 +48,7 @@ int degree_for(std::size_t free, int order) {
 }
 
 Result<void> check_edge(int edge) {
-    if (edge < 0 || edge > 2) return invalid("edge", text(edge, " is not 0, 1 or 2"));
+    if (edge < 0 || edge > 2) return invalid_joint("edge", text(edge, " is not 0, 1 or 2"));
     return {};
 }
 
@@ -77,15 +76,16 @@ template <class P>
 Result<JoinedTriangle<P>> next_c(const SimplexPatch<2, P>& s, int edge, int order, const Param<2>& apex,
                                  std::vector<P> free) {
     if (auto ok = check_edge(edge); !ok) return std::unexpected(ok.error());
-    if (order < 0 || order > kMaxDegree) return invalid("order", text(order, " is outside 0..", kMaxDegree));
+    if (order < 0 || order > kMaxDegree)
+        return invalid_joint("order", text(order, " is outside 0..", kMaxDegree));
     const Bounded t[3] = {Bounded(1) - apex[0] - apex[1], apex[0], apex[1]};
     const Bounded& side = t[std::size_t(edge)];
     if (!(side.excludes_zero() && side.value < 0))
-        return invalid("apex", text("(", apex[0], ", ", apex[1], ") is not beyond edge ", edge));
+        return invalid_joint("apex", text("(", apex[0], ", ", apex[1], ") is not beyond edge ", edge));
     const int n = degree_for(free.size(), order);
     if (n < std::max(s.degree(), order) || n > kMaxDegree)
-        return invalid("free", text(free.size(), " coefficients leave no triangle of a degree from ",
-                                    std::max(s.degree(), order), " to ", kMaxDegree));
+        return invalid_joint("free", text(free.size(), " coefficients leave no triangle of a degree from ",
+                                          std::max(s.degree(), order), " to ", kMaxDegree));
     auto raised = s;
     for (int m = s.degree(); m < n; ++m) raised = *elevate(raised);
     const auto all = de_casteljau(raised, apex);
@@ -96,7 +96,7 @@ Result<JoinedTriangle<P>> next_c(const SimplexPatch<2, P>& s, int edge, int orde
         for (const std::size_t i : row_slots(n - r, edge, 0)) row.push_back(all->level(r)[i]);
     }
     const double stretch = std::abs(t[0].value) + std::abs(t[1].value) + std::abs(t[2].value);
-    const double elevation = (n - s.degree()) * 5.1 * kUnit * largest(s);
+    const double elevation = (n - s.degree()) * 5.1 * kUnitRoundoff * largest(s);
     auto patch = with_rows(n, std::move(free), rows);
     if (!patch) return std::unexpected(patch.error());
     return JoinedTriangle<P>{std::move(*patch),
@@ -108,13 +108,13 @@ Result<SimplexPatch<2, P>> next_g1(const SimplexPatch<2, P>& s, int edge, const 
                                    std::vector<P> free) {
     if (auto ok = check_edge(edge); !ok) return std::unexpected(ok.error());
     const int n = s.degree();
-    if (n < 1 || n >= kMaxDegree) return invalid("degree", text(n, " is outside 1..", kMaxDegree - 1));
+    if (n < 1 || n >= kMaxDegree) return invalid_joint("degree", text(n, " is outside 1..", kMaxDegree - 1));
     for (const double l : change.lambda)
-        if (!(l > 0)) return invalid("lambda", text(l, " is not positive"));
+        if (!(l > 0)) return invalid_joint("lambda", text(l, " is not positive"));
     for (const double g : change.gamma)
         if (!std::isfinite(g)) return refuse(RefusalKind::nonfinite, "gamma", text(g, " is no number"));
     if (free.size() != std::size_t((n + 1) * n / 2))
-        return invalid("free", text(free.size(), " coefficients, ", (n + 1) * n / 2, " are free"));
+        return invalid_joint("free", text(free.size(), " coefficients, ", (n + 1) * n / 2, " are free"));
     const auto b = s.coefficients();
     std::vector<P> edge_points, raised, across, along;  // E, E elevated, A / n, E' / n
     for (const std::size_t i : row_slots(n, edge, 0)) edge_points.push_back(b[i]);
@@ -152,12 +152,12 @@ Result<PointNormalTriangle> point_normal_triangle(const std::array<Vec<3>, 3>& p
             return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "is no point");
         if (!is_finite(normals[i]))
             return refuse(RefusalKind::nonfinite, text("normals[", i, "]"), "is no vector");
-        if (max_abs(normals[i]) == 0) return invalid(text("normals[", i, "]"), "is zero");
+        if (max_abs(normals[i]) == 0) return invalid_joint(text("normals[", i, "]"), "is zero");
         n[i] = unit(normals[i]);
     }
     for (std::size_t i = 0; i < 3; ++i)
         if (points[i] == points[(i + 1) % 3])
-            return invalid(text("points[", (i + 1) % 3, "]"), "is the same point as the one before");
+            return invalid_joint(text("points[", (i + 1) % 3, "]"), "is the same point as the one before");
     // A third of the way from i to j, moved into the tangent plane at i.
     const auto third = [&](std::size_t i, std::size_t j) {
         return (1.0 / 3) * (2.0 * points[i] + points[j] - dot(points[j] - points[i], n[i]) * n[i]);
@@ -188,5 +188,6 @@ Result<PointNormalTriangle> point_normal_triangle(const std::array<Vec<3>, 3>& p
 FF_TRIANGLE_JOINT(Vec<1>)
 FF_TRIANGLE_JOINT(Vec<3>)
 FF_TRIANGLE_JOINT(Hom<3>)
+#undef FF_TRIANGLE_JOINT
 
 }  // namespace freiform

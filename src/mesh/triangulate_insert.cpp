@@ -11,19 +11,13 @@
 // strictly convex quadrilateral: flip, and look at the two edges that v now faces. Each flip adds an edge at
 // v and none is taken away, so there are fewer flips than vertices. With infinite triangles the same holds: v
 // is beyond the hull edge, and the flip makes that edge part of a triangle with v.
+#include "mesh/corners_detail.hpp"
 #include "mesh/insertion_order_detail.hpp"
 
 #include <freiform/mesh/triangulate.hpp>
 #include <freiform/poly/predicates.hpp>
 
 namespace freiform {
-
-namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
-
-}  // namespace
 
 void Triangulation::start_change() {
     ++now_;

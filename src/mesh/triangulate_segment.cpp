@@ -16,6 +16,8 @@
 // chain has inner vertices, the first of those farthest from ab is such a right turn. A chain may pass a
 // vertex twice, around an edge that ends inside the crossed region; the argument holds for such chains as
 // well, with the angle at the tip counted as 360 degrees, no turn at all.
+#include "mesh/corners_detail.hpp"
+
 #include <freiform/mesh/triangulate.hpp>
 #include <freiform/poly/predicates.hpp>
 
@@ -24,9 +26,6 @@
 namespace freiform {
 
 namespace {
-
-constexpr int next(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int previous(int i) { return i == 0 ? 2 : i - 1; }
 
 // Is v, on the line ab, on b's side of a?
 bool is_ahead(const Vec<2>& a, const Vec<2>& b, const Vec<2>& v) {

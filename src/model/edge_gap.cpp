@@ -38,6 +38,7 @@
 // angles, and for rational surfaces its denominator has to be multiplied out with c's.
 #include "edge_mesh_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/model/edge_gap.hpp>
 
 #include <algorithm>
@@ -49,7 +50,6 @@ namespace freiform {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kError[4] = {0, 0.5, 0.125, 0.00803};  // of order k, times h^k max|g^(k)|
 constexpr int kMostParts = 64;                          // of a piece at a time
 constexpr int kPieceCost = 12;                          // in samples

@@ -19,11 +19,7 @@
 
 namespace freiform {
 
-namespace {
-
-constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
-
-}  // namespace
+namespace {}  // namespace
 
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
     return std::visit(

@@ -14,7 +14,7 @@ namespace freiform {
 
 namespace {
 
-constexpr std::size_t kFewestParts = 5, kMostParts = 25;
+constexpr std::size_t kFewestLines = 5, kMostLines = 25;
 constexpr double kEdgeOn = 1e-9;  // |n . eye| below is rounding: the face is seen edge on
 constexpr int kBisections = 40;
 
@@ -81,13 +81,13 @@ std::vector<double> isoline_levels(const SurfaceGeometry& surface, int axis, con
         if (on.lo < b && b < on.hi) breaks.push_back(b);
     breaks.push_back(on.hi);
     const std::size_t spans = breaks.size() - 1;
-    if (spans > kMostParts) {
-        for (std::size_t i = 1; i < kMostParts; ++i) out.push_back(breaks[i * spans / kMostParts]);
+    if (spans > kMostLines) {
+        for (std::size_t i = 1; i < kMostLines; ++i) out.push_back(breaks[i * spans / kMostLines]);
         return out;
     }
     for (std::size_t i = 0; i < spans; ++i) {
         if (i > 0) out.push_back(breaks[i]);
-        even(breaks[i], breaks[i + 1], (kFewestParts + spans - 1) / spans);
+        even(breaks[i], breaks[i + 1], (kFewestLines + spans - 1) / spans);
     }
     return out;
 }

@@ -26,7 +26,6 @@ namespace {
 
 constexpr int kConflictRounds = 12;  // each halves the segments that touch
 constexpr int kManifoldRounds = 4;
-constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

@@ -9,6 +9,8 @@
 // tolerance is bisected, on a logarithmic scale, for the smallest that needs no more than the given number.
 #include "path/flatten_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <optional>
 
 namespace freiform {
@@ -97,7 +99,7 @@ Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOpt
     const detail::Chain<P> chain(curve);
     const double tolerance = std::scalbn(options.tolerance, -chain.exponent());
     if (options.tolerance > 0 && !(tolerance > 0))
-        return detail::below_rounding(chain, tolerance, detail::kUnit);
+        return detail::below_rounding(chain, tolerance, kUnitRoundoff);
     auto line = [&] {
         switch (options.method) {
             case FlattenMethod::uniform:
@@ -149,5 +151,6 @@ FF_INSTANTIATE(Hom<1>)
 FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform

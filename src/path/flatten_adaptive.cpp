@@ -22,6 +22,8 @@
 // estimate.
 #include "path/flatten_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <optional>
 
 namespace freiform::detail {
@@ -119,7 +121,7 @@ private:
                 l0 = i == from ? a : a + ((chain_.at(i) - s) / h) * (trial.end - a);
                 l1 = i == to ? trial.end : a + ((chain_.at(i + 1) - s) / h) * (trial.end - a);
                 // Parameters are rounded, and a part begins up to 2 u x0 before its parameter.
-                slope = 8 * kUnit * norm(trial.end - a) * ((chain_.at(i + 1) - chain_.at(i)) / h);
+                slope = 8 * kUnitRoundoff * norm(trial.end - a) * ((chain_.at(i + 1) - chain_.at(i)) / h);
             }
             trial.distance = std::max(trial.distance, of_block(segment, l0, l1) + slope);
         }
@@ -235,5 +237,6 @@ FF_INSTANTIATE(Hom<1>)
 FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform::detail

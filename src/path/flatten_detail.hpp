@@ -22,6 +22,7 @@
 // Rounding: a difference 1, x_i and q_i at most 2 D + 4 roundings relative to |d|, second differences 4
 // terms: below 16 u max|d| and 100 u K max|d| w_max / w_min. The coefficients themselves: Chain::error.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/path/flatten.hpp>
 #include <freiform/spline/chain.hpp>
 
@@ -85,11 +86,11 @@ double distance_bound(std::span<const P> b, const Segment<Space<P>::kDim>& s) {
     }
     double across = k * std::sqrt(bend);
     if constexpr (Space<P>::kRational) across += norm(last - first) * k * weight_bend;
-    across = across / weight_min + 100 * kUnit * k * far * (weight_max / weight_min);
+    across = across / weight_min + 100 * kUnitRoundoff * k * far * (weight_max / weight_min);
     across += std::sqrt(std::max(dot(first, first), dot(last, last)));
     const double tight = root_of_squares(across, over);
     const double bound = hull < tight ? hull : tight;  // a NaN in `tight` loses
-    return (bound + 16 * kUnit * far) * (1 + 16 * kUnit);
+    return (bound + 16 * kUnitRoundoff * far) * (1 + 16 * kUnitRoundoff);
 }
 
 // The same for functions of one parameter: |b(u) - l(u)| with l linear from l0 to l1. In Bernstein form of
@@ -121,7 +122,8 @@ double difference_bound(std::span<const P> b, const PointOf<P>& l0, const PointO
     for (int j = 0; j + 2 <= p + 1; ++j) bend = std::max(bend, norm(e[j] - 2 * e[j + 1] + e[j + 2]));
     const double k = (p + 1) * p / 8.0;
     const double tight = std::max(norm(e[0]), norm(e[p + 1])) + k * bend;
-    return (std::min(hull, tight) + 64 * kUnit * (1 + k) * far * weight_max) / weight_min * (1 + 16 * kUnit);
+    return (std::min(hull, tight) + 64 * kUnitRoundoff * (1 + k) * far * weight_max) / weight_min *
+           (1 + 16 * kUnitRoundoff);
 }
 
 // b becomes the left half, right the right half: p roundings.
@@ -141,7 +143,7 @@ double second_derivative(std::span<const P> b);
 
 // The count of equal steps for which linear interpolation of the piece is within `tolerance` > 0.
 inline double steps_for(double second, double tolerance) {
-    return std::max(1.0, std::ceil(std::sqrt(second / (8 * tolerance)) * (1 + 8 * kUnit)));
+    return std::max(1.0, std::ceil(std::sqrt(second / (8 * tolerance)) * (1 + 8 * kUnitRoundoff)));
 }
 
 Result<void> check_options(const FlattenOptions& options);

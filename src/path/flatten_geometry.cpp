@@ -16,13 +16,13 @@
 // Rounding: points as spline/geometry.hpp bounds them, three of them in the distance.
 #include "path/flatten_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <numbers>
 
 namespace freiform {
 
 namespace {
-
-using detail::kUnit;
 
 template <int D>
 class ConicArc {
@@ -44,7 +44,7 @@ public:
         const double across = norm(sag - dot(sag, segment.direction) * segment.direction);
         const double along = dot(middle + apex * sag - a, segment.direction);
         const double over = std::max({0.0, -along, along - segment.length});
-        return (detail::root_of_squares(across, over) + 2 * slip_) * (1 + 32 * kUnit);
+        return (detail::root_of_squares(across, over) + 2 * slip_) * (1 + 32 * kUnitRoundoff);
     }
     double slip() const { return slip_; }
 

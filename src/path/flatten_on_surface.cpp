@@ -15,6 +15,7 @@
 // Why not the Bezier form of S(c): its degree is the product of degrees, 36 for a cubic on a bicubic patch.
 #include "path/flatten_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
@@ -59,14 +60,14 @@ public:
         const double first = (b(1, 0) + b(0, 1)) * l;
         const double second = (b(2, 0) + 2 * b(1, 1) + b(0, 2)) * l * l + (b(1, 0) + b(0, 1)) * m;
         const double straight = first * h / 2, bent = kink ? straight : second * h * h / 8;
-        return (std::isnan(bent) || straight < bent ? straight : bent) * (1 + 32 * detail::kUnit);
+        return (std::isnan(bent) || straight < bent ? straight : bent) * (1 + 32 * kUnitRoundoff);
     }
 
 private:
     // A box around c on [s, t], where |c'| <= l.
     std::array<Interval, 2> around(double s, double t, double l) const {
         const Vec<2> uv = jet<0>(curve_, s + (t - s) / 2).value();
-        const double reach = (l * (t - s) / 2 + curve_error_) * (1 + 8 * detail::kUnit);
+        const double reach = (l * (t - s) / 2 + curve_error_) * (1 + 8 * kUnitRoundoff);
         std::array<Interval, 2> box;
         for (std::size_t d = 0; d < 2; ++d) {
             box[d] = {uv[int(d)] - reach, uv[int(d)] + reach};

@@ -24,6 +24,7 @@
 // By number of segments the part with the largest bound is halved until there are enough.
 #include "path/flatten_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/path/forward_differences.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -139,7 +140,8 @@ double polygon_bound(std::span<const P> b) {
             weight_bend = std::max(weight_bend, std::abs(w - 2 * b[std::size_t(i) - 1].weight() +
                                                          b[std::size_t(i) - 2].weight()));
     }
-    return factor * (bend + far * weight_bend + 32 * kUnit * far * heaviest) / lightest * (1 + 16 * kUnit);
+    return factor * (bend + far * weight_bend + 32 * kUnitRoundoff * far * heaviest) / lightest *
+           (1 + 16 * kUnitRoundoff);
 }
 
 template <class P>
@@ -228,7 +230,7 @@ Result<Polyline<Space<P>::kDim>> flatten_uniform(const Chain<P>& chain, const Fl
                                      : not_allowed(options);
             off = step_through(chain, i, int(n), forward, out) + joint_slip(chain);
             // Steps from k h to (k + 1) h, both rounded.
-            const double h = 1 / n + 2 * kUnit;
+            const double h = 1 / n + 2 * kUnitRoundoff;
             deviation = n == 1 ? std::min(chord, second * h * h / 8) : second * h * h / 8;
             if (tolerance <= 0 || deviation + off <= tolerance) break;
             if (trial == 5) return drifted(chain, tolerance, off, forward);
@@ -322,5 +324,6 @@ FF_INSTANTIATE(Hom<1>)
 FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform::detail

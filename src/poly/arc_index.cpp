@@ -25,6 +25,7 @@
 #include "poly/roots_detail.hpp"
 
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/poly/arc_index.hpp>
 
 #include <algorithm>
@@ -39,8 +40,7 @@ namespace {
 using detail::Integer;
 using detail::IntegerPolynomial;
 
-constexpr double kUnit = 0x1p-53;
-constexpr int kDeepest = 64;  // halvings; deeper there is nothing left in a double
+constexpr int kMostHalvings = 64;  // halvings; deeper there is nothing left in a double
 
 int sign_of(double x) { return (x > 0) - (x < 0); }
 
@@ -67,7 +67,7 @@ IntegerPolynomial differences(std::span<const double> y, std::span<const double>
 int exact_sign(double y, double w, double q) {
     if (w == 1) return (y > q) - (y < q);
     const double product = q * w, difference = y - product;
-    if (std::abs(difference) > 4 * kUnit * (std::abs(y) + std::abs(product)) + 0x1p-1000)
+    if (std::abs(difference) > 4 * kUnitRoundoff * (std::abs(y) + std::abs(product)) + 0x1p-1000)
         return sign_of(difference);
     return differences(std::span(&y, 1), std::span(&w, 1), q)[0].sign();
 }
@@ -180,8 +180,10 @@ ArcIndex arc_index(std::span<const double> x, std::span<const double> y, std::sp
         const double weight = w.empty() ? 1 : w[i];
         whole.g.push_back(y[i] - q[1] * weight);
         whole.h.push_back(x[i] - q[0] * weight);
-        error_g = std::max(error_g, 4 * kUnit * (std::abs(y[i]) + std::abs(q[1]) * weight) + 0x1p-1000);
-        error_h = std::max(error_h, 4 * kUnit * (std::abs(x[i]) + std::abs(q[0]) * weight) + 0x1p-1000);
+        error_g =
+            std::max(error_g, 4 * kUnitRoundoff * (std::abs(y[i]) + std::abs(q[1]) * weight) + 0x1p-1000);
+        error_h =
+            std::max(error_h, 4 * kUnitRoundoff * (std::abs(x[i]) + std::abs(q[0]) * weight) + 0x1p-1000);
         size_g = std::max(size_g, std::abs(whole.g.back())),
         size_h = std::max(size_h, std::abs(whole.h.back()));
     }
@@ -194,13 +196,13 @@ ArcIndex arc_index(std::span<const double> x, std::span<const double> y, std::sp
     while (!todo.empty()) {
         Piece p = std::move(todo.back());
         todo.pop_back();
-        const double grown = double(n) * p.depth * kUnit;
+        const double grown = double(n) * p.depth * kUnitRoundoff;
         if (common_sign(p.g, error_g + grown * size_g) != 0) continue;
         if (const int side = common_sign(p.h, error_h + grown * size_h); side != 0) {
             quarters += side * (p.to - p.from);
             continue;
         }
-        if (p.depth == kDeepest) return exact_index(x, y, w, q);
+        if (p.depth == kMostHalvings) return exact_index(x, y, w, q);
         Piece second{p.depth + 1, 0, p.to, halve(p.g), halve(p.h)};
         p.to = second.from = sign_of(second.g[0]);
         ++p.depth;

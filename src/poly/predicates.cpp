@@ -56,6 +56,7 @@
 // they make faster, long expansions, is met by zero elimination as far as grids go.
 #include "poly/predicates_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/poly/predicates.hpp>
 
 #include <algorithm>
@@ -67,8 +68,6 @@ namespace freiform {
 namespace detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 int sign_of(double x) { return (x > 0) - (x < 0); }
 
@@ -191,7 +190,7 @@ std::optional<int> filtered_sign(const PlanePoints<3>& p) {
     const double ax = a[0] - c[0], ay = a[1] - c[1], bx = b[0] - c[0], by = b[1] - c[1];
     const double left = ax * by, right = ay * bx, det = left - right;
     const double size = std::abs(left) + std::abs(right);
-    if (std::abs(det) > 4 * kU * size && size > 0x1p-900) return sign_of(det);
+    if (std::abs(det) > 4 * kUnitRoundoff * size && size > 0x1p-900) return sign_of(det);
     if (size == 0 && (ax == 0 || by == 0) && (ay == 0 || bx == 0)) return 0;
     return std::nullopt;
 }
@@ -205,7 +204,8 @@ std::optional<int> filtered_sign(const PlanePoints<4>& p) {
     const double det = la * (bc - cb) + lb * (ca - ac) + lc * (ab - ba);
     const double size = la * (std::abs(bc) + std::abs(cb)) + lb * (std::abs(ca) + std::abs(ac)) +
                         lc * (std::abs(ab) + std::abs(ba));
-    if (std::abs(det) > 16 * kU * size && size > 0x1p-960 * (1 + la + lb + lc)) return sign_of(det);
+    if (std::abs(det) > 16 * kUnitRoundoff * size && size > 0x1p-960 * (1 + la + lb + lc))
+        return sign_of(det);
     return std::nullopt;
 }
 

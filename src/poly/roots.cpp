@@ -42,6 +42,8 @@
 // not eigenvalues of a companion matrix? They say neither how many roots are real nor that none was missed.
 #include "poly/roots_search_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -201,7 +203,7 @@ private:
         }
     }
     int certain_sign(double t) const {
-        const double v = value_at(p_.c, t).value, error = p_.error + 3.1 * p_.degree() * kRootUnit;
+        const double v = value_at(p_.c, t).value, error = p_.error + 3.1 * p_.degree() * kUnitRoundoff;
         return v > error ? 1 : v < -error ? -1 : 0;
     }
 
@@ -233,7 +235,7 @@ void set_signs(std::vector<Root>& roots, int sign) {
 Interval refined(const Approximate& p, const ExactSign* exact, Interval at, int before, double width) {
     const double n = double(p.c.size()) - 1;
     if (p.c.size() < 2) return at;
-    const double error = p.error + 3.1 * n * kRootUnit;
+    const double error = p.error + 3.1 * n * kUnitRoundoff;
     // Moves an end to x if the sign there is known; says whether it is.
     const auto put = [&](double x, double value, bool ask) {
         int s = value > error ? 1 : value < -error ? -1 : 0;
@@ -299,7 +301,7 @@ void divide_ends(Problem& p) {
     }
     // A factor carries 2 n roundings (the products of integers are exact), a coefficient one more; the
     // coefficients that were divided out are below 1.
-    p.error = (p.error + (2 * n + 2) * 1.01 * kRootUnit) * most;
+    p.error = (p.error + (2 * n + 2) * 1.01 * kUnitRoundoff) * most;
     const int e = std::max(0, std::ilogb(most) + 1);
     for (double& x : c) x = std::scalbn(x, -e);
     p.error = std::scalbn(p.error, -e) + kUnderflow;
@@ -322,7 +324,7 @@ std::optional<Problem> scaled(std::span<const double> parts, int terms, double e
         p.c[i] = sum;
         largest = std::max(largest, std::abs(sum));
     }
-    p.error += std::scalbn(error, -p.exponent) + (terms > 1 ? terms * kRootUnit : 0);
+    p.error += std::scalbn(error, -p.exponent) + (terms > 1 ? terms * kUnitRoundoff : 0);
     if (error > 0) return largest <= p.error ? std::nullopt : std::optional(std::move(p));
     const auto is_zero = [&](std::size_t i) {
         if (std::abs(p.c[i]) > p.error) return false;

@@ -70,7 +70,7 @@ Coefficients to_power(const Coefficients& c) {
 
 namespace {
 
-constexpr int kDepth = 52;  // of cells that are told apart
+constexpr int kExactDepth = 52;  // of cells that are told apart
 constexpr int kDeepest =
     20000;  // halvings while counting, a backstop: the distance of roots is bounded below
 
@@ -238,8 +238,8 @@ int multiplicity_at_end(const Part& part) {
 
 std::pair<Part, Part> halved(const Part& part) {
     std::pair<Part, Part> two;
-    // Cells below kDepth are only counted; their place is no longer written down.
-    const bool deep = part.cell.depth >= kDepth;
+    // Cells below kExactDepth are only counted; their place is no longer written down.
+    const bool deep = part.cell.depth >= kExactDepth;
     two.first.cell = {deep ? 0 : 2 * part.cell.cell, part.cell.depth + 1};
     two.second.cell = {deep ? 0 : 2 * part.cell.cell + 1, part.cell.depth + 1};
     for (const Coefficients& c : part.chain) {
@@ -381,7 +381,7 @@ std::vector<Root> exact_roots(const std::vector<Integer>& bernstein, std::span<c
                     const int before = first_sign(part.chain[0]);
                     roots.push_back(
                         {refined(doubles.approximate(), &sign, at, before, width), m, m, true, 0, 0});
-                } else if (v > 1 && part.cell.depth < kDepth) {
+                } else if (v > 1 && part.cell.depth < kExactDepth) {
                     auto [a, b] = halved(part);
                     left.push_back(std::move(b));
                     left.push_back(std::move(a));

@@ -3,6 +3,7 @@
 #pragma once
 #include "poly/roots_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/double_double.hpp>
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 
 namespace freiform::detail {
 
-inline constexpr double kRootUnit = 0x1p-53;
 inline constexpr double kUnderflow = 0x1p-840;
 inline constexpr int kDepth = 52;
 
@@ -27,7 +27,7 @@ inline DoubleDouble mean(const DoubleDouble& a, const DoubleDouble& b) {
 template <class T>
 inline constexpr double kUnit = 0;
 template <>
-inline constexpr double kUnit<double> = kRootUnit;
+inline constexpr double kUnit<double> = kUnitRoundoff;
 template <>
 inline constexpr double kUnit<DoubleDouble> = 0x1p-100;
 

@@ -1,5 +1,6 @@
 // Arcs of curves by their control points, and what can be proven of them: self_intersection.cpp says why.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/patch.hpp>
 
 #include <algorithm>
@@ -9,8 +10,6 @@
 #include <vector>
 
 namespace freiform::detail {
-
-inline constexpr double kU = 0x1p-53;
 
 // Control points of an arc, of one part or several in a row, with what bounds them.
 template <int D>
@@ -32,7 +31,7 @@ void add_points(Arc<Space<P>::kDim>& arc, const std::vector<P>& b, double error,
     }
     double e = error;
     if (Space<P>::kRational)
-        e = w > 2 * error ? error * (1 + x) / (w - error) + 2 * kU * x
+        e = w > 2 * error ? error * (1 + x) / (w - error) + 2 * kUnitRoundoff * x
                           : std::numeric_limits<double>::infinity();
     arc.error = std::max(arc.error, 1.01 * e);
     for (std::size_t i = first + std::size_t(skip_lo); i + 1 + std::size_t(skip_hi) < arc.points.size(); ++i)
@@ -50,13 +49,13 @@ Interval range_along(const Arc<D>& arc, const Vec<D>& n) {
         const double v = dot(n, p);
         r = {std::min(r.lo, v), std::max(r.hi, v)};
     }
-    const double slack = size * (1.01 * arc.error + (D + 1) * 1.01 * kU * arc.box.scale());
+    const double slack = size * (1.01 * arc.error + (D + 1) * 1.01 * kUnitRoundoff * arc.box.scale());
     return {r.lo - slack, r.hi + slack};
 }
 
 template <int D>
 double leg_error(const Arc<D>& arc) {
-    return 2.02 * arc.error + 2 * kU * arc.box.scale();
+    return 2.02 * arc.error + 2 * kUnitRoundoff * arc.box.scale();
 }
 
 // Do all legs of all arcs point into one open half-space?
@@ -69,7 +68,7 @@ bool moves_on(std::initializer_list<const Arc<D>*> arcs) {
     for (const Arc<D>* arc : arcs) {
         const double e = 2 * leg_error(*arc);  // |a|_1 <= sqrt(D) < 2
         for (const Vec<D>& leg : arc->legs)
-            if (!(dot(a, leg) > e + 4 * kU * norm(leg))) return false;
+            if (!(dot(a, leg) > e + 4 * kUnitRoundoff * norm(leg))) return false;
     }
     return true;
 }
@@ -85,7 +84,7 @@ inline bool meet_at_most_once(std::initializer_list<const Arc<2>*> as,
                 for (const Vec<2>& q : b->legs) {
                     const double c = cross(p, q), mp = std::abs(p[0]) + std::abs(p[1]),
                                  mq = std::abs(q[0]) + std::abs(q[1]);
-                    const double e = ea * mq + eb * mp + 2 * ea * eb + 3 * kU * mp * mq;
+                    const double e = ea * mq + eb * mp + 2 * ea * eb + 3 * kUnitRoundoff * mp * mq;
                     const int s = c > 1.01 * e ? 1 : c < -1.01 * e ? -1 : 0;
                     if (s == 0 || (sign != 0 && s != sign)) return false;
                     sign = s;
@@ -129,7 +128,7 @@ inline bool is_certainly_crossing(const Arc<2>& p, const Arc<2>& q) {
         const Vec<2> chord = strip.points.back() - strip.points.front();
         const Vec<2> n = unit(Vec<2>{{-chord[1], chord[0]}});
         const Interval r = range_along(strip, n);
-        const double e = 2 * (1.01 * through.error + 4 * kU * through.box.scale());
+        const double e = 2 * (1.01 * through.error + 4 * kUnitRoundoff * through.box.scale());
         const double from = dot(n, through.points.front()), to = dot(n, through.points.back());
         return (from + e < r.lo && to - e > r.hi) || (to + e < r.lo && from - e > r.hi);
     };

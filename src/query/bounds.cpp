@@ -31,6 +31,9 @@
 // curves, surfaces, volumes and triangles. On surfaces with a maximum along a line both approaches need many
 // pieces; max_pieces ends that, and the slack says so. Why not blocks of whole points? All but one or two of
 // their numbers are halved for nothing, and a program for every number of coordinates is needed.
+#include "query/checks_detail.hpp"
+
+#include <freiform/core/constants.hpp>
 #include <freiform/core/tuples.hpp>
 #include <freiform/query/bounds.hpp>
 #include <freiform/spline/bezier.hpp>
@@ -44,8 +47,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kU = 0x1p-53, kLost = 0x1p-1060;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLost = 0x1p-1060;
 
 // --- blocks of one coordinate: P is Vec<1> or Hom<1> -------------------------------------------------------
 
@@ -58,7 +60,8 @@ struct Errors {
     Errors grown(double roundings, std::span<const P> all) const {
         double a = 0, w = 0;
         for (const P& p : all) a = std::max(a, std::abs(p[0])), w = std::max(w, Space<P>::weight(p));
-        return {numerator + roundings * kU * a + kLost, weight + roundings * kU * w + kLost};
+        return {numerator + roundings * kUnitRoundoff * a + kLost,
+                weight + roundings * kUnitRoundoff * w + kLost};
     }
 };
 
@@ -81,7 +84,7 @@ Reach reach(std::span<const P> all, const Errors& error, F&& is_corner) {
     double slack = error.numerator;
     if constexpr (Space<P>::kRational) {
         if (!(w > 2 * error.weight)) return {kInfinity, -kInfinity, 0};
-        slack = (error.numerator + x * error.weight) / (w - error.weight) + 2 * kU * x;
+        slack = (error.numerator + x * error.weight) / (w - error.weight) + 2 * kUnitRoundoff * x;
     }
     slack *= 1.01;
     return {top + slack, corner - slack, slack};
@@ -267,12 +270,13 @@ Reach maximum_along(const Pieces& pieces, const Vec<4>& d, double accuracy, int 
         ++terms, only = k;
         size += std::abs(d[k]);
         largest = std::max(largest, most[k]);
-        error.numerator += std::abs(d[k]) * (1.01 * pieces.roundings * kU * most[k]);
+        error.numerator += std::abs(d[k]) * (1.01 * pieces.roundings * kUnitRoundoff * most[k]);
     }
-    error.weight = pieces.roundings * kU * heaviest;
+    error.weight = pieces.roundings * kUnitRoundoff * heaviest;
     if (pieces.roundings > 0) error.numerator += (1 + size) * kLost, error.weight += kLost;
     const bool axis = terms == 1 && size == 1;
-    if (!axis && terms > 0) error.numerator += (2 * all.dim() + 2) * kU * size * largest * 1.01 + kLost;
+    if (!axis && terms > 0)
+        error.numerator += (2 * all.dim() + 2) * kUnitRoundoff * size * largest * 1.01 + kLost;
 
     std::vector<P> values;
     values.reserve(all.count());
@@ -301,8 +305,8 @@ double hull_along(const Tuples& control, const Vec<4>& d) {
         scale = std::max(scale, max_abs(p));
     }
     for (int k = 0; k < 4; ++k) size += std::abs(d[k]), terms += d[k] != 0;
-    const double sum = terms > 1 || size != 1 ? (2 * control.dim() + 2) * kU * scale : 0;
-    return top + size * sum + 2.1 * kU * scale * size;
+    const double sum = terms > 1 || size != 1 ? (2 * control.dim() + 2) * kUnitRoundoff * scale : 0;
+    return top + size * sum + 2.1 * kUnitRoundoff * scale * size;
 }
 
 // The range of d . x.
@@ -319,7 +323,7 @@ Extent extent_of(const Pieces& pieces, const Vec<4>& d, double accuracy, int max
         out.slack = std::max(out.slack, r.upper - r.lower);
     }
     out.range = {0.0 - side[0], side[1]};
-    out.slack = std::max(0.0, out.slack) * (1 + 4 * kU);
+    out.slack = std::max(0.0, out.slack) * (1 + 4 * kUnitRoundoff);
     return out;
 }
 
@@ -345,23 +349,18 @@ TightBox<D> in_space(const TightBox<4>& box) {
     return out;
 }
 
-Result<void> check_accuracy(double accuracy) {
-    if (accuracy >= 0) return {};
-    return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a length >= 0"));
-}
-
 }  // namespace
 
 template <std::size_t N, class P>
 Result<TightBox<Space<P>::kDim>> tight_box(const Patch<N, P>& patch, double accuracy, int max_pieces) {
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     return in_space<Space<P>::kDim>(
         box_of(pieces_of(patch.bases(), tuples(patch.net().flat())), accuracy, max_pieces));
 }
 
 template <class P>
 Result<TightBox<Space<P>::kDim>> tight_box(const SimplexPatch<2, P>& patch, double accuracy, int max_pieces) {
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     const Tuples all = tuples(patch.coefficients());
     const Pieces one{all, {all.all.begin(), all.all.end()}, {int(all.count()), 1, 1}, patch.degree(), 0};
     return in_space<Space<P>::kDim>(box_of(one, accuracy, max_pieces));
@@ -370,7 +369,7 @@ Result<TightBox<Space<P>::kDim>> tight_box(const SimplexPatch<2, P>& patch, doub
 template <std::size_t N, class P>
 Result<Extent> extent_along(const Patch<N, P>& patch, const PointOf<P>& direction, double accuracy,
                             int max_pieces) {
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     if (!is_finite(direction))
         return refuse(RefusalKind::nonfinite, "direction", "has a coordinate that is not finite");
     Vec<4> d;
@@ -394,5 +393,7 @@ FF_INSTANTIATE_DIMENSION(1)
 FF_INSTANTIATE_DIMENSION(2)
 FF_INSTANTIATE_DIMENSION(3)
 FF_INSTANTIATE_DIMENSION(4)
+#undef FF_INSTANTIATE_BOUNDS
+#undef FF_INSTANTIATE_DIMENSION
 
 }  // namespace freiform

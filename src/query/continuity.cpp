@@ -33,6 +33,8 @@
 #include "continuity_detail.hpp"
 #include "expansion_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,7 +49,6 @@ using detail::length;
 using detail::scaled;
 using detail::unit;
 using Vector = detail::BoundedVector;
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 Jump scaled(const Jump& a, int e) { return {std::scalbn(a.size, e), std::scalbn(a.bound, e)}; }
 
@@ -71,7 +72,7 @@ Jump angle_of_chord(const Bounded& chord) {
     const auto f = [](double x) { return 2 * std::asin(std::clamp(x, 0.0, 2.0) / 2); };
     const double size = f(chord.value), high = f(chord.value + chord.bound),
                  low = f(chord.value - chord.bound);
-    return {size, detail::above(std::max(high - size, size - low) + 16 * kRoundoff * high)};
+    return {size, detail::above(std::max(high - size, size - low) + 16 * kUnitRoundoff * high)};
 }
 Jump angle_between(const Vector& a, const Vector& b) {
     Vector sum(a.size()), difference(a.size());
@@ -79,7 +80,7 @@ Jump angle_between(const Vector& a, const Vector& b) {
     const Bounded far = length(sum), near = length(difference);
     if (near.value <= far.value) return angle_of_chord(near);
     const Jump rest = angle_of_chord(far);
-    return {std::numbers::pi - rest.size, detail::above(rest.bound + 4 * kRoundoff)};
+    return {std::numbers::pi - rest.size, detail::above(rest.bound + 4 * kUnitRoundoff)};
 }
 
 // Empty outside of space, and where the curvature may be 0.

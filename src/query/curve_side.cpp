@@ -20,6 +20,8 @@
 #include "expansion_detail.hpp"
 #include "knot_window_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +31,6 @@ namespace {
 
 using detail::span_before;
 
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 constexpr int kMostOrders = 100;  // 170! is the largest factorial that a double holds
 
 template <class P>
@@ -55,7 +56,7 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
         b.push_back(curve.net().flat()[std::size_t((span - p + i) % basis.size())]);
         for (int c = 0; c < P::kCoords; ++c) grant[c] = std::max(grant[c], std::abs(b.back()[c]));
     }
-    grant *= options.roundings * kRoundoff;
+    grant *= options.roundings * kUnitRoundoff;
     const PointOf<P> origin = project(after ? b.front() : b.back());
     side.origin.assign(origin.c.begin(), origin.c.end());
 
@@ -180,5 +181,6 @@ FF_INSTANTIATE_SIDES(Hom<1>)
 FF_INSTANTIATE_SIDES(Hom<2>)
 FF_INSTANTIATE_SIDES(Hom<3>)
 FF_INSTANTIATE_SIDES(Hom<4>)
+#undef FF_INSTANTIATE_SIDES
 
 }  // namespace freiform

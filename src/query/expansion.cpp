@@ -20,6 +20,8 @@
 // Cost: O(n^4) for n terms if r = 1, else O((r n)^3). References: [Knuth 1997, 4.7] for powers and inversion.
 #include "expansion_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,9 +29,6 @@
 namespace freiform::detail {
 
 namespace {
-
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t orders_of(const CurveSide& s) { return s.derivatives.size() / std::size_t(s.dimension); }
 
@@ -124,7 +123,7 @@ Bounded length(const BoundedVector& v) {
     }
     const double size = std::sqrt(sum);
     return scaled(Bounded(size, detail::above(std::sqrt(slack) +
-                                              double(v.size() + 2) * kRoundoff * (sum == 0 ? 0 : size))),
+                                              double(v.size() + 2) * kUnitRoundoff * (sum == 0 ? 0 : size))),
                   e);
 }
 Bounded inner(const BoundedVector& a, const BoundedVector& b) {

@@ -26,6 +26,7 @@
 //
 // Why not closed formulas for cubics? They need the same care with signs of discriminants, and end at
 // degree 3.
+#include "query/checks_detail.hpp"
 #include "query/piecewise_detail.hpp"
 
 #include <freiform/poly/integer_roots.hpp>
@@ -61,17 +62,12 @@ Form<T> curvature_slope(const Coordinates<T>& c) {
     return (3 * (derivative(c.w) * f) + c.w * derivative(f)) * square - 3 * (c.w * f * half_slope);
 }
 
-Result<void> check_accuracy(double accuracy) {
-    if (accuracy >= 0) return {};
-    return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a length >= 0"));
-}
-
 // A curve with all that the questions share.
 template <class P>
 struct Question {
     static constexpr int D = Space<P>::kDim;
     const Curve<P>& curve;
-    CurvePieces pieces = pieces_of(curve);
+    CurvePieces pieces = detail::pieces_of(curve);
     std::vector<double> speed = speed_bounds(pieces);
     double accuracy = 0;
 
@@ -217,7 +213,7 @@ requires(Space<P>::kDim == 2 ||
          Space<P>::kDim == 3) Result<std::vector<Feature<Space<P>::kDim>>> inflections(const Curve<P>& curve,
                                                                                        double accuracy) {
     constexpr int D = Space<P>::kDim;
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     Question<P> q{curve};
     q.accuracy = accuracy;
     const auto at_cusps = cusp_zeros(q);
@@ -250,7 +246,7 @@ requires(Space<P>::kDim == 2 ||
 template <class P>
 requires(Space<P>::kDim >= 2) Result<std::vector<Feature<Space<P>::kDim>>> cusps(const Curve<P>& curve,
                                                                                  double accuracy) {
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     Question<P> q{curve};
     q.accuracy = accuracy;
     const auto zeros = cusp_zeros(q);
@@ -268,7 +264,7 @@ template <class P>
 Result<std::vector<Feature<Space<P>::kDim>>> extrema(const Curve<P>& curve, const PointOf<P>& direction,
                                                      double accuracy) {
     constexpr int D = Space<P>::kDim;
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     if (!is_finite(direction))
         return refuse(RefusalKind::nonfinite, "direction", "has a coordinate that is not finite");
     const double size = max_abs(direction);
@@ -308,7 +304,7 @@ Result<std::vector<Feature<Space<P>::kDim>>> extrema(const Curve<P>& curve, cons
 template <class P>
 requires(Space<P>::kDim == 2) Result<std::vector<Feature<2>>> vertices(const Curve<P>& curve,
                                                                        double accuracy) {
-    if (auto ok = check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     Question<P> q{curve};
     q.accuracy = accuracy;
     const auto at_cusps = cusp_zeros(q);
@@ -342,6 +338,9 @@ FF_INSTANTIATE_BENDING(Vec<3>, 3)
 FF_INSTANTIATE_BENDING(Hom<3>, 3)
 FF_INSTANTIATE_IN_SPACE(Vec<4>, 4)
 FF_INSTANTIATE_IN_SPACE(Hom<4>, 4)
+#undef FF_INSTANTIATE_FEATURES
+#undef FF_INSTANTIATE_IN_SPACE
+#undef FF_INSTANTIATE_BENDING
 template Result<std::vector<Feature<2>>> vertices(const Curve<Vec<2>>&, double);
 template Result<std::vector<Feature<2>>> vertices(const Curve<Hom<2>>&, double);
 

@@ -121,18 +121,18 @@ int trace_count(const std::vector<ExactHom>& a, int degree) {
 }
 
 // Polynomials in x and y of degree <= kMaxImplicitDegree: coefficient (i, j) at i (n + 1) + j.
-struct Poly {
+struct PlanePolynomial {
     static constexpr int kSide = kMaxImplicitDegree + 1;
     int degree = -1;  // of zero
     std::vector<Bounded> c;
 
-    Poly() = default;
-    explicit Poly(double constant) : degree(0), c(std::size_t(kSide * kSide)) { c[0] = constant; }
+    PlanePolynomial() = default;
+    explicit PlanePolynomial(double constant) : degree(0), c(std::size_t(kSide * kSide)) { c[0] = constant; }
     Bounded& at(int i, int j) { return c[std::size_t(i * kSide + j)]; }
     const Bounded& at(int i, int j) const { return c[std::size_t(i * kSide + j)]; }
 
-    static Poly combined(const Poly& a, const Poly& b, bool minus) {
-        Poly s;
+    static PlanePolynomial combined(const PlanePolynomial& a, const PlanePolynomial& b, bool minus) {
+        PlanePolynomial s;
         s.degree = std::max(a.degree, b.degree);
         s.c.resize(std::size_t(kSide * kSide));
         for (int i = 0; i <= s.degree; ++i)
@@ -143,10 +143,14 @@ struct Poly {
             }
         return s;
     }
-    friend Poly operator+(const Poly& a, const Poly& b) { return combined(a, b, false); }
-    friend Poly operator-(const Poly& a, const Poly& b) { return combined(a, b, true); }
-    friend Poly operator*(const Poly& a, const Poly& b) {
-        Poly p;
+    friend PlanePolynomial operator+(const PlanePolynomial& a, const PlanePolynomial& b) {
+        return combined(a, b, false);
+    }
+    friend PlanePolynomial operator-(const PlanePolynomial& a, const PlanePolynomial& b) {
+        return combined(a, b, true);
+    }
+    friend PlanePolynomial operator*(const PlanePolynomial& a, const PlanePolynomial& b) {
+        PlanePolynomial p;
         if (a.degree < 0 || b.degree < 0) return p;
         p.degree = a.degree + b.degree;
         p.c.resize(std::size_t(kSide * kSide));
@@ -238,16 +242,16 @@ int Implicit::sign(const Vec<2>& at) const {
 }
 
 Result<std::vector<Implicit::Term>> Implicit::terms() const {
-    std::vector<Poly> m;
+    std::vector<PlanePolynomial> m;
     for (int i = 0; i < degree_; ++i)
         for (int j = 0; j < degree_; ++j) {
             const auto e = entry(i, j);
-            Poly line(0);
+            PlanePolynomial line(0);
             line.degree = 1;
             line.at(1, 0) = e[0], line.at(0, 1) = e[1], line.at(0, 0) = e[2];
             m.push_back(std::move(line));
         }
-    const Poly f = determinant<Poly>(m, degree_, degree_);
+    const PlanePolynomial f = determinant<PlanePolynomial>(m, degree_, degree_);
     // Back to the given coordinates: x^i y^j times 2^-(i ex + j ey), all divided by a common power of two.
     const int ex = exponent_[0] - exponent_[2], ey = exponent_[1] - exponent_[2];
     int top = std::numeric_limits<int>::min();

@@ -19,6 +19,7 @@
 // References: [PT97, 2.5], [Lyche & Morken 2018, ch. 3].
 #include "knot_window_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/query/continuity.hpp>
 
 #include <algorithm>
@@ -27,8 +28,6 @@
 namespace freiform {
 
 namespace {
-
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // Weights of the jump of the derivative of order k over the coefficients first, first + 1, ..
 struct JumpRow {
@@ -67,15 +66,15 @@ JumpRow jump_row(const BSplineBasis& basis, const Place& k, int order) {
 
 // What coefficients of a net are measured by.
 template <class P>
-struct Frame {
+struct KnotFrame {
     PointOf<P> origin{};
     double radius = 0, least_weight = 1;
     P grant{};
 };
 
 template <std::size_t N, class P>
-Frame<P> frame_of(const Patch<N, P>& patch, double roundings) {
-    Frame<P> f;
+KnotFrame<P> frame_of(const Patch<N, P>& patch, double roundings) {
+    KnotFrame<P> f;
     f.origin = project(patch.net().flat()[0]);
     f.least_weight = std::numeric_limits<double>::infinity();
     for (const P& q : patch.net().flat()) {
@@ -83,12 +82,12 @@ Frame<P> frame_of(const Patch<N, P>& patch, double roundings) {
         f.least_weight = std::min(f.least_weight, Space<P>::weight(q));
         for (int c = 0; c < P::kCoords; ++c) f.grant[c] = std::max(f.grant[c], std::abs(q[c]));
     }
-    f.grant *= roundings * kRoundoff;
+    f.grant *= roundings * kUnitRoundoff;
     return f;
 }
 
 template <class P>
-Jump jump_of(const Frame<P>& frame, const JumpRow& row, Fibre<const P> fibre) {
+Jump jump_of(const KnotFrame<P>& frame, const JumpRow& row, Fibre<const P> fibre) {
     constexpr int D = Space<P>::kDim;
     std::array<Bounded, std::size_t(D) + 1> sum{};
     for (std::size_t i = 0; i < row.weight.size(); ++i) {
@@ -104,12 +103,12 @@ Jump jump_of(const Frame<P>& frame, const JumpRow& row, Fibre<const P> fibre) {
     Vec<D> size, slack;
     for (int c = 0; c < D; ++c) size[c] = sum[std::size_t(c)].value, slack[c] = sum[std::size_t(c)].bound;
     const double s = norm(size) + frame.radius * std::abs(sum[std::size_t(D)].value);
-    const double e = norm(slack) + frame.radius * sum[std::size_t(D)].bound + (D + 4) * kRoundoff * s;
+    const double e = norm(slack) + frame.radius * sum[std::size_t(D)].bound + (D + 4) * kUnitRoundoff * s;
     return {s / frame.least_weight, detail::above(e / frame.least_weight)};
 }
 
 template <std::size_t N, class P>
-KnotLine line_at(const Patch<N, P>& patch, int axis, const Frame<P>& frame, double at, bool seam,
+KnotLine line_at(const Patch<N, P>& patch, int axis, const KnotFrame<P>& frame, double at, bool seam,
                  double tolerance) {
     const BSplineBasis& basis = patch.basis(axis);
     const Place place = place_at(basis, at, seam);
@@ -146,7 +145,7 @@ Result<std::vector<KnotLine>> knot_lines(const Patch<N, P>& patch, int axis,
             return refuse(std::isfinite(x) ? RefusalKind::invalid : RefusalKind::nonfinite, name,
                           text(x, " is not a finite number >= 0"));
     const BSplineBasis& basis = patch.basis(axis);
-    const Frame<P> frame = frame_of(patch, options.roundings);
+    const KnotFrame<P> frame = frame_of(patch, options.roundings);
     const auto breaks = basis.breaks();
     std::vector<KnotLine> all;
     for (std::size_t i = 1; i + 1 < breaks.size(); ++i)
@@ -174,5 +173,7 @@ FF_INSTANTIATE_ALL_LINES(1)
 FF_INSTANTIATE_ALL_LINES(2)
 FF_INSTANTIATE_ALL_LINES(3)
 FF_INSTANTIATE_ALL_LINES(4)
+#undef FF_INSTANTIATE_LINES
+#undef FF_INSTANTIATE_ALL_LINES
 
 }  // namespace freiform

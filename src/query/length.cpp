@@ -49,11 +49,12 @@
 // two rules: an estimate, too, and wrong at cusps.
 #include "query/speed_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <numeric>
 
 namespace freiform {
 
-using detail::kUnit;
 using detail::SpeedBlock;
 
 template <class P>
@@ -84,7 +85,7 @@ struct Budget {
     double floor = 0;  // below this an error does not matter
 };
 
-constexpr int kDeepest = 200;
+constexpr int kMostHalvings = 200;
 
 // Calls part(block, x0, measure) for parts of the block from left to right.
 template <int D, class F>
@@ -96,7 +97,7 @@ void measure(const SpeedBlock<D>& whole, double x0, Budget& budget, F&& part) {
         const double wanted = std::max(budget.share * (crude.value + crude.bound), budget.floor);
         // Halving does not help against rounding.
         const double light = b.weights().lo, noise = 4 * b.h_slip * b.width / (light * light);
-        bool accept = crude.bound <= std::max(wanted, noise) || int(open.size()) > kDeepest;
+        bool accept = crude.bound <= std::max(wanted, noise) || int(open.size()) > kMostHalvings;
         if (!accept && crude.bound <= budget.pool / 16) {
             budget.pool -= crude.bound;
             accept = true;
@@ -120,7 +121,7 @@ void measure(const SpeedBlock<D>& whole, double x0, Budget& budget, F&& part) {
 }
 
 Budget budget_of(double accuracy, double scale) {
-    return {std::max(accuracy / 2 / scale, 0.25 * kUnit), accuracy / 2, 0x1p-60 * scale};
+    return {std::max(accuracy / 2 / scale, 0.25 * kUnitRoundoff), accuracy / 2, 0x1p-60 * scale};
 }
 
 template <int D>
@@ -132,7 +133,7 @@ Measure measured(const SpeedBlock<D>& block, Budget budget) {
         sum.bound += m.bound;
         ++count;
     });
-    sum.bound += (count - 1) * kUnit * sum.value;
+    sum.bound += (count - 1) * kUnitRoundoff * sum.value;
     return sum;
 }
 
@@ -154,7 +155,7 @@ ArcLength<P>::ArcLength(const Curve<P>& curve, double accuracy) {
         measure(blocks[std::size_t(i)], 0, budget, [&](const auto& b, double x0, const Measure& m) {
             t->parts.push_back({b, i, x0, m, t->total});
             t->total.value += m.value;
-            t->total.bound += m.bound + kUnit * t->total.value;
+            t->total.bound += m.bound + kUnitRoundoff * t->total.value;
         });
     table_ = std::move(t);
 }
@@ -183,7 +184,7 @@ Measure up_to(const Table& table, std::size_t k, double y) {
         const Measure inside = measured(part.speed.left(y), budget_of(table.accuracy, table.scale));
         m.value += inside.value, m.bound += inside.bound;
     }
-    m.bound += kUnit * m.value;
+    m.bound += kUnitRoundoff * m.value;
     return m;
 }
 
@@ -203,7 +204,7 @@ Measure length_to(const Table& table, double t) {
     const double y = std::clamp((x - part.x0) / part.speed.width, 0.0, 1.0);
     Measure m = up_to(table, lo, y);
     const Interval w = part.speed.weights();
-    m.bound += 6 * kUnit * x * (part.speed.largest() + part.speed.h_slip) / (w.lo * w.lo);
+    m.bound += 6 * kUnitRoundoff * x * (part.speed.largest() + part.speed.h_slip) / (w.lo * w.lo);
     return m;
 }
 
@@ -233,7 +234,7 @@ Result<PlaceAtLength> ArcLength<P>::parameter(double length) const {
                       text(length, " is outside [0, ", all.value, "], the length of the curve"));
     const double wanted = std::scalbn(length, -table.chain.exponent());
     const auto answer = [&](double t, const Measure& m) {
-        return PlaceAtLength{t, table.units(std::abs(m.value - wanted) + m.bound + kUnit * wanted) +
+        return PlaceAtLength{t, table.units(std::abs(m.value - wanted) + m.bound + kUnitRoundoff * wanted) +
                                     std::numeric_limits<double>::denorm_min()};
     };
     if (length == 0 || table.parts.empty()) return answer(domain().lo, {});
@@ -248,7 +249,7 @@ Result<PlaceAtLength> ArcLength<P>::parameter(double length) const {
         y = std::clamp(y, lo, hi);
         const Measure m = up_to(table, k, y);
         const double off = m.value - wanted;
-        if (std::abs(off) <= std::max(0.125 * m.bound, 2 * kUnit * wanted)) break;
+        if (std::abs(off) <= std::max(0.125 * m.bound, 2 * kUnitRoundoff * wanted)) break;
         (off < 0 ? lo : hi) = y;
         const double slope = part.speed.speed(y) * part.speed.width;
         double next = slope > 0 ? y - off / slope : -1;
@@ -271,7 +272,7 @@ Result<Measure> ArcLength<P>::total(Interval on) const {
     for (const auto* end : {&a, &b})
         if (!*end) return refuse(end->error().kind, "on", end->error().message);
     const double value = std::max(0.0, b->value - a->value);
-    return Measure{value, a->bound + b->bound + kUnit * value};
+    return Measure{value, a->bound + b->bound + kUnitRoundoff * value};
 }
 
 // The parameter is found by its length from the beginning of the curve, where the part begins at a->value:
@@ -289,13 +290,13 @@ Result<PlaceAtLength> ArcLength<P>::parameter(double length, Interval on) const 
                       text(length, " is outside [0, ", all->value, "], the length of the part"));
     if (length == 0) return PlaceAtLength{on.lo, 0};
     if (length >= all->value)
-        return PlaceAtLength{on.hi, (length - all->value) * (1 + 2 * kUnit) + all->bound};
+        return PlaceAtLength{on.hi, (length - all->value) * (1 + 2 * kUnitRoundoff) + all->bound};
     const Measure before = *at(on.lo);
     const double wanted = std::min(before.value + length, total().value);
     auto place = parameter(wanted);
     if (!place) return place;
     place->parameter = clamped(place->parameter, on);
-    place->bound = (place->bound + before.bound + kUnit * wanted) * (1 + 4 * kUnit);
+    place->bound = (place->bound + before.bound + kUnitRoundoff * wanted) * (1 + 4 * kUnitRoundoff);
     return place;
 }
 
@@ -369,5 +370,6 @@ FF_INSTANTIATE(Hom<1>)
 FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform

@@ -12,7 +12,7 @@ namespace freiform {
 
 namespace {
 
-struct Place {
+struct EndPlace {
     std::vector<double> point;
     std::size_t curve = 0;
     End end = End::start;
@@ -32,9 +32,9 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // As run through: the end of one, the start of the other, where the pair allows it.
-Meeting meeting(const Place& one, const Place& other, double d) {
+Meeting meeting(const EndPlace& one, const EndPlace& other, double d) {
     const bool ordered = std::tuple(one.curve, one.end) < std::tuple(other.curve, other.end);
-    const Place *a = ordered ? &one : &other, *b = ordered ? &other : &one;
+    const EndPlace *a = ordered ? &one : &other, *b = ordered ? &other : &one;
     if (a->end == End::start && b->end == End::end) std::swap(a, b);
     return {a->curve, b->curve, a->end, b->end, d};
 }
@@ -48,7 +48,7 @@ auto order_of(const Meeting& m) {
 
 Result<std::vector<Meeting>> meetings(std::span<const CurveEnds> curves, double gap, std::size_t most) {
     if (!(gap >= 0)) return refuse(RefusalKind::invalid, "gap", text(gap, " is not a number >= 0"));
-    std::vector<Place> places;
+    std::vector<EndPlace> places;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         if (curves[i].start.dimension == 0) continue;
         for (const End e : {End::start, End::end}) {
@@ -58,7 +58,7 @@ Result<std::vector<Meeting>> meetings(std::span<const CurveEnds> curves, double 
                     return refuse(RefusalKind::nonfinite, text("curves[", i, "]"), "an end is not finite");
         }
     }
-    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    std::sort(places.begin(), places.end(), [](const EndPlace& a, const EndPlace& b) {
         return std::tuple(a.point[0], a.curve, a.end) < std::tuple(b.point[0], b.curve, b.end);
     });
     std::vector<Meeting> all;

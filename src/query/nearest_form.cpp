@@ -1,6 +1,7 @@
 // What is asked of a polynomial in Bernstein form on the unit box: is it convex, how low does it come.
 #include "query/nearest_form_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/chain.hpp>
 
 namespace freiform::detail {
@@ -68,11 +69,11 @@ bool NearestForm::convex(double eps) const {
             mixed[d][e] = mixed[e][d] =
                 bend(*this, d, e).most + 16 * eps * degree[std::size_t(d)] * (2.0 * degree[std::size_t(e)]);
     if (n == 1) return true;
-    if (n == 2) return own[0] * own[1] * (1 - 8 * kUnit) > mixed[0][1] * mixed[0][1];
+    if (n == 2) return own[0] * own[1] * (1 - 8 * kUnitRoundoff) > mixed[0][1] * mixed[0][1];
     for (int d = 0; d < n; ++d) {  // Gershgorin's circles
         double sum = 0;
         for (int e = 0; e < n; ++e) sum += mixed[d][e];
-        if (!(own[d] * (1 - 8 * kUnit) > sum)) return false;
+        if (!(own[d] * (1 - 8 * kUnitRoundoff) > sum)) return false;
     }
     return true;
 }
@@ -114,7 +115,7 @@ double NearestForm::below_tangent(const Parameters& x, double eps) const {
         return sum;
     };
     // Basis values: 3 m roundings each; sums of at most prod (m_d + 1) terms, nested.
-    const double noise = eps + 1.01 * (4 * degrees + 4 * n + 4) * kUnit * size;
+    const double noise = eps + 1.01 * (4 * degrees + 4 * n + 4) * kUnitRoundoff * size;
     double low = value(-1) - noise;
     for (int d = 0; d < n; ++d) {
         const std::size_t k = std::size_t(d);

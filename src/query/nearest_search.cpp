@@ -27,6 +27,7 @@
 // 1998]'s with F in place of boxes.
 #include "query/nearest_form_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/chain.hpp>
 
 #include <algorithm>
@@ -168,7 +169,7 @@ struct NearestSearch {
             seen.local[k] = q[k] - piece->centre[k];
             length += seen.local[k] * seen.local[k];
         }
-        length = std::sqrt(length) * (1 + 8 * kUnit);
+        length = std::sqrt(length) * (1 + 8 * kUnitRoundoff);
         const double squared_weight = piece->lightest * piece->lightest;
         const double reach = piece->radius + length * piece->heaviest;
         magnitude = reach * reach;
@@ -186,7 +187,7 @@ struct NearestSearch {
             const double t = threshold();
             const double* f = block(heads.size() - 1);
             const bool open = t == std::numeric_limits<double>::infinity();
-            const double eps = (rounding + 2 * h.roundings) * kUnit * magnitude;
+            const double eps = (rounding + 2 * h.roundings) * kUnitRoundoff * magnitude;
             const Least least = shift(open ? 0 : t, f);
             const NearestForm form{piece->params, piece->degree, piece->products, scratch.shifted.data()};
             if (!open && least.value > eps) {
@@ -202,7 +203,8 @@ struct NearestSearch {
             }
             // What this part has proven even if nothing more is done: F0 / W^2 >= T + F / W^2.
             const double lowest = least.value - eps;
-            const double by_coefficients = t + std::min(lowest, 0.0) / squared_weight * (1 + 8 * kUnit);
+            const double by_coefficients =
+                t + std::min(lowest, 0.0) / squared_weight * (1 + 8 * kUnitRoundoff);
             const double room = 32 * (1 + most) * eps;
             if (lowest > -room || parts_left <= 0) {
                 proven = std::min(proven, by_coefficients);
@@ -238,7 +240,8 @@ struct NearestSearch {
                     low = form.below_tangent(in_block(at, h), eps);
                 }
                 if (low > -room) {
-                    proven = std::min(proven, t + std::min(low, 0.0) / squared_weight * (1 + 8 * kUnit));
+                    proven =
+                        std::min(proven, t + std::min(low, 0.0) / squared_weight * (1 + 8 * kUnitRoundoff));
                     heads.pop_back();
                     continue;
                 }
@@ -262,7 +265,7 @@ struct NearestSearch {
             const double x = std::max({n.lo[k] - q[k], q[k] - n.hi[k], 0.0});
             s += x * x;
         }
-        return s * (1 - 8 * kUnit);
+        return s * (1 - 8 * kUnitRoundoff);
     }
 
     void run() {
@@ -340,9 +343,10 @@ NearestFound NearestTree::find_in(const double* point, double accuracy, int max_
     double steps = 4;
     for (int d = 0; d < p.params; ++d) steps += 3 * p.degree[std::size_t(d)] + 3;
     out.point_error = std::scalbn(
-        slip_ + std::sqrt(double(coords_)) * 1.03 * (2 * steps + 2) * kUnit * largest_ * 2, exponent_);
-    const double root = std::sqrt(std::max(s.proven, 0.0)) * (1 - 4 * kUnit);
-    const double lost = slip_ + 2 * std::sqrt(double(coords_)) * kUnit * (s.size_of_q + largest_);
+        slip_ + std::sqrt(double(coords_)) * 1.03 * (2 * steps + 2) * kUnitRoundoff * largest_ * 2,
+        exponent_);
+    const double root = std::sqrt(std::max(s.proven, 0.0)) * (1 - 4 * kUnitRoundoff);
+    const double lost = slip_ + 2 * std::sqrt(double(coords_)) * kUnitRoundoff * (s.size_of_q + largest_);
     const double lower = far > kFar ? std::max(0.0, far / 2 - largest_) : std::max(0.0, root - lost);
     out.lower_bound = std::min(std::scalbn(lower, exponent_), out.distance);
     return out;

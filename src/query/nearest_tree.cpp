@@ -7,6 +7,7 @@
 // has the coefficients sum_{i + j = k} C(p, i) C(p, j) / C(2 p, k) a_i b_j, a convex combination of products.
 #include "query/nearest_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/chain.hpp>
 
 #include <algorithm>
@@ -87,9 +88,9 @@ Result<NearestTree> NearestTree::make(std::vector<const NearestSource*> sources,
     if (!std::isfinite(largest))
         return refuse(RefusalKind::ill_conditioned, "objects", "a point divided by its weight is not finite");
     t.exponent_ = exponent_of(largest);
-    t.largest_ = std::scalbn(largest, -t.exponent_) * (1 + 4 * kUnit);
+    t.largest_ = std::scalbn(largest, -t.exponent_) * (1 + 4 * kUnitRoundoff);
     // Numerator and weight after k roundings: chain.hpp; and one more in N = w x - w c.
-    t.slip_ = std::sqrt(double(D)) * 1.03 * (2 * roundings + 7) * kUnit * t.largest_;
+    t.slip_ = std::sqrt(double(D)) * 1.03 * (2 * roundings + 7) * kUnitRoundoff * t.largest_;
     std::vector<Node> boxes;
     for (std::size_t o = 0; o < sources.size(); ++o) {
         const NearestSource& s = *sources[o];
@@ -119,8 +120,8 @@ Result<NearestTree> NearestTree::make(std::vector<const NearestSource*> sources,
                 for (std::size_t k = 0; k < D; ++k) {
                     t.numbers_.push_back(std::scalbn(from[c * stride + k], -t.exponent_ - heavy));
                     const double x = std::scalbn(from[c * stride + k] / from[c * stride + D], -t.exponent_);
-                    box.lo[k] = std::min(box.lo[k], x - 2 * kUnit * std::abs(x));
-                    box.hi[k] = std::max(box.hi[k], x + 2 * kUnit * std::abs(x));
+                    box.lo[k] = std::min(box.lo[k], x - 2 * kUnitRoundoff * std::abs(x));
+                    box.hi[k] = std::max(box.hi[k], x + 2 * kUnitRoundoff * std::abs(x));
                 }
                 t.numbers_.push_back(std::scalbn(from[c * stride + D], -heavy));
             }
@@ -134,7 +135,7 @@ Result<NearestTree> NearestTree::make(std::vector<const NearestSource*> sources,
                     n[k] -= n[D] * piece.centre[k];
                     square += n[k] * n[k];
                 }
-                piece.radius = std::max(piece.radius, std::sqrt(square) * (1 + 8 * kUnit));
+                piece.radius = std::max(piece.radius, std::sqrt(square) * (1 + 8 * kUnitRoundoff));
                 piece.lightest = std::min(piece.lightest, n[D]);
                 piece.heaviest = std::max(piece.heaviest, n[D]);
             }

@@ -6,6 +6,7 @@
 // again in integers. Zeros on both sides of a knot become one: their signs outside say what it is.
 #include "query/piecewise_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/poly/integer_roots.hpp>
 
 #include <algorithm>
@@ -16,8 +17,6 @@ namespace freiform::detail {
 
 namespace {
 
-constexpr double kU = 0x1p-53;
-
 double choose(int n, int k) {  // exact for n <= 50; each step is rounded twice beyond
     double c = 1;
     for (int i = 1; i <= k; ++i) c = c * (n - k + i) / i;
@@ -25,7 +24,7 @@ double choose(int n, int k) {  // exact for n <= 50; each step is rounded twice 
 }
 Bounded bounded_choose(int n, int k) {
     const double c = choose(n, std::min(k, n - k));
-    return {c, c < 0x1p53 ? 0 : c * (2.02 * n * kU)};
+    return {c, c < 0x1p53 ? 0 : c * (2.02 * n * kUnitRoundoff)};
 }
 
 std::vector<Integer> binomials(int n) {
@@ -61,7 +60,7 @@ CurvePieces pieces_of(const Curve<P>& curve) {
         }
         const int s = basis.span(piece.on.lo);
         const bool exact = basis.knot(s - p + 1) == piece.on.lo && basis.knot(s + p) == piece.on.hi;
-        if (!exact && p > 0) piece.error = (12 * p + 8) * kU * most + 0x1p-1060;
+        if (!exact && p > 0) piece.error = (12 * p + 8) * kUnitRoundoff * most + 0x1p-1060;
         out.pieces.push_back(std::move(piece));
     }
     return out;
@@ -185,7 +184,7 @@ Interval image(const Interval& on, const Interval& part) {
         if (on.lo == 0 && on.hi == 1) return s;
         // Two roundings; a neighbour in either direction is as far as they can lead.
         const double t = on.lo + on.length() * s;
-        const double slack = 2 * kU * (std::abs(on.lo) + on.length()) + 0x1p-1074;
+        const double slack = 2 * kUnitRoundoff * (std::abs(on.lo) + on.length()) + 0x1p-1074;
         return std::clamp(t + outwards * slack, on.lo, on.hi);
     };
     return {map(part.lo, -1), map(part.hi, 1)};
@@ -299,7 +298,8 @@ double speed_bound(const CurvePiece& piece, int dimension) {
         most = std::max(most, sum * std::sqrt(double(dimension)));
     }
     const double ratio = most_w / least_w;
-    const double lost = (piece.error * (1 + (rational ? scale : 0)) / least_w + 4 * kU * scale) * 4;
+    const double lost =
+        (piece.error * (1 + (rational ? scale : 0)) / least_w + 4 * kUnitRoundoff * scale) * 4;
     return 1.01 * n * ratio * ratio * (most + lost * dimension);
 }
 

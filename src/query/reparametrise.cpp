@@ -34,6 +34,7 @@
 // References: [Farin 2002, ch. 23] for the problem; the bound is ours.
 #include "query/speed_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/query/reparametrise.hpp>
 
 #include <optional>
@@ -42,10 +43,8 @@ namespace freiform {
 
 namespace {
 
-using detail::kUnit;
-
 // C(n, k) for all k.
-std::vector<double> binomials(int n) {
+std::vector<double> binomial_row(int n) {
     std::vector<double> row{1};
     for (int k = 0; k < n; ++k) row.push_back(row.back() * (n - k) / (k + 1));
     return row;
@@ -54,7 +53,7 @@ std::vector<double> binomials(int n) {
 template <class B>
 std::vector<B> product(const std::vector<double>& f, const std::vector<B>& g) {
     const int m = int(f.size()) - 1, n = int(g.size()) - 1;
-    const auto of_f = binomials(m), of_g = binomials(n), all = binomials(m + n);
+    const auto of_f = binomial_row(m), of_g = binomial_row(n), all = binomial_row(m + n);
     std::vector<B> out(std::size_t(m + n) + 1);
     for (int k = 0; k <= m + n; ++k)
         for (int i = std::max(0, k - n); i <= std::min(k, m); ++i) {
@@ -119,7 +118,7 @@ public:
         piece_ = piece;
         speed_ = speed_of(chain_, piece);
         const Interval w = speed_.weights();
-        slip_ = 8 * kUnit * (speed_.largest() + speed_.h_slip) / (w.lo * w.lo);
+        slip_ = 8 * kUnitRoundoff * (speed_.largest() + speed_.h_slip) / (w.lo * w.lo);
     }
     // The part on [x0, x1] from `start`, of length d; the lengths at its ends are off by at most `off`.
     Piece piece(double x0, double x1, const Point& start, double d, double off) const {
@@ -142,7 +141,7 @@ private:
         Piece out;
         for (int i = 0; i <= 5; ++i) out.r[std::size_t(i)] = (1 - i / 5.0) * start + (i / 5.0) * end;
         out.r[5] = end;
-        out.bound = (d + 4 * off) * (1 + 8 * kUnit);
+        out.bound = (d + 4 * off) * (1 + 8 * kUnitRoundoff);
         out.speed = std::max(1.0, norm(end - start) / d);
         out.good = out.bound <= tolerance_;
         return out;
@@ -189,9 +188,10 @@ private:
         for (const double x : slope) steepest = std::max(steepest, std::abs(x) * h.width / d);
         const double scale = std::max(size, square_of(steepest * h.largest()));
         const double roundings = 60.0 * (degree + 10) + 16.0 * h.m * h.m + 32.0 * h.p * h.p;
-        most += roundings * kUnit * scale + 2 * steepest * h.h_slip * steepest * (h.largest() + h.h_slip) +
+        most += roundings * kUnitRoundoff * scale +
+                2 * steepest * h.h_slip * steepest * (h.largest() + h.h_slip) +
                 8 * h.w_slip * square_of(square_of(w.hi));
-        const double deviation = most / square_of(square_of(w.lo)) * (1 + 64 * kUnit);
+        const double deviation = most / square_of(square_of(w.lo)) * (1 + 64 * kUnitRoundoff);
         if (!(deviation <= 0.5)) return std::nullopt;
 
         // r and its distance from c(tau).
@@ -223,7 +223,7 @@ private:
             numerator[std::size_t(k)] -= other[std::size_t(k)];
             gap = std::max(gap, norm(numerator[std::size_t(k)]));
         }
-        const double noise = (8.0 * p * p + 60 * p + 120) * kUnit * far * heaviest;
+        const double noise = (8.0 * p * p + 60 * p + 120) * kUnitRoundoff * far * heaviest;
         for (int k = 0; k < n; ++k)
             gap_slope = std::max(gap_slope, norm(numerator[std::size_t(k) + 1] - numerator[std::size_t(k)]));
         double weight_slope = 0;
@@ -231,9 +231,9 @@ private:
             weight_slope = std::max(weight_slope, std::abs(along[k + 1] - along[k]));
         gap = (gap + noise) / lightest;
         gap_slope = (n * (gap_slope + 2 * noise) +
-                     5 * p * (weight_slope + (16.0 * p * p + 60) * kUnit * heaviest) * gap) /
+                     5 * p * (weight_slope + (16.0 * p * p + 60) * kUnitRoundoff * heaviest) * gap) /
                     lightest / d;
-        out.bound = (off + deviation * d / 2 + gap + slip) * (1 + 64 * kUnit);
+        out.bound = (off + deviation * d / 2 + gap + slip) * (1 + 64 * kUnitRoundoff);
         out.speed = deviation + gap_slope + 2 * p * slip / d;
         out.good = out.bound <= tolerance_;
         return out;
@@ -263,7 +263,7 @@ private:
     detail::SpeedBlock<D> speed_;
 };
 
-constexpr int kDeepest = 60;
+constexpr int kDeepestStep = 60;
 
 }  // namespace
 
@@ -302,13 +302,15 @@ Result<ArcLengthCurve<Space<P>::kDim>> by_arc_length(const Curve<P>& curve, doub
         for (double x = 0; !ends.empty();) {
             const End end = ends.back();
             const double s0 = std::scalbn(breaks.back(), -e), d = end.s.value - s0;
-            const double off = std::max(before.bound + std::abs(before.value - s0), end.s.bound) + kUnit * s0;
-            if (!(d > 8 * kUnit * end.s.value)) {  // too short for lengths that doubles can tell apart
+            const double off =
+                std::max(before.bound + std::abs(before.value - s0), end.s.bound) + kUnitRoundoff * s0;
+            if (!(d >
+                  8 * kUnitRoundoff * end.s.value)) {  // too short for lengths that doubles can tell apart
                 const double passed = d + 2 * off + norm(chain.value(i, end.x) - points.back());
                 bound = std::max(bound, std::max(0.0, passed));
             } else {
                 auto found = pieces.piece(x, end.x, points.back(), d, off);
-                if (!found.good && end.depth < kDeepest) {
+                if (!found.good && end.depth < kDeepestStep) {
                     const double middle = x + (end.x - x) / 2;
                     ends.push_back({middle, at(i, middle), end.depth + 1});
                     ends[ends.size() - 2].depth = end.depth + 1;
@@ -354,5 +356,6 @@ FF_INSTANTIATE(Hom<1>)
 FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform

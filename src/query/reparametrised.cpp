@@ -104,9 +104,9 @@ std::optional<Rise> rising(std::vector<double> a, double length) {
     return std::nullopt;
 }
 
-// The Bernstein coefficients of the product of a polynomial and a curve.
+// The Bernstein coefficients of the times_curve of a polynomial and a curve.
 template <class P>
-std::vector<P> product(const std::vector<double>& a, const std::vector<P>& b) {
+std::vector<P> times_curve(const std::vector<double>& a, const std::vector<P>& b) {
     const int m = int(a.size()) - 1, n = int(b.size()) - 1;
     std::vector<P> c(std::size_t(m + n) + 1);
     for (int i = 0; i <= m; ++i)
@@ -125,8 +125,8 @@ std::vector<P> composed(std::span<const P> coefficients, const std::vector<doubl
     for (const P& p : coefficients) b.push_back({p});
     while (b.size() > 1) {
         for (std::size_t i = 0; i + 1 < b.size(); ++i) {
-            auto sum = product(rest, b[i]);
-            const auto part = product(phi, b[i + 1]);
+            auto sum = times_curve(rest, b[i]);
+            const auto part = times_curve(phi, b[i + 1]);
             for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += part[k];
             b[i] = std::move(sum);
         }
@@ -230,5 +230,6 @@ FF_INSTANTIATE_REPARAMETRISED(Hom<1>)
 FF_INSTANTIATE_REPARAMETRISED(Hom<2>)
 FF_INSTANTIATE_REPARAMETRISED(Hom<3>)
 FF_INSTANTIATE_REPARAMETRISED(Hom<4>)
+#undef FF_INSTANTIATE_REPARAMETRISED
 
 }  // namespace freiform

@@ -42,6 +42,7 @@
 #include "arc_detail.hpp"
 #include "self_contact_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/query/self_intersection.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -59,7 +60,6 @@ namespace {
 
 using detail::add_points;
 using detail::Arc;
-using detail::kU;
 using detail::meet_at_most_once;
 using detail::moves_on;
 
@@ -105,7 +105,7 @@ public:
                 while (part.still_hi < p && net({p - part.still_hi}) == net({p - part.still_hi - 1}))
                     ++part.still_hi;
             } else {
-                part.error = (12 * p + 8) * kU * most + 0x1p-1060;
+                part.error = (12 * p + 8) * kUnitRoundoff * most + 0x1p-1060;
             }
             if (!errors.empty()) part.error += errors[std::size_t(i)];
             if (i > 0) jumps_.push_back(basis.multiplicity(part.arc.on.lo) > p);
@@ -113,7 +113,7 @@ public:
             parts_.push_back(std::move(part));
         }
         const Interval domain = basis.domain();
-        parameter_error_ = 4 * kU * std::max(std::abs(domain.lo), std::abs(domain.hi));
+        parameter_error_ = 4 * kUnitRoundoff * std::max(std::abs(domain.lo), std::abs(domain.hi));
         count_ = int(parts_.size());
     }
 
@@ -199,7 +199,7 @@ private:
         double most = 0;
         for (const P& p : whole.b) most = std::max(most, max_abs(p));
         const int n = int(whole.b.size());
-        const double e = whole.error + 1.01 * n * kU * most + 0x1p-1060;
+        const double e = whole.error + 1.01 * n * kUnitRoundoff * most + 0x1p-1060;
         Part<P> left{whole.b, e, whole.still_lo, 0, -1, -1, {}},
             right{whole.b, e, 0, whole.still_hi, -1, -1, {}};
         keep_left(Fibre<P>{left.b.data(), n, 1}, 0.5);
@@ -290,7 +290,7 @@ private:
             const int n = int(b.size());
             // Local parameters are off by 6 u, their quotients, with divisors of at least 1/2, by 24 u; that
             // moves coefficients by 2 n times as much of the largest. Each cut has 3 n roundings of its own.
-            const double e = part.error + 60 * n * kU * most + 0x1p-1060;
+            const double e = part.error + 60 * n * kUnitRoundoff * most + 0x1p-1060;
             const double from = (lo - own.lo) / own.length(), to = (hi - own.lo) / own.length();
             const Fibre<P> row{b.data(), n, 1};
             if (from <= 0.5) {
@@ -323,7 +323,9 @@ private:
             if (!(std::abs(ds) <= 2 * a.on.length() && std::abs(dt) <= 2 * b.on.length())) return false;
             s = std::clamp(s + ds, domain.lo, domain.hi);
             t = std::clamp(t + dt, domain.lo, domain.hi);
-            if (std::abs(ds) <= 4 * kU * std::abs(s) && std::abs(dt) <= 4 * kU * std::abs(t)) break;
+            if (std::abs(ds) <= 4 * kUnitRoundoff * std::abs(s) &&
+                std::abs(dt) <= 4 * kUnitRoundoff * std::abs(t))
+                break;
         }
         const auto near = [](const Interval& on, double x) {
             return on.lo - 0.1 * on.length() <= x && x <= on.hi + 0.1 * on.length();
@@ -333,8 +335,8 @@ private:
         double size = 0.4 * accuracy_;
         for (int k = 0; k < 14; ++k, size *= 4) {
             const auto around = [&](double x, double speed, const Interval& whole) {
-                const double r =
-                    std::max(size / speed, 4 * kU * std::max(std::abs(whole.lo), std::abs(whole.hi)));
+                const double r = std::max(
+                    size / speed, 4 * kUnitRoundoff * std::max(std::abs(whole.lo), std::abs(whole.hi)));
                 return Interval{std::max(whole.lo, x - r), std::min(whole.hi, x + r)};
             };
             const Arc<2> p = arc_over(around(s, vs, stretch_around(s))),
@@ -351,7 +353,7 @@ private:
                               p.on,
                               q.on,
                               x,
-                              bound * (1 + 8 * kU) + 2 * curve_.value_error_bound(),
+                              bound * (1 + 8 * kUnitRoundoff) + 2 * curve_.value_error_bound(),
                               {s, t}});
             arcs_.push_back({p, q});
             return true;
@@ -394,7 +396,7 @@ private:
                 const Arc<D> a = arc_over(on);
                 for (const Vec<D>& y : a.points) m.bound = std::max(m.bound, norm(y - m.point) + 2 * a.error);
             }
-            m.bound = m.bound * (1 + 8 * kU) + 2 * curve_.value_error_bound();
+            m.bound = m.bound * (1 + 8 * kUnitRoundoff) + 2 * curve_.value_error_bound();
             if (exact_) detail::describe(curve_, m);
             found_.push_back(m);
         }
@@ -444,9 +446,9 @@ std::vector<SelfIntersection<3>> lifted(const Curve<P>& curve, const std::vector
     for (const SelfIntersection<2>& m : image) {
         SelfIntersection<3> x{m.kind, m.first, m.second, curve(m.first.middle()), 0, m.at, 0};
         // From the point over the middle of `first` to m.point and on: both in the image.
-        x.bound = 1.7320508075688774 * (2 * m.bound + 2 * image_error) * (1 + 8 * kU) + error;
+        x.bound = 1.7320508075688774 * (2 * m.bound + 2 * image_error) * (1 + 8 * kUnitRoundoff) + error;
         if (m.kind == SelfContact::near)
-            x.distance = (norm(curve(m.at[0]) - curve(m.at[1])) + 2 * error) * (1 + 8 * kU);
+            x.distance = (norm(curve(m.at[0]) - curve(m.at[1])) + 2 * error) * (1 + 8 * kUnitRoundoff);
         out.push_back(x);
     }
     return out;

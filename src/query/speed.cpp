@@ -1,5 +1,7 @@
 #include "query/speed_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <numbers>
 
 namespace freiform::detail {
@@ -43,7 +45,7 @@ double variation_on(std::span<const double> a, double rho, double slip) {
         up *= rho, down /= rho;
         sum += (std::abs(a[k]) + slip) * (up + down) / 2;
     }
-    return sum * (1 + 128 * kUnit) + slip;
+    return sum * (1 + 128 * kUnitRoundoff) + slip;
 }
 
 constexpr double kRadii[] = {16, 8, 5, 3.5, 2.6, 2, 1.6};
@@ -57,14 +59,14 @@ SpeedBlock<Space<P>::kDim> speed_of(const Chain<P>& chain, int i) {
     const int p = chain.degree();
     SpeedBlock<D> s;
     if (p == 0) return s;  // all zero
-    const double g = 1.01 * chain.roundings() * kUnit;
+    const double g = 1.01 * chain.roundings() * kUnitRoundoff;
     if (chain.polynomial()) {
         s.m = p - 1;
         for (int k = 0; k < p; ++k)
             s.h[std::size_t(k)] = double(p) * (project(b[std::size_t(k) + 1]) - project(b[std::size_t(k)]));
         // Where pieces are given exactly, a difference of them has one rounding.
         const bool exact = !Space<P>::kRational && chain.roundings() == 0;
-        s.h_slip = 2.1 * kUnit * s.largest() + (exact ? 0 : 2.1 * p * chain.error(0));
+        s.h_slip = 2.1 * kUnitRoundoff * s.largest() + (exact ? 0 : 2.1 * p * chain.error(0));
         return s;
     }
     s.m = 2 * p - 2;
@@ -82,7 +84,7 @@ SpeedBlock<Space<P>::kDim> speed_of(const Chain<P>& chain, int i) {
             size += norm(leg);
             mass += factor;
         }
-        s.h_slip = std::max(s.h_slip, ((p + 10) * kUnit + 2 * g) * size + 1.01 * mass * off);
+        s.h_slip = std::max(s.h_slip, ((p + 10) * kUnitRoundoff + 2 * g) * size + 1.01 * mass * off);
     }
     return s;
 }
@@ -96,11 +98,12 @@ Measure crude_length(const SpeedBlock<D>& b) {
         most += norm(b.h[std::size_t(i)]);
     }
     const Interval w = b.weights();
-    const double n = b.m + 1, rounding = (b.m + 8) * kUnit;
+    const double n = b.m + 1, rounding = (b.m + 8) * kUnitRoundoff;
     const double slip = b.h_slip + rounding * most / n;
-    const double upper = (most / n + slip) * b.width / (w.lo * w.lo) * (1 + 8 * kUnit);
-    const double lower = std::max(0.0, (norm(mean) / n - slip) * b.width / (w.hi * w.hi) * (1 - 8 * kUnit));
-    return {(lower + upper) / 2, (upper - lower) / 2 + kUnit * upper};
+    const double upper = (most / n + slip) * b.width / (w.lo * w.lo) * (1 + 8 * kUnitRoundoff);
+    const double lower =
+        std::max(0.0, (norm(mean) / n - slip) * b.width / (w.hi * w.hi) * (1 - 8 * kUnitRoundoff));
+    return {(lower + upper) / 2, (upper - lower) / 2 + kUnitRoundoff * upper};
 }
 
 template <int D>
@@ -118,16 +121,16 @@ Measure gauss_length(const SpeedBlock<D>& b, double wanted) {
     chebyshev({value, std::size_t(n)}, 2 * b.m, {q, std::size_t(n)});
     // A value of H is off by its slip, the roundings of the scheme, and 8 u of its node times |H'| <= m
     // max|H|.
-    const double h_off = b.h_slip + (3.03 * b.m + 6 + 8 * b.m) * kUnit * largest;
-    const double q_slip = 2 * ((2 * largest + h_off) * h_off + (D + 4) * kUnit * largest * largest) +
-                          2 * (n + 8) * kUnit * largest * largest;
+    const double h_off = b.h_slip + (3.03 * b.m + 6 + 8 * b.m) * kUnitRoundoff * largest;
+    const double q_slip = 2 * ((2 * largest + h_off) * h_off + (D + 4) * kUnitRoundoff * largest * largest) +
+                          2 * (n + 8) * kUnitRoundoff * largest * largest;
     double w_slip = 0;
     w[0] = 1;
     if (b.p > 0) {
         for (int j = 0; j <= b.p; ++j)
             value[j] = b.weight(0.5 + 0.5 * cosines(b.p + 1)[std::size_t(2 * j + 1)]);
         chebyshev({value, std::size_t(b.p) + 1}, b.p, {w, std::size_t(b.p) + 1});
-        w_slip = 2 * (b.w_slip + (12 * b.p + 24) * kUnit) * b.weights().hi;
+        w_slip = 2 * (b.w_slip + (12 * b.p + 24) * kUnitRoundoff) * b.weights().hi;
     }
     const double q0 = q[0], w0 = w[0];
     if (!(q0 > q_slip && w0 > w_slip)) return none;
@@ -144,7 +147,7 @@ Measure gauss_length(const SpeedBlock<D>& b, double wanted) {
         };
         // Below what the slip alone contributes nothing is gained by asking for less.
         const double noise = q_slip * 2 * std::pow(rho, 2 * b.m + 1) / (rho - 1) / h0 / (least * least);
-        const double shrink = 64.0 / 30 * b.width / (1 - 1 / (rho * rho)) * (1 + 64 * kUnit);
+        const double shrink = 64.0 / 30 * b.width / (1 - 1 / (rho * rho)) * (1 + 64 * kUnitRoundoff);
         const double aim =
             std::max(wanted, 4 * shrink * noise * std::pow(rho, -2 * kGaussRules.back().points));
         for (const GaussRule& rule : kGaussRules) {
@@ -162,10 +165,10 @@ Measure gauss_length(const SpeedBlock<D>& b, double wanted) {
     for (const GaussNode& node : best->half)
         sum += node.weight * (b.speed(0.5 + 0.5 * node.at) + b.speed(0.5 - 0.5 * node.at));
     const double fastest = h0 / (w0 * w0) + variation;
-    const double values = (b.h_slip + (3.03 * b.m + 5) * kUnit * largest) / (lightest * lightest);
-    const double relative = 2 * b.w_slip + (6.06 * b.p + D + best->points + 20) * kUnit;
-    return {b.width / 2 * sum,
-            truncation + b.width * (values + relative * fastest + 3 * kUnit * variation / (radius - 1))};
+    const double values = (b.h_slip + (3.03 * b.m + 5) * kUnitRoundoff * largest) / (lightest * lightest);
+    const double relative = 2 * b.w_slip + (6.06 * b.p + D + best->points + 20) * kUnitRoundoff;
+    return {b.width / 2 * sum, truncation + b.width * (values + relative * fastest +
+                                                       3 * kUnitRoundoff * variation / (radius - 1))};
 }
 
 #define FF_INSTANTIATE(D)                                       \
@@ -177,5 +180,6 @@ FF_INSTANTIATE(1)
 FF_INSTANTIATE(2)
 FF_INSTANTIATE(3)
 FF_INSTANTIATE(4)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform::detail

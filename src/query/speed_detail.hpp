@@ -3,6 +3,7 @@
 #pragma once
 #include "query/gauss_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/query/length.hpp>
 #include <freiform/spline/chain.hpp>
 
@@ -23,7 +24,7 @@ struct SpeedBlock {
     double largest() const {
         double most = 0;
         for (int i = 0; i <= m; ++i) most = std::max(most, dot(h[std::size_t(i)], h[std::size_t(i)]));
-        return std::sqrt(most) * (1 + 4 * kUnit);
+        return std::sqrt(most) * (1 + 4 * kUnitRoundoff);
     }
     Interval weights() const {
         if (p == 0) return {1, 1};
@@ -36,8 +37,8 @@ struct SpeedBlock {
         SpeedBlock b = *this;
         const double v = largest();
         keep_left(Fibre<Vec<D>>{b.h.data(), m + 1, 1}, y);
-        b.h_slip += 3.03 * m * kUnit * v;
-        if (p > 0) keep_left(Fibre<Vec<1>>{b.w.data(), p + 1, 1}, y), b.w_slip += 3.03 * p * kUnit;
+        b.h_slip += 3.03 * m * kUnitRoundoff * v;
+        if (p > 0) keep_left(Fibre<Vec<1>>{b.w.data(), p + 1, 1}, y), b.w_slip += 3.03 * p * kUnitRoundoff;
         b.width = width * y;
         return b;
     }
@@ -46,9 +47,10 @@ struct SpeedBlock {
         SpeedBlock b = x1 < 1 ? left(x1) : *this;
         if (x0 > 0) {
             const double y = std::nextafter(x0 / x1, 0.0);
-            b.h_slip += 3.03 * m * kUnit * largest();
+            b.h_slip += 3.03 * m * kUnitRoundoff * largest();
             keep_right(Fibre<Vec<D>>{b.h.data(), m + 1, 1}, y);
-            if (p > 0) keep_right(Fibre<Vec<1>>{b.w.data(), p + 1, 1}, y), b.w_slip += 3.03 * p * kUnit;
+            if (p > 0)
+                keep_right(Fibre<Vec<1>>{b.w.data(), p + 1, 1}, y), b.w_slip += 3.03 * p * kUnitRoundoff;
         }
         b.width = width * (x1 - x0);
         return b;
@@ -56,8 +58,8 @@ struct SpeedBlock {
     // Becomes the left half and returns the right one.
     SpeedBlock split() {
         SpeedBlock right;
-        h_slip += 1.01 * m * kUnit * largest();
-        if (p > 0) w_slip += 1.01 * p * kUnit;
+        h_slip += 1.01 * m * kUnitRoundoff * largest();
+        if (p > 0) w_slip += 1.01 * p * kUnitRoundoff;
         width /= 2;
         right.m = m, right.p = p, right.width = width, right.h_slip = h_slip, right.w_slip = w_slip;
         for (int r = 0; r <= m; ++r) {

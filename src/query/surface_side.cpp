@@ -14,6 +14,7 @@
 // References: [Ramshaw 1989], [PT97, 3.3, 4.4].
 #include "knot_window_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/query/surface_continuity.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -26,8 +27,6 @@ namespace freiform {
 namespace {
 
 using detail::span_before;
-
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // The control points of the derivatives across: [order * (D + 1) + coordinate][j].
 using Rows = std::vector<std::vector<Bounded>>;
@@ -46,7 +45,7 @@ Rows rows_across(const Surface<P>& s, int axis, double at, int span, bool after,
     for (int i = 0; i <= p; ++i)
         for (int j = 0; j < n; ++j)
             for (int c = 0; c < P::kCoords; ++c) grant[c] = std::max(grant[c], std::abs(q(i, j)[c]));
-    grant *= roundings * kRoundoff;
+    grant *= roundings * kUnitRoundoff;
     const PointOf<P> origin = project(q(after ? 0 : p, 0));
     side.origin.assign(origin.c.begin(), origin.c.end());
 
@@ -94,7 +93,8 @@ void add_pieces(const BSplineBasis& basis, const Rows& rows, SurfaceSide& side) 
         }
         side.pieces.push_back(std::move(piece));
     }
-    side.uncertainty = std::max(std::abs(breaks.front()), std::abs(breaks.back())) * kRoundoff / whole.value;
+    side.uncertainty =
+        std::max(std::abs(breaks.front()), std::abs(breaks.back())) * kUnitRoundoff / whole.value;
 }
 
 template <class P>
@@ -161,13 +161,13 @@ std::vector<double> point_at(const SurfaceSide& side, double fraction) {
 }
 
 constexpr int kPlaces = 9;
-struct Place {
+struct BoundaryPlace {
     std::vector<std::vector<double>> point;  // at equal fractions
     std::size_t surface = 0, edge = 0;
     double first = 0;
 };
 
-double distance(const Place& a, const Place& b, bool against) {
+double distance(const BoundaryPlace& a, const BoundaryPlace& b, bool against) {
     double most = 0;
     for (std::size_t i = 0; i < kPlaces; ++i) {
         double d = 0;
@@ -254,18 +254,18 @@ Result<std::vector<LineContinuity>> continuity(const Surface<P>& s, int axis,
 Result<std::vector<SurfaceMeeting>> meetings(std::span<const SurfaceEdges> surfaces, double gap,
                                              std::size_t most) {
     if (!(gap >= 0)) return refuse(RefusalKind::invalid, "gap", text(gap, " is not a number >= 0"));
-    std::vector<Place> places;
+    std::vector<BoundaryPlace> places;
     for (std::size_t i = 0; i < surfaces.size(); ++i)
         for (std::size_t e = 0; e < 4; ++e) {
             const SurfaceSide& side = surfaces[i][e];
             if (side.pieces.empty() || side.length <= gap) continue;
-            Place place{{}, i, e, 0};
+            BoundaryPlace place{{}, i, e, 0};
             for (int k = 0; k < kPlaces; ++k)
                 place.point.push_back(point_at(side, double(k) / (kPlaces - 1)));
             place.first = std::min(place.point.front()[0], place.point.back()[0]);
             places.push_back(std::move(place));
         }
-    std::ranges::sort(places, [](const Place& a, const Place& b) {
+    std::ranges::sort(places, [](const BoundaryPlace& a, const BoundaryPlace& b) {
         return std::tuple(a.first, a.surface, a.edge) < std::tuple(b.first, b.surface, b.edge);
     });
     std::vector<SurfaceMeeting> all;
@@ -273,7 +273,7 @@ Result<std::vector<SurfaceMeeting>> meetings(std::span<const SurfaceEdges> surfa
         for (std::size_t j = i + 1; j < places.size() && places[j].first - places[i].first <= gap; ++j) {
             const bool ordered =
                 std::tuple(places[i].surface, places[i].edge) < std::tuple(places[j].surface, places[j].edge);
-            const Place &a = ordered ? places[i] : places[j], &b = ordered ? places[j] : places[i];
+            const BoundaryPlace &a = ordered ? places[i] : places[j], &b = ordered ? places[j] : places[i];
             if (a.point[0].size() != b.point[0].size()) continue;
             const double same = distance(a, b, false), turned = distance(a, b, true);
             if (!(std::min(same, turned) <= gap)) continue;
@@ -325,5 +325,6 @@ FF_INSTANTIATE_SIDES(Hom<1>)
 FF_INSTANTIATE_SIDES(Hom<2>)
 FF_INSTANTIATE_SIDES(Hom<3>)
 FF_INSTANTIATE_SIDES(Hom<4>)
+#undef FF_INSTANTIATE_SIDES
 
 }  // namespace freiform

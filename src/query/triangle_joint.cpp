@@ -24,8 +24,8 @@ namespace freiform {
 
 namespace {
 
-using Poly = std::vector<Bounded>;  // Bernstein coefficients on [0, 1]
-using Poly3 = std::array<Poly, 3>;
+using Coefficients = std::vector<Bounded>;  // Bernstein coefficients on [0, 1]
+using PolyVector = std::array<Coefficients, 3>;
 
 constexpr int kMostPieces = 256;
 
@@ -34,14 +34,14 @@ Bounded choose(int n, int k) {
     return {c, c < 0x1p45 ? 0 : c * 0x1p-44};  // beyond, two roundings for each of at most 128 factors
 }
 
-Poly product(const Poly& a, const Poly& b) {
+Coefficients product(const Coefficients& a, const Coefficients& b) {
     const int m = int(a.size()) - 1, n = int(b.size()) - 1;
     if (m == 0 || n == 0) {
-        Poly out = m == 0 ? b : a;
+        Coefficients out = m == 0 ? b : a;
         for (Bounded& x : out) x = x * (m == 0 ? a[0] : b[0]);
         return out;
     }
-    Poly out(std::size_t(m + n + 1));
+    Coefficients out(std::size_t(m + n + 1));
     for (int i = 0; i <= m; ++i)
         for (int j = 0; j <= n; ++j)
             out[std::size_t(i + j)] += choose(m, i) * a[std::size_t(i)] * (choose(n, j) * b[std::size_t(j)]);
@@ -49,17 +49,19 @@ Poly product(const Poly& a, const Poly& b) {
     return out;
 }
 // a - b; degrees are raised where they differ, the sum of all Bernstein polynomials being 1.
-Poly difference(Poly a, Poly b) {
-    if (a.size() < b.size()) a = product(a, Poly(b.size() - a.size() + 1, Bounded(1)));
-    if (b.size() < a.size()) b = product(b, Poly(a.size() - b.size() + 1, Bounded(1)));
+Coefficients difference(Coefficients a, Coefficients b) {
+    if (a.size() < b.size()) a = product(a, Coefficients(b.size() - a.size() + 1, Bounded(1)));
+    if (b.size() < a.size()) b = product(b, Coefficients(a.size() - b.size() + 1, Bounded(1)));
     for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
     return a;
 }
-Poly3 difference(const Poly3& a, const Poly3& b) {
+PolyVector difference(const PolyVector& a, const PolyVector& b) {
     return {difference(a[0], b[0]), difference(a[1], b[1]), difference(a[2], b[2])};
 }
-Poly3 times(const Poly& s, const Poly3& a) { return {product(s, a[0]), product(s, a[1]), product(s, a[2])}; }
-Poly3 cross(const Poly3& a, const Poly3& b) {
+PolyVector times(const Coefficients& s, const PolyVector& a) {
+    return {product(s, a[0]), product(s, a[1]), product(s, a[2])};
+}
+PolyVector cross_of(const PolyVector& a, const PolyVector& b) {
     const auto part = [&](std::size_t i, std::size_t j) {
         return difference(product(a[i], b[j]), product(a[j], b[i]));
     };
@@ -69,14 +71,14 @@ Poly3 cross(const Poly3& a, const Poly3& b) {
 // An edge: points X and weights w, and w^2 times the derivatives of the point along the edge and in a
 // direction.
 struct Side {
-    Poly3 x;
-    Poly w;
-    Poly3 along, inward;
+    PolyVector x;
+    Coefficients w;
+    PolyVector along, inward;
 };
 
 // n (b_1 - b_0), ..: derivatives of the edge, or with the row beside it.
-Poly differences(const Poly& from, const Poly& to, int n, std::size_t shift) {
-    Poly out;
+Coefficients differences(const Coefficients& from, const Coefficients& to, int n, std::size_t shift) {
+    Coefficients out;
     for (std::size_t i = 0; i < std::size_t(n); ++i) out.push_back(Bounded(n) * (to[i + shift] - from[i]));
     return out;
 }
@@ -86,7 +88,7 @@ template <class P>
 Side side_of(const SimplexPatch<2, P>& s, int edge, bool backwards, const Bounded& o, const Bounded& e) {
     const int n = s.degree();
     const auto row = [&](int depth, int coordinate) {
-        Poly out;
+        Coefficients out;
         for (int i = 0; i <= n - depth; ++i) {
             std::array<int, 3> at{};
             at[std::size_t(edge)] = depth;
@@ -96,9 +98,9 @@ Side side_of(const SimplexPatch<2, P>& s, int edge, bool backwards, const Bounde
         if (backwards) std::reverse(out.begin(), out.end());
         return out;
     };
-    const auto direction = [&](const Poly& own, const Poly& beside) {
-        Poly out = differences(own, beside, n, 0);
-        const Poly along = differences(own, own, n, 1);
+    const auto direction = [&](const Coefficients& own, const Coefficients& beside) {
+        Coefficients out = differences(own, beside, n, 0);
+        const Coefficients along = differences(own, own, n, 1);
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = o * out[i] + e * along[i];
         return out;
     };
@@ -121,15 +123,17 @@ Side side_of(const SimplexPatch<2, P>& s, int edge, bool backwards, const Bounde
 }
 
 double above(const Bounded& b) { return std::abs(b.value) + b.bound; }
-double longest(const Poly3& v) {
+double longest(const PolyVector& v) {
     double most = 0;
     for (std::size_t i = 0; i < v[0].size(); ++i)
         most = std::max(most, norm(Vec<3>{{above(v[0][i]), above(v[1][i]), above(v[2][i])}}));
     return most * (1 + 0x1p-48);
 }
-Vec<3> vector_at(const Poly3& v, std::size_t i) { return {{v[0][i].value, v[1][i].value, v[2][i].value}}; }
+Vec<3> vector_at(const PolyVector& v, std::size_t i) {
+    return {{v[0][i].value, v[1][i].value, v[2][i].value}};
+}
 // No vector is shorter: not even its part along the middle one. Not positive: nothing is known.
-double shortest(const Poly3& v) {
+double shortest(const PolyVector& v) {
     const Vec<3> m = unit(vector_at(v, v[0].size() / 2));
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < v[0].size(); ++i) {
@@ -138,15 +142,15 @@ double shortest(const Poly3& v) {
     }
     return least * (1 - 0x1p-48);  // m is longer than 1 by less than that
 }
-double smallest(const Poly& p) {
+double smallest(const Coefficients& p) {
     double least = std::numeric_limits<double>::infinity();
     for (const Bounded& b : p) least = std::min(least, b.value - b.bound);
     return least;
 }
 
 // The halves of polynomials.
-void split(const Poly& p, Poly& low, Poly& high) {
-    Poly b = p;
+void split(const Coefficients& p, Coefficients& low, Coefficients& high) {
+    Coefficients b = p;
     high = p;
     low.clear();
     for (std::size_t r = 0; r < p.size(); ++r) {
@@ -158,9 +162,9 @@ void split(const Poly& p, Poly& low, Poly& high) {
 
 // `rate` gives a bound for a piece, and what was found at its ends.
 template <class Rate>
-Deviation largest(std::vector<Poly> polynomials, Rate&& rate) {
+Deviation largest(std::vector<Coefficients> polynomials, Rate&& rate) {
     struct Piece {
-        std::vector<Poly> p;
+        std::vector<Coefficients> p;
         Deviation d;
     };
     std::vector<Piece> pieces{{polynomials, rate(polynomials)}};
@@ -182,9 +186,9 @@ Deviation largest(std::vector<Poly> polynomials, Rate&& rate) {
 }
 
 // |N| / d
-Deviation quotient(const Poly3& n, const Poly& d) {
-    return largest({n[0], n[1], n[2], d}, [](const std::vector<Poly>& p) {
-        const Poly3 v{p[0], p[1], p[2]};
+Deviation quotient(const PolyVector& n, const Coefficients& d) {
+    return largest({n[0], n[1], n[2], d}, [](const std::vector<Coefficients>& p) {
+        const PolyVector v{p[0], p[1], p[2]};
         const double least = smallest(p[3]);
         const std::size_t end = v[0].size() - 1;
         return Deviation{
@@ -193,22 +197,23 @@ Deviation quotient(const Poly3& n, const Poly& d) {
     });
 }
 
-Deviation angle_between(const Poly3& a, const Poly3& b) {
-    const Poly3 c = cross(a, b);
-    const auto angle_at = [](const Poly3& x, const Poly3& y, std::size_t i, std::size_t j) {
+Deviation angle_between(const PolyVector& a, const PolyVector& b) {
+    const PolyVector c = cross_of(a, b);
+    const auto angle_at = [](const PolyVector& x, const PolyVector& y, std::size_t i, std::size_t j) {
         const Vec<3> m = unit(vector_at(x, i)), n = unit(vector_at(y, j));
         return std::atan2(norm(cross(m, n)), dot(m, n));
     };
     const Bounded start = a[0][0] * b[0][0] + a[1][0] * b[1][0] + a[2][0] * b[2][0];
     if (!(start.value > start.bound))
         return {angle_at(a, b, 0, 0), std::numbers::pi};  // beyond 90 degrees, or no normal
-    return largest({a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]}, [&](const std::vector<Poly>& p) {
-        const Poly3 x{p[0], p[1], p[2]}, y{p[3], p[4], p[5]}, z{p[6], p[7], p[8]};
-        const double m = shortest(x), n = shortest(y);
-        const double sine = m > 0 && n > 0 ? longest(z) / m / n * (1 + 0x1p-48) : 1;
-        return Deviation{std::max(angle_at(x, y, 0, 0), angle_at(x, y, x[0].size() - 1, y[0].size() - 1)),
-                         sine < 1 ? std::asin(sine) * (1 + 0x1p-48) : std::numbers::pi};
-    });
+    return largest(
+        {a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]}, [&](const std::vector<Coefficients>& p) {
+            const PolyVector x{p[0], p[1], p[2]}, y{p[3], p[4], p[5]}, z{p[6], p[7], p[8]};
+            const double m = shortest(x), n = shortest(y);
+            const double sine = m > 0 && n > 0 ? longest(z) / m / n * (1 + 0x1p-48) : 1;
+            return Deviation{std::max(angle_at(x, y, 0, 0), angle_at(x, y, x[0].size() - 1, y[0].size() - 1)),
+                             sine < 1 ? std::asin(sine) * (1 + 0x1p-48) : std::numbers::pi};
+        });
 }
 
 Result<void> check_edges(int edge_a, int edge_b, int degree_a, int degree_b) {
@@ -228,7 +233,7 @@ requires(Space<P>::kDim == 3) Result<TriangleJoint> triangle_joint(const Simplex
         return std::unexpected(ok.error());
     const Side s = side_of(a, edge_a, false, 1, 0), t = side_of(b, edge_b, true, 1, 0);
     return TriangleJoint{quotient(difference(times(t.w, s.x), times(s.w, t.x)), product(s.w, t.w)),
-                         angle_between(cross(s.along, s.inward), cross(t.inward, t.along))};
+                         angle_between(cross_of(s.along, s.inward), cross_of(t.inward, t.along))};
 }
 
 template <class P>
@@ -242,7 +247,7 @@ requires(Space<P>::kDim == 3) Result<Deviation> c1_deviation(const SimplexPatch<
     const std::array<Bounded, 3> x{Bounded(1) - apex[0] - apex[1], apex[0], apex[1]};
     const Side s = side_of(a, edge_a, false, x[std::size_t(edge_a)], x[std::size_t((edge_a + 2) % 3)]);
     const Side t = side_of(b, edge_b, true, 1, 0);
-    const Poly ss = product(s.w, s.w), tt = product(t.w, t.w);
+    const Coefficients ss = product(s.w, s.w), tt = product(t.w, t.w);
     return quotient(difference(times(tt, s.inward), times(ss, t.inward)), product(ss, tt));
 }
 
@@ -253,5 +258,6 @@ requires(Space<P>::kDim == 3) Result<Deviation> c1_deviation(const SimplexPatch<
                                             const Param<2>&);
 FF_TRIANGLE_JOINT(Vec<3>)
 FF_TRIANGLE_JOINT(Hom<3>)
+#undef FF_TRIANGLE_JOINT
 
 }  // namespace freiform

@@ -156,5 +156,7 @@ FF_A_FRAMES_OF(1)
 FF_A_FRAMES_OF(2)
 FF_A_FRAMES_OF(3)
 FF_A_FRAMES_OF(4)
+#undef FF_A_FRAMES
+#undef FF_A_FRAMES_OF
 
 }  // namespace freiform

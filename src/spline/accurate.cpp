@@ -218,5 +218,9 @@ Result<void> evaluate_accurate(const Patch<N, P, B>& patch, std::span<const Para
 FF_ACCURATE_DIMENSIONS(1)
 FF_ACCURATE_DIMENSIONS(2)
 FF_ACCURATE_DIMENSIONS(3)
+#undef FF_ACCURATE
+#undef FF_ACCURATE_BASES
+#undef FF_ACCURATE_COEFFICIENTS
+#undef FF_ACCURATE_DIMENSIONS
 
 }  // namespace freiform

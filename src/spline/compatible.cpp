@@ -16,7 +16,7 @@ namespace freiform {
 
 namespace {
 
-struct Knots {
+struct CommonKnots {
     int degree = 0;
     std::map<double, int> multiplicity;  // inside the domain; of a closed basis without the upper end
 };
@@ -90,7 +90,7 @@ private:
     }
 
     bool closed_;
-    Knots knots_;
+    CommonKnots knots_;
     Compatible<P> out_;
 };
 
@@ -106,7 +106,7 @@ Result<Compatible<P>> compatible(std::span<const Curve<P>> curves) {
     if (curves.empty()) return refuse(RefusalKind::invalid, "curves", "there are none");
     if (std::ranges::all_of(curves, [](const auto& c) { return c.basis().is_closed(); })) {
         auto closed = Common<P>(curves, true).run();
-        // Knots at a seam may be stored before or after it; coefficients are then numbered differently.
+        // CommonKnots at a seam may be stored before or after it; coefficients are then numbered differently.
         if (closed && agree(closed->curves)) return closed;
     }
     auto open = Common<P>(curves, false).run();

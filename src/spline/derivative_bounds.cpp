@@ -13,6 +13,7 @@
 // block. Offsets: O = S + d n with n = m / |m|, m = S_u x S_v:   |n_a| <= |m_a| / L,  |n_ab| <= |m_ab| / L +
 // 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the variation by m_u, m_v.
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
@@ -23,10 +24,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostBernstein = kMaxDegree + 1;
-constexpr double kShortest = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
+constexpr double kSmallestBlock = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
 // The net of differences of order `a`, of the numerator after shifting to c0 and of the weight: the largest
 // of them, and their values in the middle of the block.
@@ -78,7 +77,7 @@ Differences<Space<P>::kDim> differences(const NetView<N, const P>& net, const In
         out.middle += share * sum;
         out.weight_middle += share * weight_sum;
     });
-    out.most = std::sqrt(most) * (1 + 8 * kRoundoff);
+    out.most = std::sqrt(most) * (1 + 8 * kUnitRoundoff);
     if (!Space<P>::kRational) out.weight_most = 0;
     return out;
 }
@@ -116,8 +115,8 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
         }
         radius = std::max(radius, norm(shifted) / w);
     });
-    const double slip = steps * kRoundoff * largest,
-                 weight_slip = Space<P>::kRational ? steps * kRoundoff * weight_max : 0;
+    const double slip = steps * kUnitRoundoff * largest,
+                 weight_slip = Space<P>::kRational ? steps * kUnitRoundoff * weight_max : 0;
     radius += 2 * slip / weight_min;
 
     DerivativeBounds<N> out;
@@ -155,10 +154,10 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                     most += choose * weight[jet_slot(b)] * out.d[jet_slot(rest)];
                     middle[slot] -= (choose * weight_middle[jet_slot(b)]) * middle[jet_slot(rest)];
                 });
-                most /= weight_min * (1 - 16 * steps * kRoundoff);
+                most /= weight_min * (1 - 16 * steps * kUnitRoundoff);
                 middle[slot] *= 1 / weight_middle[0];
             }
-            if (sum > 0) out.d[slot] = most * (1 + 64 * kRoundoff);
+            if (sum > 0) out.d[slot] = most * (1 + 64 * kUnitRoundoff);
         });
     if constexpr (Space<P>::kRational) {
         // The triangle inequality lost the signs; from the middle outwards they are kept.
@@ -174,8 +173,8 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                     here += width[d] / 2 * out.d[jet_slot(more)];
                 }
                 // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
-                here += 64 * steps * kRoundoff * crude.d[slot];
-                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kRoundoff));
+                here += 64 * steps * kUnitRoundoff * crude.d[slot];
+                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kUnitRoundoff));
             });
         for (std::size_t slot = jet_size(N, order); slot < out.d.size(); ++slot) out.d[slot] = 0;
     }
@@ -221,7 +220,7 @@ DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array
                    hi = std::clamp(box[d].hi, on[d].lo, on[d].hi);
             // Differences of a very short part are all rounding: a longer part around it gives the better
             // bound.
-            const double lack = kShortest * width[d] - (hi - lo);
+            const double lack = kSmallestBlock * width[d] - (hi - lo);
             if (lack > 0) {
                 lo = std::max(on[d].lo, lo - lack);
                 hi = std::min(on[d].hi, hi + lack);
@@ -247,7 +246,7 @@ template <int D>
 DerivativeBounds<1> bounds_of(const Conic<D>& c, Interval on) {
     const double xx = dot(c.x, c.x), yy = dot(c.y, c.y), xy = dot(c.x, c.y),
                  t = std::max(std::abs(on.lo), std::abs(on.hi));
-    const double grow = 1 + 64 * kRoundoff;
+    const double grow = 1 + 64 * kUnitRoundoff;
     DerivativeBounds<1> out;
     if (c.kind == ConicKind::ellipse) {  // the larger semi-axis: the larger singular value of (x y)
         const double s = grow * std::sqrt((xx + yy + std::hypot(xx - yy, 2 * xy)) / 2);
@@ -282,9 +281,9 @@ DerivativeBounds<2> bounds_of(const Revolution& r, const DerivativeQuery<1, 3>& 
     const auto c = profile({box[1]}, std::min(order + 1, kBoundOrder));
     auto at = jet<3>(r.profile, box[1].middle());
     at.d[0] -= r.origin;
-    const double half = box[1].length() / 2, grow = 1 + 64 * kRoundoff;
+    const double half = box[1].length() / 2, grow = 1 + 64 * kUnitRoundoff;
     const double slip =
-        value_error_bound(r.profile, {box[1]}) + 8 * kRoundoff * (max_abs(r.origin) + norm(at.d[0]));
+        value_error_bound(r.profile, {box[1]}) + 8 * kUnitRoundoff * (max_abs(r.origin) + norm(at.d[0]));
     DerivativeBounds<2> out;
     for (int j = 0; j <= order; ++j) {
         double across = c.d[std::size_t(j)];
@@ -314,7 +313,7 @@ DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3
     DerivativeBounds<2> out;
     out.d.fill(kInfinity);
     if (!(least > 0)) return out;
-    const double d = std::abs(o.distance), m[2] = {mu, mv}, grow = 1 + 64 * kRoundoff;
+    const double d = std::abs(o.distance), m[2] = {mu, mv}, grow = 1 + 64 * kUnitRoundoff;
     out.d[0] = S[0] + 2 * d;
     for (int a = 0; a < 2; ++a) out.d[std::size_t(1 + a)] = grow * (S[std::size_t(1 + a)] + d * m[a] / least);
     for (int k = 0; k < 3; ++k)
@@ -359,13 +358,13 @@ double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
         jump = std::max(jump, norm(diff));
         weight_jump = std::max(weight_jump, std::abs(step));
         weight_min = std::min({weight_min, wl, wr});
-        torn =
-            torn || max_abs(a[p] - b[0]) > 64 * (p + 1) * kRoundoff * std::max(max_abs(a[p]), max_abs(b[0]));
+        torn = torn ||
+               max_abs(a[p] - b[0]) > 64 * (p + 1) * kUnitRoundoff * std::max(max_abs(a[p]), max_abs(b[0]));
     });
     if (torn) return kInfinity;
-    const double slip = 64 * (p + 1) * kRoundoff * largest * p * (1 / hl + 1 / hr);
+    const double slip = 64 * (p + 1) * kUnitRoundoff * largest * p * (1 / hl + 1 / hr);
     return (jump + weight_jump * radius + slip * (1 + (Space<P>::kRational ? 1 : 0))) / weight_min *
-           (1 + 64 * kRoundoff);
+           (1 + 64 * kUnitRoundoff);
 }
 
 template <std::size_t N, class P>
@@ -442,6 +441,7 @@ FF_INSTANTIATE(Vec<3>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Vec<4>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
                                                int);
 template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,

@@ -1,4 +1,5 @@
 // Values, derivatives and checks of the analytic curves and surfaces; splines answer for themselves.
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/geometry.hpp>
 
 #include <algorithm>
@@ -9,9 +10,6 @@
 namespace freiform {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 template <class... F>
 struct Overloaded : F... {
@@ -46,7 +44,7 @@ std::array<Interval, 1> domain(const CurveGeometry<D>& curve) {
                                  },
                                  [](const Conic<D>& c) {
                                      return std::array{c.kind == ConicKind::ellipse
-                                                           ? Interval{0, 2 * std::numbers::pi}
+                                                           ? Interval{0, kTwoPi}
                                                            : Interval{-kInfinity, kInfinity}};
                                  },
                                  [](const auto& spline) { return spline.domain(); }},
@@ -56,16 +54,15 @@ std::array<Interval, 1> domain(const CurveGeometry<D>& curve) {
 std::array<Interval, 2> domain(const SurfaceGeometry& surface) {
     const SurfaceGeometry* s = &surface;
     if (const auto* offset = std::get_if<OffsetSurface>(s)) s = offset->base.get();
-    return std::visit(
-        Overloaded{[](const Extrusion& e) {
-                       return std::array{domain(e.profile)[0], Interval{-kInfinity, kInfinity}};
-                   },
-                   [](const Revolution& r) {
-                       return std::array{Interval{0, 2 * std::numbers::pi}, domain(r.profile)[0]};
-                   },
-                   [](const OffsetSurface&) { return std::array<Interval, 2>{}; },
-                   [](const auto& spline) { return spline.domain(); }},
-        *s);
+    return std::visit(Overloaded{[](const Extrusion& e) {
+                                     return std::array{domain(e.profile)[0], Interval{-kInfinity, kInfinity}};
+                                 },
+                                 [](const Revolution& r) {
+                                     return std::array{Interval{0, kTwoPi}, domain(r.profile)[0]};
+                                 },
+                                 [](const OffsetSurface&) { return std::array<Interval, 2>{}; },
+                                 [](const auto& spline) { return spline.domain(); }},
+                      *s);
 }
 
 std::array<Interval, 2> limits(const SurfaceGeometry& surface) {
@@ -131,7 +128,7 @@ Result<void> check(const SurfaceGeometry& surface) {
     if (const auto* r = std::get_if<Revolution>(s)) {
         if (!is_finite(r->origin) || !is_finite(r->axis))
             return refuse(RefusalKind::nonfinite, "revolution", "origin or axis is not finite");
-        if (std::abs(dot(r->axis, r->axis) - 1) > 64 * kRoundoff)
+        if (std::abs(dot(r->axis, r->axis) - 1) > 64 * kUnitRoundoff)
             return refuse(RefusalKind::invalid, "revolution.axis",
                           text("has length ", norm(r->axis), ", not 1"));
         if (auto ok = check(r->profile); !ok) return refuse_within("revolution.profile", ok.error());
@@ -280,34 +277,36 @@ template <int D>
 double value_error_bound(const CurveGeometry<D>& curve, const std::array<Interval, 1>& on) {
     const double t = std::max(std::abs(on[0].lo), std::abs(on[0].hi));
     return std::visit(
-        Overloaded{
-            [&](const Line<D>& l) { return 64 * kRoundoff * (max_abs(l.origin) + t * max_abs(l.direction)); },
-            [&](const Conic<D>& c) {
-                const double f = c.kind == ConicKind::ellipse     ? 1
-                                 : c.kind == ConicKind::hyperbola ? std::cosh(t)
-                                                                  : std::max(t, t * t);
-                return 64 * kRoundoff * (max_abs(c.centre) + f * (max_abs(c.x) + max_abs(c.y)));
-            },
-            [](const auto& spline) { return spline.value_error_bound(); }},
+        Overloaded{[&](const Line<D>& l) {
+                       return 64 * kUnitRoundoff * (max_abs(l.origin) + t * max_abs(l.direction));
+                   },
+                   [&](const Conic<D>& c) {
+                       const double f = c.kind == ConicKind::ellipse     ? 1
+                                        : c.kind == ConicKind::hyperbola ? std::cosh(t)
+                                                                         : std::max(t, t * t);
+                       return 64 * kUnitRoundoff * (max_abs(c.centre) + f * (max_abs(c.x) + max_abs(c.y)));
+                   },
+                   [](const auto& spline) { return spline.value_error_bound(); }},
         curve);
 }
 
 double value_error_bound(const SurfaceGeometry& surface, const std::array<Interval, 2>& on) {
     return std::visit(
-        Overloaded{
-            [&](const Extrusion& e) {
-                const double v = std::max(std::abs(on[1].lo), std::abs(on[1].hi));
-                return 2 * value_error_bound(e.profile, {on[0]}) + 8 * kRoundoff * v * max_abs(e.direction);
-            },
-            [&](const Revolution& r) {
-                const double reach = norm(jet<0>(r.profile, on[1].middle()).d[0]) + norm(r.origin);
-                const double first = norm(jet<1>(r.profile, on[1].middle()).d[1]) * on[1].length();
-                return 4 * value_error_bound(r.profile, {on[1]}) + 64 * kRoundoff * (2 * reach + first);
-            },
-            [&](const OffsetSurface& o) {
-                return 2 * value_error_bound(*o.base, on) + 64 * kRoundoff * std::abs(o.distance);
-            },
-            [](const auto& spline) { return spline.value_error_bound(); }},
+        Overloaded{[&](const Extrusion& e) {
+                       const double v = std::max(std::abs(on[1].lo), std::abs(on[1].hi));
+                       return 2 * value_error_bound(e.profile, {on[0]}) +
+                              8 * kUnitRoundoff * v * max_abs(e.direction);
+                   },
+                   [&](const Revolution& r) {
+                       const double reach = norm(jet<0>(r.profile, on[1].middle()).d[0]) + norm(r.origin);
+                       const double first = norm(jet<1>(r.profile, on[1].middle()).d[1]) * on[1].length();
+                       return 4 * value_error_bound(r.profile, {on[1]}) +
+                              64 * kUnitRoundoff * (2 * reach + first);
+                   },
+                   [&](const OffsetSurface& o) {
+                       return 2 * value_error_bound(*o.base, on) + 64 * kUnitRoundoff * std::abs(o.distance);
+                   },
+                   [](const auto& spline) { return spline.value_error_bound(); }},
         surface);
 }
 
@@ -323,6 +322,7 @@ double value_error_bound(const SurfaceGeometry& surface, const std::array<Interv
 FF_INSTANTIATE_CURVE_GEOMETRY(1)
 FF_INSTANTIATE_CURVE_GEOMETRY(2)
 FF_INSTANTIATE_CURVE_GEOMETRY(3)
+#undef FF_INSTANTIATE_CURVE_GEOMETRY
 template Jet<2, 0, Vec<3>> jet<0>(const SurfaceGeometry&, const Param<2>&);
 template Jet<2, 1, Vec<3>> jet<1>(const SurfaceGeometry&, const Param<2>&);
 template Jet<2, 2, Vec<3>> jet<2>(const SurfaceGeometry&, const Param<2>&);

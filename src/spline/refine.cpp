@@ -32,6 +32,7 @@
 #include "normal_equations_detail.hpp"
 #include "refine_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/refine.hpp>
 
 #include <algorithm>
@@ -44,9 +45,8 @@ namespace freiform {
 namespace detail {
 
 double distance_bound(int degree, const Tuples& old, const Tuples& fresh, const Tuples& image) {
-    constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
     const int dim = old.dim();
-    const double roundings = (8 * degree + 16) * kUnit, root = std::sqrt(double(dim)) * 1.01;
+    const double roundings = (8 * degree + 16) * kUnitRoundoff, root = std::sqrt(double(dim)) * 1.01;
     double a_max = 0, w_max = 0, w_min = std::numeric_limits<double>::infinity(), worst = 0;
     Box<4> box;
     for (const Tuples* net : {&old, &fresh})
@@ -60,19 +60,20 @@ double distance_bound(int degree, const Tuples& old, const Tuples& fresh, const 
     if (!old.rational) {
         for (std::size_t i = 0; i < old.count(); ++i)
             worst = std::max(worst, norm(old.numerator(i) - image.numerator(i)));
-        return (worst + r_a) * (1 + 16 * kUnit);
+        return (worst + r_a) * (1 + 16 * kUnitRoundoff);
     }
     if (!(w_min >= std::numeric_limits<double>::min())) return std::numeric_limits<double>::infinity();
     Vec<4> q;
     for (int i = 0; i < dim; ++i) q[i] = box.side(i).middle();
     // The box is that of computed quotients: each coordinate is off by one rounding.
-    const double reach = box.diagonal() / 2 * 1.01 + 4 * kUnit * root * box.scale(), r_w = roundings * w_max;
+    const double reach = box.diagonal() / 2 * 1.01 + 4 * kUnitRoundoff * root * box.scale(),
+                 r_w = roundings * w_max;
     for (std::size_t i = 0; i < old.count(); ++i) {
         const double w = old.weight(i) - image.weight(i);
         const Vec<4> a = old.numerator(i) - image.numerator(i);
         worst = std::max(worst, norm(a - w * q) + reach * std::abs(w));
     }
-    return (worst + r_a + (root * max_abs(q) + reach) * r_w) / w_min * (1 + 32 * kUnit);
+    return (worst + r_a + (root * max_abs(q) + reach) * r_w) / w_min * (1 + 32 * kUnitRoundoff);
 }
 
 }  // namespace detail
@@ -383,5 +384,7 @@ FF_REFINE_ALL(1)
 FF_REFINE_ALL(2)
 FF_REFINE_ALL(3)
 FF_REFINE_ALL(4)
+#undef FF_REFINE
+#undef FF_REFINE_ALL
 
 }  // namespace freiform

@@ -22,6 +22,7 @@
 // more rounding.
 //
 // Why not the form of Horner: it is O(n^2) a point instead of O(n^3), but loses the bound near corners.
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/simplex.hpp>
 #include <freiform/spline/simplex_convert.hpp>
 
@@ -76,8 +77,6 @@ struct Extent {
         }
     }
 };
-
-constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
 
 }  // namespace
 
@@ -171,10 +170,10 @@ template <std::size_t N, Coefficient P>
 double SimplexPatch<N, P>::value_error_bound() const {
     const Extent<P> e(coefficients());
     const double lost = (3 * degree_ + 1) * std::numeric_limits<double>::denorm_min(),
-                 g = 1.01 * degree_ * kUnit;
+                 g = 1.01 * degree_ * kUnitRoundoff;
     if (!Space<P>::kRational) return 4 * g * e.c + lost;
     const double spread = e.w_max / e.w_min;
-    return 1.02 * ((6 * g + 2 * g * spread + kUnit) * e.c + (1 + e.c) * (lost / e.w_min)) + lost;
+    return 1.02 * ((6 * g + 2 * g * spread + kUnitRoundoff) * e.c + (1 + e.c) * (lost / e.w_min)) + lost;
 }
 
 template <class P>
@@ -272,10 +271,11 @@ requires(Space<P>::kDim == 3) Result<Vec<3>> normal(const SimplexPatch<2, P>& s,
     // twice that times q for numerator and denominator, |W_u| <= n w_max times the error of the value, which
     // is below 10.3 n q u c, and the roundings of the quotient: below 35 n^2 q^2 u c.
     const Extent<P> e(s.coefficients());
-    const double n = s.degree(), q = e.w_max / e.w_min, error = 64 * (n * n + 1) * q * q * kUnit * e.c;
+    const double n = s.degree(), q = e.w_max / e.w_min,
+                 error = 64 * (n * n + 1) * q * q * kUnitRoundoff * e.c;
     const Vec<3>&a = j(1, 0), &b = j(0, 1), product = cross(a, b);
     const double ma = max_abs(a), mb = max_abs(b);
-    if (!(max_abs(product) > 2 * error * (ma + mb + error) + 8 * kUnit * ma * mb))
+    if (!(max_abs(product) > 2 * error * (ma + mb + error) + 8 * kUnitRoundoff * ma * mb))
         return refuse(RefusalKind::ill_conditioned, "normal",
                       text("the derivatives by u and v at (", u[0], ", ", u[1],
                            ") are parallel or zero within rounding"));
@@ -299,6 +299,7 @@ FF_SIMPLEX_OF(Hom<1>)
 FF_SIMPLEX_OF(Hom<2>)
 FF_SIMPLEX_OF(Hom<3>)
 FF_SIMPLEX_OF(Hom<4>)
+#undef FF_SIMPLEX_OF
 template Result<Vec<3>> normal(const SimplexPatch<2, Vec<3>>&, const Param<2>&);
 template Result<Vec<3>> normal(const SimplexPatch<2, Hom<3>>&, const Param<2>&);
 

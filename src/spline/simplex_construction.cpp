@@ -7,6 +7,7 @@
 //
 // Blossoms: a step of the construction for each argument, each with its own barycentric coordinates.
 // References: [Ramshaw 1989], [Farin 1986].
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/simplex_construction.hpp>
 
 #include <cmath>
@@ -14,8 +15,6 @@
 namespace freiform {
 
 namespace {
-
-constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
 
 // In place: the net of degree m becomes one of degree m - 1. Coordinates one after the other, so this is
 // compiled once for all kinds of points.
@@ -37,12 +36,12 @@ double largest(const double* b, std::size_t count) {
 double grown(double bound, double size, const Param<2>& u, const std::array<double, 3>& t) {
     const double s = std::max(1.0, std::abs(t[0]) + std::abs(t[1]) + std::abs(t[2]));
     const double moved = 1 + std::abs(1 - u[0]) + std::abs(t[0]);
-    return (s * bound + kUnit * (3 * s + moved) * size) * (1 + 16 * kUnit) +
+    return (s * bound + kUnitRoundoff * (3 * s + moved) * size) * (1 + 16 * kUnitRoundoff) +
            4 * std::numeric_limits<double>::denorm_min();
 }
 
 template <class P>
-std::vector<double> flat(std::span<const P> b) {
+std::vector<double> numbers_of(std::span<const P> b) {
     std::vector<double> out;
     out.reserve(b.size() * std::size_t(P::kCoords));
     for (const P& p : b) out.insert(out.end(), p.c.begin(), p.c.end());
@@ -65,7 +64,7 @@ Result<TriangleConstruction<P>> de_casteljau(const SimplexPatch<2, P>& s, const 
         return refuse(RefusalKind::nonfinite, "at", text("(", u[0], ", ", u[1], ") is not finite"));
     TriangleConstruction<P> c(s.degree(), u);
     const auto t = s.barycentric(u);
-    std::vector<double> b = flat(s.coefficients());
+    std::vector<double> b = numbers_of(s.coefficients());
     c.points_.assign(s.coefficients().begin(), s.coefficients().end());
     for (int m = s.degree(); m > 0; --m) {
         const std::size_t now = std::size_t((m + 1) * (m + 2) / 2), next = std::size_t(m * (m + 1) / 2);
@@ -83,7 +82,7 @@ Result<TriangleConstruction<P>> de_casteljau(const SimplexPatch<2, P>& s, const 
 template <Coefficient P>
 P blossom(const SimplexPatch<2, P>& s, std::span<const Param<2>> arguments) {
     FF_REQUIRE(int(arguments.size()) == s.degree());
-    std::vector<double> b = flat(s.coefficients());
+    std::vector<double> b = numbers_of(s.coefficients());
     int m = s.degree();
     for (const Param<2>& u : arguments) step(b.data(), P::kCoords, m--, s.barycentric(u));
     P out;
@@ -102,5 +101,6 @@ FF_SIMPLEX_CONSTRUCTION(Hom<1>)
 FF_SIMPLEX_CONSTRUCTION(Hom<2>)
 FF_SIMPLEX_CONSTRUCTION(Hom<3>)
 FF_SIMPLEX_CONSTRUCTION(Hom<4>)
+#undef FF_SIMPLEX_CONSTRUCTION
 
 }  // namespace freiform

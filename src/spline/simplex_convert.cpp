@@ -247,14 +247,15 @@ Result<Parts<Surface<P>, 3>> to_three_surfaces(const SimplexPatch<2, P>& s, cons
         if (!(t.value > t.bound))
             return refuse(RefusalKind::out_of_domain, "centre",
                           text("(", centre[0], ", ", centre[1], ") is not inside the triangle"));
-    constexpr Place kCorner[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                    kMiddle[3] = {{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}};  // of edge 0, 1, 2
+    constexpr Place kTriangleCorner[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                    kEdgeMiddle[3] = {{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}};  // of edge 0, 1, 2
     const Flat b = flat(s.coefficients());
     std::vector<Surface<P>> parts;
     double bound = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         auto r = rounded<P>(over_quadrilateral(
-            b, P::kCoords, s.degree(), {kCorner[i], kMiddle[(i + 1) % 3], kMiddle[(i + 2) % 3], middle}));
+            b, P::kCoords, s.degree(),
+            {kTriangleCorner[i], kEdgeMiddle[(i + 1) % 3], kEdgeMiddle[(i + 2) % 3], middle}));
         bound = std::max(bound, r.bound);
         parts.push_back(surface_of(s.degree(), std::move(r.coefficients)));
     }
@@ -312,5 +313,6 @@ FF_SIMPLEX_CONVERT(Hom<1>)
 FF_SIMPLEX_CONVERT(Hom<2>)
 FF_SIMPLEX_CONVERT(Hom<3>)
 FF_SIMPLEX_CONVERT(Hom<4>)
+#undef FF_SIMPLEX_CONVERT
 
 }  // namespace freiform

@@ -16,6 +16,7 @@
 //
 // References: [Farin 2002, ch. 12], [PT97, ch. 1.4].
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/core/tuples.hpp>
 #include <freiform/spline/transform.hpp>
 
@@ -25,8 +26,6 @@
 namespace freiform {
 
 namespace {
-
-constexpr double kUnit = 0x1p-53;
 
 // Rows of `columns` numbers.
 struct Matrix {
@@ -120,13 +119,13 @@ std::vector<P> coefficients(const std::vector<double>& all) {
 double farthest(const Tuples& net) {
     double r = 0;
     for (std::size_t i = 0; i < net.count(); ++i) r = std::max(r, norm(net.point(i)));
-    return r * (1 + 8 * kUnit);
+    return r * (1 + 8 * kUnitRoundoff);
 }
 
 // (moved + reach rho) / (1 - rho); infinite where nothing is proven.
 double distance(double moved, double reach, double rho) {
     if (!(rho < 0.5)) return std::numeric_limits<double>::infinity();
-    return (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnit);
+    return (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnitRoundoff);
 }
 
 // `net` came from `image` by an insertion of knots with the bound `inserted`.
@@ -162,9 +161,9 @@ Result<Projectivity<2, 3>> perspective(const Vec<3>& eye, const Vec<3>& origin, 
     const Vec<3> a = std::scalbn(1.0, -ea) * across, b = std::scalbn(1.0, -eu) * up;
     const Vec<3> n = cross(a, b), to_plane = origin - eye;
     const double size = norm(n), depth = dot(n, to_plane);
-    if (!(size > 16 * kUnit * norm(a) * norm(b)))
+    if (!(size > 16 * kUnitRoundoff * norm(a) * norm(b)))
         return refuse(RefusalKind::ill_conditioned, "up", "is parallel to `across`");
-    if (!(std::abs(depth) > 16 * kUnit * norm(a) * norm(b) * (norm(origin) + norm(eye))))
+    if (!(std::abs(depth) > 16 * kUnitRoundoff * norm(a) * norm(b) * (norm(origin) + norm(eye))))
         return refuse(RefusalKind::ill_conditioned, "eye", "is in the plane");
     const double front = depth > 0 ? 1 : -1, nn = dot(n, n);
     const Vec<3> dual[2] = {(1 / nn) * cross(b, n), (1 / nn) * cross(n, a)};
@@ -192,7 +191,7 @@ Result<Transformed<Patch<N, To>>> affine(const Patch<N, From>& patch, const Matr
     const Image image = affine_image(tuples(patch.net().flat()), linear, offset);
     return finished(
         Patch<N, To>::make(patch.bases(), Net<N, To>(patch.net().extent(), coefficients<To>(image.all))),
-        image.most.numerator * (1 + 8 * kUnit));
+        image.most.numerator * (1 + 8 * kUnitRoundoff));
 }
 
 }  // namespace
@@ -236,5 +235,7 @@ Result<Transformed<Patch<N, Hom<To>>>> transform(const Patch<N, Hom<From>>& patc
 FF_TRANSFORM_ALL(1)
 FF_TRANSFORM_ALL(2)
 FF_TRANSFORM_ALL(3)
+#undef FF_TRANSFORM
+#undef FF_TRANSFORM_ALL
 
 }  // namespace freiform

@@ -25,6 +25,7 @@
 // References: [Farin 2002, ch. 13] for points at infinity, [LycheMorken2018] for the convergence.
 //
 // Why not degree elevation? It converges with 1/n only. Why not cutting into pieces? It makes p knots of one.
+#include <freiform/core/constants.hpp>
 #include <freiform/core/tuples.hpp>
 #include <freiform/spline/weights.hpp>
 
@@ -37,7 +38,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kUnit = 0x1p-53, kTiny = 0x1p-1074;
+constexpr double kTiny = 0x1p-1074;
 constexpr double kShortest = 0x1p-30;  // of the domain: spans that are halved no further
 constexpr long long kMostCoefficients = 1'000'000;
 
@@ -59,7 +60,7 @@ struct Carried {
     double roundings = 0, terms = 0;
 
     double error(const Tuple& sizes, int coordinate) const {
-        return 1.01 * roundings * kUnit * sizes[coordinate] + terms * kTiny;
+        return 1.01 * roundings * kUnitRoundoff * sizes[coordinate] + terms * kTiny;
     }
     void apply(int axis, const BandMap& map, int degree) {
         net = along(axis, map, net);
@@ -289,7 +290,7 @@ private:
             reach = std::max(reach, norm(project(p)));
         }
         return {std::move(now_.bases), std::move(now_.net),
-                (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnit), inserted, negated_};
+                (moved + reach * rho) / (1 - rho) * (1 + 32 * kUnitRoundoff), inserted, negated_};
     }
 
     Carried given_, now_;
@@ -369,5 +370,7 @@ Result<PositiveForm<N, D>> positive_weights(const std::array<BSplineBasis, N>& b
 FF_POSITIVE_ALL(1)
 FF_POSITIVE_ALL(2)
 FF_POSITIVE_ALL(3)
+#undef FF_POSITIVE
+#undef FF_POSITIVE_ALL
 
 }  // namespace freiform

@@ -1,6 +1,7 @@
 // Essay: loops.cpp.
 #include "trim/loop_links_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/poly/exact.hpp>
 
 #include <algorithm>
@@ -9,8 +10,6 @@
 namespace freiform::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 bool is_point(const std::vector<Hom<2>>& net) {
     return std::all_of(net.begin(), net.end(), [&](const auto& p) { return project(p) == project(net[0]); });
@@ -44,7 +43,7 @@ void scale(Links& all) {
     for (Link& link : all.link) {
         for (Hom<2>& p : link.net)
             for (int d = 0; d < 2; ++d) p[d] = std::scalbn(p[d], -all.exponent);
-        if (link.error > 0) link.error = std::scalbn(link.error, -all.exponent) + 8 * kU;
+        if (link.error > 0) link.error = std::scalbn(link.error, -all.exponent) + 8 * kUnitRoundoff;
     }
 }
 
@@ -148,7 +147,7 @@ Result<Links> links_of(std::span<const Loop> loops, double gap) {
                 all.link.push_back({std::move(net), 0, l, piece.curve});
         if (const Conic<2>* e = ellipse_of(loops[l]))
             for (auto& net : quarters(*e)) {
-                const double error = 8 * kU * (max_abs(e->centre) + max_abs(e->x) + max_abs(e->y));
+                const double error = 8 * kUnitRoundoff * (max_abs(e->centre) + max_abs(e->x) + max_abs(e->y));
                 all.link.push_back({std::move(net), error, l, 0});
             }
         const std::size_t end = all.link.size();
@@ -158,7 +157,7 @@ Result<Links> links_of(std::span<const Loop> loops, double gap) {
             if (before.back() == link.net.front()) continue;
             const Hom<2> moved = weighted(project(before.back()), link.net.front().weight());
             link.error += 1.01 * max_abs(moved - link.net.front()) +
-                          4 * kU * (max_abs(moved) + max_abs(link.net.front()));
+                          4 * kUnitRoundoff * (max_abs(moved) + max_abs(link.net.front()));
             link.net.front() = moved;
         }
         all.loops.push_back({double(first), double(end)});
@@ -178,7 +177,7 @@ Result<std::vector<SelfIntersection<2>>> meetings(const Links& all, double accur
         const Link& link = all.link[std::size_t(i)];
         std::vector<Hom<2>> b = link.net;
         double error = link.error;
-        for (; b.size() < most; b = elevated(b)) error += 4 * kU * size_of(b);
+        for (; b.size() < most; b = elevated(b)) error += 4 * kUnitRoundoff * size_of(b);
         errors.push_back(error);
         const bool jumps = i == 0 || all.link[std::size_t(i) - 1].loop != link.loop;
         net.insert(net.end(), b.begin() + (jumps ? 0 : 1), b.end());

@@ -22,6 +22,7 @@
 // Cost: as the search; orientation asks some points for each pair of loops.
 #include "trim/loop_links_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/query/crossings.hpp>
 #include <freiform/trim/loops.hpp>
 
@@ -36,7 +37,6 @@ namespace {
 using detail::Link;
 using detail::Links;
 using detail::Loop;
-constexpr double kU = 0x1p-53;
 
 // --- points inside
 // ---------------------------------------------------------------------------------------------
@@ -95,7 +95,7 @@ void add(std::vector<LoopContact>& all, const LoopContact& next) {
     for (LoopContact& c : all) {
         const double d = norm(c.point - next.point);
         if (c.loop != next.loop || !(d <= c.bound + next.bound)) continue;
-        c.bound = std::max(c.bound, (d + next.bound) * (1 + 8 * kU));
+        c.bound = std::max(c.bound, (d + next.bound) * (1 + 8 * kUnitRoundoff));
         return;
     }
     all.push_back(next);
@@ -132,7 +132,7 @@ Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolera
                 is_crossing ? std::nullopt : detail::crossing_vertex(out.links, m.first, m.second)) {
             is_crossing = true;
             contact.point = out.links.given(project(*p));
-            contact.bound = 2 * kU * max_abs(contact.point);
+            contact.bound = 2 * kUnitRoundoff * max_abs(contact.point);
         }
         if (is_crossing)
             return refuse(RefusalKind::invalid, name_of(a.loop, a.curve),

@@ -18,7 +18,6 @@ const std::string kCurve =
   "knots": [0,0,0,0,1,1,1,1], "points": [[0,0],[1,2],[3,2],[4,0]], "weights": [1,1,1,1]}]})";
 const std::string kSurface =
     R"({"type": "surface", "degrees": [1,2], "points": [[[0,0,0],[0,1,0],[0,2,1]],[[1,0,0],[1,1,3],[1,2,0]]]})";
-const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
 
 using Cli = Program;
 

@@ -8,8 +8,6 @@ namespace {
 using Json = nlohmann::json;
 using Draw = Program;
 
-const std::string kExample = std::string(FREIFORM_SOURCE_DIR) + "/examples/curves.json";
-const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
 const std::string kLine = R"({"type": "curve", "degree": 1, "points": [[0,0],[4,2]]})";
 
 Json error_of(const Ran& r) { return Json::parse(r.out, nullptr, false).value("error", Json::object()); }

@@ -11,8 +11,6 @@ using Json = nlohmann::json;
 using FlattenCommand = Program;
 using LengthCommand = Program;
 
-const std::string kExample = std::string(FREIFORM_SOURCE_DIR) + "/examples/curves.json";
-const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
 const std::string kArch = R"({"type": "curve", "degree": 3, "points": [[0,0],[1,2],[3,2],[4,0]]})";
 
 Json parsed(const Ran& r) {

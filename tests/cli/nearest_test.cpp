@@ -7,12 +7,12 @@ namespace {
 
 using NearestCommand = Program;
 
-constexpr const char* kTwo = R"({"freiform": 1, "objects": [
+constexpr const char* kTwoObjects = R"({"freiform": 1, "objects": [
     {"name": "line", "type": "curve", "points": [[0,0,0],[4,0,0]]},
     {"name": "roof", "type": "surface", "degrees": [1, 1], "points": [[[0,0,10],[0,4,10]],[[4,0,10],[4,4,10]]]}]})";
 
 TEST_F(NearestCommand, says_object_parameters_point_distance_and_lower_bound) {
-    const std::string two = file("two.json", kTwo);
+    const std::string two = file("two.json", kTwoObjects);
     const Ran r = run({"nearest", two, "--points", file("p.csv", "1,3,4\n1,2,8\n"), "--json"});
     ASSERT_EQ(r.code, 0) << r.out << r.err;
     const auto results = nlohmann::json::parse(r.out)["results"];
@@ -35,7 +35,7 @@ TEST_F(NearestCommand, says_object_parameters_point_distance_and_lower_bound) {
 }
 
 TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {
-    const std::string two = file("two.json", kTwo);
+    const std::string two = file("two.json", kTwoObjects);
     EXPECT_EQ(run({"nearest", two, "--points", file("p.csv", "1,2\n")}).code, 1);
     EXPECT_EQ(run({"nearest", two}).code, 2);
     EXPECT_EQ(run({"nearest", two, "--points", path("absent.csv")}).code, 5);

@@ -9,10 +9,10 @@ namespace {
 using Json = nlohmann::json;
 using Cli = Program;
 
-const std::string kLine = R"({"name":"side","type":"curve","points":[[2,0,0],[2,0,3]]})";
+const std::string kSide = R"({"name":"side","type":"curve","points":[[2,0,0],[2,0,3]]})";
 
 TEST_F(Cli, revolve_makes_a_cylinder_of_a_line) {
-    const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,2", "-o", "c.json"}, kLine);
+    const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,2", "-o", "c.json"}, kSide);
     ASSERT_EQ(r.code, 0) << r.err;
     EXPECT_NE(r.out.find("1 surface within "), std::string::npos) << r.out;
     const Json surface = Json::parse(content(path("c.json")))["objects"][0];
@@ -23,14 +23,14 @@ TEST_F(Cli, revolve_makes_a_cylinder_of_a_line) {
     EXPECT_NEAR(e[1]["point"][1].get<double>(), 2, 1e-15);
     EXPECT_NEAR(std::hypot(e[2]["point"][0].get<double>(), e[2]["point"][1].get<double>()), 2, 1e-15);
     EXPECT_NEAR(e[2]["point"][2].get<double>(), 3, 1e-15);
-    ASSERT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,2", "--closed", "-o", "c.json"}, kLine).code, 0);
+    ASSERT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,2", "--closed", "-o", "c.json"}, kSide).code, 0);
     EXPECT_EQ(Json::parse(content(path("c.json")))["objects"][0]["points"].size(), 8u);
 }
 
 TEST_F(Cli, revolve_takes_an_angle_in_degrees_and_a_tolerance) {
     const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,1", "--angle", "-90", "--polynomial", "1e-3",
                        "-o", "c.json", "--json"},
-                      kLine);
+                      kSide);
     ASSERT_EQ(r.code, 0) << r.err;
     const Json report = Json::parse(r.out);
     EXPECT_EQ(report["surfaces"], 1);
@@ -42,11 +42,11 @@ TEST_F(Cli, revolve_takes_an_angle_in_degrees_and_a_tolerance) {
 }
 
 TEST_F(Cli, revolve_says_what_is_wrong) {
-    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0", "-o", "c.json"}, kLine).code, 2);
-    EXPECT_EQ(run({"revolve", "-", "-o", "c.json"}, kLine).code, 2);
-    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,0", "-o", "c.json"}, kLine).code, 3);
-    EXPECT_EQ(run({"revolve", "-", "--axis", "2,0,0,0,0,1", "-o", "c.json"}, kLine).code, 1);
-    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,1", "--angle", "400", "-o", "c.json"}, kLine).code,
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0", "-o", "c.json"}, kSide).code, 2);
+    EXPECT_EQ(run({"revolve", "-", "-o", "c.json"}, kSide).code, 2);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,0", "-o", "c.json"}, kSide).code, 3);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "2,0,0,0,0,1", "-o", "c.json"}, kSide).code, 1);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,1", "--angle", "400", "-o", "c.json"}, kSide).code,
               3);
     const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,1", "-o", "c.json"},
                       R"({"type":"surface","points":[[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]})");

@@ -13,6 +13,9 @@
 
 namespace freiform::test {
 
+inline const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
+inline const std::string kExample = std::string(FREIFORM_SOURCE_DIR) + "/examples/curves.json";
+
 struct Ran {
     int code = -1;  // exit code, or 1000 + signal
     std::string out, err;

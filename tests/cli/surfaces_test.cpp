@@ -10,7 +10,7 @@ using Json = nlohmann::json;
 
 const std::string kArc =
     R"({"type":"curve","degree":2,"points":[[1,0,0],[1,1,0],[0,1,0]],"weights":[1,0.7071067811865476,1]})";
-const std::string kTwo =
+const std::string kTwoCurves =
     R"({"objects":[{"name":"a","type":"curve","degree":2,"points":[[0,0,0],[1,1,0],[2,0,0]]},
     {"name":"b","type":"curve","degree":1,"points":[[0,0,2],[2,0,3]]}]})";
 
@@ -32,14 +32,14 @@ protected:
 };
 
 TEST_F(Surfaces, extrude_and_ruled_join_curves_by_straight_lines) {
-    EXPECT_EQ(made({"extrude", "-", "--by", "0,0,4"}, kTwo)["surfaces"], 2);
+    EXPECT_EQ(made({"extrude", "-", "--by", "0,0,4"}, kTwoCurves)["surfaces"], 2);
     EXPECT_EQ(point("s.json", "0.5,0.25"), (std::vector<double>{1, 0.5, 1}));
     EXPECT_EQ(Json::parse(content(path("s.json")))["objects"][1]["name"], "b");
-    EXPECT_LE(made({"ruled", "-"}, kTwo)["bound"].get<double>(), 1e-13);
+    EXPECT_LE(made({"ruled", "-"}, kTwoCurves)["bound"].get<double>(), 1e-13);
     EXPECT_EQ(point("s.json", "0.5,0.5"), (std::vector<double>{1, 0.25, 1.25}));
     EXPECT_EQ(run({"ruled", "-", "-o", "s.json"}, kArc).code, 1);
-    EXPECT_EQ(run({"extrude", "-", "--by", "0,4", "-o", "s.json"}, kTwo).code, 2);
-    EXPECT_EQ(run({"extrude", "-", "--by", "0,0,0", "-o", "s.json"}, kTwo).code, 3);
+    EXPECT_EQ(run({"extrude", "-", "--by", "0,4", "-o", "s.json"}, kTwoCurves).code, 2);
+    EXPECT_EQ(run({"extrude", "-", "--by", "0,0,0", "-o", "s.json"}, kTwoCurves).code, 3);
 }
 
 TEST_F(Surfaces, sweep_turns_with_the_rail_or_does_not) {
@@ -92,7 +92,7 @@ TEST_F(Surfaces, coons_fills_four_curves_and_networks) {
                   .get<double>(),
               1e-12);
     EXPECT_NEAR(point("s.json", "1,0.5")[2], 1.5, 1e-13);
-    EXPECT_EQ(run({"coons", "-", "-o", "s.json"}, kTwo).code, 1);
+    EXPECT_EQ(run({"coons", "-", "-o", "s.json"}, kTwoCurves).code, 1);
     EXPECT_EQ(run({"coons", "-", "--at-u", "0,1", "-o", "s.json"}, four).code, 2);
 }
 

@@ -12,8 +12,6 @@ namespace {
 using Json = nlohmann::json;
 using CliMesh = Program;
 
-const std::string kTeapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
-
 TEST_F(CliMesh, tessellate_writes_a_mesh_and_reports_what_the_contract_names) {
     for (const char* ending : {"glb", "stl", "obj", "ply"}) {
         const std::string out = file(std::string("teapot.") + ending, "old");

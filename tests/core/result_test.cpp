@@ -57,7 +57,7 @@ TEST(Text, doubles_are_the_shortest_that_read_back) {
     EXPECT_EQ(text(1.0), "1");
 }
 
-TEST(Text, joins_parts_of_every_kind) {
+TEST(Result, text_joins_parts_of_every_kind) {
     EXPECT_EQ(text("knots[", 3, "] decreases (", 1.5, " -> ", 0.5, ')', true),
               "knots[3] decreases (1.5 -> 0.5)true");
 }

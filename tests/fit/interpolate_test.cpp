@@ -61,16 +61,16 @@ TEST(Interpolate, goes_through_the_points_within_the_bound) {
 
 TEST(Interpolate, agrees_with_elimination_on_the_full_matrix) {
     Random random(2);
-    using Real = long double;
+    using Long = long double;
     for (int degree = 1; degree <= 6; ++degree)
         for (const SplineEnds ends : kAllEnds) {
             const auto c = random_case<1>(random, degree, ends, 9);
             const BSplineBasis& basis = c.got.patch.basis();
             const auto n = std::size_t(basis.size());
-            std::vector<std::vector<Real>> a;
+            std::vector<std::vector<Long>> a;
             const auto row = [&](double at, int order, double value) {
-                const auto w = test::cox_de_boor(test::knots_as<Real>(basis), degree, Real(at), order);
-                std::vector<Real> r(n + 1);
+                const auto w = test::cox_de_boor(test::knots_as<Long>(basis), degree, Long(at), order);
+                std::vector<Long> r(n + 1);
                 for (std::size_t i = 0; i < w.size(); ++i) r[i % n] += w[i];
                 r[n] = value;
                 a.push_back(std::move(r));
@@ -91,11 +91,11 @@ TEST(Interpolate, agrees_with_elimination_on_the_full_matrix) {
                 std::swap(a[i], a[p]);
                 for (std::size_t r = 0; r < n; ++r) {
                     if (r == i) continue;
-                    const Real f = a[r][i] / a[i][i];
+                    const Long f = a[r][i] / a[i][i];
                     for (std::size_t k = i; k <= n; ++k) a[r][k] -= f * a[i][k];
                 }
             }
-            Real scale = 0;
+            Long scale = 0;
             for (std::size_t i = 0; i < n; ++i) scale = std::max(scale, std::abs(a[i][n] / a[i][i]));
             for (std::size_t i = 0; i < n; ++i)
                 EXPECT_NEAR(c.got.patch.net().flat()[i][0], double(a[i][n] / a[i][i]),

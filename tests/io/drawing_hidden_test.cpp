@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSurfaceTolerance = 3 * kDrawingTolerance;
 
-Document with(std::vector<Shape> shapes) {
+Document document_of(std::vector<Shape> shapes) {
     Document d;
     for (Shape& s : shapes) d.objects.push_back({text("object", int(d.objects.size())), std::move(s), {}});
     return d;
@@ -59,7 +59,7 @@ TEST(HiddenLines, the_outline_of_a_sphere_is_a_circle_of_its_radius) {
         for (const double r : {1.0, view[0] == 't' ? 0x1p-200 : 1e100}) {
             DrawingOptions how;
             how.view = *parse_view(view);
-            const Drawing d = drawn(with({test::sphere({{0, 0, 0}}, r)}), how);
+            const Drawing d = drawn(document_of({test::sphere({{0, 0, 0}}, r)}), how);
             double worst = 0, thinnest = 1e300;
             each_segment(d, "silhouettes", [&](const Vec<2>& a, const Vec<2>& b) {
                 for (const Vec<2>& p : {a, 0.5 * (a + b)}) {
@@ -79,7 +79,7 @@ TEST(HiddenLines, of_a_torus_the_upper_half_is_seen_from_above) {
     DrawingOptions how;
     how.view = *parse_view("top");
     how.isolines = 8;  // none of them lies on an outline
-    const Drawing d = drawn(with({test::torus(2, 0.7)}), how);
+    const Drawing d = drawn(document_of({test::torus(2, 0.7)}), how);
     // Each of the circles in planes through the axis is seen from 1.3 to 2.7 once, and of the 8 around it at
     // equal angles those above the middle.
     double radial = 0, around = 0, outline = 0;
@@ -103,7 +103,7 @@ TEST(HiddenLines, of_a_torus_the_upper_half_is_seen_from_above) {
 TEST(HiddenLines, hidden_outlines_are_dashed_too) {
     DrawingOptions how;
     how.view = *parse_view("0,20");
-    const Document d = with({test::torus(2, 0.7)});  // which has no borders
+    const Document d = document_of({test::torus(2, 0.7)});  // which has no borders
     EXPECT_EQ(length_of(drawn(d, how), "hidden"), 0);
     how.hidden = HiddenLines::dashed;
     const Drawing dashed = drawn(d, how);
@@ -114,7 +114,7 @@ TEST(HiddenLines, hidden_outlines_are_dashed_too) {
 TEST(HiddenLines, an_edge_ends_where_another_face_begins_to_hide_it) {
     DrawingOptions how;
     how.view = *parse_view("top");
-    const Document d = with({square(0, 2), square(1, 1), square(-1, 1.5)});
+    const Document d = document_of({square(0, 2), square(1, 1), square(-1, 1.5)});
     const Drawing plain = drawn(d, how);
     const double unit = plain.scale;
     EXPECT_NEAR(length_of(plain, "edges"), (16 + 8) * unit, 0.01) << "the lowest is hidden wholly";
@@ -138,7 +138,7 @@ TEST(HiddenLines, a_line_is_cut_at_the_very_place) {
         return bilinear(
             {{{{x - 1, y, z - 1}}, {{x - 1, y, z + 1}}, {{x + 1, y, z - 1}}, {{x + 1, y, z + 1}}}});
     };
-    const Drawing d = drawn(with({upright(0.75, -5, 0.5), upright(0, 0, 0)}), how);
+    const Drawing d = drawn(document_of({upright(0.75, -5, 0.5), upright(0, 0, 0)}), how);
     std::vector<double> ends;
     each_segment(d, "edges", [&](const Vec<2>& a, const Vec<2>& b) {
         for (const Vec<2>& p : {plane(d, a), plane(d, b)})
@@ -154,7 +154,7 @@ TEST(HiddenLines, control_nets_are_dimmed_behind) {
     DrawingOptions how;
     how.control = true;
     how.view = *parse_view("top");
-    const Drawing d = drawn(with({square(1, 1), square(0, 0.5)}), how);
+    const Drawing d = drawn(document_of({square(1, 1), square(0, 0.5)}), how);
     EXPECT_NEAR(length_of(d, "control"), 8 * d.scale, 0.01);
     EXPECT_NEAR(length_of(d, "control-behind"), 4 * d.scale, 0.01);
 }
@@ -168,8 +168,8 @@ TEST(HiddenLines, surfaces_hide_curves_and_their_polygons) {
     DrawingOptions how;
     how.view = *parse_view("top");
     // From x = -2 to 2 below a square from -1 to 1.
-    const Document below =
-        with({square(1, 1), bezier3({{{-2, 0.3, 0}}, {{-0.5, 0.3, 0}}, {{0.6, 0.3, 0}}, {{2, 0.3, 0}}})});
+    const Document below = document_of(
+        {square(1, 1), bezier3({{{-2, 0.3, 0}}, {{-0.5, 0.3, 0}}, {{0.6, 0.3, 0}}, {{2, 0.3, 0}}})});
     const Drawing seen = drawn(below, how);
     EXPECT_NEAR(length_of(seen, "curve"), 2 * seen.scale, 0.01);
     EXPECT_EQ(length_of(seen, "hidden"), 0);
@@ -198,7 +198,7 @@ TEST(HiddenLines, curves_that_nothing_hides_stay_curves) {
     how.view = *parse_view("top");
     how.knots = true;
     const auto cubic = bezier3({{{-2, 0.3, 2}}, {{-1, 1.5, 2}}, {{1, -1.5, 2}}, {{2, 0.3, 2}}});
-    const Drawing above = drawn(with({square(1, 1), cubic}), how);
+    const Drawing above = drawn(document_of({square(1, 1), cubic}), how);
     std::size_t paths = 0, knots = 0;
     for (const DrawnGroup& g : above.groups) {
         knots += g.role == "knots" ? g.discs.size() : 0;
@@ -210,9 +210,9 @@ TEST(HiddenLines, curves_that_nothing_hides_stay_curves) {
     EXPECT_EQ(paths, 1u);
     EXPECT_EQ(knots, 2u);
     how.view = *parse_view("bottom");
-    EXPECT_EQ(length_of(drawn(with({square(1, 3), cubic}), how), "curve"), 0);
+    EXPECT_EQ(length_of(drawn(document_of({square(1, 3), cubic}), how), "curve"), 0);
     std::size_t left = 0;
-    for (const DrawnGroup& g : drawn(with({square(1, 3), cubic}), how).groups)
+    for (const DrawnGroup& g : drawn(document_of({square(1, 3), cubic}), how).groups)
         if (g.role == "knots") left += g.discs.size();
     EXPECT_EQ(left, 0u) << "knots of a hidden curve";
 }
@@ -231,7 +231,7 @@ TEST(HiddenLines, a_curve_on_a_surface_is_seen_where_the_surface_faces_the_eye) 
     for (const auto& [view, elevation] : {std::pair("front", 0.0), {"-90,20", 20.0}, {"-90,50", 50.0}}) {
         how.view = *parse_view(view);
         how.hidden = HiddenLines::dashed;
-        const Drawing d = drawn(with({test::sphere({{0, 0, 0}}, 1), circle}), how);
+        const Drawing d = drawn(document_of({test::sphere({{0, 0, 0}}, 1), circle}), how);
         // The point at the angle a is seen where (r cos a, r sin a, z) . eye > 0, eye = (0, -ce, se). Near
         // the outline, where the curve leaves it, both is right.
         const double e = elevation * test::kPi / 180, limit = z * std::sin(e) / (r * std::cos(e));
@@ -265,12 +265,12 @@ TEST(HiddenLines, edges_of_a_volume_are_hidden_by_a_surface_beside_it) {
     const auto block = *Volume<Vec<3>>::make({line, line, line}, Net<3, Vec<3>>({2, 2, 2}, corners));
     DrawingOptions how;
     how.view = *parse_view("top");
-    const Drawing d = drawn(with({square(0, 1), block}), how);
+    const Drawing d = drawn(document_of({square(0, 1), block}), how);
     EXPECT_NEAR(length_of(d, "edges"), 8 * d.scale, 0.01) << "those of the square";
 }
 
 TEST(HiddenLines, do_not_depend_on_threads_and_have_ids_per_face) {
-    const Document d = with({test::torus(2, 0.7), test::sphere({{0, 0, 3}}, 1)});
+    const Document d = document_of({test::torus(2, 0.7), test::sphere({{0, 0, 3}}, 1)});
     DrawingOptions how;
     how.isolines = 3;
     const std::string one = to_svg(drawn(d, how));
@@ -295,7 +295,7 @@ TEST(HiddenLines, objects_take_the_colours_of_the_palette_in_turn) {
     how.control = true;
     const auto colours = [&] {
         std::vector<Colour> out;
-        for (const DrawnGroup& g : drawn(with(squares), how).groups)
+        for (const DrawnGroup& g : drawn(document_of(squares), how).groups)
             if (g.role == "control" && std::ranges::find(out, g.colour) == out.end()) out.push_back(g.colour);
         return out;
     };
@@ -309,9 +309,9 @@ TEST(HiddenLines, objects_take_the_colours_of_the_palette_in_turn) {
 TEST(HiddenLines, refuse_counts_that_make_no_sense) {
     DrawingOptions how;
     how.isolines = -1;
-    EXPECT_EQ(draw(with({test::torus(2, 0.7)}), {}, how).error().where, "isolines");
+    EXPECT_EQ(draw(document_of({test::torus(2, 0.7)}), {}, how).error().where, "isolines");
     how.isolines = 1001;
-    EXPECT_EQ(draw(with({test::torus(2, 0.7)}), {}, how).error().where, "isolines");
+    EXPECT_EQ(draw(document_of({test::torus(2, 0.7)}), {}, how).error().where, "isolines");
 }
 
 TEST(HiddenLines, of_a_graph_in_space_hide_each_other) {
@@ -321,10 +321,10 @@ TEST(HiddenLines, of_a_graph_in_space_hide_each_other) {
                                Net<2, Vec<1>>({3, 2}, {{{0}}, {{0}}, {{4}}, {{4}}, {{0}}, {{0}}}));
     DrawingOptions how;
     how.view = *parse_view("0,20");  // from x, a little above
-    const Drawing d = drawn(with({graph}), how);
+    const Drawing d = drawn(document_of({graph}), how);
     EXPECT_NEAR(length_of(d, "silhouettes"), d.scale, 0.3) << "the ridge, as seen from there";
     how.hidden = HiddenLines::dashed;
-    EXPECT_GT(length_of(drawn(with({graph}), how), "hidden"), 0.5 * d.scale);
+    EXPECT_GT(length_of(drawn(document_of({graph}), how), "hidden"), 0.5 * d.scale);
 }
 
 }  // namespace

@@ -15,8 +15,6 @@ using test::Rational;
 using test::Real;
 using test::real;
 
-constexpr double kPi = std::numbers::pi;
-
 // The point of a curve in exact arithmetic.
 template <class P>
 std::vector<Real> exact_point(const Curve<P>& c, double t) {
@@ -102,15 +100,16 @@ TEST(ConicArc, circles_are_off_by_a_few_ulps_and_by_less_than_their_bound) {
     double worst_quotient = 0;
     for (int k = 0; k < 40; ++k) {
         const Vec<2> centre{{random.real(-2, 2), random.real(-2, 2)}};
-        const double r = random.real(0.1, 3), lo = random.real(-4, 4), sweep = random.real(0.01, 2 * kPi);
+        const double r = random.real(0.1, 3), lo = random.real(-4, 4),
+                     sweep = random.real(0.01, 2 * std::numbers::pi);
         const auto c = must(circle(centre, r));
-        const auto arc = must(conic_arc(c, {lo, std::min(lo + sweep, lo + 2 * kPi)}));
+        const auto arc = must(conic_arc(c, {lo, std::min(lo + sweep, lo + 2 * std::numbers::pi)}));
         const double off = off_circle(arc, centre, r);
         EXPECT_LE(off, arc.bound);
         EXPECT_LT(arc.bound, 20 * 0x1p-53 * (norm(centre) + r));
         worst_quotient = std::max(worst_quotient, off / arc.bound);
         const int pieces = (arc.curve.net().extent()[0] - 1) / 2;
-        EXPECT_EQ(pieces, int(std::ceil(sweep / (kPi / 2))));
+        EXPECT_EQ(pieces, int(std::ceil(sweep / (std::numbers::pi / 2))));
     }
     EXPECT_GT(worst_quotient, 0.05);
     EXPECT_LT(must(full_ellipse(unit_circle(), EllipseForm::open)).bound, 5 * 0x1p-53);
@@ -128,15 +127,15 @@ TEST(ConicArc, as_few_pieces_as_the_widest_angle_allows) {
     const auto pieces = [](double sweep, double widest) {
         return (must(conic_arc(unit_circle(), {0, sweep}, widest)).curve.net().extent()[0] - 1) / 2;
     };
-    EXPECT_EQ(pieces(kPi / 2, kPi / 2), 1);
+    EXPECT_EQ(pieces(std::numbers::pi / 2, std::numbers::pi / 2), 1);
     EXPECT_EQ(pieces(3, 3.1), 1);
-    EXPECT_EQ(pieces(2 * kPi, 2 * kPi / 3), 3);
-    EXPECT_EQ(pieces(2 * kPi, kPi / 2), 4);
-    EXPECT_EQ(pieces(2 * kPi, 0.5), 13);
-    const auto three = must(conic_arc(unit_circle(), {0, 2 * kPi}, 2 * kPi / 3));
+    EXPECT_EQ(pieces(2 * std::numbers::pi, 2 * std::numbers::pi / 3), 3);
+    EXPECT_EQ(pieces(2 * std::numbers::pi, std::numbers::pi / 2), 4);
+    EXPECT_EQ(pieces(2 * std::numbers::pi, 0.5), 13);
+    const auto three = must(conic_arc(unit_circle(), {0, 2 * std::numbers::pi}, 2 * std::numbers::pi / 3));
     EXPECT_LE(off_circle(three, {}, 1), three.bound);
     EXPECT_FALSE(conic_arc(unit_circle(), {0, 7}));
-    EXPECT_FALSE(conic_arc(unit_circle(), {0, 1}, kPi));
+    EXPECT_FALSE(conic_arc(unit_circle(), {0, 1}, std::numbers::pi));
     EXPECT_FALSE(conic_arc(unit_circle(), {1, 1}));
     EXPECT_EQ(conic_arc(unit_circle(), {0, std::nan("")}).error().kind, RefusalKind::nonfinite);
     EXPECT_FALSE(conic_arc(Conic<2>{ConicKind::ellipse, {}, {{1, 2}}, {{2, 4}}}, {0, 1}));

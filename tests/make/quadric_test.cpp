@@ -17,8 +17,6 @@ using test::Real;
 using test::real;
 using Point = std::array<Real, 3>;
 
-constexpr double kPi = std::numbers::pi;
-
 Point point(const Vec<3>& v) { return {Real(v[0]), Real(v[1]), Real(v[2])}; }
 Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Real dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -97,8 +95,8 @@ TEST(R28, surfaces_in_any_place_are_within_their_bounds) {
             return Real(sqrt(dot(d, d)) - Real(r));
         };
         check(sphere(f, r, turn), from_centre);
-        check(sphere(f, r, turn, {lat, kPi / 2}), from_centre);
-        check(sphere(f, r, turn, {-kPi / 2, lat}), from_centre);
+        check(sphere(f, r, turn, {lat, std::numbers::pi / 2}), from_centre);
+        check(sphere(f, r, turn, {-std::numbers::pi / 2, lat}), from_centre);
         check(cylinder(f, r, {a, a + h}, turn),
               [&](const Point& p) { return Real(cylindrical(p, origin, axis)[1] - Real(r)); });
         check(cone(f, r, 0, {0, h}, turn), [&](const Point& p) {
@@ -146,7 +144,7 @@ TEST(R28, curvatures_are_those_of_the_quadrics) {
 TEST(Quadric, poles_and_apices_are_single_points_and_closed_turns_close) {
     const FoundFrame f = must(frame_about({{1, 2, 3}}, {{1, 1, 1}}));
     const auto ball = must(sphere(f, 2));
-    const auto part = must(sphere(f, 2, {{0, 1}}, {0.2, kPi / 2}));
+    const auto part = must(sphere(f, 2, {{0, 1}}, {0.2, std::numbers::pi / 2}));
     const auto funnel = must(cone(f, 2, 0, {0, 1}));
     const auto same_points = [](const Surface<Hom<3>>& s, int side) {
         const auto edge = boundary(s, 1, side);
@@ -160,7 +158,7 @@ TEST(Quadric, poles_and_apices_are_single_points_and_closed_turns_close) {
     // About the origin a pole has no rounding in it at all.
     const auto own = must(sphere({}, 3));
     for (const auto& p : points(boundary(own.surface, 1, 1))) EXPECT_EQ(p, (Vec<3>{{0, 0, 3}}));
-    const auto cap = must(sphere({}, 3, {{0, 1}}, {0.2, kPi / 2}));
+    const auto cap = must(sphere({}, 3, {{0, 1}}, {0.2, std::numbers::pi / 2}));
     for (const auto& p : points(boundary(cap.surface, 1, 1))) EXPECT_EQ(p, (Vec<3>{{0, 0, 3}}));
     // A cylinder of radius 1 rounds only the weights of its circle.
     const auto thin = must(cylinder({}, 1, {0, 1}));
@@ -245,7 +243,7 @@ TEST(SphereInSix, has_no_pole_and_covers_the_sphere_once) {
     }
     EXPECT_EQ(edges.size(), 12u);
     for (const auto& [key, count] : edges) EXPECT_EQ(count, 2);
-    EXPECT_NEAR(covered, 4 * kPi, 1e-12);
+    EXPECT_NEAR(covered, 4 * std::numbers::pi, 1e-12);
     EXPECT_LE(worst, 1);
     EXPECT_LT(s.bound, 2e-14);
 }
@@ -358,7 +356,7 @@ TEST(SphereInEight, octants_join_to_the_bit_and_have_the_curvature_of_the_sphere
     }
     EXPECT_EQ(edges.size(), 12u);
     for (const auto& [key, count] : edges) EXPECT_EQ(count, 2);
-    EXPECT_NEAR(covered, 4 * kPi, 1e-12);
+    EXPECT_NEAR(covered, 4 * std::numbers::pi, 1e-12);
     EXPECT_LT(s.bound, 2e-14);
 }
 

@@ -19,27 +19,26 @@ using test::Real;
 using test::real;
 using Point = std::array<Real, 3>;
 
-constexpr double kPi = std::numbers::pi;
 const Axis kZ{{}, {{0, 0, 1}}};
 
 template <class P>
-Point exact_point(const Curve<P>& c, double t) {
+Point exact_curve_point(const Curve<P>& c, double t) {
     Point x{};
     const auto r = test::value_of<Rational>(c, t);
     for (std::size_t i = 0; i < r.size(); ++i) x[i] = real(r[i]);
     return x;
 }
 template <class P>
-Point exact_point(const Surface<P>& s, double u, double v) {
+Point exact_curve_point(const Surface<P>& s, double u, double v) {
     Point x{};
     const auto r = test::value_of<Rational>(s, {u, v});
     for (std::size_t i = 0; i < 3; ++i) x[i] = real(r[i]);
     return x;
 }
-Real dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Real dot_of(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 double gap(const Point& a, const Point& b) {
     const Point d{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return sqrt(dot(d, d)).convert_to<double>();
+    return sqrt(dot_of(d, d)).convert_to<double>();
 }
 
 // A point apart from its rotation: p turned by the angle whose cosine and sine are given.
@@ -49,10 +48,10 @@ struct Turned {
     Turned(const Point& p, const Axis& axis) {
         Point k, r;
         for (int i = 0; i < 3; ++i) k[std::size_t(i)] = axis.direction[i];
-        const Real length = sqrt(dot(k, k));
+        const Real length = sqrt(dot_of(k, k));
         for (Real& x : k) x /= length;
         for (std::size_t i = 0; i < 3; ++i) r[i] = p[i] - Real(axis.origin[int(i)]);
-        const Real h = dot(r, k);
+        const Real h = dot_of(r, k);
         for (std::size_t i = 0; i < 3; ++i) arm[i] = r[i] - h * k[i], centre[i] = p[i] - arm[i];
         for (std::size_t i = 0; i < 3; ++i)
             side[i] = k[(i + 1) % 3] * arm[(i + 2) % 3] - k[(i + 2) % 3] * arm[(i + 1) % 3];
@@ -69,7 +68,7 @@ struct Turned {
 std::pair<Real, Real> on_circle(double angle, int n, double u) {
     const auto joint = [&](int k) {
         const Real pi = boost::math::constants::pi<Real>();
-        if (std::abs(angle) == 2 * kPi) return Real((angle > 0 ? 2 * pi : -2 * pi) * k / n);
+        if (std::abs(angle) == 2 * std::numbers::pi) return Real((angle > 0 ? 2 * pi : -2 * pi) * k / n);
         return Real(k == n ? angle : angle * k / n);
     };
     const int k = std::min(int(u * n), n - 1);
@@ -84,7 +83,7 @@ std::pair<Real, Real> on_circle(double angle, int n, double u) {
 template <class P>
 double worst_quotient(const Curve<P>& profile, const Axis& axis, double angle) {
     const auto made = must(revolve(profile, axis, angle));
-    const bool full = std::abs(angle) == 2 * kPi;
+    const bool full = std::abs(angle) == 2 * std::numbers::pi;
     EXPECT_EQ(made.surface.basis(0).is_closed(), full);
     const int n = full ? 4 : (made.surface.basis(0).size() - 1) / 2;
     EXPECT_EQ(made.surface.basis(1), profile.basis());
@@ -94,8 +93,8 @@ double worst_quotient(const Curve<P>& profile, const Axis& axis, double angle) {
         for (int j = 0; j <= 2; ++j) {
             const double u = i / 8.0, v = j == 2 ? on.hi : on.lo + on.length() * j / 2.5;
             const auto [c, s] = on_circle(angle, n, u);
-            const double off =
-                gap(exact_point(made.surface, u, v), Turned(exact_point(profile, v), axis).by(c, s));
+            const double off = gap(exact_curve_point(made.surface, u, v),
+                                   Turned(exact_curve_point(profile, v), axis).by(c, s));
             EXPECT_LE(off, made.bound);
             worst = std::max(worst, off / made.bound);
         }
@@ -105,7 +104,7 @@ double worst_quotient(const Curve<P>& profile, const Axis& axis, double angle) {
 // Row R25, literally: the point of the surface is the point of the curve, turned.
 TEST(R25, a_point_of_the_surface_is_the_turned_point_of_the_curve) {
     const auto outline = bezier<Vec<3>>({{{1, 0, 0}}, {{3, 0, 1}}, {{0.5, 0, 2}}, {{2, 0, 4}}});
-    const auto vase = must(revolve(outline, kZ, 2 * kPi));
+    const auto vase = must(revolve(outline, kZ, 2 * std::numbers::pi));
     for (int k = 0; k < 4; ++k)
         for (double v : {0.0, 0.25, 0.5, 1.0}) {
             const Vec<3> p = outline(v), q = vase.surface(k / 4.0, v);
@@ -120,7 +119,9 @@ TEST(R25, a_point_of_the_surface_is_the_turned_point_of_the_curve) {
     for (int k = 0; k < 6; ++k) {
         const Axis axis{{{random.real(-2, 2), random.real(-2, 2), random.real(-2, 2)}},
                         {{random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)}}};
-        const double angle = k % 4 == 0 ? 2 * kPi : k % 4 == 1 ? -2 * kPi : random.real(-6, 6);
+        const double angle = k % 4 == 0   ? 2 * std::numbers::pi
+                             : k % 4 == 1 ? -2 * std::numbers::pi
+                                          : random.real(-6, 6);
         const test::BasisOptions ends{k % 3 == 0 ? test::Ends::closed : test::Ends::clamped};
         worst = std::max(worst, worst_quotient(test::random_patch<1, Vec<2>>(random, 5, ends), axis, angle));
         worst = std::max(worst, worst_quotient(test::random_patch<1, Hom<2>>(random, 4, ends), axis, angle));
@@ -134,13 +135,17 @@ TEST(Revolve, u_0_is_the_profile_to_the_bit_and_arcs_are_as_few_as_90_degrees_al
     Random random(26);
     const auto profile = test::random_patch<1, Hom<3>>(random, 4, {});
     const Axis axis{{{0.1, 0.2, 0.3}}, {{1, 2, 3}}};
-    for (const auto& [angle, arcs] :
-         {std::pair(0.1, 1), {-kPi / 2, 1}, {1.6, 2}, {kPi, 2}, {-4.8, 4}, {6.28, 4}}) {
+    for (const auto& [angle, arcs] : {std::pair(0.1, 1),
+                                      {-std::numbers::pi / 2, 1},
+                                      {1.6, 2},
+                                      {std::numbers::pi, 2},
+                                      {-4.8, 4},
+                                      {6.28, 4}}) {
         const auto made = must(revolve(profile, axis, angle));
         EXPECT_EQ(made.surface.basis(0).size(), 2 * arcs + 1) << angle;
         EXPECT_EQ(boundary(made.surface, 0, 0), profile) << angle;
     }
-    const auto full = must(revolve(profile, axis, 2 * kPi));
+    const auto full = must(revolve(profile, axis, 2 * std::numbers::pi));
     EXPECT_EQ(full.surface.basis(0).size(), 8);
     EXPECT_EQ(iso(full.surface, 0, 0.0), profile);
     EXPECT_EQ(full.surface(1.0, 0.0), full.surface(0.0, 0.0));
@@ -150,25 +155,26 @@ TEST(Revolve, an_open_full_turn_ends_at_the_profile_to_the_bit) {
     Random random(29);
     const auto profile = test::random_patch<1, Vec<3>>(random, 3, {});
     const Axis axis{{{0.1, 0.2, 0.3}}, {{1, 2, 3}}};
-    const auto closed = must(revolve(profile, axis, -2 * kPi)),
-               open = must(revolve(profile, axis, -2 * kPi, Seam::open));
+    const auto closed = must(revolve(profile, axis, -2 * std::numbers::pi)),
+               open = must(revolve(profile, axis, -2 * std::numbers::pi, Seam::open));
     EXPECT_FALSE(open.surface.basis(0).is_closed());
     EXPECT_EQ(open.surface.basis(0).size(), 9);
     EXPECT_EQ(boundary(open.surface, 0, 1), to_rational(profile));
     EXPECT_EQ(boundary(open.surface, 0, 0), to_rational(profile));
     const double v = profile.domain()[0].middle();
     for (double u : {0.1, 0.5, 0.8}) EXPECT_LE(norm(open.surface(u, v) - closed.surface(u, v)), 1e-15);
-    const auto cubic = must(revolve_polynomial(profile, axis, 2 * kPi, 1e-4, Seam::open));
+    const auto cubic = must(revolve_polynomial(profile, axis, 2 * std::numbers::pi, 1e-4, Seam::open));
     EXPECT_EQ(boundary(cubic.surface, 0, 1), profile);
     EXPECT_FALSE(cubic.surface.basis(0).is_closed());
 }
 
 TEST(Revolve, spheres_tori_cones_are_where_their_equations_say) {
-    const auto half = must(conic_arc(Conic<3>{ConicKind::ellipse, {}, {{0, 0, -2}}, {{2, 0, 0}}}, {0, kPi}));
-    const auto sphere = must(revolve(half.curve, kZ, 2 * kPi));
+    const auto half =
+        must(conic_arc(Conic<3>{ConicKind::ellipse, {}, {{0, 0, -2}}, {{2, 0, 0}}}, {0, std::numbers::pi}));
+    const auto sphere = must(revolve(half.curve, kZ, 2 * std::numbers::pi));
     const auto tube = must(full_ellipse(Conic<3>{ConicKind::ellipse, {{3, 0, 0}}, {{1, 0, 0}}, {{0, 0, 1}}},
                                         EllipseForm::closed));
-    const auto torus = must(revolve(tube.curve, kZ, 2 * kPi));
+    const auto torus = must(revolve(tube.curve, kZ, 2 * std::numbers::pi));
     EXPECT_TRUE(torus.surface.basis(0).is_closed() && torus.surface.basis(1).is_closed());
     for (int i = 0; i <= 20; ++i)
         for (int j = 0; j <= 20; ++j) {
@@ -219,7 +225,7 @@ TEST(Revolve, scales_with_powers_of_two_and_moves_with_the_axis) {
 
 TEST(Revolve, a_profile_may_touch_and_cross_the_axis_but_not_lie_on_it) {
     const auto crossing = bezier<Vec<3>>({{{-1, 0, 0}}, {{1, 0, 2}}});
-    const auto cone = must(revolve(crossing, kZ, 2 * kPi));
+    const auto cone = must(revolve(crossing, kZ, 2 * std::numbers::pi));
     for (double u : {0.0, 0.3, 0.8}) EXPECT_LE(norm(cone.surface(u, 0.5) - Vec<3>{{0, 0, 1}}), cone.bound);
     const auto touching = bezier<Vec<2>>({{{0, 0}}, {{1, 1}}, {{0, 2}}});
     const auto lemon = must(revolve(touching, Axis{{}, {{0, 1, 0}}}, 1));
@@ -250,7 +256,7 @@ TEST(Revolve, refuses_what_turns_nothing) {
     EXPECT_EQ(revolve_polynomial(line, kZ, 1, 1e-18).error().kind, RefusalKind::ill_conditioned);
     const auto far = bezier<Vec<3>>({{{0x1p1021, 0, 0}}, {{0x1p1021, 0x1p1021, 0}}});
     EXPECT_TRUE(revolve(far, kZ, 1));
-    EXPECT_FALSE(revolve(far, Axis{{{-0x1p1023, 0, 0}}, {{0, 0, 1}}}, kPi));
+    EXPECT_FALSE(revolve(far, Axis{{{-0x1p1023, 0, 0}}, {{0, 0, 1}}}, std::numbers::pi));
     const auto tiny = bezier<Vec<3>>({{{0x1p-1070, 0, 0}}, {{0x1p-1070, 0, 0x1p-1070}}});
     EXPECT_TRUE(revolve(tiny, kZ, 1));
 }
@@ -259,11 +265,11 @@ TEST(Revolve, refuses_what_turns_nothing) {
 // that is | sqrt(x^2 + y^2) - r |.
 TEST(RevolvePolynomial, is_as_far_off_as_its_bound_says_and_not_much_less) {
     const auto curve = bezier<Vec<3>>({{{1, 0, 0}}, {{4, 1, 1}}, {{-1, 0.5, 2}}, {{2, 0, 4}}});
-    for (const double angle : {2 * kPi, -2 * kPi, 1.0, 3.0, -5.5})
+    for (const double angle : {2 * std::numbers::pi, -2 * std::numbers::pi, 1.0, 3.0, -5.5})
         for (const double tolerance : {0.5, 1e-2, 1e-4, 1e-8, 1e-11}) {
             const auto made = must(revolve_polynomial(curve, kZ, angle, tolerance));
             EXPECT_LE(made.bound, tolerance);
-            EXPECT_EQ(made.surface.basis(0).is_closed(), std::abs(angle) == 2 * kPi);
+            EXPECT_EQ(made.surface.basis(0).is_closed(), std::abs(angle) == 2 * std::numbers::pi);
             double worst = 0;
             for (int i = 0; i <= 24; ++i)  // the first piece: all are alike
                 for (int j = 0; j <= 16; ++j) {
@@ -282,9 +288,9 @@ TEST(RevolvePolynomial, is_as_far_off_as_its_bound_says_and_not_much_less) {
 TEST(RevolvePolynomial, takes_no_more_pieces_than_its_bound_needs) {
     const auto circle = bezier<Vec<3>>({{{2, 0, 0}}, {{2, 0, 1}}});
     for (const double tolerance : {1e-1, 1e-3, 1e-6, 1e-9}) {
-        const int n = must(revolve_polynomial(circle, kZ, 2 * kPi, tolerance)).pieces;
+        const int n = must(revolve_polynomial(circle, kZ, 2 * std::numbers::pi, tolerance)).pieces;
         const auto eps = [](int k) {
-            const double t = std::tan(2 * kPi / k / 4);
+            const double t = std::tan(2 * std::numbers::pi / k / 4);
             return 2 * 2.0 / 27 * std::pow(t, 6) / std::pow(1 + t * t, 2);
         };
         EXPECT_LE(eps(n), tolerance);
@@ -298,7 +304,7 @@ TEST(RevolvePolynomial, begins_at_the_profile_and_has_a_continuous_derivative) {
     const auto curve = bezier<Vec<3>>({{{1, 0, 0}}, {{4, 1, 1}}, {{2, 0, 4}}});
     const auto open = must(revolve_polynomial(curve, kZ, 5, 1e-5));
     EXPECT_EQ(boundary(open.surface, 0, 0), curve);
-    const auto full = must(revolve_polynomial(curve, kZ, 2 * kPi, 1e-5));
+    const auto full = must(revolve_polynomial(curve, kZ, 2 * std::numbers::pi, 1e-5));
     for (const auto* s : {&open.surface, &full.surface}) {
         for (int i = s == &full.surface ? 0 : 1; i < 3; ++i) {
             const double at = s->basis(0).breaks()[std::size_t(i)], near = 1e-9;

@@ -34,12 +34,12 @@ double distance(const Exact3& a, const Exact3& b) {
     return std::sqrt(sum);
 }
 
-constexpr double kAt[] = {0, 0.1875, 0.5, 0.75, 0.9375, 1};
+constexpr double kSweptAt[] = {0, 0.1875, 0.5, 0.75, 0.9375, 1};
 
 template <class P>
 class Sweeps : public testing::Test {};
-using Kinds = testing::Types<Vec<2>, Hom<2>, Vec<3>, Hom<3>>;
-TYPED_TEST_SUITE(Sweeps, Kinds);
+using SweptKinds = testing::Types<Vec<2>, Hom<2>, Vec<3>, Hom<3>>;
+TYPED_TEST_SUITE(Sweeps, SweptKinds);
 
 TYPED_TEST(Sweeps, extrusion_adds_a_multiple_of_the_vector) {
     Random random(1);
@@ -49,8 +49,8 @@ TYPED_TEST(Sweeps, extrusion_adds_a_multiple_of_the_vector) {
     EXPECT_EQ(boundary(made.surface, 1, 0), in_space(c));
     EXPECT_LT(made.bound, 2e-14);
     double worst = 0;
-    for (double u : kAt)
-        for (double v : kAt) {
+    for (double u : kSweptAt)
+        for (double v : kSweptAt) {
             Exact3 p = exact(c, u);
             for (int i = 0; i < 3; ++i) p[std::size_t(i)] += Rational(v) * Rational(d[i]);
             worst = std::max(worst, distance(exact(made.surface, {u, v}), p));
@@ -69,14 +69,14 @@ TYPED_TEST(Sweeps, ruled_surface_has_both_curves_as_boundaries_and_straight_line
     EXPECT_EQ(made.surface.basis(0).multiplicity(0.5), 3);
     EXPECT_LT(made.bound, 3e-13);
     double worst = 0;
-    for (double u : kAt) {
+    for (double u : kSweptAt) {
         const Exact3 p = exact(a, u), q = exact(b, u);
         worst = std::max(
             {worst, distance(exact(made.surface, {u, 0}), p), distance(exact(made.surface, {u, 1}), q)});
         const auto wa = test::homogeneous<Rational>(a, u, {0}), wb = test::homogeneous<Rational>(b, u, {0});
         constexpr bool kRational = Space<TypeParam>::kRational;
         const Rational one(1), x = kRational ? wa.back() : one, y = kRational ? wb.back() : one;
-        for (double v : kAt) {
+        for (double v : kSweptAt) {
             const Rational s = (1 - Rational(v)) * x, t = Rational(v) * y;
             Exact3 r;
             for (std::size_t i = 0; i < 3; ++i) r[i] = (s * p[i] + t * q[i]) / (s + t);
@@ -108,8 +108,8 @@ TYPED_TEST(Sweeps, translational_surface_is_the_sum_of_its_curves) {
     const auto made = must(translate_along(a, b));
     double worst = 0;
     const Exact3 start = exact(b, 0.0);
-    for (double u : kAt)
-        for (double v : kAt) {
+    for (double u : kSweptAt)
+        for (double v : kSweptAt) {
             Exact3 p = exact(a, u);
             const Exact3 q = exact(b, v);
             for (std::size_t i = 0; i < 3; ++i) p[i] += q[i] - start[i];
@@ -132,7 +132,7 @@ TYPED_TEST(Sweeps, translational_surface_is_the_sum_of_its_curves) {
     const auto along = must(translate_along(a, rail)),
                wall = must(extrude(a, rail(1.0)[0] == 2 && Space<TypeParam>::kDim == 3 ? Vec<3>{{1, 2, 4}}
                                                                                        : Vec<3>{{1, 2, 0}}));
-    for (double u : kAt) EXPECT_LE(norm(along.surface(u, 0.75) - wall.surface(u, 0.75)), 1e-14);
+    for (double u : kSweptAt) EXPECT_LE(norm(along.surface(u, 0.75) - wall.surface(u, 0.75)), 1e-14);
 }
 
 TEST(Sweep, closed_curves_stay_closed) {
@@ -151,7 +151,7 @@ TEST(Sweep, closed_curves_stay_closed) {
     const auto line = bezier<Hom<3>>({{{0, 0, 1, 1}}, {{1, 0, 1, 1}}});
     const auto mixed = must(ruled(line, ring));
     EXPECT_FALSE(mixed.surface.basis(0).is_closed());
-    for (double u : kAt) EXPECT_LE(norm(mixed.surface(u, 1.0) - ring(u)), mixed.bound + 2e-15);
+    for (double u : kSweptAt) EXPECT_LE(norm(mixed.surface(u, 1.0) - ring(u)), mixed.bound + 2e-15);
 }
 
 TEST(Sweep, an_unclamped_rail_begins_at_its_start) {
@@ -161,7 +161,7 @@ TEST(Sweep, an_unclamped_rail_begins_at_its_start) {
     const auto rail = test::random_patch<1, Hom<3>>(random, 4, options);
     const auto profile = random_curve<Hom<3>>(random, 2);
     const auto made = must(translate_along(profile, rail));
-    for (double u : kAt)
+    for (double u : kSweptAt)
         EXPECT_LE(distance(exact(made.surface, {u, rail.domain()[0].lo}), exact(profile, u)), made.bound);
 }
 
@@ -226,7 +226,7 @@ TEST(Compatible, curves_stay_what_they_are) {
         const auto same = must(compatible(std::span<const Curve<Hom<2>>>(curves)));
         for (std::size_t i = 0; i < curves.size(); ++i) {
             EXPECT_EQ(same.curves[i].basis(), same.curves[0].basis());
-            for (double t : kAt)
+            for (double t : kSweptAt)
                 EXPECT_LE(distance(exact(same.curves[i], t), exact(curves[i], t)), 40 * same.relative[i]);
             EXPECT_LT(same.relative[i], 1e-13);
         }

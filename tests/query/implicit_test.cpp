@@ -14,11 +14,13 @@ using test::Random;
 using test::Rational;
 
 template <class P>
-Curve<P, Bernstein> bezier(std::vector<P> net) {
+Curve<P, Bernstein> bernstein_curve(std::vector<P> net) {
     const int n = int(net.size());
     return must(Curve<P, Bernstein>::make({must(Bernstein::make(n - 1))}, Net<1, P>({n}, std::move(net))));
 }
-Implicit implicit_of(std::vector<Vec<2>> net) { return must(Implicit::make(bezier(std::move(net)))); }
+Implicit implicit_of(std::vector<Vec<2>> net) {
+    return must(Implicit::make(bernstein_curve(std::move(net))));
+}
 
 // The independent form: F at (x, y) as Sylvester's resultant of x W - X and y W - Y in powers of t, by
 // Gaussian elimination in rationals.
@@ -72,7 +74,8 @@ TEST(R01, implicit_form_of_a_parabola_a_circle_and_a_cuspidal_cubic) {
                                                               : 0)
             << t.x << t.y;
     // The unit circle: (1 - t^2, 2 t) / (1 + t^2): weights 1, 1, 2.
-    const auto circle = must(Implicit::make(bezier<Hom<2>>({{{1, 0, 1}}, {{1, 1, 1}}, {{0, 2, 2}}})));
+    const auto circle =
+        must(Implicit::make(bernstein_curve<Hom<2>>({{{1, 0, 1}}, {{1, 1, 1}}, {{0, 2, 2}}})));
     terms = must(circle.terms());
     const double r = coefficient(terms, 2, 0);
     EXPECT_NE(r, 0);
@@ -100,7 +103,7 @@ TEST(Implicit, agrees_with_sylvesters_resultant_in_exact_arithmetic) {
     for (int n = 1; n <= kMaxImplicitDegree; ++n) {
         std::vector<Hom<2>> net;
         for (int i = 0; i <= n; ++i) net.push_back(test::random_coefficient<Hom<2>>(random));
-        const auto f = must(Implicit::make(bezier(net)));
+        const auto f = must(Implicit::make(bernstein_curve(net)));
         EXPECT_EQ(f.degree(), n);
         EXPECT_EQ(f.traces(), 1);
         EXPECT_EQ(f.scale()[0] * 0 + f.scale()[1] * 0, 0);
@@ -126,7 +129,7 @@ TEST(Implicit, vanishes_on_the_curve_exactly_and_changes_its_sign_across_it) {
         std::vector<Vec<2>> net;
         for (int i = 0; i <= n; ++i)
             net.push_back({{double(random.integer(-64, 64)), double(random.integer(-64, 64))}});
-        const auto curve = bezier(net);
+        const auto curve = bernstein_curve(net);
         const auto f = must(Implicit::make(curve));
         for (int s = 0; s <= 8; ++s) {
             const auto exact = test::value_of<Rational>(curve, s / 8.0);
@@ -149,12 +152,12 @@ TEST(Implicit, bounds_of_values_and_coefficients_hold) {
             std::vector<Hom<2>> net;
             const double shift = k == 3 ? 100 : 0;
             for (int i = 0; i <= n; ++i) net.push_back(test::random_coefficient<Hom<2>>(random, 1, shift));
-            const auto f = must(Implicit::make(bezier(net)));
+            const auto f = must(Implicit::make(bernstein_curve(net)));
             const auto terms = must(f.terms());
             EXPECT_EQ(terms.size(), std::size_t((n + 1) * (n + 2) / 2));
             // At curve points the polynomial is 0 in exact arithmetic; what is left is the error of
             // coefficients.
-            const auto curve = bezier(net);
+            const auto curve = bernstein_curve(net);
             for (double t : {0.125, 0.5, 0.75}) {
                 const auto p = test::value_of<Rational>(curve, t);
                 Rational sum = 0, allowed = 0;
@@ -203,26 +206,27 @@ TEST(Implicit, sees_through_elevation_and_double_tracing) {
     EXPECT_EQ(line.traces(), 3);
     EXPECT_EQ(line.sign({{7, 7}}), 0);
     EXPECT_EQ(line.sign({{7, 6}}), -line.sign({{6, 7}}));
-    EXPECT_EQ(Implicit::make(bezier<Vec<2>>({{{1, 2}}, {{1, 2}}, {{1, 2}}})).error().kind,
+    EXPECT_EQ(Implicit::make(bernstein_curve<Vec<2>>({{{1, 2}}, {{1, 2}}, {{1, 2}}})).error().kind,
               RefusalKind::no_answer);
-    EXPECT_EQ(Implicit::make(bezier<Vec<2>>(std::vector<Vec<2>>(10))).error().kind, RefusalKind::unsupported);
-    EXPECT_FALSE(Implicit::make(bezier<Vec<2>>({{{1, 2}}})));
+    EXPECT_EQ(Implicit::make(bernstein_curve<Vec<2>>(std::vector<Vec<2>>(10))).error().kind,
+              RefusalKind::unsupported);
+    EXPECT_FALSE(Implicit::make(bernstein_curve<Vec<2>>({{{1, 2}}})));
 }
 
 TEST(Implicit, scales_with_powers_of_two) {
     const std::vector<Hom<2>> net{{{0.1, 0.7, 1}}, {{1.3, 2.1, 0.8}}, {{3, -1, 1.5}}, {{4, 0.2, 1}}};
-    const auto one = must(Implicit::make(bezier(net)));
+    const auto one = must(Implicit::make(bernstein_curve(net)));
     for (int e : {-300, 300}) {
         std::vector<Hom<2>> other = net;
         for (auto& h : other) h = {{std::ldexp(h[0], e), std::ldexp(h[1], e), h[2]}};
-        const auto f = must(Implicit::make(bezier(other)));
+        const auto f = must(Implicit::make(bernstein_curve(other)));
         for (double x : {0.5, 1.0, 2.5}) {
             const Vec<2> p{{x, 0.75}};
             EXPECT_EQ(one(p), f(std::exp2(e) * p));
             EXPECT_EQ(one.sign(p), f.sign(std::exp2(e) * p));
         }
     }
-    EXPECT_EQ(must(Implicit::make(bezier(net))).sign({{1e300, 1e-300}}), one.sign({{1e200, 0}}));
+    EXPECT_EQ(must(Implicit::make(bernstein_curve(net))).sign({{1e300, 1e-300}}), one.sign({{1e200, 0}}));
 }
 
 TEST(Determinant, is_that_of_leibniz) {

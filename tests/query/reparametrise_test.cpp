@@ -8,8 +8,8 @@
 namespace freiform::test {
 namespace {
 
-const Curve<Vec<2>> kArch = bezier<Vec<2>>({{{0, 0}}, {{1, 2}}, {{3, 2}}, {{4, 0}}});
-const Curve<Vec<2>> kCusp = bezier<Vec<2>>({{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}});
+const Curve<Vec<2>> kBridge = bezier<Vec<2>>({{{0, 0}}, {{1, 2}}, {{3, 2}}, {{4, 0}}});
+const Curve<Vec<2>> kSpike = bezier<Vec<2>>({{{0, 0}}, {{1, 1}}, {{0, 1}}, {{1, 0}}});
 
 struct Found {
     double distance = 0, speed = 0;
@@ -29,7 +29,7 @@ Found measured(const Curve<P>& curve, const ArcLengthCurve<Space<P>::kDim>& even
 }
 
 TEST(R20, reparametrisation_by_arc_length_runs_at_unit_speed) {
-    const auto even = must(by_arc_length(kArch, 1e-8));
+    const auto even = must(by_arc_length(kBridge, 1e-8));
     EXPECT_EQ(even.curve.domain()[0].lo, 0);
     EXPECT_EQ(even.curve.domain()[0].hi, even.length.value);
     const ArcLength again(even.curve, 0);
@@ -55,9 +55,9 @@ TEST(Reparametrise, stays_within_its_bounds_and_the_bounds_are_of_use) {
     const auto quarter = bezier<Hom<2>>(
         {weighted(Vec<2>{{1, 0}}, 1), weighted(Vec<2>{{1, 1}}, h), weighted(Vec<2>{{0, 1}}, 1)});
     for (const double tolerance : {1e-2, 1e-5, 1e-9}) {
-        check(kArch, tolerance, 0.1);
+        check(kBridge, tolerance, 0.1);
         check(quarter, tolerance, 0.02);
-        check(kCusp, tolerance, 1e-4);
+        check(kSpike, tolerance, 1e-4);
         check(bezier<Vec<3>>({{{0, 0, 0}}, {{1, 2, 3}}}), tolerance, 0);
     }
     for (int k = 0; k < 3; ++k) {
@@ -83,12 +83,12 @@ TEST(Reparametrise, curvature_goes_on_where_it_did) {
 }
 
 TEST(Reparametrise, scales_exactly_with_powers_of_two) {
-    Net<1, Vec<2>> net = kArch.net();
+    Net<1, Vec<2>> net = kBridge.net();
     for (auto& p : net.flat())
         for (int i = 0; i < 2; ++i) p[i] = std::scalbn(p[i], -60);
     const auto small =
-        must(by_arc_length(must(Curve<Vec<2>>::make(kArch.bases(), net)), std::scalbn(1e-6, -60)));
-    const auto even = must(by_arc_length(kArch, 1e-6));
+        must(by_arc_length(must(Curve<Vec<2>>::make(kBridge.bases(), net)), std::scalbn(1e-6, -60)));
+    const auto even = must(by_arc_length(kBridge, 1e-6));
     ASSERT_EQ(small.curve.net().flat().size(), even.curve.net().flat().size());
     EXPECT_EQ(std::scalbn(small.bound, 60), even.bound);
     EXPECT_EQ(small.speed_bound, even.speed_bound);
@@ -96,10 +96,10 @@ TEST(Reparametrise, scales_exactly_with_powers_of_two) {
 
 TEST(Reparametrise, refuses_what_has_no_unit_speed) {
     const auto kind = [](const auto& r) { return r ? RefusalKind::io : r.error().kind; };
-    EXPECT_EQ(kind(by_arc_length(kArch, 0)), RefusalKind::invalid);
-    EXPECT_EQ(kind(by_arc_length(kArch, std::numeric_limits<double>::quiet_NaN())), RefusalKind::invalid);
-    EXPECT_EQ(kind(by_arc_length(kArch, 1e-17)), RefusalKind::ill_conditioned);
-    EXPECT_EQ(kind(by_arc_length(kArch, 1e-9, 5)), RefusalKind::limit);
+    EXPECT_EQ(kind(by_arc_length(kBridge, 0)), RefusalKind::invalid);
+    EXPECT_EQ(kind(by_arc_length(kBridge, std::numeric_limits<double>::quiet_NaN())), RefusalKind::invalid);
+    EXPECT_EQ(kind(by_arc_length(kBridge, 1e-17)), RefusalKind::ill_conditioned);
+    EXPECT_EQ(kind(by_arc_length(kBridge, 1e-9, 5)), RefusalKind::limit);
     EXPECT_EQ(kind(by_arc_length(bezier<Vec<2>>({{{1, 1}}, {{1, 1}}}), 1e-3)), RefusalKind::no_answer);
     const auto jump =
         must(Curve<Vec<2>>::make({must(BSplineBasis::make(1, {0, 0, 1, 1, 2, 2}))},

@@ -1,5 +1,6 @@
 #include "support/random.hpp"
 #include "support/reference.hpp"
+#include "support/triangle.hpp"
 
 #include <freiform/spline/simplex.hpp>
 
@@ -12,16 +13,10 @@ namespace {
 
 using test::must;
 using test::Random;
+using test::random_triangle;
 using test::Rational;
 
 static_assert(Parametric<SimplexPatch<2, Vec<3>>, 2> && Parametric<SimplexPatch<2, Hom<3>>, 2>);
-
-template <class P>
-SimplexPatch<2, P> random_triangle(Random& random, int n) {
-    std::vector<P> b;
-    for (int i = 0; i < (n + 1) * (n + 2) / 2; ++i) b.push_back(test::random_coefficient<P>(random));
-    return must(SimplexPatch<2, P>::make(n, b));
-}
 
 std::vector<Param<2>> parameters(Random& random, int between) {
     std::vector<Param<2>> all{{0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}, {0, 0.3}, {0.7, 0}, {0.7, 0.3}, {0.1, 0.9}};

@@ -1,4 +1,5 @@
 #include "support/shapes.hpp"
+#include "trim/polygons.hpp"
 
 #include <freiform/spline/bezier.hpp>
 #include <freiform/trim/inside.hpp>
@@ -12,20 +13,13 @@
 namespace freiform {
 namespace {
 
-using Loops = std::vector<std::vector<CurveGeometry<2>>>;
+using test::Loops;
+using test::plane_bezier;
+using test::polygon;
 
-CurveGeometry<2> bezier(std::vector<Vec<2>> points) {
-    const int n = int(points.size());
-    return *Curve<Vec<2>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Vec<2>>({n}, std::move(points)));
-}
 CurveGeometry<2> rational(std::vector<Hom<2>> points) {
     const int n = int(points.size());
     return *Curve<Hom<2>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Hom<2>>({n}, std::move(points)));
-}
-std::vector<CurveGeometry<2>> polygon(const std::vector<Vec<2>>& p) {
-    std::vector<CurveGeometry<2>> loop;
-    for (std::size_t i = 0; i < p.size(); ++i) loop.push_back(bezier({p[i], p[(i + 1) % p.size()]}));
-    return loop;
 }
 Inside ask(const Loops& loops, const Vec<2>& q) { return InsideQuery::make(loops, 0)->at(q); }
 
@@ -96,7 +90,7 @@ TEST(Inside, a_spline_and_its_bezier_pieces_agree) {
 
 TEST(Inside, open_loops_and_curves_without_ends_are_refused_with_the_place) {
     const Loops open = {polygon({{{0, 0}}, {{1, 0}}, {{1, 1}}}),
-                        {bezier({{{0, 0}}, {{1, 0}}}), bezier({{{1, 0.25}}, {{0, 0}}})}};
+                        {plane_bezier({{{0, 0}}, {{1, 0}}}), plane_bezier({{{1, 0.25}}, {{0, 0}}})}};
     const auto refused = InsideQuery::make(open, 0.1);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().where, "loops[1]");
@@ -114,8 +108,8 @@ TEST(Inside, scaling_by_powers_of_two_changes_nothing) {
         for (int i = 0; i < 4; ++i)
             p.push_back({{test::uniform(rng, -1, 1), test::uniform(rng, -1, 1)}}),
                 q.push_back(scale * p.back());
-        const Loops a = {{bezier(p), bezier({p.back(), p.front()})}},
-                    b = {{bezier(q), bezier({q.back(), q.front()})}};
+        const Loops a = {{plane_bezier(p), plane_bezier({p.back(), p.front()})}},
+                    b = {{plane_bezier(q), plane_bezier({q.back(), q.front()})}};
         for (int i = 0; i < 300; ++i) {
             const Vec<2> at{{test::uniform(rng, -1, 1), test::uniform(rng, -1, 1)}};
             EXPECT_EQ(ask(a, at), ask(b, scale * at));
@@ -214,7 +208,7 @@ Drawn random_loops(std::mt19937& rng) {
             last = net.back();
             d.arcs.push_back({net});
             d.nets.push_back(net);
-            loop.push_back(bezier(net));
+            loop.push_back(plane_bezier(net));
         }
         d.loops.push_back(std::move(loop));
     }

@@ -1,4 +1,5 @@
 #include "support/shapes.hpp"
+#include "trim/polygons.hpp"
 
 #include <freiform/make/conic.hpp>
 #include <freiform/trim/loops.hpp>
@@ -10,24 +11,18 @@
 namespace freiform {
 namespace {
 
-using Loop = std::vector<CurveGeometry<2>>;
-using Loops = std::vector<Loop>;
+using test::Loop;
+using test::Loops;
+using test::plane_bezier;
+using test::polygon;
+
 constexpr LoopTolerance kExact{0, 1e-9};
 
-CurveGeometry<2> bezier(std::vector<Vec<2>> points) {
-    const int n = int(points.size());
-    return *Curve<Vec<2>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Vec<2>>({n}, std::move(points)));
-}
-Loop polygon(const std::vector<Vec<2>>& p) {
-    Loop loop;
-    for (std::size_t i = 0; i < p.size(); ++i) loop.push_back(bezier({p[i], p[(i + 1) % p.size()]}));
-    return loop;
-}
 Loop box(double x0, double y0, double x1, double y1) {
     return polygon({{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}});
 }
 Loop ellipse(Vec<2> centre, Vec<2> x, Vec<2> y) { return {Conic<2>{ConicKind::ellipse, centre, x, y}}; }
-std::string refused(const Loops& loops, const LoopTolerance& tolerance = kExact) {
+std::string refusal_of_loops(const Loops& loops, const LoopTolerance& tolerance = kExact) {
     const auto r = check_loops(loops, tolerance);
     return r ? "accepted" : text(r.error().where, ": ", r.error().message);
 }
@@ -46,30 +41,30 @@ std::size_t contacts(const Loops& loops, const LoopTolerance& tolerance = kExact
 
 TEST(R27, loops_that_cross_themselves_are_refused_with_the_place) {
     // A bow tie: (0, 0) to (2, 2) crosses (2, 0) to (0, 2) in (1, 1).
-    const std::string bow = refused({polygon({{{0, 0}}, {{2, 2}}, {{2, 0}}, {{0, 2}}})});
+    const std::string bow = refusal_of_loops({polygon({{{0, 0}}, {{2, 2}}, {{2, 0}}, {{0, 2}}})});
     EXPECT_TRUE(bow.starts_with("loops[0][0]: crosses loops[0][2] at (")) << bow;
     EXPECT_LE(norm(place(bow) - Vec<2>{{1, 1}}), 1e-9) << bow;
     // A cubic with a loop, closed by a segment: x = 3 t (1-t)(..), crosses itself where x = 0.5.
-    const std::string curl =
-        refused({{bezier({{{0, 0}}, {{3, 2}}, {{-2, 2}}, {{1, 0}}}), bezier({{{1, 0}}, {{0, 0}}})}});
+    const std::string curl = refusal_of_loops(
+        {{plane_bezier({{{0, 0}}, {{3, 2}}, {{-2, 2}}, {{1, 0}}}), plane_bezier({{{1, 0}}, {{0, 0}}})}});
     EXPECT_TRUE(curl.starts_with("loops[0][0]: crosses loops[0][0] at (")) << curl;
     EXPECT_NEAR(place(curl)[0], 0.5, 1e-9) << curl;
 }
 
 TEST(R27, loops_that_cross_each_other_are_refused_with_the_place) {
-    const std::string boxes = refused({box(0, 0, 2, 2), box(1, 1, 3, 3)});
+    const std::string boxes = refusal_of_loops({box(0, 0, 2, 2), box(1, 1, 3, 3)});
     EXPECT_TRUE(boxes.find("crosses loops[1]") != std::string::npos) << boxes;
     // A circle of radius 5 and a line x = 3: (3, 4) and (3, -4).
-    const std::string circle = refused({ellipse({}, {{5, 0}}, {{0, 5}}), box(3, -6, 9, 6)});
+    const std::string circle = refusal_of_loops({ellipse({}, {{5, 0}}, {{0, 5}}), box(3, -6, 9, 6)});
     EXPECT_NEAR(place(circle)[0], 3, 1e-9) << circle;
     EXPECT_NEAR(std::abs(place(circle)[1]), 4, 1e-9) << circle;
-    EXPECT_EQ(refused({box(0, 0, 4, 4), box(1, 1, 2, 2), box(5, 1, 6, 2)}), "accepted");
+    EXPECT_EQ(refusal_of_loops({box(0, 0, 4, 4), box(1, 1, 2, 2), box(5, 1, 6, 2)}), "accepted");
 }
 
 TEST(R27, loops_that_do_not_close_are_refused_with_the_place) {
     Loop open = box(0, 0, 1, 1);
     open.pop_back();
-    const std::string r = refused({box(-1, -1, 3, 3), open});
+    const std::string r = refusal_of_loops({box(-1, -1, 3, 3), open});
     EXPECT_TRUE(r.starts_with("loops[1]: the loop is open: from the end of piece 2 at (0, 1)")) << r;
 }
 
@@ -77,8 +72,9 @@ TEST(Loops, simple_and_disjoint_ones_have_no_contact) {
     EXPECT_EQ(contacts({box(0, 0, 8, 8), box(1, 1, 2, 2), ellipse({{5, 5}}, {{2, 0}}, {{0, 1}})}), 0u);
     // Sharp and blunt corners, one Bezier piece, two pieces, a spline on a closed basis.
     EXPECT_EQ(contacts({polygon({{{0, 0}}, {{8, 1e-3}}, {{4, 1e-3}}, {{4, 5}}})}), 0u);
-    EXPECT_EQ(contacts({{bezier({{{0, 0}}, {{3, 0}}, {{0, 3}}, {{0, 0}}})}}), 0u);
-    EXPECT_EQ(contacts({{bezier({{{0, 0}}, {{1, 1}}, {{2, 0}}}), bezier({{{2, 0}}, {{1, -1}}, {{0, 0}}})}}),
+    EXPECT_EQ(contacts({{plane_bezier({{{0, 0}}, {{3, 0}}, {{0, 3}}, {{0, 0}}})}}), 0u);
+    EXPECT_EQ(contacts({{plane_bezier({{{0, 0}}, {{1, 1}}, {{2, 0}}}),
+                         plane_bezier({{{2, 0}}, {{1, -1}}, {{0, 0}}})}}),
               0u);
     const Curve<Vec<2>> ring =
         *Curve<Vec<2>>::make({*BSplineBasis::periodic(3, {0, 1, 2, 3, 4, 5})},
@@ -95,7 +91,7 @@ TEST(Loops, many_pieces_cost_little) {
     }
     EXPECT_EQ(contacts({polygon(gear)}, {0, 1e-12}), 0u);
     std::swap(gear[1000], gear[2000]);
-    EXPECT_TRUE(refused({polygon(gear)}, {0, 1e-12}).find("crosses") != std::string::npos);
+    EXPECT_TRUE(refusal_of_loops({polygon(gear)}, {0, 1e-12}).find("crosses") != std::string::npos);
 }
 
 TEST(Loops, what_touches_is_a_contact_and_what_crosses_in_a_vertex_a_crossing) {
@@ -106,11 +102,11 @@ TEST(Loops, what_touches_is_a_contact_and_what_crosses_in_a_vertex_a_crossing) {
     // does.
     const Vec<2> o{}, a{{2, -1}}, b{{2, 1}}, c{{-2, 1}}, d{{-2, -1}};
     EXPECT_EQ(contacts({polygon({o, a, b, o, c, d})}), 1u);
-    const std::string eight = refused({polygon({o, a, b, o, d, c})});
+    const std::string eight = refusal_of_loops({polygon({o, a, b, o, d, c})});
     EXPECT_TRUE(eight.find("at (0, 0), known within 0") != std::string::npos) << eight;
     // A corner of one on the edge of the other, and through.
     const std::string through =
-        refused({box(0, 0, 4, 4), polygon({{{0, 2}}, {{2, 1}}, {{2, 3}}, {{-1, 2.5}}})});
+        refusal_of_loops({box(0, 0, 4, 4), polygon({{{0, 2}}, {{2, 1}}, {{2, 3}}, {{-1, 2.5}}})});
     EXPECT_TRUE(through.find("crosses loops[1]") != std::string::npos) << through;
     // Circles that touch, inside and outside; numbers that are exact.
     EXPECT_EQ(contacts({ellipse({}, {{2, 0}}, {{0, 2}}), ellipse({{1, 0}}, {{1, 0}}, {{0, 1}})}), 1u);
@@ -120,18 +116,18 @@ TEST(Loops, what_touches_is_a_contact_and_what_crosses_in_a_vertex_a_crossing) {
 TEST(Loops, a_loop_that_goes_round_twice_is_refused_though_its_two_rounds_coincide) {
     std::vector<Vec<2>> twice = {{{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}},
                                  {{0, 0}}, {{2, 0}}, {{2, 2}}, {{0, 2}}};
-    const std::string r = refused({polygon(twice)});
+    const std::string r = refusal_of_loops({polygon(twice)});
     EXPECT_TRUE(r.find("2 times") != std::string::npos) << r;
 }
 
 TEST(Loops, gaps_are_no_crossings_and_crossings_within_a_gap_are_not_certain) {
     // The end of each edge overshoots by 1e-12.
-    Loop loop = {bezier({{{0, 0}}, {{1 + 1e-12, 0}}}), bezier({{{1, -1e-12}}, {{1, 1}}}),
-                 bezier({{{1, 1}}, {{0, 1}}}), bezier({{{0, 1}}, {{0, 0}}})};
+    Loop loop = {plane_bezier({{{0, 0}}, {{1 + 1e-12, 0}}}), plane_bezier({{{1, -1e-12}}, {{1, 1}}}),
+                 plane_bezier({{{1, 1}}, {{0, 1}}}), plane_bezier({{{0, 1}}, {{0, 0}}})};
     EXPECT_EQ(contacts({loop}, {1e-11, 1e-11}), 0u);
-    EXPECT_TRUE(refused({loop}, {0, 1e-11}).find("open") != std::string::npos);
-    EXPECT_EQ(refused({loop, box(1 - 1e-13, 0.25, 2, 0.75)}, {1e-11, 1e-13}), "accepted");
-    EXPECT_NE(refused({loop, box(1 - 1e-11, 0.25, 2, 0.75)}, {1e-11, 1e-13}), "accepted");
+    EXPECT_TRUE(refusal_of_loops({loop}, {0, 1e-11}).find("open") != std::string::npos);
+    EXPECT_EQ(refusal_of_loops({loop, box(1 - 1e-13, 0.25, 2, 0.75)}, {1e-11, 1e-13}), "accepted");
+    EXPECT_NE(refusal_of_loops({loop, box(1 - 1e-11, 0.25, 2, 0.75)}, {1e-11, 1e-13}), "accepted");
 }
 
 TEST(Loops, decisions_scale_with_powers_of_two) {
@@ -209,8 +205,9 @@ TEST(Loops, orientation_is_repaired_by_depth_and_says_what_it_turned) {
 }
 
 TEST(Loops, orientation_of_holes_that_touch_and_of_curves) {
-    const Loops given = {{bezier({{{0, 0}}, {{4, -6}}, {{8, 0}}}), bezier({{{8, 0}}, {{4, 6}}, {{0, 0}}})},
-                         polygon({{{0, 0}}, {{3, -1}}, {{3, 1}}})};
+    const Loops given = {
+        {plane_bezier({{{0, 0}}, {{4, -6}}, {{8, 0}}}), plane_bezier({{{8, 0}}, {{4, 6}}, {{0, 0}}})},
+        polygon({{{0, 0}}, {{3, -1}}, {{3, 1}}})};
     const auto done = orient_loops(given, kExact);
     ASSERT_TRUE(done) << done.error().message;
     EXPECT_EQ(done->depth, (std::vector{0, 1}));
@@ -225,8 +222,8 @@ TEST(Loops, thousands_on_top_of_each_other_are_refused_at_once) {
 }
 
 TEST(Loops, refuses_tolerances_that_are_none) {
-    EXPECT_TRUE(refused({box(0, 0, 1, 1)}, {-1, 1}).starts_with("gap: "));
-    EXPECT_TRUE(refused({box(0, 0, 1, 1)}, {0, 0}).starts_with("accuracy: "));
+    EXPECT_TRUE(refusal_of_loops({box(0, 0, 1, 1)}, {-1, 1}).starts_with("gap: "));
+    EXPECT_TRUE(refusal_of_loops({box(0, 0, 1, 1)}, {0, 0}).starts_with("accuracy: "));
     EXPECT_EQ(contacts({}), 0u);
 }
 

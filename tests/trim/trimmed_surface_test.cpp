@@ -1,3 +1,5 @@
+#include "trim/polygons.hpp"
+
 #include <freiform/trim/trimmed_surface.hpp>
 
 #include <gtest/gtest.h>
@@ -5,7 +7,8 @@
 namespace freiform {
 namespace {
 
-using Loop2 = std::vector<CurveGeometry<2>>;
+using test::Loop;
+using test::plane_bezier;
 
 // On [0, 2] x [0, 1].
 Surface<Vec<3>> plane() {
@@ -14,17 +17,12 @@ Surface<Vec<3>> plane() {
         Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{2, 0, 0}}, {{2, 1, 0}}}));
 }
 
-CurveGeometry<2> bezier(std::vector<Vec<2>> points) {
-    const int n = int(points.size());
-    return *Curve<Vec<2>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Vec<2>>({n}, std::move(points)));
+Loop rectangle(double x0, double y0, double x1, double y1) {
+    return {plane_bezier({{{x0, y0}}, {{x1, y0}}}), plane_bezier({{{x1, y0}}, {{x1, y1}}}),
+            plane_bezier({{{x1, y1}}, {{x0, y1}}}), plane_bezier({{{x0, y1}}, {{x0, y0}}})};
 }
 
-Loop2 rectangle(double x0, double y0, double x1, double y1) {
-    return {bezier({{{x0, y0}}, {{x1, y0}}}), bezier({{{x1, y0}}, {{x1, y1}}}),
-            bezier({{{x1, y1}}, {{x0, y1}}}), bezier({{{x0, y1}}, {{x0, y0}}})};
-}
-
-Refusal refused(std::vector<Loop2> loops) {
+Refusal refused(std::vector<Loop> loops) {
     const auto t = TrimmedSurface::make(plane(), std::move(loops));
     EXPECT_FALSE(t);
     return t ? Refusal{} : t.error();
@@ -46,25 +44,25 @@ TEST(TrimmedSurface, takes_an_ellipse_for_a_whole_loop) {
 }
 
 TEST(TrimmedSurface, refuses_a_gap_and_says_its_size) {
-    Loop2 open = rectangle(0, 0, 1, 1);
-    open[1] = bezier({{{1, 0}}, {{1, 0.75}}});
+    Loop open = rectangle(0, 0, 1, 1);
+    open[1] = plane_bezier({{{1, 0}}, {{1, 0.75}}});
     const Refusal r = refused({rectangle(0, 0, 2, 1), open});
     EXPECT_EQ(r.where, "loops[1][1]");
     EXPECT_NE(r.message.find("a gap of 0.25"), std::string::npos) << r.message;
     open = rectangle(0, 0, 1, 1);
     open.pop_back();
     EXPECT_EQ(refused({open}).where, "loops[0][2]");
-    Loop2 rounded = rectangle(0, 0, 1, 1);
-    rounded[1] = bezier({{{1, 0}}, {{1, 1 - 1e-12}}});
+    Loop rounded = rectangle(0, 0, 1, 1);
+    rounded[1] = plane_bezier({{{1, 0}}, {{1, 1 - 1e-12}}});
     EXPECT_TRUE(TrimmedSurface::make(plane(), {rounded}));
 }
 
 TEST(TrimmedSurface, refuses_curves_that_leave_the_domain_but_not_control_points_that_do) {
-    const Loop2 cap = {bezier({{{0, 0}}, {{2, 0}}}), bezier({{{2, 0}}, {{1, 1.9}}, {{0, 0}}})};
+    const Loop cap = {plane_bezier({{{0, 0}}, {{2, 0}}}), plane_bezier({{{2, 0}}, {{1, 1.9}}, {{0, 0}}})};
     EXPECT_TRUE(TrimmedSurface::make(plane(), {cap}));  // the parabola reaches 0.95
-    const Loop2 touching = {bezier({{{0, 0}}, {{2, 0}}}), bezier({{{2, 0}}, {{1, 2}}, {{0, 0}}})};
+    const Loop touching = {plane_bezier({{{0, 0}}, {{2, 0}}}), plane_bezier({{{2, 0}}, {{1, 2}}, {{0, 0}}})};
     EXPECT_TRUE(TrimmedSurface::make(plane(), {touching}));
-    const Loop2 over = {bezier({{{0, 0}}, {{2, 0}}}), bezier({{{2, 0}}, {{1, 2.001}}, {{0, 0}}})};
+    const Loop over = {plane_bezier({{{0, 0}}, {{2, 0}}}), plane_bezier({{{2, 0}}, {{1, 2.001}}, {{0, 0}}})};
     const Refusal r = refused({over});
     EXPECT_EQ(r.where, "loops[0][1]");
     EXPECT_EQ(r.kind, RefusalKind::out_of_domain);
@@ -81,8 +79,8 @@ TEST(TrimmedSurface, decides_alike_at_every_scale) {
             {*BSplineBasis::bezier(1, {0, s}), *BSplineBasis::bezier(1, {0, s})}, Net<2, Vec<3>>({2, 2}));
         EXPECT_TRUE(TrimmedSurface::make(surface, {rectangle(0, 0, s, s)}));
         EXPECT_FALSE(TrimmedSurface::make(surface, {rectangle(0, 0, s, s * (1 + 0x1p-20))}));
-        Loop2 open = rectangle(0, 0, s, s);
-        open[0] = bezier({{{0, 0}}, {{s * (1 - 0x1p-20), 0}}});
+        Loop open = rectangle(0, 0, s, s);
+        open[0] = plane_bezier({{{0, 0}}, {{s * (1 - 0x1p-20), 0}}});
         EXPECT_FALSE(TrimmedSurface::make(surface, {open}));
     }
 }

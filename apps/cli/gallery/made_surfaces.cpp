@@ -2,6 +2,7 @@
 #include "gallery/gallery.hpp"
 #include "gallery/space.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/make/frame_sweep.hpp>
 #include <freiform/make/revolve.hpp>
@@ -16,9 +17,6 @@
 namespace freiform::cli::gallery {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr Colour kWhite{1, 1, 1, 1};
 
 // The exact surface turns the profile by an angle; the spline's angle at the same parameters is near.
 double farthest(const Surface3& s, const Curve<Vec<3>>& profile) {
@@ -47,11 +45,11 @@ Figure revolution(const Document& d) {
     DrawingOptions how;
     how.control = true;
     how.isolines = 7;
-    together(body, {{sure(revolve(profile, axis, kTurn)).surface, {kBlue, 1.8, "", {}}}}, eye, how);
+    together(body, {{sure(revolve(profile, axis, kTwoPi)).surface, {kBlue, 1.8, "", {}}}}, eye, how);
     Plot bounds("bound", "polynomial: pieces and distance");
     Points proven, measured;
     for (int k = 1; k <= 7; ++k) {
-        const auto made = sure(revolve_polynomial(profile, axis, kTurn, std::pow(10.0, -k)));
+        const auto made = sure(revolve_polynomial(profile, axis, kTwoPi, std::pow(10.0, -k)));
         const double x = std::log10(made.pieces);
         proven.push_back({{x, std::log10(made.bound)}});
         measured.push_back({{x, std::log10(farthest(made.surface, profile))}});

@@ -12,6 +12,7 @@ namespace freiform::cli::gallery {
 using Plane2 = Vec<2>;
 using Points = std::vector<Vec<2>>;
 
+inline constexpr Colour kWhite{1, 1, 1, 1};
 inline constexpr Colour kBlue = kPalette[0], kOrange = kPalette[1], kGreen = kPalette[2],
                         kPurple = kPalette[3], kSky = kPalette[4], kOchre = kPalette[5];
 

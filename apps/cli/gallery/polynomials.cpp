@@ -3,14 +3,11 @@
 
 #include <freiform/basis/blossom.hpp>
 #include <freiform/basis/named.hpp>
-
-#include <numbers>
+#include <freiform/core/constants.hpp>
 
 namespace freiform::cli::gallery {
 
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 // Function i of a basis at u.
 double value(const Bernstein& basis, int i, double u) {
@@ -82,10 +79,10 @@ Figure descriptions(const Document& d) {
         return [r](double u) { return r * Vec<2>{{std::cos(u), std::sin(u)}}; };
     };
     Points disc;
-    for (int i = 0; i < 120; ++i) disc.push_back(circle(1)(kTurn * i / 120));
+    for (int i = 0; i < 120; ++i) disc.push_back(circle(1)(kTwoPi * i / 120));
     b.area(disc, kBlue, 0.1);
     for (const double c : {-0.75, -0.4, 0.6, 1.4})
-        b.path(circle(std::sqrt(1 + c)), {0, kTurn}, {mixed(kGrey, {1, 1, 1, 1}, 0.3), 1, "", {3, 4}});
+        b.path(circle(std::sqrt(1 + c)), {0, kTwoPi}, {mixed(kGrey, {1, 1, 1, 1}, 0.3), 1, "", {3, 4}});
     b.curve(shape_in(d, "circle"));
     b.fixed({{0, 0}}, "*f* < 0", kGrey).fixed({{1.5, -1.5}}, "*f* > 0", kGrey);
     b.note({{0, 1}}, "*f* = 0", {{0, 1}}, kBlue).axes(Axes::ticks, "*x*", "*y*");

@@ -11,7 +11,6 @@ namespace freiform::cli::gallery {
 namespace {
 
 using Geometry = std::array<std::array<Vec<3>, 4>, 4>;
-constexpr Colour kWhite{1, 1, 1, 1};
 
 Colour light(const Colour& c) { return mixed(c, kWhite, 0.5); }
 

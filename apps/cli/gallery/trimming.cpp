@@ -10,8 +10,6 @@ namespace freiform::cli::gallery {
 
 namespace {
 
-constexpr Colour kWhite{1, 1, 1, 1};
-
 Points loop_points(const std::vector<CurveGeometry<2>>& loop) {
     Points out;
     for (const CurveGeometry<2>& c : loop) {

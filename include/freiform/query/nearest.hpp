@@ -25,10 +25,10 @@ struct Nearest {
 };
 
 struct NearestOptions {
-    // A distance: how far lower_bound may stay below `distance`. With 0 the search goes on until rounding ends
-    // it; what remains is what the answer says, distance + point_error - lower_bound. An estimate of that, from
-    // measurements: 1e-11 of the object's size and less for points off the object, up to 1e-8 of a piece's size
-    // for points on it, where the square of the distance is lost in rounding.
+    // A distance: how far lower_bound may stay below `distance`. With 0 the search goes on until rounding
+    // ends it; what remains is what the answer says, distance + point_error - lower_bound. An estimate of
+    // that, from measurements: 1e-11 of the object's size and less for points off the object, up to 1e-8 of a
+    // piece's size for points on it, where the square of the distance is lost in rounding.
     double accuracy = 0;
     // A backstop: parts of pieces that are looked at for one answer. Reached, `lower_bound` is what was
     // proven until then. Ordinary points need a few dozen; points with a continuum of feet in no direction of

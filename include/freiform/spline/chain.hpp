@@ -10,6 +10,7 @@
 // W, g = 1.01 k u, W the exact weight; so the quotient by 1.02 (2 k + 1) u M, and a polynomial point by g M.
 // Products that underflow lose 2 k denormal numbers h at most, in a quotient (1 + M) 2 k h / w_min.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -18,8 +19,6 @@
 #include <numeric>
 
 namespace freiform::detail {
-
-inline constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
 
 template <int D>
 Vec<D> scaled(Vec<D> p, int exponent) {
@@ -46,7 +45,7 @@ public:
         }
         exponent_ = exponent_of(largest);
         const int heavy = Space<P>::kRational ? exponent_of(heaviest) : 0;
-        size_ = std::scalbn(largest, -exponent_) * (1 + 4 * kUnit);
+        size_ = std::scalbn(largest, -exponent_) * (1 + 4 * kUnitRoundoff);
         Net<1, P> net = curve.net();
         for (P& p : net.flat()) {
             for (int i = 0; i < D; ++i) p[i] = std::scalbn(p[i], -exponent_ - heavy);
@@ -117,9 +116,9 @@ public:
         k += roundings_;
         const double lost = 2 * k * std::numeric_limits<double>::denorm_min();
         const double each = Space<P>::kRational
-                                ? 1.02 * (2 * k + 1) * kUnit * size_ + (1 + size_) * lost / lightest_
-                                : 1.01 * k * kUnit * size_ + lost;
-        return std::sqrt(double(D)) * (1 + 4 * kUnit) * each;
+                                ? 1.02 * (2 * k + 1) * kUnitRoundoff * size_ + (1 + size_) * lost / lightest_
+                                : 1.01 * k * kUnitRoundoff * size_ + lost;
+        return std::sqrt(double(D)) * (1 + 4 * kUnitRoundoff) * each;
     }
 
 private:

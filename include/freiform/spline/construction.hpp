@@ -30,6 +30,7 @@
 //   auto nets = de_boor(surface, {0.4, 0.7});
 //   for (int r = 0; r <= nets->degree(0); ++r) draw_net(nets->level({r, r}));
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/patch.hpp>
 
 namespace freiform {
@@ -148,8 +149,7 @@ private:
     // with s = |a| + |b| >= 1. Eight roundings instead of five pay for those of s and of this line and for
     // coefficients a, b that underflow; the last term pays for products that do.
     void grow_bound(double size, double stretch) {
-        constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-        bound_ = stretch * (bound_ + 8 * kUnit * size) * (1 + 8 * kUnit) +
+        bound_ = stretch * (bound_ + 8 * kUnitRoundoff * size) * (1 + 8 * kUnitRoundoff) +
                  8 * std::numeric_limits<double>::denorm_min();
     }
 

@@ -1,0 +1,24 @@
+// Loops for tests.
+#pragma once
+#include <freiform/trim/trimmed_surface.hpp>
+
+#include <utility>
+#include <vector>
+
+namespace freiform::test {
+
+using Loop = std::vector<CurveGeometry<2>>;
+using Loops = std::vector<Loop>;
+
+inline CurveGeometry<2> plane_bezier(std::vector<Vec<2>> points) {
+    const int n = int(points.size());
+    return *Curve<Vec<2>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Vec<2>>({n}, std::move(points)));
+}
+
+inline Loop polygon(const std::vector<Vec<2>>& p) {
+    Loop loop;
+    for (std::size_t i = 0; i < p.size(); ++i) loop.push_back(plane_bezier({p[i], p[(i + 1) % p.size()]}));
+    return loop;
+}
+
+}  // namespace freiform::test
