@@ -47,15 +47,10 @@ public:
 private:
     template <class P>
     Result<void> polynomial(const Curve<P>& c, const std::string& name) {
-        if constexpr (Space<P>::kRational) {
-            return refuse(RefusalKind::unsupported, "--polynomial",
-                          "the curve is rational; its surface is exact without this option");
-        } else {
-            auto made = revolve_polynomial(c, axis_, angle_, *options_.polynomial, options_.seam());
-            if (!made) return std::unexpected(made.error());
-            answer_.pieces.push_back(made->pieces);
-            return add(name, std::move(made->surface), made->bound);
-        }
+        auto made = revolve_polynomial(c, axis_, angle_, *options_.polynomial, options_.seam());
+        if (!made) return std::unexpected(made.error());
+        answer_.pieces.push_back(made->pieces);
+        return add(name, std::move(made->surface), made->bound);
     }
     template <class S>
     Result<void> add(const std::string& name, S surface, double bound) {

@@ -62,6 +62,8 @@ void write_joints(json::Writer& w, const Document& d, const SurfaceNeighbours& a
         w.new_line(1).begin_object().field("first", all.object[m.first]);
         w.field("first_edge", edge_name(m.first_edge)).field("second", all.object[m.second]);
         w.field("second_edge", edge_name(m.second_edge)).field("against", m.against);
+        w.field("whole", m.whole).key("first_on").array(std::array{m.first_on.lo, m.first_on.hi});
+        w.key("second_on").array(std::array{m.second_on.lo, m.second_on.hi});
         w.field("distance", m.distance).field("c_order", j.c_order).field("g_order", j.g_order);
         write_jumps(w, "c", j.c, j.c_order, [&](int k) { return c_unit(d, k); });
         write_jumps(w, "g", j.g, j.g_order, [&](int k) { return g_unit(d, k); });
@@ -78,8 +80,13 @@ std::vector<std::vector<std::string>> joint_rows(const Document& d, const Surfac
         const SurfaceContinuity& j = s.joint;
         std::string remark = j.opposed ? "turns back" : "";
         if (!j.singular.empty()) remark += remark.empty() ? "has a pole" : ", has a pole";
-        rows.push_back({text(object_label(d, all.object[m.first]), " ", edge_name(m.first_edge), " - ",
-                             object_label(d, all.object[m.second]), " ", edge_name(m.second_edge)),
+        if (!m.whole) remark += remark.empty() ? "part of an edge" : ", part of an edge";
+        const auto place = [&](std::size_t surface, SurfaceEdge e, const Interval& on) {
+            return text(object_label(d, all.object[surface]), " ", edge_name(e),
+                        m.whole ? "" : text(" [", rounded(on.lo), ", ", rounded(on.hi), "]"));
+        };
+        rows.push_back({text(place(m.first, m.first_edge, m.first_on), " - ",
+                             place(m.second, m.second_edge, m.second_on)),
                         order_text('C', j.c_order), order_text('G', j.g_order),
                         first_text('C', j.c, j.c_order, [&](int k) { return c_unit(d, k); }),
                         first_text('G', j.g, j.g_order, [&](int k) { return g_unit(d, k); }), remark});

@@ -11,6 +11,10 @@
 // common basis, the outer rows of the net are theirs and replace those that were computed; the exact patch
 // has them, too, so its bound still holds.
 //
+// Rational bicubic patches: the derivatives are over one denominator with the boundaries, and their values at
+// ends by the quotient rule. Three times the Hermite functions of derivatives have whole Bernstein
+// coefficients, so a third goes to the derivatives.
+//
 // References: [Coons 1967], [Farin 2002, ch. 22].
 //
 // Why not twists that are made compatible (rational ones, by Gregory)? Such a surface is no spline.
@@ -96,11 +100,13 @@ double gap(const BoundedVec<3>& a, const BoundedVec<3>& b) {
     return norm(d) * (1 + 0x1p-48);
 }
 
+Bounded length(const BSplineBasis& b) { return Bounded(b.domain().hi) - Bounded(b.domain().lo); }
+
 // The derivative at an end, by a parameter that runs from 0 to 1 over the domain.
 BoundedVec<3> end_derivative(const BSplineBasis& b, const Row& row, int end) {
     const int p = b.degree(), n = b.size(), i = end == 0 ? 0 : n - 2;
     const Bounded span = Bounded(b.knot(i + 1 + p)) - Bounded(b.knot(i + 1)),
-                  length = Bounded(b.domain().hi) - Bounded(b.domain().lo), f = Bounded(p) * length / span;
+                  f = Bounded(p) * length(b) / span;
     BoundedVec<3> d;
     for (std::size_t c = 0; c < 3; ++c) d[c] = f * (row[std::size_t(i) + 1][c] - row[std::size_t(i)][c]);
     return d;
@@ -110,6 +116,16 @@ Result<void> check_gap(const char* what, double found, double allowed, int i, in
     if (found <= allowed) return {};
     return refuse(RefusalKind::invalid, kCorner[i][j],
                   text(what, " differ by ", found, ", more than the tolerance ", allowed));
+}
+
+// The same where both are rounded: what rounding explains is granted. Both are to be divided by `scale`.
+Result<void> check_gap(const char* what, const BoundedVec<3>& a, const BoundedVec<3>& b, double scale,
+                       double allowed, int i, int j) {
+    Vec<3> apart, rounding;
+    for (std::size_t c = 0; c < 3; ++c)
+        apart[int(c)] = a[c].value - b[c].value, rounding[int(c)] = a[c].bound + b[c].bound;
+    if (norm(apart) - 2 * norm(rounding) <= allowed * scale) return {};
+    return check_gap(what, norm(apart) / scale, allowed, i, j);
 }
 
 // The outer rows of the net become those of the boundaries.
@@ -144,6 +160,93 @@ Row times(const Bounded& s, Row r) {
     for (auto& x : r)
         for (Bounded& c : x) c = s * c;
     return r;
+}
+
+// Rational curves of one direction, and functions of its parameter given by Bernstein coefficients.
+template <int D>
+Result<OverOne> over_one(std::initializer_list<const Curve<Hom<D>>*> curves,
+                         const std::vector<std::vector<double>>& functions) {
+    std::vector<Curve<Hom<3>>> all;
+    for (const auto* c : curves) {
+        if (c->basis().degree() < 1)
+            return refuse(RefusalKind::unsupported, "degree", "a boundary of degree 0 joins nothing");
+        all.push_back(in_space(*c));
+    }
+    std::vector<Curve<Vec<1>>> blends;
+    for (const auto& f : functions) {
+        const auto basis = BSplineBasis::bezier(int(f.size()) - 1, all[0].domain()[0]);
+        if (!basis) return std::unexpected(basis.error());
+        Net<1, Vec<1>> net({int(f.size())});
+        for (std::size_t i = 0; i < f.size(); ++i) net.flat()[i][0] = f[i];
+        blends.push_back(Curve<Vec<1>>::trusted({*basis}, std::move(net)));
+    }
+    return over_one_denominator(all, blends);
+}
+
+BoundedVec<3> end_value(const OverOne& o, std::size_t curve, int side) {
+    BoundedVec<3> p = side == 0 ? o.curves[curve].front() : o.curves[curve].back();
+    for (Bounded& x : p) x /= side == 0 ? o.denominator.front() : o.denominator.back();
+    return p;
+}
+// (a / w)' = (a' - (a / w) w') / w.
+BoundedVec<3> end_derivative(const OverOne& o, std::size_t curve, int side) {
+    Row weights;
+    for (const Bounded& w : o.denominator) weights.push_back({w, w, w});
+    BoundedVec<3> d = end_derivative(o.basis, o.curves[curve], side);
+    const BoundedVec<3> p = end_value(o, curve, side), slope = end_derivative(o.basis, weights, side);
+    for (std::size_t c = 0; c < 3; ++c)
+        d[c] = (d[c] - p[c] * slope[c]) / (side == 0 ? o.denominator.front() : o.denominator.back());
+    return d;
+}
+
+// What the functionals "value at the lower, upper end, derivative at the lower, upper end" give for curve k.
+using Ends = std::array<std::array<BoundedVec<3>, 4>, 4>;
+template <class Value, class Derivative>
+Ends ends_of(Value&& value, Derivative&& derivative) {
+    Ends e;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (int side = 0; side < 2; ++side) {
+            e[k][std::size_t(side)] = value(k, side);
+            e[k][std::size_t(side) + 2] = derivative(k, side);
+        }
+    return e;
+}
+
+// T of the essay, and by how much positions, tangents and twists disagree.
+struct Corners {
+    std::vector<Row> T = std::vector<Row>(4, Row(4));
+    std::array<double, 3> gap{};
+
+    template <class Q>
+    Result<CoonsPatch<Q>> patch(Result<MadeSurface<Q>> made) const {
+        if (!made) return std::unexpected(made.error());
+        return CoonsPatch<Q>{std::move(made->surface), made->bound, gap[0], gap[1], gap[2]};
+    }
+};
+
+// Curves and functionals with an index from 2 on are derivatives by a parameter from 0 to `across_u` or
+// `across_v`.
+Result<Corners> corners(const Ends& u, const Ends& v, double across_u, double across_v,
+                        const CoonsTolerance& tolerance) {
+    constexpr const char* kWhat[] = {"positions", "tangents", "twists"};
+    const double allowed[] = {tolerance.distance, tolerance.tangent, tolerance.twist};
+    Corners out;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t l = 0; l < 4; ++l) {
+            const BoundedVec<3>&p = u[k][l], &q = v[l][k];
+            const std::size_t order = std::size_t(k >= 2) + std::size_t(l >= 2);
+            const double scale = (l >= 2 ? across_u : 1) * (k >= 2 ? across_v : 1);
+            if (auto ok = check_gap(kWhat[order], p, q, scale, allowed[order], int(l % 2), int(k % 2)); !ok)
+                return std::unexpected(ok.error());
+            out.gap[order] = std::max(out.gap[order], gap(p, q) / scale * (1 + 0x1p-48));
+            out.T[k][l] = mean(p, q);
+        }
+    return out;
+}
+
+Result<void> check_tolerance(const CoonsTolerance& t) {
+    if (t.distance >= 0 && t.tangent >= 0 && t.twist >= 0) return {};
+    return refuse(RefusalKind::invalid, "tolerance", "is not a positive number");
 }
 
 }  // namespace
@@ -186,34 +289,15 @@ template <int D>
 Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>& u0, const Curve<Hom<D>>& u1, const Curve<Hom<D>>& v0,
                                  const Curve<Hom<D>>& v1, double tolerance) {
     if (!(tolerance >= 0)) return refuse(RefusalKind::invalid, "tolerance", "is not a distance");
-    const auto over_one = [](const Curve<Hom<D>>& a, const Curve<Hom<D>>& b) -> Result<OverOne> {
-        if (a.basis().degree() < 1 || b.basis().degree() < 1)
-            return refuse(RefusalKind::unsupported, "degree", "a boundary of degree 0 joins nothing");
-        const auto linear = BSplineBasis::bezier(1, a.domain()[0]);
-        if (!linear) return std::unexpected(linear.error());
-        const Curve<Hom<3>> curves[] = {in_space(a), in_space(b)};
-        const Curve<Vec<1>> functions[] = {
-            Curve<Vec<1>>::trusted({*linear}, Net<1, Vec<1>>({2}, {{{1}}, {{0}}})),
-            Curve<Vec<1>>::trusted({*linear}, Net<1, Vec<1>>({2}, {{{0}}, {{1}}}))};
-        return over_one_denominator(curves, functions);
-    };
-    const auto u = over_one(u0, u1), v = over_one(v0, v1);
+    const auto u = over_one<D>({&u0, &u1}, {{1, 0}, {0, 1}}), v = over_one<D>({&v0, &v1}, {{1, 0}, {0, 1}});
     if (!u) return refuse_within("u0, u1", u.error());
     if (!v) return refuse_within("v0, v1", v.error());
-    const auto end = [](const OverOne& o, std::size_t curve, int side) {
-        BoundedVec<3> p = side == 0 ? o.curves[curve].front() : o.curves[curve].back();
-        for (Bounded& x : p) x /= side == 0 ? o.denominator.front() : o.denominator.back();
-        return p;
-    };
     std::vector<std::vector<BoundedVec<3>>> T(2, std::vector<BoundedVec<3>>(2));
     double most = 0;
     for (int j = 0; j < 2; ++j)
         for (int i = 0; i < 2; ++i) {
-            const auto p = end(*u, std::size_t(j), i), q = end(*v, std::size_t(i), j);
-            Vec<3> apart, rounding;
-            for (std::size_t c = 0; c < 3; ++c)
-                apart[int(c)] = p[c].value - q[c].value, rounding[int(c)] = p[c].bound + q[c].bound;
-            if (auto ok = check_gap("positions", norm(apart) - 2 * norm(rounding), tolerance, i, j); !ok)
+            const auto p = end_value(*u, std::size_t(j), i), q = end_value(*v, std::size_t(i), j);
+            if (auto ok = check_gap("positions", p, q, 1, tolerance, i, j); !ok)
                 return std::unexpected(ok.error());
             most = std::max(most, gap(p, q));
             T[std::size_t(j)][std::size_t(i)] = mean(p, q);
@@ -224,19 +308,17 @@ Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>& u0, const Curve<Hom<D>>& u
 }
 
 template <int D>
-Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1,
-                                         const CoonsEdge<D>& v0, const CoonsEdge<D>& v1,
+Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<Vec<D>>& u0, const CoonsEdge<Vec<D>>& u1,
+                                         const CoonsEdge<Vec<D>>& v0, const CoonsEdge<Vec<D>>& v1,
                                          const CoonsTolerance& tolerance) {
     const auto u = in_one_basis<D>({&u0.curve, &u1.curve, &u0.across, &u1.across}, 3);
     const auto v = in_one_basis<D>({&v0.curve, &v1.curve, &v0.across, &v1.across}, 3);
     if (!u) return refuse_within("u0, u1", u.error());
     if (!v) return refuse_within("v0, v1", v.error());
-    if (!(tolerance.distance >= 0 && tolerance.tangent >= 0 && tolerance.twist >= 0))
-        return refuse(RefusalKind::invalid, "tolerance", "is not a positive number");
+    if (auto ok = check_tolerance(tolerance); !ok) return std::unexpected(ok.error());
     BlendedFamily a{u->basis(), {}, {}}, b{v->basis(), {}, {}};
     // Derivatives by parameters from 0 to 1: across u-edges that is v.
-    const Bounded in_u = Bounded(a.basis.domain().hi) - Bounded(a.basis.domain().lo),
-                  in_v = Bounded(b.basis.domain().hi) - Bounded(b.basis.domain().lo);
+    const Bounded in_u = length(a.basis), in_v = length(b.basis);
     for (std::size_t k = 0; k < 4; ++k) {
         const Row p = u->row(k), q = v->row(k);
         a.curves.push_back(k < 2 ? p : times(in_v, p));
@@ -244,47 +326,56 @@ Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge
     }
     a.functions = hermite_functions(b.basis);
     b.functions = hermite_functions(a.basis);
-    CoonsPatch<Vec<3>> out{
-        Surface<Vec<3>>::trusted({a.basis, b.basis}, Net<2, Vec<3>>({a.basis.size(), b.basis.size()}))};
-    std::vector<std::vector<BoundedVec<3>>> T(4, std::vector<BoundedVec<3>>(4));
-    // Functional l < 2: the value at end l; else the derivative at end l - 2.
-    const auto apply = [](const BlendedFamily& f, std::size_t curve, std::size_t l) {
-        const Row& row = f.curves[curve];
-        return l == 0 ? row.front() : l == 1 ? row.back() : end_derivative(f.basis, row, int(l) - 2);
+    const auto ends = [](const BlendedFamily& f) {
+        return ends_of(
+            [&](std::size_t k, int side) { return side == 0 ? f.curves[k].front() : f.curves[k].back(); },
+            [&](std::size_t k, int side) { return end_derivative(f.basis, f.curves[k], side); });
     };
-    for (std::size_t k = 0; k < 4; ++k)
-        for (std::size_t l = 0; l < 4; ++l) {
-            const BoundedVec<3> p = apply(a, k, l), q = apply(b, l, k);
-            const int order = int(k >= 2) + int(l >= 2);
-            // Back to derivatives by the parameters of the surface.
-            double scale = 1;
-            if (l >= 2) scale *= in_u.value;
-            if (k >= 2) scale *= in_v.value;
-            const double g = gap(p, q) / scale;
-            double& most = order == 0 ? out.corner_gap : order == 1 ? out.tangent_gap : out.twist_gap;
-            const double allowed = order == 0   ? tolerance.distance
-                                   : order == 1 ? tolerance.tangent
-                                                : tolerance.twist;
-            const char* what = order == 0 ? "positions" : order == 1 ? "tangents" : "twists";
-            if (auto ok = check_gap(what, g, allowed, int(l % 2), int(k % 2)); !ok)
-                return std::unexpected(ok.error());
-            most = std::max(most, g);
-            T[k][l] = mean(p, q);
-        }
-    auto made = boolean_sum(a, b, T);
-    if (!made) return std::unexpected(made.error());
-    out.surface = std::move(made->surface);
-    out.bound = made->bound;
-    return out;
+    const auto at = corners(ends(a), ends(b), in_u.value, in_v.value, tolerance);
+    if (!at) return std::unexpected(at.error());
+    return at->patch(boolean_sum(a, b, at->T));
 }
 
-#define FF_COONS(D)                                                                                \
-    template Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&,          \
-                                              const Curve<Vec<D>>&, const Curve<Vec<D>>&, double); \
-    template Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>&, const Curve<Hom<D>>&,          \
-                                              const Curve<Hom<D>>&, const Curve<Hom<D>>&, double); \
-    template Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>&, const CoonsEdge<D>&,    \
-                                                      const CoonsEdge<D>&, const CoonsEdge<D>&,    \
+template <int D>
+Result<CoonsPatch<Hom<3>>> coons_bicubic(const CoonsEdge<Hom<D>>& u0, const CoonsEdge<Hom<D>>& u1,
+                                         const CoonsEdge<Hom<D>>& v0, const CoonsEdge<Hom<D>>& v1,
+                                         const CoonsTolerance& tolerance) {
+    if (auto ok = check_tolerance(tolerance); !ok) return std::unexpected(ok.error());
+    const std::vector<std::vector<double>> hermite{{1, 1, 0, 0}, {0, 0, 1, 1}, {0, 1, 0, 0}, {0, 0, -1, 0}};
+    auto u = over_one<D>({&u0.curve, &u1.curve, &u0.across, &u1.across}, hermite);
+    auto v = over_one<D>({&v0.curve, &v1.curve, &v0.across, &v1.across}, hermite);
+    if (!u) return refuse_within("u0, u1", u.error());
+    if (!v) return refuse_within("v0, v1", v.error());
+    // Derivatives by parameters from 0 to 3, as the functions ask for.
+    const Bounded third = Bounded(1) / Bounded(3), in_u = third * length(u->basis),
+                  in_v = third * length(v->basis);
+    for (std::size_t k = 2; k < 4; ++k) {
+        u->curves[k] = times(in_v, std::move(u->curves[k]));
+        v->curves[k] = times(in_u, std::move(v->curves[k]));
+    }
+    const auto ends = [&](const OverOne& o) {
+        return ends_of([&](std::size_t k, int side) { return end_value(o, k, side); },
+                       [&](std::size_t k, int side) {
+                           BoundedVec<3> d = end_derivative(o, k, side);
+                           for (Bounded& x : d) x = third * x;
+                           return d;
+                       });
+    };
+    const auto at = corners(ends(*u), ends(*v), in_u.value, in_v.value, tolerance);
+    if (!at) return std::unexpected(at.error());
+    return at->patch(boolean_sum(*u, *v, at->T));
+}
+
+#define FF_COONS(D)                                                                                       \
+    template Result<CoonsPatch<Vec<3>>> coons(const Curve<Vec<D>>&, const Curve<Vec<D>>&,                 \
+                                              const Curve<Vec<D>>&, const Curve<Vec<D>>&, double);        \
+    template Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>&, const Curve<Hom<D>>&,                 \
+                                              const Curve<Hom<D>>&, const Curve<Hom<D>>&, double);        \
+    template Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<Vec<D>>&, const CoonsEdge<Vec<D>>&, \
+                                                      const CoonsEdge<Vec<D>>&, const CoonsEdge<Vec<D>>&, \
+                                                      const CoonsTolerance&);                             \
+    template Result<CoonsPatch<Hom<3>>> coons_bicubic(const CoonsEdge<Hom<D>>&, const CoonsEdge<Hom<D>>&, \
+                                                      const CoonsEdge<Hom<D>>&, const CoonsEdge<Hom<D>>&, \
                                                       const CoonsTolerance&);
 FF_COONS(2)
 FF_COONS(3)

@@ -30,6 +30,10 @@
 // + h')) < 1.01 n 2^-54 of its length 2 |z|; n |z| <= 8/3, because n >= 2 where there are joints and n arcs
 // are at most a full turn. So joints, and with them the points between, move by 3 2^-53 |p| at most.
 //
+//     Turning keeps distances: a polynomial curve within e of a rational profile, parameter by parameter, has
+//     a
+// surface within e of that of the profile, turned by the same angle. So bounds add up.
+//
 // References: [PT97, 8.5] for the rational surface; [Goldapp 1991] for cubic arcs.
 //
 // Why not the best cubic arcs, which stay on both sides of the circle and are twice as near? Their ends are
@@ -37,6 +41,7 @@
 #include "rounding_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/make/polynomial_near.hpp>
 #include <freiform/make/revolve.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -51,6 +56,9 @@ using detail::sine;
 
 // More arcs than that are never better: at 2^14 arcs of a full turn eps is 2^-83, far below rounding.
 constexpr int kMostPieces = 1 << 14;
+// Of the tolerance, for rational profiles: a profile needs about x^-1/4 pieces, arcs (1 - x)^-1/6, and their
+// product is least at 3/5.
+constexpr double kForProfile = 0.6;
 
 Result<void> check(const Axis& axis, double angle) {
     if (!is_finite(axis.origin)) return refuse(RefusalKind::nonfinite, "axis.origin", "is not finite");
@@ -61,6 +69,11 @@ Result<void> check(const Axis& axis, double angle) {
     if (std::abs(angle) > kTwoPi)
         return refuse(RefusalKind::invalid, "angle", text(angle, " is more than a full turn, 2 pi"));
     return {};
+}
+
+Result<void> check_tolerance(double tolerance) {
+    if (tolerance > 0) return {};
+    return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a positive distance"));
 }
 
 // One coefficient of the profile, taken apart: x = centre + arm, and the arm turned by 90 degrees.
@@ -255,8 +268,7 @@ template <int D>
 Result<RevolvedPolynomial> revolve_polynomial(const Curve<Vec<D>>& profile, const Axis& axis, double angle,
                                               double tolerance, Seam seam) {
     if (auto ok = check(axis, angle); !ok) return std::unexpected(ok.error());
-    if (!(tolerance > 0))
-        return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a positive distance"));
+    if (auto ok = check_tolerance(tolerance); !ok) return std::unexpected(ok.error());
     const Turning<Vec<D>> turning(profile, axis);
     if (auto ok = turning.check_arms(); !ok) return std::unexpected(ok.error());
     const bool closed = std::abs(angle) == kTwoPi && seam == Seam::closed;
@@ -280,6 +292,19 @@ Result<RevolvedPolynomial> revolve_polynomial(const Curve<Vec<D>>& profile, cons
                   text(tolerance, " is too small: it was not reached beside rounding"));
 }
 
+template <int D>
+Result<RevolvedPolynomial> revolve_polynomial(const Curve<Hom<D>>& profile, const Axis& axis, double angle,
+                                              double tolerance, Seam seam) {
+    if (auto ok = check(axis, angle); !ok) return std::unexpected(ok.error());
+    if (auto ok = check_tolerance(tolerance); !ok) return std::unexpected(ok.error());
+    const auto near = polynomial_near(profile, kForProfile * tolerance);
+    if (!near) return refuse_within("profile", near.error());
+    auto made = revolve_polynomial(near->curve, axis, angle,
+                                   (tolerance - near->bound) * (1 - detail::kRoundUnit * 4), seam);
+    if (made) made->bound = std::min((made->bound + near->bound) * (1 + 0x1p-52), tolerance);
+    return made;
+}
+
 template Result<MadeSurface<Hom<3>>> revolve(const Curve<Vec<2>>&, const Axis&, double, Seam);
 template Result<MadeSurface<Hom<3>>> revolve(const Curve<Hom<2>>&, const Axis&, double, Seam);
 template Result<MadeSurface<Hom<3>>> revolve(const Curve<Vec<3>>&, const Axis&, double, Seam);
@@ -287,6 +312,11 @@ template Result<MadeSurface<Hom<3>>> revolve(const Curve<Hom<3>>&, const Axis&, 
 template Result<RevolvedPolynomial> revolve_polynomial(const Curve<Vec<2>>&, const Axis&, double, double,
                                                        Seam);
 template Result<RevolvedPolynomial> revolve_polynomial(const Curve<Vec<3>>&, const Axis&, double, double,
+                                                       Seam);
+
+template Result<RevolvedPolynomial> revolve_polynomial(const Curve<Hom<2>>&, const Axis&, double, double,
+                                                       Seam);
+template Result<RevolvedPolynomial> revolve_polynomial(const Curve<Hom<3>>&, const Axis&, double, double,
                                                        Seam);
 
 }  // namespace freiform

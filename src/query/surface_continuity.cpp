@@ -249,6 +249,16 @@ detail::Largest largest_bend(const JointStrips& j) {
     return detail::largest(std::move(bends), bend);
 }
 
+// A plane side as one in space.
+SurfaceSide in_space(SurfaceSide side) {
+    for (SurfaceSide::Piece& p : side.pieces)
+        for (std::size_t row = 2; row <= p.derivative.size(); row += 4)
+            p.derivative.insert(p.derivative.begin() + std::ptrdiff_t(row), std::vector<Bounded>{});
+    side.origin.push_back(0);
+    side.dimension = 3;
+    return side;
+}
+
 void find_g(const JointStrips& j, SurfaceContinuity& out) {
     const double reach = std::min(j.a.reach, j.b.reach);
     const double own[] = {0, j.options.angle, j.options.curvature};
@@ -297,6 +307,7 @@ std::optional<LargestJump> SurfaceContinuity::first_g_jump() const {
 Result<SurfaceContinuity> continuity(const SurfaceSide& before, const SurfaceSide& after,
                                      const ContinuityOptions& options) {
     if (auto ok = check(before, after, options); !ok) return std::unexpected(ok.error());
+    if (before.dimension == 2) return continuity(in_space(before), in_space(after), options);
     const JointStrips j = JointStrips::make(before, after, options);
     SurfaceContinuity out;
     find_c(j, out);

@@ -1,4 +1,4 @@
-// One side of a line of a surface, and which edges meet.
+// One side of a line of a surface.
 //
 // Idea: along an iso-line the derivative of order k across is a spline curve whose control points are linear
 // in those of the surface: one row of weights along the axis across. Its Bezier pieces are blossoms, rows of
@@ -8,19 +8,17 @@
 // seam. Points are measured from a point of the line, A - o w. Cost: O(degree^2) per coefficient of the
 // strip.
 //
-// Meetings: edges sorted by the smaller first coordinate of their two ends, each compared with those that
-// follow within the gap.
+// Parts: de Casteljau's algorithm in `Bounded`, at parameters that are off by a grant.
 //
 // References: [Ramshaw 1989], [PT97, 3.3, 4.4].
 #include "knot_window_detail.hpp"
+#include "surface_strip_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/query/surface_continuity.hpp>
-#include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace freiform {
 
@@ -142,42 +140,6 @@ SurfaceSide side_of(const Surface<P>& s, int axis, double at, int span, bool aft
     return side;
 }
 
-// The point of a side at a fraction of its line.
-std::vector<double> point_at(const SurfaceSide& side, double fraction) {
-    const auto piece = std::ranges::find_if(
-        side.pieces, [&](const SurfaceSide::Piece& p) { return fraction <= p.to.value; });
-    const SurfaceSide::Piece& p = piece == side.pieces.end() ? side.pieces.back() : *piece;
-    const double x = std::clamp((fraction - p.from.value) / (p.to.value - p.from.value), 0.0, 1.0);
-    const auto value = [&](std::size_t row) {
-        std::vector<double> b;
-        for (const Bounded& c : p.derivative[row]) b.push_back(c.value);
-        keep_left(Fibre<double>{b.data(), int(b.size())}, x);
-        return b.back();
-    };
-    std::vector<double> point;
-    for (std::size_t c = 0; c < std::size_t(side.dimension); ++c)
-        point.push_back(side.origin[c] + value(c) / value(std::size_t(side.dimension)));
-    return point;
-}
-
-constexpr int kPlaces = 9;
-struct BoundaryPlace {
-    std::vector<std::vector<double>> point;  // at equal fractions
-    std::size_t surface = 0, edge = 0;
-    double first = 0;
-};
-
-double distance(const BoundaryPlace& a, const BoundaryPlace& b, bool against) {
-    double most = 0;
-    for (std::size_t i = 0; i < kPlaces; ++i) {
-        double d = 0;
-        const auto &x = a.point[i], &y = b.point[against ? kPlaces - 1 - i : i];
-        for (std::size_t c = 0; c < x.size(); ++c) d = std::hypot(d, y[c] - x[c]);
-        most = std::max(most, d);
-    }
-    return most;
-}
-
 }  // namespace
 
 SurfaceSide reversed_across(SurfaceSide side) {
@@ -198,6 +160,41 @@ SurfaceSide reversed_along(SurfaceSide side) {
         for (auto& row : p.derivative) std::ranges::reverse(row);
     }
     return side;
+}
+
+SurfaceSide part_of(const SurfaceSide& side, const Interval& on, double grant) {
+    // The ends of the line itself are exact.
+    const auto known = [&](double t) {
+        return t == side.pieces.front().on.lo || t == side.pieces.back().on.hi ? Bounded(t)
+                                                                               : Bounded(t, grant);
+    };
+    const Bounded lo = known(on.lo), hi = known(on.hi), whole = hi - lo;
+    FF_REQUIRE(whole.excludes_zero());
+    const double sign = whole.value > 0 ? 1 : -1;
+    SurfaceSide part = side;
+    part.pieces.clear();
+    for (const SurfaceSide::Piece& p : side.pieces) {
+        const auto within = [&](double t) {
+            return sign * (t - on.lo) > grant && sign * (on.hi - t) > grant;
+        };
+        const bool cut_lo = !within(p.on.lo), cut_hi = !within(p.on.hi);  // the part begins, ends in it
+        if (sign * (on.hi - p.on.lo) <= grant || sign * (p.on.hi - on.lo) <= grant) continue;
+        const auto local = [&](const Bounded& t) {
+            return (t - Bounded(p.on.lo)) / (Bounded(p.on.hi) - Bounded(p.on.lo));
+        };
+        const auto fraction = [&](double t) { return (Bounded(t) - lo) / whole; };
+        const std::array<Bounded, 2> here{cut_lo ? local(lo) : Bounded(0), cut_hi ? local(hi) : Bounded(1)};
+        SurfaceSide::Piece piece{cut_lo ? Bounded(0) : fraction(p.on.lo),
+                                 cut_hi ? Bounded(1) : fraction(p.on.hi),
+                                 {cut_lo ? on.lo : p.on.lo, cut_hi ? on.hi : p.on.hi},
+                                 {}};
+        for (const auto& row : p.derivative) piece.derivative.push_back(detail::restricted(row, here));
+        part.pieces.push_back(std::move(piece));
+    }
+    const double line = std::abs(side.pieces.back().on.hi - side.pieces.front().on.lo);
+    part.length *= std::abs(whole.value) / line;
+    part.uncertainty *= line / std::abs(whole.value);
+    return part;
 }
 
 template <class P>
@@ -247,66 +244,6 @@ Result<std::vector<LineContinuity>> continuity(const Surface<P>& s, int axis,
         if (seam && !basis.is_closed() && j->c_order < 0) continue;
         all.push_back({at, seam && !basis.is_closed() ? basis.degree() + 1 : basis.multiplicity(at), seam,
                        *std::move(j)});
-    }
-    return all;
-}
-
-Result<std::vector<SurfaceMeeting>> meetings(std::span<const SurfaceEdges> surfaces, double gap,
-                                             std::size_t most) {
-    if (!(gap >= 0)) return refuse(RefusalKind::invalid, "gap", text(gap, " is not a number >= 0"));
-    std::vector<BoundaryPlace> places;
-    for (std::size_t i = 0; i < surfaces.size(); ++i)
-        for (std::size_t e = 0; e < 4; ++e) {
-            const SurfaceSide& side = surfaces[i][e];
-            if (side.pieces.empty() || side.length <= gap) continue;
-            BoundaryPlace place{{}, i, e, 0};
-            for (int k = 0; k < kPlaces; ++k)
-                place.point.push_back(point_at(side, double(k) / (kPlaces - 1)));
-            place.first = std::min(place.point.front()[0], place.point.back()[0]);
-            places.push_back(std::move(place));
-        }
-    std::ranges::sort(places, [](const BoundaryPlace& a, const BoundaryPlace& b) {
-        return std::tuple(a.first, a.surface, a.edge) < std::tuple(b.first, b.surface, b.edge);
-    });
-    std::vector<SurfaceMeeting> all;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t j = i + 1; j < places.size() && places[j].first - places[i].first <= gap; ++j) {
-            const bool ordered =
-                std::tuple(places[i].surface, places[i].edge) < std::tuple(places[j].surface, places[j].edge);
-            const BoundaryPlace &a = ordered ? places[i] : places[j], &b = ordered ? places[j] : places[i];
-            if (a.point[0].size() != b.point[0].size()) continue;
-            const double same = distance(a, b, false), turned = distance(a, b, true);
-            if (!(std::min(same, turned) <= gap)) continue;
-            if (all.size() >= most)
-                return refuse(RefusalKind::limit, "gap",
-                              text("more than ", most, " pairs of edges are at most ", gap, " apart"));
-            all.push_back({a.surface, b.surface, edge_at(a.edge), edge_at(b.edge), turned < same,
-                           std::min(same, turned)});
-        }
-    std::ranges::sort(all, [](const SurfaceMeeting& a, const SurfaceMeeting& b) {
-        const auto key = [](const SurfaceMeeting& m) {
-            return std::tuple(m.first, m.second, m.first_edge.axis, m.first_edge.end, m.second_edge.axis,
-                              m.second_edge.end);
-        };
-        return key(a) < key(b);
-    });
-    return all;
-}
-
-Result<std::vector<SurfaceJoint>> joints(std::span<const SurfaceEdges> surfaces, double gap,
-                                         const ContinuityOptions& options, std::size_t most) {
-    const auto pairs = meetings(surfaces, gap, most);
-    if (!pairs) return std::unexpected(pairs.error());
-    const auto side = [&](std::size_t surface, SurfaceEdge e) -> const SurfaceSide& {
-        return surfaces[surface][std::size_t(2 * e.axis + (e.end == End::end))];
-    };
-    std::vector<SurfaceJoint> all;
-    for (const SurfaceMeeting& m : *pairs) {
-        SurfaceSide second = reversed_across(side(m.second, m.second_edge));
-        if (m.against) second = reversed_along(std::move(second));
-        auto j = continuity(side(m.first, m.first_edge), second, options);
-        if (!j) return refuse_within(text("surfaces[", m.first, "] and surfaces[", m.second, "]"), j.error());
-        all.push_back({m, *std::move(j)});
     }
     return all;
 }

@@ -45,24 +45,6 @@ std::vector<LineMatch> parts_of(const SurfaceSide& a, const SurfaceSide& b, doub
     return all;
 }
 
-// The coefficients on the part [x, y] of [0, 1].
-std::vector<Bounded> restricted(std::vector<Bounded> c, const std::array<Bounded, 2>& on) {
-    const auto [x, y] = on;
-    const auto step = [&](std::size_t rounds_to, const Bounded& t, bool left) {
-        const Bounded s = Bounded(1) - t;
-        const std::size_t n = c.size();
-        for (std::size_t r = 1; r <= rounds_to; ++r)
-            if (left)
-                for (std::size_t i = n - 1; i >= r; --i) c[i] = s * c[i - 1] + t * c[i];
-            else
-                for (std::size_t i = 0; i + r < n; ++i) c[i] = s * c[i] + t * c[i + 1];
-    };
-    if (c.size() < 2) return c;
-    if (!(y == Bounded(1))) step(c.size() - 1, y, true);
-    if (!x.is_zero()) step(c.size() - 1, x / y, false);
-    return c;
-}
-
 Strip strip_of(const SurfaceSide& side, const SurfaceSide::Piece& piece, const std::array<Bounded, 2>& on,
                int length, int across, int orders) {
     Strip s;
@@ -97,6 +79,23 @@ int scale_of(const SurfaceSide& s) {
 }
 
 }  // namespace
+
+std::vector<Bounded> restricted(std::vector<Bounded> c, const std::array<Bounded, 2>& on) {
+    const auto [x, y] = on;
+    const auto step = [&](std::size_t rounds_to, const Bounded& t, bool left) {
+        const Bounded s = Bounded(1) - t;
+        const std::size_t n = c.size();
+        for (std::size_t r = 1; r <= rounds_to; ++r)
+            if (left)
+                for (std::size_t i = n - 1; i >= r; --i) c[i] = s * c[i - 1] + t * c[i];
+            else
+                for (std::size_t i = 0; i + r < n; ++i) c[i] = s * c[i] + t * c[i + 1];
+    };
+    if (c.size() < 2) return c;
+    if (!(y == Bounded(1))) step(c.size() - 1, y, true);
+    if (!x.is_zero()) step(c.size() - 1, x / y, false);
+    return c;
+}
 
 void JointStrips::add(const LineMatch& p) {
     const int orders = std::max(options.orders, 2);

@@ -7,6 +7,9 @@
 
 namespace freiform::detail {
 
+// The Bernstein coefficients on the part [x, y] of [0, 1].
+std::vector<Bounded> restricted(std::vector<Bounded> c, const std::array<Bounded, 2>& on);
+
 struct LineMatch {
     std::size_t a = 0, b = 0;           // pieces
     std::array<Bounded, 2> on_a, on_b;  // fractions of these pieces

@@ -41,6 +41,23 @@ TEST_F(Cli, revolve_takes_an_angle_in_degrees_and_a_tolerance) {
     EXPECT_NEAR(e[0]["point"][1].get<double>(), -2, 1e-15);
 }
 
+// A quarter circle of radius 2 becomes half a ball.
+TEST_F(Cli, revolve_makes_polynomial_surfaces_of_rational_curves_too) {
+    const std::string arc =
+        R"({"type":"curve","points":[[2,0],[2,2],[0,2]],"weights":[1,0.70710678118654757,1]})";
+    const Ran r =
+        run({"revolve", "-", "--axis", "0,0,0,0,1,0", "--polynomial", "1e-4", "-o", "c.json", "--json"}, arc);
+    ASSERT_EQ(r.code, 0) << r.err;
+    const double bound = Json::parse(r.out)["bound"].get<double>();
+    EXPECT_LE(bound, 1e-4);
+    EXPECT_FALSE(Json::parse(content(path("c.json")))["objects"][0].contains("weights"));
+    const Json e = Json::parse(run({"eval", "c.json", "--at", "0.1,0.3;0.55,0.5;0.9,0.9"}).out)["results"];
+    for (const Json& p : e) {
+        const auto x = p["point"].get<std::vector<double>>();
+        EXPECT_NEAR(std::hypot(std::hypot(x[0], x[1]), x[2]), 2, bound);
+    }
+}
+
 TEST_F(Cli, revolve_says_what_is_wrong) {
     EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0", "-o", "c.json"}, kSide).code, 2);
     EXPECT_EQ(run({"revolve", "-", "-o", "c.json"}, kSide).code, 2);

@@ -129,7 +129,7 @@ TEST(Coons, bicubic_patches_reproduce_bicubic_surfaces_and_have_the_cross_deriva
                                             must(BSplineBasis::bezier(3, {0, 0.5}))};
     const auto s = test::random_patch_on<2, Vec<3>>(random, bases);
     const auto edge = [](const Surface<Vec<3>>& f, int axis, int side) {
-        return CoonsEdge<3>{boundary(f, axis, side), boundary(derivative(f, axis), axis, side)};
+        return CoonsEdge<Vec<3>>{boundary(f, axis, side), boundary(derivative(f, axis), axis, side)};
     };
     const CoonsTolerance tight{1e-14, 1e-12, 1e-11};
     const auto back = must(coons_bicubic(edge(s, 1, 0), edge(s, 1, 1), edge(s, 0, 0), edge(s, 0, 1), tight));
@@ -158,8 +158,8 @@ TEST(Coons, twists_that_contradict_each_other_are_refused_with_their_corner) {
     const auto line = [](const Vec<3>& a, const Vec<3>& b) { return bezier<Vec<3>>({a, b}); };
     const Vec<3> x{{1, 0, 0}}, y{{0, 1, 0}}, up{{0, 0, 1}};
     // The unit square; the cross derivative of u0 rises in its middle, so that it twists at both ends.
-    const CoonsEdge<3> u0{line({}, x), bezier<Vec<3>>({y, y + 0.25 * up, y})}, u1{line(y, x + y), line(y, y)},
-        v0{line({}, y), line(x, x)}, v1{line(x, x + y), line(x, x)};
+    const CoonsEdge<Vec<3>> u0{line({}, x), bezier<Vec<3>>({y, y + 0.25 * up, y})},
+        u1{line(y, x + y), line(y, y)}, v0{line({}, y), line(x, x)}, v1{line(x, x + y), line(x, x)};
     const auto refused = coons_bicubic(u0, u1, v0, v1, CoonsTolerance{1e-12, 1e-12, 0.4});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().where, "lower u, lower v");
@@ -169,7 +169,7 @@ TEST(Coons, twists_that_contradict_each_other_are_refused_with_their_corner) {
     EXPECT_NEAR(patch.twist_gap, 0.5, 1e-9);
     EXPECT_LT(patch.tangent_gap, 1e-12);
     // A tangent that is not the derivative of the neighbouring edge.
-    const CoonsEdge<3> leaning{line({}, x), line(y, y + 0.5 * up)};
+    const CoonsEdge<Vec<3>> leaning{line({}, x), line(y, y + 0.5 * up)};
     const auto tangent = coons_bicubic(leaning, u1, v0, v1, CoonsTolerance{1e-12, 0.4, 9});
     ASSERT_FALSE(tangent);
     EXPECT_EQ(tangent.error().where, "upper u, lower v");
@@ -198,77 +198,6 @@ TEST(PowersOn, are_the_coefficients_of_powers) {
             EXPECT_LT(bound, 1e-14);
         }
     }
-}
-
-Curve<Hom<3>> rational_between(Random& random, int degree, std::vector<double> inner, const Vec<3>& from,
-                               const Vec<3>& to) {
-    const auto c = between(random_curve(random, degree, std::move(inner)), from, to);
-    Net<1, Hom<3>> net(c.net().extent());
-    for (std::size_t i = 0; i < net.flat().size(); ++i)
-        net.flat()[i] = weighted(c.net().flat()[i], random.real(0.5, 2));
-    return must(Curve<Hom<3>>::make(c.bases(), net));
-}
-
-// R25, of rational curves: the literal sum again.
-TEST(R25, a_coons_patch_of_rational_curves_is_the_same_sum) {
-    Random random(21);
-    const Vec<3> corner[4] = {{{0, 0, 0}}, {{1.1, 0, 0.3}}, {{0.2, 0.9, 0.7}}, {{1, 1, 1.3}}};
-    const auto u0 = rational_between(random, 3, {0.5}, corner[0], corner[1]);
-    const auto u1 = rational_between(random, 2, {0.25, 0.75}, corner[2], corner[3]);
-    const auto v0 = rational_between(random, 4, {}, corner[0], corner[2]);
-    const auto v1 = to_rational(between(random_curve(random, 1, {0.25}), corner[1], corner[3]));
-    const auto patch = must(coons(u0, u1, v0, v1, 0));
-    EXPECT_LT(patch.bound, 1e-11);
-    EXPECT_LT(patch.corner_gap, 1e-12);
-    double worst = 0;
-    for (double u : kAt)
-        for (double v : kAt) {
-            const Vec<3> sum = (1 - v) * u0(u) + v * u1(u) + (1 - u) * v0(v) + u * v1(v) -
-                               (1 - u) * (1 - v) * corner[0] - u * (1 - v) * corner[1] -
-                               (1 - u) * v * corner[2] - u * v * corner[3];
-            worst = std::max(worst, norm(patch.surface(u, v) - sum));
-        }
-    EXPECT_LE(worst, patch.bound + 2e-14);  // the judge's own rounding
-    EXPECT_EQ(patch.surface.basis(0).degree(), 2 * 3 + 1);
-}
-
-// Arcs that share their weights keep the degree low: a quarter of a cylinder between two of its arcs.
-TEST(Coons, of_parallel_arcs_has_one_denominator) {
-    const double s = std::sqrt(0.5);
-    const auto arc = [&](double z, double factor) {
-        return test::bezier<Hom<3>>({weighted(Vec<3>{{1, 0, z}}, factor),
-                                     weighted(Vec<3>{{1, 1, z}}, factor * s),
-                                     weighted(Vec<3>{{0, 1, z}}, factor)});
-    };
-    const auto line = [](const Vec<3>& p, const Vec<3>& q) {
-        return test::bezier<Hom<3>>({weighted(p, 1), weighted(q, 1)});
-    };
-    const auto patch =
-        must(coons(arc(0, 1), arc(2, 3), line({{1, 0, 0}}, {{1, 0, 2}}), line({{0, 1, 0}}, {{0, 1, 2}}), 0));
-    EXPECT_EQ(patch.surface.basis(0).degree(), 3);
-    EXPECT_EQ(patch.surface.basis(1).degree(), 1);
-    for (double u : kAt)
-        for (double v : kAt) {
-            const Vec<3> p = patch.surface(u, v);
-            EXPECT_NEAR(std::hypot(p[0], p[1]), 1, 1e-14);
-            EXPECT_NEAR(p[2], 2 * v, 1e-14);
-        }
-}
-
-TEST(Coons, of_rational_curves_refuses_corners_that_miss_and_degrees_that_none_has) {
-    Random random(22);
-    const Vec<3> corner[4] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{1, 1, 0}}};
-    const auto make = [&](int degree, int from, int to) {
-        return rational_between(random, degree, {}, corner[from], corner[to]);
-    };
-    const auto u0 = make(2, 0, 1), u1 = make(2, 2, 3), v0 = make(2, 0, 2);
-    const auto off = rational_between(random, 2, {}, corner[1], {{1, 1, 0.25}});
-    const auto refused = coons(u0, u1, v0, off, 0.1);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().where, "upper u, upper v");
-    EXPECT_TRUE(coons(u0, u1, v0, off, 0.3));
-    const auto high0 = make(13, 0, 1), high1 = make(13, 2, 3), v1 = make(2, 1, 3);
-    EXPECT_EQ(coons(high0, high1, v0, v1, 0).error().kind, RefusalKind::unsupported);
 }
 
 }  // namespace

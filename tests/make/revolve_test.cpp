@@ -315,5 +315,71 @@ TEST(RevolvePolynomial, begins_at_the_profile_and_has_a_continuous_derivative) {
     EXPECT_LE(norm(full.surface(0.0, 0.5) - curve(0.5)), full.bound);
 }
 
+// Rational profiles: a half circle becomes a sphere, a circle a torus; their equations say how far off.
+TEST(RevolvePolynomial, of_rational_profiles_is_as_far_off_as_its_bound_says) {
+    const auto half = must(conic_arc(Conic<3>{ConicKind::ellipse, {}, {{0, 0, -2}}, {{2, 0, 0}}}, {0, kPi}));
+    const auto tube = must(full_ellipse(Conic<3>{ConicKind::ellipse, {{3, 0, 0}}, {{1, 0, 0}}, {{0, 0, 1}}},
+                                        EllipseForm::closed));
+    for (const double tolerance : {0.1, 1e-3, 1e-6, 1e-9}) {
+        const auto sphere = must(revolve_polynomial(half.curve, kZ, 2 * kPi, tolerance));
+        const auto torus = must(revolve_polynomial(tube.curve, kZ, -4, tolerance));
+        EXPECT_TRUE(torus.surface.basis(1).is_closed());
+        EXPECT_LE(std::max(sphere.bound, torus.bound), tolerance);
+        double of_sphere = 0, of_torus = 0;
+        for (int i = 0; i <= 30; ++i)
+            for (int j = 0; j <= 80; ++j) {
+                const double u = i / (30.0 * sphere.pieces), w = i / (30.0 * torus.pieces);
+                const auto at = [&](const BSplineBasis& b) {  // around a break in the middle
+                    const auto t = b.breaks();
+                    const std::size_t m = t.size() / 2;
+                    return j < 40 ? t[m - 1] + (t[m] - t[m - 1]) * j / 40
+                                  : t[m] + (t[m + 1] - t[m]) * (j - 40) / 40.0;
+                };
+                const Vec<3> p = sphere.surface(u, at(sphere.surface.basis(1))),
+                             q = torus.surface(w, at(torus.surface.basis(1)));
+                of_sphere = std::max(of_sphere, std::abs(norm(p) - 2));
+                of_torus = std::max(of_torus, std::abs(std::hypot(std::hypot(q[0], q[1]) - 3, q[2]) - 1));
+            }
+        EXPECT_LE(of_sphere, sphere.bound + 2e-15);
+        EXPECT_LE(of_torus, torus.bound + 2e-15);
+        EXPECT_GE(of_sphere, 0.05 * sphere.bound) << tolerance;
+        EXPECT_GE(of_torus, 0.05 * torus.bound) << tolerance;
+    }
+}
+
+// Corresponding points, with the parameters of v: turned back, a point lies within the bound of the profile.
+TEST(RevolvePolynomial, of_rational_profiles_keeps_their_parameters) {
+    Random random(30);
+    for (int k = 0; k < 4; ++k) {
+        const auto profile = test::random_patch<1, Hom<3>>(random, 3, {});
+        const auto made = must(revolve_polynomial(profile, kZ, 5, 1e-4));
+        const Interval on = profile.domain()[0];
+        double worst = 0;
+        for (int i = 0; i <= 20; ++i)
+            for (int j = 0; j <= 20; ++j) {
+                const Vec<3> p = made.surface(i / (20.0 * made.pieces), on.lo + on.length() * j / 20.01),
+                             q = profile(on.lo + on.length() * j / 20.01);
+                const double off = std::hypot(std::hypot(p[0], p[1]) - std::hypot(q[0], q[1]), p[2] - q[2]);
+                EXPECT_LE(off, made.bound + 1e-14);
+                worst = std::max(worst, off);
+            }
+        EXPECT_GE(worst, 0.05 * made.bound);
+    }
+}
+
+TEST(RevolvePolynomial, of_rational_profiles_with_equal_weights_and_of_bad_tolerances) {
+    const auto curve = bezier<Vec<3>>({{{1, 0, 0}}, {{4, 1, 1}}, {{2, 0, 4}}});
+    const auto plain = must(revolve_polynomial(curve, kZ, 5, 1e-5));
+    const auto lifted = must(revolve_polynomial(to_rational(curve), kZ, 5, 1e-5));
+    EXPECT_EQ(lifted.surface, plain.surface);
+    const auto arc =
+        must(conic_arc(Conic<3>{ConicKind::ellipse, {}, {{0, 0, 1}}, {{1, 0, 0}}}, {0, 1})).curve;
+    EXPECT_EQ(revolve_polynomial(arc, kZ, 1, 0).error().where, "tolerance");
+    EXPECT_EQ(revolve_polynomial(arc, kZ, 0, 1).error().where, "angle");
+    const auto fine = revolve_polynomial(arc, kZ, 1, 1e-18);
+    ASSERT_FALSE(fine);
+    EXPECT_TRUE(fine.error().where.starts_with("profile")) << fine.error().where;
+}
+
 }  // namespace
 }  // namespace freiform

@@ -37,10 +37,11 @@ Result<CoonsPatch<Hom<3>>> coons(const Curve<Hom<D>>& u0, const Curve<Hom<D>>& u
                                  const Curve<Hom<D>>& v1, double tolerance);
 
 // A boundary and the derivative across it: by v along u0 and u1, by u along v0 and v1. The derivatives are by
-// the parameters of the surface; degrees of at least 1, domain as the curve's.
-template <int D>
+// the parameters of the surface; degrees of at least 1, domain as the curve's. P: Vec or Hom, 2 or 3
+// coordinates; a rational cross derivative is the vector that its curve has as a point.
+template <class P>
 struct CoonsEdge {
-    Curve<Vec<D>> curve, across;
+    Curve<P> curve, across;
 };
 
 struct CoonsTolerance {
@@ -51,10 +52,20 @@ struct CoonsTolerance {
 // Each corner has a position, two tangents and a twist S_uv, and each of them comes from two curves; where
 // those disagree by more than the tolerance that is refused (invalid, with the corner and the amount),
 // because then no such surface exists. `twist` compares (d/du) of u-edges' cross derivative with (d/dv) of
-// v-edges'. Polynomial curves only.
+// v-edges'.
 template <int D>
-Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<D>& u0, const CoonsEdge<D>& u1,
-                                         const CoonsEdge<D>& v0, const CoonsEdge<D>& v1,
+Result<CoonsPatch<Vec<3>>> coons_bicubic(const CoonsEdge<Vec<D>>& u0, const CoonsEdge<Vec<D>>& u1,
+                                         const CoonsEdge<Vec<D>>& v0, const CoonsEdge<Vec<D>>& v1,
+                                         const CoonsTolerance& tolerance);
+
+// The same sum of rational curves and derivatives: exact, rational, over the product of the denominators that
+// are not multiples of each other: m of degree p in a direction make the degree m p + 3 or more
+// (over_one_denominator). So curves and derivatives that have one denominator, as those of extrusions and of
+// surfaces of revolution with polynomial profiles do, make p + 3. Refuses as above, and (unsupported) degrees
+// that no basis has.
+template <int D>
+Result<CoonsPatch<Hom<3>>> coons_bicubic(const CoonsEdge<Hom<D>>& u0, const CoonsEdge<Hom<D>>& u1,
+                                         const CoonsEdge<Hom<D>>& v0, const CoonsEdge<Hom<D>>& v1,
                                          const CoonsTolerance& tolerance);
 
 }  // namespace freiform

@@ -44,11 +44,17 @@ struct RevolvedPolynomial {
 // The same surface, of a polynomial profile, cubic in u and continuously differentiable there: as few pieces
 // of equal angle as this bound allows for `tolerance` (a distance). Ends of open surfaces are exact: u = 0 is
 // the profile to the bit. Refuses as `revolve` does; a tolerance that is not positive (invalid); and one
-// below what rounding moves (ill_conditioned). Rational profiles have no polynomial surface within reach of
-// this construction: approximate the profile first.
+// below what rounding moves (ill_conditioned).
 //   auto vase = revolve_polynomial(outline, Axis{}, 2 * std::numbers::pi, 1e-3);
 template <int D>
 Result<RevolvedPolynomial> revolve_polynomial(const Curve<Vec<D>>& profile, const Axis& axis, double angle,
+                                              double tolerance, Seam seam = Seam::closed);
+
+// Of rational profiles: of a polynomial one near it (polynomial_near.hpp), for which three fifths of the
+// tolerance are there; what that leaves is for the arcs. u = 0 is the polynomial profile, cubic in v unless
+// all weights are equal. Refuses what `polynomial_near` refuses, too.
+template <int D>
+Result<RevolvedPolynomial> revolve_polynomial(const Curve<Hom<D>>& profile, const Axis& axis, double angle,
                                               double tolerance, Seam seam = Seam::closed);
 
 }  // namespace freiform

@@ -42,6 +42,10 @@ template <class P>
 SurfaceSide side_before(const Surface<P>& s, int axis, double at, const ContinuityOptions& options);
 template <class P>
 SurfaceSide side_after(const Surface<P>& s, int axis, double at, const ContinuityOptions& options);
+// The part of the line between two of its parameters, `on.lo` before `on.hi` as the line runs; those count as
+// known up to `grant` where they are not its ends. REQUIRES that they are on the line and more than 2 `grant`
+// apart.
+SurfaceSide part_of(const SurfaceSide& side, const Interval& on, double grant);
 SurfaceSide reversed_across(SurfaceSide side);  // the parameter of `axis` run through backwards
 SurfaceSide reversed_along(SurfaceSide side);   // the line run through backwards
 // The side that arrives at an edge from the inside. Refuses axes that are closed, which have no edge.
@@ -57,8 +61,9 @@ struct LargestJump {
 struct SurfaceContinuity {
     std::vector<LargestJump> c;  // [k]: of the derivative of order k across, length / parameter^k
     // [0]: distance; [1]: angle of the tangent planes in radians, pi where the second surface turns back;
-    // [2]: curvature, 1 / length. g ends with [0] outside of space and where tangent planes have no answer
-    // anywhere, and with [1] where G^1 does not hold.
+    // [2]: curvature, 1 / length. g ends with [0] where surfaces have neither two nor three coordinates and
+    // where tangent planes have no answer anywhere, and with [1] where G^1 does not hold. In the plane, where
+    // tangent planes are one, [1] and [2] are 0 unless the second surface folds back.
     std::vector<LargestJump> g;
     int c_order = -1, g_order = -1;  // the highest order with all jumps up to it none; -1: not even C0
     bool opposed = false;            // somewhere the second surface turns back, as far as is known
@@ -118,16 +123,24 @@ struct SurfaceMeeting {
     SurfaceEdge first_edge, second_edge;
     bool against = false;
     double distance = 0;  // the largest at 9 places (estimate)
+    // The parts of both lines that meet, in their parameters, each from lo to hi; the whole lines, or what
+    // one has of the other where an edge ends inside another (T-joints).
+    Interval first_on, second_on;
+    bool whole = true;
+    double grant[2] = {0, 0};  // parameters of parts are known up to this
 };
 struct SurfaceJoint {
     SurfaceMeeting meeting;
     SurfaceContinuity joint;
 };
-// All pairs of whole edges, of different surfaces or of one, that are at most `gap` apart at 9 places; in the
-// order of the list. Edges that share only a part are not found. Refuses (limit) more than `most` pairs.
-// Cost: O(n log n) and the pairs whose first coordinates are that close.
+// All pairs of edges, of different surfaces or of one, of which a part is common that is longer than `gap`
+// and lies within it at 9 places: both whole edges, one as a part of the other, or an end of each. Ends are
+// found on the other edge by a search on a grid that Newton's method refines; where an edge comes near to the
+// same end several times, the nearest place counts. Points in between correspond by the affine map of the
+// parameters. `roundings` as in ContinuityOptions. In the order of the list. Refuses (limit) more than `most`
+// pairs. Cost: O(n log n) and the pairs whose boxes are that close.
 Result<std::vector<SurfaceMeeting>> meetings(std::span<const SurfaceEdges> surfaces, double gap,
-                                             std::size_t most = 1'000'000);
+                                             double roundings = 4, std::size_t most = 1'000'000);
 // The meetings with their continuity. `gap` is for finding; whether a joint is C0 depends on the options.
 Result<std::vector<SurfaceJoint>> joints(std::span<const SurfaceEdges> surfaces, double gap,
                                          const ContinuityOptions& options = {}, std::size_t most = 1'000'000);
