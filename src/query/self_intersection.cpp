@@ -386,11 +386,12 @@ private:
             }
             united.push_back(all);
         }
-        const Interval domain = curve_.basis().domain();
         for (Meeting& m : united) {
-            for (Interval* on : {&m.first, &m.second})
-                *on = {std::max(domain.lo, on->lo - parameter_error_),
-                       std::min(domain.hi, on->hi + parameter_error_)};
+            for (Interval* on : {&m.first, &m.second}) {
+                const Interval stretch = stretch_around(on->middle());  // not over a jump
+                *on = {std::max(stretch.lo, on->lo - parameter_error_),
+                       std::min(stretch.hi, on->hi + parameter_error_)};
+            }
             m.point = 0.5 * (curve_(m.first.middle()) + curve_(m.second.middle()));
             for (const Interval& on : {m.first, m.second}) {
                 const Arc<D> a = arc_over(on);

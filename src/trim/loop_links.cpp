@@ -136,7 +136,7 @@ Around around(const Links& all, Interval on) {
 
 }  // namespace
 
-Result<Links> links_of(std::span<const Loop> loops, double gap) {
+Result<Links> links_of(std::span<const Loop> loops, double gap, double error) {
     Links all;
     for (std::size_t l = 0; l < loops.size(); ++l) {
         const auto chain = chain_of(loops[l], gap);
@@ -147,8 +147,8 @@ Result<Links> links_of(std::span<const Loop> loops, double gap) {
                 all.link.push_back({std::move(net), 0, l, piece.curve});
         if (const Conic<2>* e = ellipse_of(loops[l]))
             for (auto& net : quarters(*e)) {
-                const double error = 8 * kUnitRoundoff * (max_abs(e->centre) + max_abs(e->x) + max_abs(e->y));
-                all.link.push_back({std::move(net), error, l, 0});
+                const double rounding = 8 * kU * (max_abs(e->centre) + max_abs(e->x) + max_abs(e->y));
+                all.link.push_back({std::move(net), rounding, l, 0});
             }
         const std::size_t end = all.link.size();
         for (std::size_t i = first; i < end; ++i) {  // close what is open
@@ -162,6 +162,12 @@ Result<Links> links_of(std::span<const Loop> loops, double gap) {
         }
         all.loops.push_back({double(first), double(end)});
     }
+    if (error > 0)
+        for (Link& link : all.link) {
+            double heaviest = 0;
+            for (const Hom<2>& p : link.net) heaviest = std::max(heaviest, p.weight());
+            link.error += error * heaviest;
+        }
     scale(all);
     return all;
 }

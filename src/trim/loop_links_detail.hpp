@@ -32,13 +32,29 @@ struct Links {
     }
 };
 
-// Refuses what chain_of refuses.
-Result<Links> links_of(std::span<const Loop> loops, double gap);
+// Refuses what chain_of refuses. `error`: every coordinate of every control point may be off by it.
+Result<Links> links_of(std::span<const Loop> loops, double gap, double error = 0);
+
+// check_loops, of loops whose control points may be off by `error`, for loops and copies of them: `shown[i]`
+// is the loop that loops[i] is or was copied from. Refusals name those.
+Result<void> check_copies(std::span<const Loop> loops, std::span<const std::size_t> shown,
+                          const LoopTolerance& tolerance, double error);
 
 // Where the chain meets itself, in the units of the links; parameters are those of the links.
 Result<std::vector<SelfIntersection<2>>> meetings(const Links& all, double accuracy);
 
 // A vertex in which the branches over both intervals cross: exact.
 std::optional<Hom<2>> crossing_vertex(const Links& all, const Interval& first, const Interval& second);
+
+// Contacts that are neither certain crossings nor exact ones in a vertex: which loops, and where on them.
+struct LoopMeeting {
+    std::array<std::size_t, 2> loop{};
+    std::array<Interval, 2> on;
+};
+enum class Meets { undecided, crosses, touches };
+// `crosses` and `touches` hold for all loops within the errors of the links; loop_sides.cpp says why.
+// REQUIRES all places where the loops meet.
+std::vector<Meets> how_they_meet(const Links& all, std::span<const Loop> loops, double gap,
+                                 std::span<const LoopMeeting> found);
 
 }  // namespace freiform::detail

@@ -1,9 +1,10 @@
 // Idea. All loops together are one chain of Bezier pieces that jumps from loop to loop; where it meets itself
 // is what query/self_intersection.cpp finds, none missed, with a proof where it crosses. What that search
-// leaves open are places where branches touch, overlap, or meet in corners; three exact tests decide some of
-// them:
-//   - in a vertex that both branches have: they cross if the legs of one separate those of the other;
-//   - in a vertex of one that lies on a segment of the other: likewise;
+// leaves open are places where branches touch, overlap, or meet in corners. They are decided
+//   - exactly, in a vertex that both branches have: they cross if the legs of one separate those of the
+//   other;
+//   - exactly, in a vertex of one that lies on a segment of the other: likewise;
+//   - by the sides on which the loops are before and after, at tangents and curved vertices (loop_sides.cpp);
 //   - by winding numbers: a loop that does not cross itself goes round points 0 times or once, in one
 //   direction.
 // What remains is returned as a contact, not refused: nothing proves that it is more than a touch.
@@ -95,7 +96,8 @@ void add(std::vector<LoopContact>& all, const LoopContact& next) {
     for (LoopContact& c : all) {
         const double d = norm(c.point - next.point);
         if (c.loop != next.loop || !(d <= c.bound + next.bound)) continue;
-        c.bound = std::max(c.bound, (d + next.bound) * (1 + 8 * kUnitRoundoff));
+        c.bound = std::max(c.bound, (d + next.bound) * (1 + 8 * kU));
+        if (next.kind == LoopContactKind::undecided) c.kind = next.kind;
         return;
     }
     all.push_back(next);
@@ -105,10 +107,11 @@ struct Checked {
     Links links;
     std::vector<LoopContact> contacts;
 };
-Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolerance) {
+Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolerance, double error = 0,
+                        std::span<const std::size_t> shown = {}) {
     if (!(tolerance.gap >= 0)) return refuse(RefusalKind::invalid, "gap", "is not a length >= 0");
     if (!(tolerance.accuracy > 0)) return refuse(RefusalKind::invalid, "accuracy", "is not a length > 0");
-    auto links = detail::links_of(loops, tolerance.gap);
+    auto links = detail::links_of(loops, tolerance.gap, error);
     if (!links) return std::unexpected(links.error());
     Checked out{*std::move(links), {}};
     if (out.links.link.empty()) return out;
@@ -120,7 +123,16 @@ Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolera
         const double last = double(out.links.link.size()) - 1;
         return out.links.link[std::size_t(std::clamp(on.middle(), 0.0, last))];
     };
-    std::vector<char> meets_itself(loops.size());
+    std::vector<LoopContact> contacts;
+    std::vector<detail::LoopMeeting> places;
+    const auto crosses = [&](const LoopContact& c) {
+        const auto name = [&](std::size_t k) {
+            return name_of(shown.empty() ? c.loop[k] : shown[c.loop[k]], c.curve[k]);
+        };
+        return refuse(RefusalKind::invalid, name(0),
+                      text("crosses ", name(1), shown.empty() ? "" : " across the seam", " at (", c.point[0],
+                           ", ", c.point[1], "), known within ", c.bound));
+    };
     for (const SelfIntersection<2>& m : *found) {
         const Link &a = link_at(m.first), &b = link_at(m.second);
         LoopContact contact{{a.loop, b.loop},
@@ -134,12 +146,18 @@ Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolera
             contact.point = out.links.given(project(*p));
             contact.bound = 2 * kUnitRoundoff * max_abs(contact.point);
         }
-        if (is_crossing)
-            return refuse(RefusalKind::invalid, name_of(a.loop, a.curve),
-                          text("crosses ", name_of(b.loop, b.curve), " at (", contact.point[0], ", ",
-                               contact.point[1], "), known within ", contact.bound));
-        if (a.loop == b.loop) meets_itself[a.loop] = true;
-        add(out.contacts, contact);
+        if (is_crossing) return crosses(contact);
+        contacts.push_back(contact);
+        places.push_back({contact.loop, {m.first, m.second}});
+    }
+    const auto how = detail::how_they_meet(out.links, loops, tolerance.gap, places);
+    std::vector<char> meets_itself(loops.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        LoopContact& c = contacts[i];
+        if (how[i] == detail::Meets::crosses) return crosses(c);
+        c.kind = how[i] == detail::Meets::touches ? LoopContactKind::touch : LoopContactKind::undecided;
+        if (c.loop[0] == c.loop[1]) meets_itself[c.loop[0]] = true;
+        add(out.contacts, c);
     }
     for (std::size_t l = 0; l < loops.size(); ++l)
         if (meets_itself[l])
@@ -186,6 +204,12 @@ std::optional<bool> lies_in(const Links& all, std::size_t inner, const InsideQue
 }
 
 }  // namespace
+
+Result<void> detail::check_copies(std::span<const Loop> loops, std::span<const std::size_t> shown,
+                                  const LoopTolerance& tolerance, double error) {
+    if (auto done = checked(loops, tolerance, error, shown); !done) return std::unexpected(done.error());
+    return {};
+}
 
 std::string to_text(const LoopContact& c) {
     return text(name_of(c.loop[0], c.curve[0]), " and ", name_of(c.loop[1], c.curve[1]), " at (", c.point[0],

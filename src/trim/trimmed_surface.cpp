@@ -4,6 +4,12 @@
 // halving ends after about fifteen steps; the budget is a backstop, and a curve that needs more is taken for
 // inside, where no point of it was found outside. Cost: pieces only near places where the curve touches the
 // boundary.
+//
+// On closed axes a loop is also where it is shifted by periods. Copies of loops whose boxes reach loops are
+// checked together with them. Shifts round, and what closes at the seam was often rounded by whoever wrote
+// it: control points count as known up to the slack.
+#include "trim/loop_links_detail.hpp"
+
 #include <freiform/spline/bezier.hpp>
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
@@ -127,6 +133,83 @@ Result<void> check_crossings(const Loops& loops, const Vec<2>& slack) {
     return {};
 }
 
+using Loop = std::vector<CurveGeometry<2>>;
+
+// A box of the curves' control points.
+Box<2> box_of(const Loop& loop) {
+    Box<2> box;
+    for (const auto& curve : loop)
+        std::visit(
+            [&]<class C>(const C& c) {
+                if constexpr (requires { c.net(); })
+                    for (const auto& p : c.net().flat()) box.add(project(p));
+                if constexpr (std::same_as<C, Conic<2>>)
+                    for (const Vec<2>& x : {c.x + c.y, c.x - c.y})
+                        box.add(c.centre + x), box.add(c.centre - x);
+            },
+            curve);
+    return box;
+}
+
+Loop shifted(const Loop& loop, const Vec<2>& by) {
+    Loop moved;
+    for (const auto& curve : loop)
+        moved.push_back(std::visit(
+            [&]<class C>(const C& c) -> CurveGeometry<2> {
+                if constexpr (requires { c.net(); }) {
+                    auto net = c.net();
+                    for (auto& p : net.flat())
+                        for (int d = 0; d < 2; ++d)
+                            p[d] += Space<std::remove_cvref_t<decltype(p)>>::weight(p) * by[d];
+                    return C::trusted(c.bases(), std::move(net));
+                } else {
+                    C other = c;
+                    if constexpr (std::same_as<C, Conic<2>>) other.centre = c.centre + by;
+                    return other;
+                }
+            },
+            curve));
+    return moved;
+}
+
+// Loops against copies of loops that are whole periods away; a period of 0 is none.
+Result<void> check_across_seams(const Loops& loops, const Vec<2>& period, const Vec<2>& slack) {
+    constexpr double kMostCopies = 1000;
+    std::vector<Box<2>> box;
+    Box<2> all;
+    for (const Loop& loop : loops) {
+        box.push_back(box_of(loop));
+        all.add(box.back().lo), all.add(box.back().hi);
+    }
+    double most[2];  // shifts by which anything still meets
+    for (int d = 0; d < 2; ++d)
+        most[d] = period[d] > 0 ? std::floor((all.hi[d] - all.lo[d] + slack[d]) / period[d]) : 0;
+    if (!((2 * most[0] + 1) * (most[1] + 1) <= kMostCopies))
+        return refuse(RefusalKind::limit, "loops",
+                      "they go round the closed surface too often to be compared");
+    Loops copies = loops;
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < loops.size(); ++i) shown.push_back(i);
+    // Of two opposite shifts one is enough.
+    for (double m = 0; m <= most[1]; ++m)
+        for (double k = m == 0 ? 1 : -most[0]; k <= most[0]; ++k) {
+            const Vec<2> by{{k * period[0], m * period[1]}};
+            for (std::size_t i = 0; i < loops.size(); ++i) {
+                const bool meets = std::ranges::any_of(box, [&](const Box<2>& b) {
+                    for (int d = 0; d < 2; ++d)
+                        if (box[i].lo[d] + by[d] > b.hi[d] + slack[d] ||
+                            box[i].hi[d] + by[d] < b.lo[d] - slack[d])
+                            return false;
+                    return true;
+                });
+                if (meets) copies.push_back(shifted(loops[i], by)), shown.push_back(i);
+            }
+        }
+    if (copies.size() == loops.size()) return {};
+    const double gap = norm(slack);
+    return detail::check_copies(copies, shown, {gap, gap}, gap);
+}
+
 }  // namespace
 
 Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surface<Hom<3>>> surface,
@@ -142,6 +225,15 @@ Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surfac
         if (auto ok = check_loop(loops[i], box, slack); !ok)
             return refuse_within(text("loops[", i, "]"), ok.error());
     if (auto ok = check_crossings(loops, slack); !ok) return std::unexpected(ok.error());
+    const Vec<2> period = std::visit(
+        [](const auto& s) {
+            Vec<2> p;
+            for (int d = 0; d < 2; ++d) p[d] = s.basis(d).is_closed() ? s.basis(d).domain().length() : 0;
+            return p;
+        },
+        surface);
+    if (max_abs(period) > 0)
+        if (auto ok = check_across_seams(loops, period, slack); !ok) return std::unexpected(ok.error());
     return TrimmedSurface{std::move(surface), std::move(loops)};
 }
 

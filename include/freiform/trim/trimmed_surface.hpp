@@ -24,8 +24,9 @@ struct TrimmedSurface {
     static constexpr double kSlack = 0x1p-30;
 
     // Refuses loops that are empty, open (the message says the gap), leave the domain, or cross themselves or
-    // each other (check_loops: what only touches is kept), and curves without ends (lines, parabolas,
-    // hyperbolas: a segment is a spline of degree 1). An ellipse is a whole loop.
+    // each other (check_loops: what only touches is kept), across the seams of closed axes too, there by more
+    // than the slack; loops that go round those some hundred times (limit); and curves without ends (lines,
+    // parabolas, hyperbolas: a segment is a spline of degree 1). An ellipse is a whole loop.
     static Result<TrimmedSurface> make(std::variant<Surface<Vec<3>>, Surface<Hom<3>>> surface,
                                        std::vector<std::vector<CurveGeometry<2>>> loops);
 };
