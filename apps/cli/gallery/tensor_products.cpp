@@ -34,16 +34,10 @@ Plot patch(std::string_view name, std::string_view caption, const Surface3& s, c
     return together(plot, {{s, {colour, 1.8, "", {}}}, {net_of(s.net()), thin(kGrey)}}, eye, lines(7));
 }
 
-// Points of one level of repeated bilinear interpolation.
-Net<2, Vec<3>> bilinear(const Net<2, Vec<3>>& net, double u, double v) {
-    Net<2, Vec<3>> out({net.extent()[0] - 1, net.extent()[1] - 1});
-    const auto b = net.view();
-    const auto to = out.view();
-    each_index(out.extent(), [&](const Index<2>& at) {
-        const auto [i, j] = at;
-        to(at) = (1 - u) * ((1 - v) * b({i, j}) + v * b({i, j + 1})) +
-                 u * ((1 - v) * b({i + 1, j}) + v * b({i + 1, j + 1}));
-    });
+// The net of level r of the construction along both directions.
+Net<2, Vec<3>> level(const Construction<2, Vec<3>>& all, int r) {
+    Net<2, Vec<3>> out({all.degree(0) + 1 - r, all.degree(1) + 1 - r});
+    each_index(out.extent(), [&](const Index<2>& at) { out.view()(at) = all({r, r}, at); });
     return out;
 }
 
@@ -137,8 +131,9 @@ Figure surface_steps(const Document& d) {
     Plot levels("bilinear", "bilinear interpolation, three times, at *u* = 0.4, *v* = 0.6");
     DrawingOptions glass = lines(0);
     glass.hidden = HiddenLines::shown;
-    Net<2, Vec<3>> net = s.net();
+    const auto construction = sure(de_casteljau(s.net(), {u, v}));
     for (std::size_t r = 0; r < 4; ++r) {
+        const Net<2, Vec<3>> net = level(construction, int(r));
         if (r < 3)
             together(levels,
                      {{net_of(net),
@@ -150,7 +145,6 @@ Figure surface_steps(const Document& d) {
                         {}}}},
                      eye, glass);
         levels.dots(eye(flat(net)), colours[r], r == 3 ? 5.5 : 3.6);
-        if (r < 3) net = bilinear(net, u, v);
     }
     Plot rows("rows", "the rows at *v* first, then the column of their points at *u*");
     const auto b = s.net().view();
