@@ -124,7 +124,8 @@ void add_revolve(CommandLine& line) {
         "--angle", options->angle,
         "Degrees, counter-clockwise seen from the tip of the axis; negative ones clockwise (default 360)");
     command.number("--polynomial", options->polynomial,
-                   "Not exact, but polynomial within this distance; the bound reached is printed");
+                   "Not exact, but polynomial within this distance, of rational curves too; the bound "
+                   "reached is printed");
     command.flag("--closed", options->closed,
                  "Write a full turn on closed knots instead of open ones whose ends coincide");
     command.object(options->object);

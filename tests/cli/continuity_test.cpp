@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace freiform::test {
@@ -177,6 +178,29 @@ TEST_F(ContinuityCommand, reports_joints_of_neighbouring_surfaces) {
     // A millimetre allows all of it.
     const Json wide = Json::parse(run({"continuity", path, "--json", "--tolerance", "3"}).out)["joints"];
     EXPECT_EQ(wide[0]["g_order"], 2);
+}
+
+// A floor of one patch, and beside it two of half its width, the second of which goes up at an angle.
+TEST_F(ContinuityCommand, finds_surfaces_that_share_a_part_of_an_edge) {
+    const std::string path = file("tiles.json", R"({"freiform": 1, "unit": "mm", "objects": [
+      {"name": "floor", "type": "surface", "points": [[[0,0,0],[0,2,0]],[[2,0,0],[2,2,0]]]},
+      {"name": "near", "type": "surface", "points": [[[2,0,0],[2,1,0]],[[3,0,0],[3,1,0]]]},
+      {"name": "far", "type": "surface", "points": [[[2,2,0],[2,1,0]],[[3,2,1],[3,1,1]]]}]})");
+    const Json all = Json::parse(run({"continuity", path, "--json"}).out)["joints"];
+    ASSERT_EQ(all.size(), 2u) << all;
+    EXPECT_EQ(all[0]["whole"], false);
+    EXPECT_EQ(all[0]["first_on"], Json::parse("[0.0,0.5]"));
+    EXPECT_EQ(all[0]["second_on"], Json::parse("[0.0,1.0]"));
+    EXPECT_EQ(all[0]["g_order"], 2);
+    EXPECT_EQ(all[1]["first_on"], Json::parse("[0.5,1.0]"));
+    EXPECT_EQ(all[1]["against"], true);
+    EXPECT_EQ(all[1]["g_order"], 0);
+    EXPECT_NEAR(all[1]["first_g_jump"]["size"], std::atan(1.0), 1e-12);
+    const Ran words = run({"continuity", path});
+    EXPECT_NE(words.out.find("\"floor\" u end [0, 0.5] - objects[1] \"near\" u start [0, 1]"),
+              std::string::npos)
+        << words.out;
+    EXPECT_NE(words.out.find("part of an edge"), std::string::npos) << words.out;
 }
 
 }  // namespace
