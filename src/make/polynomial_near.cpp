@@ -26,6 +26,7 @@
 #include "bernstein_detail.hpp"
 #include "rounding_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/make/polynomial_near.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -230,7 +231,7 @@ Result<PolynomialCurve<D>> without_equal_weights(const Curve<Hom<D>>& curve, dou
         most = std::max(most, norm(net.back()));
     }
     const double weight = curve.net().flat().front().weight();
-    const double bound = weight == 1 ? 0 : most * (1.01 * detail::kRoundUnit) + 0x1p-1070;
+    const double bound = weight == 1 ? 0 : most * (1.01 * kUnitRoundoff) + 0x1p-1070;
     if (!(bound <= tolerance))
         return refuse(RefusalKind::ill_conditioned, "tolerance",
                       text(tolerance, " is too small: rounding alone may move points by ", bound));

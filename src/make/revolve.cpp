@@ -300,7 +300,7 @@ Result<RevolvedPolynomial> revolve_polynomial(const Curve<Hom<D>>& profile, cons
     const auto near = polynomial_near(profile, kForProfile * tolerance);
     if (!near) return refuse_within("profile", near.error());
     auto made = revolve_polynomial(near->curve, axis, angle,
-                                   (tolerance - near->bound) * (1 - detail::kRoundUnit * 4), seam);
+                                   (tolerance - near->bound) * (1 - kUnitRoundoff * 4), seam);
     if (made) made->bound = std::min((made->bound + near->bound) * (1 + 0x1p-52), tolerance);
     return made;
 }

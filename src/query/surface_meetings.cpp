@@ -15,6 +15,7 @@
 //
 // Why not intersect the edges? Curves that have a part in common meet in every point of it, none of which is
 // a crossing.
+#include <freiform/core/constants.hpp>
 #include <freiform/query/surface_continuity.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -27,7 +28,6 @@ namespace freiform {
 
 namespace {
 
-constexpr double kRoundoff = 0x1p-53;
 constexpr int kPlaces = 9;
 using Point = std::vector<double>;
 
@@ -164,7 +164,7 @@ double grant_of(const SurfaceSide& side, double t, double speed, double rounding
     double size = 0;
     for (const double x : side.origin) size = std::max(size, std::abs(x));
     size = std::max(size, side.length);
-    return roundings * kRoundoff * (std::abs(t) + (speed > 0 ? size / speed : 0));
+    return roundings * kUnitRoundoff * (std::abs(t) + (speed > 0 ? size / speed : 0));
 }
 
 // The common part of two edges of which neither needs to be whole.

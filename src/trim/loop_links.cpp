@@ -147,7 +147,8 @@ Result<Links> links_of(std::span<const Loop> loops, double gap, double error) {
                 all.link.push_back({std::move(net), 0, l, piece.curve});
         if (const Conic<2>* e = ellipse_of(loops[l]))
             for (auto& net : quarters(*e)) {
-                const double rounding = 8 * kU * (max_abs(e->centre) + max_abs(e->x) + max_abs(e->y));
+                const double rounding =
+                    8 * kUnitRoundoff * (max_abs(e->centre) + max_abs(e->x) + max_abs(e->y));
                 all.link.push_back({std::move(net), rounding, l, 0});
             }
         const std::size_t end = all.link.size();

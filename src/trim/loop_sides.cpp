@@ -21,6 +21,7 @@
 #include "trim/loop_links_detail.hpp"
 
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -30,8 +31,6 @@
 namespace freiform::detail {
 
 namespace {
-
-constexpr double kU = 0x1p-53;
 
 // The control points of a piece; `error` bounds how far each coordinate is off.
 struct Hull {
@@ -49,8 +48,8 @@ Hull hull_of(const std::vector<Hom<2>>& net, double e) {
         x = std::max(x, max_abs(h.points.back()));
         w = std::min(w, b.weight());
     }
-    h.error =
-        w > 2 * e ? 1.01 * (e * (1 + x) / (w - e) + 2 * kU * x) : std::numeric_limits<double>::infinity();
+    h.error = w > 2 * e ? 1.01 * (e * (1 + x) / (w - e) + 2 * kUnitRoundoff * x)
+                        : std::numeric_limits<double>::infinity();
     return h;
 }
 
@@ -122,7 +121,7 @@ private:
         double d[2];
         for (int c = 0; c < 2; ++c)
             d[c] = std::max({0.0, a.box.lo[c] - a.error - q[c], q[c] - a.box.hi[c] - a.error});
-        return std::hypot(d[0], d[1]) * (1 - 8 * kU);
+        return std::hypot(d[0], d[1]) * (1 - 8 * kUnitRoundoff);
     }
 
     bool is_farther(Net net, double error, const Vec<2>& q, double r) {
@@ -157,7 +156,8 @@ private:
 
     // Do all legs make less than 45 degrees with d, a unit vector?
     static bool moves_along(const Hull& h, const Vec<2>& d) {
-        const double e = 16 * (h.error + kU * max_abs(h.box.lo) + kU * max_abs(h.box.hi));
+        const double e =
+            16 * (h.error + kUnitRoundoff * max_abs(h.box.lo) + kUnitRoundoff * max_abs(h.box.hi));
         for (std::size_t i = 1; i < h.points.size(); ++i) {
             const Vec<2> leg = h.points[i] - h.points[i - 1];
             if (!(dot(d, leg) > std::abs(cross(d, leg)) + e)) return false;

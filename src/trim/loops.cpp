@@ -96,7 +96,7 @@ void add(std::vector<LoopContact>& all, const LoopContact& next) {
     for (LoopContact& c : all) {
         const double d = norm(c.point - next.point);
         if (c.loop != next.loop || !(d <= c.bound + next.bound)) continue;
-        c.bound = std::max(c.bound, (d + next.bound) * (1 + 8 * kU));
+        c.bound = std::max(c.bound, (d + next.bound) * (1 + 8 * kUnitRoundoff));
         if (next.kind == LoopContactKind::undecided) c.kind = next.kind;
         return;
     }
