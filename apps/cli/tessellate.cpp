@@ -15,7 +15,7 @@ namespace {
 
 struct TessellateArguments {
     std::string file, object;
-    std::optional<double> tolerance;
+    std::optional<double> tolerance, max_edge;
 };
 
 double now() {
@@ -37,7 +37,7 @@ struct Times {
     double read = 0, write = 0, total = 0;
 };
 
-std::string json_report(const Tessellation& t, const Model& model, double tolerance,
+std::string json_report(const Tessellation& t, const Model& model, double predicted, double tolerance,
                         const std::string& output, double rounding, const Times& times) {
     json::Writer w;
     w.begin_object();
@@ -47,6 +47,7 @@ std::string json_report(const Tessellation& t, const Model& model, double tolera
     w.field("open_edges", t.topology.open_edges).field("non_manifold_edges", t.topology.non_manifold_edges);
     w.field("error_bound", t.error_bound).field("boundary_gap", t.boundary_gap);
     w.field("degenerate_triangles", t.topology.degenerate_triangles);
+    w.field("predicted_triangles", std::ceil(predicted));
     w.field("tolerance", tolerance).field("unit", model.unit);
     if (!output.empty()) w.field("output", output).field("storage_rounding", rounding);
     w.key("seconds").begin_object();
@@ -125,6 +126,7 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
         remark(text("tolerance ", how.tolerance, model->unit.empty() ? "" : " ", model->unit,
                     ", a thousandth of the model's box"));
     }
+    if (options.max_edge) how.max_edge = *options.max_edge;
     how.max_triangles = (long long)(context.limits.max_triangles);
     Progress bar("tessellate");
     const double deadline = context.limits.timeout > 0 ? start + context.limits.timeout : 0;
@@ -154,7 +156,8 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
     times.total = now() - start;
     if (output == "-") return {};
     context.output.clear();  // the report goes to standard output
-    return emit(context, context.json ? json_report(*t, *model, how.tolerance, output, rounding, times)
+    return emit(context, context.json ? json_report(*t, *model, predicted_triangles(*model, how),
+                                                    how.tolerance, output, rounding, times)
                                       : text_report(*t, *model, how.tolerance, output, rounding, times));
 }
 
@@ -171,6 +174,8 @@ void add_tessellate(CommandLine& line) {
     command.number(
         "--tolerance", options->tolerance,
         "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box)");
+    command.number("--max-edge", options->max_edge,
+                   "The longest side of a triangle, in the file's unit (default: none)");
     command.object(options->object);
     command.output("The mesh: .glb, .stl, .obj or .ply");
     command.limits();

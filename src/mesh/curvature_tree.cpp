@@ -19,6 +19,7 @@
 #include "curvature_tree_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
+#include <freiform/mesh/segment_box.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -50,45 +51,26 @@ double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b,
     return sixteen_area2 > 0 ? std::min(acute, s[0] * s[1] * s[2] / sixteen_area2 / 2) : acute;
 }
 
-// Does the segment meet the box? Conservative: may say yes for near misses.
-bool meets(const Box<2>& box, const Vec<2>& p, const Vec<2>& q) {
-    for (int i = 0; i < 2; ++i)
-        if (std::max(p[i], q[i]) < box.lo[i] || std::min(p[i], q[i]) > box.hi[i]) return false;
-    const Vec<2> d = q - p;
-    int left = 0, right = 0;
-    for (int k = 0; k < 4; ++k) {
-        const Vec<2> corner{{k & 1 ? box.hi[0] : box.lo[0], k & 2 ? box.hi[1] : box.lo[1]}};
-        const double side = cross(d, corner - p),
-                     slack = 1e-12 * (std::abs(d[0]) + std::abs(d[1])) * (max_abs(corner - p) + max_abs(d));
-        left += side >= -slack;
-        right += side <= slack;
-    }
-    return left > 0 && right > 0;
-}
-
-// Odd-even rule for a point that is away from all segments.
-bool is_inside(const Vec<2>& x, std::span<const Vec<2>> polygon,
-               std::span<const std::array<int, 2>> segments) {
-    bool in = false;
-    for (const auto& s : segments) {
-        const Vec<2>&p = polygon[std::size_t(s[0])], &q = polygon[std::size_t(s[1])];
-        if ((p[1] > x[1]) == (q[1] > x[1])) continue;
-        if (x[0] < p[0] + (x[1] - p[1]) / (q[1] - p[1]) * (q[0] - p[0])) in = !in;
-    }
-    return in;
-}
-
 }  // namespace
 
-double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, double tolerance) {
-    constexpr int kSamples = 12;
-    const Vec<2> h = (1.0 / kSamples) * (box.hi - box.lo);
+double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, const FaceDemands& demands,
+                           int samples) {
+    // Half of the error for each direction, and what mixed derivatives ask for beside it; halving makes boxes
+    // finer than necessary, by kHalving on average.
+    constexpr double kHalving = 1.5;
+    const double part = 1.0 / samples, allowed = 8 * demands.tolerance;
+    const Vec<2> h = part * (box.hi - box.lo);
     double sum = 0;
-    for (int i = 0; i < kSamples; ++i)
-        for (int k = 0; k < kSamples; ++k) {
+    for (int i = 0; i < samples; ++i)
+        for (int k = 0; k < samples; ++k) {
             const auto j = jet<2>(surface, {box.lo[0] + (i + 0.5) * h[0], box.lo[1] + (k + 0.5) * h[1]});
-            sum += 2 * std::sqrt(1.0 / kSamples / kSamples + norm(j(2, 0)) * h[0] * h[0] / 8 / tolerance) *
-                   std::sqrt(1.0 / kSamples / kSamples + norm(j(0, 2)) * h[1] * h[1] / 8 / tolerance);
+            const auto cuts = [&](const Vec<3>& first, const Vec<3>& second, double length) {
+                const double by_length = norm(first) * length / demands.max_edge;
+                return std::sqrt(part * part + 2 * kHalving * norm(second) * length * length / allowed +
+                                 by_length * by_length);
+            };
+            sum += 2 * (cuts(j(1, 0), j(2, 0), h[0]) * cuts(j(0, 1), j(0, 2), h[1]) +
+                        2 * kHalving * norm(j(1, 1)) * h[0] * h[1] / allowed);
         }
     return std::isfinite(sum) ? sum : 0;
 }
@@ -111,8 +93,9 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 
 Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                                           std::span<const Vec<2>> polygon,
-                                          std::span<const std::array<int, 2>> segments, double tolerance,
-                                          std::size_t max_leaves) {
+                                          std::span<const std::array<int, 2>> segments,
+                                          const FaceDemands& demands, std::size_t max_leaves) {
+    const double tolerance = demands.tolerance;
     CurvatureTree tree;
     for (std::size_t d = 0; d < 2; ++d)
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
@@ -122,18 +105,21 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         int node, depth;
         Curvature outer;
         std::vector<std::array<int, 2>> near;
+        bool inside = false;  // wholly
     };
     std::vector<Item> stack;
     tree.nodes_.push_back({root, {}, -1, false});
     constexpr double kAny = std::numeric_limits<double>::infinity();
-    stack.push_back({0, 0, {kAny, kAny, kAny}, {segments.begin(), segments.end()}});
+    stack.push_back({0, 0, {kAny, kAny, kAny}, {segments.begin(), segments.end()}, false});
     std::size_t leaves = 1;
     while (!stack.empty()) {
         const Item item = std::move(stack.back());
         stack.pop_back();
         const Box<2> box = tree.nodes_[std::size_t(item.node)].box;
         const Vec<2> size = box.hi - box.lo;
-        if (item.near.empty() && !is_inside(0.5 * (box.lo + box.hi), polygon, segments)) {
+        const bool inside =
+            item.inside || (item.near.empty() && is_inside(0.5 * (box.lo + box.hi), polygon, segments));
+        if (item.near.empty() && !inside) {
             tree.nodes_[std::size_t(item.node)].outside = true;
             continue;
         }
@@ -146,7 +132,9 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         const double kinks =
             kink_bound_of(tree.kinks_[0], box.side(0)) + kink_bound_of(tree.kinks_[1], box.side(1));
         const double error = c.along(size[0], size[1]) / 8 + kinks;
-        if (error <= tolerance || !(size[0] > 0) || !(size[1] > 0)) continue;
+        const double length[2] = {bounds(1, 0) * size[0], bounds(0, 1) * size[1]};
+        const bool short_enough = std::max(length[0], length[1]) <= demands.max_edge;
+        if ((error <= tolerance && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
         if (item.depth == kMaxDepth) {
             if (!std::isfinite(error))
                 return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
@@ -161,7 +149,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         int axis = c.uu * size[0] * size[0] >= c.vv * size[1] * size[1] ? 0 : 1;
         if (c.uv * size[0] * size[1] > std::max(c.uu * size[0] * size[0], c.vv * size[1] * size[1]) ||
             !std::isfinite(error))
-            axis = bounds(1, 0) * size[0] >= bounds(0, 1) * size[1] ? 0 : 1;
+            axis = length[0] >= length[1] ? 0 : 1;
+        if (error <= tolerance) axis = length[0] >= length[1] ? 0 : 1;  // it is too long only
         double at = box.side(axis).middle(), nearest = size[axis];
         for (int d = 0; d < 2; ++d)
             for (const Kink& k : tree.kinks_[std::size_t(d)])
@@ -175,7 +164,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         for (int half = 1; half >= 0; --half) {
             Box<2> part = box;
             (half == 0 ? part.hi : part.lo)[axis] = at;
-            Item next{child + half, item.depth + 1, c, {}};
+            Item next{child + half, item.depth + 1, c, {}, inside};
             for (const auto& s : item.near)
                 if (meets(part, polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]))
                     next.near.push_back(s);

@@ -1,7 +1,7 @@
 // Where a surface curves how much: a binary tree of parameter boxes, each with proven bounds of the second
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
-#include <freiform/spline/derivative_bounds.hpp>
+#include <freiform/mesh/face_mesh.hpp>
 
 #include <optional>
 #include <vector>
@@ -30,12 +30,12 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 class CurvatureTree {
 public:
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut
-    // into two triangles whose interpolation bound is at most `tolerance`. Boxes wholly outside by the
-    // odd-even rule are left. Refuses (limit) when more than `max_leaves` are needed, (ill_conditioned) where
-    // no bound is finite.
+    // into two triangles whose interpolation bound is at most demands.tolerance, with sides along the axes of
+    // at most demands.max_edge. Boxes wholly outside by the odd-even rule are left. Refuses (limit) when more
+    // than `max_leaves` are needed, (ill_conditioned) where no bound is finite.
     static Result<CurvatureTree> make(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
-                                      std::span<const std::array<int, 2>> segments, double tolerance,
-                                      std::size_t max_leaves);
+                                      std::span<const std::array<int, 2>> segments,
+                                      const FaceDemands& demands, std::size_t max_leaves);
 
     // Bounds over the part of the box that is not wholly outside the polygon.
     Curvature over(const Box<2>& box) const;

@@ -50,7 +50,9 @@ std::vector<int> insertion_order(std::span<const Vec<2>> points) {
     double largest = 0;
     for (const Vec<2>& p : points) largest = std::max(largest, max_abs(p));
     const int exponent = largest > 0 ? std::ilogb(largest) : 0;
-    const auto scaled = [&](const Vec<2>& p, int k) { return std::scalbn(p[k], -exponent); };  // in (-2, 2)
+    // In two steps, as 2^-exponent alone may overflow; exact but for what vanishes beside the largest.
+    const double once = std::ldexp(1.0, -exponent / 2), twice = std::ldexp(1.0, -exponent - -exponent / 2);
+    const auto scaled = [&](const Vec<2>& p, int k) { return p[k] * once * twice; };  // in (-2, 2)
     std::array<double, 2> low{2, 2}, high{-2, -2};
     for (const Vec<2>& p : points)
         for (int k = 0; k < 2; ++k) {

@@ -54,11 +54,7 @@ EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<Deriv
                 auto use = std::make_unique<CoedgeQuery>();
                 use->face = int(f), use->loop = int(l), use->index = int(c);
                 use->coedge = &coedges[c];
-                for (int i = 0; i < 2; ++i) {
-                    use->component[i] = component_of(coedges[c].curve, i);
-                    use->bounds[i] = std::make_unique<DerivativeQuery<1, 1>>(use->component[i]);
-                }
-                use->both = std::make_unique<DerivativeQuery<1, 2>>(coedges[c].curve);
+                use->curve = std::make_unique<DerivativeQuery<1, 2>>(coedges[c].curve);
                 edges_[std::size_t(coedges[c].edge)].uses.push_back(std::move(use));
             }
         }
@@ -82,8 +78,8 @@ SegmentError EdgeMesher::error(int edge, double a, double b) const {
     if (mesh.curve) out.polyline = h2 * (*mesh.curve)({Interval{a, b}})(2);
     for (const auto& use : mesh.uses) {
         const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
-        const DerivativeBounds<1> du = (*use->bounds[0])({Interval{a, b}}),
-                                  dv = (*use->bounds[1])({Interval{a, b}});
+        const PlaneCurveBounds plane = coordinate_bounds(*use->curve, {a, b});
+        const DerivativeBounds<1>&du = plane.coordinate[0], &dv = plane.coordinate[1];
         const Vec<2> from = jet<0>(use->coedge->curve, a).value(), to = jet<0>(use->coedge->curve, b).value();
         const Vec<2> chord = to - from, sag{{h2 * du(2), h2 * dv(2)}};
         Box<2> box;
@@ -107,8 +103,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b) const {
         const double uu = dot(j.d[1], j.d[1]), vv = dot(j.d[2], j.d[2]), uv = dot(j.d[1], j.d[2]);
         const double stretch = 1.0000001 * std::sqrt((uu + vv + std::hypot(uu - vv, 2 * uv)) / 2) +
                                (s(2, 0) + s(1, 1)) * size[0] / 2 + (s(1, 1) + s(0, 2)) * size[1] / 2;
-        const double bend =
-            std::min(s(1, 0) * du(2) + s(0, 1) * dv(2), stretch * (*use->both)({Interval{a, b}})(2));
+        const double bend = std::min(s(1, 0) * du(2) + s(0, 1) * dv(2), stretch * plane.both(2));
         out.polyline = std::max(
             {out.polyline, h2 * (along(du(1), dv(1)) + bend) + kinks, along(chord[0], chord[1]) / 8 + kinks});
     }
@@ -118,7 +113,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b) const {
 // How many segments the curvature at samples asks for: tells hopeless tolerances before they take time. Only
 // an estimate; bounds over long intervals would be far too large for it.
 double EdgeMesher::estimate(int edge, double tolerance) const {
-    constexpr int kSamples = 32;
+    constexpr int kSamples = 8;
     const Edge& e = model_.edges[std::size_t(edge)];
     if (!e.curve) return 0;
     const double h = e.range.length() / kSamples;
@@ -128,7 +123,7 @@ double EdgeMesher::estimate(int edge, double tolerance) const {
     return std::isfinite(sum) ? sum : 0;
 }
 
-Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_segments) {
+Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, std::size_t max_segments) {
     EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
     const Interval on = e.range;
@@ -138,7 +133,7 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_
             if (on.lo < k.at && k.at < on.hi) must.push_back(k.at);
     };
     if (mesh.curve) add_kinks(mesh.curve->kinks(0));
-    for (const auto& use : mesh.uses) add_kinks(use->both->kinks(0));
+    for (const auto& use : mesh.uses) add_kinks(use->curve->kinks(0));
     // A closed edge must not collapse to a slit.
     if (e.start == e.end && !e.degenerate)
         for (int k = 1; k < 4; ++k) must.push_back(on.lo + on.length() * (k / 4.0));
@@ -158,8 +153,10 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, std::size_t max_
         stack.pop_back();
         const SegmentError err = error(edge, a, b);
         const double middle = a + (b - a) / 2;
-        const bool done =
-            err.polyline <= tolerance && err.triangle <= tolerance && err.sliver <= tolerance / 32;
+        const bool short_enough =
+            e.degenerate || !std::isfinite(longest) || norm(position(edge, b) - position(edge, a)) <= longest;
+        const bool done = short_enough && err.polyline <= tolerance && err.triangle <= tolerance &&
+                          err.sliver <= tolerance / 32;
         if (done || !(a < middle && middle < b)) {
             if (!done)
                 return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),

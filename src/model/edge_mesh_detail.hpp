@@ -19,9 +19,7 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i);
 struct CoedgeQuery {
     int face = -1, loop = -1, index = -1;
     const Coedge* coedge = nullptr;
-    CurveGeometry<1> component[2];  // u(t) and v(t)
-    std::unique_ptr<DerivativeQuery<1, 1>> bounds[2];
-    std::unique_ptr<DerivativeQuery<1, 2>> both;
+    std::unique_ptr<DerivativeQuery<1, 2>> curve;
 };
 
 struct EdgeMesh {
@@ -44,8 +42,9 @@ public:
     // `faces`: one query per face of the model, in order. All must outlive the mesher.
     EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces);
 
-    // Parameters for which every segment keeps the tolerance. Refuses (limit) beyond `max_segments`.
-    Result<void> discretise(int edge, double tolerance, std::size_t max_segments);
+    // Parameters for which every segment keeps the tolerance and is at most `longest` long. Refuses (limit)
+    // beyond `max_segments`.
+    Result<void> discretise(int edge, double tolerance, double longest, std::size_t max_segments);
     // Cuts segment `index` of the edge into two.
     void split(int edge, int index);
 

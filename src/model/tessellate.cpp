@@ -8,6 +8,7 @@
 // non-manifold. Accuracy: see curvature_tree.cpp for triangles and edge_mesh.cpp for what lies between
 // polygon and parameter curve. The rounding of evaluated points is added to the bound.
 #include "face_boundary_detail.hpp"
+#include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/mesh/face_mesh.hpp>
@@ -47,7 +48,6 @@ public:
 private:
     std::size_t faces() const { return model_.faces.size(); }
     bool is_refused(std::size_t f) const { return refusals_[f].has_value(); }
-    Result<void> check_budget() const;
     Result<void> discretise_edges();
     void number_points();
     void assemble(std::size_t face);
@@ -56,7 +56,8 @@ private:
     Result<void> fill(std::span<const std::size_t> which);
     std::vector<std::size_t> non_manifold_faces();
     Tessellation collect();
-    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards) const;
+    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards,
+                     const Jet<2, 1, Vec<3>>& here) const;
     double rounding_of(std::size_t face) const;
 
     const Model& model_;
@@ -71,31 +72,13 @@ private:
     std::vector<std::optional<Refusal>> refusals_;
 };
 
-// Refuses what is beyond the limit by far; what is near it is counted while it is made.
-Result<void> Tessellator::check_budget() const {
-    double sum = 0;
-    for (const Face& face : model_.faces) {
-        Box<2> box;
-        for (const Loop& l : face.loops)
-            for (const Coedge& c : l.coedges)
-                for (int k = 0; k <= 8; ++k) {
-                    const Interval on = model_.edges[std::size_t(c.edge)].range;
-                    box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
-                }
-        if (!box.is_empty()) sum += estimated_triangles(face.surface, box, tolerance_);
-    }
-    if (sum > kFarBeyond * double(options_.max_triangles))
-        return refuse(RefusalKind::limit, "max_triangles",
-                      text("the tolerance ", options_.tolerance, " needs about ", std::ceil(sum),
-                           " triangles, the limit is ", options_.max_triangles));
-    return {};
-}
-
 Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
     parallel_for(model_.edges.size(), 4, [&](std::size_t e) {
         if (edges_->mesh(int(e)).uses.empty()) return;
-        if (auto ok = edges_->discretise(int(e), tolerance_, std::size_t(options_.max_triangles)); !ok)
+        if (auto ok = edges_->discretise(int(e), tolerance_, options_.max_edge,
+                                         std::size_t(options_.max_triangles));
+            !ok)
             failed[e] = ok.error();
     });
     for (std::size_t e = 0; e < failed.size(); ++e) {
@@ -210,8 +193,8 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     parallel_for(which.size(), 1, [&](std::size_t i) {
         const std::size_t f = which[i];
         if (is_refused(f) || stop) return;
-        auto mesh =
-            mesh_face(*queries_[f], boundaries_[f].polygon, tolerance_, options_.max_triangles, extra_[f]);
+        auto mesh = mesh_face(*queries_[f], boundaries_[f].polygon, {tolerance_, options_.max_edge},
+                              options_.max_triangles, extra_[f]);
         if (mesh) {
             if ((total += (long long)(mesh->triangles.size())) > options_.max_triangles) stop = true;
             meshes_[f] = std::move(*mesh);
@@ -280,12 +263,14 @@ std::vector<std::size_t> Tessellator::non_manifold_faces() {
     return {again.begin(), again.end()};
 }
 
-// Unit normal; where the surface has none (a pole), that of a point a little inside the triangle.
-Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards) const {
+// Unit normal, from the jet at uv; where the surface has none (a pole), that of a point a little inside the
+// triangle.
+Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
+                              const Jet<2, 1, Vec<3>>& here) const {
     const SurfaceGeometry& surface = model_.faces[f].surface;
     for (double step : {0.0, 1e-6, 1e-4, 1e-2, 0.5}) {
         const Vec<2> at = (1 - step) * uv + step * inwards;
-        const auto j = jet<1>(surface, at.c);
+        const auto j = step == 0 ? here : jet<1>(surface, at.c);
         const Vec<3> m = cross(j.d[1], j.d[2]);
         if (norm(m) > 1e-9 * norm(j.d[1]) * norm(j.d[2]) && max_abs(j.d[1]) > 0 && max_abs(j.d[2]) > 0) {
             // A vanishing derivative leaves the direction of the other to chance.
@@ -334,11 +319,12 @@ Tessellation Tessellator::collect() {
             MeshVertex v;
             v.uv = m.uv[i];
             v.point = m.point[i];
+            const auto here = jet<1>(face.surface, m.uv[i].c);
             if (v.point < 0) {
                 v.point = int(out.mesh.points.size());
-                out.mesh.points.push_back(jet<0>(face.surface, m.uv[i].c).value());
+                out.mesh.points.push_back(here.value());
             }
-            v.normal = normal_at(f, m.uv[i], inwards[i]);
+            v.normal = normal_at(f, m.uv[i], inwards[i], here);
             if (flip) v.normal = -v.normal;
             out.mesh.vertices.push_back(v);
         }
@@ -375,6 +361,7 @@ Result<Tessellation> Tessellator::run() {
     rounding_ = 1e-12 * box.scale();
     // Room for the sliver between polygon and parameter curve (a 32nd) and for rounding.
     tolerance_ = options_.tolerance * (1 - 1.0 / 16);
+    if (auto ok = check_budget(model_, options_); !ok) return std::unexpected(ok.error());
     for (std::size_t f = 0; f < faces(); ++f) {
         queries_[f] = std::make_unique<DerivativeQuery<2, 3>>(model_.faces[f].surface);
         if (model_.faces[f].loops.empty())
@@ -386,7 +373,6 @@ Result<Tessellation> Tessellator::run() {
                                            "the surface is torn here (a knot of multiplicity degree + 1)"};
     }
     edges_ = std::make_unique<EdgeMesher>(model_, queries_);
-    if (auto ok = check_budget(); !ok) return std::unexpected(ok.error());
     if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
     resolve_conflicts();
     const double meshed_edges = now();
@@ -410,6 +396,8 @@ Result<Tessellation> tessellate(const Model& model, const TessellateOptions& opt
                       text(options.tolerance, " is not a finite number"));
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not positive"));
+    if (!(options.max_edge > 0))
+        return refuse(RefusalKind::invalid, "max_edge", text(options.max_edge, " is not positive"));
     return Tessellator(model, options).run();
 }
 

@@ -25,7 +25,8 @@
 //    P' is at least P (1 - u)^11; 16u P' exceeds the error. Underflow: with S' = sum of the lifts, minors are
 //    at most S' (arithmetic and geometric mean), so underflow (eta = 2^-1075 each) adds at most 3 (2 eta S' +
 //    2 eta S' + 2 eta)(1 + small) < 2^-1070 (1 + S'), which is less than 2^-110 P' if P' > 2^-960 (1 + S').
-//    The gap from 11.1u to 16u covers it.
+//    The gap from 11.1u to 16u covers it. Rectangles parallel to the axes, which grids are full of, are told
+//    by comparing coordinates.
 // 3. Expansions [Shewchuk 1997]: two_sum, and two_product by fma, give the rounding error as a second double;
 // sums of
 //    two expansions (his theorem 13, with zeros left out) and products with a double (theorem 19) keep the
@@ -195,6 +196,19 @@ std::optional<int> filtered_sign(const PlanePoints<3>& p) {
     return std::nullopt;
 }
 
+// Corners of an axis-parallel rectangle in any order: one pairing has equal x, another equal y. They lie on a
+// circle (or on a line, or two are equal); grids are made of them.
+bool is_rectangle(const PlanePoints<4>& p) {
+    constexpr std::size_t kPairing[3][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
+    const auto paired = [&](std::size_t i, int k) {
+        const auto& n = kPairing[i];
+        return p[n[0]][k] == p[n[1]][k] && p[n[2]][k] == p[n[3]][k];
+    };
+    for (std::size_t i = 0; i < 3; ++i)
+        if (paired(i, 0)) return paired((i + 1) % 3, 1) || paired((i + 2) % 3, 1);
+    return false;
+}
+
 std::optional<int> filtered_sign(const PlanePoints<4>& p) {
     const auto& [a, b, c, d] = p;
     const double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
@@ -204,8 +218,8 @@ std::optional<int> filtered_sign(const PlanePoints<4>& p) {
     const double det = la * (bc - cb) + lb * (ca - ac) + lc * (ab - ba);
     const double size = la * (std::abs(bc) + std::abs(cb)) + lb * (std::abs(ca) + std::abs(ac)) +
                         lc * (std::abs(ab) + std::abs(ba));
-    if (std::abs(det) > 16 * kUnitRoundoff * size && size > 0x1p-960 * (1 + la + lb + lc))
-        return sign_of(det);
+    if (std::abs(det) > 16 * kU * size && size > 0x1p-960 * (1 + la + lb + lc)) return sign_of(det);
+    if (is_rectangle(p)) return 0;
     return std::nullopt;
 }
 

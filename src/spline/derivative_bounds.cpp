@@ -1,17 +1,13 @@
-// Bounds of derivatives from control points.
+// Bounds of derivatives of curves and surfaces from those of their parts: Bezier blocks (block_bounds.cpp),
+// profiles, offset bases.
 //
-// Idea: a derivative of a Bezier block is a Bezier block of differences, and a block lies in the convex hull
-// of its coefficients; so the largest difference bounds the derivative. Restricting the block to a smaller
-// box (de Casteljau) makes the bound as tight as wanted, quadratically in the size of the box. Notation: A
-// numerator, w weight, c = A / w the point, c0 any fixed point near the block, A^ = A - c0 w. Then A^ / w = c
-// - c0, |c - c0| <= r = max |A^_i| / w_i, and by Leibniz, for a > 0,
-//     c_a = (A^_a - sum_{0 < b < a} C(a, b) w_b c_{a-b} - w_a (c - c0)) / w,
-// so |c_a| <= (|A^_a| + sum C(a, b) |w_b| |c_{a-b}| + |w_a| r) / w_min. Without the shift to c0 the bound
-// would depend on the distance from the origin. Accuracy: differences carry the rounding of Bezier extraction
-// and restriction. Each coefficient of the block is off by at most e = (sum_d 12 p_d + 8) u max|A_i| (see
-// patch_detail.hpp), a difference of order k by 2^k e; this is added, so that the bound holds for the exact
-// block. Offsets: O = S + d n with n = m / |m|, m = S_u x S_v:   |n_a| <= |m_a| / L,  |n_ab| <= |m_ab| / L +
-// 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the variation by m_u, m_v.
+// Idea: restricting a block to a smaller box (de Casteljau) makes the bound as tight as wanted, quadratically
+// in the size of the box.
+//
+// Offsets: O = S + d n with n = m / |m|, m = S_u x S_v:   |n_a| <= |m_a| / L,  |n_ab|
+// <= |m_ab| / L + 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the
+// variation by m_u, m_v.
+//
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
@@ -24,169 +20,13 @@ namespace freiform {
 
 namespace {
 
-constexpr int kMostBernstein = kMaxDegree + 1;
-constexpr double kSmallestBlock = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
+constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kShortest = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
-// The net of differences of order `a`, of the numerator after shifting to c0 and of the weight: the largest
-// of them, and their values in the middle of the block.
-template <int D>
-struct Differences {
-    double most = 0, weight_most = 0;
-    Vec<D> middle{};
-    double weight_middle = 0;
-};
-template <std::size_t N, class P>
-Differences<Space<P>::kDim> differences(const NetView<N, const P>& net, const Index<N>& a,
-                                        const PointOf<P>& c0) {
-    constexpr int D = Space<P>::kDim;
-    Index<N> extent = net.extent, terms{};
-    Differences<D> out;
-    for (std::size_t d = 0; d < N; ++d) {
-        extent[d] -= a[d];
-        if (extent[d] <= 0) return out;
-        terms[d] = a[d] + 1;
-    }
-    // (-1)^(a - k) C(a, k), and the Bernstein polynomials at 1/2, along each axis.
-    std::array<std::array<double, kBoundOrder + 1>, N> sign{};
-    std::array<std::array<double, kMostBernstein>, N> bernstein{};
-    for (std::size_t d = 0; d < N; ++d) {
-        for (int k = 0; k <= a[d]; ++k)
-            sign[d][std::size_t(k)] = ((a[d] - k) % 2 == 0 ? 1 : -1) * binomial(a[d], k);
-        for (int i = 0; i < extent[d]; ++i)
-            bernstein[d][std::size_t(i)] = std::ldexp(binomial(extent[d] - 1, i), 1 - extent[d]);
-    }
-    double most = 0;
-    each_index(extent, [&](const Index<N>& at) {
-        Vec<D> sum{};
-        double weight_sum = 0, share = 1;
-        each_index(terms, [&](const Index<N>& k) {
-            double factor = 1;
-            Index<N> from = at;
-            for (std::size_t d = 0; d < N; ++d) {
-                factor *= sign[d][std::size_t(k[d])];
-                from[d] += k[d];
-            }
-            const P& p = net(from);
-            const double w = Space<P>::weight(p);
-            for (int i = 0; i < D; ++i) sum[i] += factor * (p[i] - w * c0[i]);
-            weight_sum += factor * w;
-        });
-        for (std::size_t d = 0; d < N; ++d) share *= bernstein[d][std::size_t(at[d])];
-        most = std::max(most, dot(sum, sum));
-        out.weight_most = std::max(out.weight_most, std::abs(weight_sum));
-        out.middle += share * sum;
-        out.weight_middle += share * weight_sum;
-    });
-    out.most = std::sqrt(most) * (1 + 8 * kUnitRoundoff);
-    if (!Space<P>::kRational) out.weight_most = 0;
-    return out;
-}
-
-template <std::size_t N>
-int total(const Index<N>& a) {
-    int sum = 0;
-    for (int x : a) sum += x;
-    return sum;
-}
-
-}  // namespace
-
-template <std::size_t N, class P>
-DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
-                                      int order) {
-    constexpr int D = Space<P>::kDim;
-    double steps = 8, largest = 0, weight_min = kInfinity, weight_max = 0;
-    Index<N> centre{};
-    for (std::size_t d = 0; d < N; ++d) {
-        steps += 12 * (net.extent[d] - 1);
-        centre[d] = net.extent[d] / 2;
-    }
-    const PointOf<P> c0 = project(net(centre));
-    double radius = 0;
-    each_index(net.extent, [&](const Index<N>& at) {
-        const P& p = net(at);
-        const double w = Space<P>::weight(p);
-        weight_min = std::min(weight_min, w);
-        weight_max = std::max(weight_max, w);
-        Vec<D> shifted;
-        for (int i = 0; i < D; ++i) {
-            shifted[i] = p[i] - w * c0[i];
-            largest = std::max(largest, std::abs(p[i]));
-        }
-        radius = std::max(radius, norm(shifted) / w);
-    });
-    const double slip = steps * kUnitRoundoff * largest,
-                 weight_slip = Space<P>::kRational ? steps * kUnitRoundoff * weight_max : 0;
-    radius += 2 * slip / weight_min;
-
-    DerivativeBounds<N> out;
-    std::array<double, jet_size(N, kBoundOrder)> weight{}, weight_middle{};
-    std::array<Vec<D>, jet_size(N, kBoundOrder)> middle{};
-    out.d[0] = radius;
-    Index<N> extent{};
-    const int top = Space<P>::kRational ? std::min(order + 1, kBoundOrder) : order;
-    for (auto& e : extent) e = top + 1;
-    for (int sum = 0; sum <= top; ++sum)
-        each_index(extent, [&](const Index<N>& a) {
-            if (total(a) != sum || (sum == 0 && !Space<P>::kRational)) return;
-            double factor = 1;
-            for (std::size_t d = 0; d < N; ++d)
-                for (int k = 0; k < a[d]; ++k) factor *= double(net.extent[d] - 1 - k) / width[d];
-            if (!(factor > 0) && !Space<P>::kRational) return;  // order above the degree: exactly zero
-            const std::size_t slot = jet_slot(a);
-            const auto found = differences(net, a, c0);
-            const double rounding = std::ldexp(1.0, sum);
-            double most = std::abs(factor) * (found.most + rounding * 2 * slip);
-            if constexpr (Space<P>::kRational) {
-                weight[slot] = std::abs(factor) * (found.weight_most + rounding * weight_slip);
-                weight_middle[slot] = factor * found.weight_middle;
-                middle[slot] = factor * found.middle;
-                Index<N> below{};
-                for (std::size_t d = 0; d < N; ++d) below[d] = a[d] + 1;
-                each_index(below, [&](const Index<N>& b) {
-                    if (total(b) == 0) return;
-                    double choose = 1;
-                    Index<N> rest{};
-                    for (std::size_t d = 0; d < N; ++d) {
-                        choose *= binomial(a[d], b[d]);
-                        rest[d] = a[d] - b[d];
-                    }
-                    most += choose * weight[jet_slot(b)] * out.d[jet_slot(rest)];
-                    middle[slot] -= (choose * weight_middle[jet_slot(b)]) * middle[jet_slot(rest)];
-                });
-                most /= weight_min * (1 - 16 * steps * kUnitRoundoff);
-                middle[slot] *= 1 / weight_middle[0];
-            }
-            if (sum > 0) out.d[slot] = most * (1 + 64 * kUnitRoundoff);
-        });
-    if constexpr (Space<P>::kRational) {
-        // The triangle inequality lost the signs; from the middle outwards they are kept.
-        const DerivativeBounds<N> crude = out;
-        for (int sum = top - 1; sum >= 1; --sum)
-            each_index(extent, [&](const Index<N>& a) {
-                if (total(a) != sum) return;
-                const std::size_t slot = jet_slot(a);
-                double here = norm(middle[slot]);
-                for (std::size_t d = 0; d < N; ++d) {
-                    Index<N> more = a;
-                    ++more[d];
-                    here += width[d] / 2 * out.d[jet_slot(more)];
-                }
-                // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
-                here += 64 * steps * kUnitRoundoff * crude.d[slot];
-                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kUnitRoundoff));
-            });
-        for (std::size_t slot = jet_size(N, order); slot < out.d.size(); ++slot) out.d[slot] = 0;
-    }
-    return out;
-}
-
-namespace {
-
-// The bound over the pieces of a spline that meet the box, each restricted to its part of it.
-template <std::size_t N, class P>
-DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box,
-                              int order) {
+// Calls f(net, widths) for the pieces of a spline that meet the box, each restricted to its part of it.
+template <std::size_t N, class P, class F>
+void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box, F&& f) {
     Index<N> from{}, count{};
     for (std::size_t d = 0; d < N; ++d) {
         const auto& b = pieces.breaks(int(d));
@@ -198,7 +38,6 @@ DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array
         from[d] = first;
         count[d] = last - first + 1;
     }
-    DerivativeBounds<N> out;
     std::vector<P> block;
     each_index(count, [&](const Index<N>& k) {
         Index<N> piece{};
@@ -232,9 +71,28 @@ DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array
             });
             width[d] = hi - lo;
         }
-        out.include(derivative_bounds<N, P>(own, width, order));
+        f(NetView<N, const P>(own), width);
+    });
+}
+
+template <std::size_t N, class P>
+DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box,
+                              int order) {
+    DerivativeBounds<N> out;
+    each_part(pieces, box, [&](const NetView<N, const P>& net, const std::array<double, N>& width) {
+        out.include(derivative_bounds<N, P>(net, width, order));
     });
     return out;
+}
+
+// One coordinate of the coefficients of a plane curve.
+void coordinate(const NetView<1, const Vec<2>>& net, int i, std::vector<Vec<1>>& out) {
+    out.clear();
+    for (int k = 0; k < net.extent[0]; ++k) out.push_back({{net({k})[i]}});
+}
+void coordinate(const NetView<1, const Hom<2>>& net, int i, std::vector<Hom<1>>& out) {
+    out.clear();
+    for (int k = 0; k < net.extent[0]; ++k) out.push_back({{net({k})[i], net({k}).weight()}});
 }
 
 template <int D>
@@ -426,25 +284,43 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
         *geometry_);
 }
 
+PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>& curve, Interval on) {
+    PlaneCurveBounds out;
+    const auto of_pieces = [&]<class P>(const BezierPieces<1, P>& pieces) {
+        std::vector<std::conditional_t<Space<P>::kRational, Hom<1>, Vec<1>>> one;
+        using Q = typename decltype(one)::value_type;
+        each_part(pieces, {on}, [&](const NetView<1, const P>& net, const std::array<double, 1>& width) {
+            out.both.include(derivative_bounds<1, P>(net, width, 2));
+            for (int i = 0; i < 2; ++i) {
+                coordinate(net, i, one);
+                out.coordinate[std::size_t(i)].include(
+                    derivative_bounds<1, Q>({one.data(), net.extent, {1}}, width, 2));
+            }
+        });
+    };
+    std::visit(
+        [&](const auto& g) {
+            using G = std::remove_cvref_t<decltype(g)>;
+            if constexpr (requires { g.net(); }) {
+                of_pieces(std::get<BezierPieces<1, typename G::Coefficients>>(curve.pieces_));
+            } else {
+                out.both = bounds_of(g, on);
+                for (int i = 0; i < 2; ++i) {
+                    auto& c = out.coordinate[std::size_t(i)];
+                    if constexpr (std::same_as<G, Line<2>>)
+                        c = bounds_of(Line<1>{{{g.origin[i]}}, {{g.direction[i]}}}, on);
+                    else
+                        c = bounds_of(Conic<1>{g.kind, {{g.centre[i]}}, {{g.x[i]}}, {{g.y[i]}}}, on);
+                }
+            }
+        },
+        *curve.geometry_);
+    return out;
+}
+
 template class DerivativeQuery<1, 1>;
 template class DerivativeQuery<1, 2>;
 template class DerivativeQuery<1, 3>;
 template class DerivativeQuery<2, 3>;
-#define FF_INSTANTIATE(P)                                                                                    \
-    template DerivativeBounds<1> derivative_bounds(const NetView<1, const P>&, const std::array<double, 1>&, \
-                                                   int);
-FF_INSTANTIATE(Vec<1>)
-FF_INSTANTIATE(Hom<1>)
-FF_INSTANTIATE(Vec<2>)
-FF_INSTANTIATE(Hom<2>)
-FF_INSTANTIATE(Vec<3>)
-FF_INSTANTIATE(Hom<3>)
-FF_INSTANTIATE(Vec<4>)
-FF_INSTANTIATE(Hom<4>)
-#undef FF_INSTANTIATE
-template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
-                                               int);
-template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,
-                                               int);
 
 }  // namespace freiform

@@ -155,6 +155,24 @@ int wrong_answers(int n, const char* name) {
 }
 
 TEST(Predicates, orient2d_is_never_wrong) { EXPECT_EQ(wrong_answers<3>(24000, "orient2d"), 0); }
+TEST(Predicates, corners_of_rectangles_are_on_a_circle_and_nothing_beside_them_is) {
+    const double x[2] = {0.1, 0.7}, y[2] = {-3.3, 1e-5};
+    std::array<Vec<2>, 4> p{{{{x[0], y[0]}}, {{x[1], y[0]}}, {{x[1], y[1]}}, {{x[0], y[1]}}}};
+    std::array<int, 4> order{0, 1, 2, 3};
+    do {
+        const auto at = [&](std::size_t i) { return p[std::size_t(order[i])]; };
+        EXPECT_EQ(in_circle(at(0), at(1), at(2), at(3)), 0);
+        for (int k = 0; k < 2; ++k)  // two pairs are equal in one coordinate, and one pair in the other
+            for (const double to : {-9.0, 9.0}) {
+                Vec<2> q = at(3);
+                q[k] = std::nextafter(q[k], to);
+                const int s = in_circle(at(0), at(1), at(2), q);
+                EXPECT_NE(s, 0);
+                EXPECT_EQ(s, detail::integer_sign({at(0), at(1), at(2), q}));
+            }
+    } while (std::next_permutation(order.begin(), order.end()));
+}
+
 TEST(Predicates, in_circle_is_never_wrong) { EXPECT_EQ(wrong_answers<4>(8000, "in_circle"), 0); }
 
 // Rotating the points keeps the sign, swapping two reverses it.

@@ -100,4 +100,41 @@ TEST(DerivativeBounds, kinks_are_found_and_their_jumps_bounded) {
     for (const Kink& k : circle_query.kinks(0)) EXPECT_LE(k.jump, 1e-12);
 }
 
+TEST(DerivativeBounds, of_coordinates_of_plane_curves_hold_for_each_by_itself) {
+    std::mt19937 rng(8);
+    const auto basis = *BSplineBasis::clamped_uniform(3, 7);
+    std::vector<Vec<2>> p;
+    std::vector<Hom<2>> h;
+    for (int i = 0; i < 7; ++i) {
+        p.push_back({{uniform(rng, -1, 1), 0.01 * uniform(rng, -1, 1)}});
+        h.push_back(weighted(p.back(), uniform(rng, 0.5, 2)));
+    }
+    const CurveGeometry<2> curves[] = {Line<2>{{{1, 2}}, {{3, 0.5}}},
+                                       Conic<2>{ConicKind::ellipse, {{1, 0}}, {{2, 0}}, {{0, 0.1}}},
+                                       *Curve<Vec<2>>::make({basis}, Net<1, Vec<2>>({7}, p)),
+                                       *Curve<Hom<2>>::make({basis}, Net<1, Hom<2>>({7}, h))};
+    for (const auto& curve : curves) {
+        const DerivativeQuery<1, 2> query(curve);
+        for (int k = 0; k < 40; ++k) {
+            const double lo = uniform(rng, 0, 3), hi = lo + uniform(rng, 0.05, 1);
+            const PlaneCurveBounds bounds = coordinate_bounds(query, {lo, hi});
+            Vec<2> most[3] = {};
+            for (int i = 0; i <= 30; ++i) {
+                const auto j = jet<2>(curve, lo + (hi - lo) * i / 30);
+                for (int order = 1; order <= 2; ++order)
+                    for (int c = 0; c < 2; ++c)
+                        most[order][c] = std::max(most[order][c], std::abs(j(order)[c]));
+            }
+            for (int order = 1; order <= 2; ++order) {
+                EXPECT_EQ(bounds.both(order), query({Interval{lo, hi}})(order));
+                for (int c = 0; c < 2; ++c) {
+                    const double bound = bounds.coordinate[std::size_t(c)](order);
+                    EXPECT_LE(most[order][c], bound * (1 + 1e-12) + 1e-12) << order << " " << c;
+                    EXPECT_LE(bound, bounds.both(order) * (1 + 1e-9) + 1e-9) << order << " " << c;
+                }
+            }
+        }
+    }
+}
+
 }  // namespace

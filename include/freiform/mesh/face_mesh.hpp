@@ -4,6 +4,7 @@
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,14 +35,24 @@ struct FaceMesh {
     double bound = 0;  // of the interpolation error of all triangles
 };
 
-// About how many triangles the part of the surface over `box` needs: from its curvature at samples, in
-// microseconds, to tell hopeless tolerances before they take time. An estimate, not a bound.
-double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, double tolerance);
+// What triangles must keep to; distances in model units.
+struct FaceDemands {
+    double tolerance = 0;  // of their interpolation bounds, > 0
+    // No side of a triangle inside the face is longer (sides on the boundary are given).
+    double max_edge = std::numeric_limits<double>::infinity();
+};
 
-// Inner points are placed until every triangle's interpolation bound is at most `tolerance`. `extra`: further
-// inner points to begin with. Refuses (invalid) boundaries with a conflict, (limit) more than
+// About how many triangles the part of the surface over `box` needs: from its curvature at samples, in
+// microseconds, to tell hopeless demands before they take time. An estimate, not a bound. `samples` in
+// each direction.
+double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, const FaceDemands& demands,
+                           int samples);
+
+// Inner points are placed until every triangle keeps to the demands. `extra`: further inner points to begin
+// with. Refuses (invalid) boundaries with a conflict, (limit) more than
 // `max_triangles`.
 Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
-                           double tolerance, long long max_triangles, std::span<const Vec<2>> extra = {});
+                           const FaceDemands& demands, long long max_triangles,
+                           std::span<const Vec<2>> extra = {});
 
 }  // namespace freiform

@@ -4,12 +4,15 @@
 #include <freiform/model/model.hpp>
 
 #include <functional>
+#include <limits>
 
 namespace freiform {
 
 struct TessellateOptions {
-    double tolerance = 0;                  // distance in model units, > 0
-    long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
+    double tolerance = 0;  // distance in model units, > 0
+    double max_edge =
+        std::numeric_limits<double>::infinity();  // the longest side of a triangle, likewise, > 0
+    long long max_triangles = 20'000'000;         // more is a refusal (limit), before memory is taken for it
     // Called with a fraction in [0, 1], from any thread; false stops with a refusal (limit).
     std::function<bool(double)> progress = {};
 };
@@ -46,7 +49,13 @@ struct Tessellation {
 
 // Every edge is discretised once and shared by its faces, so that a closed shell gives a closed mesh. A face
 // that cannot be meshed is listed in `refused`; the others are delivered. Refuses the whole for a tolerance
-// that is not a positive number, and for limits. Results do not depend on the number of threads.
+// that is not a positive number, a longest side that is not positive, and for limits: before any work if an
+// estimate says that they are far away. Sides between boundary points can exceed max_edge by twice the gap.
+// Results do not depend on the number of threads.
 Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options);
+
+// About how many triangles that would give, from curvatures at samples; without making any. An estimate, not
+// a bound. REQUIRES options that `tessellate` does not refuse.
+double predicted_triangles(const Model& model, const TessellateOptions& options);
 
 }  // namespace freiform

@@ -60,6 +60,8 @@ struct GeometryOf<2, 3> {
     using type = SurfaceGeometry;
 };
 
+struct PlaneCurveBounds;
+
 // Prepared once for a curve (N = 1) or surface (N = 2), asked for many boxes; const and safe to share between
 // threads. The geometry must outlive it.
 template <std::size_t N, int D>
@@ -76,11 +78,20 @@ public:
     std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
 
 private:
+    friend PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>&, Interval);
     const Geometry* geometry_;
     std::array<std::vector<Kink>, N> kinks_;
     std::variant<std::monostate, BezierPieces<N, Vec<D>>, BezierPieces<N, Hom<D>>> pieces_;
     std::shared_ptr<const DerivativeQuery<1, 3>> profile_;  // of an extrusion or revolution
     std::shared_ptr<const DerivativeQuery<2, 3>> base_;     // of an offset
 };
+
+// Of each coordinate of a plane curve by itself, and of the curve, to order 2: what three queries would say,
+// for little more than one costs.
+struct PlaneCurveBounds {
+    std::array<DerivativeBounds<1>, 2> coordinate;
+    DerivativeBounds<1> both;
+};
+PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>& curve, Interval on);
 
 }  // namespace freiform

@@ -1,0 +1,207 @@
+// See face_mesh.cpp for the whole.
+#include "filler_detail.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kNearPoint = 1e-3;    // of a leaf: likewise, for other points
+constexpr double kLeastLength = 1e-9;  // of the box of the face: shorter is rounding
+constexpr double kNearBoundary =
+    0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
+
+}  // namespace
+
+Filler::Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface,
+               Vec<2> scale, const FaceDemands& demands)
+    : t_(t), tree_(tree), surface_(surface), scale_(scale), demands_(demands) {
+    Box<2> box;
+    for (const Vec<2>& p : t.points()) box.add(unscaled(p));
+    least_ = kLeastLength * (box.hi - box.lo);
+}
+
+Vec<3> Filler::position(int vertex) {
+    while (positions_.size() <= std::size_t(vertex))
+        positions_.push_back(jet<0>(surface_.geometry(), uv(int(positions_.size())).c).value());
+    return positions_[std::size_t(vertex)];
+}
+
+std::pair<double, int> Filler::longest_side(int triangle) {
+    std::pair<double, int> longest{0, -1};
+    const auto v = t_.vertices(triangle);
+    for (std::size_t e = 0; e < 3; ++e) {
+        if (t_.is_constrained(triangle, int(e))) continue;
+        const double length = norm(position(v[(e + 2) % 3]) - position(v[(e + 1) % 3]));
+        if (length > longest.first) longest = {length, int(e)};
+    }
+    return longest;
+}
+
+bool Filler::is_fine(int triangle) {
+    return bound(triangle) <= demands_.tolerance &&
+           (!std::isfinite(demands_.max_edge) || longest_side(triangle).first <= demands_.max_edge);
+}
+
+bool Filler::is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf) const {
+    // Distances in the metric where the leaf is a unit square. Leaves between two kinks that differ by
+    // rounding only are too thin to measure by.
+    const auto local = [&](const Vec<2>& d) {
+        return Vec<2>{{d[0] / (std::max(leaf[0], least_[0]) * scale_[0]),
+                       d[1] / (std::max(leaf[1], least_[1]) * scale_[1])}};
+    };
+    const auto& v = t_.vertices(triangle);
+    for (std::size_t e = 0; e < 3; ++e) {
+        const Vec<2> a = t_.points()[std::size_t(v[(e + 1) % 3])],
+                     b = t_.points()[std::size_t(v[(e + 2) % 3])];
+        const Vec<2> ab = local(b - a), ax = local(x - a);
+        if (max_abs(ax) < kNearPoint) return true;
+        if (!t_.is_constrained(triangle, int(e))) continue;
+        const double along = std::clamp(dot(ab, ax) / dot(ab, ab), 0.0, 1.0);
+        if (norm(ax - along * ab) < kNearBoundary) return true;
+    }
+    return false;
+}
+
+void Filler::insert_corners() {
+    for (const auto& corner : tree_.corners()) {
+        const Vec<2> x = scaled(corner.at);
+        t_.insert(x, -1, [&](int triangle) { return is_near_boundary(triangle, x, corner.leaf); });
+    }
+}
+
+// What the tree says of the leaves that the triangle meets; where that is not enough, of its own box, which
+// may be much smaller than a leaf.
+Curvature Filler::curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const {
+    Box<2> box;
+    for (const Vec<2>& p : {a, b, c}) box.add(p);
+    const Curvature from_tree = tree_.over(box);
+    if (linear_interpolation_bound(from_tree, a, b, c) + tree_.kink_bound(box) <= demands_.tolerance)
+        return from_tree;
+    const auto own = surface_({box.side(0), box.side(1)});
+    return {std::min(from_tree.uu, own(2, 0)), std::min(from_tree.uv, own(1, 1)),
+            std::min(from_tree.vv, own(0, 2))};
+}
+
+const Filler::Known& Filler::known(int triangle) {
+    const std::size_t i = std::size_t(triangle);
+    if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
+    Known& k = known_[i];
+    if (k.any && k.stamp == t_.stamp(triangle)) return k;
+    const auto& v = t_.vertices(triangle);
+    const Vec<2> a = uv(v[0]), b = uv(v[1]), c = uv(v[2]);
+    Box<2> box;
+    for (const Vec<2>& p : {a, b, c}) box.add(p);
+    k = {t_.stamp(triangle), true, 0, curvature_over(a, b, c)};
+    k.bound = linear_interpolation_bound(k.curvature, a, b, c) + tree_.kink_bound(box);
+    return k;
+}
+
+double Filler::bound(int triangle) { return known(triangle).bound; }
+
+// Inserts a point that makes the triangle better; false if there is none.
+bool Filler::improve(int triangle) {
+    const auto v = t_.vertices(triangle);
+    const Vec<2> corner[3] = {uv(v[0]), uv(v[1]), uv(v[2])};
+    Box<2> box;
+    for (const Vec<2>& p : corner) box.add(p);
+    const Curvature c = known(triangle).curvature;
+    const auto attempt = [&](const Vec<2>& at) {
+        return t_.insert(scaled(at), triangle).status == Triangulation::Insert::done;
+    };
+    if (known(triangle).bound <= demands_.tolerance) {  // too long, then
+        const int e = longest_side(triangle).second;
+        return e >= 0 && attempt(0.5 * (corner[(e + 1) % 3] + corner[(e + 2) % 3]));
+    }
+    std::array<std::pair<double, int>, 3> sides;  // by the error that they stand for
+    for (int e = 0; e < 3; ++e) {
+        const Vec<2> d = corner[(e + 2) % 3] - corner[(e + 1) % 3];
+        sides[std::size_t(e)] = {c.along(d[0], d[1]), e};
+    }
+    if (const auto kink = tree_.worst_kink(box); kink && tree_.kink_bound(box) > demands_.tolerance / 4) {
+        const auto [axis, at] = *kink;
+        std::array<std::pair<double, int>, 3> spans;
+        for (int e = 0; e < 3; ++e)
+            spans[std::size_t(e)] = {std::abs(corner[(e + 2) % 3][axis] - corner[(e + 1) % 3][axis]), e};
+        std::sort(spans.rbegin(), spans.rend());
+        for (const auto& [span, e] : spans) {
+            const Vec<2> p = corner[(e + 1) % 3], q = corner[(e + 2) % 3];
+            if (t_.is_constrained(triangle, e) || (p[axis] - at) * (q[axis] - at) >= 0) continue;
+            Vec<2> x = p + ((at - p[axis]) / (q[axis] - p[axis])) * (q - p);
+            x[axis] = at;
+            if (attempt(x)) return true;
+        }
+    }
+    std::sort(sides.rbegin(), sides.rend());
+    for (const auto& [error, e] : sides)
+        if (!t_.is_constrained(triangle, e) && attempt(0.5 * (corner[(e + 1) % 3] + corner[(e + 2) % 3])))
+            return true;
+    return attempt((1.0 / 3) * (corner[0] + corner[1] + corner[2]));
+}
+
+bool Filler::refine(std::size_t max_points) {
+    struct Entry {
+        int triangle;
+        std::uint32_t stamp;
+    };
+    std::vector<Entry> queue;
+    for (int i = 0; i < t_.size(); ++i)
+        if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+        const Entry entry = queue[head];
+        if (t_.stamp(entry.triangle) != entry.stamp || is_fine(entry.triangle)) continue;
+        if (t_.points().size() >= max_points) return false;
+        if (!improve(entry.triangle)) continue;  // its bound stands, and the caller will see it
+        for (int i : t_.changed())
+            if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
+        if (head > 4096 && head > queue.size() / 2) {
+            queue.erase(queue.begin(), queue.begin() + std::ptrdiff_t(head) + 1);
+            head = std::size_t(-1);
+        }
+    }
+    return true;
+}
+
+// Around a pole two triangles that are neighbours across a single inner point fall on each other, and so do
+// edges across a seam when a strip is one edge wide.
+int Filler::separate(std::span<const int> place) {
+    std::vector<int> corners_at(place.size(), 0);
+    const auto id = [&](int v) { return v < int(place.size()) ? place[std::size_t(v)] : v; };
+    for (int p : place) ++corners_at[std::size_t(p)];
+    struct Side {
+        int a, b, u, v;
+        bool operator<(const Side& o) const { return std::tie(a, b, u, v) < std::tie(o.a, o.b, o.u, o.v); }
+    };
+    std::vector<Side> sides;
+    for (int i = 0; i < t_.size(); ++i) {
+        if (!t_.is_inside(i)) continue;
+        const auto& v = t_.vertices(i);
+        if (id(v[0]) == id(v[1]) || id(v[1]) == id(v[2]) || id(v[2]) == id(v[0])) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int u = std::min(v[k], v[(k + 1) % 3]), w = std::max(v[k], v[(k + 1) % 3]);
+            if (u >= int(place.size()) || (corners_at[std::size_t(id(u))] < 2 &&
+                                           (w >= int(place.size()) || corners_at[std::size_t(id(w))] < 2)))
+                continue;
+            const int a = id(u), b = id(w);
+            sides.push_back({std::min(a, b), std::max(a, b), u, w});
+        }
+    }
+    std::sort(sides.begin(), sides.end());
+    int inserted = 0;
+    for (std::size_t i = 0, j; i < sides.size(); i = j) {
+        for (j = i; j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b;) ++j;
+        if (j - i <= 2) continue;
+        for (std::size_t k = i; k < j; ++k) {
+            if (k > i && sides[k].u == sides[k - 1].u && sides[k].v == sides[k - 1].v) continue;
+            const auto e = t_.find_edge(sides[k].u, sides[k].v);
+            if (e.triangle < 0 || t_.is_constrained(e.triangle, e.edge)) continue;
+            inserted += t_.insert(scaled(0.5 * (uv(sides[k].u) + uv(sides[k].v))), e.triangle).status ==
+                        Triangulation::Insert::done;
+        }
+    }
+    return inserted;
+}
+
+}  // namespace freiform

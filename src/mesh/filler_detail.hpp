@@ -1,0 +1,54 @@
+// Inner points of a face: placed where a proof asks for them.
+#pragma once
+#include "curvature_tree_detail.hpp"
+
+#include <freiform/mesh/face_mesh.hpp>
+#include <freiform/mesh/triangulate.hpp>
+
+namespace freiform {
+
+class Filler {
+public:
+    Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, Vec<2> scale,
+           const FaceDemands& demands);
+
+    void insert_corners();
+    // False when more than `max_points` are needed.
+    bool refine(std::size_t max_points);
+    // Of the interpolation error of the triangle; computed once for each.
+    double bound(int triangle);
+    // Inserts the middles of inner edges that more than two triangles have once corners with the same `place`
+    // are one. The number of points inserted.
+    int separate(std::span<const int> place);
+    Vec<2> uv(int vertex) const { return unscaled(t_.points()[std::size_t(vertex)]); }
+
+private:
+    Vec<2> unscaled(const Vec<2>& x) const { return {{x[0] / scale_[0], x[1] / scale_[1]}}; }
+    Vec<2> scaled(const Vec<2>& x) const { return {{x[0] * scale_[0], x[1] * scale_[1]}}; }
+    bool is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf) const;
+    bool improve(int triangle);
+    bool is_fine(int triangle);
+    Vec<3> position(int vertex);
+    // The longest side that is not part of the boundary, in space; its edge is -1 if there is none.
+    std::pair<double, int> longest_side(int triangle);
+
+    // What was found about the triangle with this index when it had this stamp.
+    struct Known {
+        std::uint32_t stamp = 0;
+        bool any = false;
+        double bound = 0;
+        Curvature curvature;
+    };
+    const Known& known(int triangle);
+
+    Triangulation& t_;
+    std::vector<Known> known_;
+    Curvature curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const;
+    const CurvatureTree& tree_;
+    const DerivativeQuery<2, 3>& surface_;
+    Vec<2> scale_, least_{};  // least_: what counts as a length at all
+    FaceDemands demands_;
+    std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
+};
+
+}  // namespace freiform

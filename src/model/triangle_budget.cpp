@@ -1,0 +1,53 @@
+// Method. Curvature and size of every face at samples say how many triangles it needs (face_mesh.hpp).
+// Samples cost as much as the mesh of a simple face: many are taken only where few say that it may come near
+// the limit. The box of a face is that of points on its parameter curves, so a face with holes counts as one
+// without.
+#include "triangle_budget_detail.hpp"
+
+#include <freiform/mesh/face_mesh.hpp>
+
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
+constexpr double kFarBelow = 16;  // one from few samples below the limit by more than this, too
+constexpr int kFewSamples = 3, kManySamples = 12;
+
+double predicted(const Model& model, const TessellateOptions& options, int samples) {
+    double sum = 0;
+    for (const Face& face : model.faces) {
+        Box<2> box;
+        for (const Loop& l : face.loops)
+            for (const Coedge& c : l.coedges)
+                for (int k = 0; k <= 8; ++k) {
+                    const Interval on = model.edges[std::size_t(c.edge)].range;
+                    box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
+                }
+        if (!box.is_empty())
+            sum += estimated_triangles(face.surface, box, {options.tolerance, options.max_edge}, samples);
+    }
+    return sum;
+}
+
+}  // namespace
+
+double predicted_triangles(const Model& model, const TessellateOptions& options) {
+    return predicted(model, options, kManySamples);
+}
+
+Result<void> check_budget(const Model& model, const TessellateOptions& options) {
+    const double limit = double(options.max_triangles);
+    if (predicted(model, options, kFewSamples) < limit / kFarBelow) return {};
+    const double sum = predicted_triangles(model, options);
+    if (sum <= kFarBeyond * limit) return {};
+    return refuse(
+        RefusalKind::limit, "max_triangles",
+        text("about ", std::ceil(sum), " triangles are needed within ", options.tolerance,
+             std::isfinite(options.max_edge) ? text(" with sides of at most ", options.max_edge) : "",
+             ", the limit is ", options.max_triangles));
+}
+
+}  // namespace freiform

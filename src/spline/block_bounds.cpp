@@ -1,0 +1,235 @@
+// Bounds of derivatives from control points.
+//
+// Idea: a derivative of a Bezier block is a Bezier block of differences, and a block lies in the convex hull
+// of its coefficients; so the largest difference bounds the derivative. Restricting the block to a smaller
+// box (de Casteljau) makes the bound as tight as wanted, quadratically in the size of the box. Notation: A
+// numerator, w weight, c = A / w the point, c0 any fixed point near the block, A^ = A - c0 w. Then A^ / w = c
+// - c0, |c - c0| <= r = max |A^_i| / w_i, and by Leibniz, for a > 0,
+//     c_a = (A^_a - sum_{0 < b < a} C(a, b) w_b c_{a-b} - w_a (c - c0)) / w,
+// so |c_a| <= (|A^_a| + sum C(a, b) |w_b| |c_{a-b}| + |w_a| r) / w_min. Without the shift to c0 the bound
+// would depend on the distance from the origin. Accuracy: differences carry the rounding of Bezier extraction
+// and restriction. Each coefficient of the block is off by at most e = (sum_d 12 p_d + 8) u max|A_i| (see
+// patch_detail.hpp), a difference of order k by 2^k e; this is added, so that the bound holds for the exact
+// block.
+//
+// Differences of an order come from those of the order before: one subtraction each. Rounding of the
+// subtractions is within the 2^k e above, of which twice as much is added.
+//
+// References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostBernstein = kMaxDegree + 1;
+
+// C(a, b) for the orders of derivatives, and the Bernstein polynomials of each degree at 1/2.
+constexpr double kChoose[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+static_assert(kBoundOrder == 3);
+constexpr auto kAtHalf = [] {
+    std::array<std::array<double, kMostBernstein>, kMostBernstein> b{};
+    b[0][0] = 1;
+    for (std::size_t n = 1; n < b.size(); ++n)
+        for (std::size_t i = 0; i <= n; ++i)
+            b[n][i] = ((i > 0 ? b[n - 1][i - 1] : 0) + (i < n ? b[n - 1][i] : 0)) / 2;
+    return b;
+}();
+
+template <std::size_t N>
+constexpr std::size_t slot_of(int i, int j) {
+    return N == 1 ? std::size_t(i) : std::size_t((i + j) * (i + j + 1) / 2 + j);
+}
+static_assert(slot_of<2>(2, 0) == jet_slot(Index<2>{2, 0}) && slot_of<2>(1, 2) == jet_slot(Index<2>{1, 2}) &&
+              slot_of<1>(3, 0) == jet_slot(Index<1>{3}));
+
+// The net of differences of one order, of the numerator about c0 and of the weight: the largest of them, and
+// of rational blocks the values in the middle of the block.
+template <int D>
+struct Differences {
+    double most = 0, weight_most = 0;
+    Vec<D> middle{};
+    double weight_middle = 0;
+};
+
+// All differences up to order `top`, each from the one before: one subtraction for each number. Curves are
+// blocks of one column.
+template <std::size_t N, class P>
+class DifferenceTable {
+public:
+    static constexpr int D = Space<P>::kDim;
+    static constexpr bool kRational = Space<P>::kRational;
+
+    DifferenceTable(const NetView<N, const P>& net, const PointOf<P>& c0, int top)
+        : rows_(net.extent[0]), columns_(N == 1 ? 1 : net.extent[N - 1]) {
+        const std::size_t count = std::size_t(rows_) * std::size_t(columns_);
+        std::vector<Entry> more;
+        std::array<Entry, 2 * kFew> few;
+        if (count > kFew) more.resize(2 * count);
+        Entry* const down = count > kFew ? more.data() : few.data();
+        Entry* const work = down + count;
+        Entry* to = down;
+        each_index(net.extent, [&](const Index<N>& at) {
+            const P& p = net(at);
+            const double w = Space<P>::weight(p);
+            for (int i = 0; i < D; ++i) (*to)[std::size_t(i)] = p[i] - w * c0[i];
+            if constexpr (kRational) (*to)[D] = w;
+            ++to;
+        });
+        for (int i = 0; i <= top && i < rows_; ++i) {
+            const int rows = rows_ - i;
+            if (i > 0) subtract(down, rows * columns_, columns_);
+            std::copy_n(down, rows * columns_, work);
+            for (int j = 0; i + j <= top && j < columns_; ++j) {
+                if (j > 0)
+                    for (int r = 0; r < rows; ++r) subtract(work + r * columns_, columns_ - j, 1);
+                found_[slot_of<N>(i, j)] = seen(work, rows, columns_ - j);
+            }
+        }
+    }
+
+    const Differences<D>& operator[](std::size_t slot) const { return found_[slot]; }
+
+private:
+    static constexpr std::size_t kFew = 64;
+    using Entry = std::array<double, std::size_t(D + (kRational ? 1 : 0))>;
+
+    static void subtract(Entry* e, int n, int step) {
+        for (int k = 0; k < n; ++k)
+            for (std::size_t c = 0; c < e[0].size(); ++c) e[k][c] = e[k + step][c] - e[k][c];
+    }
+    Differences<D> seen(const Entry* e, int rows, int columns) const {
+        Differences<D> out;
+        double most = 0;
+        for (int r = 0; r < rows; ++r)
+            for (int k = 0; k < columns; ++k) {
+                const Entry& x = e[r * columns_ + k];
+                double square = 0;
+                for (std::size_t c = 0; c < std::size_t(D); ++c) square += x[c] * x[c];
+                most = most < square ? square : most;
+                if constexpr (kRational) {
+                    const double share = kAtHalf[std::size_t(rows - 1)][std::size_t(r)] *
+                                         kAtHalf[std::size_t(columns - 1)][std::size_t(k)];
+                    out.weight_most = std::max(out.weight_most, std::abs(x[D]));
+                    out.weight_middle += share * x[D];
+                    for (int c = 0; c < D; ++c) out.middle[c] += share * x[std::size_t(c)];
+                }
+            }
+        out.most = std::sqrt(most) * (1 + 8 * kRoundoff);
+        return out;
+    }
+
+    int rows_, columns_;
+    std::array<Differences<D>, jet_size(N, kBoundOrder)> found_{};
+};
+
+}  // namespace
+
+template <std::size_t N, class P>
+DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
+                                      int order) {
+    constexpr int D = Space<P>::kDim;
+    double steps = 8, largest = 0, weight_min = kInfinity, weight_max = 0;
+    Index<N> centre{};
+    for (std::size_t d = 0; d < N; ++d) {
+        steps += 12 * (net.extent[d] - 1);
+        centre[d] = net.extent[d] / 2;
+    }
+    const PointOf<P> c0 = project(net(centre));
+    double radius = 0;
+    each_index(net.extent, [&](const Index<N>& at) {
+        const P& p = net(at);
+        const double w = Space<P>::weight(p);
+        weight_min = std::min(weight_min, w);
+        weight_max = std::max(weight_max, w);
+        Vec<D> shifted;
+        for (int i = 0; i < D; ++i) {
+            shifted[i] = p[i] - w * c0[i];
+            largest = std::max(largest, std::abs(p[i]));
+        }
+        radius = std::max(radius, norm(shifted) / w);
+    });
+    const double slip = steps * kRoundoff * largest,
+                 weight_slip = Space<P>::kRational ? steps * kRoundoff * weight_max : 0;
+    radius += 2 * slip / weight_min;
+
+    DerivativeBounds<N> out;
+    std::array<double, jet_size(N, kBoundOrder)> weight{}, weight_middle{};
+    std::array<Vec<D>, jet_size(N, kBoundOrder)> middle{};
+    out.d[0] = radius;
+    constexpr bool kRational = Space<P>::kRational;
+    const int top = kRational ? std::min(order + 1, kBoundOrder) : order, across = N == 1 ? 0 : top;
+    const DifferenceTable<N, P> found(net, c0, top);
+    // p (p - 1) .. / width^k along each axis.
+    std::array<std::array<double, kBoundOrder + 1>, N> falling{};
+    for (std::size_t d = 0; d < N; ++d) {
+        falling[d][0] = 1;
+        for (int k = 0; k < top; ++k)
+            falling[d][std::size_t(k) + 1] =
+                falling[d][std::size_t(k)] * (double(net.extent[d] - 1 - k) / width[d]);
+    }
+    for (int sum = kRational ? 0 : 1; sum <= top; ++sum)
+        for (int j = 0; j <= std::min(sum, across); ++j) {
+            const int i = sum - j;
+            const double factor = falling[0][std::size_t(i)] * falling[N - 1][std::size_t(N == 1 ? 0 : j)];
+            if (!(factor > 0) && !kRational) continue;  // order above the degree: exactly zero
+            const std::size_t slot = slot_of<N>(i, j);
+            const double rounding = double(1 << sum);
+            double most = std::abs(factor) * (found[slot].most + rounding * 2 * slip);
+            if constexpr (kRational) {
+                weight[slot] = std::abs(factor) * (found[slot].weight_most + rounding * weight_slip);
+                weight_middle[slot] = factor * found[slot].weight_middle;
+                middle[slot] = factor * found[slot].middle;
+                for (int k = 0; k <= i; ++k)
+                    for (int l = k == 0 ? 1 : 0; l <= j; ++l) {
+                        const double choose = kChoose[i][k] * kChoose[j][l];
+                        const std::size_t part = slot_of<N>(k, l), rest = slot_of<N>(i - k, j - l);
+                        most += choose * weight[part] * out.d[rest];
+                        middle[slot] -= (choose * weight_middle[part]) * middle[rest];
+                    }
+                most /= weight_min * (1 - 16 * steps * kRoundoff);
+                middle[slot] *= 1 / weight_middle[0];
+            }
+            if (sum > 0) out.d[slot] = most * (1 + 64 * kRoundoff);
+        }
+    if constexpr (kRational) {
+        // The triangle inequality lost the signs; from the middle outwards they are kept.
+        const DerivativeBounds<N> crude = out;
+        for (int sum = top - 1; sum >= 1; --sum)
+            for (int j = 0; j <= std::min(sum, across); ++j) {
+                const int i = sum - j;
+                const std::size_t slot = slot_of<N>(i, j);
+                double here = norm(middle[slot]) + width[0] / 2 * out.d[slot_of<N>(i + 1, j)];
+                if constexpr (N == 2) here += width[1] / 2 * out.d[slot_of<N>(i, j + 1)];
+                // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
+                here += 64 * steps * kRoundoff * crude.d[slot];
+                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kRoundoff));
+            }
+        for (std::size_t slot = jet_size(N, order); slot < out.d.size(); ++slot) out.d[slot] = 0;
+    }
+    return out;
+}
+
+#define FF_INSTANTIATE(P)                                                                                    \
+    template DerivativeBounds<1> derivative_bounds(const NetView<1, const P>&, const std::array<double, 1>&, \
+                                                   int);
+FF_INSTANTIATE(Vec<1>)
+FF_INSTANTIATE(Hom<1>)
+FF_INSTANTIATE(Vec<2>)
+FF_INSTANTIATE(Hom<2>)
+FF_INSTANTIATE(Vec<3>)
+FF_INSTANTIATE(Hom<3>)
+FF_INSTANTIATE(Vec<4>)
+FF_INSTANTIATE(Hom<4>)
+template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
+                                               int);
+template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,
+                                               int);
+
+}  // namespace freiform
