@@ -133,6 +133,7 @@ void add_eval(CommandLine& line);
 void add_basis(CommandLine& line);
 void add_convert(CommandLine& line);
 void add_tessellate(CommandLine& line);
+void add_check(CommandLine& line);
 void add_bounds(CommandLine& line);
 void add_features(CommandLine& line);
 void add_draw(CommandLine& line);

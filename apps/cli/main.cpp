@@ -18,6 +18,7 @@ void add_commands(CommandLine& line) {
     add_basis(line);
     add_convert(line);
     add_tessellate(line);
+    add_check(line);
     add_bounds(line);
     add_features(line);
     add_draw(line);

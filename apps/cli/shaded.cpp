@@ -249,6 +249,19 @@ Result<ShadedPicture> shaded(const Document& document, std::span<const std::size
     return ShadedPicture{std::move(*png), std::move(report)};
 }
 
+Result<std::string> coloured(const TriangleMesh& mesh, const VertexNumbers& numbers, const ShadedOptions& o) {
+    RenderOptions how = render_options(o);
+    how.painting = Painting::sequential;
+    how.field = numbers.values;
+    how.range = numbers.range;
+    ColourBar bar;
+    bar.range = numbers.range;
+    bar.map = MapKind::sequential;
+    bar.title = plain_text(numbers.title);
+    for (const std::string& r : numbers.remarks) bar.remarks.push_back(plain_text(r));
+    return png_of(mesh, how, &bar);
+}
+
 #else
 
 namespace {
@@ -263,6 +276,10 @@ std::unexpected<Refusal> not_built() {
 Result<ShadedPicture> shaded(const TriangleMesh&, const ShadedOptions&) { return not_built(); }
 Result<ShadedPicture> shaded(const Document&, std::span<const std::size_t>, const Limits&,
                              const ShadedOptions&) {
+    return not_built();
+}
+
+Result<std::string> coloured(const TriangleMesh&, const VertexNumbers&, const ShadedOptions&) {
     return not_built();
 }
 

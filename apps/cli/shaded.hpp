@@ -2,6 +2,7 @@
 #pragma once
 #include "command.hpp"
 
+#include <freiform/core/interval.hpp>
 #include <freiform/core/view.hpp>
 #include <freiform/mesh/triangle_mesh.hpp>
 
@@ -24,5 +25,15 @@ struct ShadedPicture {
 Result<ShadedPicture> shaded(const TriangleMesh& mesh, const ShadedOptions& options);
 Result<ShadedPicture> shaded(const Document& document, std::span<const std::size_t> objects,
                              const Limits& limits, const ShadedOptions& options);
+
+// The mesh with a colour for each vertex, from one number each: light at range.lo, dark at range.hi.
+struct VertexNumbers {
+    std::span<const double> values;
+    Interval range;
+    std::string title;
+    std::vector<std::string> remarks;
+};
+Result<std::string> coloured(const TriangleMesh& mesh, const VertexNumbers& numbers,
+                             const ShadedOptions& options);
 
 }  // namespace freiform::cli

@@ -1,6 +1,7 @@
 // What the writers of meshes share.
 #pragma once
 #include <freiform/core/interval.hpp>
+#include <freiform/io/mesh_file.hpp>
 #include <freiform/mesh/triangle_mesh.hpp>
 
 #include <array>
@@ -52,8 +53,5 @@ bool has_three_points(const std::vector<Position>& points, const std::array<int,
     const auto &a = points[std::size_t(p[0])], &b = points[std::size_t(p[1])], &c = points[std::size_t(p[2])];
     return a != b && b != c && c != a;
 }
-
-// One unit in metres; nothing if the name is not known.
-std::optional<double> metres_per(std::string_view unit);
 
 }  // namespace freiform

@@ -19,6 +19,9 @@
 
 namespace freiform {
 
+// One unit of length ("mm", "inch", ...) in metres; nothing if the name is not known.
+std::optional<double> metres_per(std::string_view unit);
+
 enum class MeshFormat { glb, stl, obj, ply };
 
 // From the ending of a file name, or the ending alone ("glb"); case does not matter. Refuses others by naming

@@ -1,0 +1,397 @@
+// Idea. The distance from a triangle is a convex function, so over a flat part of a face it is largest at a
+// corner. A part is cut finer until its bound is hardly above the largest distance that has been found
+// somewhere: branch and bound, the part with the largest bound first.
+//
+// Bounds. A face over a box is within e of two flat triangles (face_parts.cpp). Two bounds of the distance
+// from them to the mesh; the smaller one counts. (1) One triangle: the largest distance of the four corners
+// from it. (2) Many triangles: let n be a direction, and D a disc across n that holds the projections of the
+// corners and
+//     of the balls of radius e about them. From the nearest triangle, go to neighbours across every edge
+//     whose projection meets D. If all of them face n, and no edge that was met ends the mesh, their
+//     projections cover D: the part of D that they cover is closed, not empty, and open in D, since about
+//     each of its points, on an edge or corner too, the neighbours were taken as well. So each point x of the
+//     part has a point of some triangle T_k straight along n, at the distance |l_k(x)|, l_k linear; and |l_k|
+//     over the part is at most its largest value at the corners plus e / cos.
+// Rounding: coordinates enter with errors of a few u times their size; 64 u is added. Normals of thin
+// triangles are uncertain by u size longest / area, which is added for l_k over the reach of the part.
+//
+// Cost. One bound of derivatives and one nearest triangle for each part. Parts are needed where the bound of
+// the part is above the goal: along boundaries of faces until they are as short as the goal, elsewhere until
+// their error is.
+//
+// References. [Guthe Borodin Klein 2005] refine what may hold the largest distance, from triangles to
+// triangles.
+//
+// Why not samples alone: they say how far apart mesh and model are at least, and nothing about what lies
+// between.
+#include "face_parts_detail.hpp"
+
+#include <freiform/core/parallel.hpp>
+#include <freiform/model/deviation.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 64 * 0x1p-53;
+constexpr double kNearEnough = 1.1;       // a bound above what was found by this is left
+constexpr std::size_t kFirstParts = 256;  // of a face, before anything is judged
+constexpr std::size_t kBoundaryPoints = 512;
+constexpr std::size_t kMostTriangles = 64;  // that bound (2) looks at
+constexpr double kLeastCosine = 0.25;
+constexpr double kLeastSag = 1e-6;  // of the size of model and mesh: how well boundaries are known
+constexpr double kDiagonal = 1.5;   // of a box, over its longest side, at most
+constexpr double kBoundaryCounts = 1.0 / 8;
+constexpr int kMostSteps = 8;  // of samples along a side of a triangle of the mesh
+
+Vec<3> normal_of(const Triangle3& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+
+std::vector<Triangle3> triangles_of(const TriangleMesh& mesh) {
+    std::vector<Triangle3> out(mesh.triangles.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const auto p = mesh.points_of(i);
+        for (std::size_t k = 0; k < 3; ++k) out[i][k] = mesh.points[std::size_t(p[k])];
+    }
+    return out;
+}
+
+class MeshSide {
+public:
+    explicit MeshSide(const TriangleMesh& mesh)
+        : tree_(triangles_of(mesh)), neighbours_(mesh.triangles.size()) {
+        for (auto& n : neighbours_) n.fill(-1);
+        for (const MeshEdge& e : edges(mesh)) {
+            if (e.forward != 1 || e.backward != 1) continue;
+            for (int side = 0; side < 2; ++side) {
+                const int t = e.triangles[std::size_t(side)];
+                const auto p = mesh.points_of(std::size_t(t));
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (p[k] != e.a && p[k] != e.b)
+                        neighbours_[std::size_t(t)][k] = e.triangles[std::size_t(1 - side)];
+            }
+        }
+        for (const Vec<3>& p : mesh.points) box_.add(p);
+    }
+
+    const TriangleTree& tree() const { return tree_; }
+    const Box<3>& box() const { return box_; }
+
+    // Of the distance from every point of the part to the mesh; `nearest`: to a point near its middle.
+    double bound(const FacePart& part, const TriangleTree::Found& nearest) const {
+        if (!std::isfinite(part.error)) return kInfinity;
+        const Triangle3& t = tree_.triangles()[std::size_t(nearest.triangle)];
+        double one = 0;
+        for (const Vec<3>& c : part.corner) one = std::max(one, norm(c - closest_point(t, c)));
+        double scale = box_.scale();
+        for (const Vec<3>& c : part.corner) scale = std::max(scale, max_abs(c));
+        return std::min(one + part.error, across(part, nearest, scale)) + kSlack * scale;
+    }
+
+private:
+    double across(const FacePart& part, const TriangleTree::Found& nearest, double scale) const;
+
+    TriangleTree tree_;
+    std::vector<std::array<int, 3>>
+        neighbours_;  // across the side opposite to each corner; -1: none, or many
+    Box<3> box_;
+};
+
+// Bound (2), e included; infinite where its conditions do not hold.
+double MeshSide::across(const FacePart& part, const TriangleTree::Found& nearest, double scale) const {
+    const auto& all = tree_.triangles();
+    const Vec<3> n = unit(normal_of(all[std::size_t(nearest.triangle)]));
+    if (!(norm(n) > 0.5)) return kInfinity;
+    const auto flat = [&](const Vec<3>& x) { return x - dot(x, n) * n; };
+    const Vec<3> middle = 0.25 * (part.corner[0] + part.corner[1] + part.corner[2] + part.corner[3]);
+    double radius = 0;
+    for (const Vec<3>& c : part.corner) radius = std::max(radius, norm(flat(c - middle)));
+    radius = (radius + part.error) * (1 + 1e-12) + kSlack * scale;
+    if (!(norm(flat(nearest.point - middle)) <= radius)) return kInfinity;
+    std::vector<int> met{nearest.triangle};
+    double worst = 0;
+    for (std::size_t i = 0; i < met.size(); ++i) {
+        const Triangle3& t = all[std::size_t(met[i])];
+        const Vec<3> nk = normal_of(t);
+        const double length = norm(nk), facing = dot(nk, n);
+        if (!(facing > kLeastCosine * length)) return kInfinity;
+        double reach = 0, longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t[(k + 1) % 3] - t[k]));
+        for (const Vec<3>& c : part.corner) {
+            worst = std::max(worst, (std::abs(dot(nk, c - t[0])) + part.error * length) / facing);
+            reach = std::max(reach, norm(c - t[0]));
+        }
+        worst += 4 * kSlack * scale * longest * reach / facing;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec<3> a = flat(t[(k + 1) % 3] - middle), d = flat(t[(k + 2) % 3] - middle) - a;
+            const double dd = dot(d, d), s = dd > 0 ? std::clamp(-dot(a, d) / dd, 0.0, 1.0) : 0;
+            if (norm(a + s * d) > radius) continue;
+            const int next = neighbours_[std::size_t(met[i])][k];
+            if (next < 0 || met.size() == kMostTriangles) return kInfinity;
+            if (std::ranges::find(met, next) == met.end()) met.push_back(next);
+        }
+    }
+    return worst;
+}
+
+// The parts of one face, the one with the largest key first.
+class Search {
+public:
+    explicit Search(const FaceParts& parts) : parts_(&parts) {}
+
+    std::size_t seen() const { return seen_; }
+    double top() const { return heap_.empty() ? 0 : heap_.front().key; }
+    const std::vector<FacePart>& parts() const { return heap_; }
+
+    // key(part) >= 0 of every part that is made.
+    template <class Key>
+    void start(Key&& key) {
+        if (auto all = parts_->whole()) push(std::move(*all), key);
+    }
+    // Cuts the part with the largest key until that is at most `goal()`, or `most` parts have been seen.
+    template <class Key, class Goal>
+    void refine(std::size_t most, Key&& key, Goal&& goal) {
+        while (!heap_.empty() && seen_ < most && top() > goal()) {
+            std::ranges::pop_heap(heap_, {}, &FacePart::key);
+            const FacePart part = std::move(heap_.back());
+            heap_.pop_back();
+            auto halves = parts_->halves(part);
+            if (halves.empty() && !can_be_halved(part)) {
+                stuck_ = std::max(stuck_, part.key);
+                kept_.push_back(part);
+            }
+            for (FacePart& half : halves) push(std::move(half), key);
+        }
+    }
+    // The largest key of all parts that there are now.
+    double largest() const { return std::max(top(), stuck_); }
+    const std::vector<FacePart>& kept() const { return kept_; }
+
+private:
+    static bool can_be_halved(const FacePart& p) {
+        for (int d = 0; d < 2; ++d)
+            if (const double m = p.box.side(d).middle(); p.box.lo[d] < m && m < p.box.hi[d]) return true;
+        return false;
+    }
+    template <class Key>
+    void push(FacePart part, Key& key) {
+        ++seen_;
+        part.key = key(part);
+        heap_.push_back(std::move(part));
+        std::ranges::push_heap(heap_, {}, &FacePart::key);
+    }
+
+    const FaceParts* parts_;
+    std::vector<FacePart> heap_, kept_;  // kept_: as small as doubles allow
+    double stuck_ = 0;
+    std::size_t seen_ = 0;
+};
+
+// What is found about one face.
+struct Looked {
+    std::optional<FaceParts> parts;
+    std::optional<Search> search;
+    FaceDeviation answer;
+};
+
+class Judge {
+public:
+    Judge(const Model& model, const TriangleMesh& mesh, const DeviationOptions& options)
+        : model_(model), options_(options), side_(mesh) {
+        Box<3> box = side_.box();
+        for (const Vertex& v : model.vertices) box.add(v.point);
+        size_ = box.diagonal();
+        share_ = std::max<std::size_t>(options.max_parts / std::max<std::size_t>(model.faces.size(), 1), 64);
+    }
+    Result<Deviation> run();
+
+private:
+    void first_look(std::size_t f);
+    void from_mesh(Deviation& out) const;
+    double key(Looked& l, const FacePart& part) const;
+    void take(Looked& l, const Vec<3>& x, double distance) const {
+        if (distance > l.answer.measured) l.answer.measured = distance, l.answer.at = x;
+    }
+
+    const Model& model_;
+    const DeviationOptions& options_;
+    MeshSide side_;
+    double size_ = 0;
+    std::size_t share_ = 0;
+    std::vector<Looked> looked_;
+    std::vector<std::optional<Refusal>> refused_;
+};
+
+double Judge::key(Looked& l, const FacePart& part) const {
+    const Vec<3> x = l.parts->value(0.5 * (part.box.lo + part.box.hi));
+    const auto found = side_.tree().nearest(x);
+    if (!part.crossing) take(l, x, found.distance);
+    return side_.bound(part, found);
+}
+
+void Judge::first_look(std::size_t f) {
+    Looked& l = looked_[f];
+    l.answer.face = int(f);
+    l.answer.name = model_.faces[f].name;
+    auto parts =
+        FaceParts::make(model_.faces[f], model_.edges, std::max(options_.enough / 32, kLeastSag * size_));
+    if (!parts) {
+        refused_[f] = parts.error();
+        return;
+    }
+    l.parts = std::move(*parts);
+    const auto& points = l.parts->region().points();
+    const std::size_t stride = points.size() / kBoundaryPoints + 1;
+    for (std::size_t i = 0; i < points.size(); i += stride) {
+        const Vec<3> x = l.parts->value(points[i]);
+        take(l, x, side_.tree().nearest(x).distance);
+    }
+    l.search.emplace(*l.parts);
+    const auto of = [&](const FacePart& p) { return key(l, p); };
+    l.search->start(of);
+    l.search->refine(std::min(kFirstParts, share_), of, [&] { return options_.enough; });
+}
+
+// A model as triangles. Each is within `error` of its face; those that the boundary of the face crosses stick
+// out by at most `overhang`.
+struct Soup {
+    std::vector<Triangle3> triangles;
+    double error = 0, overhang = 0;
+    std::size_t parts = 0;
+};
+
+// `boundary`: how much a length that sticks out counts against an error of the same length.
+Soup soup_of(const FaceParts& parts, double accuracy, double boundary, std::size_t most) {
+    Search search(parts);
+    const auto key = [&](const FacePart& p) { return p.error + (p.crossing ? boundary * p.size : 0); };
+    search.start(key);
+    search.refine(most, key, [&] { return accuracy; });
+    Soup out;
+    out.parts = search.seen();
+    for (const auto* list : {&search.parts(), &search.kept()})
+        for (const FacePart& p : *list) {
+            for (const Triangle3& t : p.triangles()) out.triangles.push_back(t);
+            out.error = std::max(out.error, p.error);
+            if (p.crossing) out.overhang = std::max(out.overhang, kDiagonal * p.size);
+        }
+    return out;
+}
+
+Soup soup_of(std::span<const FaceParts* const> faces, double accuracy, double boundary, std::size_t most) {
+    std::vector<Soup> of(faces.size());
+    const std::size_t share = std::max<std::size_t>(most / std::max<std::size_t>(faces.size(), 1), 64);
+    parallel_for(faces.size(), 1,
+                 [&](std::size_t f) { of[f] = soup_of(*faces[f], accuracy, boundary, share); });
+    Soup out;
+    for (const Soup& s : of) {
+        out.triangles.insert(out.triangles.end(), s.triangles.begin(), s.triangles.end());
+        out.error = std::max(out.error, s.error);
+        out.overhang = std::max(out.overhang, s.overhang);
+        out.parts += s.parts;
+    }
+    return out;
+}
+
+void Judge::from_mesh(Deviation& out) const {
+    std::vector<const FaceParts*> faces;
+    for (const Looked& l : looked_)
+        if (l.parts) faces.push_back(&*l.parts);
+    const double accuracy = std::max({out.measured / 8, options_.enough / 16, 1e-9 * size_});
+    Soup soup = soup_of(faces, accuracy, kBoundaryCounts, options_.max_parts);
+    out.accuracy = soup.error;
+    out.overhang = soup.overhang;
+    out.parts += soup.parts;
+    if (soup.triangles.empty()) return;
+    const TriangleTree tree(std::move(soup.triangles));
+    const auto& all = side_.tree().triangles();
+    std::vector<std::pair<double, Vec<3>>> worst(all.size(), {-1.0, Vec<3>{}});
+    parallel_for(all.size(), 256, [&](std::size_t i) {
+        const Triangle3& t = all[i];
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t[(k + 1) % 3] - t[k]));
+        const int n = int(std::clamp(std::ceil(longest / size_ * 300), 2.0, double(kMostSteps)));
+        for (int a = 0; a <= n; ++a)
+            for (int b = 0; a + b <= n; ++b) {
+                const Vec<3> x = t[0] + (double(a) / n) * (t[1] - t[0]) + (double(b) / n) * (t[2] - t[0]);
+                if (const double d = tree.nearest(x).distance; d > worst[i].first) worst[i] = {d, x};
+            }
+    });
+    for (const auto& [d, x] : worst)
+        if (d > out.mesh_measured) out.mesh_measured = d, out.mesh_at = x;
+}
+
+Result<Deviation> Judge::run() {
+    looked_.resize(model_.faces.size());
+    refused_.resize(model_.faces.size());
+    std::atomic<std::size_t> done{0};
+    std::atomic<bool> stop{false};
+    const auto tell = [&] {
+        if (options_.progress && !options_.progress(double(++done) / (2.0 * double(looked_.size()))))
+            stop = true;
+    };
+    parallel_for(looked_.size(), 1, [&](std::size_t f) {
+        if (!stop) first_look(f), tell();
+    });
+    double found = 0;
+    for (const Looked& l : looked_) found = std::max(found, l.answer.measured);
+    parallel_for(looked_.size(), 1, [&](std::size_t f) {
+        Looked& l = looked_[f];
+        if (stop || !l.search) return;
+        l.search->refine(
+            share_, [&](const FacePart& p) { return key(l, p); },
+            [&] { return std::max(options_.enough, kNearEnough * std::max(found, l.answer.measured)); });
+        l.answer.bound = l.search->largest();
+        tell();
+    });
+    if (stop) return refuse(RefusalKind::limit, "progress", "stopped by the caller");
+    Deviation out;
+    for (std::size_t f = 0; f < looked_.size(); ++f) {
+        if (refused_[f]) {
+            out.refused.push_back(
+                {refused_[f]->kind, text("faces[", f, "].", refused_[f]->where), refused_[f]->message});
+            continue;
+        }
+        const FaceDeviation& a = looked_[f].answer;
+        if (out.worst < 0 || a.measured > out.measured) out.worst = int(out.faces.size());
+        out.faces.push_back(a);
+        out.measured = std::max(out.measured, a.measured);
+        out.bound = std::max(out.bound, a.bound);
+        out.parts += looked_[f].search->seen();
+    }
+    from_mesh(out);
+    return out;
+}
+
+}  // namespace
+
+Result<Deviation> deviation(const Model& model, const TriangleMesh& mesh, const DeviationOptions& options) {
+    if (!std::isfinite(options.enough) || options.enough < 0)
+        return refuse(RefusalKind::invalid, "enough", text(options.enough, " is not a distance"));
+    if (mesh.triangles.empty()) return refuse(RefusalKind::invalid, "mesh", "has no triangles");
+    if (model.faces.empty()) return refuse(RefusalKind::invalid, "model", "has no faces");
+    return Judge(model, mesh, options).run();
+}
+
+Result<std::vector<double>> distances_from_model(const Model& model, std::span<const Vec<3>> points,
+                                                 double accuracy, std::size_t max_parts) {
+    if (!(accuracy > 0) || !std::isfinite(accuracy))
+        return refuse(RefusalKind::invalid, "accuracy", text(accuracy, " is not a positive distance"));
+    std::vector<FaceParts> parts;
+    for (const Face& face : model.faces)
+        if (auto p = FaceParts::make(face, model.edges, accuracy / 8)) parts.push_back(std::move(*p));
+    std::vector<const FaceParts*> faces;
+    for (const FaceParts& p : parts) faces.push_back(&p);
+    Soup soup = soup_of(faces, 0.7 * accuracy, kDiagonal,
+                        max_parts);  // the rest: boundaries are known to accuracy / 8
+    if (soup.triangles.empty()) return refuse(RefusalKind::no_answer, "model", "has no face to measure from");
+    const TriangleTree tree(std::move(soup.triangles));
+    std::vector<double> out(points.size());
+    parallel_for(points.size(), 256, [&](std::size_t i) { out[i] = tree.nearest(points[i]).distance; });
+    return out;
+}
+
+}  // namespace freiform

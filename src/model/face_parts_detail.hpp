@@ -1,0 +1,55 @@
+// Faces as flat parts within proven distances, cut finer where a caller wants it.
+#pragma once
+#include "face_region_detail.hpp"
+
+#include <freiform/mesh/triangle_tree.hpp>
+
+#include <memory>
+
+namespace freiform {
+
+// A box of the parameter plane and the surface over it: within `error` of the two triangles (0, 1, 3) and
+// (0, 3, 2) through its corners.
+//
+//     2 --- 3
+//     |   / |    u to the right, v up
+//     0 --- 1
+struct FacePart {
+    Box<2> box;
+    std::array<Vec<3>, 4> corner;
+    double error = 0;       // bound, rounding included; may be infinite
+    double size = 0;        // the longest side of the box, in space: a bound
+    bool crossing = false;  // the boundary may run through it; else it is wholly inside the face
+    std::vector<int> near;  // chords of the region that meet it
+    double key = 0;         // for the caller
+
+    std::array<Triangle3, 2> triangles() const {
+        return {{{corner[0], corner[1], corner[3]}, {corner[0], corner[3], corner[2]}}};
+    }
+};
+
+class FaceParts {
+public:
+    static Result<FaceParts> make(const Face& face, const std::vector<Edge>& edges, double accuracy);
+
+    // All of the face as one part; nothing if the face is empty.
+    std::optional<FacePart> whole() const;
+    // The parts of its two halves that are not outside; none where the box cannot be halved.
+    std::vector<FacePart> halves(const FacePart& part) const;
+    Vec<3> value(const Vec<2>& uv) const { return jet<0>(face_->surface, uv.c).value(); }
+    const FaceRegion& region() const { return region_; }
+
+private:
+    FaceParts(const Face& face, FaceRegion region)
+        : face_(&face),
+          surface_(std::make_unique<DerivativeQuery<2, 3>>(face.surface)),
+          region_(std::move(region)) {}
+    std::optional<FacePart> part_over(const Box<2>& box, const std::vector<int>& near,
+                                      bool known_inside) const;
+
+    const Face* face_;
+    std::unique_ptr<DerivativeQuery<2, 3>> surface_;
+    FaceRegion region_;
+};
+
+}  // namespace freiform

@@ -1,0 +1,116 @@
+// Method. |p(t) - chord| <= h^2 / 8 max |p''| on an interval of length h, for u and v by themselves;
+// intervals begin at kinks. Jumps between neighbouring curves become chords of their own, so that the polygon
+// is closed and the odd-even rule has a meaning. A point that no fattened chord holds is inside the polygon
+// exactly if it is inside the curves: moving the curves to their chords along straight lines never meets it.
+#include "edge_mesh_detail.hpp"
+#include "face_region_detail.hpp"
+
+#include <freiform/mesh/segment_box.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kRound = 1e-15;  // of the size of the coordinates: evaluated points are off by less
+
+// Of one parameter curve: the ends of intervals, each with what its curve may leave the chord by.
+struct Pieces {
+    std::vector<double> at;
+    std::vector<Vec<2>> sag;  // one fewer
+};
+
+Result<Pieces> pieces_of(const CurveGeometry<2>& curve, Interval on, Vec<2> sag, std::size_t max_chords) {
+    const CurveGeometry<1> u = component_of(curve, 0), v = component_of(curve, 1);
+    const DerivativeQuery<1, 1> bounds[2] = {DerivativeQuery<1, 1>(u), DerivativeQuery<1, 1>(v)};
+    std::vector<double> must{on.lo, on.hi};
+    for (const auto& b : bounds)
+        for (const Kink& k : b.kinks(0))
+            if (on.lo < k.at && k.at < on.hi) must.push_back(k.at);
+    std::ranges::sort(must);
+    must.erase(std::unique(must.begin(), must.end()), must.end());
+    Pieces out{{on.lo}, {}};
+    std::vector<Interval> stack;
+    for (std::size_t i = must.size() - 1; i-- > 0;) stack.push_back({must[i], must[i + 1]});
+    while (!stack.empty()) {
+        const Interval part = stack.back();
+        stack.pop_back();
+        const double h2 = part.length() * part.length() / 8, middle = part.middle();
+        const Vec<2> found{{h2 * bounds[0]({part})(2), h2 * bounds[1]({part})(2)}};
+        const bool fine = found[0] <= sag[0] && found[1] <= sag[1];
+        if (!fine && out.at.size() + stack.size() < max_chords && part.lo < middle && middle < part.hi) {
+            stack.push_back({middle, part.hi});
+            stack.push_back({part.lo, middle});
+            continue;
+        }
+        if (!is_finite(found))
+            return refuse(RefusalKind::ill_conditioned, text("t = ", part.lo),
+                          "the parameter curve has no bounded second derivative here");
+        out.at.push_back(part.hi);
+        out.sag.push_back(found);
+    }
+    return out;
+}
+
+}  // namespace
+
+void FaceRegion::add(const Vec<2>& from, const Vec<2>& to, const Vec<2>& sag) {
+    const Vec<2> fat = sag + kRound * Vec<2>{{std::max(std::abs(from[0]), std::abs(to[0])),
+                                              std::max(std::abs(from[1]), std::abs(to[1]))}};
+    segments_.push_back({int(points_.size()), int(points_.size()) + 1});
+    points_.push_back(from);
+    points_.push_back(to);
+    sags_.push_back(fat);
+    for (const Vec<2>& p : {from, to}) {
+        box_.add(p - fat);
+        box_.add(p + fat);
+    }
+}
+
+Result<FaceRegion> FaceRegion::make(const Face& face, const std::vector<Edge>& edges, Vec<2> sag,
+                                    std::size_t max_chords) {
+    FaceRegion out;
+    const auto on = limits(face.surface);
+    if (face.loops.empty()) {
+        const auto d = domain(face.surface);
+        const Vec<2> corner[4] = {
+            {{d[0].lo, d[1].lo}}, {{d[0].hi, d[1].lo}}, {{d[0].hi, d[1].hi}}, {{d[0].lo, d[1].hi}}};
+        for (int i = 0; i < 4; ++i)
+            if (!is_finite(corner[i]))
+                return refuse(RefusalKind::invalid, "loops", "a face without boundary on an endless surface");
+        for (int i = 0; i < 4; ++i) out.add(corner[i], corner[(i + 1) % 4], {});
+        return out;
+    }
+    for (std::size_t l = 0; l < face.loops.size(); ++l) {
+        std::vector<Vec<2>> ends;  // first and last of each coedge
+        for (std::size_t c = 0; c < face.loops[l].coedges.size(); ++c) {
+            const Coedge& coedge = face.loops[l].coedges[c];
+            const auto pieces =
+                pieces_of(coedge.curve, edges[std::size_t(coedge.edge)].range, sag, max_chords);
+            if (!pieces) return refuse_within(text("loops[", l, "][", c, "]"), pieces.error());
+            Vec<2> last = clamped(jet<0>(coedge.curve, pieces->at[0]).value(), on);
+            const Vec<2> first = last;
+            for (std::size_t i = 1; i < pieces->at.size(); ++i) {
+                const Vec<2> next = clamped(jet<0>(coedge.curve, pieces->at[i]).value(), on);
+                out.add(last, next, pieces->sag[i - 1]);
+                last = next;
+            }
+            ends.push_back(coedge.reversed ? last : first);
+            ends.push_back(coedge.reversed ? first : last);
+        }
+        for (std::size_t k = 1; k < ends.size(); k += 2)
+            if (const Vec<2>& next = ends[(k + 1) % ends.size()]; next != ends[k]) out.add(ends[k], next, {});
+    }
+    return out;
+}
+
+bool FaceRegion::meets(const Box<2>& box, std::size_t i) const {
+    const Box<2> fat{box.lo - sags_[i], box.hi + sags_[i]};
+    return freiform::meets(fat, points_[std::size_t(segments_[i][0])], points_[std::size_t(segments_[i][1])]);
+}
+
+bool FaceRegion::is_inside(const Vec<2>& x) const { return freiform::is_inside(x, points_, segments_); }
+
+}  // namespace freiform

@@ -1,0 +1,39 @@
+// The part of the parameter plane that a face is: its boundary as chords, each with a proven bound of how far
+// the parameter curve leaves it. For measuring; meshes are made from polygons of their own (edge_mesh.cpp).
+#pragma once
+#include <freiform/model/model.hpp>
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <array>
+#include <vector>
+
+namespace freiform {
+
+class FaceRegion {
+public:
+    // The parameter curves are halved until they leave their chords by at most `sag` (in u and in v), or
+    // until there are `max_chords`. Without loops: the rectangle of the surface's domain. Refuses (invalid)
+    // domains that are not bounded, (ill_conditioned) curves without a finite bound.
+    static Result<FaceRegion> make(const Face& face, const std::vector<Edge>& edges, Vec<2> sag,
+                                   std::size_t max_chords);
+
+    // Contains the face.
+    const Box<2>& box() const { return box_; }
+    std::size_t size() const { return segments_.size(); }
+    // Does the box meet chord i or what its curve may reach? Conservative.
+    bool meets(const Box<2>& box, std::size_t i) const;
+    // Odd-even rule. REQUIRES a point in a box that meets nothing.
+    bool is_inside(const Vec<2>& x) const;
+    // Points of the face's boundary.
+    const std::vector<Vec<2>>& points() const { return points_; }
+
+private:
+    void add(const Vec<2>& from, const Vec<2>& to, const Vec<2>& sag);
+
+    std::vector<Vec<2>> points_;
+    std::vector<std::array<int, 2>> segments_;
+    std::vector<Vec<2>> sags_;
+    Box<2> box_;
+};
+
+}  // namespace freiform

@@ -1,0 +1,187 @@
+#include "support/shapes.hpp"
+#include "support/solids.hpp"
+
+#include <freiform/core/parallel.hpp>
+#include <freiform/model/deviation.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace freiform;
+using namespace freiform::test;
+
+namespace {
+
+TriangleMesh mesh_of(std::vector<Vec<3>> points, std::vector<std::array<int, 3>> triangles) {
+    TriangleMesh m;
+    m.points = std::move(points);
+    for (std::size_t i = 0; i < m.points.size(); ++i) m.vertices.push_back({int(i), {}, {}});
+    m.triangles = std::move(triangles);
+    return m;
+}
+
+// The corners on the axes at distance r.
+TriangleMesh octahedron(double r) {
+    return mesh_of({{{r, 0, 0}}, {{0, r, 0}}, {{-r, 0, 0}}, {{0, -r, 0}}, {{0, 0, r}}, {{0, 0, -r}}},
+                   {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}});
+}
+
+// [0, 1]^2 at z = 0, with a round hole of this radius in the middle; none for 0.
+Model plate(double hole) {
+    Model m;
+    const Vec<3> at[4] = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}};
+    Face f;
+    f.surface = Extrusion{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+    f.loops.resize(1);
+    for (int i = 0; i < 4; ++i) {
+        const Vec<3> from = at[i], to = at[(i + 1) % 4];
+        m.vertices.push_back({from, 0});
+        m.edges.push_back({Line<3>{from, to - from}, false, {0, 1}, i, (i + 1) % 4, 0, ""});
+        f.loops[0].coedges.push_back({i, false, segment({0, 1}, {{from[0], from[1]}}, {{to[0], to[1]}})});
+    }
+    if (hole > 0) {
+        m.vertices.push_back({{{0.5 + hole, 0.5, 0}}, 0});
+        m.edges.push_back({Conic<3>{ConicKind::ellipse, {{0.5, 0.5, 0}}, {{hole, 0, 0}}, {{0, hole, 0}}},
+                           false,
+                           {0, 2 * kPi},
+                           4,
+                           4,
+                           0,
+                           ""});
+        f.loops.push_back(
+            {{{4, true, Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{hole, 0}}, {{0, hole}}}}}});
+    }
+    m.faces = {f};
+    m.shells = {{{{0, false}}, false}};
+    m.bodies = {{{0}, false, "", {}}};
+    return *make_model(std::move(m));
+}
+TriangleMesh square(double z) {
+    return mesh_of({{{0, 0, z}}, {{1, 0, z}}, {{1, 1, z}}, {{0, 1, z}}}, {{0, 1, 2}, {0, 2, 3}});
+}
+
+TEST(Deviation, of_an_octahedron_from_its_sphere_is_known) {
+    const double known = 1 - 1 / std::sqrt(3.0);  // at the middles of its triangles
+    for (const double r : {1.0, 0.001, 4096.0}) {
+        const auto d = deviation(test::sphere({}, r), octahedron(r), {});
+        ASSERT_TRUE(d) << d.error().message;
+        EXPECT_LE(d->measured, known * r * (1 + 1e-12));
+        EXPECT_GE(d->measured, known * r * 0.98);
+        EXPECT_GE(d->bound, known * r);
+        EXPECT_LE(d->bound, known * r * 1.11);
+        EXPECT_NEAR(norm(d->faces[0].at), r, 1e-12 * r);
+        EXPECT_NEAR(d->mesh_measured, known * r, 2 * d->accuracy);
+        EXPECT_LE(d->accuracy, d->measured / 8);
+    }
+}
+
+TEST(Deviation, of_a_mesh_beside_a_plane_is_the_shift) {
+    const auto d = deviation(plate(0), square(-0.25), {});
+    ASSERT_TRUE(d);
+    EXPECT_NEAR(d->measured, 0.25, 1e-15);
+    EXPECT_GE(d->bound, 0.25);
+    EXPECT_LE(d->bound, 0.25 * 1.1000001);
+    EXPECT_NEAR(d->mesh_measured, 0.25, 1e-15);
+}
+
+TEST(Deviation, a_hole_that_the_mesh_fills_is_seen_from_the_mesh_alone) {
+    const auto d = deviation(plate(0.2), square(0), {.enough = 0.01, .max_parts = 20'000});
+    ASSERT_TRUE(d);
+    EXPECT_LE(d->measured, 1e-15);
+    EXPECT_LE(d->bound, 0.01);
+    EXPECT_LE(d->mesh_measured, 0.2 + 1e-12);
+    EXPECT_GE(d->mesh_measured, 0.15) << "within " << d->accuracy;
+}
+
+TEST(Deviation, a_triangle_that_is_missing_is_seen_from_the_model) {
+    const auto d = deviation(plate(0), mesh_of({{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}, {{0, 1, 2}}), {});
+    ASSERT_TRUE(d);
+    EXPECT_LE(d->measured, std::sqrt(0.5) + 1e-15);  // the corner (0, 1) from the diagonal
+    EXPECT_GE(d->measured, 0.98 * std::sqrt(0.5));
+    EXPECT_GE(d->bound, std::sqrt(0.5));
+    EXPECT_LE(d->mesh_measured, 1e-15);
+}
+
+TEST(Deviation, a_narrow_bump_under_a_flat_mesh_is_found) {
+    const auto basis = *BSplineBasis::clamped_uniform(3, 24);
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 24; ++i)
+        for (int j = 0; j < 24; ++j) c.push_back({{i / 23.0, j / 23.0, i == 13 && j == 7 ? 0.01 : 0.0}});
+    ModelBuilder builder;
+    const auto surface = *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({24, 24}, c));
+    ASSERT_TRUE(builder.add(surface));
+    const auto model = std::move(builder).finish();
+    double height = 0;
+    const auto on = surface.domain();
+    for (int i = 0; i <= 400; ++i)
+        for (int j = 0; j <= 400; ++j)
+            height = std::max(
+                height, surface(on[0].lo + on[0].length() * i / 400, on[1].lo + on[1].length() * j / 400)[2]);
+    const auto d = deviation(*model, square(0), {.max_parts = 30'000});
+    ASSERT_TRUE(d);
+    EXPECT_GE(d->measured, 0.9 * height);
+    EXPECT_GE(d->bound, height);
+    EXPECT_LE(d->bound, 1.15 * height);
+}
+
+TEST(Deviation, agrees_with_what_the_tessellation_proves) {
+    const Model models[] = {test::sphere({{1, 2, 3}}, 2), test::torus(3, 1), frustum(2, 0, 3), plate(0.3)};
+    for (const Model& m : models)
+        for (const double tolerance : {0.05, 0.02}) {
+            const auto t = tessellate(m, {.tolerance = tolerance});
+            ASSERT_TRUE(t);
+            const auto d = deviation(m, t->mesh, {.enough = tolerance, .max_parts = 40'000});
+            ASSERT_TRUE(d) << d.error().message;
+            EXPECT_LE(d->measured, t->error_bound + t->boundary_gap);
+            EXPECT_GE(d->bound, d->measured);
+            EXPECT_LE(d->bound, tolerance * 1.0000001) << "proven from the outside too";
+            EXPECT_LE(d->mesh_measured, t->error_bound + t->boundary_gap + d->accuracy);
+        }
+}
+
+TEST(Deviation, does_not_depend_on_the_number_of_threads) {
+    const Model m = frustum(2, 1, 3);
+    const auto t = tessellate(m, {.tolerance = 0.05});
+    std::vector<Deviation> all;
+    for (const int threads : {1, 3}) {
+        set_max_threads(threads);
+        all.push_back(*deviation(m, t->mesh, {.max_parts = 3000}));
+    }
+    set_max_threads(0);
+    EXPECT_EQ(all[0].measured, all[1].measured);
+    EXPECT_EQ(all[0].bound, all[1].bound);
+    EXPECT_EQ(all[0].mesh_measured, all[1].mesh_measured);
+    EXPECT_EQ(all[0].parts, all[1].parts);
+}
+
+TEST(Deviation, work_is_limited_and_the_bound_stays_one) {
+    const double known = 1 - 1 / std::sqrt(3.0);
+    double last = INFINITY;
+    for (const std::size_t parts : {1u, 100u, 1000u, 20000u}) {
+        const auto d = deviation(test::sphere({}, 1), octahedron(1), {.max_parts = parts});
+        ASSERT_TRUE(d);
+        EXPECT_GE(d->bound, known);
+        EXPECT_LE(d->bound, last);
+        last = d->bound;
+    }
+    EXPECT_LE(last, 1.11 * known);
+}
+
+TEST(Deviation, refuses_what_has_no_answer) {
+    EXPECT_EQ(deviation(plate(0), TriangleMesh{}, {}).error().where, "mesh");
+    EXPECT_EQ(deviation(Model{}, square(0), {}).error().where, "model");
+    EXPECT_EQ(deviation(plate(0), square(0), {.enough = NAN}).error().where, "enough");
+    EXPECT_EQ(deviation(plate(0), square(0), {.progress = [](double) { return false; }}).error().kind,
+              RefusalKind::limit);
+    EXPECT_FALSE(distances_from_model(plate(0), {}, 0));
+}
+
+TEST(Deviation, distances_of_points_are_within_the_accuracy) {
+    const std::vector<Vec<3>> points{{{0.5, 0.5, 0}}, {{0.5, 0.5, 2}}, {{0.1, 0.1, -1}}, {{2, 0.5, 0}}};
+    const double hole = 0.3, accuracy = 0.01;
+    const auto d = distances_from_model(plate(hole), points, accuracy);
+    ASSERT_TRUE(d);
+    const double known[] = {hole, std::hypot(hole, 2), 1, 1};
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR((*d)[i], known[i], accuracy) << i;
+}
+
+}  // namespace
