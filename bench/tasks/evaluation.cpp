@@ -4,6 +4,10 @@
 
 #include <evaluation_inputs.hpp>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 namespace {
 
 using namespace freiform;
@@ -33,6 +37,19 @@ double processors() {
         for (int i = 0; i < 200000; ++i) x = x * 1.0000001;
     });
     return (now(CLOCK_PROCESS_CPUTIME_ID) - used) / (now(CLOCK_MONOTONIC) - clock);
+}
+
+// Two constants over all of the points, in whole lines of memory past the caches where the processor can.
+void store_past(std::vector<Vec<3>>& out) {
+    double* p = out[0].c.data();
+    double* const end = p + 3 * out.size();
+#if defined(__SSE2__)
+    while (reinterpret_cast<std::uintptr_t>(p) % 64 != 0) *p++ = 1;
+    for (; p + 8 <= end; p += 8)
+        for (int i = 0; i < 8; i += 2) _mm_stream_pd(p + i, _mm_set_pd(2, 1));
+    _mm_sfence();
+#endif
+    while (p < end) *p++ = 1;
 }
 
 int run() {
@@ -101,6 +118,8 @@ int run() {
             std::fill(out.begin(), out.end(), Vec<3>{{1, 2, 3}});
         },
         x);
+    bench::task(
+        "store_past", [&] { store_past(out); }, x);
     std::printf("# kernels %s bound %.3g processors %.2f\n", std::string(instruction_set()).c_str(),
                 fast->value_error_bound(), processors());
     return ok ? 0 : 1;

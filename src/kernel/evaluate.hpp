@@ -12,10 +12,14 @@ inline constexpr int kMaxDegree = 25;  // that of basis/bspline.hpp
 inline constexpr int kMaxOrder = 2;    // of derivatives
 inline constexpr int kTile = 64;       // points that are worked on at once
 
-// A span [lo, hi]. `inverse` is about 1 / (hi - lo), such that fl((hi - lo) * inverse) >= 1.
-struct Span {
-    double lo, hi, inverse;
-    int first;  // index of the first coefficient
+// A span [lo, hi]. `inverse` is about 1 / (hi - lo), such that fl((hi - lo) * inverse) >= 1. `next` is where
+// the next span begins, infinity after the last one. Four numbers that are loaded at once, in a line of the
+// cache of their own with where to go from there.
+struct alignas(64) Span {
+    double lo, hi, inverse, next;
+    std::size_t matrix;        // of the first column, in Axis::matrix
+    std::size_t coefficients;  // of the first coefficient, in Net::coefficients; 0 for curves
+    int first;                 // its index along the axis
 };
 
 // One parameter. Inside span s, with t and 1 - t the local parameters, the derivative of order o of the
@@ -31,12 +35,10 @@ struct Axis {
     const double* matrix = nullptr;  // spans * stride numbers
     std::size_t stride = 0;          // columns(0) + columns(1) + columns(2), times lanes
     // Search. x is in span s or one of the `steps` after it, s = bucket[min(int((x - lo) * scale), buckets -
-    // 1)]; steps is 0 or 2^k - 1; starts[s] are the lower ends of the spans, followed by `steps` infinite
-    // numbers.
+    // 1)]; steps is 2^k - 1. The spans are followed by `steps` more whose `next` is infinite.
     double lo = 0, scale = 0;
-    int buckets = 1, steps = 0;
+    int buckets = 1, steps = 1;
     const int* bucket = nullptr;
-    const double* starts = nullptr;
 
     int columns(int order) const { return order > degree ? 0 : degree + 1 - order; }
     std::size_t column(int order) const {  // of the first one, in a span
@@ -63,11 +65,12 @@ struct Net {
 
 // What to compute: partial derivatives up to total order `order` in graded order, of which `slots` are
 // written, dim numbers each; and unit normals (surfaces in space only, order >= 1) where `normals` is not
-// null.
+// null. past: with stores that go past the caches where the processor has them; `flush` afterwards.
 struct Output {
     int order = 0, slots = 1;
-    double* jets = nullptr;  // may be null if slots is 0
+    double* jets = nullptr;
     double* normals = nullptr;
+    bool past = false;
 };
 
 // The last axis of a grid, in groups of `width` parameters. The parameters of a group that are in one span
@@ -102,8 +105,7 @@ struct Kernels {
     void (*grid_row)(const Net&, const GridAxis& last, const double* outer, std::size_t row, const Output&);
     // sum[0 .. n) = sum_i w[i] * from[i][0 .. n)
     void (*combine)(const double* const* from, const double* w, int terms, double* sum, std::size_t n);
-    // Copies past the caches where the processor can; `flush` afterwards.
-    void (*stream)(double* to, const double* from, std::size_t n);
+    // Makes what was stored past the caches visible to other threads.
     void (*flush)();
     // Whether all n numbers are inside [lo, hi], of `axes` interleaved intervals.
     bool (*inside)(const double* at, std::size_t n, int axes, const double* lo, const double* hi);

@@ -15,6 +15,10 @@ namespace {
 //
 #include "jets.inl"
 //
+#include "locate.inl"
+//
+#include "finish.inl"
+//
 #include "scattered.inl"
 //
 #include "grid.inl"
@@ -23,8 +27,7 @@ namespace {
 
 #define FF_TEXT_OF(x) #x
 #define FF_TEXT(x) FF_TEXT_OF(x)
-const Kernels FF_KERNELS = {FF_TEXT(FF_KERNEL), FF_KERNEL::kWidth,   FF_KERNEL::scattered,
-                            FF_KERNEL::weights, FF_KERNEL::grid_row, FF_KERNEL::combine,
-                            FF_KERNEL::stream,  FF_KERNEL::flush,    FF_KERNEL::inside};
+const Kernels FF_KERNELS = {FF_TEXT(FF_KERNEL),  FF_KERNEL::kWidth,  FF_KERNEL::scattered, FF_KERNEL::weights,
+                            FF_KERNEL::grid_row, FF_KERNEL::combine, FF_KERNEL::flush,     FF_KERNEL::inside};
 
 }  // namespace freiform::kernel

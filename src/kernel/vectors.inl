@@ -32,6 +32,8 @@ typedef double V2u __attribute__((vector_size(16), aligned(8), may_alias));
 typedef double V __attribute__((vector_size(8 * kWidth)));
 typedef double Vu __attribute__((vector_size(8 * kWidth), aligned(8), may_alias));
 typedef long long I __attribute__((vector_size(8 * kWidth)));
+typedef int Half __attribute__((vector_size(4 * kWidth)));
+typedef int Halfu __attribute__((vector_size(4 * kWidth), aligned(4), may_alias));
 
 FF_INLINE V4 load4(const double* p) { return *reinterpret_cast<const V4u*>(p); }
 FF_INLINE void store4(double* p, V4 v) { *reinterpret_cast<V4u*>(p) = v; }
@@ -40,6 +42,7 @@ FF_INLINE void store(double* p, V v) { *reinterpret_cast<Vu*>(p) = v; }
 FF_INLINE V4 all4(double x) { return V4{x, x, x, x}; }
 #if defined(__AVX512F__)
 FF_INLINE V all(double x) { return V{x, x, x, x, x, x, x, x}; }
+FF_INLINE V join(V4 a, V4 b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
 FF_INLINE V4 fold(V v) {
     return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
 }
@@ -71,6 +74,23 @@ FF_INLINE V reciprocal(V w) {
     return (V)r;
 #else
     return all(1) / w;
+#endif
+}
+
+// The same of several, side by side: one is a chain in which each operation waits for the last.
+template <int Count>
+FF_INLINE void reciprocals(const V* w, V* r) {
+#if defined(__AVX512F__)
+    const __m512d one = _mm512_set1_pd(1);
+    __m512d e[Count], x[Count];
+    each<Count>(Count, [&](int i) FF_BODY { x[i] = _mm512_maskz_rcp14_pd(0xff, (__m512d)w[i]); });
+    for (int step = 0; step < 2; ++step) {
+        each<Count>(Count, [&](int i) FF_BODY { e[i] = _mm512_fnmadd_pd((__m512d)w[i], x[i], one); });
+        each<Count>(Count, [&](int i) FF_BODY { x[i] = _mm512_fmadd_pd(x[i], e[i], x[i]); });
+    }
+    each<Count>(Count, [&](int i) FF_BODY { r[i] = (V)x[i]; });
+#else
+    each<Count>(Count, [&](int i) FF_BODY { r[i] = all(1) / w[i]; });
 #endif
 }
 
@@ -124,25 +144,74 @@ FF_INLINE void store_past(double* p, V v) {
 }
 
 FF_INLINE void store_three(double* p, V4 v) {
+#if defined(__AVX512F__)
+    _mm256_mask_storeu_pd(p, 7, (__m256d)v);
+#else
     *reinterpret_cast<V2u*>(p) = __builtin_shufflevector(v, v, 0, 1);
     p[2] = v[2];
+#endif
+}
+
+// The first three numbers of kWidth places, one in each lane.
+FF_INLINE void three_of(const double* const* from, V& x, V& y, V& z) {
+#if defined(__AVX512F__)
+    const V a = join(load4(from[0]), load4(from[4])), b = join(load4(from[1]), load4(from[5]));
+    const V c = join(load4(from[2]), load4(from[6])), d = join(load4(from[3]), load4(from[7]));
+    const V ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const V cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const V ab1 = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const V cd1 = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    x = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13);
+    y = __builtin_shufflevector(ab1, cd1, 0, 1, 8, 9, 4, 5, 12, 13);
+    z = __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15);
+#else
+    const V a = load4(from[0]), b = load4(from[1]), c = load4(from[2]), d = load4(from[3]);
+    const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const V ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7), cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    x = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+    y = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    z = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+#endif
+}
+
+// kWidth coefficients, one after the other, to their coordinates side by side.
+FF_INLINE void transpose(const double* p, V* s) {
+#if defined(__AVX512F__)
+    const V a = load(p), b = load(p + 8), c = load(p + 16), d = load(p + 24);
+    const V ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const V cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const V ab1 = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const V cd1 = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    s[0] = __builtin_shufflevector(ab, cd, 0, 4, 1, 5, 8, 12, 9, 13);
+    s[1] = __builtin_shufflevector(ab1, cd1, 0, 4, 1, 5, 8, 12, 9, 13);
+    s[2] = __builtin_shufflevector(ab, cd, 2, 6, 3, 7, 10, 14, 11, 15);
+    s[3] = __builtin_shufflevector(ab1, cd1, 2, 6, 3, 7, 10, 14, 11, 15);
+#else
+    const V a = load(p), b = load(p + 4), c = load(p + 8), d = load(p + 12);
+    const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const V ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7), cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    s[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+    s[1] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    s[2] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+    s[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
+#endif
 }
 
 // kWidth points of three coordinates, one after the other.
-FF_INLINE void store_points(double* p, V x, V y, V z) {
+FF_INLINE void interleave(V x, V y, V z, V* out) {
 #if defined(__AVX512F__)
     const V a = __builtin_shufflevector(x, y, 0, 8, -1, 1, 9, -1, 2, 10);
     const V b = __builtin_shufflevector(x, y, -1, 3, 11, -1, 4, 12, -1, 5);
     const V c = __builtin_shufflevector(x, y, 13, -1, 6, 14, -1, 7, 15, -1);
-    store(p, __builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7));
-    store(p + 8, __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7));
-    store(p + 16, __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15));
+    out[0] = __builtin_shufflevector(a, z, 0, 1, 8, 3, 4, 9, 6, 7);
+    out[1] = __builtin_shufflevector(b, z, 10, 1, 2, 11, 4, 5, 12, 7);
+    out[2] = __builtin_shufflevector(c, z, 0, 13, 2, 3, 14, 5, 6, 15);
 #else
     const V a = __builtin_shufflevector(x, y, 0, 4, -1, 1), b = __builtin_shufflevector(x, y, 5, -1, 2, 6);
     const V c = __builtin_shufflevector(x, y, -1, 3, 7, -1);
-    store(p, __builtin_shufflevector(a, z, 0, 1, 4, 3));
-    store(p + 4, __builtin_shufflevector(b, z, 0, 5, 2, 3));
-    store(p + 8, __builtin_shufflevector(c, z, 6, 1, 2, 7));
+    out[0] = __builtin_shufflevector(a, z, 0, 1, 4, 3);
+    out[1] = __builtin_shufflevector(b, z, 0, 5, 2, 3);
+    out[2] = __builtin_shufflevector(c, z, 6, 1, 2, 7);
 #endif
 }
 
@@ -155,29 +224,102 @@ FF_INLINE void store_four_apart(double* p, V4 x, V4 y, V4 z, long stride) {
     store_three(p + 2 * stride, __builtin_shufflevector(a, c, 2, 3, 6, 7));
     store_three(p + 3 * stride, __builtin_shufflevector(b, d, 2, 3, 6, 7));
 }
-FF_INLINE void store_points_apart(double* p, V x, V y, V z, long stride) {
-#if defined(__AVX512F__)
-    store_four_apart(p, __builtin_shufflevector(x, x, 0, 1, 2, 3), __builtin_shufflevector(y, y, 0, 1, 2, 3),
-                     __builtin_shufflevector(z, z, 0, 1, 2, 3), stride);
-    store_four_apart(p + 4 * stride, __builtin_shufflevector(x, x, 4, 5, 6, 7),
-                     __builtin_shufflevector(y, y, 4, 5, 6, 7), __builtin_shufflevector(z, z, 4, 5, 6, 7),
-                     stride);
-#else
-    store_four_apart(p, x, y, z, stride);
-#endif
-}
 
 // kWidth points of any dimension, `stride` numbers apart.
-FF_INLINE void emit(double* p, const V* x, int dim, long stride) {
+FF_INLINE void emit(double* p, const V* s, int dim, long stride) {
     if (dim == 3) {
-        if (stride == 3)
-            store_points(p, x[0], x[1], x[2]);
-        else
-            store_points_apart(p, x[0], x[1], x[2], stride);
+#if defined(__AVX512F__)
+        const V a = __builtin_shufflevector(s[0], s[1], 0, 8, 2, 10, 4, 12, 6, 14);
+        const V b = __builtin_shufflevector(s[0], s[1], 1, 9, 3, 11, 5, 13, 7, 15);
+        const V z = s[2];
+        const V v[4] = {__builtin_shufflevector(a, z, 0, 1, 8, 8, 4, 5, 12, 12),
+                        __builtin_shufflevector(b, z, 0, 1, 9, 9, 4, 5, 13, 13),
+                        __builtin_shufflevector(a, z, 2, 3, 10, 10, 6, 7, 14, 14),
+                        __builtin_shufflevector(b, z, 2, 3, 11, 11, 6, 7, 15, 15)};
+        for (int i = 0; i < 4; ++i) {
+            store_three(p + i * stride, __builtin_shufflevector(v[i], v[i], 0, 1, 2, 3));
+            store_three(p + (i + 4) * stride, __builtin_shufflevector(v[i], v[i], 4, 5, 6, 7));
+        }
+#else
+        store_four_apart(p, s[0], s[1], s[2], stride);
+#endif
         return;
     }
-    double copy[4][kWidth];  // so that x itself stays in registers
-    for (int c = 0; c < 4; ++c) store(copy[c], x[c]);
+    double copy[4][kWidth];  // so that s itself stays in registers
+    for (int c = 0; c < 4; ++c) store(copy[c], s[c]);
     for (int i = 0; i < kWidth; ++i)
         for (int c = 0; c < dim; ++c) p[i * stride + c] = copy[c][i];
 }
+
+// Where numbers go, one vector after the other: into memory, or past the caches, for which the vectors are
+// shifted to whole lines of it; what is left over at both ends is stored as usual.
+struct Sink {
+    double* to = nullptr;  // the next number; past: the line that `carry` begins
+    bool past = false, begun = false;
+    int skew = 0;  // numbers of the first line that are not ours
+    V carry = {};
+
+    FF_BODY inline void open(double* p, bool past_the_caches) {
+        to = p, past = past_the_caches, begun = false;
+        skew = past ? int(reinterpret_cast<std::size_t>(p) / sizeof(double) % std::size_t(kWidth)) : 0;
+        carry = all(0);
+    }
+    FF_BODY inline V shifted(V before, V v) const {
+#if defined(__AVX512F__)
+        const I lane = {8, 9, 10, 11, 12, 13, 14, 15};
+        return (V)_mm512_permutex2var_pd((__m512d)before, (__m512i)(lane - (long long)skew), (__m512d)v);
+#else
+        return skew == 0   ? v
+               : skew == 1 ? __builtin_shufflevector(before, v, 3, 4, 5, 6)
+               : skew == 2 ? __builtin_shufflevector(before, v, 2, 3, 4, 5)
+                           : __builtin_shufflevector(before, v, 1, 2, 3, 4);
+#endif
+    }
+    FF_BODY inline void put(V v) {
+        if (!past) {
+            store(to, v);
+            to += kWidth;
+            return;
+        }
+        if (begun) {
+            store_past(to, shifted(carry, v));
+            to += kWidth;
+        } else {
+            put_first(v);
+        }
+        carry = v;
+    }
+    template <int Count>
+    FF_BODY inline void put_all(const V* v) {
+        if (!past || !begun) {
+            each<Count>(Count, [&](int i) FF_BODY { put(v[i]); });
+            return;
+        }
+        V before = carry;
+        each<Count>(Count, [&](int i) FF_BODY {
+            store_past(to + i * kWidth, shifted(before, v[i]));
+            before = v[i];
+        });
+        carry = before;
+        to += Count * kWidth;
+    }
+    // The first vector, as much of it as lies in the first line.
+    void put_first(V v) {
+        double some[kWidth];
+        store(some, v);
+        for (int i = 0; i < kWidth - skew; ++i) *to++ = some[i];
+        begun = true;
+    }
+    // The rest of the last vector. Numbers may follow with put_few(), vectors no more.
+    void close() {
+        if (!past || !begun) return;
+        double some[kWidth];
+        store(some, carry);
+        for (int i = kWidth - skew; i < kWidth; ++i) *to++ = some[i];
+        past = begun = false;
+    }
+    void put_few(const double* from, long n) {
+        close();
+        for (long i = 0; i < n; ++i) *to++ = from[i];
+    }
+};

@@ -80,6 +80,14 @@ Result<PreparedNet> prepared(const std::array<B, N>& bases, const Tuples& net) {
     return PreparedNet::make(splines, net);
 }
 
+// Whether this many points pay for the tables: making those costs as much as so many points, or so.
+template <std::size_t N, Basis B>
+bool worth_preparing(const std::array<B, N>& bases, std::size_t coefficients, std::size_t points) {
+    std::size_t worth = coefficients / 4;
+    for (const B& b : bases) worth += 16 * std::size_t(b.degree() + 1) * std::size_t(b.size());
+    return points >= worth;
+}
+
 template <std::size_t N>
 std::span<const double> plain(std::span<const Param<N>> at) {
     if constexpr (N == 1)
@@ -134,15 +142,18 @@ typename Patch<N, P, B>::Point Patch<N, P, B>::operator()(const Param<N>& u) con
 }
 
 template <std::size_t N, Coefficient P, Basis B>
+std::optional<Result<void>> Patch<N, P, B>::by_kernels(std::span<const Param<N>> at, int order,
+                                                       std::size_t slots, double* out) const {
+    if (!detail::worth_preparing(bases_, net_.flat().size(), at.size())) return {};
+    const auto fast = detail::prepared(bases_, tuples(net_.flat()));
+    if (!fast) return {};
+    return fast->evaluate(detail::plain<N>(at), order, slots, out, nullptr, Outside::refuse);
+}
+
+template <std::size_t N, Coefficient P, Basis B>
 Result<void> Patch<N, P, B>::evaluate(std::span<const Param<N>> at, std::span<Point> out) const {
     FF_REQUIRE(at.size() == out.size());
-    // To prepare costs as much as this many points, or so.
-    std::size_t worth = 0;
-    for (const B& b : bases_) worth += 16 * std::size_t(b.degree() + 1) * std::size_t(b.size());
-    if (at.size() >= worth + net_.flat().size() / 4) {
-        if (const auto fast = detail::prepared(bases_, tuples(net_.flat())))
-            return fast->evaluate(detail::plain<N>(at), 0, 1, numbers(out).data(), nullptr, Outside::refuse);
-    }
+    if (const auto done = by_kernels(at, 0, 1, numbers(out).data())) return *done;
     for (std::size_t i = 0; i < at.size(); ++i)
         if (auto ok = check(at[i], i); !ok) return ok;
     for (std::size_t i = 0; i < at.size(); ++i) out[i] = (*this)(at[i]);
@@ -225,6 +236,15 @@ Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
         if (auto ok = detail::check_axis(axes[d], on, detail::is_closed(s.basis(int(d))), d); !ok)
             return std::unexpected(ok.error());
         extent[d] = int(std::min<std::size_t>(axes[d].size(), 0x7fffffff));
+    }
+    if (const auto points = count_of(extent);
+        points > 0 && detail::worth_preparing(s.bases(), s.net().flat().size(), std::size_t(points))) {
+        if (const auto fast = detail::prepared(s.bases(), tuples(s.net().flat()))) {
+            Net<N, PointOf<P>> out(extent);
+            if (auto ok = fast->evaluate_grid(axes, 0, 1, numbers(out.flat()).data(), nullptr); !ok)
+                return std::unexpected(ok.error());
+            return out;
+        }
     }
     const auto map = [&](std::size_t d) { return collocation(s.basis(int(d)), axes[d]); };
     const auto all = detail::grid_of(tuples(s.net().flat()), s.net().extent(), extent, map);

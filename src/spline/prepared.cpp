@@ -22,7 +22,6 @@ using Tables = PreparedNet::Tables;
 constexpr std::size_t kChunk = 4096;  // points that one thread takes at once
 // What does not stay in the cache goes past it: a store would first read what it overwrites.
 constexpr std::size_t kPastFrom = std::size_t(4) << 20;  // bytes
-constexpr std::size_t kBuffered = 256;                   // points, which stay in the first cache
 constexpr std::size_t kChunksFrom = PreparedPatch<1, Vec<1>>::kParallelFrom / kChunk;
 
 bool is_good(const BSplineBasis& basis, double x) {
@@ -83,11 +82,16 @@ void make_good(const Tables& t, std::span<const double> at, std::vector<double>&
 void evaluate_chunk(const Tables& t, const kernel::Net& net, std::span<const double> at, bool wrapped,
                     const kernel::Output& out) {
     const std::size_t axes = t.axis.size(), n = at.size() / axes;
-    if (!wrapped) return kernels().scattered(net, at.data(), n, out);
+    if (!wrapped) {
+        kernels().scattered(net, at.data(), n, out);
+        if (out.past) kernels().flush();
+        return;
+    }
     std::vector<double> good;
     std::vector<char> bad;
     make_good(t, at, good, bad);
     kernels().scattered(net, good.data(), n, out);
+    if (out.past) kernels().flush();
     const std::size_t size = std::size_t(out.slots * net.dim);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t i = 0; i < n; ++i) {
@@ -95,21 +99,6 @@ void evaluate_chunk(const Tables& t, const kernel::Net& net, std::span<const dou
         std::fill_n(out.jets + i * size, size, nan);
         if (out.normals) std::fill_n(out.normals + 3 * i, 3, nan);
     }
-}
-
-// The same past the caches.
-void evaluate_past(const Tables& t, const kernel::Net& net, std::span<const double> at, bool wrapped,
-                   const kernel::Output& out) {
-    const std::size_t axes = t.axis.size(), n = at.size() / axes, size = std::size_t(out.slots * net.dim);
-    std::vector<double> jets(kBuffered * size), normals(out.normals ? kBuffered * 3 : 0);
-    for (std::size_t i = 0; i < n; i += kBuffered) {
-        const std::size_t count = std::min(kBuffered, n - i);
-        evaluate_chunk(t, net, at.subspan(i * axes, count * axes), wrapped,
-                       {out.order, out.slots, jets.data(), out.normals ? normals.data() : nullptr});
-        kernels().stream(out.jets + i * size, jets.data(), count * size);
-        if (out.normals) kernels().stream(out.normals + 3 * i, normals.data(), 3 * count);
-    }
-    kernels().flush();
 }
 
 // The weights of the outer axes of a grid: lanes numbers for each parameter and order.
@@ -126,7 +115,7 @@ OuterAxis outer_axis(const kernel::Axis& axis, std::span<const double> at, int o
 
 struct LastAxis {
     std::vector<kernel::GridPart> part;
-    std::vector<double> weights;
+    Lines weights;
     kernel::GridAxis view;
 };
 LastAxis last_axis(const kernel::Axis& axis, std::span<const double> at, int order) {
@@ -177,10 +166,9 @@ Result<void> PreparedNet::evaluate(std::span<const double> at, int order, std::s
     const std::size_t numbers = at.size() / axes * (slots * std::size_t(net.dim) + (normals ? 3 : 0));
     const bool past = numbers * sizeof(double) > kPastFrom;
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
-        (past ? evaluate_past : evaluate_chunk)(
-            t, net, at.subspan(first * axes, count * axes), !plain,
-            {order, int(slots), jets + first * slots * std::size_t(net.dim),
-             normals ? normals + 3 * first : nullptr});
+        evaluate_chunk(t, net, at.subspan(first * axes, count * axes), !plain,
+                       {order, int(slots), jets + first * slots * std::size_t(net.dim),
+                        normals ? normals + 3 * first : nullptr, past});
     });
     return {};
 }
@@ -196,7 +184,7 @@ Result<void> PreparedNet::evaluate_single(std::span<const double> at, float* poi
         double some[512 * 4];
         for (std::size_t i = first; i < first + count; i += 512) {
             const std::size_t n = std::min<std::size_t>(512, first + count - i);
-            evaluate_chunk(t, net, at.subspan(i * axes, n * axes), !plain, {0, 1, some, nullptr});
+            evaluate_chunk(t, net, at.subspan(i * axes, n * axes), !plain, {0, 1, some, nullptr, false});
             for (std::size_t k = 0; k < n * dim; ++k) points[i * dim + k] = float(some[k]);
         }
     });
@@ -236,8 +224,8 @@ Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>>
     view.weights = last.weights.data();
     const bool past = rows * count * (size + (normals ? 3 : 0)) * sizeof(double) > kPastFrom;
     const auto do_rows = [&](std::size_t begin, std::size_t end) {
-        std::vector<double> sums(combinations * row + 8),
-            buffer(past ? count * (size + (normals ? 3 : 0)) : 0), w;
+        Lines sums(combinations * row + 8);
+        std::vector<double> w;
         std::vector<const double*> from;
         const auto contract = [&](const Index<2>& at, const Index<2>& o, std::size_t c) {
             w.clear(), from.clear();
@@ -267,14 +255,7 @@ Result<void> PreparedNet::evaluate_grid(std::span<const std::span<const double>>
                 contract(at, n == 2 ? Index<2>{int(c), 0} : orders[c], c);
             double* to = jets + i * count * size;
             double* to_normals = normals ? normals + i * count * 3 : nullptr;
-            if (!past) {
-                kernels().grid_row(net, view, sums.data(), row, {order, int(slots), to, to_normals});
-                continue;
-            }
-            double* behind = normals ? buffer.data() + count * size : nullptr;
-            kernels().grid_row(net, view, sums.data(), row, {order, int(slots), buffer.data(), behind});
-            kernels().stream(to, buffer.data(), count * size);
-            if (normals) kernels().stream(to_normals, behind, count * 3);
+            kernels().grid_row(net, view, sums.data(), row, {order, int(slots), to, to_normals, past});
         }
         if (past) kernels().flush();
     };

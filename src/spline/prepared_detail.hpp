@@ -4,15 +4,31 @@
 
 #include <freiform/spline/prepared.hpp>
 
+#include <new>
 #include <vector>
 
 namespace freiform::detail {
+
+// Numbers that begin with a line of the cache: a vector of them that straddles two lines costs two loads.
+template <class T>
+struct LineAllocator {
+    using value_type = T;
+    LineAllocator() = default;
+    template <class U>
+    LineAllocator(const LineAllocator<U>&) {}
+    T* allocate(std::size_t n) {
+        return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64)));
+    }
+    void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t(64)); }
+    friend bool operator==(LineAllocator, LineAllocator) { return true; }
+};
+using Lines = std::vector<double, LineAllocator<double>>;
 
 struct AxisTable {
     BSplineBasis basis;
     kernel::Axis axis;  // without pointers
     std::vector<kernel::Span> spans;
-    std::vector<double> matrix, starts;
+    Lines matrix;
     std::vector<int> bucket;
 
     kernel::Axis view() const;
@@ -25,7 +41,7 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
 struct PreparedNet::Tables {
     std::vector<AxisTable> axis;
     kernel::Net net;  // without pointers
-    std::vector<double> coefficients;
+    Lines coefficients;
     double error = 0;
 
     kernel::Net view() const;

@@ -51,7 +51,10 @@ void make_search(AxisTable& table) {
     kernel::Axis& a = table.axis;
     const Interval on{table.spans.front().lo, table.spans.back().hi};
     a.lo = on.lo;
-    a.buckets = int(std::clamp<std::size_t>(8 * table.spans.size(), 1, 1 << 20));
+    // Few buckets should have two spans, all of them should stay in the cache.
+    const std::size_t spans = table.spans.size();
+    a.buckets =
+        int(std::min<std::size_t>(std::max(std::min<std::size_t>(64 * spans, 512), 8 * spans), 1 << 20));
     a.scale = a.buckets / on.length();
     // The same expression as in the kernels, which is monotone; so a parameter at or above the start of a
     // span is in its bucket or a later one.
@@ -68,21 +71,23 @@ void make_search(AxisTable& table) {
         most = std::max(most, more);
     }
     while (a.steps < most) a.steps = 2 * a.steps + 1;
-    for (const kernel::Span& s : table.spans) table.starts.push_back(s.lo);
-    table.starts.resize(table.spans.size() + std::size_t(a.steps), std::numeric_limits<double>::infinity());
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s + 1 < table.spans.size(); ++s) table.spans[s].next = table.spans[s + 1].lo;
+    table.spans.back().next = infinity;
+    table.spans.resize(table.spans.size() + std::size_t(a.steps), {0, 0, 0, infinity, 0, 0, 0});
 }
 
 kernel::Span span_between(double lo, double hi, int first) {
     const double width = hi - lo;
     double inverse = 1 / width;
     while (width * inverse < 1) inverse = std::nextafter(inverse, std::numeric_limits<double>::infinity());
-    return {lo, hi, inverse, first};
+    return {lo, hi, inverse, 0, 0, 0, first};
 }
 
 }  // namespace
 
 AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, int lanes) {
-    AxisTable table{basis, {}, {}, {}, {}, {}};
+    AxisTable table{basis, {}, {}, {}, {}};
     const int p = basis.degree(), end = int(basis.knots().size()) - p - 1;
     for (int s = p; s < end; ++s)
         if (basis.knot(s) < basis.knot(s + 1))
@@ -94,11 +99,12 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
     const int columns = a.columns(0) + a.columns(1) + a.columns(2);
     a.stride = std::size_t(columns) * std::size_t(lanes);
     table.matrix.assign(a.stride * table.spans.size(), 0);
+    for (std::size_t s = 0; s < table.spans.size(); ++s) table.spans[s].matrix = s * a.stride;
     make_search(table);
 
     std::vector<DoubleDouble> args(std::size_t(std::max(p, 1))), weights(std::size_t(p) + 1);
     std::vector<DoubleDouble> column(std::size_t((p + 1) * lanes));
-    for (std::size_t s = 0; s < table.spans.size(); ++s) {
+    for (std::size_t s = 0; s < std::size_t(a.spans); ++s) {
         const kernel::Span& span = table.spans[s];
         std::ranges::fill(column, DoubleDouble());
         for (int k = 0; k <= p; ++k) {
@@ -136,7 +142,6 @@ kernel::Axis AxisTable::view() const {
     a.span = spans.data();
     a.matrix = matrix.data();
     a.bucket = bucket.data();
-    a.starts = starts.data();
     return a;
 }
 
@@ -226,6 +231,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     }
     for (std::size_t d = bases.size(), stride = 4; d-- > 0;) {
         n.stride[d] = stride;
+        for (kernel::Span& s : tables->axis[d].spans) s.coefficients = std::size_t(s.first) * stride;
         stride *= std::size_t(extent[skip + d]);
     }
     // Unwinding a closed net may repeat it; what comes out must still be counted by an int.

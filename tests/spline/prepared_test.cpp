@@ -257,6 +257,135 @@ TEST(PreparedPatch, grids_are_what_scattered_parameters_give) {
     expect_grid_is_scattered<2, Hom<3>>({500, 700}, 67);  // past the caches
 }
 
+template <class P>
+void expect_grid_within_bound(std::uint64_t seed) {
+    Random random(seed);
+    const auto patch = test::random_patch<2, P>(random, 4, {.ends = test::Ends::clamped, .spans = 3});
+    const auto fast = prepared(patch);
+    std::array<std::vector<double>, 2> axes;
+    for (std::size_t d = 0; d < 2; ++d)
+        for (int i = 0; i < (d == 0 ? 2 : 35); ++i) {
+            const Interval on = patch.basis(int(d)).domain();
+            axes[d].push_back(i == 3 ? on.hi : std::min(on.hi, random.real(on.lo, on.hi)));
+        }
+    std::ranges::sort(axes[1]);
+    std::vector<std::vector<test::Rational>> exact;
+    for (const double u : axes[0])
+        for (const double v : axes[1]) exact.push_back(test::value_of<test::Rational>(patch, {u, v}));
+    with_every_variant([&] {
+        std::vector<PointOf<P>> out(exact.size());
+        ASSERT_TRUE(fast.evaluate_grid({axes[0], axes[1]}, out));
+        for (std::size_t i = 0; i < out.size(); ++i)
+            for (int c = 0; c < PointOf<P>::kCoords; ++c)
+                ASSERT_LE(test::gap(out[i][c], exact[i][std::size_t(c)]), fast.value_error_bound()) << i;
+    });
+}
+
+TEST(PreparedPatch, values_on_grids_are_within_the_bound_of_exact_arithmetic) {
+    expect_grid_within_bound<Hom<3>>(23);
+    expect_grid_within_bound<Vec<3>>(24);
+    expect_grid_within_bound<Hom<4>>(25);
+    expect_grid_within_bound<Vec<2>>(26);
+}
+
+// Large results go past the caches, in whole lines of memory that are shifted from where the points begin.
+// Nothing around them may change.
+TEST(PreparedPatch, writes_large_results_wherever_memory_begins_and_nothing_beside_them) {
+    Random random(68);
+    const auto curve = test::random_patch<1, Vec<3>>(random, 2, {.spans = 3});
+    const auto surface = test::random_patch<2, Hom<3>>(random, 3, {.ends = test::Ends::clamped, .spans = 3});
+    const auto quick = prepared(curve);
+    const auto fast = prepared(surface);
+    constexpr std::size_t kMany = 180003;
+    const auto some = test::parameters<1, Vec<3>>(random, curve, 997);
+    std::vector<double> t;
+    for (std::size_t i = 0; i < kMany; ++i) t.push_back(some[i % some.size()]);
+    std::array<std::vector<double>, 2> axes;
+    for (std::size_t d = 0; d < 2; ++d)
+        for (std::size_t i = 0; i < (d == 0 ? 3 : kMany / 3); ++i) {
+            const Interval on = surface.basis(int(d)).domain();
+            axes[d].push_back(std::min(on.hi, on.lo + on.length() * (double(i % 101) / 100)));
+        }
+    const Vec<3> kept{{7, 7, 7}};
+    with_every_variant([&] {
+        std::vector<Vec<3>> few(some.size()), row(3 * 101), row_normals(3 * 101);
+        std::vector<Jet<1, 1, Vec<3>>> few_jets(some.size());
+        ASSERT_TRUE(quick.evaluate(some, few));
+        ASSERT_TRUE(quick.evaluate(some, std::span(few_jets)));
+        const std::span<const double> first(axes[1].data(), 101);
+        ASSERT_TRUE(fast.evaluate_grid({axes[0], first}, row, row_normals));
+        ASSERT_TRUE(fast.evaluate_grid({axes[0], first}, row));
+        for (std::size_t shift = 0; shift < 8; ++shift) {
+            std::vector<Vec<3>> out(kMany + 9, kept), normals(kMany + 9, kept);
+            const auto inner = std::span(out).subspan(shift, kMany);
+            const auto inner_normals = std::span(normals).subspan((3 * shift) % 8, kMany);
+            ASSERT_TRUE(quick.evaluate(t, inner));
+            for (std::size_t i = 0; i < kMany; ++i) ASSERT_EQ(inner[i], few[i % few.size()]) << i;
+            for (std::size_t i = 0; i < out.size(); ++i)
+                if (i < shift || i >= shift + kMany) {
+                    ASSERT_EQ(out[i], kept) << i;
+                }
+            ASSERT_TRUE(fast.evaluate_grid({axes[0], axes[1]}, inner));
+            for (std::size_t i = 0; i < kMany; ++i)
+                ASSERT_LE(test::distance(inner[i], row[i / (kMany / 3) * 101 + i % (kMany / 3) % 101]),
+                          4 * fast.value_error_bound())
+                    << i;
+            ASSERT_TRUE(fast.evaluate_grid({axes[0], axes[1]}, inner, inner_normals));
+            for (std::size_t i = 0; i < kMany; ++i)
+                ASSERT_LE(test::distance(inner_normals[i],
+                                         row_normals[i / (kMany / 3) * 101 + i % (kMany / 3) % 101]),
+                          1e-9)
+                    << i;
+            EXPECT_EQ(out[shift + kMany], kept);
+            EXPECT_EQ(normals[(3 * shift) % 8 + kMany], kept);
+            if (shift % 4 != 1) continue;
+            std::vector<Jet<1, 1, Vec<3>>> jets(kMany + 9);
+            const auto inner_jets = std::span(jets).subspan(shift, kMany);
+            ASSERT_TRUE(quick.evaluate(t, inner_jets));
+            for (std::size_t i = 0; i < kMany; ++i)
+                ASSERT_EQ(inner_jets[i].d, few_jets[i % few.size()].d) << i;
+            EXPECT_EQ(jets[shift + kMany].d, (Jet<1, 1, Vec<3>>().d));
+        }
+    });
+}
+
+TEST(Patch, large_batches_of_derivatives_and_grids_take_the_kernels_and_agree_with_single_points) {
+    Random random(69);
+    const auto surface = test::random_patch<2, Hom<3>>(random, 3, {.ends = test::Ends::clamped, .spans = 3});
+    const auto fast = prepared(surface);
+    auto at = test::parameters<2, Hom<3>>(random, surface, 2000);
+    std::vector<Jet<2, 2, Vec<3>>> jets(at.size()), by_kernels(at.size());
+    ASSERT_TRUE(surface.evaluate(at, std::span(jets)));
+    ASSERT_TRUE(fast.evaluate(at, std::span(by_kernels)));
+    double scale = 1;
+    for (const auto& j : jets)
+        for (const auto& d : j.d) scale = std::max(scale, max_abs(d));
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        ASSERT_EQ(jets[i].d, by_kernels[i].d) << i;
+        const auto single = surface.jet<2>(at[i]);
+        for (std::size_t s = 0; s < single.d.size(); ++s)
+            ASSERT_LE(test::distance(jets[i].d[s], single.d[s]), 1e-12 * scale) << i;
+    }
+    // A batch of few goes point by point, with other bits.
+    std::vector<Jet<2, 2, Vec<3>>> few(3);
+    ASSERT_TRUE(surface.evaluate(std::span(at).first(3), std::span(few)));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(few[i].d, surface.jet<2>(at[i]).d);
+    at[77][1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(surface.evaluate(at, std::span(jets)).error().where, "at[77][1]");
+
+    const Interval u = surface.basis(0).domain(), v = surface.basis(1).domain();
+    std::vector<double> us, vs;
+    for (int i = 0; i <= 40; ++i) us.push_back(std::min(u.hi, u.lo + u.length() * i / 40));
+    for (int i = 0; i <= 60; ++i) vs.push_back(std::min(v.hi, v.lo + v.length() * i / 60));
+    const auto grid = evaluate_grid(surface, {us, vs});
+    std::vector<Vec<3>> expected(us.size() * vs.size());
+    ASSERT_TRUE(grid);
+    ASSERT_TRUE(fast.evaluate_grid({us, vs}, expected));
+    EXPECT_TRUE(std::ranges::equal(grid->flat(), expected));
+    us[7] = u.hi + 1;
+    EXPECT_EQ(evaluate_grid(surface, {us, vs}).error().where, "axes[0][7]");
+}
+
 TEST(PreparedPatch, results_do_not_depend_on_place_in_the_batch_nor_on_threads) {
     Random random(71);
     const auto surface = test::random_patch<2, Hom<3>>(random, 3, {.spans = 6});

@@ -10,6 +10,7 @@
 #include <freiform/spline/jet.hpp>
 
 #include <concepts>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -41,6 +42,10 @@ public:
     template <int K>
     Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out) const {
         FF_REQUIRE(at.size() == out.size());
+        if constexpr (K <= 2) {
+            if (out.empty()) return {};
+            if (const auto done = by_kernels(at, K, jet_size(N, K), out[0].d[0].c.data())) return *done;
+        }
         for (std::size_t i = 0; i < at.size(); ++i) {
             if (auto ok = check(at[i], i); !ok) return ok;
             partials(at[i], K, out[i].d);
@@ -75,6 +80,10 @@ public:
 private:
     Patch(std::array<B, N> bases, Net<N, P> net) : bases_(std::move(bases)), net_(std::move(net)) {}
     Result<void> check(const Param<N>& u, std::size_t index) const;
+    // With the kernels of spline/prepared.hpp; nothing if preparing would cost more than it saves, or the
+    // patch is too extreme for them.
+    std::optional<Result<void>> by_kernels(std::span<const Param<N>> at, int order, std::size_t slots,
+                                           double* out) const;
     void partials(const Param<N>& u, int order, std::span<Point> out) const;
 
     std::array<B, N> bases_;
