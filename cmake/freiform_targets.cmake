@@ -112,9 +112,7 @@ function(freiform_isa)
             endif()
         endif()
         if(file MATCHES "/src/kernel/evaluate_")
-            # All of a kernel is inlined into one function, which the checks of undefined behaviour make ten times as
-            # long to compile; addresses are still checked.
-            list(APPEND flags -ffp-contract=fast -Wno-psabi $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined>)
+            list(APPEND flags -ffp-contract=fast -Wno-psabi)
         endif()
         if(flags)
             set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}" SKIP_PRECOMPILE_HEADERS ON)
