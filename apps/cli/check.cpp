@@ -2,20 +2,20 @@
 #include "input.hpp"
 #include "progress.hpp"
 #include "shaded.hpp"
+#include "words.hpp"
 
 #include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/mesh/refine.hpp>
 #include <freiform/model/deviation.hpp>
 
-#include <chrono>
 #include <cmath>
 
 namespace freiform::cli {
 
 namespace {
 
-struct Options {
+struct CheckArguments {
     std::string mesh, model, object, view;
     std::optional<double> tolerance;
     std::optional<int> width, height, parts;
@@ -24,10 +24,6 @@ struct Options {
 constexpr double kColouredSide = 1.0 / 150;  // longest side of a coloured triangle, of the model's box
 constexpr std::size_t kColouredTriangles = 1'000'000;
 constexpr int kColouredRounds = 2;  // at least: meshes have no error at their vertices, as a rule
-
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Checked {
     Deviation d;
@@ -117,15 +113,8 @@ void to_unit(TriangleMesh& mesh, const std::string& unit) {
     mesh.unit = unit;
 }
 
-// Two digits, upwards: for words.
-double rounded_up(double x) {
-    if (!(x > 0 && std::isfinite(x))) return x;
-    const double power = std::pow(10.0, std::floor(std::log10(x)) - 1);
-    return std::ceil(x / power) * power;
-}
-
 Result<std::string> picture(const Model& model, const TriangleMesh& mesh, const Checked& c,
-                            const Options& o) {
+                            const CheckArguments& o) {
     const double size = summary(model).box.diagonal();
     const TriangleMesh fine =
         refined(mesh, std::max(size * kColouredSide, 1e-300), kColouredTriangles, kColouredRounds);
@@ -150,7 +139,7 @@ Result<std::string> picture(const Model& model, const TriangleMesh& mesh, const 
     return coloured(fine, numbers, how);
 }
 
-Result<void> run(Context& context, const Options& options) {
+Result<void> run_check(Context& context, const CheckArguments& options) {
     const double start = now();
     const std::string output = context.output;
     if (!output.empty() && !output.ends_with(".png") && context.to != "png")
@@ -194,7 +183,7 @@ Result<void> run(Context& context, const Options& options) {
 }  // namespace
 
 void add_check(CommandLine& line) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CheckArguments>();
     const Command command =
         line.add("check", "How far a triangle mesh, of any program, is from its model: measured and bounded",
                  "  freiform check part.stl --against part.step --tolerance 0.05\n"
@@ -211,7 +200,7 @@ void add_check(CommandLine& line) {
     command.count("--height", options->height, 1, 16384, "Pixels");
     command.object(options->object);
     command.limits();
-    command.action(options, run);
+    command.action(options, run_check);
 }
 
 }  // namespace freiform::cli

@@ -1,5 +1,7 @@
 #include "shaded.hpp"
 
+#include "words.hpp"
+
 #if FREIFORM_HAS_GL
 #include <freiform/gpu/render.hpp>
 #include <freiform/io/colour_bar.hpp>
@@ -46,14 +48,6 @@ constexpr std::array<Field, 5> kFields{{{"gauss", "Gauss curvature", SurfaceFiel
 std::string unit_of(const Field& f, const std::string& length) {
     if (length.empty()) return {};
     return f.power == -1 ? length : f.power == 1 ? text("1/", length) : text("1/", length, "\u00b2");
-}
-
-// Two digits, upwards: for words, not for counting on.
-double rounded(double x) {
-    if (!(x > 0 && std::isfinite(x))) return x;
-    const int exponent = int(std::floor(std::log10(x))) - 1;
-    const double power = std::pow(10.0, std::abs(exponent));
-    return exponent < 0 ? std::ceil(x * power) / power : std::ceil(x / power) * power;
 }
 
 struct Subject {
@@ -166,7 +160,7 @@ Painted painted(const Subject& s, const TriangleMesh& mesh, const Field& f, cons
     if (f.power != -1) p.bar.remarks.push_back(plain_text("estimated at vertices"));
     if (f.power == -1) {
         p.bar.remarks.push_back(plain_text("measured; proven:"));
-        p.bar.remarks.push_back(plain_text(text("at most ", rounded(s.tessellation.error_bound))));
+        p.bar.remarks.push_back(plain_text(text("at most ", rounded_up(s.tessellation.error_bound))));
     }
     if (p.values.beside > 0) p.bar.remarks.push_back(plain_text("poles: from beside"));
     p.bar.no_value = p.values.missing > 0;

@@ -1,12 +1,12 @@
 // tessellate: a file to a mesh within a tolerance, and a report of what was reached.
 #include "input.hpp"
 #include "progress.hpp"
+#include "words.hpp"
 
 #include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/tessellate.hpp>
 
-#include <chrono>
 #include <cmath>
 
 namespace freiform::cli {
@@ -17,10 +17,6 @@ struct TessellateArguments {
     std::string file, object;
     std::optional<double> tolerance, max_edge;
 };
-
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // The most that a point moves when its coordinates become floats.
 double float_rounding(const TriangleMesh& mesh) {

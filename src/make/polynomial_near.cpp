@@ -223,7 +223,7 @@ double distance(const std::vector<Span>& spans, const BSplineBasis& basis,
 }
 
 template <int D>
-Result<PolynomialCurve<D>> without_equal_weights(const Curve<Hom<D>>& curve, double tolerance) {
+Result<NearPolynomial<D>> without_equal_weights(const Curve<Hom<D>>& curve, double tolerance) {
     std::vector<Vec<D>> net;
     double most = 0;
     for (const Hom<D>& h : curve.net().flat()) {
@@ -236,8 +236,8 @@ Result<PolynomialCurve<D>> without_equal_weights(const Curve<Hom<D>>& curve, dou
         return refuse(RefusalKind::ill_conditioned, "tolerance",
                       text(tolerance, " is too small: rounding alone may move points by ", bound));
     const int n = int(net.size());
-    return PolynomialCurve<D>{Curve<Vec<D>>::trusted(curve.bases(), Net<1, Vec<D>>({n}, std::move(net))),
-                              bound};
+    return NearPolynomial<D>{Curve<Vec<D>>::trusted(curve.bases(), Net<1, Vec<D>>({n}, std::move(net))),
+                             bound};
 }
 
 Result<void> check(const BSplineBasis& basis) {
@@ -252,7 +252,7 @@ Result<void> check(const BSplineBasis& basis) {
 }  // namespace
 
 template <int D>
-Result<PolynomialCurve<D>> polynomial_near(const Curve<Hom<D>>& curve, double tolerance) {
+Result<NearPolynomial<D>> polynomial_near(const Curve<Hom<D>>& curve, double tolerance) {
     if (!(tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a positive distance"));
     const auto weights = curve.net().flat();
@@ -286,7 +286,7 @@ Result<PolynomialCurve<D>> polynomial_near(const Curve<Hom<D>>& curve, double to
         const double off = distance(*spans, made->basis, units);
         const int n = int(net.size());
         if (off <= allowed)
-            return PolynomialCurve<D>{
+            return NearPolynomial<D>{
                 Curve<Vec<D>>::trusted({std::move(made->basis)}, Net<1, Vec<D>>({n}, std::move(net))),
                 std::scalbn(off, powers.point()) * (1 + 0x1p-52) + 0x1p-1074};
         room = room - 2 * (off - room);
@@ -295,7 +295,7 @@ Result<PolynomialCurve<D>> polynomial_near(const Curve<Hom<D>>& curve, double to
                   text(tolerance, " is too small: it was not reached beside rounding"));
 }
 
-template Result<PolynomialCurve<2>> polynomial_near(const Curve<Hom<2>>&, double);
-template Result<PolynomialCurve<3>> polynomial_near(const Curve<Hom<3>>&, double);
+template Result<NearPolynomial<2>> polynomial_near(const Curve<Hom<2>>&, double);
+template Result<NearPolynomial<3>> polynomial_near(const Curve<Hom<3>>&, double);
 
 }  // namespace freiform

@@ -16,7 +16,7 @@ namespace freiform {
 
 namespace {
 
-constexpr int kLeaf = 4;
+constexpr int kLeafTriangles = 4;
 
 Vec<3> closest_on_side(const Vec<3>& a, const Vec<3>& b, const Vec<3>& p) {
     const Vec<3> d = b - a;
@@ -68,7 +68,7 @@ TriangleTree::TriangleTree(std::vector<Triangle3> triangles)
             for (const Vec<3>& p : t) node.box.add(p);
             middles.add(middle_of(t));
         }
-        if (node.end - node.begin > kLeaf) {
+        if (node.end - node.begin > kLeafTriangles) {
             int axis = 0;
             for (int d = 1; d < 3; ++d)
                 if (middles.side(d).length() > middles.side(axis).length()) axis = d;

@@ -26,6 +26,7 @@
 // between.
 #include "face_parts_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/model/deviation.hpp>
 
@@ -37,7 +38,6 @@ namespace freiform {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 64 * 0x1p-53;
 constexpr double kNearEnough = 1.1;       // a bound above what was found by this is left
 constexpr std::size_t kFirstParts = 256;  // of a face, before anything is judged

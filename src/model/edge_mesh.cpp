@@ -13,6 +13,7 @@
 // of the mesh edge, not counting the gap between S(p) and the mesh points, which the model brings along.
 // Triangles with the chord as longest side have error at most Q(p(b) - p(a)) / 6 (R^2 <= longest^2 / 3).
 #include "edge_mesh_detail.hpp"
+#include "triangle_budget_detail.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,6 @@
 
 namespace freiform {
 
-// An estimate above a limit by more than this factor is believed.
-inline constexpr double kFarBeyond = 4;
-
 // u(t) or v(t).
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i);
 

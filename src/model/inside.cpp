@@ -114,7 +114,7 @@ double distance_to(const std::vector<MeshTriangle>& mesh, const Vec<3>& p) {
     return least;
 }
 
-std::vector<MeshTriangle> triangles_of(const TriangleMesh& mesh) {
+std::vector<MeshTriangle> boxed_triangles(const TriangleMesh& mesh) {
     std::vector<MeshTriangle> out;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         MeshTriangle t;
@@ -165,7 +165,7 @@ Result<std::vector<SolidInside>> inside_solid(const Model& model, std::span<cons
         const auto t = closed_mesh(model, tolerance, max_triangles);
         if (!t) return std::unexpected(t.error());
         const double off = t->error_bound + t->boundary_gap;
-        const auto triangles = triangles_of(t->mesh);
+        const auto triangles = boxed_triangles(t->mesh);
         std::vector<double> distance(open.size());
         std::vector<std::optional<int>> winding(open.size());
         // At least and at most so far from the surface. Rounding: differences, a division and norms of

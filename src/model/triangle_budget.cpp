@@ -12,7 +12,6 @@ namespace freiform {
 
 namespace {
 
-constexpr double kFarBeyond = 4;  // an estimate above the limit by more than this is believed
 constexpr double kFarBelow = 16;  // one from few samples below the limit by more than this, too
 constexpr int kFewSamples = 3, kManySamples = 12;
 

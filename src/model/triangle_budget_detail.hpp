@@ -4,6 +4,9 @@
 
 namespace freiform {
 
+// An estimate above a limit by more than this factor is believed.
+inline constexpr double kFarBeyond = 4;
+
 // Refuses (limit) what is beyond max_triangles by far; what is near it is counted while it is made.
 Result<void> check_budget(const Model& model, const TessellateOptions& options);
 

@@ -218,7 +218,8 @@ std::optional<int> filtered_sign(const PlanePoints<4>& p) {
     const double det = la * (bc - cb) + lb * (ca - ac) + lc * (ab - ba);
     const double size = la * (std::abs(bc) + std::abs(cb)) + lb * (std::abs(ca) + std::abs(ac)) +
                         lc * (std::abs(ab) + std::abs(ba));
-    if (std::abs(det) > 16 * kU * size && size > 0x1p-960 * (1 + la + lb + lc)) return sign_of(det);
+    if (std::abs(det) > 16 * kUnitRoundoff * size && size > 0x1p-960 * (1 + la + lb + lc))
+        return sign_of(det);
     if (is_rectangle(p)) return 0;
     return std::nullopt;
 }

@@ -7,8 +7,8 @@
 // Method: edges sorted by the lower ends of their boxes along the first coordinate, each compared with those
 // that begin before it ends. Whole edges are compared first, at 9 places; that needs no search. The nearest
 // place of an edge to a point: the best of some places of each piece, then the method of Gauss and Newton,
-// which converges like Newton where the distance vanishes. Places beside a knot by no more than rounding are
-// the knot.
+// which converges like Newton where the distance vanishes. Places beside a knot by no more than rounding
+// are the knot.
 //
 // Accuracy: parameters are known up to what moves points by the roundings that are granted to coordinates,
 // and to their own roundings; `part_of` carries that into the bounds of all jumps.
@@ -31,7 +31,7 @@ namespace {
 constexpr int kPlaces = 9;
 using Point = std::vector<double>;
 
-double distance(const Point& a, const Point& b) {
+double distance_of(const Point& a, const Point& b) {
     double d = 0;
     for (std::size_t c = 0; c < a.size(); ++c) d = std::hypot(d, b[c] - a[c]);
     return d;
@@ -87,7 +87,7 @@ Foot foot_of(const SurfaceSide& side, const Point& q) {
     double x = 0, least = std::numeric_limits<double>::infinity();
     for (const SurfaceSide::Piece& p : side.pieces)
         for (int i = 0; i <= kGrid; ++i)
-            if (const double d = distance(on_piece(side, p, double(i) / kGrid).at, q); d < least)
+            if (const double d = distance_of(on_piece(side, p, double(i) / kGrid).at, q); d < least)
                 best = &p, x = double(i) / kGrid, least = d;
     if (!best) return {0, least, 0};
     LinePoint here = on_piece(side, *best, x);
@@ -111,7 +111,7 @@ Foot foot_of(const SurfaceSide& side, const Point& q) {
     const double length = best->on.hi - best->on.lo, t = parameter(*best, x);
     double speed = 0;
     for (const double s : here.slope) speed = std::hypot(speed, s / length);
-    return {t, distance(here.at, q), speed};
+    return {t, distance_of(here.at, q), speed};
 }
 
 struct Edge {
@@ -147,10 +147,10 @@ bool boxes_are_near(const Edge& a, const Edge& b, double gap) {
     return true;
 }
 
-double distance(const Edge& a, const Edge& b, bool against) {
+double distance_of(const Edge& a, const Edge& b, bool against) {
     double most = 0;
     for (std::size_t i = 0; i < kPlaces; ++i)
-        most = std::max(most, distance(a.point[i], b.point[against ? kPlaces - 1 - i : i]));
+        most = std::max(most, distance_of(a.point[i], b.point[against ? kPlaces - 1 - i : i]));
     return most;
 }
 
@@ -203,8 +203,8 @@ std::optional<SurfaceMeeting> common_part(const Edge& a, const Edge& b, double g
         const double f = double(k) / (kPlaces - 1);
         const Point p = point_at(*a.side, lo.a + f * (hi.a - lo.a)),
                     q = point_at(*b.side, lo.b + f * (hi.b - lo.b));
-        m.distance = std::max(m.distance, distance(p, q));
-        if (k > 0) length += distance(before, p);
+        m.distance = std::max(m.distance, distance_of(p, q));
+        if (k > 0) length += distance_of(before, p);
         before = p;
     }
     if (!(m.distance <= gap) || !(length > gap)) return std::nullopt;
@@ -212,7 +212,7 @@ std::optional<SurfaceMeeting> common_part(const Edge& a, const Edge& b, double g
 }
 
 std::optional<SurfaceMeeting> meeting(const Edge& a, const Edge& b, double gap, double roundings) {
-    const double same = distance(a, b, false), turned = distance(a, b, true);
+    const double same = distance_of(a, b, false), turned = distance_of(a, b, true);
     std::optional<SurfaceMeeting> m;
     if (std::min(same, turned) <= gap) {
         m.emplace();

@@ -16,6 +16,7 @@
 // subtractions is within the 2^k e above, of which twice as much is added.
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
@@ -26,8 +27,6 @@ namespace freiform {
 
 namespace {
 
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostBernstein = kMaxDegree + 1;
 
 // C(a, b) for the orders of derivatives, and the Bernstein polynomials of each degree at 1/2.
@@ -121,7 +120,7 @@ private:
                     for (int c = 0; c < D; ++c) out.middle[c] += share * x[std::size_t(c)];
                 }
             }
-        out.most = std::sqrt(most) * (1 + 8 * kRoundoff);
+        out.most = std::sqrt(most) * (1 + 8 * kUnitRoundoff);
         return out;
     }
 
@@ -155,8 +154,8 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
         }
         radius = std::max(radius, norm(shifted) / w);
     });
-    const double slip = steps * kRoundoff * largest,
-                 weight_slip = Space<P>::kRational ? steps * kRoundoff * weight_max : 0;
+    const double slip = steps * kUnitRoundoff * largest,
+                 weight_slip = Space<P>::kRational ? steps * kUnitRoundoff * weight_max : 0;
     radius += 2 * slip / weight_min;
 
     DerivativeBounds<N> out;
@@ -193,10 +192,10 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                         most += choose * weight[part] * out.d[rest];
                         middle[slot] -= (choose * weight_middle[part]) * middle[rest];
                     }
-                most /= weight_min * (1 - 16 * steps * kRoundoff);
+                most /= weight_min * (1 - 16 * steps * kUnitRoundoff);
                 middle[slot] *= 1 / weight_middle[0];
             }
-            if (sum > 0) out.d[slot] = most * (1 + 64 * kRoundoff);
+            if (sum > 0) out.d[slot] = most * (1 + 64 * kUnitRoundoff);
         }
     if constexpr (kRational) {
         // The triangle inequality lost the signs; from the middle outwards they are kept.
@@ -208,8 +207,8 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                 double here = norm(middle[slot]) + width[0] / 2 * out.d[slot_of<N>(i + 1, j)];
                 if constexpr (N == 2) here += width[1] / 2 * out.d[slot_of<N>(i, j + 1)];
                 // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
-                here += 64 * steps * kRoundoff * crude.d[slot];
-                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kRoundoff));
+                here += 64 * steps * kUnitRoundoff * crude.d[slot];
+                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kUnitRoundoff));
             }
         for (std::size_t slot = jet_size(N, order); slot < out.d.size(); ++slot) out.d[slot] = 0;
     }
@@ -227,6 +226,7 @@ FF_INSTANTIATE(Vec<3>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Vec<4>)
 FF_INSTANTIATE(Hom<4>)
+#undef FF_INSTANTIATE
 template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
                                                int);
 template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,

@@ -20,9 +20,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kShortest = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
+constexpr double kSmallestBlock = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
 // Calls f(net, widths) for the pieces of a spline that meet the box, each restricted to its part of it.
 template <std::size_t N, class P, class F>

@@ -12,16 +12,16 @@ using test::bezier;
 using test::must;
 using test::Random;
 
-constexpr double kAt[] = {0, 0.1875, 0.5, 0.75, 0.9375, 1};
+constexpr double kBetween[] = {0, 0.1875, 0.5, 0.75, 0.9375, 1};
 
-Curve<Vec<3>> between(Curve<Vec<3>> c, const Vec<3>& from, const Vec<3>& to) {
+Curve<Vec<3>> with_ends(Curve<Vec<3>> c, const Vec<3>& from, const Vec<3>& to) {
     auto net = c.net();
     net.flat().front() = from, net.flat().back() = to;
     return must(Curve<Vec<3>>::make(c.bases(), net));
 }
 Curve<Hom<3>> rational_between(Random& random, int degree, std::vector<double> inner, const Vec<3>& from,
                                const Vec<3>& to) {
-    const auto c = between(test::random_curve<Vec<3>>(random, degree, std::move(inner)), from, to);
+    const auto c = with_ends(test::random_curve<Vec<3>>(random, degree, std::move(inner)), from, to);
     Net<1, Hom<3>> net(c.net().extent());
     for (std::size_t i = 0; i < net.flat().size(); ++i)
         net.flat()[i] = weighted(c.net().flat()[i], random.real(0.5, 2));
@@ -35,13 +35,14 @@ TEST(R25, a_coons_patch_of_rational_curves_is_the_same_sum) {
     const auto u0 = rational_between(random, 3, {0.5}, corner[0], corner[1]);
     const auto u1 = rational_between(random, 2, {0.25, 0.75}, corner[2], corner[3]);
     const auto v0 = rational_between(random, 4, {}, corner[0], corner[2]);
-    const auto v1 = to_rational(between(test::random_curve<Vec<3>>(random, 1, {0.25}), corner[1], corner[3]));
+    const auto v1 =
+        to_rational(with_ends(test::random_curve<Vec<3>>(random, 1, {0.25}), corner[1], corner[3]));
     const auto patch = must(coons(u0, u1, v0, v1, 0));
     EXPECT_LT(patch.bound, 1e-11);
     EXPECT_LT(patch.corner_gap, 1e-12);
     double worst = 0;
-    for (double u : kAt)
-        for (double v : kAt) {
+    for (double u : kBetween)
+        for (double v : kBetween) {
             const Vec<3> sum = (1 - v) * u0(u) + v * u1(u) + (1 - u) * v0(v) + u * v1(v) -
                                (1 - u) * (1 - v) * corner[0] - u * (1 - v) * corner[1] -
                                (1 - u) * v * corner[2] - u * v * corner[3];
@@ -51,7 +52,7 @@ TEST(R25, a_coons_patch_of_rational_curves_is_the_same_sum) {
     EXPECT_EQ(patch.surface.basis(0).degree(), 2 * 3 + 1);
 }
 
-// Arcs that share their weights keep the degree low: a quarter of a cylinder between two of its arcs.
+// Arcs that share their weights keep the degree low: a quarter of a cylinder with_ends two of its arcs.
 TEST(Coons, of_parallel_arcs_has_one_denominator) {
     const double s = std::sqrt(0.5);
     const auto arc = [&](double z, double factor) {
@@ -66,8 +67,8 @@ TEST(Coons, of_parallel_arcs_has_one_denominator) {
         must(coons(arc(0, 1), arc(2, 3), line({{1, 0, 0}}, {{1, 0, 2}}), line({{0, 1, 0}}, {{0, 1, 2}}), 0));
     EXPECT_EQ(patch.surface.basis(0).degree(), 3);
     EXPECT_EQ(patch.surface.basis(1).degree(), 1);
-    for (double u : kAt)
-        for (double v : kAt) {
+    for (double u : kBetween)
+        for (double v : kBetween) {
             const Vec<3> p = patch.surface(u, v);
             EXPECT_NEAR(std::hypot(p[0], p[1]), 1, 1e-14);
             EXPECT_NEAR(p[2], 2 * v, 1e-14);
@@ -144,7 +145,7 @@ TEST(Coons, bicubic_patches_of_rational_curves_are_the_hermite_sum) {
     };
     const auto u0 = conic(c[0], c[1], 1, 0.5, in_u), u1 = conic(c[2], c[3], -1, 2, in_u);
     const auto v0 = conic(c[0], c[2], 0.5, 0.7, in_v), v1 = conic(c[1], c[3], 0.25, 1.5, in_v);
-    // End tangents of the crossing edges at both ends, a bulge between: the derivative of a conic at its
+    // End tangents of the crossing edges at both ends, a bulge with_ends: the derivative of a conic at its
     // ends is 2 w (P_1 - P_0) over the length of the domain.
     const auto tangent = [](const Curve<Hom<3>>& e, int side) {
         const auto n = e.net().flat();
@@ -175,8 +176,8 @@ TEST(Coons, bicubic_patches_of_rational_curves_are_the_hermite_sum) {
         return 0.5 * (tangent(edge[j].across, i) + tangent(edge[2 + i].across, j));
     };
     double worst = 0;
-    for (double x : kAt)
-        for (double y : kAt) {
+    for (double x : kBetween)
+        for (double y : kBetween) {
             const double u = in_u.lo + x * Lu, v = in_v.lo + y * Lv;
             const auto g = hermite(x), h = hermite(y);
             Vec<3> sum{};
@@ -196,7 +197,7 @@ TEST(Coons, bicubic_patches_of_rational_curves_are_the_hermite_sum) {
         }
     EXPECT_LE(worst, patch.bound + 2e-13);  // the judge's own rounding
     // It has the edges; the derivatives across them where twists agree.
-    for (double x : kAt) {
+    for (double x : kBetween) {
         const double u = in_u.lo + x * Lu, v = in_v.lo + x * Lv;
         EXPECT_LE(norm(patch.surface(u, in_v.hi) - u1(u)), 1e-12);
         EXPECT_LE(norm(patch.surface(in_u.lo, v) - v0(v)), 1e-12);

@@ -24,7 +24,7 @@ double gap(const Curve<Hom<D>>& c, const Curve<Vec<D>>& q, double t) {
 
 // Measured over bound, at three places of each span.
 template <int D>
-double quotient(const Curve<Hom<D>>& c, const PolynomialCurve<D>& near) {
+double quotient(const Curve<Hom<D>>& c, const NearPolynomial<D>& near) {
     const auto breaks = near.curve.basis().breaks();
     const std::size_t step = std::max<std::size_t>(1, breaks.size() / 12);
     double worst = 0;

@@ -317,11 +317,12 @@ TEST(RevolvePolynomial, begins_at_the_profile_and_has_a_continuous_derivative) {
 
 // Rational profiles: a half circle becomes a sphere, a circle a torus; their equations say how far off.
 TEST(RevolvePolynomial, of_rational_profiles_is_as_far_off_as_its_bound_says) {
-    const auto half = must(conic_arc(Conic<3>{ConicKind::ellipse, {}, {{0, 0, -2}}, {{2, 0, 0}}}, {0, kPi}));
+    const auto half =
+        must(conic_arc(Conic<3>{ConicKind::ellipse, {}, {{0, 0, -2}}, {{2, 0, 0}}}, {0, std::numbers::pi}));
     const auto tube = must(full_ellipse(Conic<3>{ConicKind::ellipse, {{3, 0, 0}}, {{1, 0, 0}}, {{0, 0, 1}}},
                                         EllipseForm::closed));
     for (const double tolerance : {0.1, 1e-3, 1e-6, 1e-9}) {
-        const auto sphere = must(revolve_polynomial(half.curve, kZ, 2 * kPi, tolerance));
+        const auto sphere = must(revolve_polynomial(half.curve, kZ, 2 * std::numbers::pi, tolerance));
         const auto torus = must(revolve_polynomial(tube.curve, kZ, -4, tolerance));
         EXPECT_TRUE(torus.surface.basis(1).is_closed());
         EXPECT_LE(std::max(sphere.bound, torus.bound), tolerance);

@@ -11,11 +11,11 @@ namespace {
 using test::must;
 using test::Random;
 
-constexpr SurfaceEdge kU0{0, End::start}, kU1{0, End::end}, kV0{1, End::start}, kV1{1, End::end};
+constexpr SurfaceEdge kLeft{0, End::start}, kRight{0, End::end}, kFront{1, End::start}, kBack{1, End::end};
 
 // Something like a graph over [0, 3] x [0, 3], with parameters from 0 to 2.
 template <class P>
-Surface<P> random_patch(Random& random, int p, int q) {
+Surface<P> random_graph(Random& random, int p, int q) {
     Net<2, P> net({p + 1, q + 1});
     for (int i = 0; i <= p; ++i)
         for (int j = 0; j <= q; ++j) {
@@ -28,7 +28,7 @@ Surface<P> random_patch(Random& random, int p, int q) {
         {must(BSplineBasis::bezier(p, {0, 2})), must(BSplineBasis::bezier(q, {0, 2}))}, std::move(net)));
 }
 template <class P>
-Surface<P> transposed(const Surface<P>& s) {
+Surface<P> axes_swapped(const Surface<P>& s) {
     const auto [n, m] = s.net().extent();
     Net<2, P> net({m, n});
     for (int i = 0; i < n; ++i)
@@ -54,12 +54,12 @@ TYPED_TEST_SUITE(TJoints, Kinds);
 TYPED_TEST(TJoints, of_parts_of_one_surface_have_every_order) {
     Random random(41);
     for (const double cut : {0.75, 0.7317, 4.0 / 3}) {
-        const auto whole = random_patch<TypeParam>(random, 3, 2);
+        const auto whole = random_graph<TypeParam>(random, 3, 2);
         const auto left = part(whole, {0, 1}, {0, 2}), low = part(whole, {1, 2}, {0, cut}),
                    high = part(whole, {1, 2}, {cut, 2});
         const std::vector<SurfaceEdges> all{edges_of(left, roundings(32)),
                                             edges_of(reverse(low, 1), roundings(32)),
-                                            edges_of(transposed(high), roundings(32))};
+                                            edges_of(axes_swapped(high), roundings(32))};
         const auto found = must(joints(all, 1e-9, roundings(32)));
         ASSERT_EQ(found.size(), 3u) << cut;
         for (const SurfaceJoint& j : found) {
@@ -67,14 +67,14 @@ TYPED_TEST(TJoints, of_parts_of_one_surface_have_every_order) {
             EXPECT_EQ(j.joint.g_order, 2) << cut << " " << j.meeting.first << j.meeting.second;
         }
         const SurfaceMeeting &a = found[0].meeting, &b = found[1].meeting, &c = found[2].meeting;
-        EXPECT_EQ(a.first_edge, kU1);
-        EXPECT_EQ(a.second_edge, kU0);
+        EXPECT_EQ(a.first_edge, kRight);
+        EXPECT_EQ(a.second_edge, kLeft);
         EXPECT_TRUE(a.against);
         EXPECT_FALSE(a.whole);
         EXPECT_EQ(a.first_on.lo, 0);
         EXPECT_NEAR(a.first_on.hi, cut, 1e-14);
         EXPECT_EQ(a.second_on, (Interval{0, cut}));
-        EXPECT_EQ(b.second_edge, kV0);
+        EXPECT_EQ(b.second_edge, kFront);
         EXPECT_FALSE(b.against);
         EXPECT_NEAR(b.first_on.lo, cut, 1e-14);
         EXPECT_EQ(b.first_on.hi, 2);
@@ -85,13 +85,13 @@ TYPED_TEST(TJoints, of_parts_of_one_surface_have_every_order) {
 
 TEST(R31, bricks_that_are_staggered_share_the_middle_of_their_edges) {
     Random random(42);
-    const auto whole = random_patch<Vec<3>>(random, 2, 3);
+    const auto whole = random_graph<Vec<3>>(random, 2, 3);
     const auto a = part(whole, {0, 1}, {0.6, 2}), b = part(whole, {1, 2}, {0, 1.1});
     const auto found = must(joints(std::vector{edges_of(b), edges_of(a)}, 1e-9, roundings(32)));
     ASSERT_EQ(found.size(), 1u);
     const SurfaceMeeting& m = found[0].meeting;
-    EXPECT_EQ(m.first_edge, kU0);
-    EXPECT_EQ(m.second_edge, kU1);
+    EXPECT_EQ(m.first_edge, kLeft);
+    EXPECT_EQ(m.second_edge, kRight);
     EXPECT_NEAR(m.first_on.lo, 0.6, 1e-14);
     EXPECT_EQ(m.first_on.hi, 1.1);
     EXPECT_EQ(m.second_on.lo, 0.6);
@@ -134,8 +134,8 @@ TEST(R31, parts_of_sides_are_sides_of_parts) {
         random, {must(BSplineBasis::bezier(2)),
                  must(BSplineBasis::make(3, {0, 0, 0, 0, 0.3, 0.5, 0.5, 0.8, 1, 1, 1, 1}))});
     for (const Interval on : {Interval{0, 0.5}, {0.3, 1}, {0.1, 0.9}, {0.35, 0.45}, {0.3, 0.8}}) {
-        const auto whole = must(arriving(spline, kU1, roundings(0)));
-        const auto cut = must(arriving(must(restrict_to(spline, 1, on)), kU1, roundings(32)));
+        const auto whole = must(arriving(spline, kRight, roundings(0)));
+        const auto cut = must(arriving(must(restrict_to(spline, 1, on)), kRight, roundings(32)));
         const SurfaceSide side = part_of(whole, on, 0);
         EXPECT_EQ(side.pieces.size(), cut.pieces.size()) << on.lo;
         EXPECT_EQ(side.pieces.front().on.lo, on.lo);
@@ -157,7 +157,7 @@ TEST(R31, parts_of_sides_are_sides_of_parts) {
 TYPED_TEST(TJoints, of_plane_surfaces_are_smooth_unless_one_folds_back) {
     using P = std::conditional_t<Space<TypeParam>::kRational, Hom<2>, Vec<2>>;
     Random random(44);
-    const auto a = random_patch<P>(random, 3, 3);
+    const auto a = random_graph<P>(random, 3, 3);
     const auto next = [&](double way) {
         Net<2, P> net({2, 4});
         for (int j = 0; j < 4; ++j) {
@@ -167,7 +167,7 @@ TYPED_TEST(TJoints, of_plane_surfaces_are_smooth_unless_one_folds_back) {
         }
         return must(Surface<P>::make({must(BSplineBasis::bezier(1)), a.basis(1)}, std::move(net)));
     };
-    const auto on = must(joint(a, kU1, next(1), kU0)), back = must(joint(a, kU1, next(-1), kU0));
+    const auto on = must(joint(a, kRight, next(1), kLeft)), back = must(joint(a, kRight, next(-1), kLeft));
     EXPECT_EQ(on.g_order, 2);
     EXPECT_EQ(on.c_order, 0);
     EXPECT_FALSE(on.opposed);

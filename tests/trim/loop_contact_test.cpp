@@ -1,4 +1,5 @@
 #include "support/reference.hpp"
+#include "trim/polygons.hpp"
 
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
@@ -10,25 +11,16 @@
 namespace freiform {
 namespace {
 
-using Loop = std::vector<CurveGeometry<2>>;
-using Loops = std::vector<Loop>;
+using test::box;
+using test::ellipse;
+using test::Loop;
+using test::Loops;
+using test::plane_bezier;
+using test::polygon;
 using test::Rational;
 constexpr LoopTolerance kFine{0, 1e-9};
 
-CurveGeometry<2> bezier(std::vector<Vec<2>> points) {
-    const int n = int(points.size());
-    return *Curve<Vec<2>>::make({*BSplineBasis::bezier(n - 1)}, Net<1, Vec<2>>({n}, std::move(points)));
-}
-CurveGeometry<2> line(Vec<2> a, Vec<2> b) { return bezier({a, b}); }
-Loop polygon(const std::vector<Vec<2>>& p) {
-    Loop loop;
-    for (std::size_t i = 0; i < p.size(); ++i) loop.push_back(bezier({p[i], p[(i + 1) % p.size()]}));
-    return loop;
-}
-Loop box(double x0, double y0, double x1, double y1) {
-    return polygon({{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}});
-}
-Loop ellipse(Vec<2> centre, Vec<2> x, Vec<2> y) { return {Conic<2>{ConicKind::ellipse, centre, x, y}}; }
+CurveGeometry<2> line(Vec<2> a, Vec<2> b) { return plane_bezier({a, b}); }
 
 // "crosses", "undecided", or how many places touch.
 std::string verdict(const Loops& loops, const LoopTolerance& tolerance = kFine) {
@@ -51,12 +43,12 @@ Vec<2> place(const Loops& loops) {
 
 // tau^3 and tau^2, tau^4 over x = 3 tau + x0, tau from -1 to 1.
 CurveGeometry<2> cubic(double x0, double sign) {
-    return bezier({{{x0 - 3, -sign}}, {{x0 - 1, sign}}, {{x0 + 1, -sign}}, {{x0 + 3, sign}}});
+    return plane_bezier({{{x0 - 3, -sign}}, {{x0 - 1, sign}}, {{x0 + 1, -sign}}, {{x0 + 3, sign}}});
 }
 CurveGeometry<2> even(double x0, double y0, double sign, int degree) {
     std::vector<Vec<2>> p;
     for (int i = 0; i <= degree; ++i) p.push_back({{x0 - 3 + 6.0 * i / degree, y0 + (i % 2 ? -sign : sign)}});
-    return bezier(p);
+    return plane_bezier(p);
 }
 
 TEST(LoopContacts, tangents_that_pass_through_are_crossings) {
@@ -92,7 +84,7 @@ TEST(LoopContacts, tangents_that_turn_back_are_touches) {
 }
 
 TEST(LoopContacts, vertices_on_curves_are_crossings_where_the_loop_goes_through) {
-    const Loop bowl{bezier({{{-2, 4}}, {{0, -4}}, {{2, 4}}}), line({{2, 4}}, {{-2, 4}})};  // y = x^2
+    const Loop bowl{plane_bezier({{{-2, 4}}, {{0, -4}}, {{2, 4}}}), line({{2, 4}}, {{-2, 4}})};  // y = x^2
     EXPECT_EQ(verdict({bowl, polygon({{{1, 1}}, {{0.5, 2}}, {{-0.5, 2}}})}), "touches 1");
     EXPECT_EQ(verdict({bowl, polygon({{{1, 1}}, {{3, 0}}, {{3, 2}}})}), "touches 1");
     EXPECT_EQ(verdict({bowl, polygon({{{1, 1}}, {{0.5, 2}}, {{-0.5, 2}}, {{-1, 1}}})}), "touches 2");
@@ -112,12 +104,12 @@ TEST(LoopContacts, a_loop_that_meets_itself_at_a_tangent) {
     auto down = up(-1);
     std::ranges::reverse(down);
     // Two lobes that touch in the origin, one sense of rotation.
-    EXPECT_EQ(verdict({{bezier(up(1)), line({{2, 4}}, {{4, 0}}), line({{4, 0}}, {{2, -4}}), bezier(down),
-                        line({{-2, -4}}, {{-4, 0}}), line({{-4, 0}}, {{-2, 4}})}}),
+    EXPECT_EQ(verdict({{plane_bezier(up(1)), line({{2, 4}}, {{4, 0}}), line({{4, 0}}, {{2, -4}}),
+                        plane_bezier(down), line({{-2, -4}}, {{-4, 0}}), line({{-4, 0}}, {{-2, 4}})}}),
               "touches 1");
     // tau^3 and back along -tau^3: an eight, whose branches have one tangent.
     const Loops eight{{cubic(0, 1), line({{3, 1}}, {{5, 0}}), line({{5, 0}}, {{3, -1}}),
-                       bezier({{{3, -1}}, {{1, 1}}, {{-1, -1}}, {{-3, 1}}}), line({{-3, 1}}, {{-5, 0}}),
+                       plane_bezier({{{3, -1}}, {{1, 1}}, {{-1, -1}}, {{-3, 1}}}), line({{-3, 1}}, {{-5, 0}}),
                        line({{-5, 0}}, {{-3, -1}})}};
     EXPECT_EQ(verdict(eight), "crosses");
     EXPECT_LE(norm(place(eight)), 0.02);

@@ -11,6 +11,8 @@
 namespace freiform {
 namespace {
 
+using test::box;
+using test::ellipse;
 using test::Loop;
 using test::Loops;
 using test::plane_bezier;
@@ -18,10 +20,6 @@ using test::polygon;
 
 constexpr LoopTolerance kExact{0, 1e-9};
 
-Loop box(double x0, double y0, double x1, double y1) {
-    return polygon({{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}});
-}
-Loop ellipse(Vec<2> centre, Vec<2> x, Vec<2> y) { return {Conic<2>{ConicKind::ellipse, centre, x, y}}; }
 std::string refusal_of_loops(const Loops& loops, const LoopTolerance& tolerance = kExact) {
     const auto r = check_loops(loops, tolerance);
     return r ? "accepted" : text(r.error().where, ": ", r.error().message);

@@ -21,4 +21,12 @@ inline Loop polygon(const std::vector<Vec<2>>& p) {
     return loop;
 }
 
+inline Loop box(double x0, double y0, double x1, double y1) {
+    return polygon({{{x0, y0}}, {{x1, y0}}, {{x1, y1}}, {{x0, y1}}});
+}
+
+inline Loop ellipse(Vec<2> centre, Vec<2> x, Vec<2> y) {
+    return {Conic<2>{ConicKind::ellipse, centre, x, y}};
+}
+
 }  // namespace freiform::test

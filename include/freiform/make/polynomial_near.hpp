@@ -5,7 +5,7 @@
 namespace freiform {
 
 template <int D>
-struct PolynomialCurve {
+struct NearPolynomial {
     Curve<Vec<D>> curve;
     double bound = 0;  // distance of every point from that of the rational curve at the same parameter
 };
@@ -19,6 +19,6 @@ struct PolynomialCurve {
 // parameter, tolerances below what rounding moves (ill_conditioned) and more than 2^14 spans (limit).
 //   auto arc = polynomial_near(rational_arc, 1e-6);   // arc->curve, arc->bound <= 1e-6
 template <int D>
-Result<PolynomialCurve<D>> polynomial_near(const Curve<Hom<D>>& curve, double tolerance);
+Result<NearPolynomial<D>> polynomial_near(const Curve<Hom<D>>& curve, double tolerance);
 
 }  // namespace freiform
