@@ -113,7 +113,8 @@ public:
         if (!scene) return fail(scene.error());
         scene_ = std::move(*scene);
         for (const Refusal& r : scene_.model.refused) s_.left_out.push_back(r);
-        auto t = tessellate(scene_.model, {std::scalbn(tolerance, s_.plane.exponent), kMostTriangles});
+        auto t = tessellate(scene_.model, {.tolerance = std::scalbn(tolerance, s_.plane.exponent),
+                                           .max_triangles = kMostTriangles});
         if (!t) return fail(t.error());
         for (const RefusedFace& r : t->refused)
             s_.left_out.push_back({r.reason.kind, text("face ", r.face, " ", r.name), r.reason.message});
