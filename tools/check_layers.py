@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails if a file includes what its layer must not see, or calls what the library must not call.
+"""Fails if a file includes what its layer must not see, or calls what the library must not call, or if two files
+define a type of the same name in the same namespace: linked together they would share one destructor.
 
 Layers (HACKING.md): a file may include from its own layer and from layers of a lower rank. Private headers in
 src/LAYER are seen by that layer alone; those of src/kernel, which has no public ones, by every layer above it.
@@ -108,10 +109,41 @@ def check(path):
                     yield number, f"`{m[0].strip()}`: {instead}"
 
 
+SCOPE = re.compile(r"namespace\s+(?P<space>[\w:]+)?\s*\{|\b(?:struct|class|union|enum(?:\s+class)?)\s+(?P<type>\w+)"
+                   r"(?:\s+final)?(?:\s*:(?!:)[^;{()]*)?\s*\{|[{}]")
+
+
+def types_of(path):
+    """The types with linkage that a file defines: (line, name with its namespace)."""
+    code = STRIP.sub(lambda m: " " + "\n" * m[0].count("\n"), (ROOT / path).read_text())
+    open_scopes = []  # of each brace: the namespace, or None for anything else
+    for m in SCOPE.finditer(code):
+        if m[0] == "}":
+            if open_scopes:
+                open_scopes.pop()
+            continue
+        if m["type"] and None not in open_scopes:
+            yield code.count("\n", 0, m.start()) + 1, "::".join([*open_scopes, m["type"]])
+        named = m[0].startswith("namespace") and m["space"]
+        open_scopes.append(m["space"] if named else None)
+
+
+def twins(files):
+    first = {}
+    for path in files:
+        if path.parts[0] not in ("include", "src", "apps"):
+            continue
+        for line, name in types_of(path):
+            if name in first and first[name][0] != path:
+                yield f"{path}:{line}: {name} is defined in {first[name][0]}:{first[name][1]} too"
+            first.setdefault(name, (path, line))
+
+
 def main():
     files = [p.relative_to(ROOT) for top in ("include", "src", "apps", "bindings", "tests", "bench")
              for p in sorted((ROOT / top).rglob("*")) if p.suffix in (".hpp", ".cpp", ".inl")]
     problems = [f"{path}:{line}: {problem}" for path in files for line, problem in check(path)]
+    problems += twins(files)
     print("\n".join(problems) or f"{len(files)} files: layers and calls are in order")
     return 1 if problems else 0
 

@@ -26,7 +26,7 @@ constexpr std::size_t kColouredTriangles = 1'000'000;
 constexpr int kColouredRounds = 2;  // at least: meshes have no error at their vertices, as a rule
 
 struct Checked {
-    Deviation d;
+    MeshDeviation d;
     MeshTopology topology;
     std::size_t triangles = 0;
     std::string unit;
@@ -34,7 +34,7 @@ struct Checked {
 };
 
 // within: proven; exceeds: a place was found; undecided: neither.
-std::string_view verdict(const Deviation& d, double tolerance) {
+std::string_view verdict(const MeshDeviation& d, double tolerance) {
     if (d.measured > tolerance || d.mesh_measured > tolerance + d.accuracy) return "exceeds";
     return d.bound <= tolerance && d.refused.empty() ? "within" : "undecided";
 }

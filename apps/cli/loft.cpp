@@ -41,7 +41,8 @@ Result<void> lofted(const Context& context, const Lofting& options) {
 struct Patching {
     std::string file;
     std::vector<double> at_u, at_v;
-    std::optional<double> tolerance;
+    std::optional<double> tolerance, tangent_tolerance, twist_tolerance;
+    bool bicubic = false;
 };
 
 template <class P>
@@ -50,6 +51,19 @@ Result<void> coons_patch(std::span<const Curve<P>> c, double tolerance, MadeSurf
     if (!s) return std::unexpected(s.error());
     made.add("", std::move(s->surface), s->bound);
     made.said.emplace_back("corner_gap", s->corner_gap);
+    return {};
+}
+template <class P>
+Result<void> bicubic_patch(std::span<const Curve<P>> c, const Patching& o, MadeSurfaces& made) {
+    const auto edge = [&](std::size_t i) { return CoonsEdge<P>{c[i], c[4 + i]}; };
+    auto s = coons_bicubic(
+        edge(0), edge(1), edge(2), edge(3),
+        {o.tolerance.value_or(0), o.tangent_tolerance.value_or(0), o.twist_tolerance.value_or(0)});
+    if (!s) return std::unexpected(s.error());
+    made.add("", std::move(s->surface), s->bound);
+    made.said.emplace_back("corner_gap", s->corner_gap);
+    made.said.emplace_back("tangent_gap", s->tangent_gap);
+    made.said.emplace_back("twist_gap", s->twist_gap);
     return {};
 }
 template <class P>
@@ -68,17 +82,26 @@ Result<void> patched(const Context& context, const Patching& options) {
     const bool network = !options.at_u.empty() || !options.at_v.empty();
     if (network && (options.at_u.empty() || options.at_v.empty()))
         wrong_usage("a network needs both --at-u and --at-v");
+    if (network && options.bicubic) wrong_usage("--bicubic is for a patch, --at-u and --at-v for a network");
+    if (!options.bicubic && (options.tangent_tolerance || options.twist_tolerance))
+        wrong_usage("--tangent-tolerance and --twist-tolerance are for --bicubic");
     const std::string format = spline_format(context, "coons");
     const auto curves = read_space_curves(
-        context, options.file, network ? options.at_u.size() + options.at_v.size() : 4,
-        network ? "expected for --at-v and --at-u" : "expected for a patch: u0, u1, v0, v1");
+        context, options.file,
+        network           ? options.at_u.size() + options.at_v.size()
+        : options.bicubic ? 8
+                          : 4,
+        network           ? "expected for --at-v and --at-u"
+        : options.bicubic ? "expected for --bicubic: u0, u1, v0, v1 and the derivatives across"
+                          : "expected for a patch: u0, u1, v0, v1");
     if (!curves) return std::unexpected(curves.error());
     MadeSurfaces made{
         {curves->unit, {}}, 0, network ? "the curves of the network" : "the exact Coons patch", {}};
     const double tolerance = options.tolerance.value_or(0);
     const auto ok = curves->visit([&](const auto& all) -> Result<void> {
-        auto done =
-            network ? gordon_surface(all, options, tolerance, made) : coons_patch(all, tolerance, made);
+        auto done = network           ? gordon_surface(all, options, tolerance, made)
+                    : options.bicubic ? bicubic_patch(all, options, made)
+                                      : coons_patch(all, tolerance, made);
         if (!done) return refuse_within(shown(options.file), done.error());
         return done;
     });
@@ -114,12 +137,20 @@ void add_coons(CommandLine& line) {
         "  freiform coons four-curves.json --tolerance 1e-9 -o patch.json\n"
         "  freiform coons net.json --at-v 0,0.5,1 --at-u 0,1,2 --tolerance 1e-6 -o surface.json\n"
         "A file of four curves has them in this order: along u at the lower and the upper end of v,\n"
-        "along v at the lower and the upper end of u. A network: all curves along u first.");
+        "along v at the lower and the upper end of u. A network: all curves along u first. --bicubic: after\n"
+        "the four boundaries the derivative of the surface across each of them, as curves; by v along u, by "
+        "u\n"
+        "along v.");
     command.word("FILE", options->file, "Curves; - is standard input").required();
     command.numbers("--at-v", options->at_v, "Where the curves along u are").shown_as("V,V,...");
     command.numbers("--at-u", options->at_u, "Where the curves along v are").shown_as("U,U,...");
     command.number("--tolerance", options->tolerance,
                    "What curves that should meet may be apart (default 0)");
+    command.flag("--bicubic", options->bicubic, "Blend with the derivatives across the boundaries as well");
+    command.number("--tangent-tolerance", options->tangent_tolerance,
+                   "By what tangents and derivatives may differ at corners (--bicubic, default 0)");
+    command.number("--twist-tolerance", options->twist_tolerance,
+                   "By what twists may differ at corners (--bicubic, default 0)");
     command.output("Where the surface goes (.json, .bpt)");
     command.limits();
     command.action(options, patched);

@@ -80,7 +80,7 @@ Result<Fitted<D>> reported(Curve<Vec<D>> curve, std::span<const Vec<D>> points, 
     const BandMap values = values_at(f.curve.basis(), f.at);
     std::vector<Vec<D>> error;
     errors_at<D>(values, f.curve.net().flat(), points, error);
-    Largest<D> largest, missed;
+    LargestResidual<D> largest, missed;
     double sum = 0;
     for (const Vec<D>& e : error) largest.add(e);
     for (const Vec<D>& e : error) {  // relative to the largest, so that nothing underflows

@@ -45,7 +45,7 @@ namespace {
 
 using detail::BandSystem;
 using detail::finished;
-using detail::Largest;
+using detail::LargestResidual;
 using detail::SplineSystem;
 using detail::ValueRows;
 using detail::with_rounding;
@@ -146,7 +146,7 @@ std::string axis_name(std::size_t dimensions, std::size_t d) {
 template <std::size_t N, int D>
 double residual_of(const std::vector<SplineSystem>& systems, const Patch<N, Vec<D>>& patch,
                    std::span<const Vec<D>> points, const Index<N>& extent) {
-    Largest<D> residual;
+    LargestResidual<D> residual;
     if constexpr (N == 1) {
         const SplineSystem& s = systems[0];
         const Vec<D>* q = points.data() + (s.given ? s.conditions() : 0);

@@ -134,7 +134,7 @@ Result<Interpolant<1, D>> interpolate(const BSplineBasis& basis, std::span<const
     }
     auto out = detail::finished<1, D>({basis}, std::move(net), norm_of_matrix * detail::chessboard_norm(a));
     if (!out) return out;
-    detail::Largest<D> residual;
+    detail::LargestResidual<D> residual;
     for (const auto& d : data)
         if (d.order == 0) residual.add(out->patch(d.at) - d.value);
     out->bound = detail::with_rounding(residual.norm_, out->patch);

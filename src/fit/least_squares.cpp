@@ -145,7 +145,7 @@ Result<FittedSurface<D>> least_squares(const std::array<BSplineBasis, 2>& bases,
     if (!surface)
         return refuse(RefusalKind::ill_conditioned, "points", "the surface leaves the range of double");
     const Net<2, Vec<D>> value = along(1, values[1], along(0, values[0], surface->net()));
-    detail::Largest<D> largest;
+    detail::LargestResidual<D> largest;
     double sum = 0;
     const auto error = [&](std::size_t i) { return value.flat()[i] - points.flat()[i]; };
     for (std::size_t i = 0; i < points.flat().size(); ++i) largest.add(error(i));

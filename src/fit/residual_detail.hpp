@@ -22,7 +22,7 @@ inline double chessboard_norm(const BandSystem& a) {
 
 // The largest norm of a difference, without a square root for each.
 template <int D>
-struct Largest {
+struct LargestResidual {
     double norm_ = 0;
     void add(const Vec<D>& r) {
         if (!(D * max_abs(r) <= norm_)) norm_ = std::max(norm_, norm(r));

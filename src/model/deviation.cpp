@@ -207,11 +207,11 @@ public:
         size_ = box.diagonal();
         share_ = std::max<std::size_t>(options.max_parts / std::max<std::size_t>(model.faces.size(), 1), 64);
     }
-    Result<Deviation> run();
+    Result<MeshDeviation> run();
 
 private:
     void first_look(std::size_t f);
-    void from_mesh(Deviation& out) const;
+    void from_mesh(MeshDeviation& out) const;
     double key(Looked& l, const FacePart& part) const;
     void take(Looked& l, const Vec<3>& x, double distance) const {
         if (distance > l.answer.measured) l.answer.measured = distance, l.answer.at = x;
@@ -296,7 +296,7 @@ Soup soup_of(std::span<const FaceParts* const> faces, double accuracy, double bo
     return out;
 }
 
-void Judge::from_mesh(Deviation& out) const {
+void Judge::from_mesh(MeshDeviation& out) const {
     std::vector<const FaceParts*> faces;
     for (const Looked& l : looked_)
         if (l.parts) faces.push_back(&*l.parts);
@@ -324,7 +324,7 @@ void Judge::from_mesh(Deviation& out) const {
         if (d > out.mesh_measured) out.mesh_measured = d, out.mesh_at = x;
 }
 
-Result<Deviation> Judge::run() {
+Result<MeshDeviation> Judge::run() {
     looked_.resize(model_.faces.size());
     refused_.resize(model_.faces.size());
     std::atomic<std::size_t> done{0};
@@ -348,7 +348,7 @@ Result<Deviation> Judge::run() {
         tell();
     });
     if (stop) return refuse(RefusalKind::limit, "progress", "stopped by the caller");
-    Deviation out;
+    MeshDeviation out;
     for (std::size_t f = 0; f < looked_.size(); ++f) {
         if (refused_[f]) {
             out.refused.push_back(
@@ -368,7 +368,8 @@ Result<Deviation> Judge::run() {
 
 }  // namespace
 
-Result<Deviation> deviation(const Model& model, const TriangleMesh& mesh, const DeviationOptions& options) {
+Result<MeshDeviation> deviation(const Model& model, const TriangleMesh& mesh,
+                                const DeviationOptions& options) {
     if (!std::isfinite(options.enough) || options.enough < 0)
         return refuse(RefusalKind::invalid, "enough", text(options.enough, " is not a distance"));
     if (mesh.triangles.empty()) return refuse(RefusalKind::invalid, "mesh", "has no triangles");

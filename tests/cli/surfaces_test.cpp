@@ -96,6 +96,39 @@ TEST_F(Surfaces, coons_fills_four_curves_and_networks) {
     EXPECT_EQ(run({"coons", "-", "--at-u", "0,1", "-o", "s.json"}, four).code, 2);
 }
 
+// z = x y over the unit square: the bicubic blend of its own boundaries and derivatives is the surface
+// itself.
+TEST_F(Surfaces, coons_blends_derivatives_across_the_boundaries_as_well) {
+    const auto curves = [](const char* lower_across) {
+        return std::string(R"({"objects":[)") +
+               R"({"type":"curve","points":[[0,0,0],[1,0,0]]},{"type":"curve","points":[[0,1,0],[1,1,1]]},
+                  {"type":"curve","points":[[0,0,0],[0,1,0]]},{"type":"curve","points":[[1,0,0],[1,1,1]]},
+                  {"type":"curve","points":)" +
+               lower_across + R"(},{"type":"curve","points":[[0,1,0],[0,1,1]]},
+                  {"type":"curve","points":[[1,0,0],[1,0,1]]},{"type":"curve","points":[[1,0,0],[1,0,1]]}]})";
+    };
+    const Json report = made({"coons", "-", "--bicubic"}, curves("[[0,1,0],[0,1,1]]"));
+    EXPECT_LE(report["bound"].get<double>(), 1e-13);
+    EXPECT_EQ(report["tangent_gap"], 0);
+    EXPECT_EQ(report["twist_gap"], 0);
+    const auto p = point("s.json", "0.25,0.75");
+    EXPECT_NEAR(p[0], 0.25, 1e-14);
+    EXPECT_NEAR(p[1], 0.75, 1e-14);
+    EXPECT_NEAR(p[2], 0.1875, 1e-14);
+    // The derivative across the lower boundary leaves its end by another slope than the right boundary has.
+    const Ran r = run({"coons", "-", "--bicubic", "-o", "t.json"}, curves("[[0,1,0],[0,1,1.5]]"));
+    EXPECT_EQ(r.code, 1);
+    EXPECT_NE(r.err.find("corner"), std::string::npos) << r.err;
+    const Json within =
+        made({"coons", "-", "--bicubic", "--tangent-tolerance", "1", "--twist-tolerance", "1"},
+             curves("[[0,1,0],[0,1,1.5]]"));
+    EXPECT_EQ(within["tangent_gap"], 0.5);
+    EXPECT_EQ(within["twist_gap"], 0.5);
+    EXPECT_EQ(run({"coons", "-", "-o", "s.json"}, curves("[[0,1,0],[0,1,1]]")).code, 1);
+    EXPECT_EQ(run({"coons", "-", "--twist-tolerance", "1", "-o", "s.json"}, curves("[[0,1,0],[0,1,1]]")).code,
+              2);
+}
+
 TEST_F(Surfaces, quadric_makes_every_kind_on_its_surface) {
     const auto off = [&](std::vector<std::string> arguments, auto&& implicit,
                          const std::string& at = "0.3,0.6") {

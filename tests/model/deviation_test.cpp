@@ -141,7 +141,7 @@ TEST(Deviation, agrees_with_what_the_tessellation_proves) {
 TEST(Deviation, does_not_depend_on_the_number_of_threads) {
     const Model m = frustum(2, 1, 3);
     const auto t = tessellate(m, {.tolerance = 0.05});
-    std::vector<Deviation> all;
+    std::vector<MeshDeviation> all;
     for (const int threads : {1, 3}) {
         set_max_threads(threads);
         all.push_back(*deviation(m, t->mesh, {.max_parts = 3000}));

@@ -28,7 +28,7 @@ struct FaceDeviation {
     double bound = 0;
 };
 
-struct Deviation {
+struct MeshDeviation {
     std::vector<FaceDeviation> faces;  // those that could be looked at, in order
     std::vector<Refusal> refused;      // the others
     double measured = 0, bound = 0;    // the largest of all faces, from the model to the mesh
@@ -45,7 +45,8 @@ struct Deviation {
 // Both directions together measure the Hausdorff distance. The answer does not depend on the number of
 // threads. Refuses (invalid) meshes without triangles and models without faces, (limit) when progress says
 // no. REQUIRES a mesh that `validate` accepts, in the units of the model.
-Result<Deviation> deviation(const Model& model, const TriangleMesh& mesh, const DeviationOptions& options);
+Result<MeshDeviation> deviation(const Model& model, const TriangleMesh& mesh,
+                                const DeviationOptions& options);
 
 // The distance of each point from the model: estimates within `accuracy` where max_parts suffice.
 Result<std::vector<double>> distances_from_model(const Model& model, std::span<const Vec<3>> points,
