@@ -128,7 +128,8 @@ Result<std::string> picture(const Model& model, const TriangleMesh& mesh, const 
     VertexNumbers numbers{at_vertex, {0, shown_most}, "distance of the mesh", {}};
     if (!c.unit.empty()) numbers.remarks.push_back(text("in ", c.unit));
     numbers.remarks.push_back(text("measured at most ", rounded_up(most)));
-    if (std::isfinite(c.d.bound)) numbers.remarks.push_back(text("proven at most ", rounded_up(c.d.bound)));
+    if (std::isfinite(c.d.bound))  // the other direction
+        numbers.remarks.push_back(text("model to mesh: at most ", rounded_up(c.d.bound), ", proven"));
     ShadedOptions how;
     how.width = o.width, how.height = o.height;
     if (!o.view.empty()) {

@@ -1,18 +1,17 @@
 // A model to a watertight triangle mesh within a tolerance, with a proof.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/mesh/triangle_mesh.hpp>
 #include <freiform/model/model.hpp>
 
 #include <functional>
-#include <limits>
 
 namespace freiform {
 
 struct TessellateOptions {
-    double tolerance = 0;  // distance in model units, > 0
-    double max_edge =
-        std::numeric_limits<double>::infinity();  // the longest side of a triangle, likewise, > 0
-    long long max_triangles = 20'000'000;         // more is a refusal (limit), before memory is taken for it
+    double tolerance = 0;                  // distance in model units, > 0
+    double max_edge = kInfinity;           // the longest side of a triangle, likewise, > 0
+    long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
     // Called with a fraction in [0, 1], from any thread; false stops with a refusal (limit).
     std::function<bool(double)> progress = {};
 };
