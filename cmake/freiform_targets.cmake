@@ -36,11 +36,10 @@ function(freiform_common target)
     endif()
 endfunction()
 
-# Of a target that computes little. After freiform_common. What is compiled soonest: with g++ -Og, which writes
-# half the code of -O0; with clang, whose -Og is its -O1, -O0.
+# freiform_quick(TARGET): computes little, so that with FREIFORM_QUICK it is not optimised. After freiform_common.
 function(freiform_quick target)
     if(FREIFORM_QUICK)
-        target_compile_options(${target} PRIVATE $<IF:$<CXX_COMPILER_ID:GNU>,-Og,-O0>)
+        target_compile_options(${target} PRIVATE -O0)
     endif()
 endfunction()
 

@@ -17,19 +17,20 @@ namespace {
 using gallery::Entry;
 
 struct GalleryArguments {
-    std::string only;
+    std::vector<std::string> only;  // all if empty; each as "R05", without the case
 };
 
-// Each as "R05", without the case.
-std::vector<const Entry*> chosen(const std::string& only) {
+// In the order of the gallery, each once.
+std::vector<const Entry*> chosen(std::vector<std::string> only) {
+    for (std::string& row : only) {
+        if (row.starts_with('r')) row[0] = 'R';
+        if (std::ranges::find(gallery::entries(), row, &Entry::row) == gallery::entries().end())
+            wrong_usage(text("--only needs rows of ", gallery::entries().front().row, " to ",
+                             gallery::entries().back().row, ", found \"", row, "\""));
+    }
     std::vector<const Entry*> out;
-    std::string row = only;
-    if (!row.empty() && row[0] == 'r') row[0] = 'R';
     for (const Entry& e : gallery::entries())
-        if (row.empty() || e.row == row) out.push_back(&e);
-    if (out.empty())
-        wrong_usage(text("--only needs one of ", gallery::entries().front().row, " to ",
-                         gallery::entries().back().row, ", found \"", only, "\""));
+        if (only.empty() || std::ranges::find(only, e.row) != only.end()) out.push_back(&e);
     return out;
 }
 
@@ -147,7 +148,7 @@ void add_gallery(CommandLine& line) {
     command.word("-o,--output", line.context().output, "The folder; it is made if it is not there")
         .shown_as("FOLDER");
     command.word("--to", line.context().to, "svg (default), pdf or png").shown_as("FORMAT");
-    command.word("--only", options->only, "Only this figure: R01, R02, ..").shown_as("ROW");
+    command.words("--only", options->only, "Only these figures: R01, R02, ..").shown_as("ROW ...");
     command.action(options, run_gallery);
 }
 
