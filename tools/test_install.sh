@@ -33,7 +33,7 @@ g++ -std=c++23 tests/install/main.cpp $(pkg-config --cflags --libs freiform-core
 printf '%-18s ' pkg-config:
 "$temp/by_pkg_config"
 
-outside add_subdirectory -DFREIFORM_ROOT="$root"
+outside add_subdirectory -DFREIFORM_ROOT="$root" -DFREIFORM_IO=OFF -DFREIFORM_UNITY=ON
 
 # What was installed must not remember where it was built.
 if grep -rlF -e "$root" -e "$temp" "$temp/stage/usr" --include='*.cmake' --include='*.pc' --include='*.hpp'; then

@@ -1,3 +1,4 @@
+#include "support/sanitizer.hpp"
 #include "support/shapes.hpp"
 #include "trim/polygons.hpp"
 
@@ -221,10 +222,10 @@ Vec<2> exact_point(std::vector<Vec<2>> b, int k) {
     return b.back();
 }
 
-TEST(Inside, a_hundred_thousand_points_half_of_them_on_the_boundary_or_a_bit_beside_it) {
+TEST(Inside, many_points_half_of_them_on_the_boundary_or_a_bit_beside_it) {
     std::mt19937 rng(20);
     int asked = 0, on = 0, beside = 0, wrong = 0;
-    for (int set = 0; set < 200; ++set) {
+    for (int set = 0; set < test::cases(200); ++set) {
         const Drawn d = random_loops(rng);
         const auto query = InsideQuery::make(d.loops, 0);
         ASSERT_TRUE(query);
@@ -256,8 +257,8 @@ TEST(Inside, a_hundred_thousand_points_half_of_them_on_the_boundary_or_a_bit_bes
     }
     std::printf("%d points, %d of them on or beside the boundary, %d found to be on it, %d wrong\n", asked,
                 beside, on, wrong);
-    EXPECT_EQ(asked, 100000);
-    EXPECT_GT(on, 10000);
+    EXPECT_EQ(asked, test::cases(100000));
+    EXPECT_GT(on, test::cases(10000));
 }
 
 TEST(Inside, many_points_at_once_get_the_same_answers) {

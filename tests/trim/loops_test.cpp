@@ -1,3 +1,4 @@
+#include "support/sanitizer.hpp"
 #include "support/shapes.hpp"
 #include "trim/polygons.hpp"
 
@@ -145,7 +146,7 @@ TEST(Loops, decisions_scale_with_powers_of_two) {
 TEST(Loops, polygons_of_whole_numbers_agree_with_brute_force) {
     std::mt19937 rng(5);
     int crossing = 0, clean = 0;
-    for (int round = 0; round < 2000; ++round) {
+    for (int round = 0; round < test::cases(2000); ++round) {
         std::vector<Vec<2>> p;
         for (int i = 0; i < 5; ++i) {
             const double x = double(rng() % 7), y = double(rng() % 7);
@@ -175,8 +176,8 @@ TEST(Loops, polygons_of_whole_numbers_agree_with_brute_force) {
         if (proper) EXPECT_FALSE(r) << round;
         if (!proper && !touches) EXPECT_TRUE(r && r->empty()) << round;
     }
-    EXPECT_GT(crossing, 300);
-    EXPECT_GT(clean, 100);
+    EXPECT_GT(crossing, test::cases(300));
+    EXPECT_GT(clean, test::cases(100));
 }
 
 TEST(Loops, orientation_is_repaired_by_depth_and_says_what_it_turned) {
