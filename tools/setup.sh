@@ -9,7 +9,7 @@ occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 test="libgtest-dev librapidcheck-dev libboost-dev"
-ci="python3 clang-22 libclang-rt-22-dev clang-format"
+ci="python3 clang-22 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 
@@ -48,6 +48,7 @@ what_for() {
         python3-scipy | libsisl-dev) echo "other libraries of curves, to compare with" ;;
         gmsh-doc | occt-misc) echo "models to compare on" ;;
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
+        g++-aarch64-linux-gnu | qemu-user) echo "the kernels for ARM, and a processor to test them on" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;
     esac

@@ -1,7 +1,7 @@
 // Evaluation of many points: plain arrays in, plain arrays out, compiled once for every instruction set.
 //
 // This layer knows no bases and no patches. An axis is a table of the spans of one parameter, each with the
-// matrix that turns Bernstein polynomials of the span into the basis functions that are not zero there; a net
+// polynomials that are the basis functions there; a net
 // is an array of coefficients, four (or eight) numbers each. spline/prepared.cpp fills them in.
 #pragma once
 #include <cstddef>
@@ -12,36 +12,36 @@ inline constexpr int kMaxDegree = 25;  // that of basis/bspline.hpp
 inline constexpr int kMaxOrder = 2;    // of derivatives
 inline constexpr int kTile = 64;       // points that are worked on at once
 
-// A span [lo, hi]. `inverse` is about 1 / (hi - lo), such that fl((hi - lo) * inverse) >= 1. `next` is where
-// the next span begins, infinity after the last one. Four numbers that are loaded at once, in a line of the
-// cache of their own with where to go from there.
-struct alignas(64) Span {
+// A span [lo, hi]. `inverse` is 1 / (hi - lo); `next` is where the next span begins, infinity after the last
+// one. A line of the cache that says where to go from there.
+struct __attribute__((may_alias, aligned(64))) Span {
     double lo, hi, inverse, next;
-    std::size_t matrix;        // of the first column, in Axis::matrix
     std::size_t coefficients;  // of the first coefficient, in Net::coefficients; 0 for curves
     int first;                 // its index along the axis
 };
 
-// One parameter. Inside span s, with t and 1 - t the local parameters, the derivative of order o of the
+// One parameter. Inside a span, with the distances `near` and `far` of x from the nearer and the farther end
+// of it (the left one is nearer in the middle), r = near / far in [0, 1], the derivative of order o of the
 // `lanes` functions (of a curve: of its coordinates) is
 //
-//     sum_k  column(s, o, k)[0 .. lanes)  B^{p-o}_k(t),      k = 0 .. p - o
+//     (far / (hi - lo))^p  far^-o  sum_k  column(o, k)[0 .. lanes)  r^k,      k = 0 .. p - o
 //
-// Columns lie one after the other, the spans too.
+// of columns that are made for the half of the span that x is in. A record is a Span, the columns of its left
+// half, those of its right half; columns of order 0 first, of an order the highest k first.
 struct Axis {
     int degree = 0, spans = 0;
-    int lanes = 4;                   // a multiple of 4; numbers of a column, the unused ones 0
-    const Span* span = nullptr;      // spans of them
-    const double* matrix = nullptr;  // spans * stride numbers
-    std::size_t stride = 0;          // columns(0) + columns(1) + columns(2), times lanes
+    int lanes = 4;                     // a multiple of 4; numbers of a column, the unused ones 0
+    const double* record = nullptr;    // spans records of `stride` numbers
+    std::size_t stride = 0, half = 0;  // half: numbers of the columns of one half
     // Search. x is in span s or one of the `steps` after it, s = bucket[min(int((x - lo) * scale), buckets -
     // 1)]; steps is 2^k - 1. The spans are followed by `steps` more whose `next` is infinite.
     double lo = 0, scale = 0;
     int buckets = 1, steps = 1;
-    const int* bucket = nullptr;
+    const int* bucket = nullptr;  // holds s * stride / kLine
 
+    static constexpr std::size_t kLine = 8;  // numbers in a line of the cache
     int columns(int order) const { return order > degree ? 0 : degree + 1 - order; }
-    std::size_t column(int order) const {  // of the first one, in a span
+    std::size_t column(int order) const {  // of the first one of an order, in a half
         return std::size_t(lanes) * std::size_t(order == 0   ? 0
                                                 : order == 1 ? columns(0)
                                                              : columns(0) + columns(1));

@@ -84,10 +84,8 @@ FF_INLINE void flush_tile(Sinks<N, K>& to) {
 
 // One vector of points, of which `left` are asked for.
 template <int N, int K>
-FF_INLINE void finish(const Net& net, V (*s)[4], const V* weight, int left, const Output& out,
-                      Sinks<N, K>& to) {
+FF_INLINE void finish(const Net& net, V (*s)[4], int left, const Output& out, Sinks<N, K>& to) {
     constexpr int kCount = Slots<N, K>::kCount;
-    if (net.rational) project<N, K>(s, weight);
     if (to.points) {
         put_three(to.jets, s[0], left);
     } else {
@@ -132,42 +130,64 @@ FF_INLINE void sums_of(const Net& net, const double* h, int g, V (*s)[4], V* wei
                });
 }
 
-// The same of a curve whose parameters share a span: the operations are those of a single point.
+// The same of a curve whose parameters share half a span: the operations are those of a single point.
 template <int K>
 FF_INLINE void sums_of_run(const Axis& axis, const Local& l, int g, V (*s)[4], V* weight) {
     const int p = axis.degree, lanes = axis.lanes;
-    const double* column = axis.matrix + l.span[g]->matrix;
+    const double* column = l.record[g] + l.columns[g];
+    const V r = load(l.ratio + g);
     each<K + 1>(K + 1, [&](int o) FF_BODY {
-        const double* b = l.bernstein[o] + g;
         V x = all(0), y = x, z = x, w = x, second = x;
         if (o <= p) {
-            const V first = load(b);
-            x = all(column[0]) * first, y = all(column[1]) * first, z = all(column[2]) * first;
-            w = all(column[3]) * first;
-            if (lanes == 8) second = all(column[7]) * first;
+            x = all(column[0]), y = all(column[1]), z = all(column[2]), w = all(column[3]);
+            if (lanes == 8) second = all(column[7]);
             column += lanes;
         }
-        for (int k = 1; k <= p - o; ++k, column += lanes) {
-            const V next = load(b + k * kTile);
-            x += all(column[0]) * next, y += all(column[1]) * next, z += all(column[2]) * next;
-            w += all(column[3]) * next;
-            if (lanes == 8) second += all(column[7]) * next;
+        for (int k = 0; k < p - o; ++k, column += lanes) {
+            x = x * r + all(column[0]), y = y * r + all(column[1]), z = z * r + all(column[2]);
+            w = w * r + all(column[3]);
+            if (lanes == 8) second = second * r + all(column[7]);
         }
         s[o][0] = x, s[o][1] = y, s[o][2] = z, s[o][3] = w;
         weight[o] = lanes == 8 ? second : w;
     });
 }
 
+// The factors that the weights of the axes were left without, those of a rational one once it is projected:
+// what the values share has cancelled there.
 template <int N, int K>
-__attribute__((noinline)) static void finish_tile(const Net& net, const double* h, const Local* run, int n,
+FF_INLINE void put_factors(const Net& net, const Local* l, int g, V (*s)[4]) {
+    constexpr int kCount = Slots<N, K>::kCount;
+    V inverse[N], scale = all(1);
+    for (int d = 0; d < N; ++d) {
+        inverse[d] = load(l[d].inverse + g);
+        if (!net.rational) scale = d == 0 ? load(l[d].scale + g) : scale * load(l[d].scale + g);
+    }
+    each < N<3 ? kCount : -1>(
+               kCount,
+               [&](int k) FF_BODY {
+                   if (k == 0 && net.rational) return;
+                   V factor = scale;
+                   const int order[3] = {N == 3 ? kSlots<N, K>.a[k] : kSlots<N, K>.b[k], kSlots<N, K>.b[k],
+                                         kSlots<N, K>.last[k]};
+                   for (int d = 0; d < N; ++d)
+                       for (int o = 0; o < (d == N - 1 ? order[2] : order[d]); ++o) factor *= inverse[d];
+                   each<4>(4, [&](int c) FF_BODY { s[k][c] *= factor; });
+               });
+}
+
+template <int N, int K>
+__attribute__((noinline)) static void finish_tile(const Net& net, const double* h, const Local* l, int n,
                                                   const Output& out, Sinks<N, K>& to) {
     for (int g = 0; g < n; g += kWidth) {
         V s[Slots<N, K>::kCount][4], weight[Slots<N, K>::kCount];
-        if (N == 1 && run->uniform[g / kWidth])
-            sums_of_run<(N == 1 ? K : 0)>(net.axis[0], *run, g, s, weight);
+        if (N == 1 && l->uniform[g / kWidth])
+            sums_of_run<(N == 1 ? K : 0)>(net.axis[0], *l, g, s, weight);
         else
             sums_of<N, K>(net, h, g, s, weight);
-        finish<N, K>(net, s, weight, n - g, out, to);
+        if (net.rational) project<N, K>(s, weight);
+        if (K > 0 || !net.rational) put_factors<N, K>(net, l, g, s);
+        finish<N, K>(net, s, n - g, out, to);
     }
     flush_tile(to);
 }

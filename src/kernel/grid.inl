@@ -42,7 +42,8 @@ __attribute__((noinline)) static void grid_row_of(const Net& net, const GridAxis
         while (end < last.parts && last.part[end].group == group) ++end;
         V s[Slots<N, K>::kCount][4], weight[Slots<N, K>::kCount];
         grid_sums<N, K, C>(last, outer, row, part, end - part, s, weight);
-        finish<N, K>(net, s, weight, last.count - group * kWidth, out, to);
+        if (net.rational) project<N, K>(s, weight);
+        finish<N, K>(net, s, last.count - group * kWidth, out, to);
         if (to.collected > 0 && (end == last.parts || (group + 1) * kWidth % kTile == 0)) flush_tile(to);
         part = end;
     }

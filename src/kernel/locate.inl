@@ -1,10 +1,15 @@
-// Spans and Bernstein polynomials of a tile of parameters, which lie side by side in the lanes.
+// Spans of a tile of parameters, and where in them the parameters are; they lie side by side in the lanes.
 
 struct Local {
-    const Span* span[kTile];
-    int uniform[kTile / kWidth];  // whether a whole vector of parameters is in one span
-    alignas(64) double bernstein[kMaxOrder + 1][(kMaxDegree + 1) * kTile];
+    const double* record[kTile];
+    alignas(64) long long columns[kTile];  // where they begin in the record, by the half
+    int uniform[kTile / kWidth];           // whether a whole vector of parameters is in half a span
+    alignas(64) double ratio[kTile];       // near / far
+    alignas(64) double inverse[kTile];     // 1 / far
+    alignas(64) double scale[kTile];       // (far / (hi - lo))^degree
 };
+
+FF_INLINE const Span& span_of(const double* record) { return *reinterpret_cast<const Span*>(record); }
 
 // kWidth parameters of axis d, or `left` of them and the last one again. They are `axes` numbers apart.
 FF_INLINE V parameters(const double* at, int axes, int d, int left) {
@@ -23,82 +28,77 @@ FF_INLINE V parameters(const double* at, int axes, int d, int left) {
     return load(x);
 }
 
-// The spans of a vector of parameters, and their ends. Of most parameters the bucket has one span: then its
-// ends are loaded at once, and the few others are looked for afterwards.
-FF_INLINE void find(const Axis& axis, V x, const Span** to, V& lo, V& hi, V& inverse) {
+// Whether the spans of a vector of parameters have to be looked for from their buckets on is not asked: the
+// first step is always taken, since a branch that is sometimes wrong costs more. `to`: the records.
+FF_INLINE void find(const Axis& axis, V x, const double** to) {
     const int last = axis.buckets - 1;
-    int place[kWidth];
     Half k = __builtin_convertvector((x - all(axis.lo)) * all(axis.scale), Half);
-    *reinterpret_cast<Halfu*>(place) = k < last ? k : Half{} + last;
-    asm("" : "+m"(place));  // loaded from there, not taken from a vector lane by lane
-    const double* from[kWidth];
-    const auto load_ends = [&] FF_BODY {
-        for (int i = 0; i < kWidth; ++i) from[i] = &to[i]->lo;
-        three_of(from, lo, hi, inverse);
-    };
-    for (int i = 0; i < kWidth; ++i) to[i] = axis.span + axis.bucket[place[i]];
-    load_ends();
-    if (all_inside(x, lo, hi, false)) return;
-    double at[kWidth];
-    store(at, x);
-    for (int i = 0; i < kWidth; ++i)
-        for (int h = (axis.steps + 1) / 2; h > 0; h /= 2) to[i] += at[i] >= to[i][h - 1].next ? h : 0;
-    load_ends();
+    k = k < last ? k : Half{} + last;
+    I at = gather_lines(axis.record, axis.bucket, k);
+    const long long stride = (long long)(axis.stride * sizeof(double));
+    for (int h = (axis.steps + 1) / 2; h > 0; h /= 2) {
+        const V next = gather(at + ((h - 1) * stride + (long long)offsetof(Span, next)));
+        at += (x >= next) & (h * stride);
+    }
+    store_addresses(to, at);
 }
 
-// All Bernstein polynomials of degrees p, p - 1 .. p - order: the recurrence of sums of non-negative numbers.
-template <int P>
-FF_INLINE void bernstein(int degree, int order, V t, V s, Local& l, int g) {
-    const int p = P >= 0 ? P : degree;
-    V b[(P >= 0 ? P : kMaxDegree) + 1];
-    b[0] = all(1);
-    const auto keep = [&](int m) FF_BODY {
-        if (p - m > order || p - m > kMaxOrder) return;
-        double* to = l.bernstein[p - m] + g;
-        for (int k = 0; k <= m; ++k) store(to + k * kTile, b[k]);
-    };
-    keep(0);
-    each<P>(p, [&](int lower) FF_BODY {
-        const int m = lower + 1;
-        b[m] = b[lower] * t;
-        for (int k = lower; k > 0; --k) b[k] = b[k] * s + b[k - 1] * t;
-        b[0] = b[0] * s;
-        keep(m);
-    });
+FF_INLINE bool in_span(const Axis& axis, V x, const double* record) {
+    const Span& s = span_of(record);
+    return all_inside(x, all(s.lo), all(s.hi),
+                      record == axis.record + std::size_t(axis.spans - 1) * axis.stride);
 }
 
-FF_INLINE bool in_span(const Axis& axis, V x, const Span& s) {
-    return all_inside(x, all(s.lo), all(s.hi), &s == axis.span + axis.spans - 1);
-}
-
-// n parameters of axis d. look_for_runs: vectors of parameters that share a span are marked.
+// n parameters of axis d. look_for_runs: vectors of parameters that share half a span are marked. scaled:
+// `scale` is wanted. Two loops: each of them is a long chain of operations that wait for one another, and of
+// short chains more fit into what a processor looks ahead.
 template <int P>
 __attribute__((noinline)) static void locate_of(const Axis& from, const double* at, int axes, int d, int n,
-                                                int order, bool look_for_runs, Local& l) {
+                                                bool look_for_runs, bool scaled, Local& l) {
     const Axis axis = from;  // what is stored cannot change it
-    const Span* known = nullptr;
+    const double* known = nullptr;
     for (int g = 0; g < n; g += kWidth) {
-        const V one = all(1), x = parameters(at + g * axes, axes, d, n - g);
-        V lo, hi, inverse;
-        bool same = known && in_span(axis, x, *known);
+        const V x = parameters(at + g * axes, axes, d, n - g);
+        store(l.ratio + g, x);
+        bool same = known && in_span(axis, x, known);
         if (same) {
-            l.span[g] = known;
-            lo = all(known->lo), hi = all(known->hi), inverse = all(known->inverse);
+            for (int i = 0; i < kWidth; ++i) l.record[g + i] = known;
         } else {
-            find(axis, x, l.span + g, lo, hi, inverse);
+            find(axis, x, l.record + g);
             if (look_for_runs) {
-                known = l.span[g];
-                same = in_span(axis, x, *known);
+                known = l.record[g];
+                same = in_span(axis, x, known);
             }
         }
         l.uniform[g / kWidth] = same;
-        V t = (x - lo) * inverse, s = (hi - x) * inverse;
-        t = t < one ? t : one, s = s < one ? s : one;
-        bernstein<P>(axis.degree, order, t, s, l, g);
+    }
+    for (int g = 0; g < n; g += kWidth) {
+        const V x = load(l.ratio + g);
+        V lo, hi, inverse;
+        if (look_for_runs && l.uniform[g / kWidth]) {
+            const Span& s = span_of(l.record[g]);
+            lo = all(s.lo), hi = all(s.hi), inverse = all(s.inverse);
+        } else {
+            three_of(l.record + g, lo, hi, inverse);
+        }
+        const V before = x - lo, after = hi - x;
+        const I right = before > after;
+        const V near = right ? after : before, far = right ? before : after;
+        *reinterpret_cast<Iu*>(l.columns + g) = (right & (long long)axis.half) + (long long)Axis::kLine;
+        const V r = reciprocal(far);
+        store(l.ratio + g, near * r);
+        store(l.inverse + g, r);
+        if (look_for_runs) l.uniform[g / kWidth] &= int(all_of(right) || none_of(right));
+        if (!scaled) continue;
+        // At the end of a span exactly 1, so that the polynomial is exactly what it is there.
+        const V one = all(1), s = near == all(0) ? one : far * inverse;
+        V power = one;
+        each<P>(axis.degree, [&](int i) FF_BODY { power = i == 0 ? s : power * s; });
+        store(l.scale + g, power);
     }
 }
-static void locate(const Axis& axis, const double* at, int axes, int d, int n, int order, bool look_for_runs,
-                   Local& l) {
+static void locate(const Axis& axis, const double* at, int axes, int d, int n, bool look_for_runs,
+                   bool scaled, Local& l) {
     with_degree(axis.degree, [&]<int P>(Degree<P>)
-                                 FF_BODY { locate_of<P>(axis, at, axes, d, n, order, look_for_runs, l); });
+                                 FF_BODY { locate_of<P>(axis, at, axes, d, n, look_for_runs, scaled, l); });
 }

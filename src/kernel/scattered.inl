@@ -1,11 +1,12 @@
 // Scattered parameters.
 //
-// Idea. In a tile of 64 parameters the spans are found and the Bernstein polynomials computed with parameters
+// Idea. In a tile of 64 parameters the spans are found, and where in them the parameters are, with parameters
 // side by side in the lanes (locate.inl). Then each point by itself, with coordinates (x, y, z, w) side by
-// side: the weights of its span are matrix times polynomials, and the (p + 1)^N coefficients are contracted
+// side: the weights of its span by Horner's rule, and the (p + 1)^N coefficients are contracted
 // first along the outer axes, then along the last, two coefficients in a vector of 512 bits. Last, points
-// side by side again, the projection (finish.inl). On curves, where neighbouring parameters often share a
-// span, whole vectors of parameters that do are evaluated side by side throughout.
+// side by side again, the projection (finish.inl), and the factors that the weights have been left without.
+// On curves, where neighbouring parameters often share a span, whole vectors of parameters that do are
+// evaluated side by side throughout.
 //
 // The three loops over a tile keep many points in flight: one point is a chain of dependent operations from
 // the search of its span to the quotient, far longer than what a processor looks ahead.
@@ -16,29 +17,35 @@
 // Why not: grouping the points of a surface by span, with parameters in the lanes throughout, has as many
 // products a point and in addition moves every parameter and every point through memory once more, at random.
 
-// The functions of one point: `groups` vectors of four for each order up to K.
+// The functions of one point, without the factors of inverse and scale: `groups` vectors of four for each
+// order up to K.
 template <int P, int Groups, int K>
 FF_INLINE void functions(const Axis& axis, const Local& l, int i, int groups, V4* out) {
     const int p = P >= 0 ? P : axis.degree;
-    const double* column = axis.matrix + l.span[i]->matrix;
+    const double* column = l.record[i] + l.columns[i];
+    const V4 r = all4(l.ratio[i]);
     each<K + 1>(K + 1, [&](int o) FF_BODY {
-        each<Groups>(groups, [&](int v) FF_BODY { out[o * groups + v] = all4(0); });
-        const double* b = l.bernstein[o] + i;
-        const auto add = [&](int k) FF_BODY {
-            if (o > p) return;
+        const auto start = [&] FF_BODY {
+            each<Groups>(groups, [&](int v) FF_BODY { out[o * groups + v] = load4(column + 4 * v); });
+            column += 4 * groups;
+        };
+        const auto step = [&] FF_BODY {
             each<Groups>(groups, [&](int v) FF_BODY {
-                const V4 term = load4(column + 4 * v);
                 V4& sum = out[o * groups + v];
-                sum = k == 0 ? term * all4(b[0]) : sum + term * all4(b[k * kTile]);
+                sum = sum * r + load4(column + 4 * v);
             });
             column += 4 * groups;
         };
+        if (o > p)
+            each<Groups>(groups, [&](int v) FF_BODY { out[o * groups + v] = all4(0); });
+        else
+            start();
         if constexpr (P >= 0)
-            each<P + 1>(P + 1, [&](int k) FF_BODY {
-                if (k <= P - o) add(k);
+            each<P>(P, [&](int k) FF_BODY {
+                if (k < P - o) step();
             });
         else
-            for (int k = 0; k <= p - o; ++k) add(k);
+            for (int k = 0; k < p - o; ++k) step();
     });
 }
 
@@ -81,7 +88,7 @@ FF_INLINE void contract(const Net& net, const Local* l, int i, const double* con
     int lanes[N];
     for (int d = 0; d < N; ++d) lanes[d] = P >= 0 ? kLanes<(P >= 0 ? P : 0)> : net.axis[d].lanes;
     const double* base = net.coefficients;
-    for (int d = 0; d < N; ++d) base += l[d].span[i]->coefficients;
+    for (int d = 0; d < N; ++d) base += span_of(l[d].record[i]).coefficients;
     for (int q = 0; q < planes; ++q, base += net.plane) {
         V sum[Slots<N, K>::kOuter][kVectorsAtMost];
         if constexpr (N == 2) {
@@ -167,7 +174,7 @@ __attribute__((noinline)) static void scattered_of(const Net& net, const double*
     const bool plain = net.planes() == 1 && (N == 1 || (N == 2 && net.axis[0].degree == net.axis[1].degree));
     for (std::size_t from = 0; from < count; from += kTile, at += N * kTile) {
         const int n = int(count - from < std::size_t(kTile) ? count - from : std::size_t(kTile));
-        for (int d = 0; d < N; ++d) locate(net.axis[d], at, N, d, n, K, N == 1, local[d]);
+        for (int d = 0; d < N; ++d) locate(net.axis[d], at, N, d, n, N == 1, !net.rational, local[d]);
         with_degree(plain ? net.axis[0].degree : -1, [&]<int P>(Degree<P>) FF_BODY {
             // Second derivatives of surfaces: of the most common degree alone, for the sake of compile time.
             const int all = (n + kWidth - 1) / kWidth * kWidth;
@@ -196,12 +203,14 @@ static void weights(const Axis& axis, const double* at, std::size_t count, int o
     const std::size_t size = std::size_t(order + 1) * std::size_t(axis.lanes);
     for (std::size_t from = 0; from < count; from += kTile) {
         const int n = int(count - from < std::size_t(kTile) ? count - from : std::size_t(kTile));
-        locate(axis, at + from, 1, 0, n, kMaxOrder, false, l);
+        locate(axis, at + from, 1, 0, n, false, true, l);
         for (int i = 0; i < n; ++i) {
             functions<-1, -1, kMaxOrder>(axis, l, i, axis.lanes / 4, f);
             double* to = out + (from + std::size_t(i)) * size;
-            for (int k = 0; k < (order + 1) * axis.lanes / 4; ++k) store4(to + 4 * k, f[k]);
-            first[from + std::size_t(i)] = l.span[i]->first;
+            double factor = l.scale[i];
+            for (int o = 0, k = 0; o <= order; ++o, factor *= l.inverse[i])
+                for (int v = 0; v < axis.lanes / 4; ++v, ++k) store4(to + 4 * k, f[k] * all4(factor));
+            first[from + std::size_t(i)] = span_of(l.record[i]).first;
         }
     }
 }

@@ -32,6 +32,7 @@ typedef double V2u __attribute__((vector_size(16), aligned(8), may_alias));
 typedef double V __attribute__((vector_size(8 * kWidth)));
 typedef double Vu __attribute__((vector_size(8 * kWidth), aligned(8), may_alias));
 typedef long long I __attribute__((vector_size(8 * kWidth)));
+typedef long long Iu __attribute__((vector_size(8 * kWidth), aligned(8), may_alias));
 typedef int Half __attribute__((vector_size(4 * kWidth)));
 typedef int Halfu __attribute__((vector_size(4 * kWidth), aligned(4), may_alias));
 
@@ -129,6 +130,21 @@ FF_INLINE bool all_inside(V x, V lo, V hi, bool with_hi) {
 #endif
 }
 
+// Of lanes that are all ones or all zeros.
+FF_INLINE int ones(I mask) {
+#if defined(__AVX512F__)
+    return __builtin_popcount(_mm512_movepi64_mask((__m512i)mask));
+#elif defined(__AVX2__)
+    return __builtin_popcount(unsigned(_mm256_movemask_pd((__m256d)mask)));
+#else
+    int n = 0;
+    for (int i = 0; i < kWidth; ++i) n += mask[i] != 0;
+    return n;
+#endif
+}
+FF_INLINE bool all_of(I mask) { return ones(mask) == kWidth; }
+FF_INLINE bool none_of(I mask) { return ones(mask) == 0; }
+
 // Past the caches. REQUIRES p a multiple of the size of V.
 FF_INLINE void store_past(double* p, V v) {
 #if defined(__AVX512F__)
@@ -150,6 +166,40 @@ FF_INLINE void store_three(double* p, V4 v) {
     *reinterpret_cast<V2u*>(p) = __builtin_shufflevector(v, v, 0, 1);
     p[2] = v[2];
 #endif
+}
+
+// The numbers at kWidth addresses.
+FF_INLINE V gather(I at) {
+#if defined(__AVX512F__)
+    return (V)_mm512_mask_i64gather_pd(_mm512_setzero_pd(), 0xff, (__m512i)at, nullptr, 1);
+#elif defined(__AVX2__)
+    return (V)_mm256_i64gather_pd(nullptr, (__m256i)at, 1);
+#else
+    V v;
+    for (int i = 0; i < kWidth; ++i) v[i] = *reinterpret_cast<const double*>(std::size_t(at[i]));
+    return v;
+#endif
+}
+// The addresses of lines table[index] of `from`.
+FF_INLINE I gather_lines(const double* from, const int* table, Half index) {
+    const I base = I{} + (long long)reinterpret_cast<std::size_t>(from);
+#if defined(__AVX512F__)
+    return ((I)_mm512_maskz_cvtepu32_epi64(0xff, _mm256_i32gather_epi32(table, (__m256i)index, 4)) << 6) +
+           base;
+#elif defined(__AVX2__)
+    return ((I)_mm256_cvtepu32_epi64(_mm_i32gather_epi32(table, (__m128i)index, 4)) << 6) + base;
+#else
+    I at = base;
+    for (int i = 0; i < kWidth; ++i) at[i] += (long long)table[index[i]] << 6;
+    return at;
+#endif
+}
+
+FF_INLINE void store_addresses(const double** to, I at) {
+    if constexpr (sizeof(to[0]) == sizeof(at[0]))
+        *reinterpret_cast<Iu*>(to) = at;
+    else
+        for (int i = 0; i < kWidth; ++i) to[i] = reinterpret_cast<const double*>(std::size_t(at[i]));
 }
 
 // The first three numbers of kWidth places, one in each lane.

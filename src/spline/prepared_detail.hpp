@@ -27,15 +27,17 @@ using Lines = std::vector<double, LineAllocator<double>>;
 struct AxisTable {
     BSplineBasis basis;
     kernel::Axis axis;  // without pointers
-    std::vector<kernel::Span> spans;
-    Lines matrix;
+    Lines records;
     std::vector<int> bucket;
 
     kernel::Axis view() const;
+    kernel::Span& span(std::size_t s) {
+        return *reinterpret_cast<kernel::Span*>(records.data() + s * axis.stride);
+    }
 };
 
-// The rows of matrices of `basis`; of a curve, its coordinates: `curve` is then the coefficients in places of
-// `lanes` numbers.
+// The spans of `basis` and its functions in them; of a curve, its coordinates: `curve` is then the
+// coefficients in places of `lanes` numbers.
 AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, int lanes);
 
 struct PreparedNet::Tables {

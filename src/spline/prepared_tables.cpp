@@ -2,25 +2,32 @@
 //
 // Idea. On a span [a, b] with t = (x - a) / (b - a) the basis functions are combinations of Bernstein
 // polynomials, N_i = sum_k e_ik B_k(t), e_ik >= 0: row i of Bezier extraction, the weights of the blossom at
-// (a, .., a, b, .., b). These few numbers are made once, in doubled precision, so that a function costs a
-// product of a small matrix with polynomials that vectors of parameters compute side by side, without the
-// divisions of the recurrence. Derivatives: differences of the columns. Of a curve, the coefficients are
+// (a, .., a, b, .., b). With r = t / (1 - t) that is (1 - t)^p sum_k C(p, k) e_ik r^k, by Horner's rule: one
+// product and one sum for a coefficient, all of them non-negative. Where t > 1/2 the two ends change places,
+// so that r <= 1. The coefficients are made once, in doubled precision, for both halves of every span;
+// vectors of parameters compute r side by side, without the divisions of the recurrence. What is rational
+// needs no powers of 1 - t: they cancel. Derivatives: differences of the e_ik, and since 1 - t is far / (b -
+// a), with `far` the distance to the farther end, a power of 1 / far. Of a curve, the coefficients are
 // multiplied in, and what is left is its Bezier pieces.
 //
+// Why not: powers of x - a need no quotient, but their terms have both signs and add up to as much as 2^p.
+//
 // Accuracy of values. u = 2^-53, p_d degrees, parameters inside the domain; relative roundings, counted.
-//   t      x - a, the product with the inverse: 2. The inverse: b - a, the quotient, and an upward step of at
-//          most 2 u that makes (b - a) * inverse >= 1: 4. Together 6; likewise 1 - t. Cutting off at 1 brings
-//          both nearer. At the ends of the span both are exact.
-//   B_k    a level of the recurrence is a sum of two products of non-negative numbers: 6 + 2 more; the first
-//          has neither product nor sum: 8 p - 2.
-//   N_i    an entry e_ik rounded once from doubled precision (whose error, p 2^-95, the factor 1.01 below
-//          pays), a product, p sums: p + 2. Together n_d = 9 p_d; for degree 0 everything is exact.
+//   r      the distances of x from both ends: 2, the reciprocal 1.2, the product 1: 4.2.
+//   N_i    a coefficient C(p, k) e_ik rounded once from doubled precision (whose error, p 2^-95, the
+//   factor 1.01
+//          below pays), and a product and a sum, p times: its term has p factors r at most, 6.2 p + 1.
+//   power  far, the inverse of b - a, their product: 3; p - 1 products of such, and one with the sum: 4 p. At
+//   the
+//          ends of the span it is exactly 1 and r exactly 0. Degree 0 is exact.
+//          Together n_d = 10.2 p_d + 1 for p_d > 0.
 //   sums   curve: none but those of N_i, whose entries are the coefficients of the piece, each rounded
 //          once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights are
 //          multiplied, then summed in one go: (p_0 + 1) (p_1 + 1) + 1 along the outer two, p_2 + 1.
 // Contracted products and sums have fewer. So k = sum n_d + sums, g = 1.01 k u, and as for single values (see
 // patch_detail.hpp) |computed - exact| <= g c + e, e = h sum (p_d + 1) for underflow with h the smallest
-// denormal number; rational, with numerator and denominator off by g c W + e and g W + e,
+// denormal number, twice since a power may be multiplied with the sum; rational, with numerator and
+// denominator off by g c W + e and g W + e,
 //     (2 g c + (1 + c) e / w_min) / (1 - g - e / w_min)
 // and 2.2 roundings of the quotient (reciprocal 1.2, product 1) instead of one.
 //
@@ -49,12 +56,12 @@ struct Knots {
 // How far a lookup by equal buckets may be off: rounded up to 2^k - 1.
 void make_search(AxisTable& table) {
     kernel::Axis& a = table.axis;
-    const Interval on{table.spans.front().lo, table.spans.back().hi};
+    const std::size_t spans = std::size_t(a.spans);
+    const Interval on{table.span(0).lo, table.span(spans - 1).hi};
     a.lo = on.lo;
     // Few buckets should have two spans, all of them should stay in the cache.
-    const std::size_t spans = table.spans.size();
     a.buckets =
-        int(std::min<std::size_t>(std::max(std::min<std::size_t>(64 * spans, 512), 8 * spans), 1 << 20));
+        int(std::min<std::size_t>(std::max(std::min<std::size_t>(64 * spans, 2048), 8 * spans), 1 << 20));
     a.scale = a.buckets / on.length();
     // The same expression as in the kernels, which is monotone; so a parameter at or above the start of a
     // span is in its bucket or a later one.
@@ -62,50 +69,67 @@ void make_search(AxisTable& table) {
     table.bucket.assign(std::size_t(a.buckets), 0);
     int most = 0;
     for (std::size_t s = 0, b = 0; b < table.bucket.size(); ++b) {
-        while (s + 1 < table.spans.size() && bucket_of(table.spans[s + 1].lo) < int(b)) ++s;
-        table.bucket[b] = int(s);
+        while (s + 1 < spans && bucket_of(table.span(s + 1).lo) < int(b)) ++s;
+        table.bucket[b] = int(s * (a.stride / kernel::Axis::kLine));
         int more = 0;
-        while (s + std::size_t(more) + 1 < table.spans.size() &&
-               bucket_of(table.spans[s + std::size_t(more) + 1].lo) <= int(b))
+        while (s + std::size_t(more) + 1 < spans &&
+               bucket_of(table.span(s + std::size_t(more) + 1).lo) <= int(b))
             ++more;
         most = std::max(most, more);
     }
     while (a.steps < most) a.steps = 2 * a.steps + 1;
     const double infinity = std::numeric_limits<double>::infinity();
-    for (std::size_t s = 0; s + 1 < table.spans.size(); ++s) table.spans[s].next = table.spans[s + 1].lo;
-    table.spans.back().next = infinity;
-    table.spans.resize(table.spans.size() + std::size_t(a.steps), {0, 0, 0, infinity, 0, 0, 0});
+    for (std::size_t s = 0; s + 1 < spans; ++s) table.span(s).next = table.span(s + 1).lo;
+    table.span(spans - 1).next = infinity;
+    table.records.resize((spans + std::size_t(a.steps)) * a.stride, 0);
+    for (std::size_t s = spans; s < spans + std::size_t(a.steps); ++s) table.span(s).next = infinity;
 }
 
-kernel::Span span_between(double lo, double hi, int first) {
-    const double width = hi - lo;
-    double inverse = 1 / width;
-    while (width * inverse < 1) inverse = std::nextafter(inverse, std::numeric_limits<double>::infinity());
-    return {lo, hi, inverse, 0, 0, 0, first};
+// C(degree, k)
+double binomial(int degree, int k) {
+    double c = 1;
+    for (int i = 0; i < k; ++i) c = c * (degree - i) / (i + 1);
+    return c;
+}
+
+// The columns of one order, from its coefficients of Bernstein polynomials, for both halves of a span.
+void put_columns(const std::vector<DoubleDouble>& column, int count, int lanes, double* left, double* right) {
+    for (int k = count - 1; k >= 0; --k) {
+        const DoubleDouble factor(binomial(count - 1, k));
+        for (int i = 0; i < lanes; ++i) {
+            *left++ = (factor * column[std::size_t(k * lanes + i)]).rounded();
+            *right++ = (factor * column[std::size_t((count - 1 - k) * lanes + i)]).rounded();
+        }
+    }
 }
 
 }  // namespace
 
 AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, int lanes) {
-    AxisTable table{basis, {}, {}, {}, {}};
+    AxisTable table{basis, {}, {}, {}};
     const int p = basis.degree(), end = int(basis.knots().size()) - p - 1;
+    std::vector<int> spans;
     for (int s = p; s < end; ++s)
-        if (basis.knot(s) < basis.knot(s + 1))
-            table.spans.push_back(span_between(basis.knot(s), basis.knot(s + 1), s - p));
+        if (basis.knot(s) < basis.knot(s + 1)) spans.push_back(s);
     kernel::Axis& a = table.axis;
     a.degree = p;
-    a.spans = int(table.spans.size());
+    a.spans = int(spans.size());
     a.lanes = lanes;
-    const int columns = a.columns(0) + a.columns(1) + a.columns(2);
-    a.stride = std::size_t(columns) * std::size_t(lanes);
-    table.matrix.assign(a.stride * table.spans.size(), 0);
-    for (std::size_t s = 0; s < table.spans.size(); ++s) table.spans[s].matrix = s * a.stride;
+    const std::size_t numbers = std::size_t(a.columns(0) + a.columns(1) + a.columns(2)) * std::size_t(lanes);
+    a.half = (numbers + kernel::Axis::kLine - 1) / kernel::Axis::kLine * kernel::Axis::kLine;
+    a.stride = kernel::Axis::kLine + 2 * a.half;
+    table.records.assign(a.stride * spans.size(), 0);
+    for (std::size_t s = 0; s < spans.size(); ++s) {
+        const double lo = basis.knot(spans[s]), hi = basis.knot(spans[s] + 1);
+        const double inverse = (DoubleDouble(1) / (DoubleDouble(hi) - DoubleDouble(lo))).rounded();
+        table.span(s) = {lo, hi, inverse, 0, 0, spans[s] - p};
+    }
     make_search(table);
 
     std::vector<DoubleDouble> args(std::size_t(std::max(p, 1))), weights(std::size_t(p) + 1);
     std::vector<DoubleDouble> column(std::size_t((p + 1) * lanes));
     for (std::size_t s = 0; s < std::size_t(a.spans); ++s) {
-        const kernel::Span& span = table.spans[s];
+        const kernel::Span& span = table.span(s);
         std::ranges::fill(column, DoubleDouble());
         for (int k = 0; k <= p; ++k) {
             for (int i = 0; i < p; ++i) args[std::size_t(i)] = i < p - k ? span.lo : span.hi;
@@ -121,17 +145,13 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
                 for (int c = 0; c < lanes; ++c) to[c] += weights[std::size_t(i)] * DoubleDouble(from[c]);
             }
         }
-        double* to = &table.matrix[s * a.stride];
-        const DoubleDouble width = DoubleDouble(span.hi) - DoubleDouble(span.lo);
+        double* to = &table.records[s * a.stride + kernel::Axis::kLine];
         for (int order = 0; order <= kernel::kMaxOrder && order <= p; ++order) {
             const int count = a.columns(order);
-            if (order > 0) {
-                const DoubleDouble factor = DoubleDouble(count) / width;
-                for (int i = 0; i < count * lanes; ++i)
-                    column[std::size_t(i)] =
-                        factor * (column[std::size_t(i + lanes)] - column[std::size_t(i)]);
-            }
-            for (int i = 0; i < count * lanes; ++i) *to++ = column[std::size_t(i)].rounded();
+            for (int i = 0; order > 0 && i < count * lanes; ++i)
+                column[std::size_t(i)] =
+                    DoubleDouble(count) * (column[std::size_t(i + lanes)] - column[std::size_t(i)]);
+            put_columns(column, count, lanes, to + a.column(order), to + a.half + a.column(order));
         }
     }
     return table;
@@ -139,8 +159,7 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
 
 kernel::Axis AxisTable::view() const {
     kernel::Axis a = axis;
-    a.span = spans.data();
-    a.matrix = matrix.data();
+    a.record = records.data();
     a.bucket = bucket.data();
     return a;
 }
@@ -160,7 +179,7 @@ double batch_error_bound(std::span<const int> degrees, const Tuples& net) {
     const double unit = std::numeric_limits<double>::epsilon() / 2;
     const double denormal = std::numeric_limits<double>::denorm_min();
     double roundings = 0, terms = 1;
-    for (const int p : degrees) roundings += 9 * p, terms += p + 1;
+    for (const int p : degrees) roundings += p > 0 ? 10.2 * p + 1 : 0, terms += 2 * (p + 1);
     if (degrees.size() == 2) roundings += degrees[0] + degrees[1] + 2;
     if (degrees.size() == 3) roundings += (degrees[0] + 1) * (degrees[1] + 1) + degrees[2] + 2;
     const double g = 1.01 * roundings * unit, lost = terms * denormal;
@@ -231,7 +250,9 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     }
     for (std::size_t d = bases.size(), stride = 4; d-- > 0;) {
         n.stride[d] = stride;
-        for (kernel::Span& s : tables->axis[d].spans) s.coefficients = std::size_t(s.first) * stride;
+        AxisTable& table = tables->axis[d];
+        for (std::size_t s = 0; s < std::size_t(table.axis.spans); ++s)
+            table.span(s).coefficients = std::size_t(table.span(s).first) * stride;
         stride *= std::size_t(extent[skip + d]);
     }
     // Unwinding a closed net may repeat it; what comes out must still be counted by an int.
