@@ -10,7 +10,7 @@ gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 test="libgtest-dev librapidcheck-dev libboost-dev"
 ci="python3 clang-22 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user"
-bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev"
+bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 
 purpose=${1:-demo}
@@ -46,6 +46,7 @@ what_for() {
         libboost-dev) echo "exact arithmetic to test against" ;;
         python3) echo "the checks of the source, the report of the benchmarks" ;;
         python3-scipy | libsisl-dev) echo "other libraries of curves, to compare with" ;;
+        libbenchmark-dev) echo "measurements of kernels" ;;
         gmsh-doc | occt-misc) echo "models to compare on" ;;
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
         g++-aarch64-linux-gnu | qemu-user) echo "the kernels for ARM, and a processor to test them on" ;;

@@ -64,12 +64,14 @@ struct Net {
 };
 
 // What to compute: partial derivatives up to total order `order` in graded order, of which `slots` are
-// written, dim numbers each; and unit normals (surfaces in space only, order >= 1) where `normals` is not
-// null. past: with stores that go past the caches where the processor has them; `flush` afterwards.
+// written, dim numbers each; and of surfaces in space, where they are not null, unit normals (order >= 1) and
+// Gaussian and mean curvatures, two numbers each (order 2). past: with stores that go past the caches where
+// the processor has them; `flush` afterwards.
 struct Output {
     int order = 0, slots = 1;
     double* jets = nullptr;
     double* normals = nullptr;
+    double* curvatures = nullptr;
     bool past = false;
 };
 
@@ -113,6 +115,9 @@ struct Kernels {
 
 // The unit vector of a x b, or zero; for vectors whose product leaves the range of doubles.
 void careful_normal(const double* a, const double* b, double* out);
+// Gaussian and mean curvature from S_u, S_v, S_uu, S_uv, S_vv, for S_u x S_v that leaves the range of
+// doubles; NaN where it is zero.
+void careful_curvatures(const double (*jet)[3], double* out);
 
 // Those that were compiled, the plain one first; whether this processor runs them.
 struct Variant {

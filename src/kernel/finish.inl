@@ -40,6 +40,47 @@ FF_INLINE void unit_normals(const V* a, const V* b, V* n) {
     for (int c = 0; c < 3; ++c) n[c] = load(out[c]);
 }
 
+// Gaussian and mean curvature from the derivatives up to order 2, which are S, S_u, S_v, S_uu, S_uv, S_vv.
+FF_INLINE void curvatures_of(const V (*s)[4], V* out) {
+    const V *a = s[1], *b = s[2];
+    const auto dot = [](const V* x, const V* y) FF_BODY { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
+    const V n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    const V square = dot(n, n), r = reciprocal_root(square);
+    // Second fundamental form over the area S_u x S_v.
+    const V second[3] = {dot(s[3], n) * r * r, dot(s[4], n) * r * r, dot(s[5], n) * r * r};
+    out[0] = second[0] * second[2] - second[1] * second[1];
+    out[1] =
+        (second[0] * dot(b, b) - all(2) * second[1] * dot(a, b) + second[2] * dot(a, a)) * (r * all(0.5));
+    if (all_inside(square, all(1e-280), all(1e280), true)) return;
+    double jet[5][3][kWidth], some[2][kWidth], length[kWidth];
+    for (int k = 0; k < 5; ++k)
+        for (int c = 0; c < 3; ++c) store(jet[k][c], s[k + 1][c]);
+    for (int k = 0; k < 2; ++k) store(some[k], out[k]);
+    store(length, square);
+    for (int i = 0; i < kWidth; ++i) {
+        if (length[i] > 1e-280 && length[i] < 1e280) continue;
+        double one[5][3], result[2];
+        for (int k = 0; k < 5; ++k)
+            for (int c = 0; c < 3; ++c) one[k][c] = jet[k][c][i];
+        careful_curvatures(one, result);
+        for (int k = 0; k < 2; ++k) some[k][i] = result[k];
+    }
+    for (int k = 0; k < 2; ++k) out[k] = load(some[k]);
+}
+
+// Two numbers of kWidth points, the first `left` of them.
+FF_INLINE void put_two(Sink& sink, const V* s, int left) {
+    double some[2 * kWidth], one[2][kWidth];
+    for (int k = 0; k < 2; ++k) store(one[k], s[k]);
+    for (int i = 0; i < kWidth; ++i)
+        for (int k = 0; k < 2; ++k) some[2 * i + k] = one[k][i];
+    if (left >= kWidth) {
+        for (int k = 0; k < 2; ++k) sink.put(load(some + k * kWidth));
+    } else {
+        sink.put_few(some, 2 * left);
+    }
+}
+
 // Three coordinates of kWidth points, the first `left` of them.
 FF_INLINE void put_three(Sink& sink, const V* s, int left) {
     V v[3];
@@ -56,7 +97,7 @@ FF_INLINE void put_three(Sink& sink, const V* s, int left) {
 // Where a batch goes. Of what is not points of three coordinates, a tile is collected and then put.
 template <int N, int K>
 struct Sinks {
-    Sink jets, normals;
+    Sink jets, normals, curvatures;
     bool points = false;
     int collected = 0;
     alignas(64) double some[kTile * Slots<N, K>::kCount * 4];
@@ -65,6 +106,7 @@ template <int N, int K>
 FF_INLINE void open(Sinks<N, K>& to, const Net& net, const Output& out) {
     to.jets.open(out.jets, out.past);
     if (out.normals) to.normals.open(out.normals, out.past);
+    if (out.curvatures) to.curvatures.open(out.curvatures, out.past);
     to.points = out.slots == 1 && net.dim == 3;
     to.collected = 0;
 }
@@ -72,6 +114,7 @@ template <int N, int K>
 FF_INLINE void close(Sinks<N, K>& to, const Output& out) {
     to.jets.close();
     if (out.normals) to.normals.close();
+    if (out.curvatures) to.curvatures.close();
 }
 // Puts what was collected.
 template <int N, int K>
@@ -103,10 +146,18 @@ FF_INLINE void finish(const Net& net, V (*s)[4], int left, const Output& out, Si
             to.collected += (left < kWidth ? left : kWidth) * size;
     }
     if constexpr (N == 2 && K > 0) {
-        if (!out.normals) return;
-        V n[3];
-        unit_normals(s[1], s[2], n);
-        put_three(to.normals, n, left);
+        if (out.normals) {
+            V n[3];
+            unit_normals(s[1], s[2], n);
+            put_three(to.normals, n, left);
+        }
+    }
+    if constexpr (N == 2 && K == 2) {
+        if (out.curvatures) {
+            V k[2];
+            curvatures_of(s, k);
+            put_two(to.curvatures, k, left);
+        }
     }
 }
 

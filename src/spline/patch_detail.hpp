@@ -147,7 +147,7 @@ std::optional<Result<void>> Patch<N, P, B>::by_kernels(std::span<const Param<N>>
     if (!detail::worth_preparing(bases_, net_.flat().size(), at.size())) return {};
     const auto fast = detail::prepared(bases_, tuples(net_.flat()));
     if (!fast) return {};
-    return fast->evaluate(detail::plain<N>(at), order, slots, out, nullptr, Outside::refuse);
+    return fast->evaluate(detail::plain<N>(at), order, slots, {out}, Outside::refuse);
 }
 
 template <std::size_t N, Coefficient P, Basis B>
@@ -241,7 +241,7 @@ Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
         points > 0 && detail::worth_preparing(s.bases(), s.net().flat().size(), std::size_t(points))) {
         if (const auto fast = detail::prepared(s.bases(), tuples(s.net().flat()))) {
             Net<N, PointOf<P>> out(extent);
-            if (auto ok = fast->evaluate_grid(axes, 0, 1, numbers(out.flat()).data(), nullptr); !ok)
+            if (auto ok = fast->evaluate_grid(axes, 0, 1, {numbers(out.flat()).data()}); !ok)
                 return std::unexpected(ok.error());
             return out;
         }

@@ -42,13 +42,26 @@ AxisTable make_axis(const BSplineBasis& basis, std::span<const double> curve, in
 
 struct PreparedNet::Tables {
     std::vector<AxisTable> axis;
-    kernel::Net net;  // without pointers
+    kernel::Net net;                          // without pointers
+    Index<3> extent{1, 1, 1}, size{1, 1, 1};  // of the net, unwound and as given; the last axis last
     Lines coefficients;
     double error = 0;
 
     kernel::Net view() const;
     bool any_closed() const;
 };
+
+// Refuses nets that PreparedPatch::make refuses.
+Result<void> check_net_range(const Tuples& net);
+// The net of a surface or volume as kernels want it. REQUIRES as many numbers as tables.coefficients has.
+void put_coefficients(const PreparedNet::Tables& tables, const Tuples& net, double* coefficients);
+
+// What does not stay in the cache goes past it: a store would first read what it overwrites.
+inline constexpr std::size_t kPastFrom = std::size_t(4) << 20;  // bytes
+
+// `to` from point `first` on, with `dim` numbers in a slot.
+kernel::Output output(const PreparedNet::Destination& to, std::size_t first, int order, std::size_t slots,
+                      std::size_t dim, bool past);
 
 // A bound of the rounding of a value, argument in prepared_tables.cpp.
 double batch_error_bound(std::span<const int> degrees, const Tuples& net);

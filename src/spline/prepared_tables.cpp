@@ -191,8 +191,8 @@ double batch_error_bound(std::span<const int> degrees, const Tuples& net) {
 namespace {
 
 // What PreparedPatch::make promises about sizes.
-Result<void> check_range(std::span<const BSplineBasis> bases, const Tuples& net) {
-    constexpr double kLarge = 0x1p100, kSmall = 0x1p-100;
+constexpr double kLarge = 0x1p100, kSmall = 0x1p-100;
+Result<void> check_span_range(std::span<const BSplineBasis> bases) {
     for (std::size_t d = 0; d < bases.size(); ++d) {
         const auto knots = bases[d].knots();
         for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
@@ -202,14 +202,6 @@ Result<void> check_range(std::span<const BSplineBasis> bases, const Tuples& net)
                               text("a span of length ", width, " is outside 2^-100 .. 2^100"));
         }
     }
-    for (std::size_t i = 0; i < net.all.size(); ++i)
-        if (!(std::abs(net.all[i]) <= kLarge))
-            return refuse(RefusalKind::unsupported, text("points[", i / std::size_t(net.size), "]"),
-                          text("a coefficient ", net.all[i], " is above 2^100"));
-    for (std::size_t i = 0; net.rational && i < net.count(); ++i)
-        if (!(net.weight(i) >= kSmall))
-            return refuse(RefusalKind::unsupported, text("weights[", i, "]"),
-                          text("a weight ", net.weight(i), " is below 2^-100"));
     return {};
 }
 
@@ -222,8 +214,31 @@ void place(const Tuples& net, std::size_t i, double* first, double* second) {
 
 }  // namespace
 
+Result<void> check_net_range(const Tuples& net) {
+    for (std::size_t i = 0; i < net.all.size(); ++i)
+        if (!(std::abs(net.all[i]) <= kLarge))
+            return refuse(RefusalKind::unsupported, text("points[", i / std::size_t(net.size), "]"),
+                          text("a coefficient ", net.all[i], " is above 2^100"));
+    for (std::size_t i = 0; net.rational && i < net.count(); ++i)
+        if (!(net.weight(i) >= kSmall))
+            return refuse(RefusalKind::unsupported, text("weights[", i, "]"),
+                          text("a weight ", net.weight(i), " is below 2^-100"));
+    return {};
+}
+
+void put_coefficients(const PreparedNet::Tables& t, const Tuples& net, double* coefficients) {
+    each_index(t.extent, [&, to = std::size_t(0)](const Index<3>& at) mutable {
+        std::size_t from = 0;
+        for (std::size_t d = 0; d < 3; ++d)
+            from = from * std::size_t(t.size[d]) + std::size_t(at[d] % t.size[d]);
+        place(net, from, coefficients + to, coefficients + to + t.net.plane);
+        to += 4;
+    });
+}
+
 Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const Tuples& net) {
-    if (auto ok = check_range(bases, net); !ok) return std::unexpected(ok.error());
+    if (auto ok = check_span_range(bases); !ok) return std::unexpected(ok.error());
+    if (auto ok = check_net_range(net); !ok) return std::unexpected(ok.error());
     auto tables = std::make_shared<Tables>();
     kernel::Net& n = tables->net;
     n.axes = int(bases.size());
@@ -241,7 +256,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
         tables->axis.push_back(make_axis(bases[0], curve, lanes));
         return PreparedNet(std::move(tables));
     }
-    Index<3> extent{1, 1, 1}, size{1, 1, 1};  // unwound, stored; the last axis last
+    Index<3>&extent = tables->extent, &size = tables->size;
     const std::size_t skip = 3 - bases.size();
     for (std::size_t d = 0; d < bases.size(); ++d) {
         tables->axis.push_back(make_axis(bases[d], {}, (bases[d].degree() + 4) / 4 * 4));
@@ -261,13 +276,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     const std::size_t all = std::size_t(count_of(extent)) * 4;
     n.plane = n.planes() == 2 ? all + 8 : 0;
     tables->coefficients.assign(n.plane + all + 8, 0.0);
-    std::size_t to = 0;
-    each_index(extent, [&](const Index<3>& at) {
-        std::size_t from = 0;
-        for (std::size_t d = 0; d < 3; ++d) from = from * std::size_t(size[d]) + std::size_t(at[d] % size[d]);
-        place(net, from, &tables->coefficients[to], &tables->coefficients[to + n.plane]);
-        to += 4;
-    });
+    put_coefficients(*tables, net, tables->coefficients.data());
     return PreparedNet(std::move(tables));
 }
 

@@ -30,15 +30,19 @@ struct Arrays {
 
 // Where the results of n points go.
 struct Results {
-    std::vector<double> jets, normals;
+    std::vector<double> jets, normals, curvatures;
     Results(const kernel::Net& net, std::size_t n, kernel::Output& out)
-        : jets(n * test::size_of(net, out)), normals(out.normals ? 3 * n : 0) {
+        : jets(n * test::size_of(net, out)),
+          normals(out.normals ? 3 * n : 0),
+          curvatures(out.curvatures ? 2 * n : 0) {
         out.jets = jets.data();
         out.normals = normals.empty() ? nullptr : normals.data();
+        out.curvatures = curvatures.empty() ? nullptr : curvatures.data();
     }
     void put(test::Wire& wire) const {
         wire.put(jets.data(), jets.size());
         wire.put(normals.data(), normals.size());
+        wire.put(curvatures.data(), curvatures.size());
     }
 };
 

@@ -82,6 +82,29 @@ TEST(PreparedPatch, surfaces_of_every_specialised_degree_are_within_the_bound) {
     }
 }
 
+// What docs/evaluation.md says of the difference between two kernels.
+TEST(PreparedPatch, kernels_differ_by_few_units_in_the_last_place_of_the_largest_coordinate) {
+    Random random(61);
+    double largest = 0;
+    for (int round = 0; round < 12; ++round) {
+        const auto patch = test::random_patch<2, Hom<3>>(random, 5, {.spans = 4});
+        double c = 0;
+        for (const auto& p : patch.net().flat()) c = std::max(c, max_abs(project(p)));
+        const auto at = test::parameters<2, Hom<3>>(random, patch, 150);
+        const auto fast = prepared(patch);
+        std::vector<Vec<3>> first;
+        with_every_variant([&] {
+            std::vector<Vec<3>> out(at.size());
+            ASSERT_TRUE(fast.evaluate(at, out));
+            if (first.empty()) first = out;
+            for (std::size_t i = 0; i < at.size(); ++i)
+                largest = std::max(largest, max_abs(out[i] - first[i]) / (c * 0x1p-53));
+        });
+    }
+    EXPECT_LE(largest, 12);
+    std::printf("kernels differ by %.2f units\n", largest);
+}
+
 TEST(PreparedPatch, refuses_bad_parameters_before_it_writes_or_gives_nan_where_asked) {
     Random random(81);
     const auto patch = test::random_patch<2, Hom<3>>(random, 3, {.ends = test::Ends::clamped});

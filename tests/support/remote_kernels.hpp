@@ -62,6 +62,7 @@ private:
         std::fflush(wire().to);
         wire().get(out.jets, n * size_of(net, out));
         if (out.normals) wire().get(out.normals, 3 * n);
+        if (out.curvatures) wire().get(out.curvatures, 2 * n);
     }
 
     static void scattered(const kernel::Net& net, const double* at, std::size_t n,

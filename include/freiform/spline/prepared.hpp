@@ -28,24 +28,40 @@ enum class Outside {
 
 namespace detail {
 
-// What PreparedPatch is for any number of parameters and coordinates. jets: for each parameter the first
-// `slots` partial derivatives, of order at most `order`; normals may be null.
+// What PreparedPatch is for any number of parameters and coordinates.
 class PreparedNet {
 public:
+    // Where results go; what is null is not asked for. jets: for each parameter the first `slots` partial
+    // derivatives, of order at most `order`. normals need order 1, curvatures order 2.
+    struct Destination {
+        double* jets = nullptr;
+        double* normals = nullptr;
+        double* curvatures = nullptr;
+        std::size_t numbers(std::size_t jet) const {
+            return (jets ? jet : 0) + (normals ? 3 : 0) + (curvatures ? 2 : 0);
+        }
+    };
+
     static Result<PreparedNet> make(std::span<const BSplineBasis> bases, const Tuples& net);
-    Result<void> evaluate(std::span<const double> at, int order, std::size_t slots, double* jets,
-                          double* normals, Outside outside) const;
+    Result<void> evaluate(std::span<const double> at, int order, std::size_t slots, const Destination& to,
+                          Outside outside) const;
     Result<void> evaluate_grid(std::span<const std::span<const double>> axes, int order, std::size_t slots,
-                               double* jets, double* normals) const;
+                               const Destination& to) const;
     Result<void> evaluate_single(std::span<const double> at, float* points, Outside outside) const;
     double value_error_bound() const;
 
     struct Tables;
+    const Tables& tables() const { return *tables_; }
 
 private:
     explicit PreparedNet(std::shared_ptr<const Tables> tables) : tables_(std::move(tables)) {}
     std::shared_ptr<const Tables> tables_;
 };
+
+// The grid on every one of the nets, which share the bases; their points one after the other. They are called
+// patches[first], patches[first + 1] ..
+Result<void> evaluate_grids(std::span<const BSplineBasis> bases, std::span<const Tuples> nets,
+                            std::span<const std::span<const double>> axes, std::size_t first, double* points);
 
 inline const BSplineBasis& spline_basis(const BSplineBasis& b) { return b; }
 inline BSplineBasis spline_basis(const Bernstein& b) { return *BSplineBasis::bezier(b.degree(), b.domain()); }
@@ -55,6 +71,10 @@ inline BSplineBasis spline_basis(const Bernstein& b) { return *BSplineBasis::bez
 // The name of the instruction set that evaluates: base, neon, simd128, avx2 or avx512. The environment
 // variable FREIFORM_ISA, read once, chooses another one that the processor has.
 std::string_view instruction_set();
+
+struct Curvatures {
+    double gauss = 0, mean = 0;  // 1 / length^2, 1 / length
+};
 
 template <std::size_t N, Coefficient P>
 class PreparedPatch {
@@ -77,14 +97,14 @@ public:
     Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out,
                           Outside outside = Outside::refuse) const {
         FF_REQUIRE(at.size() == out.size());
-        return net_.evaluate(plain(at), 0, 1, numbers(out).data(), nullptr, outside);
+        return net_.evaluate(plain(at), 0, 1, {numbers(out).data()}, outside);
     }
     template <int K>
     requires(K <= 2) Result<void> evaluate(std::span<const Param<N>> at, std::span<Jet<N, K, Point>> out,
                                            Outside outside = Outside::refuse)
     const {
         FF_REQUIRE(at.size() == out.size());
-        return net_.evaluate(plain(at), K, jet_size(N, K), first(out), nullptr, outside);
+        return net_.evaluate(plain(at), K, jet_size(N, K), {first(out)}, outside);
     }
     // With the unit vector of S_u x S_v, to a few units in the last place of that product; zero where the
     // product is zero.
@@ -92,7 +112,7 @@ public:
                           Outside outside = Outside::refuse) const
         requires(N == 2 && std::same_as<Point, Vec<3>>) {
         FF_REQUIRE(at.size() == out.size() && at.size() == normals.size());
-        return net_.evaluate(plain(at), 1, 1, numbers(out).data(), numbers(normals).data(), outside);
+        return net_.evaluate(plain(at), 1, 1, {numbers(out).data(), numbers(normals).data()}, outside);
     }
     template <int K>
     requires(K == 1 ||
@@ -100,7 +120,15 @@ public:
                                            std::span<Vec<3>> normals, Outside outside = Outside::refuse)
     const requires(N == 2 && std::same_as<Point, Vec<3>>) {
         FF_REQUIRE(at.size() == out.size() && at.size() == normals.size());
-        return net_.evaluate(plain(at), K, jet_size(N, K), first(out), numbers(normals).data(), outside);
+        return net_.evaluate(plain(at), K, jet_size(N, K), {first(out), numbers(normals).data()}, outside);
+    }
+    // Positive where the surface bends towards S_u x S_v; NaN where that is zero. Without a bound:
+    // surface_curvature() has one.
+    Result<void> evaluate(std::span<const Param<N>> at, std::span<Curvatures> out,
+                          Outside outside = Outside::refuse) const
+        requires(N == 2 && std::same_as<Point, Vec<3>>) {
+        FF_REQUIRE(at.size() == out.size());
+        return net_.evaluate(plain(at), 2, 0, {nullptr, nullptr, pairs(out)}, outside);
     }
     // Rounded to single precision, kDim numbers for each parameter. REQUIRES out.size() == kDim * at.size().
     Result<void> evaluate(std::span<const Param<N>> at, std::span<float> out,
@@ -114,18 +142,24 @@ public:
     using Axes = std::array<std::span<const double>, N>;
     Result<void> evaluate_grid(const Axes& axes, std::span<Point> out) const {
         FF_REQUIRE(count(axes) == out.size());
-        return net_.evaluate_grid(axes, 0, 1, numbers(out).data(), nullptr);
+        return net_.evaluate_grid(axes, 0, 1, {numbers(out).data()});
     }
     template <int K>
     requires(K <= 2) Result<void> evaluate_grid(const Axes& axes, std::span<Jet<N, K, Point>> out)
     const {
         FF_REQUIRE(count(axes) == out.size());
-        return net_.evaluate_grid(axes, K, jet_size(N, K), first(out), nullptr);
+        return net_.evaluate_grid(axes, K, jet_size(N, K), {first(out)});
     }
     Result<void> evaluate_grid(const Axes& axes, std::span<Point> out, std::span<Vec<3>> normals) const
         requires(N == 2 && std::same_as<Point, Vec<3>>) {
         FF_REQUIRE(count(axes) == out.size() && normals.size() == out.size());
-        return net_.evaluate_grid(axes, 1, 1, numbers(out).data(), numbers(normals).data());
+        return net_.evaluate_grid(axes, 1, 1, {numbers(out).data(), numbers(normals).data()});
+    }
+
+    Result<void> evaluate_grid(const Axes& axes, std::span<Curvatures> out) const
+        requires(N == 2 && std::same_as<Point, Vec<3>>) {
+        FF_REQUIRE(count(axes) == out.size());
+        return net_.evaluate_grid(axes, 2, 0, {nullptr, nullptr, pairs(out)});
     }
 
     // A bound of |computed - exact| in each coordinate of a value.
@@ -144,6 +178,10 @@ private:
         static_assert(sizeof(Jet<N, K, Point>) == jet_size(N, K) * sizeof(Point));
         return out.empty() ? nullptr : out[0].d[0].c.data();
     }
+    static double* pairs(std::span<Curvatures> out) {
+        static_assert(sizeof(Curvatures) == 2 * sizeof(double));
+        return out.empty() ? nullptr : &out[0].gauss;
+    }
     static std::size_t count(const Axes& axes) {
         std::size_t n = 1;
         for (const auto& a : axes) n *= a.size();
@@ -151,5 +189,29 @@ private:
     }
     detail::PreparedNet net_;
 };
+
+// The same grid on many patches: the points of patch k are the k-th part of `out`, the last axis fastest.
+// What depends on bases and grid alone is computed once for patches of equal bases that follow one another,
+// so that a thousand small patches take little more than their points do. Surfaces and volumes: the bits of
+// PreparedPatch; curves: within its bound. Refuses what PreparedPatch refuses, parameters as "axes[d][i]",
+// the rest with "patches[k]." before the place; patches before k are written then, if their bases differ.
+// REQUIRES out.size() == patches.size() times the product of the sizes of the axes.
+template <std::size_t N, Coefficient P, Basis B>
+Result<void> evaluate_grids(std::span<const Patch<N, P, B>> patches,
+                            const std::array<std::span<const double>, N>& axes, std::span<PointOf<P>> out) {
+    std::size_t each = 1;
+    for (const auto& a : axes) each *= a.size();
+    FF_REQUIRE(out.size() == each * patches.size());
+    for (std::size_t k = 0, end; k < patches.size(); k = end) {
+        std::vector<BSplineBasis> bases;
+        std::vector<Tuples> nets;
+        for (const B& b : patches[k].bases()) bases.push_back(detail::spline_basis(b));
+        for (end = k; end < patches.size() && patches[end].bases() == patches[k].bases(); ++end)
+            nets.push_back(tuples(patches[end].net().flat()));
+        const auto points = out.subspan(k * each, (end - k) * each);
+        if (auto ok = detail::evaluate_grids(bases, nets, axes, k, numbers(points).data()); !ok) return ok;
+    }
+    return {};
+}
 
 }  // namespace freiform
