@@ -73,15 +73,19 @@ TEST(EvaluateGrids, gives_the_points_of_each_patch) {
     expect_grids<3, Vec<3>>(3, {3, 4, 5}, 6);
 }
 
-TEST(EvaluateGrids, gives_the_same_bits_for_any_number_of_threads) {
-    const auto patches = some_patches<2, Hom<3>>(700, 7);
+TEST(EvaluateGrids, gives_the_same_bits_for_any_number_of_threads_and_any_number_of_patches) {
+    const auto patches = some_patches<2, Hom<3>>(1000, 7);
+    const std::span<const Surface<Hom<3>>> all(patches);
     const auto axes = unit_grid<2>({8, 9});
-    std::vector<Vec<3>> one(700 * 72), many(700 * 72);
+    std::vector<Vec<3>> one(1000 * 72), many(1000 * 72), few(1000 * 72);
     set_max_threads(1);
-    ASSERT_TRUE((evaluate_grids<2, Hom<3>, BSplineBasis>(patches, views(axes), one)));
+    ASSERT_TRUE((evaluate_grids(all, views(axes), std::span(one))));
     set_max_threads(0);
-    ASSERT_TRUE((evaluate_grids<2, Hom<3>, BSplineBasis>(patches, views(axes), many)));
+    ASSERT_TRUE((evaluate_grids(all, views(axes), std::span(many))));
+    for (std::size_t k = 0; k < 1000; k += 100)
+        ASSERT_TRUE((evaluate_grids(all.subspan(k, 100), views(axes), std::span(few).subspan(k * 72, 7200))));
     EXPECT_EQ(one, many);
+    EXPECT_EQ(one, few);
 }
 
 TEST(EvaluateGrids, refuses_by_name_and_takes_what_is_empty) {
