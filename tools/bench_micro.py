@@ -111,7 +111,7 @@ A call costs {call:.0f} ns with one point; {half} points take {half_ns:.0f} ns e
 
 def page(found, context, words):
     rows, patches = [], []
-    for name, q in found.items():
+    for name, q in sorted(found.items(), key=lambda n: [int(w) if w.isdigit() else w for w in n[0].split("/")]):
         job, *arguments = name.split("/")
         arguments += [""] * (3 - len(arguments))
         rows.append(f"| {job.replace('_', ' ')} | " + " | ".join(arguments) + f" | {q['median']:.3g} | {q['q1']:.3g} | {q['q3']:.3g} |")

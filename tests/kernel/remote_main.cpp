@@ -14,9 +14,12 @@ struct Arrays {
     std::vector<int> bucket[3];
 
     void get(test::Wire& wire, kernel::Axis& axis, int d) {
-        record[d] = wire.get_many<double>(test::records_of(axis));
+        record[d].resize(test::records_of(axis) + kernel::Axis::kLine);
+        double* begin = record[d].data();  // of a line of the cache, as records are
+        while (reinterpret_cast<std::size_t>(begin) % (kernel::Axis::kLine * sizeof(double)) != 0) ++begin;
+        wire.get(begin, test::records_of(axis));
         bucket[d] = wire.get_many<int>(std::size_t(axis.buckets));
-        axis.record = record[d].data();
+        axis.record = begin;
         axis.bucket = bucket[d].data();
     }
     kernel::Net get(test::Wire& wire) {
