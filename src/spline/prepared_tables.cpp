@@ -191,13 +191,13 @@ double batch_error_bound(std::span<const int> degrees, const Tuples& net) {
 namespace {
 
 // What PreparedPatch::make promises about sizes.
-constexpr double kLarge = 0x1p100, kSmall = 0x1p-100;
+constexpr double kLargestNumber = 0x1p100, kLeastNumber = 0x1p-100;
 Result<void> check_span_range(std::span<const BSplineBasis> bases) {
     for (std::size_t d = 0; d < bases.size(); ++d) {
         const auto knots = bases[d].knots();
         for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
             const double width = knots[i + 1] - knots[i];
-            if (width != 0 && !(width >= kSmall && width <= kLarge))
+            if (width != 0 && !(width >= kLeastNumber && width <= kLargestNumber))
                 return refuse(RefusalKind::unsupported, text("bases[", d, "].knots[", i, "]"),
                               text("a span of length ", width, " is outside 2^-100 .. 2^100"));
         }
@@ -216,11 +216,11 @@ void place(const Tuples& net, std::size_t i, double* first, double* second) {
 
 Result<void> check_net_range(const Tuples& net) {
     for (std::size_t i = 0; i < net.all.size(); ++i)
-        if (!(std::abs(net.all[i]) <= kLarge))
+        if (!(std::abs(net.all[i]) <= kLargestNumber))
             return refuse(RefusalKind::unsupported, text("points[", i / std::size_t(net.size), "]"),
                           text("a coefficient ", net.all[i], " is above 2^100"));
     for (std::size_t i = 0; net.rational && i < net.count(); ++i)
-        if (!(net.weight(i) >= kSmall))
+        if (!(net.weight(i) >= kLeastNumber))
             return refuse(RefusalKind::unsupported, text("weights[", i, "]"),
                           text("a weight ", net.weight(i), " is below 2^-100"));
     return {};
