@@ -1,0 +1,111 @@
+// From what a search finds in pairs of pieces to contacts of the whole: boxes in parameters of the objects,
+// roots on both sides of a knot joined.
+#pragma once
+#include "search_detail.hpp"
+
+#include <freiform/intersect/contact.hpp>
+
+namespace freiform::detail {
+
+// A contact of a pair of pieces on its way.
+template <int D, std::size_t N>
+struct Raw {
+    Contact<D, N> c;
+    int sign = 0;           // how it crosses; 0: not known
+    bool at_joint = false;  // its box reaches over a knot, where the curve goes on
+};
+
+// Parameters of a piece to those of the object, outwards; 0 and 1 are knots exactly.
+inline double global(const Interval& on, double t) {
+    return t == 0 ? on.lo : t == 1 ? on.hi : on.lo + t * (on.hi - on.lo);
+}
+inline Interval global(const Interval& on, const Interval& t, const Interval& within) {
+    const double slack = 4 * kUnitRoundoff * std::max(std::abs(on.lo), std::abs(on.hi));
+    Interval g{global(on, t.lo), global(on, t.hi)};
+    if (t.lo != 0 && t.lo != 1) g.lo -= slack;
+    if (t.hi != 0 && t.hi != 1) g.hi += slack;
+    return {clamped(g.lo, within), clamped(g.hi, within)};
+}
+
+template <std::size_t N>
+bool touch(const std::array<Interval, N>& a, const std::array<Interval, N>& b) {
+    for (std::size_t k = 0; k < N; ++k)
+        if (!a[k].overlaps(b[k])) return false;
+    return true;
+}
+template <std::size_t N>
+void unite(std::array<Interval, N>& a, const std::array<Interval, N>& b) {
+    for (std::size_t k = 0; k < N; ++k) a[k] = hull(a[k], b[k]);
+}
+
+// Boxes that touch become one.
+template <std::size_t N>
+std::vector<std::array<Interval, N>> clusters(const std::vector<std::array<Interval, N>>& boxes) {
+    std::vector<std::array<Interval, N>> out;
+    for (std::array<Interval, N> box : boxes) {
+        for (std::size_t i = 0; i < out.size();) {
+            if (touch(out[i], box)) {
+                unite(box, out[i]);
+                out[i] = out.back();
+                out.pop_back();
+                i = 0;
+            } else {
+                ++i;
+            }
+        }
+        out.push_back(box);
+    }
+    return out;
+}
+
+// One contact from two whose boxes touch: of neighbouring pieces.
+template <int D, std::size_t N>
+void join(Raw<D, N>& x, const Raw<D, N>& y) {
+    const bool proven = x.c.is_proven() && y.c.is_proven();
+    const bool ends = x.c.kind == ContactKind::end || y.c.kind == ContactKind::end;
+    const bool tangent = x.c.kind == ContactKind::tangent || y.c.kind == ContactKind::tangent;
+    // Exact ones are at the knot itself; others are one where both branches cross the same way.
+    const bool exact = !x.at_joint && !y.at_joint;
+    const bool across = x.sign != 0 && x.sign == y.sign;
+    unite(x.c.box, y.c.box);
+    x.c.gap = std::max(x.c.gap, y.c.gap);
+    x.at_joint = false;
+    if (proven && (exact || across)) {
+        x.c.kind = ends                 ? ContactKind::end
+                   : tangent || !across ? ContactKind::tangent
+                                        : ContactKind::crossing;
+        x.c.multiplicity = across && !tangent ? 1 : 0;
+        return;
+    }
+    x.c.kind = ends ? ContactKind::end : ContactKind::possible;
+    x.c.least = exact ? std::max(x.c.least, y.c.least) : 0;
+    x.c.most += y.c.most;
+    x.c.multiplicity = 0;
+}
+
+template <int D, std::size_t N>
+std::vector<Contact<D, N>> joined(std::vector<Raw<D, N>> all) {
+    std::vector<Raw<D, N>> out;
+    for (Raw<D, N>& r : all) {
+        bool known = false;
+        for (Raw<D, N>& o : out)
+            if (touch(o.c.box, r.c.box)) {
+                join(o, r);
+                known = true;
+                break;
+            }
+        if (!known) out.push_back(r);
+    }
+    std::vector<Contact<D, N>> contacts;
+    for (Raw<D, N>& r : out) {
+        if (r.at_joint) {  // only one side of the knot has it
+            if (r.c.kind != ContactKind::end) r.c.kind = ContactKind::possible;
+            r.c.least = 0;
+        }
+        contacts.push_back(r.c);
+    }
+    std::sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) { return x.at < y.at; });
+    return contacts;
+}
+
+}  // namespace freiform::detail

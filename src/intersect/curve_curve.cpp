@@ -1,0 +1,383 @@
+// Contacts of two curves: subdivision, a proof of uniqueness, Newton's method, and integers for the rest.
+//
+// Idea. F(s, t) = A(s) - B(t) has at most one zero where its derivative differs little from one matrix: with
+// Y the inverse of the matrix of the chords, |1 - Y F'| <= q < 1 over both parts. Then the mean value theorem
+// says how far the zero can be from any point, x - x0 = -Y F(x0) + (1 - Y F')(x - x0): whether there is one,
+// and in which box, is known from one value of F. That is the operator of Krawczyk. Parts shorter by a half
+// have half the q, so a few halvings do where curves cross at an angle.
+//
+// Notation. Parts are halves of Bezier pieces (parts_detail.hpp); r_k are linear functions that vanish on all
+// columns of the chord matrix but one, so Y = r / det.
+//
+// Method. For pairs of parts, from a stack:
+//   - apart: boxes, then the r_k, which are the normals of both chords: quadratically tight. If chords
+//     are parallel, also along the chord; in space along the common normal.
+//   - at most one zero: Newton's method from where the chords meet gives x0. No zero if the interval of some
+//     parameter is outside of its part; one if the ball around x0 is inside of the part, made longer by 2^-20
+//     at each end, over which the derivative changes by no more than 2^-16 n of itself. A zero
+//     beside a common end of parts is so found by both, and counted once, because it is unique in both.
+//   - given up: parts that are flat within rounding, or as small. Neighbours are united to clusters.
+//   - otherwise the larger part is halved.
+// Clusters, and zeros within rounding of an end, are decided in integers where the coefficients are those
+// given (exact_pair.cpp). Curves that run along each other would be cut into parts that are flat within
+// rounding, 10^8 of them: if a pair of pieces takes long, overlaps are looked for and set aside
+// (overlap_detail.hpp).
+//   Pieces on both sides of a knot find the same zero, or both a zero beyond their end: if both cross the
+//   same
+// way, one follows from continuity.
+//
+// In space, Y is an inverse from the left. Zeros of Y F are unique as before; F itself does not vanish there
+// unless by chance, which is reported with the gap. Curves of one plane of space are intersected in their
+// image without one coordinate (query/self_contact.cpp has the same).
+//
+// Symmetry. The curves are ordered by their coefficients first, and results exchanged back.
+//
+// Accuracy. Errors of control points as in parts_detail.hpp; values at the ends of a chain of comparisons
+// carry 1.01 for their own rounding. Coordinates are scaled to at most 1 by a power of two.
+//
+// Cost. Two cubics that cross once: about 1 us. A tangent contact: some 200 pairs of parts, then a
+// millisecond in integers.
+//
+// References. [Krawczyk 1969], [Sederberg Nishita 1990], [Neumaier 1990].
+//
+// Why not Bezier clipping? It needs the same proofs at its end, converges only linearly for a pair of
+// parts that holds two zeros, and its clipped parts are no dyadic ones that pairs could share.
+#include "contacts_detail.hpp"
+#include "overlap_detail.hpp"
+#include "piece_pairs_detail.hpp"
+
+#include <freiform/core/parallel.hpp>
+#include <freiform/intersect/curve_curve.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+std::string_view name_of(ContactKind kind) {
+    constexpr std::string_view kNames[] = {"crossing", "tangent", "end", "possible"};
+    return kNames[int(kind)];
+}
+
+namespace {
+
+using namespace detail;
+
+template <class P>
+class CurvePair {
+public:
+    static constexpr int D = Space<P>::kDim;
+    using Answer = Intersections<D, 2>;
+
+    Answer run(const ArcPieces<1, P>& a, const ArcPieces<1, P>& b, const IntersectOptions& options) {
+        const int e = std::max(a.exponents.point, b.exponents.point);
+        exponent_ = e < -1090 ? 0 : e;
+        a_.reset(a, exponent_);
+        b_.reset(b, exponent_);
+        raw_.clear();
+        answer_ = {};
+        Overlaps<P> overlaps(a_, b_, std::scalbn(options.accuracy, -exponent_));
+        const auto look = [&](int i, int j) {
+            search_.look_at(i, j, options.max_parts, overlaps);
+            if (search_.found().empty() && search_.open().empty() && overlaps.overlaps().empty()) return;
+            overlaps.begin(i, j);
+            take(i, j, overlaps);
+        };
+        if (a.pieces() == 1 && b.pieces() == 1) {
+            look(0, 0);
+        } else {
+            tree_a_.reset(a_);
+            tree_b_.reset(b_);
+            tree_a_.each_pair(tree_b_, look);
+        }
+        answer_.contacts = joined(std::move(raw_));
+        raw_ = {};
+        chain_overlaps();
+        return std::move(answer_);
+    }
+
+private:
+    using Boxes = std::array<Interval, 2>;
+
+    // Is this end of a piece an end of a curve?
+    static bool is_open_end(const ArcPieces<1, P>& c, int piece, int end) {
+        const int n = c.pieces();
+        if (end == 0) return piece == 0 ? !c.closed[0] : c.jump[std::size_t(piece)];
+        return piece + 1 == n ? !c.closed[0] : c.jump[std::size_t(piece) + 1];
+    }
+
+    void take(int i, int j, Overlaps<P>& overlaps) {
+        std::vector<Boxes> unclear;
+        for (const Simple<2>& s : search_.found()) {
+            const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
+            if (at_end && overlaps.exact(i, j))
+                unclear.push_back(s.box);
+            else
+                add_simple(i, j, s, at_end);
+        }
+        std::vector<Boxes> undecided;
+        // Parts that coincide are settled only after overlaps were looked for.
+        if (search_.open().size() > 0 &&
+            (overlaps.exact(i, j) ? overlaps.exact(i, j)->coincide() : search_.open().size() > 8))
+            overlaps.stuck(i, j);
+        for (const Open<2>& o : search_.open())
+            if (!overlaps.settled(o.part_a, o.part_b)) (o.over_budget ? undecided : unclear).push_back(o.box);
+        for (const Boxes& box : clusters(unclear)) decide(i, j, box, overlaps);
+        for (const Boxes& box : clusters(undecided)) answer_.undecided.push_back(global(i, j, box));
+        for (const ExactContact& c : overlaps.isolated()) add_exact(i, j, c);
+        for (const Overlap& o : overlaps.overlaps()) {
+            Overlap g = o;
+            for (double* t : {&g.a.lo, &g.a.hi}) *t = freiform::detail::global(on(a_, i), *t);
+            for (double* t : {&g.b.lo, &g.b.hi}) *t = freiform::detail::global(on(b_, j), *t);
+            g.gap = std::scalbn(o.gap, exponent_);
+            answer_.overlaps.push_back(g);
+        }
+    }
+    static Interval on(const PartTree<1, P>& p, int i) { return p.source().box(i)[0]; }
+    Boxes global(int i, int j, const Boxes& t, bool beyond = false) const {
+        const auto within = [&](const Interval& piece, const Interval& domain, const Interval& x) {
+            return freiform::detail::global(piece, x, beyond ? domain : piece);
+        };
+        return {within(on(a_, i), a_.source().domain[0], t[0]),
+                within(on(b_, j), b_.source().domain[0], t[1])};
+    }
+
+    void decide(int i, int j, Boxes box, Overlaps<P>& overlaps) {
+        for (Interval& t : box) t = {std::max(0.0, t.lo), std::min(1.0, t.hi)};
+        if (ExactPair* e = overlaps.exact(i, j))
+            if (const auto found = e->contacts(box[0], box[1])) {
+                for (const ExactContact& c : *found)
+                    if (!is_known(i, j, c)) add_exact(i, j, c);
+                return;
+            }
+        Raw<D, 2> r;
+        r.c.box = box;
+        r.c.at = nearest(i, j, box);
+        r.c.least = 0;
+        r.c.most = std::max(1, (a_.block() - 1) * (b_.block() - 1));
+        r.c.multiplicity = 0;
+        const bool whole = box[0] == Interval{0, 1} || box[1] == Interval{0, 1};
+        r.c.kind = !whole && reaches_end(i, j, box) ? ContactKind::end : ContactKind::possible;
+        finish(i, j, r);
+    }
+    bool is_known(int, int, const ExactContact& c) const {
+        return std::any_of(search_.found().begin(), search_.found().end(), [&](const Simple<2>& s) {
+            const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
+            return !at_end && s.box[0].overlaps(c.a) && s.box[1].overlaps(c.b);
+        });
+    }
+    bool reaches_end(int i, int j, const Boxes& t) const {
+        const auto reaches = [](const ArcPieces<1, P>& c, int piece, const Interval& x) {
+            const bool small = x.length() < 0x1p-8 || x == Interval{0, 1};
+            return small &&
+                   ((x.lo <= 0 && is_open_end(c, piece, 0)) || (x.hi >= 1 && is_open_end(c, piece, 1)));
+        };
+        return reaches(a_.source(), i, t[0]) || reaches(b_.source(), j, t[1]);
+    }
+
+    void add_simple(int i, int j, const Simple<2>& s, bool at_end) {
+        Raw<D, 2> r;
+        r.c.kind = s.exists ? ContactKind::crossing : ContactKind::possible;
+        r.c.least = s.exists;
+        r.c.multiplicity = s.exists;
+        r.sign = s.sign;
+        r.c.box = s.box;
+        r.c.at = s.at;
+        if (at_end && reaches_end(i, j, s.box)) {
+            r.c.kind = ContactKind::end;
+            r.c.least = 0;
+            r.c.multiplicity = 0;
+        } else {
+            r.at_joint = at_end;
+        }
+        finish(i, j, r);
+    }
+    void add_exact(int i, int j, const ExactContact& c) {
+        Raw<D, 2> r;
+        r.c.box = {c.a, c.b};
+        r.c.at = {simplest(c.a), simplest(c.b)};
+        r.c.multiplicity = c.multiplicity;
+        const bool end =
+            (c.a.lo == c.a.hi || c.b.lo == c.b.hi || c.a == Interval{0, 1} || c.b == Interval{0, 1}) &&
+            reaches_end(i, j,
+                        {c.a.lo == c.a.hi || c.a == Interval{0, 1} ? c.a : Interval{0.5, 0.5},
+                         c.b.lo == c.b.hi || c.b == Interval{0, 1} ? c.b : Interval{0.5, 0.5}});
+        r.c.kind = end                   ? ContactKind::end
+                   : c.multiplicity == 1 ? ContactKind::crossing
+                                         : ContactKind::tangent;
+        finish(i, j, r, true);
+    }
+
+    // Parameters of pieces become those of the curves; point and gap.
+    void finish(int i, int j, Raw<D, 2> r, bool exact = false) {
+        for (std::size_t k = 0; k < 2; ++k) r.c.at[k] = std::clamp(r.c.at[k], 0.0, 1.0);
+        Vec<D> x, y, u, v;
+        const double e = a_.at(i, &r.c.at[0], x, &u) + b_.at(j, &r.c.at[1], y, &v);
+        r.c.point = x;
+        for (int k = 0; k < D; ++k) r.c.point[k] = std::scalbn(x[k], exponent_);
+        r.c.gap = std::scalbn(std::sqrt(double(D)) * 1.01 * (max_abs(x - y) + e), exponent_);
+        if constexpr (D == 2)
+            if (exact && r.c.multiplicity == 1) r.sign = cross(u, v) < 0 ? 1 : -1;
+        const Interval oa = on(a_, i), ob = on(b_, j);
+        r.c.at = {freiform::detail::global(oa, r.c.at[0]), freiform::detail::global(ob, r.c.at[1])};
+        if (r.at_joint)  // the neighbour may have it beyond the knot
+            for (Interval& t : r.c.box) t = {t.lo - 2 * t.length(), t.hi + 2 * t.length()};
+        r.c.box = global(i, j, r.c.box, r.at_joint);
+        r.c.box[0] = hull(r.c.box[0], {r.c.at[0], r.c.at[0]});
+        r.c.box[1] = hull(r.c.box[1], {r.c.at[1], r.c.at[1]});
+        wrap(a_.source(), r, 0);
+        wrap(b_.source(), r, 1);
+        raw_.push_back(r);
+    }
+    // The two ends of a closed curve are one place: the beginning.
+    static void wrap(const ArcPieces<1, P>& c, Raw<D, 2>& r, std::size_t k) {
+        if (!c.closed[0] || r.c.box[k].hi < c.domain[0].hi) return;
+        const double period = c.domain[0].length();
+        r.c.at[k] = std::max(r.c.at[k] - period, c.domain[0].lo);
+        r.c.box[k] = {r.c.box[k].lo - period, c.domain[0].lo};
+    }
+
+    // Parameters of a box with a small distance, by the method of Gauss and Newton, damped.
+    std::array<double, 2> nearest(int i, int j, const Boxes& box) const {
+        std::array<double, 2> best{box[0].middle(), box[1].middle()};
+        double least = kInfinity, damping = 1e-3;
+        std::array<double, 2> t = best;
+        Vec<D> x, y, u, v, f{}, bu{}, bv{};
+        for (int k = 0; k < 40; ++k) {
+            a_.at(i, &t[0], x, &u);
+            b_.at(j, &t[1], y, &v);
+            const double d = norm(x - y);
+            damping = d < least ? damping / 4 : damping * 8;
+            if (d < least) least = d, best = t, f = x - y, bu = u, bv = v;
+            const double uu = dot(bu, bu) * (1 + damping), vv = dot(bv, bv) * (1 + damping), uv = dot(bu, bv),
+                         det = uu * vv - uv * uv, fu = dot(f, bu), fv = dot(f, bv);
+            if (!(det > 0) || least == 0) break;
+            t = {clamped(best[0] - (fu * vv - fv * uv) / det, box[0]),
+                 clamped(best[1] + (fv * uu - fu * uv) / det, box[1])};
+        }
+        return best;
+    }
+
+    // Overlaps that go on over a knot are one.
+    void chain_overlaps() {
+        auto& all = answer_.overlaps;
+        std::sort(all.begin(), all.end(), [](const Overlap& x, const Overlap& y) {
+            return x.a.lo != y.a.lo ? x.a.lo < y.a.lo : x.b.lo < y.b.lo;
+        });
+        const double sa = slack(a_.source()), sb = slack(b_.source());
+        std::vector<Overlap> out;
+        for (const Overlap& o : all) {
+            const auto before = std::find_if(out.begin(), out.end(), [&](const Overlap& p) {
+                return p.reversed == o.reversed && std::abs(p.a.hi - o.a.lo) <= sa &&
+                       std::abs(o.reversed ? p.b.lo - o.b.hi : p.b.hi - o.b.lo) <= sb;
+            });
+            if (before == out.end()) {
+                out.push_back(o);
+                continue;
+            }
+            before->a = hull(before->a, o.a);
+            before->b = hull(before->b, o.b);
+            before->gap = std::max(before->gap, o.gap);
+        }
+        all = std::move(out);
+        // Contacts at the ends of an overlap belong to it.
+        std::erase_if(answer_.contacts, [&](const Contact<D, 2>& c) {
+            return std::any_of(all.begin(), all.end(), [&](const Overlap& o) {
+                const Interval a{o.a.lo - sa, o.a.hi + sa}, b{o.b.lo - sb, o.b.hi + sb};
+                if (!a.contains(c.at[0]) || !b.contains(c.at[1])) return false;
+                const double s = (c.at[0] - o.a.lo) / o.a.length(), t = (c.at[1] - o.b.lo) / o.b.length();
+                return std::abs((o.reversed ? 1 - t : t) - s) < 1e-6 && !c.is_proven();
+            });
+        });
+    }
+    static double slack(const ArcPieces<1, P>& c) {
+        return 0x1p-40 * std::max(std::abs(c.domain[0].lo), std::abs(c.domain[0].hi));
+    }
+
+    PartTree<1, P> a_, b_;
+    Search<PartTree<1, P>, PartTree<1, P>> search_{a_, b_};
+    BoxTree<D> tree_a_, tree_b_;
+    int exponent_ = 0;
+    std::vector<Raw<D, 2>> raw_;
+    Answer answer_;
+};
+
+// Which of the curves comes first, whatever order they are given in?
+template <class P>
+bool is_before(const ArcPieces<1, P>& a, const ArcPieces<1, P>& b) {
+    if (a.points.size() != b.points.size()) return a.points.size() < b.points.size();
+    for (std::size_t i = 0; i < a.points.size(); ++i)
+        if (a.points[i] != b.points[i]) return a.points[i].c < b.points[i].c;
+    return a.breaks < b.breaks;
+}
+
+template <int D>
+void exchange(Intersections<D, 2>& all) {
+    for (auto& c : all.contacts) std::swap(c.at[0], c.at[1]), std::swap(c.box[0], c.box[1]);
+    for (auto& o : all.overlaps) std::swap(o.a, o.b);
+    for (auto& u : all.undecided) std::swap(u[0], u[1]);
+    std::sort(all.contacts.begin(), all.contacts.end(),
+              [](const auto& x, const auto& y) { return x.at < y.at; });
+    std::sort(all.overlaps.begin(), all.overlaps.end(),
+              [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
+}
+
+template <class P>
+Intersections<Space<P>::kDim, 2> pair_of(CurvePair<P>& work, const ArcPieces<1, P>& a,
+                                         const ArcPieces<1, P>& b, const IntersectOptions& options) {
+    const bool swap = is_before(b, a);
+    auto answer = swap ? work.run(b, a, options) : work.run(a, b, options);
+    if (swap) exchange(answer);
+    return answer;
+}
+
+Result<void> check(const IntersectOptions& options) {
+    if (!(options.accuracy >= 0))
+        return refuse(RefusalKind::invalid, "accuracy", text(options.accuracy, " is not a length >= 0"));
+    return {};
+}
+
+}  // namespace
+
+template <class P>
+IntersectCurve<P>::IntersectCurve(const Curve<P>& curve)
+    : pieces_(std::make_shared<const ArcPieces<1, P>>(arc_pieces(curve))) {}
+
+template <class P>
+requires(Space<P>::kDim == 2 || Space<P>::kDim == 3) Result < Intersections < Space<P>::kDim,
+2 >> intersect(const Curve<P>& a, const Curve<P>& b, const IntersectOptions& options) {
+    if (auto ok = check(options); !ok) return std::unexpected(ok.error());
+    CurvePair<P> work;
+    return pair_of(work, arc_pieces(a), arc_pieces(b), options);
+}
+
+template <class P>
+requires(Space<P>::kDim == 2 ||
+         Space<P>::kDim == 3) Result<void> intersect(std::span<const IntersectCurve<P>> a,
+                                                     std::span<const IntersectCurve<P>> b,
+                                                     std::span<Intersections<Space<P>::kDim, 2>> out,
+                                                     const IntersectOptions& options) {
+    FF_REQUIRE(a.size() == b.size() && a.size() == out.size());
+    if (auto ok = check(options); !ok) return ok;
+    constexpr std::size_t kChunk = 64;
+    parallel_for((a.size() + kChunk - 1) / kChunk, 4, [&](std::size_t chunk) {
+        CurvePair<P> work;
+        for (std::size_t i = chunk * kChunk; i < std::min(a.size(), (chunk + 1) * kChunk); ++i)
+            out[i] = pair_of(work, a[i].pieces(), b[i].pieces(), options);
+    });
+    return {};
+}
+
+#define FF_INTERSECT(P)                                                                                     \
+    template class IntersectCurve<P>;                                                                       \
+    template Result<Intersections<Space<P>::kDim, 2>> intersect(const Curve<P>&, const Curve<P>&,           \
+                                                                const IntersectOptions&);                   \
+    template Result<void> intersect(std::span<const IntersectCurve<P>>, std::span<const IntersectCurve<P>>, \
+                                    std::span<Intersections<Space<P>::kDim, 2>>, const IntersectOptions&);
+FF_INTERSECT(Vec<2>)
+FF_INTERSECT(Hom<2>)
+FF_INTERSECT(Vec<3>)
+FF_INTERSECT(Hom<3>)
+#undef FF_INTERSECT
+
+}  // namespace freiform
