@@ -11,7 +11,7 @@ namespace freiform {
 enum class ContactKind {
     crossing,  // at an angle: one root, simple
     tangent,   // touching, or through a cusp: one root, of multiplicity 2 or more
-    end,       // an end of an open curve lies on the other object
+    end,       // an end of an open curve, or the boundary of a surface, lies on the other object
     possible,  // within rounding the two may meet here, `least` to `most` times, or pass by at most `gap`
                // apart
 };
