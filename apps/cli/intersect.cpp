@@ -1,0 +1,230 @@
+// intersect: where the curves of two files meet each other, or curves of one the surfaces of the other.
+#include "input.hpp"
+
+#include <freiform/intersect/curve_curve.hpp>
+#include <freiform/intersect/curve_surface.hpp>
+
+#include <variant>
+
+namespace freiform::cli {
+
+namespace {
+
+struct IntersectArguments {
+    std::string a, b, object_a, object_b;
+    std::optional<double> tolerance;
+};
+
+// What can be met, of one kind of coefficients for each number of coordinates.
+using Operand = std::variant<Curve<Hom<2>>, Curve<Hom<3>>, Surface<Hom<3>>, Curve<Vec<2>>, Curve<Vec<3>>,
+                             Surface<Vec<3>>>;
+
+struct Chosen {
+    std::size_t index;
+    Operand shape;
+};
+
+class Meeting {
+public:
+    Meeting(const Input& a, const Input& b, double tolerance) : a_(a), b_(b), tolerance_(tolerance) {}
+
+    Result<void> meet(const Chosen& a, const Chosen& b) {
+        at_ = {a.index, b.index};
+        return std::visit([&](const auto& x, const auto& y) { return meet_shapes(x, y); }, a.shape, b.shape);
+    }
+    const std::vector<std::string>& undecided() const { return undecided_; }
+    std::string json() const {
+        json::Writer w;
+        w.begin_object();
+        for (const auto& [key, rows] :
+             {std::pair("points", &points_), {"overlaps", &overlaps_}, {"possible", &possible_}}) {
+            w.key(key).begin_array();
+            for (const auto& row : *rows) row(w);
+            w.end_array();
+        }
+        return w.end_object().take() + "\n";
+    }
+    std::string plain() const { return plain_.empty() ? "no intersection\n" : plain_; }
+
+private:
+    using Row = std::function<void(json::Writer&)>;
+
+    template <class X, class Y>
+    Result<void> meet_shapes(const X& x, const Y& y) {
+        constexpr int D = Space<typename X::Coefficients>::kDim;
+        if constexpr (D != Space<typename Y::Coefficients>::kDim)
+            return refuse(RefusalKind::no_answer, where(),
+                          "one has 2 coordinates, the other 3; --object-a and --object-b choose");
+        else if constexpr (X::kParams == 2 && Y::kParams == 2)
+            return refuse(RefusalKind::no_answer, where(),
+                          "are two surfaces; answered are curves with curves, and curves with surfaces");
+        else if constexpr (!std::same_as<typename X::Coefficients, typename Y::Coefficients>)
+            return meet_shapes(rational(x), rational(y));
+        else if constexpr (X::kParams == 2)
+            return take(intersect(y, x, options()),
+                        [](const auto& at) { return std::pair(rest(at), first(at)); });
+        else if constexpr (Y::kParams == 2)
+            return take(intersect(x, y, options()),
+                        [](const auto& at) { return std::pair(first(at), rest(at)); });
+        else
+            return take(intersect(x, y, options()),
+                        [](const auto& at) { return std::pair(first(at), rest(at)); });
+    }
+    template <std::size_t N, int D>
+    static Patch<N, Hom<D>> rational(const Patch<N, Vec<D>>& p) {
+        return to_rational(p);
+    }
+    template <std::size_t N, int D>
+    static const Patch<N, Hom<D>>& rational(const Patch<N, Hom<D>>& p) {
+        return p;
+    }
+    template <class T, std::size_t N>
+    static std::vector<T> first(const std::array<T, N>& at) {
+        return {at[0]};
+    }
+    template <class T, std::size_t N>
+    static std::vector<T> rest(const std::array<T, N>& at) {
+        return {at.begin() + 1, at.end()};
+    }
+    IntersectOptions options() const { return {.accuracy = tolerance_}; }
+    std::string where() const { return text(a_.label(at_[0]), " with ", b_.label(at_[1])); }
+
+    // `split` divides parameters of the answer into those of a and of b.
+    template <class R, class F>
+    Result<void> take(const R& found, F&& split) {
+        if (!found) return refuse_within(where(), found.error());
+        const auto object = at_;
+        for (const auto& c : found->contacts) {
+            const auto [s, t] = split(c.at);
+            const auto [bs, bt] = split(c.box);
+            const bool open = c.kind == ContactKind::possible && !(c.gap <= tolerance_);
+            (open ? possible_ : points_)
+                .push_back([=, a = s, b = t, box_a = bs, box_b = bt](json::Writer& w) {
+                    w.new_line(1)
+                        .begin_object()
+                        .key("objects")
+                        .array(object)
+                        .key("a")
+                        .array(a)
+                        .key("b")
+                        .array(b);
+                    w.key("point")
+                        .array(c.point.c)
+                        .field("kind", name_of(c.kind))
+                        .field("proven", c.is_proven());
+                    w.field("least", c.least).field("most", c.most).field("multiplicity", c.multiplicity);
+                    w.field("gap", c.gap);
+                    write_box(w.key("a_box"), box_a);
+                    write_box(w.key("b_box"), box_b);
+                    w.end_object();
+                });
+            plain_ +=
+                text(where(), ": ", name_of(c.kind), " at ", list(s), " and ", list(t), ", point ",
+                     list(c.point.c),
+                     c.is_proven() ? "" : text(", ", c.least, " to ", c.most, " times, gap at most ", c.gap),
+                     "\n");
+        }
+        for (const Overlap& o : found->overlaps) {
+            overlaps_.push_back([=](json::Writer& w) {
+                w.new_line(1).begin_object().key("objects").array(object);
+                w.key("a").array(std::array{o.a.lo, o.a.hi}).key("b").array(std::array{o.b.lo, o.b.hi});
+                w.field("reversed", o.reversed).field("gap", o.gap).end_object();
+            });
+            plain_ += text(where(), ": overlap over [", o.a.lo, ", ", o.a.hi, "] and [", o.b.lo, ", ", o.b.hi,
+                           "]", o.reversed ? ", reversed" : "", ", gap at most ", o.gap, "\n");
+        }
+        for (const auto& box : found->undecided) {
+            std::string shown_box;
+            for (const Interval& t : box)
+                shown_box += text(shown_box.empty() ? "[" : " x [", t.lo, ", ", t.hi, "]");
+            undecided_.push_back(text(where(), ": ", shown_box));
+        }
+        return {};
+    }
+    static void write_box(json::Writer& w, const std::vector<Interval>& box) {
+        w.begin_array();
+        for (const Interval& t : box) w.array(std::array{t.lo, t.hi});
+        w.end_array();
+    }
+    template <class T>
+    static std::string list(const T& numbers) {
+        std::string s;
+        for (const double x : numbers) s += text(s.empty() ? "" : ", ", x);
+        return s;
+    }
+
+    const Input &a_, &b_;
+    double tolerance_;
+    std::array<std::size_t, 2> at_{};
+    std::vector<Row> points_, possible_, overlaps_;
+    std::string plain_;
+    std::vector<std::string> undecided_;
+};
+
+Result<std::vector<Chosen>> operands(const Input& input) {
+    std::vector<Chosen> out;
+    for (const std::size_t i : input.chosen)
+        std::visit(
+            [&](const auto& s) {
+                if constexpr (std::constructible_from<Operand, decltype(s)>)
+                    out.push_back({i, Operand(s)});
+                else
+                    remark_left_out(input, i);
+            },
+            input.object(i).shape);
+    if (out.empty())
+        return refuse(RefusalKind::no_answer, shown(input.file),
+                      "has no curve of the plane or of space and no surface to intersect");
+    return out;
+}
+
+Result<void> run_intersect(const Context& context, const IntersectArguments& options) {
+    const double tolerance = options.tolerance.value_or(0);
+    if (!(tolerance >= 0)) wrong_usage("--tolerance needs a distance that is not negative");
+    const auto a = read_input(context, options.a, options.object_a);
+    if (!a) return std::unexpected(a.error());
+    const auto b = read_input(context, options.b, options.object_b);
+    if (!b) return std::unexpected(b.error());
+    const auto in_a = operands(*a), in_b = operands(*b);
+    if (!in_a) return std::unexpected(in_a.error());
+    if (!in_b) return std::unexpected(in_b.error());
+    Meeting meeting(*a, *b, tolerance);
+    for (const Chosen& x : *in_a)
+        for (const Chosen& y : *in_b)
+            if (auto done = meeting.meet(x, y); !done) return done;
+    if (const auto& open = meeting.undecided(); !open.empty()) {
+        std::string boxes;
+        for (std::size_t i = 0; i < std::min<std::size_t>(open.size(), 8); ++i)
+            boxes += text(i ? "; " : "", open[i]);
+        return refuse(RefusalKind::limit, "parameters",
+                      text(open.size(), " boxes are undecided after all the work that is allowed: ", boxes,
+                           open.size() > 8 ? "; .." : ""));
+    }
+    return emit(context, context.json ? meeting.json() : meeting.plain());
+}
+
+}  // namespace
+
+void add_intersect(CommandLine& line) {
+    const auto options = std::make_shared<IntersectArguments>();
+    const Command command =
+        line.add("intersect", "Where curves meet curves, or surfaces: every place, with a proof",
+                 "  freiform intersect road.json river.json\n"
+                 "  freiform intersect rays.json teapot.bpt --tolerance 1e-9 --json\n"
+                 "Outside of what is listed there is no intersection. \"possible\": within rounding they may "
+                 "meet, or pass "
+                 "by at most \"gap\" apart.");
+    command.word("A", options->a, "The first file; - is standard input").required();
+    command.word("B", options->b, "The second file").required();
+    command.number(
+        "--tolerance", options->tolerance,
+        "Curves at most this far apart over an interval overlap; possible points with such a gap count as "
+        "points (default 0: what rounding asks for)");
+    command.word("--object-a", options->object_a, "Only this object of A").shown_as("NAME|INDEX");
+    command.word("--object-b", options->object_b, "Only this object of B").shown_as("NAME|INDEX");
+    command.answer_file();
+    command.limits();
+    command.action(options, run_intersect);
+}
+
+}  // namespace freiform::cli

@@ -1,0 +1,74 @@
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using IntersectCommand = Program;
+
+constexpr const char* kArches = R"({"freiform": 1, "objects": [
+    {"name": "arch", "type": "curve", "points": [[0,0],[1,2],[3,2],[4,0]]},
+    {"name": "high", "type": "curve", "points": [[0,9],[1,9]]}]})";
+
+TEST_F(IntersectCommand, lists_points_with_their_kind_and_parameters) {
+    const std::string a = file("a.json", kArches);
+    const std::string b = file("b.json", R"({"type": "curve", "points": [[2,0],[2,3]], "weights": [1, 2]})");
+    const Ran r = run({"intersect", a, b, "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto all = nlohmann::json::parse(r.out);
+    ASSERT_EQ(all["points"].size(), 1u) << r.out;
+    const auto& p = all["points"][0];
+    EXPECT_EQ(p["kind"], "crossing");
+    EXPECT_EQ(p["proven"], true);
+    EXPECT_EQ(p["objects"], (std::vector<int>{0, 0}));
+    EXPECT_NEAR(p["a"][0], 0.5, 1e-15);
+    EXPECT_NEAR(p["b"][0], 1.0 / 3, 1e-15);
+    EXPECT_NEAR(p["point"][1], 1.5, 1e-15);
+    EXPECT_TRUE(all["overlaps"].empty() && all["possible"].empty());
+    const Ran plain = run({"intersect", a, b, "--object-a", "high"});
+    EXPECT_EQ(plain.code, 0);
+    EXPECT_EQ(plain.out, "no intersection\n");
+}
+
+TEST_F(IntersectCommand, lists_overlaps_as_intervals) {
+    const std::string a = file("a.json", kArches);
+    const Ran r = run({"intersect", a, a, "--object-a", "arch", "--object-b", "arch", "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto all = nlohmann::json::parse(r.out);
+    ASSERT_EQ(all["overlaps"].size(), 1u) << r.out;
+    EXPECT_EQ(all["overlaps"][0]["a"], (std::vector<double>{0, 1}));
+    EXPECT_EQ(all["overlaps"][0]["gap"], 0.0);
+    EXPECT_TRUE(all["points"].empty());
+}
+
+TEST_F(IntersectCommand, lines_meet_the_teapot) {
+    const std::string ray = file("ray.json", R"({"type": "curve", "points": [[0.3,0.2,-9],[0.3,0.2,9]]})");
+    const Ran r = run({"intersect", ray, kTeapot, "--json"}),
+              back = run({"intersect", kTeapot, ray, "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto all = nlohmann::json::parse(r.out), swapped = nlohmann::json::parse(back.out);
+    ASSERT_FALSE(all["points"].empty());
+    EXPECT_EQ(all["points"].size(), swapped["points"].size());
+    for (const auto& p : all["points"]) {
+        EXPECT_EQ(p["a"].size(), 1u);
+        EXPECT_EQ(p["b"].size(), 2u);
+        EXPECT_LT(p["gap"], 1e-12);
+        EXPECT_NEAR(p["point"][0], 0.3, 1e-15);
+    }
+}
+
+TEST_F(IntersectCommand, says_what_is_not_answered) {
+    const std::string a = file("a.json", kArches);
+    const Ran two = run({"intersect", kTeapot, kTeapot, "--json"});
+    EXPECT_EQ(two.code, 1);
+    EXPECT_NE(two.out.find("two surfaces"), std::string::npos) << two.out;
+    EXPECT_EQ(run({"intersect", a, kTeapot}).code, 1);
+    EXPECT_EQ(run({"intersect", a}).code, 2);
+    EXPECT_EQ(run({"intersect", a, a, "--tolerance", "-1"}).code, 2);
+    EXPECT_EQ(
+        run({"intersect", a, file("nan.json", R"({"type": "curve", "points": [[0,0],[1e999,0]]})")}).code, 3);
+}
+
+}  // namespace
+}  // namespace freiform::test
