@@ -110,7 +110,7 @@ private:
         std::vector<Boxes> unclear;
         for (const Simple<2>& s : search_.found()) {
             const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
-            if (at_end && overlaps.exact(i, j))
+            if (D == 3 || (at_end && overlaps.exact(i, j)))
                 unclear.push_back(s.box);
             else
                 add_simple(i, j, s, at_end);
@@ -144,12 +144,16 @@ private:
 
     void decide(int i, int j, Boxes box, Overlaps<P>& overlaps) {
         for (Interval& t : box) t = {std::max(0.0, t.lo), std::min(1.0, t.hi)};
-        if (ExactPair* e = overlaps.exact(i, j))
-            if (const auto found = e->contacts(box[0], box[1])) {
-                for (const ExactContact& c : *found)
-                    if (!is_known(i, j, c)) add_exact(i, j, c);
-                return;
-            }
+        std::optional<std::vector<ExactContact>> found;
+        if constexpr (D == 3)
+            found = overlaps.contacts_in_space(i, j, box[0], box[1]);
+        else if (ExactPair* e = overlaps.exact(i, j))
+            found = e->contacts(box[0], box[1]);
+        if (found) {
+            for (const ExactContact& c : *found)
+                if (D == 3 || !is_known(c)) add_exact(i, j, c);
+            return;
+        }
         Raw<D, 2> r;
         r.c.box = box;
         r.c.at = nearest(i, j, box);
@@ -160,7 +164,7 @@ private:
         r.c.kind = !whole && reaches_end(i, j, box) ? ContactKind::end : ContactKind::possible;
         finish(i, j, r);
     }
-    bool is_known(int, int, const ExactContact& c) const {
+    bool is_known(const ExactContact& c) const {
         return std::any_of(search_.found().begin(), search_.found().end(), [&](const Simple<2>& s) {
             const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
             return !at_end && s.box[0].overlaps(c.a) && s.box[1].overlaps(c.b);

@@ -15,6 +15,9 @@
 // Such a sign is 0 if the polynomial and R have that root in common (their greatest common divisor says),
 // otherwise that at an end of the interval, if no root of the polynomial lies in there.
 //
+// In space: of the contacts of the images without one coordinate, those at which this coordinate agrees: that
+// is the sign of one more polynomial at s, in which v1 / v0 stands for the parameter of B.
+//
 // Multiplicity: that of s as a root of R is that of intersection of A at s with B, as long as B passes there
 // only once; that is so where the cofactors do not vanish. Where they do, A and B change places.
 //
@@ -186,28 +189,41 @@ std::optional<Interval> cell_of(const std::vector<Root>& roots, std::size_t i) {
     return Interval{lo, hi};
 }
 
-ExactCurve exact_curve(std::span<const Integer> numbers, int count) {
-    ExactCurve c;
-    const int n = count - 1;
+// From `size` homogeneous coordinates, x and y and the weight last, maybe the third one before it.
+ExactCurve exact_curve(std::span<const Integer> numbers, std::size_t size) {
+    const int n = int(numbers.size() / size) - 1;
+    std::vector<Whole> c(size);
     Integer binomial = integer(1);
     for (int i = 0; i <= n; ++i) {
         if (i > 0) binomial = divided(binomial * integer(n - i + 1), integer(i)).quotient;
-        for (std::size_t k = 0; k < 3; ++k) c.x[k].s.push_back(binomial * numbers[std::size_t(3 * i) + k]);
+        for (std::size_t k = 0; k < size; ++k)
+            c[k].s.push_back(binomial * numbers[size * std::size_t(i) + k]);
     }
-    // Elevated: all three are multiples of 1 + x.
-    while (c.degree() > 0) {
-        ExactCurve lower;
-        for (std::size_t k = 0; k < 3; ++k) {
+    // Elevated: all are multiples of 1 + x.
+    for (bool again = true; again && c[0].degree() > 0;) {
+        std::vector<Whole> lower(size);
+        for (std::size_t k = 0; k < size; ++k) {
             Integer rest;
-            for (int i = 0; i < c.degree(); ++i) {
-                rest = c.x[k].s[std::size_t(i)] - rest;
-                lower.x[k].s.push_back(rest);
+            for (int i = 0; i < c[k].degree(); ++i) {
+                rest = c[k].s[std::size_t(i)] - rest;
+                lower[k].s.push_back(rest);
             }
-            if (rest != c.x[k].s.back()) return c;
+            again = again && rest == c[k].s.back();
         }
-        c = std::move(lower);
+        if (again) c = std::move(lower);
     }
-    return c;
+    return {{c[0], c[1], c[size - 1]}, size == 4 ? c[2] : Whole{}};
+}
+
+// sum f_i v1^i v0^(n - i): a coordinate of a curve at the parameter v1 / (v0 + v1).
+Whole composed(const Whole& f, const std::array<Whole, 2>& v) {
+    Whole sum;
+    for (int i = 0; i <= f.degree(); ++i) {
+        Whole term{{f.s[std::size_t(i)]}};
+        for (int k = 0; k < f.degree(); ++k) term = term * v[std::size_t(k < i)];
+        sum = sum + term;
+    }
+    return sum;
 }
 
 // All parameters of a curve at which it passes through a point.
@@ -231,8 +247,18 @@ ExactPair::ExactPair(std::span<const Hom<2>> a, std::span<const Hom<2>> b) {
     for (const auto& net : {a, b})
         for (const Hom<2>& p : net) all.insert(all.end(), p.c.begin(), p.c.end());
     const std::vector<Integer> numbers = integer_coefficients(all, 1);
-    a_ = exact_curve(std::span(numbers).first(3 * a.size()), int(a.size()));
-    b_ = exact_curve(std::span(numbers).subspan(3 * a.size()), int(b.size()));
+    a_ = exact_curve(std::span(numbers).first(3 * a.size()), 3);
+    b_ = exact_curve(std::span(numbers).subspan(3 * a.size()), 3);
+}
+
+ExactPair::ExactPair(std::span<const Hom<3>> a, std::span<const Hom<3>> b, int third) {
+    std::vector<double> all;
+    for (const auto& net : {a, b})
+        for (const Hom<3>& p : net)
+            for (const int k : {(third + 1) % 3, (third + 2) % 3, third, 3}) all.push_back(p[k]);
+    const std::vector<Integer> numbers = integer_coefficients(all, 1);
+    a_ = exact_curve(std::span(numbers).first(4 * a.size()), 4);
+    b_ = exact_curve(std::span(numbers).subspan(4 * a.size()), 4);
 }
 
 bool ExactPair::is_bearable() const {
@@ -277,9 +303,21 @@ bool ExactPair::coincide() {
     return (*sides_)[0].resultant.empty();
 }
 
+std::optional<bool> ExactPair::meets(const Side& side, const Root& root, const Interval& cell, bool high,
+                                     const ExactCurve& on, const ExactCurve& of) {
+    const auto& v = side.place[high];
+    const auto in = lies_in(v, cell, root, side.resultant);
+    if (!in || !*in || on.third.is_zero()) return in;
+    const auto apart =
+        sign_at(on.third * composed(of.x[2], v) - on.x[2] * composed(of.third, v), root, side.resultant);
+    if (!apart) return std::nullopt;
+    return *apart == 0;
+}
+
 std::optional<std::vector<ExactContact>> ExactPair::contacts(const Interval& a, const Interval& b) {
     std::vector<ExactContact> out;
     if (a_.is_point() || b_.is_point()) {
+        if (!a_.third.is_zero()) return std::nullopt;
         for (const Interval& t : at_point(a_.is_point()))
             out.push_back(a_.is_point() ? ExactContact{{0, 1}, t, 0} : ExactContact{t, {0, 1}, 0});
         std::erase_if(out, [&](const ExactContact& c) { return !c.a.overlaps(a) || !c.b.overlaps(b); });
@@ -298,10 +336,10 @@ std::optional<std::vector<ExactContact>> ExactPair::contacts(const Interval& a, 
             if (!s.is_one || !t.is_one) return std::nullopt;
             // One of the curves may have a cusp or double point there.
             int multiplicity = s.most;
-            auto in = lies_in(on_a.place[t.at.middle() > 0.5], *cell_t, s, on_a.resultant);
+            auto in = meets(on_a, s, *cell_t, t.at.middle() > 0.5, a_, b_);
             if (!in) {
                 multiplicity = t.most;
-                in = lies_in(on_b.place[s.at.middle() > 0.5], *cell_s, t, on_b.resultant);
+                in = meets(on_b, t, *cell_s, s.at.middle() > 0.5, b_, a_);
             }
             if (!in) return std::nullopt;
             if (*in) out.push_back({s.at, t.at, multiplicity});

@@ -1,4 +1,4 @@
-// Two plane Bezier curves in integers: what rounding leaves open of their contacts is decided here.
+// Two Bezier curves in integers: what rounding leaves open of their contacts is decided here.
 #pragma once
 #include <freiform/core/hom.hpp>
 #include <freiform/poly/form.hpp>
@@ -12,7 +12,8 @@ namespace freiform::detail {
 
 // A curve in homogeneous coordinates, of the least degree: elevations are undone.
 struct ExactCurve {
-    std::array<Form<Integer>, 3> x;
+    std::array<Form<Integer>, 3> x;  // x, y and the weight
+    Form<Integer> third;             // of curves in space the coordinate that x leaves out
     int degree() const { return x[2].degree(); }
     bool is_point() const;
 };
@@ -29,6 +30,8 @@ public:
     static constexpr int kMaxProduct = 40, kMaxDegree = 8;
 
     ExactPair(std::span<const Hom<2>> a, std::span<const Hom<2>> b);
+    // Curves in space: those of the plane that their image without one coordinate is, and then that one.
+    ExactPair(std::span<const Hom<3>> a, std::span<const Hom<3>> b, int third);
 
     // Not more than the work that is bearable?
     bool is_bearable() const;
@@ -51,6 +54,9 @@ private:
         std::array<std::array<Form<Integer>, 2>, 2> place;
     };
     void prepare();
+    // Are the points at this root of `on`, and at a parameter in `cell` of the other curve, the same?
+    static std::optional<bool> meets(const Side& side, const Root& root, const Interval& cell, bool high,
+                                     const ExactCurve& on, const ExactCurve& of);
     static Side side(const ExactCurve& along, const ExactCurve& of);
 
     ExactCurve a_, b_;

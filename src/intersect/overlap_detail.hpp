@@ -62,6 +62,30 @@ public:
         }
         return exact_ ? &*exact_ : nullptr;
     }
+    // All contacts in a box of parameters in space; nothing where rounding is all that is known.
+    std::optional<std::vector<ExactContact>> contacts_in_space(int pa, int pb, const Interval& a,
+                                                               const Interval& b) const requires(D == 3) {
+        if (a_.source().error[std::size_t(pa)] != 0 || b_.source().error[std::size_t(pb)] != 0)
+            return std::nullopt;
+        Vec<3> x, u, v;
+        place(a_, pa, a.middle(), x, u);
+        place(b_, pb, b.middle(), x, v);
+        const Vec<3> n = cross(u, v);  // of the plane whose image without its largest coordinate is best
+        int third = 0;
+        for (const int k : {1, 2})
+            if (std::abs(n[k]) > std::abs(n[third])) third = k;
+        const auto lifted = [](const Curve& c, int piece) {
+            std::vector<Hom<3>> h;
+            for (int i = 0; i < c.block(); ++i) {
+                const P& p = c.coefficients(piece)[i];
+                h.push_back({{p[0], p[1], p[2], Space<P>::weight(p)}});
+            }
+            return h;
+        };
+        ExactPair pair(lifted(a_, pa), lifted(b_, pb), third);
+        if (!pair.is_bearable()) return std::nullopt;
+        return pair.contacts(a, b);
+    }
     void begin(int pa, int pb) {
         if (pa == pa_ && pb == pb_) return;
         pa_ = pa, pb_ = pb, asked_ = looked_ = same_ = false;

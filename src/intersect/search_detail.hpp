@@ -102,7 +102,8 @@ private:
     using Columns = std::array<Vec<D>, N>;
 
     void look(int ia, int ib, bool over_budget) {
-        const auto &p = a_[ia], &q = b_[ib];
+        const auto& p = a_[ia];
+        const auto& q = b_[ib];
         const double e = p.error + q.error;
         for (int k = 0; k < D; ++k)
             if (p.lo[k] - q.hi[k] > e || q.lo[k] - p.hi[k] > e) return;
@@ -194,7 +195,8 @@ private:
     }
     std::array<Interval, N> on(int ia, int ib) const {
         std::array<Interval, N> x;
-        const auto &p = a_[ia], &q = b_[ib];
+        const auto& p = a_[ia];
+        const auto& q = b_[ib];
         for (std::size_t k = 0; k < A::kParams; ++k) x[k] = {p.from[k], p.from[k] + p.width[k]};
         for (std::size_t k = 0; k < B::kParams; ++k) x[A::kParams + k] = {q.from[k], q.from[k] + q.width[k]};
         return x;

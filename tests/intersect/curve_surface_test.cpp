@@ -23,7 +23,7 @@ Flat bumpy(Random& random) {
     return graph_surface(z);
 }
 
-TEST(IntersectSurface, every_upright_line_meets_a_graph_once) {
+TEST(IntersectSurfaces, every_upright_line_meets_a_graph_once) {
     Random random(1);
     for (int i = 0; i < 20; ++i) {
         const Flat s = bumpy(random);
@@ -47,7 +47,7 @@ TEST(IntersectSurface, every_upright_line_meets_a_graph_once) {
     }
 }
 
-TEST(IntersectSurface, a_line_along_a_wave_meets_it_as_often_as_the_wave_turns) {
+TEST(IntersectSurfaces, a_line_along_a_wave_meets_it_as_often_as_the_wave_turns) {
     // The same wave for all v: a Chebyshev polynomial, which takes every value of (-1, 1) three times.
     std::vector<double> z;
     for (const double h : {-1.0, 5.0, -5.0, 1.0}) z.insert(z.end(), 4, h);
@@ -65,7 +65,7 @@ TEST(IntersectSurface, a_line_along_a_wave_meets_it_as_often_as_the_wave_turns) 
     EXPECT_EQ(must(wave.intersect({{{1.5, 1.5, 0}}, {{1, 0.5, 0.01}}, {0.01, 1e300}})).contacts.size(), 1u);
 }
 
-TEST(IntersectSurface, knot_lines_and_patch_corners_count_once) {
+TEST(IntersectSurfaces, knot_lines_and_patch_corners_count_once) {
     Random random(3);
     for (int i = 0; i < 6; ++i) {
         Flat s = bumpy(random);
@@ -83,7 +83,7 @@ TEST(IntersectSurface, knot_lines_and_patch_corners_count_once) {
     }
 }
 
-TEST(IntersectSurface, curves_and_rational_surfaces) {
+TEST(IntersectSurfaces, curves_and_rational_surfaces) {
     // A cone of a circle's quarter: (1 - v) (arc, 0) + v (0, 0, 1).
     using P = Hom<3>;
     Net<2, P> net(
@@ -103,7 +103,7 @@ TEST(IntersectSurface, curves_and_rational_surfaces) {
     EXPECT_LT(norm(x - cone(c.at[1], c.at[2])), 1e-14);
 }
 
-TEST(IntersectSurface, a_curve_in_the_surface_is_not_called_a_crossing) {
+TEST(IntersectSurfaces, a_curve_in_the_surface_is_not_called_a_crossing) {
     Random random(5);
     const Flat s = bumpy(random);
     const auto found = must(intersect(iso(s, 0, 0.5), s, {.accuracy = 0, .max_parts = 3000}));
@@ -111,7 +111,7 @@ TEST(IntersectSurface, a_curve_in_the_surface_is_not_called_a_crossing) {
     for (const auto& c : found.contacts) EXPECT_FALSE(c.is_proven());
 }
 
-TEST(IntersectSurface, bad_lines_are_refused) {
+TEST(IntersectSurfaces, bad_lines_are_refused) {
     Random random(6);
     const IntersectSurface<Vec<3>> ready(bumpy(random));
     EXPECT_EQ(ready.intersect({{{0, NAN, 0}}, {{0, 0, 1}}}).error().kind, RefusalKind::nonfinite);

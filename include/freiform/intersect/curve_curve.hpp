@@ -31,8 +31,8 @@ private:
 // each other, rounding leaves something open; pieces whose coefficients are the given numbers (Bezier
 // curves, and splines with inner knots of multiplicity degree) up to a product of degrees of 40 are then
 // decided in integers: one proven root with its multiplicity, or none. Otherwise the answer is `possible`.
-// Curves in space, unless both lie in one plane exactly, pass by each other after almost any change: there
-// the answer is `possible` with a `gap` that is as small as rounding leaves it.
+// Curves in space that are near each other are always decided so, or `possible` with a `gap` that is as small
+// as rounding leaves it; multiplicities are those of the image along a coordinate.
 //
 // Exchanging the curves exchanges the answers and nothing else; coordinates times a power of two change
 // nothing but lengths. A curve that is a single point has its whole domain as its box. Refuses accuracies
