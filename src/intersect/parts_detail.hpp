@@ -211,8 +211,15 @@ private:
             left[r * stride] = right[0];
         }
     }
-    // The value comes to b[0].
+    // The value comes to b[0]. Small degrees are written out by the compiler.
     static void collapse(P* b, int n, int stride, double t, P& derivative) {
+        if (n == 3 && stride == 1)
+            steps(b, std::integral_constant<int, 3>(), std::integral_constant<int, 1>(), t, derivative);
+        else
+            steps(b, n, stride, t, derivative);
+    }
+    template <class Degree, class Stride>
+    static void steps(P* b, Degree n, Stride stride, double t, P& derivative) {
         derivative = P{};
         const double s = 1 - t;
         for (int r = 1; r <= n; ++r) {
@@ -229,8 +236,9 @@ private:
         double stretch = 1;  // outside of [0, 1] numbers may grow
         for (std::size_t k = 0; k < N; ++k) {
             degrees += degree_[k];
-            const double out = std::max({0.0, -t[k], t[k] - 1});
-            for (int i = 0; i < degree_[k] && out > 0; ++i) stretch *= 1 + 2 * out;
+            if (t[k] >= 0 && t[k] <= 1) continue;
+            const double out = std::max(-t[k], t[k] - 1);
+            for (int i = 0; i < degree_[k]; ++i) stretch *= 1 + 2 * out;
         }
         const double raw =
             stretch * (1.01 * (*this)[piece].raw_error + 1.01 * 3 * degrees * kUnitRoundoff + 0x1p-1060);

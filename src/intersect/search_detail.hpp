@@ -3,7 +3,7 @@
 #pragma once
 #include "parts_detail.hpp"
 
-#include <optional>
+#include <algorithm>
 
 namespace freiform::detail {
 
@@ -112,10 +112,10 @@ private:
         for (std::size_t k = 0; k < B::kParams; ++k) c[A::kParams + k] = -b_.chord(ib, int(k));
         const Rows<N, D> rows = rows_of(c);
         bool flat = true;
-        for (std::size_t k = 0; k < N; ++k)
-            if (apart(ia, ib, rows.r[k], e, &flat)) return;
+        if (apart(ia, ib, rows.r, e, flat)) return;
+        bool ignored = true;
         for (int k = 0; k < rows.extra; ++k)
-            if (apart(ia, ib, rows.more[std::size_t(k)], e, nullptr)) return;
+            if (apart(ia, ib, std::array{rows.more[std::size_t(k)]}, e, ignored)) return;
         if (rows.det != 0) {
             const double q_norm = contraction(ia, ib, rows);
             if (q_norm < 0.9 && settle(ia, ib, rows, q_norm)) return;
@@ -132,50 +132,57 @@ private:
         return true;
     }
 
-    // Along r, by more than rounding? `flat` stays true if neither is longer than rounding there.
-    bool apart(int ia, int ib, const Vec<D>& r, double e, bool* flat) const {
-        Interval x{kInfinity, -kInfinity}, y = x;
-        const auto* h = a_.hull(ia);
-        for (int k = 0; k < a_.block(); ++k) {
-            const double v = dot(r, h[k]);
-            x = {std::min(x.lo, v), std::max(x.hi, v)};
-        }
-        const auto* g = b_.hull(ib);
-        for (int k = 0; k < b_.block(); ++k) {
-            const double v = dot(r, g[k]);
-            y = {std::min(y.lo, v), std::max(y.hi, v)};
-        }
+    // Ranges of r_k . x over the control points.
+    template <std::size_t M, class Parts>
+    static std::array<Interval, M> ranges(const Parts& parts, int i, const std::array<Vec<D>, M>& r) {
+        const auto* h = parts.hull(i);
+        std::array<Interval, M> x;
+        for (std::size_t m = 0; m < M; ++m) x[m].lo = x[m].hi = dot(r[m], h[0]);
+        for (int k = 1; k < parts.block(); ++k)
+            for (std::size_t m = 0; m < M; ++m) {
+                const double v = dot(r[m], h[k]);
+                x[m] = {std::min(x[m].lo, v), std::max(x[m].hi, v)};
+            }
+        return x;
+    }
+    static double size_of(const Vec<D>& r) {
         double size = 0;
         for (int k = 0; k < D; ++k) size += std::abs(r[k]);
-        const double slack = size * (1.01 * e + 2 * (D + 1) * 1.01 * kUnitRoundoff);
-        if (flat && std::max(x.length(), y.length()) > kFlat * slack) *flat = false;
-        return x.lo - y.hi > slack || y.lo - x.hi > slack;
+        return size;
+    }
+    // Along one of the r, by more than rounding? `flat` stays true if neither is longer than rounding there.
+    template <std::size_t M>
+    bool apart(int ia, int ib, const std::array<Vec<D>, M>& r, double e, bool& flat) const {
+        const auto x = ranges(a_, ia, r), y = ranges(b_, ib, r);
+        for (std::size_t k = 0; k < M; ++k) {
+            const double slack = size_of(r[k]) * (1.01 * e + 2 * (D + 1) * 1.01 * kUnitRoundoff);
+            if (x[k].lo - y[k].hi > slack || y[k].lo - x[k].hi > slack) return true;
+            if (std::max(x[k].length(), y[k].length()) > kFlat * slack) flat = false;
+        }
+        return false;
     }
 
     // A bound of |1 - Y J| over both parts, in their own parameters; J are the derivatives, Y = r / det.
     double contraction(int ia, int ib, const Rows<N, D>& rows) const {
         std::array<double, N> sum{};
-        const auto add = [&](const auto& parts, int i, std::size_t axes, std::size_t first, double sign) {
-            for (std::size_t axis = 0; axis < axes; ++axis) {
-                std::array<double, N> most{};
-                const std::size_t own = first + axis;
-                const double radius = parts.slopes(i, int(axis), [&](const Vec<D>& d) {
-                    for (std::size_t k = 0; k < N; ++k)
-                        most[k] =
-                            std::max(most[k], std::abs(sign * dot(rows.r[k], d) - (k == own ? rows.det : 0)));
-                });
-                for (std::size_t k = 0; k < N; ++k) {
-                    double size = 0;
-                    for (int x = 0; x < D; ++x) size += std::abs(rows.r[k][x]);
-                    sum[k] += most[k] + size * radius;
-                }
-            }
-        };
-        add(a_, ia, A::kParams, 0, 1);
-        add(b_, ib, B::kParams, A::kParams, -1);
-        double q = 0;
-        for (const double s : sum) q = std::max(q, s);
-        return q / std::abs(rows.det) * (1 + 0x1p-16 * 32);
+        add_variation(a_, ia, 0, 1, rows, sum);
+        const double half = *std::max_element(sum.begin(), sum.end());
+        if (half >= std::abs(rows.det)) return half / std::abs(rows.det);
+        add_variation(b_, ib, A::kParams, -1, rows, sum);
+        return *std::max_element(sum.begin(), sum.end()) / std::abs(rows.det) * (1 + 0x1p-16 * 32);
+    }
+    template <class Parts>
+    static void add_variation(const Parts& parts, int i, std::size_t first, double sign,
+                              const Rows<N, D>& rows, std::array<double, N>& sum) {
+        for (std::size_t axis = 0; axis < Parts::kParams; ++axis) {
+            std::array<double, N> most{}, own{};
+            own[first + axis] = rows.det;
+            const double radius = parts.slopes(i, int(axis), [&](const Vec<D>& d) {
+                for (std::size_t k = 0; k < N; ++k)
+                    most[k] = std::max(most[k], std::abs(sign * dot(rows.r[k], d) - own[k]));
+            });
+            for (std::size_t k = 0; k < N; ++k) sum[k] += most[k] + size_of(rows.r[k]) * radius;
+        }
     }
 
     struct Value {
@@ -221,7 +228,8 @@ private:
                 step = std::max(step, std::abs(next - t[k]) / w);
                 t[k] = next;
             }
-            if (step <= 0x1p-50 || (step >= 0.5 * last && step < 0x1p-30)) break;
+            // Convergence is quadratic: what is left is far below this step.
+            if (step <= 0x1p-27 || (step >= 0.5 * last && step < 0x1p-20)) break;
             last = step;
         }
         return t;
@@ -241,8 +249,7 @@ private:
         std::array<double, N> d, e;
         double radius = 0;
         for (std::size_t k = 0; k < N; ++k) {
-            double size = 0;
-            for (int c = 0; c < D; ++c) size += std::abs(rows.r[k][c]);
+            const double size = size_of(rows.r[k]);
             d[k] = dot(rows.r[k], v.f) / rows.det;
             e[k] = 1.01 * size / std::abs(rows.det) * (v.error + 8 * kUnitRoundoff * max_abs(v.f));
             radius = std::max(radius, std::abs(d[k]) + e[k]);
