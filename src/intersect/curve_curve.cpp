@@ -107,6 +107,7 @@ private:
     }
 
     void take(int i, int j, Overlaps<P>& overlaps) {
+        exact_.clear();
         std::vector<Boxes> unclear;
         for (const Simple<2>& s : search_.found()) {
             const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
@@ -197,6 +198,10 @@ private:
         finish(i, j, r);
     }
     void add_exact(int i, int j, const ExactContact& c) {
+        // Clusters side by side may both reach to it.
+        for (const ExactContact& o : exact_)
+            if (o.a == c.a && o.b == c.b) return;
+        exact_.push_back(c);
         Raw<D, 2> r;
         r.c.box = {c.a, c.b};
         r.c.at = {simplest(c.a), simplest(c.b)};
@@ -303,6 +308,7 @@ private:
     BoxTree<D> tree_a_, tree_b_;
     int exponent_ = 0;
     std::vector<Raw<D, 2>> raw_;
+    std::vector<ExactContact> exact_;  // of the pair of pieces at hand
     Answer answer_;
 };
 

@@ -88,6 +88,32 @@ TEST(IntersectLaws, counts_are_those_of_exact_arithmetic) {
     EXPECT_GT(tangents, 3);
 }
 
+TEST(IntersectLaws, clusters_that_reach_to_one_root_give_it_once) {
+    const Grid a{{{0, -1}}, {{0, -2}}, {{1, 2}}, {{0, -1}}, {{1, -1}}}, b{{{0, -1}}, {{1, 1}}};
+    const PlaneAnswer found = meet(plane_bezier(sheared(a)), plane_bezier(sheared(b)));
+    ASSERT_EQ(found.contacts.size(), 2u);
+    EXPECT_EQ(found.contacts[0].kind, ContactKind::end);
+    EXPECT_EQ(found.contacts[0].multiplicity, 1);
+    EXPECT_EQ(found.contacts[1].multiplicity, 2);
+}
+
+TEST(IntersectLaws, what_the_budget_leaves_open_is_said) {
+    Random random(16);
+    const Plane c = random_bezier<Vec<2>>(random, 3);
+    const Plane near = mapped(c, [](const Vec<2>& p) { return p + Vec<2>{{1e-10, 3e-11}}; });
+    const PlaneAnswer found = must(intersect(c, near, {.accuracy = 0, .max_parts = 2000}));
+    ASSERT_FALSE(found.undecided.empty());
+    EXPECT_TRUE(found.overlaps.empty());
+    // What lies outside of these boxes is known: the diagonal, along which the curves are near, is inside.
+    for (double t = 0.01; t < 1; t += 0.01)
+        EXPECT_TRUE(std::any_of(found.undecided.begin(), found.undecided.end(),
+                                [&](const auto& box) { return box[0].contains(t) && box[1].contains(t); }) ||
+                    std::any_of(found.contacts.begin(), found.contacts.end(),
+                                [&](const auto& x) { return x.box[0].contains(t); }))
+            << t;
+    EXPECT_EQ(meet(c, near, 2e-10).overlaps.size(), 1u);
+}
+
 // Nasty numbers: multiples of 1/4, repeated control points, shared ends.
 std::pair<Plane, Plane> nasty_pair(Random& random) {
     Grid a = random_grid(random, random.integer(2, 4), 2, 1, 8),
