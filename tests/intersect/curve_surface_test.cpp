@@ -3,6 +3,8 @@
 
 #include <freiform/intersect/curve_surface.hpp>
 
+#include <gtest/gtest.h>
+
 namespace freiform::test {
 namespace {
 
