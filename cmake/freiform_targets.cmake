@@ -124,6 +124,7 @@ endfunction()
 # What evaluates, flattens, tessellates, solves or reads large files is not among them.
 set(FREIFORM_COLD
     fit/approximate fit/local
+    intersect/exact_pair
     io/bpt io/document io/document_fields io/document_model io/document_model_write io/document_patch
     io/drawing io/drawing_compose io/drawing_elements io/drawing_flatten io/drawing_joints io/drawing_panels io/drawing_svg io/exchange io/figure
     io/figure_axes io/figure_labels io/paper io/quake3_map io/read io/scene

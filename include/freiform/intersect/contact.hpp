@@ -23,7 +23,7 @@ struct Contact {
     ContactKind kind = ContactKind::possible;
     std::array<double, N> at{};
     std::array<Interval, N> box{};  // contains `at`, and the parameters of all roots that are meant
-    Vec<D> point{};                 // of the first object at `at`
+    Vec<D> point{};                 // of one of the objects at `at`
     double gap = 0;                 // bound: how far the points of both objects at `at` are from each other
     int least = 1, most = 1;        // so many points of `box` are roots
     // Of intersection, as in Bezout's theorem: 1 at an angle, 2 for circles that touch, 3 where one crosses
