@@ -169,13 +169,14 @@ Result<void> check_line(const StraightLine& line, std::size_t i) {
     return {};
 }
 
-// The parameters at which a line may be in a box, and a little more.
+// The parameters at which a line may be in a box, and an eighth of its size more: a line cut to a flat
+// surface would be a point, whose direction is all rounding.
 Interval inside(const StraightLine& line, const Box<3>& box) {
     Interval t = line.on;
     for (int k = 0; k < 3; ++k) {
         const double d = line.direction[k], size = std::max(box.scale(), std::abs(line.point[k]));
-        const double lo = box.lo[k] - line.point[k] - 0x1p-40 * size,
-                     hi = box.hi[k] - line.point[k] + 0x1p-40 * size;
+        const double more = std::max(0.125 * max_abs(box.hi - box.lo), 0x1p-40 * size);
+        const double lo = box.lo[k] - line.point[k] - more, hi = box.hi[k] - line.point[k] + more;
         if (d == 0) {
             if (lo > 0 || hi < 0) return {1, 0};
             continue;

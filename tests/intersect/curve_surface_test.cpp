@@ -85,6 +85,17 @@ TEST(IntersectSurfaces, knot_lines_and_patch_corners_count_once) {
     }
 }
 
+TEST(IntersectSurfaces, a_line_through_the_boundary_of_a_flat_patch_meets_its_end) {
+    const IntersectSurface<Vec<3>> flat(graph_surface(std::vector<double>(16, 0.0)));
+    for (const Vec<2>& p : {Vec<2>{{0, 1}}, Vec<2>{{0, 0}}, Vec<2>{{3, 1.25}}}) {
+        const auto found = must(flat.intersect({{{p[0], p[1], -1}}, {{0, 0, 1}}}));
+        ASSERT_EQ(found.contacts.size(), 1u);
+        EXPECT_EQ(found.contacts[0].kind, ContactKind::end);
+        EXPECT_EQ(found.contacts[0].least, 0);
+        EXPECT_LT(found.contacts[0].box[1].length(), 1e-12);
+    }
+}
+
 TEST(IntersectSurfaces, curves_and_rational_surfaces) {
     // A cone of a circle's quarter: (1 - v) (arc, 0) + v (0, 0, 1).
     using P = Hom<3>;
