@@ -32,7 +32,34 @@ namespace freiform {
 
 namespace {
 
+constexpr double kManyParts = 1e6;
 constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
+
+// More than a part of the edge.
+bool has_common_part(const Box<2>& a, const Box<2>& b) {
+    return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
+}
+
+// Into how many equal parts a box has to be cut in both directions, so that its parts are within the tolerance
+// if the curvature is the same all over.
+std::array<double, 2> parts_of(const Curvature& c, const Vec<2>& size, double tolerance) {
+    constexpr int kTries = 16;
+    const double allowed = 8 * tolerance;
+    const double x = c.uu * size[0] * size[0] / allowed, y = c.vv * size[1] * size[1] / allowed,
+                 z = c.uv * size[0] * size[1] / allowed;
+    std::array<double, 2> best{1, 1};
+    double fewest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kTries; ++i) {
+        const double v = std::max(1.0, std::ceil(std::sqrt(y) * (1 + 2.0 * i / kTries)) + (y < 4 ? i : 0));
+        // x t^2 + 2 (z / v) t + y / v^2 = 1 for t = 1 / u.
+        const double free = 1 - y / (v * v), half = z / v;
+        if (!(free > 0)) continue;
+        const double inverse = (half + std::sqrt(half * half + x * free)) / free;  // 1 / t
+        const double u = std::max(1.0, std::ceil(inverse * (1 - 1e-9)));
+        if (u * v < fewest) fewest = u * v, best = {u, v};
+    }
+    return best;
+}
 
 // Half of the squared min-containment radius with the metric diag(A, B).
 double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
@@ -94,9 +121,11 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                                           std::span<const Vec<2>> polygon,
                                           std::span<const std::array<int, 2>> segments,
-                                          const FaceDemands& demands, std::size_t max_leaves) {
+                                          const FaceDemands& demands, std::size_t max_leaves,
+                                          bool knows_normals) {
     const double tolerance = demands.tolerance;
     CurvatureTree tree;
+    tree.knows_normals_ = knows_normals;
     for (std::size_t d = 0; d < 2; ++d)
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
     Box<2> root;
@@ -108,7 +137,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         bool inside = false;  // wholly
     };
     std::vector<Item> stack;
-    tree.nodes_.push_back({root, {}, -1, false});
+    tree.nodes_.push_back({root, {}});
     constexpr double kAny = std::numeric_limits<double>::infinity();
     stack.push_back({0, 0, {kAny, kAny, kAny}, {segments.begin(), segments.end()}, false});
     std::size_t leaves = 1;
@@ -123,18 +152,19 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             tree.nodes_[std::size_t(item.node)].outside = true;
             continue;
         }
-        const auto bounds = surface({box.side(0), box.side(1)});
+        Node& node = tree.nodes_[std::size_t(item.node)];
+        node.bending = bending_of(surface, box, knows_normals);
         // What holds for the whole holds for a part: of very small boxes rounding would make the bound
         // larger.
-        const Curvature c{std::min(item.outer.uu, bounds(2, 0)), std::min(item.outer.uv, bounds(1, 1)),
-                          std::min(item.outer.vv, bounds(0, 2))};
-        tree.nodes_[std::size_t(item.node)].curvature = c;
-        const double kinks =
-            kink_bound_of(tree.kinks_[0], box.side(0)) + kink_bound_of(tree.kinks_[1], box.side(1));
+        Curvature& c = node.bending.full;
+        c.restrict_to(item.outer);
+        const double kinks = tree.kink_bound(box);
         const double error = c.along(size[0], size[1]) / 8 + kinks;
-        const double length[2] = {bounds(1, 0) * size[0], bounds(0, 1) * size[1]};
+        const auto first = surface({box.side(0), box.side(1)}, 1);
+        const double length[2] = {first(1, 0) * size[0], first(0, 1) * size[1]};
         const bool short_enough = std::max(length[0], length[1]) <= demands.max_edge;
-        if ((error <= tolerance && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
+        const bool fine = tree.accept(node, error, tolerance);
+        if ((fine && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
         if (item.depth == kMaxDepth) {
             if (!std::isfinite(error))
                 return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
@@ -145,13 +175,17 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             return refuse(
                 RefusalKind::limit, "max_triangles",
                 text("the tolerance ", tolerance, " needs more than ", 2 * max_leaves, " triangles"));
-        // Cut at a kink if there is one, else through the direction that contributes more.
-        int axis = c.uu * size[0] * size[0] >= c.vv * size[1] * size[1] ? 0 : 1;
-        if (c.uv * size[0] * size[1] > std::max(c.uu * size[0] * size[0], c.vv * size[1] * size[1]) ||
-            !std::isfinite(error))
+        // Cut at a kink if there is one, else where the curvature asks for, else through the longer direction.
+        const Curvature matters = node.bending.least > 0 ? node.bending.seen(0) : c;
+        const auto parts = parts_of(matters, size, tolerance);
+        int axis = parts[0] >= parts[1] ? 0 : 1;
+        const double most = parts[std::size_t(axis)];
+        double share = 0.5;
+        if (fine || most < 1.5 || !std::isfinite(error))
             axis = length[0] >= length[1] ? 0 : 1;
-        if (error <= tolerance) axis = length[0] >= length[1] ? 0 : 1;  // it is too long only
-        double at = box.side(axis).middle(), nearest = size[axis];
+        else if (most < kManyParts)
+            share = std::floor(most / 2) / most;
+        double at = box.lo[axis] + share * size[axis], nearest = size[axis];
         for (int d = 0; d < 2; ++d)
             for (const Kink& k : tree.kinks_[std::size_t(d)])
                 if (box.lo[d] < k.at && k.at < box.hi[d] && k.jump > 0) {
@@ -160,11 +194,12 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                 }
         if (!(box.lo[axis] < at && at < box.hi[axis])) continue;  // no double between the ends
         const int child = int(tree.nodes_.size());
-        tree.nodes_[std::size_t(item.node)].child = child;
+        node.child = child;
+        const Curvature outer = c;
         for (int half = 1; half >= 0; --half) {
             Box<2> part = box;
             (half == 0 ? part.hi : part.lo)[axis] = at;
-            Item next{child + half, item.depth + 1, c, {}, inside};
+            Item next{child + half, item.depth + 1, outer, {}, inside};
             for (const auto& s : item.near)
                 if (meets(part, polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]))
                     next.near.push_back(s);
@@ -172,38 +207,78 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         }
         Box<2> low = box, high = box;
         low.hi[axis] = high.lo[axis] = at;
-        tree.nodes_.push_back({low, {}, -1, false});
-        tree.nodes_.push_back({high, {}, -1, false});
+        tree.nodes_.push_back({low, {}});
+        tree.nodes_.push_back({high, {}});
     }
+    bool all_flat = true;  // enough to do without normals
     for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
         if (auto& n = tree.nodes_[i]; n.child >= 0) {
             const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];
-            Curvature both;
-            if (!a.outside) both.include(a.curvature);
-            if (!b.outside) both.include(b.curvature);
-            n.curvature = both;
+            n.bending = a.outside ? b.bending : a.bending;
+            if (!a.outside && !b.outside) n.bending.include(b.bending);
             n.outside = a.outside && b.outside;
+        } else if (!n.outside) {
+            all_flat = all_flat && n.flat;
         }
+    if (all_flat) tree.knows_normals_ = false;
     return tree;
 }
 
-Curvature CurvatureTree::over(const Box<2>& box) const {
-    Curvature c;
+// Whether the two triangles of a leaf keep the tolerance, without a shift or with one.
+bool CurvatureTree::accept(Node& node, double error, double tolerance) const {
+    node.flat = error <= tolerance;
+    if (!knows_normals_) return node.flat;
+    const Vec<2> size = node.box.hi - node.box.lo;
+    const Shift shift = meets_kink(node.box) ? Shift{} : shift_of(node.bending, error, node.bending.full, 1);
+    return node.flat ||
+           (shift.exists &&
+            shift.across(node.bending.seen(shift.turn).along(size[0], size[1]) / 8, error) <= tolerance);
+}
+
+bool CurvatureTree::meets_kink(const Box<2>& box) const {
+    for (int d = 0; d < 2; ++d)
+        for (const Kink& k : kinks_[std::size_t(d)])
+            if (box.lo[d] <= k.at && k.at <= box.hi[d]) return true;
+    return false;
+}
+
+Bending CurvatureTree::over(const Box<2>& box) const {
+    Bending all;
+    bool any = false;
     int stack[2 * kMaxDepth + 4], size = 0;
     stack[size++] = 0;
     while (size > 0) {
         const Node& n = nodes_[std::size_t(stack[--size])];
-        if (n.outside || !n.box.side(0).overlaps(box.side(0)) || !n.box.side(1).overlaps(box.side(1)))
-            continue;
-        if (n.curvature.uu <= c.uu && n.curvature.uv <= c.uv && n.curvature.vv <= c.vv) continue;
+        if (n.outside || !has_common_part(n.box, box)) continue;
         if (n.child < 0 || (box.contains(n.box.lo) && box.contains(n.box.hi))) {
-            c.include(n.curvature);
+            if (any) all.include(n.bending);
+            if (!any) all = n.bending;
+            any = true;
             continue;
         }
         stack[size++] = n.child;
         stack[size++] = n.child + 1;
     }
-    return c;
+    return all;
+}
+
+std::optional<Curvature> CurvatureTree::all_over(const Box<2>& box) const {
+    if (!nodes_[0].box.contains(box.lo) || !nodes_[0].box.contains(box.hi)) return std::nullopt;
+    Curvature all;
+    int stack[2 * kMaxDepth + 4], size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+        const Node& n = nodes_[std::size_t(stack[--size])];
+        if (!has_common_part(n.box, box)) continue;
+        if (n.outside) return std::nullopt;
+        if (n.child < 0) {
+            all.include(n.bending.full);
+            continue;
+        }
+        stack[size++] = n.child;
+        stack[size++] = n.child + 1;
+    }
+    return all;
 }
 
 double CurvatureTree::kink_bound(const Box<2>& box) const {

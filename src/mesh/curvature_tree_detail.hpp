@@ -3,12 +3,14 @@
 #pragma once
 #include <freiform/mesh/face_mesh.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 namespace freiform {
 
-// Bounds of |S_uu|, |S_uv|, |S_vv|.
+// Bounds of the second derivatives (of |S_uu|, |S_uv|, |S_vv|, or of a coordinate).
 struct Curvature {
     double uu = 0, uv = 0, vv = 0;
 
@@ -17,6 +19,15 @@ struct Curvature {
         uv = std::max(uv, o.uv);
         vv = std::max(vv, o.vv);
     }
+    void restrict_to(const Curvature& o) {
+        uu = std::min(uu, o.uu);
+        uv = std::min(uv, o.uv);
+        vv = std::min(vv, o.vv);
+    }
+    Curvature plus(double factor, const Curvature& o) const {
+        return {uu + factor * o.uu, uv + factor * o.uv, vv + factor * o.vv};
+    }
+    bool is_finite() const { return std::isfinite(uu + uv + vv); }
     // Bound of |D^2 S (d, d)| for d = (du, dv).
     double along(double du, double dv) const {
         return uu * du * du + 2 * uv * std::abs(du * dv) + vv * dv * dv;
@@ -27,6 +38,37 @@ struct Curvature {
 // from second derivatives that `c` bounds there. See the essay in curvature_tree.cpp.
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d);
 
+// What is known of S over a part of the plane: essay in bending.cpp, with its notation.
+struct Bending {
+    Curvature full;           // of S
+    Curvature across;         // of n . S
+    Vec<3> n{};               // of length 1
+    double tilt = 0;          // |N - n| is at most this
+    double a = 0, b = 0;      // what makes parameters lengths
+    double least = 0, most = 0;  // |DS d| is between these multiples of |(a du, b dv)|; least = 0: nothing is known
+
+    void include(const Bending& o);
+    // Of what is seen along normals that are within `turn` of some here.
+    Curvature seen(double turn) const { return across.plus(tilt + turn, full); }
+};
+
+// Of S over the box. `knows_normals`: false leaves all but `full` unknown.
+Bending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals);
+
+// How points of the mesh find their feet on S.
+struct Shift {
+    bool exists = false;
+    double q = 0, turn = 0;  // the normal turns by at most so much on the way
+    // Bounds of the distance from the foot, where `seen` bounds the interpolation error along normals, and of
+    // the distance from places on the way there.
+    double across(double seen, double e) const;
+    double way(double e) const;
+};
+// e: bound of the whole interpolation error. `near`: bounds as far around as reach_of says; `reflected`: 3 if
+// the surface ends there, else 1.
+Vec<2> reach_of(const Bending& at, double e);
+Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected);
+
 class CurvatureTree {
 public:
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut
@@ -35,10 +77,16 @@ public:
     // than `max_leaves` are needed, (ill_conditioned) where no bound is finite.
     static Result<CurvatureTree> make(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       std::span<const std::array<int, 2>> segments,
-                                      const FaceDemands& demands, std::size_t max_leaves);
+                                      const FaceDemands& demands, std::size_t max_leaves,
+                                      bool knows_normals = true);
 
-    // Bounds over the part of the box that is not wholly outside the polygon.
-    Curvature over(const Box<2>& box) const;
+    // Over the part of the box that is not wholly outside the polygon.
+    Bending over(const Box<2>& box) const;
+    // Of the whole box; nothing if some of it is not in the tree.
+    std::optional<Curvature> all_over(const Box<2>& box) const;
+    // Whether shifts are not wanted, or save nothing.
+    bool is_all_plain() const { return !knows_normals_; }
+    bool meets_kink(const Box<2>& box) const;  // its edge included
     // What kinks of the surface inside the box add to the interpolation bound.
     double kink_bound(const Box<2>& box) const;
     // The kink that adds most, if any: its axis and parameter.
@@ -55,11 +103,14 @@ public:
 private:
     struct Node {
         Box<2> box;
-        Curvature curvature;
+        Bending bending;
         int child = -1;  // the first of two neighbours in nodes_; -1: a leaf
         bool outside = false;
+        bool flat = false;   // fine without a shift
     };
+    bool accept(Node& node, double error, double tolerance) const;
     std::vector<Node> nodes_;
+    bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;
 };
 

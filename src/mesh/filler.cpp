@@ -1,6 +1,8 @@
 // See face_mesh.cpp for the whole.
 #include "filler_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,6 +23,7 @@ Filler::Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuer
     Box<2> box;
     for (const Vec<2>& p : t.points()) box.add(unscaled(p));
     least_ = kLeastLength * (box.hi - box.lo);
+    limits_ = limits(surface.geometry());
 }
 
 Vec<3> Filler::position(int vertex) {
@@ -72,31 +75,84 @@ void Filler::insert_corners() {
     }
 }
 
-// What the tree says of the leaves that the triangle meets; where that is not enough, of its own box, which
-// may be much smaller than a leaf.
-Curvature Filler::curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const {
-    Box<2> box;
-    for (const Vec<2>& p : {a, b, c}) box.add(p);
-    const Curvature from_tree = tree_.over(box);
-    if (linear_interpolation_bound(from_tree, a, b, c) + tree_.kink_bound(box) <= demands_.tolerance)
-        return from_tree;
-    const auto own = surface_({box.side(0), box.side(1)});
-    return {std::min(from_tree.uu, own(2, 0)), std::min(from_tree.uv, own(1, 1)),
-            std::min(from_tree.vv, own(0, 2))};
+bool Filler::is_plain(int vertex) const {
+    return tree_.is_all_plain() || (std::size_t(vertex) < plain_.size() && plain_[std::size_t(vertex)]);
 }
 
+bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
+    bool any = false;
+    for (const int v : t_.vertices(triangle)) {
+        if (is_plain(v)) continue;
+        if (plain_.size() <= std::size_t(v)) plain_.resize(t_.points().size());
+        plain_[std::size_t(v)] = any = true;
+        const int first = t_.triangle_of(v);
+        int t = first;
+        do {
+            if (std::size_t(t) < known_.size()) known_[std::size_t(t)].any = false;
+            if (t_.is_inside(t)) judge_again.push_back(t);
+            t = t_.neighbour(t, (t_.corner_of(t, v) + 1) % 3);
+        } while (t != first);
+    }
+    return any;
+}
+
+// See bending.cpp for what is claimed here.
+Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
+                             int plain) const {
+    const auto& [a, b, c] = corner;
+    const double e = linear_interpolation_bound(at.full, a, b, c) + tree_.kink_bound(box);
+    Known k{0, true, false, kInfinity, e, at.full};
+    if (plain == 3) {
+        k.bound = e;
+        return k;
+    }
+    if (!(at.least > 0)) return k;
+    const Vec<2> reach = reach_of(at, e);
+    Box<2> around{box.lo - reach, box.hi + reach};
+    if (tree_.meets_kink(around)) return k;
+    double reflected = 1;
+    for (int d = 0; d < 2; ++d)
+        if (around.lo[d] < limits_[std::size_t(d)].lo || around.hi[d] > limits_[std::size_t(d)].hi) {
+            reflected = 3;
+            if (reach[d] > limits_[std::size_t(d)].length()) return k;
+        }
+    auto near = tree_.all_over(around);
+    if (!near) {
+        around = {clamped(around.lo, limits_), clamped(around.hi, limits_)};
+        const auto own = surface_({around.side(0), around.side(1)});
+        near = {own(2, 0), own(1, 1), own(0, 2)};
+    }
+    const Shift shift = shift_of(at, e, *near, reflected);
+    if (!shift.exists) return k;
+    k.shifted = true;
+    k.curvature = at.seen(shift.turn);
+    const double across = shift.across(linear_interpolation_bound(k.curvature, a, b, c), e);
+    k.bound = plain > 0 ? shift.way(e) : std::min(e, across);
+    if (plain > 0) k.curvature = at.full;
+    return k;
+}
+
+// What the tree says of the leaves that the triangle meets; where that is not enough, what can be said of its
+// own box, which may be much smaller than a leaf.
 const Filler::Known& Filler::known(int triangle) {
     const std::size_t i = std::size_t(triangle);
     if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
-    Known& k = known_[i];
-    if (k.any && k.stamp == t_.stamp(triangle)) return k;
+    const auto stamp = t_.stamp(triangle);
+    if (known_[i].any && known_[i].stamp == stamp) return known_[i];
     const auto& v = t_.vertices(triangle);
-    const Vec<2> a = uv(v[0]), b = uv(v[1]), c = uv(v[2]);
+    const std::array<Vec<2>, 3> corner{uv(v[0]), uv(v[1]), uv(v[2])};
     Box<2> box;
-    for (const Vec<2>& p : {a, b, c}) box.add(p);
-    k = {t_.stamp(triangle), true, 0, curvature_over(a, b, c)};
-    k.bound = linear_interpolation_bound(k.curvature, a, b, c) + tree_.kink_bound(box);
-    return k;
+    for (const Vec<2>& p : corner) box.add(p);
+    const int plain = is_plain(v[0]) + is_plain(v[1]) + is_plain(v[2]);
+    const Bending over = tree_.over(box);
+    Known k = judged(over, box, corner, plain);
+    if (!(k.bound <= demands_.tolerance)) {
+        Bending own = bending_of(surface_, box, plain < 3);
+        own.full.restrict_to(over.full);
+        if (const Known second = judged(own, box, corner, plain); second.bound <= k.bound) k = second;
+    }
+    k.stamp = stamp;
+    return known_[i] = k;
 }
 
 double Filler::bound(int triangle) { return known(triangle).bound; }
@@ -147,11 +203,20 @@ bool Filler::refine(std::size_t max_points) {
         std::uint32_t stamp;
     };
     std::vector<Entry> queue;
+    std::vector<int> again;
     for (int i = 0; i < t_.size(); ++i)
         if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
     for (std::size_t head = 0; head < queue.size(); ++head) {
         const Entry entry = queue[head];
         if (t_.stamp(entry.triangle) != entry.stamp || is_fine(entry.triangle)) continue;
+        // Where points have no foot, at poles and kinks, and need none.
+        if (const Known& k = known(entry.triangle); !k.shifted && k.whole <= demands_.tolerance) {
+            again.clear();
+            if (make_plain(entry.triangle, again)) {
+                for (const int i : again) queue.push_back({i, t_.stamp(i)});
+                continue;
+            }
+        }
         if (t_.points().size() >= max_points) return false;
         if (!improve(entry.triangle)) continue;  // its bound stands, and the caller will see it
         for (int i : t_.changed())

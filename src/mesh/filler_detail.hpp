@@ -36,19 +36,25 @@ private:
     struct Known {
         std::uint32_t stamp = 0;
         bool any = false;
-        double bound = 0;
-        Curvature curvature;
+        bool shifted = false;          // a foot exists for each of its points
+        double bound = 0, whole = 0;   // whole: of the whole interpolation error
+        Curvature curvature;           // that matters
     };
     const Known& known(int triangle);
 
     Triangulation& t_;
     std::vector<Known> known_;
-    Curvature curvature_over(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) const;
+    bool is_plain(int vertex) const;
+    // Makes all corners plain; false if they are.
+    bool make_plain(int triangle, std::vector<int>& judge_again);
+    Known judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain) const;
     const CurvatureTree& tree_;
     const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
-    std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
+    std::array<Interval, 2> limits_;
+    std::vector<char> plain_;         // of vertices, as far as one is
+    std::vector<Vec<3>> positions_;   // of vertices, as far as they have been asked for
 };
 
 }  // namespace freiform

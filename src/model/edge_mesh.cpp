@@ -20,7 +20,18 @@
 
 namespace freiform {
 
-namespace {}  // namespace
+namespace {
+
+constexpr int kClosedParts = 4;  // a closed edge must not collapse to a slit
+
+// Where to cut an interval that seems to need `parts` parts: so that equal ones result if it does.
+double first_part(double parts, int least) {
+    constexpr double kMost = 1e6;
+    const double k = std::max({2.0, double(least), std::ceil(parts * (1 + 1e-9))});
+    return k < kMost ? std::floor(k / 2) / k : 0.5;
+}
+
+}  // namespace
 
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
     return std::visit(
@@ -135,9 +146,6 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, 
     };
     if (mesh.curve) add_kinks(mesh.curve->kinks(0));
     for (const auto& use : mesh.uses) add_kinks(use->curve->kinks(0));
-    // A closed edge must not collapse to a slit.
-    if (e.start == e.end && !e.degenerate)
-        for (int k = 1; k < 4; ++k) must.push_back(on.lo + on.length() * (k / 4.0));
     std::sort(must.begin(), must.end());
     must.erase(std::unique(must.begin(), must.end()), must.end());
 
@@ -147,18 +155,28 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, 
             text("edge ", edge, " needs about ", std::ceil(needed), " segments within ", tolerance));
     mesh.parameters = {on.lo};
     mesh.bound = 0;
-    std::vector<std::pair<double, double>> stack;
-    for (std::size_t i = must.size() - 1; i-- > 0;) stack.push_back({must[i], must[i + 1]});
+    struct Part {
+        double a, b;
+        int least;  // parts that it is cut into
+    };
+    const bool closed = e.start == e.end && !e.degenerate;
+    std::vector<Part> stack;
+    for (std::size_t i = must.size() - 1; i-- > 0;)
+        stack.push_back({must[i], must[i + 1], closed ? std::max(kClosedParts / int(must.size() - 1), 1) : 1});
     while (!stack.empty()) {
-        const auto [a, b] = stack.back();
+        const auto [a, b, least] = stack.back();
         stack.pop_back();
         const SegmentError err = error(edge, a, b);
-        const double middle = a + (b - a) / 2;
-        const bool short_enough =
-            e.degenerate || !std::isfinite(longest) || norm(position(edge, b) - position(edge, a)) <= longest;
-        const bool done = short_enough && err.polyline <= tolerance && err.triangle <= tolerance &&
-                          err.sliver <= tolerance / 32;
-        if (done || !(a < middle && middle < b)) {
+        const double length =
+            e.degenerate || !std::isfinite(longest) ? 0 : norm(position(edge, b) - position(edge, a));
+        // Errors fall with the square of the length, that of the sliver with the fourth power.
+        const double excess = std::max({err.polyline / tolerance, err.triangle / tolerance,
+                                        std::sqrt(32 * err.sliver / tolerance)});
+        const bool done = length <= longest && excess <= 1 &&
+                          std::isfinite(err.polyline + err.triangle + err.sliver);
+        const double share = first_part(std::max(std::sqrt(excess), length / longest), least);
+        const double middle = a + (b - a) * share;
+        if ((done && least <= 1) || !(a < middle && middle < b)) {
             if (!done)
                 return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
                               text("cannot be brought within ", tolerance, " near parameter ", a));
@@ -170,8 +188,8 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, 
             return refuse(
                 RefusalKind::limit, "max_triangles",
                 text("edge ", edge, " needs more than ", max_segments, " segments within ", tolerance));
-        stack.push_back({middle, b});
-        stack.push_back({a, middle});
+        stack.push_back({middle, b, int(std::ceil(least * (1 - share)))});
+        stack.push_back({a, middle, int(std::ceil(least * share))});
     }
     return {};
 }

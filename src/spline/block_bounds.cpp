@@ -132,9 +132,9 @@ private:
 
 template <std::size_t N, class P>
 DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
-                                      int order) {
+                                      int order, double size) {
     constexpr int D = Space<P>::kDim;
-    double steps = 8, largest = 0, weight_min = kInfinity, weight_max = 0;
+    double steps = 8, largest = size, weight_min = kInfinity, weight_max = 0;
     Index<N> centre{};
     for (std::size_t d = 0; d < N; ++d) {
         steps += 12 * (net.extent[d] - 1);
@@ -217,7 +217,7 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
 
 #define FF_INSTANTIATE(P)                                                                                    \
     template DerivativeBounds<1> derivative_bounds(const NetView<1, const P>&, const std::array<double, 1>&, \
-                                                   int);
+                                                   int, double);
 FF_INSTANTIATE(Vec<1>)
 FF_INSTANTIATE(Hom<1>)
 FF_INSTANTIATE(Vec<2>)
@@ -227,9 +227,13 @@ FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Vec<4>)
 FF_INSTANTIATE(Hom<4>)
 #undef FF_INSTANTIATE
-template DerivativeBounds<2> derivative_bounds(const NetView<2, const Vec<3>>&, const std::array<double, 2>&,
-                                               int);
-template DerivativeBounds<2> derivative_bounds(const NetView<2, const Hom<3>>&, const std::array<double, 2>&,
-                                               int);
+#define FF_INSTANTIATE(P)                                                                                    \
+    template DerivativeBounds<2> derivative_bounds(const NetView<2, const P>&, const std::array<double, 2>&, \
+                                                   int, double);
+FF_INSTANTIATE(Vec<1>)
+FF_INSTANTIATE(Hom<1>)
+FF_INSTANTIATE(Vec<3>)
+FF_INSTANTIATE(Hom<3>)
+#undef FF_INSTANTIATE
 
 }  // namespace freiform

@@ -8,6 +8,12 @@
 // <= |m_ab| / L + 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the
 // variation by m_u, m_v.
 //
+// Along n: n . S has the coefficients n . P, which are off by sqrt(3) times what P is off by, and by 6 u |P| from
+// the products; both together are less than what would come from coefficients of size 2 |P|. For a revolution
+// with u = u0 + s, and w = n_across turned back by u0,
+//     n . S_i = w_i . (cos s q_j + sin s (axis x q_j)) for i > 0, q_j the j-th derivative of the profile across the axis,
+// w_i a quarter turn of w for each order; i = 0 has the profile's own n . P_j, turned back, and (cos s - 1) w . q_j.
+//
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
@@ -93,6 +99,37 @@ void coordinate(const NetView<1, const Hom<2>>& net, int i, std::vector<Hom<1>>&
     for (int k = 0; k < net.extent[0]; ++k) out.push_back({{net({k})[i], net({k}).weight()}});
 }
 
+// n . p, of coefficients.
+template <int D>
+Vec<1> coordinate_along(const Vec<D>& p, const Vec<D>& n) {
+    return {{dot(p, n)}};
+}
+template <int D>
+Hom<1> coordinate_along(const Hom<D>& p, const Vec<D>& n) {
+    double sum = 0;
+    for (int i = 0; i < D; ++i) sum += p[i] * n[i];
+    return {{sum, p.weight()}};
+}
+
+template <std::size_t N, class P, int D>
+DerivativeBounds<N> bounds_along(const BezierPieces<N, P>& pieces, const Vec<D>& n,
+                                 const std::array<Interval, N>& box, int order) {
+    using Q = std::conditional_t<Space<P>::kRational, Hom<1>, Vec<1>>;
+    DerivativeBounds<N> out;
+    std::vector<Q> one;
+    each_part(pieces, box, [&](const NetView<N, const P>& net, const std::array<double, N>& width) {
+        one.clear();
+        double largest = 0;
+        each_index(net.extent, [&](const Index<N>& at) {
+            one.push_back(coordinate_along(net(at), n));
+            for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(net(at)[i]));
+        });
+        out.include(
+            derivative_bounds<N, Q>({one.data(), net.extent, net.stride}, width, order, 2 * largest));
+    });
+    return out;
+}
+
 template <int D>
 DerivativeBounds<1> bounds_of(const Line<D>& line, Interval on) {
     return {{norm(line.direction) * on.length() / 2, norm(line.direction), 0, 0}};
@@ -152,6 +189,68 @@ DerivativeBounds<2> bounds_of(const Revolution& r, const DerivativeQuery<1, 3>& 
             out.d[jet_slot(Index<2>{i, j})] = grow * (i == 0 ? c.d[std::size_t(j)] : across);
     }
     out.d[0] = out.d[1] * box[0].length() / 2 + c.d[0];
+    return out;
+}
+
+// n . C^(k)(m + s) = cos s (n . C^(k)(m)) + sin s (n . C^(k+1)(m)) of an ellipse about its centre.
+template <int D>
+DerivativeBounds<1> bounds_along(const Conic<D>& c, const Vec<D>& n, Interval on) {
+    DerivativeBounds<1> out = bounds_of(c, on);
+    if (c.kind != ConicKind::ellipse) return out;
+    const double x = dot(n, c.x), y = dot(n, c.y), m = on.middle(), turn = std::min(1.0, on.length() / 2);
+    const double slip = 16 * kUnitRoundoff * (norm(c.x) + norm(c.y));
+    const double even = std::abs(std::cos(m) * x + std::sin(m) * y) + slip;
+    const double odd = std::abs(std::cos(m) * y - std::sin(m) * x) + slip;
+    for (std::size_t k = 1; k < 4; ++k)
+        out.d[k] = std::min(out.d[k], (k == 2 ? even + turn * odd : odd + turn * even) *
+                                          (1 + 64 * kUnitRoundoff));
+    return out;
+}
+template <int D>
+DerivativeBounds<1> bounds_along(const Line<D>& line, const Vec<D>& n, Interval on) {
+    DerivativeBounds<1> out = bounds_of(line, on);
+    out.d[1] = std::abs(dot(n, line.direction)) + 8 * kUnitRoundoff * norm(line.direction);
+    return out;
+}
+
+DerivativeBounds<2> bounds_along(const Extrusion& e, const Vec<3>& n, const DerivativeQuery<1, 3>& profile,
+                                 const std::array<Interval, 2>& box, int order) {
+    const auto c = profile.along(n, {box[0]}, order);
+    DerivativeBounds<2> out;
+    for (int i = 0; i <= order; ++i) out.d[jet_slot(Index<2>{i, 0})] = c.d[std::size_t(i)];
+    out.d[2] = std::abs(dot(n, e.direction)) + 8 * kUnitRoundoff * norm(e.direction);
+    out.d[0] += out.d[2] * box[1].length() / 2;
+    return out;
+}
+
+DerivativeBounds<2> bounds_along(const Revolution& r, const Vec<3>& n, const DerivativeQuery<1, 3>& profile,
+                                 const std::array<Interval, 2>& box, int order,
+                                 const DerivativeBounds<2>& full) {
+    const double u = box[0].middle(), half = box[0].length() / 2, turn = std::min(1.0, half);
+    const double less = std::min(2.0, half * half / 2);
+    const Vec<3> straight = dot(n, r.axis) * r.axis, out_of = n - straight;
+    const Vec<3> w = std::cos(u) * out_of - std::sin(u) * cross(r.axis, out_of), turned = -cross(r.axis, w);
+    const auto a = profile.along(w, {box[1]}, order), b = profile.along(turned, {box[1]}, order),
+               c = profile.along(straight + w, {box[1]}, order);
+    const Vec<3> middle = jet<0>(r.profile, box[1].middle()).value() - r.origin;
+    const auto of = [&](const DerivativeBounds<1>& d, const Vec<3>& along, int j) {
+        return j > 0 ? d.d[std::size_t(j)]
+                     : std::abs(dot(along, middle)) + d.d[1] * (box[1].length() / 2);
+    };
+    // Rounding of w, turned and the middle: a few units of the last place of what they are multiplied by.
+    const double slip = 3 * value_error_bound(r.profile, {box[1]}) +
+                        64 * kUnitRoundoff * (max_abs(r.origin) + norm(middle));
+    DerivativeBounds<2> out;
+    for (int i = 0; i <= order; ++i)
+        for (int j = 0; i + j <= order; ++j) {
+            const std::size_t slot = jet_slot(Index<2>{i, j});
+            const double even = of(a, w, j), odd = of(b, turned, j);
+            const double most = i == 0       ? of(c, straight + w, j) + less * even + turn * odd
+                                : i % 2 == 0 ? even + turn * odd
+                                             : odd + turn * even;
+            out.d[slot] = std::min(full.d[slot], most + 64 * kUnitRoundoff * full.d[slot] + (j == 0 ? slip : 0));
+        }
+    out.d[0] = full.d[0];
     return out;
 }
 
@@ -278,6 +377,27 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
                 return bounds_of(g, *base_, box);
             else
                 return bounds_of(g, box[0]);
+        },
+        *geometry_);
+}
+
+template <std::size_t N, int D>
+DerivativeBounds<N> DerivativeQuery<N, D>::along(const Vec<D>& n, const std::array<Interval, N>& box,
+                                                 int order) const {
+    return std::visit(
+        [&](const auto& g) -> DerivativeBounds<N> {
+            using G = std::remove_cvref_t<decltype(g)>;
+            if constexpr (requires { g.net(); })
+                return bounds_along(std::get<BezierPieces<N, typename G::Coefficients>>(pieces_), n, box,
+                                    order);
+            else if constexpr (std::same_as<G, Extrusion>)
+                return bounds_along(g, n, *profile_, box, order);
+            else if constexpr (std::same_as<G, Revolution>)
+                return bounds_along(g, n, *profile_, box, order, (*this)(box, order));
+            else if constexpr (requires { g.base; })
+                return (*this)(box, order);
+            else
+                return bounds_along(g, n, box[0]);
         },
         *geometry_);
 }

@@ -28,10 +28,10 @@ struct DerivativeBounds {
 };
 
 // Of one Bezier block (coefficients `net` over a box of side lengths `width`), up to total order `order` <=
-// 3; the higher ones are left 0.
+// 3; the higher ones are left 0. `size`: coefficients are off by as much as if they were of this size.
 template <std::size_t N, class P>
 DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
-                                      int order = 2);
+                                      int order = 2, double size = 0);
 
 // A place where the first derivative along `axis` jumps: a knot of multiplicity >= degree.
 struct Kink {
@@ -74,6 +74,8 @@ public:
     // Bounds on `box` up to total order `order` <= 3 (of an offset: 2). The part of the box outside the
     // domain of a spline is ignored. Infinite where no bound exists (at singular points of an offset).
     DerivativeBounds<N> operator()(const std::array<Interval, N>& box, int order = 2) const;
+    // Of the coordinate n . f instead of f, for a vector n of length 1: bounds of |n . f_a|.
+    DerivativeBounds<N> along(const Vec<D>& n, const std::array<Interval, N>& box, int order = 2) const;
     // Inside the domain, in increasing order. Between kinks the first derivative is continuous.
     std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
 
