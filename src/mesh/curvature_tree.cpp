@@ -32,33 +32,11 @@ namespace freiform {
 
 namespace {
 
-constexpr double kManyParts = 1e6;
 constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
 
 // More than a part of the edge.
 bool has_common_part(const Box<2>& a, const Box<2>& b) {
     return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
-}
-
-// Into how many equal parts a box has to be cut in both directions, so that its parts are within the tolerance
-// if the curvature is the same all over.
-std::array<double, 2> parts_of(const Curvature& c, const Vec<2>& size, double tolerance) {
-    constexpr int kTries = 16;
-    const double allowed = 8 * tolerance;
-    const double x = c.uu * size[0] * size[0] / allowed, y = c.vv * size[1] * size[1] / allowed,
-                 z = c.uv * size[0] * size[1] / allowed;
-    std::array<double, 2> best{1, 1};
-    double fewest = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < kTries; ++i) {
-        const double v = std::max(1.0, std::ceil(std::sqrt(y) * (1 + 2.0 * i / kTries)) + (y < 4 ? i : 0));
-        // x t^2 + 2 (z / v) t + y / v^2 = 1 for t = 1 / u.
-        const double free = 1 - y / (v * v), half = z / v;
-        if (!(free > 0)) continue;
-        const double inverse = (half + std::sqrt(half * half + x * free)) / free;  // 1 / t
-        const double u = std::max(1.0, std::ceil(inverse * (1 - 1e-9)));
-        if (u * v < fewest) fewest = u * v, best = {u, v};
-    }
-    return best;
 }
 
 // Half of the squared min-containment radius with the metric diag(A, B).
@@ -177,15 +155,12 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                 text("the tolerance ", tolerance, " needs more than ", 2 * max_leaves, " triangles"));
         // Cut at a kink if there is one, else where the curvature asks for, else through the longer direction.
         const Curvature matters = node.bending.least > 0 ? node.bending.seen(0) : c;
-        const auto parts = parts_of(matters, size, tolerance);
-        int axis = parts[0] >= parts[1] ? 0 : 1;
-        const double most = parts[std::size_t(axis)];
-        double share = 0.5;
-        if (fine || most < 1.5 || !std::isfinite(error))
+        const double by_u = matters.uu * size[0] * size[0], by_v = matters.vv * size[1] * size[1],
+                     by_both = matters.uv * size[0] * size[1];
+        int axis = by_u >= by_v ? 0 : 1;
+        if (fine || by_both > std::max(by_u, by_v) || !std::isfinite(error))
             axis = length[0] >= length[1] ? 0 : 1;
-        else if (most < kManyParts)
-            share = std::floor(most / 2) / most;
-        double at = box.lo[axis] + share * size[axis], nearest = size[axis];
+        double at = box.side(axis).middle(), nearest = size[axis];
         for (int d = 0; d < 2; ++d)
             for (const Kink& k : tree.kinks_[std::size_t(d)])
                 if (box.lo[d] < k.at && k.at < box.hi[d] && k.jump > 0) {
