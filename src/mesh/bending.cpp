@@ -5,8 +5,8 @@
 //
 // Notation: D the meshed part of the parameter plane, L the piecewise linear map of D onto the mesh, which
 // agrees with S at the corners of triangles; N unit normal of S; |(x, y)|' = |(a x, b y)| for lengths a, b of
-// S_u, S_v; e >= |S - L| on a triangle T (curvature_tree.cpp); least |d|' <= |DS d| <= most |d|' on T; K: |D^2
-// S(c, d)| <= K |c|' |d|' near T; q = e K / least^2.
+// S_u, S_v; e >= |S - L| on a triangle T (curvature_tree.cpp); least |d|' <= |DS d| <= most |d|' on T; K:
+// |D^2 S(c, d)| <= K |c|' |d|' near T; q = e K / least^2.
 //
 // The foot of p = L(y), y in T: the minimum of f(x) = |S(x) - p|^2 / 2 over the disc |x - y|' <= r = 2.5 e /
 // least.  On its edge |S(x) - S(y)| >= least r - K r^2 / 2 = 2.5 e (1 - 1.25 q) > 2 e, so |S(x) - p| > e >=
@@ -14,35 +14,38 @@
 // |DS(x) d| >= (least - K r) |d|', |S(x) - p| <= most r + K r^2 / 2 + e; so this is so if
 //     q (1 + 2.5 most / least + 3.125 q) < (1 - 2.5 q)^2.
 // Then there is one critical point F(y) inside, it depends continuously on y, and is the same from the
-// triangles on both sides of an edge: their discs intersect in a convex set, where the minimum is again inside.
+// triangles on both sides of an edge: their discs intersect in a convex set, where the minimum is again
+// inside.
 //
 // How far: x = F(y). p - S(x) is along N(x), so the part of S(y) - S(x) along the surface is at most e, and
 // |DS(x) (y - x)| <= e + K |y - x|'^2 / 2 gives |y - x|' <= e / (least (1 - 3.75 q)) =: way.
 // The distance: |p - S(x)| = |N(x) . (S(y) - p) + N(x) . (S(x) - S(y))|. The first term is a linear
 // interpolation error of the function N(x) . S, which has the second derivatives that are seen along N(x):
-// with |N(x) - n| <= t those along n and t times the whole ones (`Bending::seen`). The second is at most K way^2 /
-// 2 = q e / 2 / (1 - 3.75 q)^2, for DS(x) (y - x) is orthogonal to N(x). And t: on a box with the middle m and n = N(m),
-// a tangent DS(x) d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle with a sine of at most the
-// swing of n . DS over the least stretch; from y to x by one of at most K way / (least - K way).
+// with |N(x) - n| <= t those along n and t times the whole ones (`Bending::seen`). The second is at most K
+// way^2 / 2 = q e / 2 / (1 - 3.75 q)^2, for DS(x) (y - x) is orthogonal to N(x). And t: on a box with the
+// middle m and n = N(m), a tangent DS(x) d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle
+// with a sine of at most the swing of n . DS over the least stretch; from y to x by one of at most K way /
+// (least - K way).
 //
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
-// vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so by
-// the invariance of the degree every x in D is G(y) for some y, or is y + s (G(y) - y) for some y of the boundary. On
-// triangles without plain vertices |S(x) - L(y)| is the distance above. On those with plain ones, and on the boundary, x
-// lies on the segment from y to F(y). Both its ends are mapped within e of L(y), and S is near the chord between
-// them: |S(x) - L(y)| <= e + K way^2 / 8. On the boundary e is the bound for edges; the rest is less than
-// 1/64 of it if q <= 1/16. Triangles with three plain vertices need no F. So a face can have poles and kinks, with plain
-// vertices around them. The other way round, every L(y) is as near to S(G(y)), which may be beyond the
-// boundary of the face by as much.
+// vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so
+// by the invariance of the degree every x in D is G(y) for some y, or is y + s (G(y) - y) for some y of the
+// boundary. On triangles without plain vertices |S(x) - L(y)| is the distance above. On those with plain
+// ones, and on the boundary, x lies on the segment from y to F(y). Both its ends are mapped within e of L(y),
+// and S is near the chord between them: |S(x) - L(y)| <= e + K way^2 / 8. On the boundary e is the bound for
+// edges; the rest is less than 1/64 of it if q <= 1/16. Triangles with three plain vertices need no F. So a
+// face can have poles and kinks, with plain vertices around them. The other way round, every L(y) is as near
+// to S(G(y)), which may be beyond the boundary of the face by as much.
 //
-// A spline that ends within the disc is thought of as continued by reflection in the points of its border, S(b - h) = 2 S(b) - S(b +
-// h) in one direction, which has continuous first derivatives and three times the second ones at most. G goes there only
-// from the boundary's own zone, and D does not reach there.
-// Rounding: computed first derivatives enter a, b, n with relative errors below 1e-7 if a box is not much smaller than the rounding of
-// points over 1e-9, which is asked for; 1e-6 is added.
+// A spline that ends within the disc is thought of as continued by reflection in the points of its border,
+// S(b - h) = 2 S(b) - S(b + h) in one direction, which has continuous first derivatives and three times the
+// second ones at most. G goes there only from the boundary's own zone, and D does not reach there. Rounding:
+// computed first derivatives enter a, b, n with relative errors below 1e-7 if a box is not much smaller than
+// the rounding of points over 1e-9, which is asked for; 1e-6 is added.
 //
-// References: [Milnor 1965] for degrees. Why not all of |S - L|: the wall of a frustum needs a hundred times as
-// many triangles. Why not distances from planes: where the foot leaves a triangle its neighbour has to be looked at.
+// References: [Milnor 1965] for degrees. Why not all of |S - L|: the wall of a frustum needs a hundred times
+// as many triangles. Why not distances from planes: where the foot leaves a triangle its neighbour has to be
+// looked at.
 #include "curvature_tree_detail.hpp"
 
 namespace freiform {
@@ -111,11 +114,13 @@ Vec<2> reach_of(const Bending& at, double e) {
 Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected) {
     Shift out;
     if (!(at.least > 0)) return out;
-    const double k = reflected * (near.uv / (at.a * at.b) + std::max(near.uu / (at.a * at.a), near.vv / (at.b * at.b)));
+    const double k =
+        reflected * (near.uv / (at.a * at.b) + std::max(near.uu / (at.a * at.a), near.vv / (at.b * at.b)));
     const double q = e * k / (at.least * at.least) * (1 + 1e-9);
     if (!(q <= kMostQ)) return out;
     const double left = 1 - kDisc * q;
-    if (!(q * (1 + kDisc * at.most / at.least + kDisc * kDisc / 2 * q) < left * left * (1 - 1e-9))) return out;
+    if (!(q * (1 + kDisc * at.most / at.least + kDisc * kDisc / 2 * q) < left * left * (1 - 1e-9)))
+        return out;
     const double turn = q / (1 - 3.75 * q);
     out.exists = true;
     out.q = q;

@@ -14,6 +14,9 @@
 // the argument is applied to f . e, e any unit vector. Delaunay triangulations in g minimise the largest R.
 // Kinks: where f_u jumps by at most J across u = u0, f has the part J (u - u0)_+ more (in the limit of
 // smoothings of f); its interpolant on a triangle from u0 - a to u0 + b is off by at most J a b / (a + b).
+// Applied to all of S, this bounds more than the distance; bending.cpp applies it to what is seen along
+// normals. The tree halves boxes: parts of a third or a fifth, which would fit uniform curvature better, cost
+// more points where boxes of different sizes meet (a fifth more triangles on the models of bench/REPORT.md).
 // References: [Waldron 1998] (min-containment radius), [Filip Magedson Markot 1986] (second derivatives).
 // Why not sampling: a bump between the samples is missed, see the adversarial bump in the tests.
 #include "curvature_tree_detail.hpp"
@@ -62,20 +65,25 @@ double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, co
                            int samples) {
     // Half of the error for each direction, and what mixed derivatives ask for beside it; halving makes boxes
     // finer than necessary, by kHalving on average.
-    constexpr double kHalving = 1.5;
+    constexpr double kHalving = 1.5, kAside = 1.0 / 16;
     const double part = 1.0 / samples, allowed = 8 * demands.tolerance;
     const Vec<2> h = part * (box.hi - box.lo);
     double sum = 0;
     for (int i = 0; i < samples; ++i)
         for (int k = 0; k < samples; ++k) {
             const auto j = jet<2>(surface, {box.lo[0] + (i + 0.5) * h[0], box.lo[1] + (k + 0.5) * h[1]});
+            // What is seen along the normal counts, where there is one, and a little of the rest.
+            const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
+            const auto bend = [&](const Vec<3>& second) {
+                return norm(n) > 0 ? std::abs(dot(n, second)) + kAside * norm(second) : norm(second);
+            };
             const auto cuts = [&](const Vec<3>& first, const Vec<3>& second, double length) {
                 const double by_length = norm(first) * length / demands.max_edge;
-                return std::sqrt(part * part + 2 * kHalving * norm(second) * length * length / allowed +
+                return std::sqrt(part * part + 2 * kHalving * bend(second) * length * length / allowed +
                                  by_length * by_length);
             };
             sum += 2 * (cuts(j(1, 0), j(2, 0), h[0]) * cuts(j(0, 1), j(0, 2), h[1]) +
-                        2 * kHalving * norm(j(1, 1)) * h[0] * h[1] / allowed);
+                        2 * kHalving * bend(j(1, 1)) * h[0] * h[1] / allowed);
         }
     return std::isfinite(sum) ? sum : 0;
 }
@@ -153,7 +161,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             return refuse(
                 RefusalKind::limit, "max_triangles",
                 text("the tolerance ", tolerance, " needs more than ", 2 * max_leaves, " triangles"));
-        // Cut at a kink if there is one, else where the curvature asks for, else through the longer direction.
+        // Cut at a kink if there is one, else where the curvature asks for, else through the longer
+        // direction.
         const Curvature matters = node.bending.least > 0 ? node.bending.seen(0) : c;
         const double by_u = matters.uu * size[0] * size[0], by_v = matters.vv * size[1] * size[1],
                      by_both = matters.uv * size[0] * size[1];
@@ -185,7 +194,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         tree.nodes_.push_back({low, {}});
         tree.nodes_.push_back({high, {}});
     }
-    bool all_flat = true;  // enough to do without normals
+    bool all_flat = true;                               // enough to do without normals
     for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
         if (auto& n = tree.nodes_[i]; n.child >= 0) {
             const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];

@@ -40,12 +40,13 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 
 // What is known of S over a part of the plane: essay in bending.cpp, with its notation.
 struct Bending {
-    Curvature full;           // of S
-    Curvature across;         // of n . S
-    Vec<3> n{};               // of length 1
-    double tilt = 0;          // |N - n| is at most this
-    double a = 0, b = 0;      // what makes parameters lengths
-    double least = 0, most = 0;  // |DS d| is between these multiples of |(a du, b dv)|; least = 0: nothing is known
+    Curvature full;       // of S
+    Curvature across;     // of n . S
+    Vec<3> n{};           // of length 1
+    double tilt = 0;      // |N - n| is at most this
+    double a = 0, b = 0;  // what makes parameters lengths
+    double least = 0,
+           most = 0;  // |DS d| is between these multiples of |(a du, b dv)|; least = 0: nothing is known
 
     void include(const Bending& o);
     // Of what is seen along normals that are within `turn` of some here.
@@ -106,7 +107,7 @@ private:
         Bending bending;
         int child = -1;  // the first of two neighbours in nodes_; -1: a leaf
         bool outside = false;
-        bool flat = false;   // fine without a shift
+        bool flat = false;  // fine without a shift
     };
     bool accept(Node& node, double error, double tolerance) const;
     std::vector<Node> nodes_;

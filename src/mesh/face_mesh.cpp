@@ -120,16 +120,18 @@ std::vector<BoundaryConflict> find_conflicts(const FaceBoundary& boundary) {
     return all;
 }
 
-Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
-                           const FaceDemands& demands, long long max_triangles,
-                           std::span<const Vec<2>> extra) {
+namespace {
+
+Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
+                        const FaceDemands& demands, long long max_triangles, std::span<const Vec<2>> extra,
+                        bool knows_normals) {
     const double tolerance = demands.tolerance;
     auto polygon = merged(boundary);
     if (!polygon) return refuse(RefusalKind::invalid, "loops", polygon.error().message);
     std::vector<std::array<int, 2>> segments;
     for (const auto& s : polygon->segments) segments.push_back({s.a, s.b});
-    auto tree =
-        CurvatureTree::make(surface, polygon->points, segments, demands, std::size_t(max_triangles) / 2 + 1);
+    auto tree = CurvatureTree::make(surface, polygon->points, segments, demands,
+                                    std::size_t(max_triangles) / 2 + 1, knows_normals);
     if (!tree) return std::unexpected(tree.error());
 
     const int merged_corners = int(polygon->points.size());
@@ -195,6 +197,18 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
         if (at[0] != at[1] && at[1] != at[2] && at[2] != at[0]) out.triangles.push_back(t);
     }
     return out;
+}
+
+}  // namespace
+
+Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
+                           const FaceDemands& demands, long long max_triangles,
+                           std::span<const Vec<2>> extra) {
+    auto mesh = filled(surface, boundary, demands, max_triangles, extra, true);
+    // Judging by all of the error is dearer but asks nothing of normals.
+    if (!mesh && mesh.error().kind == RefusalKind::not_converged)
+        return filled(surface, boundary, demands, max_triangles, extra, false);
+    return mesh;
 }
 
 }  // namespace freiform

@@ -36,9 +36,9 @@ private:
     struct Known {
         std::uint32_t stamp = 0;
         bool any = false;
-        bool shifted = false;          // a foot exists for each of its points
-        double bound = 0, whole = 0;   // whole: of the whole interpolation error
-        Curvature curvature;           // that matters
+        bool shifted = false;         // a foot exists for each of its points
+        double bound = 0, whole = 0;  // whole: of the whole interpolation error
+        Curvature curvature;          // that matters
     };
     const Known& known(int triangle);
 
@@ -53,8 +53,8 @@ private:
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
     std::array<Interval, 2> limits_;
-    std::vector<char> plain_;         // of vertices, as far as one is
-    std::vector<Vec<3>> positions_;   // of vertices, as far as they have been asked for
+    std::vector<char> plain_;        // of vertices, as far as one is
+    std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
 };
 
 }  // namespace freiform

@@ -162,7 +162,8 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, 
     const bool closed = e.start == e.end && !e.degenerate;
     std::vector<Part> stack;
     for (std::size_t i = must.size() - 1; i-- > 0;)
-        stack.push_back({must[i], must[i + 1], closed ? std::max(kClosedParts / int(must.size() - 1), 1) : 1});
+        stack.push_back(
+            {must[i], must[i + 1], closed ? std::max(kClosedParts / int(must.size() - 1), 1) : 1});
     while (!stack.empty()) {
         const auto [a, b, least] = stack.back();
         stack.pop_back();
@@ -170,10 +171,10 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, 
         const double length =
             e.degenerate || !std::isfinite(longest) ? 0 : norm(position(edge, b) - position(edge, a));
         // Errors fall with the square of the length, that of the sliver with the fourth power.
-        const double excess = std::max({err.polyline / tolerance, err.triangle / tolerance,
-                                        std::sqrt(32 * err.sliver / tolerance)});
-        const bool done = length <= longest && excess <= 1 &&
-                          std::isfinite(err.polyline + err.triangle + err.sliver);
+        const double excess = std::max(
+            {err.polyline / tolerance, err.triangle / tolerance, std::sqrt(32 * err.sliver / tolerance)});
+        const bool done =
+            length <= longest && excess <= 1 && std::isfinite(err.polyline + err.triangle + err.sliver);
         const double share = first_part(std::max(std::sqrt(excess), length / longest), least);
         const double middle = a + (b - a) * share;
         if ((done && least <= 1) || !(a < middle && middle < b)) {

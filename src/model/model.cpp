@@ -1,3 +1,5 @@
+#include "face_box_detail.hpp"
+
 #include <freiform/model/model.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -76,7 +78,8 @@ Result<void> check_face(const Model& m, const Face& f, std::string_view where) {
 }
 
 // A box that contains the curve or surface over `on`: in each of several cells it lies within Q / 8 of the
-// linear interpolant of the corners (curvature_tree.cpp), kinks add their own bound.
+// linear interpolant of the corners (curvature_tree.cpp), coordinate by coordinate; kinks add their own
+// bound.
 template <std::size_t N, int D>
 Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<Interval, N>& on) {
     constexpr int kCells = N == 1 ? 16 : 8;
@@ -93,16 +96,22 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
             part[d] = {on[d].lo + cell[d] * h,
                        cell[d] + 1 == kCells ? on[d].hi : on[d].lo + (cell[d] + 1) * h};
         }
-        const auto bounds = query(part);
-        double slack = 0;
-        if constexpr (N == 1) {
-            slack = bounds(2) * part[0].length() * part[0].length() / 8;
-        } else {
-            const double du = part[0].length(), dv = part[1].length();
-            slack = (bounds(2, 0) * du * du + 2 * bounds(1, 1) * du * dv + bounds(0, 2) * dv * dv) / 8;
+        Vec<D> slack;
+        double kinks = 0;
+        for (std::size_t d = 0; d < N; ++d) kinks += kink_bound_of(query.kinks(int(d)), part[d]);
+        for (int i = 0; i < D; ++i) {
+            Vec<D> axis{};
+            axis[i] = 1;
+            const auto bounds = query.along(axis, part);
+            if constexpr (N == 1) {
+                slack[i] = bounds(2) * part[0].length() * part[0].length() / 8;
+            } else {
+                const double du = part[0].length(), dv = part[1].length();
+                slack[i] = (bounds(2, 0) * du * du + 2 * bounds(1, 1) * du * dv + bounds(0, 2) * dv * dv) / 8;
+            }
+            slack[i] += kinks;
         }
-        for (std::size_t d = 0; d < N; ++d) slack += kink_bound_of(query.kinks(int(d)), part[d]);
-        torn = torn || !std::isfinite(slack);
+        torn = torn || !is_finite(slack);
         if (torn) return;
         each_index(corners, [&](const Index<N>& i) {
             std::array<double, N> at{};
@@ -112,8 +121,8 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
                 p = jet<0>(geometry, at[0]).value();
             else
                 p = jet<0>(geometry, at).value();
-            box.add(p - Box<D>::filled(slack));
-            box.add(p + Box<D>::filled(slack));
+            box.add(p - slack);
+            box.add(p + slack);
         });
     });
     if (torn)  // a spline that jumps: its control points contain it as well
@@ -145,6 +154,16 @@ std::array<Interval, 2> parameter_box(const Model& m, const Face& f) {
             on[d].hi = std::clamp(on[d].hi, on[d].lo, whole[d].hi);
         }
     return on;
+}
+
+// A plane face is in the convex hull of its boundary.
+bool is_flat_within_edges(const Model& m, const Face& f) {
+    const auto* extrusion = std::get_if<Extrusion>(&f.surface);
+    if (!extrusion || !std::holds_alternative<Line<3>>(extrusion->profile) || f.loops.empty()) return false;
+    for (const Loop& l : f.loops)
+        for (const Coedge& c : l.coedges)
+            if (!m.edges[std::size_t(c.edge)].curve) return false;
+    return true;
 }
 
 }  // namespace
@@ -203,7 +222,13 @@ ModelSummary summary(const Model& m) {
     for (const Vertex& v : m.vertices) s.box.add(v.point);
     for (const Edge& e : m.edges)
         if (e.curve) s.box.add(box_of<1, 3>(*e.curve, {e.range}));
+    const Box<3> edges = s.box;
     for (const Face& f : m.faces) {
+        if (is_flat_within_edges(m, f)) continue;
+        if (const auto box = box_of_face(f, m.edges, edges)) {
+            if (!box->is_empty()) s.box.add(*box);
+            continue;
+        }
         const auto on = parameter_box(m, f);
         if (std::isfinite(on[0].length()) && std::isfinite(on[1].length()))
             s.box.add(box_of<2, 3>(f.surface, on));

@@ -25,6 +25,8 @@ namespace freiform {
 
 namespace {
 
+// What triangles beside the boundary add to the bound of an edge at most: see bending.cpp.
+constexpr double kBesideBoundary = 1 + 1.0 / 64;
 constexpr int kConflictRounds = 12;  // each halves the segments that touch
 constexpr int kManifoldRounds = 4;
 
@@ -76,7 +78,7 @@ Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
     parallel_for(model_.edges.size(), 4, [&](std::size_t e) {
         if (edges_->mesh(int(e)).uses.empty()) return;
-        if (auto ok = edges_->discretise(int(e), tolerance_, options_.max_edge,
+        if (auto ok = edges_->discretise(int(e), tolerance_ / kBesideBoundary, options_.max_edge,
                                          std::size_t(options_.max_triangles));
             !ok)
             failed[e] = ok.error();
@@ -344,7 +346,8 @@ Tessellation Tessellator::collect() {
         FaceReport report{int(f), part.count, m.bound, boundaries_[f].gap};
         for (const Loop& l : face.loops)
             for (const Coedge& c : l.coedges)
-                report.error_bound = std::max(report.error_bound, edges_->mesh(c.edge).bound);
+                report.error_bound =
+                    std::max(report.error_bound, kBesideBoundary * edges_->mesh(c.edge).bound);
         report.error_bound += rounding_of(f);
         out.error_bound = std::max(out.error_bound, report.error_bound);
         out.boundary_gap = std::max(out.boundary_gap, report.boundary_gap);

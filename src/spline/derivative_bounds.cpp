@@ -8,11 +8,13 @@
 // <= |m_ab| / L + 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the
 // variation by m_u, m_v.
 //
-// Along n: n . S has the coefficients n . P, which are off by sqrt(3) times what P is off by, and by 6 u |P| from
-// the products; both together are less than what would come from coefficients of size 2 |P|. For a revolution
-// with u = u0 + s, and w = n_across turned back by u0,
-//     n . S_i = w_i . (cos s q_j + sin s (axis x q_j)) for i > 0, q_j the j-th derivative of the profile across the axis,
-// w_i a quarter turn of w for each order; i = 0 has the profile's own n . P_j, turned back, and (cos s - 1) w . q_j.
+// Along n: n . S has the coefficients n . P, which are off by sqrt(3) times what P is off by, and by 6 u |P|
+// from the products; both together are less than what would come from coefficients of size 2 |P|. For a
+// revolution with u = u0 + s, and w = n_across turned back by u0,
+//     n . S_i = w_i . (cos s q_j + sin s (axis x q_j)) for i > 0, q_j the j-th derivative of the profile
+//     across the axis,
+// w_i a quarter turn of w for each order; i = 0 has the profile's own n . P_j, turned back, and (cos s - 1) w
+// . q_j.
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
 #include <freiform/core/constants.hpp>
@@ -124,8 +126,7 @@ DerivativeBounds<N> bounds_along(const BezierPieces<N, P>& pieces, const Vec<D>&
             one.push_back(coordinate_along(net(at), n));
             for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(net(at)[i]));
         });
-        out.include(
-            derivative_bounds<N, Q>({one.data(), net.extent, net.stride}, width, order, 2 * largest));
+        out.include(derivative_bounds<N, Q>({one.data(), net.extent, net.stride}, width, order, 2 * largest));
     });
     return out;
 }
@@ -202,8 +203,8 @@ DerivativeBounds<1> bounds_along(const Conic<D>& c, const Vec<D>& n, Interval on
     const double even = std::abs(std::cos(m) * x + std::sin(m) * y) + slip;
     const double odd = std::abs(std::cos(m) * y - std::sin(m) * x) + slip;
     for (std::size_t k = 1; k < 4; ++k)
-        out.d[k] = std::min(out.d[k], (k == 2 ? even + turn * odd : odd + turn * even) *
-                                          (1 + 64 * kUnitRoundoff));
+        out.d[k] =
+            std::min(out.d[k], (k == 2 ? even + turn * odd : odd + turn * even) * (1 + 64 * kUnitRoundoff));
     return out;
 }
 template <int D>
@@ -234,12 +235,11 @@ DerivativeBounds<2> bounds_along(const Revolution& r, const Vec<3>& n, const Der
                c = profile.along(straight + w, {box[1]}, order);
     const Vec<3> middle = jet<0>(r.profile, box[1].middle()).value() - r.origin;
     const auto of = [&](const DerivativeBounds<1>& d, const Vec<3>& along, int j) {
-        return j > 0 ? d.d[std::size_t(j)]
-                     : std::abs(dot(along, middle)) + d.d[1] * (box[1].length() / 2);
+        return j > 0 ? d.d[std::size_t(j)] : std::abs(dot(along, middle)) + d.d[1] * (box[1].length() / 2);
     };
     // Rounding of w, turned and the middle: a few units of the last place of what they are multiplied by.
-    const double slip = 3 * value_error_bound(r.profile, {box[1]}) +
-                        64 * kUnitRoundoff * (max_abs(r.origin) + norm(middle));
+    const double slip =
+        3 * value_error_bound(r.profile, {box[1]}) + 64 * kUnitRoundoff * (max_abs(r.origin) + norm(middle));
     DerivativeBounds<2> out;
     for (int i = 0; i <= order; ++i)
         for (int j = 0; i + j <= order; ++j) {
@@ -248,7 +248,8 @@ DerivativeBounds<2> bounds_along(const Revolution& r, const Vec<3>& n, const Der
             const double most = i == 0       ? of(c, straight + w, j) + less * even + turn * odd
                                 : i % 2 == 0 ? even + turn * odd
                                              : odd + turn * even;
-            out.d[slot] = std::min(full.d[slot], most + 64 * kUnitRoundoff * full.d[slot] + (j == 0 ? slip : 0));
+            out.d[slot] =
+                std::min(full.d[slot], most + 64 * kUnitRoundoff * full.d[slot] + (j == 0 ? slip : 0));
         }
     out.d[0] = full.d[0];
     return out;

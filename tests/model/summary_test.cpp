@@ -20,10 +20,57 @@ TEST(Summary, boxes_contain_the_model_and_little_more) {
         for (int i = 0; i < 3; ++i) {
             EXPECT_LE(box.lo[i], c.lo[i]) << c.name;
             EXPECT_GE(box.hi[i], c.hi[i]) << c.name;
-            EXPECT_NEAR(box.lo[i], c.lo[i], 0.6) << c.name;
-            EXPECT_NEAR(box.hi[i], c.hi[i], 0.6) << c.name;
+            EXPECT_NEAR(box.lo[i], c.lo[i], 0.02 * norm(c.hi - c.lo)) << c.name;
+            EXPECT_NEAR(box.hi[i], c.hi[i], 0.02 * norm(c.hi - c.lo)) << c.name;
         }
     }
+}
+
+TEST(Summary, boxes_leave_out_what_the_boundary_cuts_off) {
+    // A triangle of a surface whose corner beside it is far away, and the bottom of a bowl.
+    const auto line = *BSplineBasis::bezier(1), cubic = *BSplineBasis::bezier(3),
+               square = *BSplineBasis::bezier(2);
+    const auto far = *Surface<Vec<3>>::make({line, cubic}, Net<2, Vec<3>>({2, 4}, {{{0, 0, 0}},
+                                                                                   {{0, 1, 1}},
+                                                                                   {{0, 2, -1}},
+                                                                                   {{0, 3, 0}},
+                                                                                   {{50, 0, 0}},
+                                                                                   {{1, 1, 1}},
+                                                                                   {{1, 2, -1}},
+                                                                                   {{1, 3, 0}}}));
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) c.push_back({{i / 2.0, k / 2.0, 4.0 * ((i != 1) + (k != 1))}});
+    const auto bowl = *Surface<Vec<3>>::make({square, square}, Net<2, Vec<3>>({3, 3}, c));
+    const Vec<2> corner[3] = {{{0, 0}}, {{0.1, 1}}, {{0, 1}}};
+    std::vector<CurveGeometry<2>> triangle,
+        round{Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.1, 0}}, {{0, 0.1}}}};
+    for (int k = 0; k < 3; ++k)
+        triangle.push_back(
+            *Curve<Vec<2>>::make({line}, Net<1, Vec<2>>({2}, {corner[k], corner[(k + 1) % 3]})));
+    const auto check = [](const Surface<Vec<3>>& surface, const std::vector<CurveGeometry<2>>& loop,
+                          auto inside) {
+        ModelBuilder builder;
+        const std::vector<std::vector<CurveGeometry<2>>> loops{loop};
+        ASSERT_TRUE(builder.add_trimmed(surface, loops));
+        const auto m = std::move(builder).finish();
+        ASSERT_TRUE(m);
+        Box<3> inner;
+        for (int i = 0; i <= 60; ++i)
+            for (int k = 0; k <= 63; ++k)
+                inner.add(jet<0>(SurfaceGeometry(surface), inside(i / 60.0, k / 63.0).c).value());
+        const Box<3> box = summary(*m).box;
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_LE(box.lo[i], inner.lo[i] + 1e-12);
+            EXPECT_GE(box.hi[i], inner.hi[i] - 1e-12);
+            EXPECT_GE(box.lo[i], inner.lo[i] - 0.03 * inner.diagonal());
+            EXPECT_LE(box.hi[i], inner.hi[i] + 0.03 * inner.diagonal());
+        }
+    };
+    check(far, triangle, [](double s, double t) { return Vec<2>{{0.1 * s * t, s}}; });
+    check(bowl, round, [](double s, double t) {
+        return Vec<2>{{0.5 + 0.1 * s * std::cos(2 * kPi * t), 0.5 + 0.1 * s * std::sin(2 * kPi * t)}};
+    });
 }
 
 TEST(Summary, counts_what_the_model_has) {

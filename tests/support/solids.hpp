@@ -1,5 +1,6 @@
 // Closed models with known shape, made by hand: seams, poles, shared edges.
 #pragma once
+#include <freiform/mesh/triangle_tree.hpp>
 #include <freiform/model/assemble.hpp>
 #include <freiform/model/tessellate.hpp>
 
@@ -122,21 +123,28 @@ inline double distance_to_triangle(const Vec<3>& p, const Vec<3>& a, const Vec<3
 // The largest distance between points of the surfaces and the triangle that stands for them, at `k` (k + 1) /
 // 2 parameters inside each triangle; triangles that collapsed at poles are not sampled.
 inline double sampled_deviation(const Model& model, const Tessellation& t, int k = 5) {
+    std::vector<Triangle3> all;
+    for (std::size_t i = 0; i < t.mesh.triangles.size(); ++i) {
+        const auto p = t.mesh.points_of(i);
+        const auto at = [&](std::size_t c) { return t.mesh.points[std::size_t(p[c])]; };
+        all.push_back({at(0), at(1), at(2)});
+    }
+    const TriangleTree tree(all);
     double most = 0;
     for (const MeshPart& part : t.mesh.parts) {
         const SurfaceGeometry& surface = model.faces[std::size_t(part.face)].surface;
         for (int i = part.first; i < part.first + part.count; ++i) {
             const auto& tri = t.mesh.triangles[std::size_t(i)];
-            const auto p = t.mesh.points_of(std::size_t(i));
+            const auto& own = all[std::size_t(i)];
             const auto uv = [&](int c) { return t.mesh.vertices[std::size_t(tri[std::size_t(c)])].uv; };
             for (int x = 0; x < k; ++x)
                 for (int y = 0; x + y < k; ++y) {
                     const double s = (x + 1.0 / 3) / k, r = (y + 1.0 / 3) / k;
                     const Vec<2> at = (1 - s - r) * uv(0) + s * uv(1) + r * uv(2);
-                    most = std::max(most, distance_to_triangle(jet<0>(surface, at.c).value(),
-                                                               t.mesh.points[std::size_t(p[0])],
-                                                               t.mesh.points[std::size_t(p[1])],
-                                                               t.mesh.points[std::size_t(p[2])]));
+                    const Vec<3> p = jet<0>(surface, at.c).value();
+                    const double from_own = distance_to_triangle(p, own[0], own[1], own[2]);
+                    if (from_own > most)  // another one may be nearer
+                        most = std::max(most, tree.nearest(p).distance);
                 }
         }
     }

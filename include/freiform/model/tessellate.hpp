@@ -33,8 +33,9 @@ struct Tessellation {
     TriangleMesh mesh;  // one part per face that was not refused, in order
     MeshTopology topology;
     // Every point of a face that is not refused lies within error_bound + boundary_gap of the mesh, and every
-    // point of the mesh within the same distance of the model. Away from the boundaries of faces error_bound
-    // alone is enough. Proven from control points (curvature_tree.cpp, edge_mesh.cpp), rounding included.
+    // point of the mesh within the same distance of the surface of its face, continued where the mesh leaves
+    // the boundary of the face. Away from the boundaries of faces error_bound alone is enough. Proven from
+    // control points (curvature_tree.cpp, bending.cpp, edge_mesh.cpp), rounding included.
     double error_bound = 0;
     // How far the model contradicts itself: the largest distance between a mesh point on an edge and the
     // place where a face's own parameter curve puts it. Not an error of the mesh.

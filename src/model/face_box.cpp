@@ -1,0 +1,85 @@
+// Tight boxes of faces.
+//
+// Idea: most of a face lies inside the box of the edges; only parts that may reach beyond it are cut finer,
+// those first that may reach farthest. A part of a face is within its error of two triangles
+// (face_parts.cpp), so its box is that of its corners, wider by the error; parts outside the boundary are
+// left out, which a box over all parameters between the loops cannot do. Cost: at most kMostBoxParts parts
+// for each face; a plane face, which its boundary encloses, needs none. Accuracy: contains the face; beyond
+// it by kBoxEnough of the diagonal, where the number of parts suffices.
+#include "face_box_detail.hpp"
+#include "face_parts_detail.hpp"
+
+#include <algorithm>
+
+namespace freiform {
+
+namespace {
+
+constexpr int kMostBoxParts = 400, kBoundarySamples = 8;
+constexpr double kBoxEnough = 1.0 / 128;    // of the diagonal of the box of the edges
+constexpr double kBoxBoundary = 1.0 / 512;  // likewise, how well boundaries are known
+
+Box<3> box_around(const FacePart& part) {
+    Box<3> box;
+    for (const Vec<3>& c : part.corner) {
+        box.add(c - Box<3>::filled(part.error));
+        box.add(c + Box<3>::filled(part.error));
+    }
+    return box;
+}
+
+bool is_divisible(const FacePart& p) {
+    for (int d = 0; d < 2; ++d)
+        if (const double m = p.box.side(d).middle(); p.box.lo[d] < m && m < p.box.hi[d]) return true;
+    return false;
+}
+
+// How far the inner box is exceeded.
+double beyond(const Box<3>& box, const Box<3>& inner) {
+    double most = 0;
+    for (int i = 0; i < 3; ++i) most = std::max({most, inner.lo[i] - box.lo[i], box.hi[i] - inner.hi[i]});
+    return most;
+}
+
+}  // namespace
+
+std::optional<Box<3>> box_of_face(const Face& face, const std::vector<Edge>& edges, const Box<3>& known) {
+    Box<3> inner = known, out;
+    const auto ends = limits(face.surface);
+    for (const Loop& l : face.loops)  // the edges may have no curves in space
+        for (const Coedge& c : l.coedges)
+            for (int k = 0; k <= kBoundarySamples; ++k) {
+                const Interval on = edges[std::size_t(c.edge)].range;
+                const double t = on.lo + on.length() * k / kBoundarySamples;
+                inner.add(jet<0>(face.surface, clamped(jet<0>(c.curve, t).value(), ends).c).value());
+            }
+    const auto parts = FaceParts::make(face, edges, kBoxBoundary * inner.diagonal());
+    if (!parts) return std::nullopt;
+    const auto whole = parts->whole();
+    if (!whole) return Box<3>{};
+    std::vector<FacePart> heap;
+    const auto push = [&](FacePart part) {
+        if (!part.crossing)
+            for (const Vec<3>& c : part.corner) inner.add(c);
+        part.key = beyond(box_around(part), inner);
+        heap.push_back(std::move(part));
+        std::ranges::push_heap(heap, {}, &FacePart::key);
+    };
+    push(*whole);
+    for (int seen = 1; seen < kMostBoxParts && !heap.empty();) {
+        std::ranges::pop_heap(heap, {}, &FacePart::key);
+        const FacePart part = std::move(heap.back());
+        heap.pop_back();
+        if (beyond(box_around(part), inner) <= kBoxEnough * inner.diagonal() || !is_divisible(part)) {
+            out.add(box_around(part));
+            continue;
+        }
+        for (FacePart& half : parts->halves(part)) push(std::move(half));
+        seen += 2;
+    }
+    for (const FacePart& part : heap) out.add(box_around(part));
+    if (!out.is_empty() && !std::isfinite(out.diagonal())) return std::nullopt;
+    return out;
+}
+
+}  // namespace freiform
