@@ -77,54 +77,84 @@ Result<void> check_face(const Model& m, const Face& f, std::string_view where) {
     return {};
 }
 
-// A box that contains the curve or surface over `on`: in each of several cells it lies within Q / 8 of the
-// linear interpolant of the corners (curvature_tree.cpp), coordinate by coordinate; kinks add their own
-// bound.
+// How far the curve or surface over `part` may leave the linear interpolant of its corners: within Q / 8
+// (curvature_tree.cpp), coordinate by coordinate; kinks add their own bound.
+template <std::size_t N, int D>
+Vec<D> slack_of(const DerivativeQuery<N, D>& query, const std::array<Interval, N>& part) {
+    Vec<D> slack;
+    for (int i = 0; i < D; ++i) {
+        Vec<D> axis{};
+        axis[i] = 1;
+        const auto bounds = query.along(axis, part);
+        const double du = part[0].length(), dv = part[N - 1].length();
+        if constexpr (N == 1)
+            slack[i] = bounds(2) * du * du / 8;
+        else
+            slack[i] = (bounds(2, 0) * du * du + 2 * bounds(1, 1) * du * dv + bounds(0, 2) * dv * dv) / 8;
+        for (std::size_t d = 0; d < N; ++d) slack[i] += kink_bound_of(query.kinks(int(d)), part[d]);
+    }
+    return slack;
+}
+
+// A box that contains the curve or surface over `on`: that of the corners of several cells, wider by their
+// slack. Of curves, cells with much slack are halved.
 template <std::size_t N, int D>
 Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<Interval, N>& on) {
-    constexpr int kCells = N == 1 ? 16 : 8;
+    constexpr int kCells = N == 1 ? 16 : 8, kHalvings = N == 1 ? 6 : 0;
+    constexpr double kLittle = 1.0 / 256;  // of the diagonal
     const DerivativeQuery<N, D> query(geometry);
+    const auto value = [&](const std::array<double, N>& at) {
+        if constexpr (N == 1)
+            return jet<0>(geometry, at[0]).value();
+        else
+            return jet<0>(geometry, at).value();
+    };
+    struct Cell {
+        std::array<Interval, N> part;
+        int depth = 0;
+    };
+    std::vector<Cell> stack;
     Index<N> cells{}, corners{};
     for (auto& c : cells) c = kCells;
     for (auto& c : corners) c = 2;
-    Box<D> box;
-    bool torn = false;
+    Box<D> box, points_only;
     each_index(cells, [&](const Index<N>& cell) {
-        std::array<Interval, N> part;
+        Cell next;
         for (std::size_t d = 0; d < N; ++d) {
             const double h = on[d].length() / kCells;
-            part[d] = {on[d].lo + cell[d] * h,
-                       cell[d] + 1 == kCells ? on[d].hi : on[d].lo + (cell[d] + 1) * h};
+            next.part[d] = {on[d].lo + cell[d] * h,
+                            cell[d] + 1 == kCells ? on[d].hi : on[d].lo + (cell[d] + 1) * h};
         }
-        Vec<D> slack;
-        double kinks = 0;
-        for (std::size_t d = 0; d < N; ++d) kinks += kink_bound_of(query.kinks(int(d)), part[d]);
-        for (int i = 0; i < D; ++i) {
-            Vec<D> axis{};
-            axis[i] = 1;
-            const auto bounds = query.along(axis, part);
-            if constexpr (N == 1) {
-                slack[i] = bounds(2) * part[0].length() * part[0].length() / 8;
-            } else {
-                const double du = part[0].length(), dv = part[1].length();
-                slack[i] = (bounds(2, 0) * du * du + 2 * bounds(1, 1) * du * dv + bounds(0, 2) * dv * dv) / 8;
+        std::array<double, N> middle{};
+        for (std::size_t d = 0; d < N; ++d) middle[d] = next.part[d].middle();
+        points_only.add(value(middle));
+        stack.push_back(next);
+    });
+    const double little = kLittle * points_only.diagonal();
+    bool torn = false;
+    while (!stack.empty() && !torn) {
+        const Cell cell = stack.back();
+        stack.pop_back();
+        const Vec<D> slack = slack_of<N, D>(query, cell.part);
+        torn = !is_finite(slack);
+        if (torn) break;
+        if (max_abs(slack) > little && cell.depth < kHalvings) {
+            const double middle = cell.part[0].middle();
+            for (int half = 0; half < 2; ++half) {
+                Cell next{cell.part, cell.depth + 1};
+                (half == 0 ? next.part[0].hi : next.part[0].lo) = middle;
+                stack.push_back(next);
             }
-            slack[i] += kinks;
+            continue;
         }
-        torn = torn || !is_finite(slack);
-        if (torn) return;
         each_index(corners, [&](const Index<N>& i) {
             std::array<double, N> at{};
-            for (std::size_t d = 0; d < N; ++d) at[d] = i[d] == 0 ? part[d].lo : part[d].hi;
-            Vec<D> p;
-            if constexpr (N == 1)
-                p = jet<0>(geometry, at[0]).value();
-            else
-                p = jet<0>(geometry, at).value();
+            for (std::size_t d = 0; d < N; ++d) at[d] = i[d] == 0 ? cell.part[d].lo : cell.part[d].hi;
+            const Vec<D> p = value(at);
             box.add(p - slack);
             box.add(p + slack);
         });
-    });
+    }
     if (torn)  // a spline that jumps: its control points contain it as well
         std::visit(
             [&](const auto& g) {
