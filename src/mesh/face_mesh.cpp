@@ -204,10 +204,11 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
 Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
                            const FaceDemands& demands, long long max_triangles,
                            std::span<const Vec<2>> extra) {
-    auto mesh = filled(surface, boundary, demands, max_triangles, extra, true);
-    // Judging by all of the error is dearer but asks nothing of normals.
-    if (!mesh && mesh.error().kind == RefusalKind::not_converged)
-        return filled(surface, boundary, demands, max_triangles, extra, false);
+    // Judging by all of the error is dearer but asks nothing of normals, which kinks spoil.
+    const bool smooth = surface.kinks(0).empty() && surface.kinks(1).empty();
+    auto mesh = filled(surface, boundary, demands, max_triangles, extra, smooth);
+    if (smooth && !mesh && mesh.error().kind == RefusalKind::not_converged)
+        mesh = filled(surface, boundary, demands, max_triangles, extra, false);
     return mesh;
 }
 

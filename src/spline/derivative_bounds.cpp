@@ -17,6 +17,8 @@
 // . q_j.
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include "kinks_detail.hpp"
+
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -277,66 +279,6 @@ DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3
             grow *
             (S[std::size_t(3 + k)] + d * (second[k] / least + 3 * m[k == 2] * m[k >= 1] / (least * least)));
     return out;
-}
-
-}  // namespace
-
-namespace {
-
-// Bound of the jump of c_d between two neighbouring Bezier pieces, from the jumps of numerator and weight:
-// c_d = (A^_d - w_d (c - c0)) / w on both sides, with A^ and w continuous.
-template <std::size_t N, class P>
-double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
-    constexpr int D = Space<P>::kDim;
-    const std::size_t d = std::size_t(axis);
-    Index<N> right = left;
-    ++right[d];
-    const auto l = pieces.net(left), r = pieces.net(right);
-    const int p = pieces.degree(axis);
-    const double hl = pieces.box(left)[d].length(), hr = pieces.box(right)[d].length();
-    if (p == 0) return kInfinity;
-    const PointOf<P> c0 = project(r(Index<N>{}));
-    double radius = 0, jump = 0, weight_jump = 0, weight_min = kInfinity, largest = 0;
-    bool torn = false;
-    each_fibre(axis, l.extent, [&](const Index<N>& at) {
-        const auto a = l.fibre(axis, at), b = r.fibre(axis, at);
-        const double wl = Space<P>::weight(a[p]), wr = Space<P>::weight(b[0]);
-        const double step =
-            (Space<P>::weight(b[1]) - wr) * (p / hr) - (wl - Space<P>::weight(a[p - 1])) * (p / hl);
-        Vec<D> diff, offset;
-        for (int i = 0; i < D; ++i) {
-            const auto hat = [&](const P& q) { return q[i] - Space<P>::weight(q) * c0[i]; };
-            diff[i] = (hat(b[1]) - hat(b[0])) * (p / hr) - (hat(a[p]) - hat(a[p - 1])) * (p / hl);
-            offset[i] = hat(b[0]);
-            largest = std::max({largest, std::abs(a[p][i]), std::abs(b[0][i])});
-        }
-        radius = std::max(radius, norm(offset) / wr);
-        jump = std::max(jump, norm(diff));
-        weight_jump = std::max(weight_jump, std::abs(step));
-        weight_min = std::min({weight_min, wl, wr});
-        torn = torn ||
-               max_abs(a[p] - b[0]) > 64 * (p + 1) * kUnitRoundoff * std::max(max_abs(a[p]), max_abs(b[0]));
-    });
-    if (torn) return kInfinity;
-    const double slip = 64 * (p + 1) * kUnitRoundoff * largest * p * (1 / hl + 1 / hr);
-    return (jump + weight_jump * radius + slip * (1 + (Space<P>::kRational ? 1 : 0))) / weight_min *
-           (1 + 64 * kUnitRoundoff);
-}
-
-template <std::size_t N, class P>
-std::vector<Kink> kinks_of(const Patch<N, P>& patch, const BezierPieces<N, P>& pieces, int axis) {
-    std::vector<Kink> kinks;
-    const auto& breaks = pieces.breaks(axis);
-    for (int k = 1; k + 1 < int(breaks.size()); ++k) {
-        if (patch.basis(axis).multiplicity(breaks[std::size_t(k)]) < patch.basis(axis).degree()) continue;
-        Kink kink{breaks[std::size_t(k)], 0};
-        each_fibre(axis, pieces.extent(), [&](Index<N> at) {
-            at[std::size_t(axis)] = k - 1;
-            kink.jump = std::max(kink.jump, jump_between(pieces, at, axis));
-        });
-        kinks.push_back(kink);
-    }
-    return kinks;
 }
 
 }  // namespace
