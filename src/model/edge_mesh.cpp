@@ -11,7 +11,9 @@
 // the chord of its ends, and both ends are near L(t). So the faces' region outside the polygon is within
 //   max(|S o p - L|, |S o c - L|) + Q(sliver) / 8
 // of the mesh edge, not counting the gap between S(p) and the mesh points, which the model brings along.
-// Triangles with the chord as longest side have error at most Q(p(b) - p(a)) / 6 (R^2 <= longest^2 / 3).
+// A segment that seems to need k parts is cut at floor(k/2)/k of it, so that even curvature gives k equal
+// parts. Triangles with the chord as longest side have error at most Q(p(b) - p(a)) / 6 (R^2 <= longest^2 /
+// 3).
 #include "edge_mesh_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
