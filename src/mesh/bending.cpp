@@ -40,8 +40,9 @@
 // A spline that ends within the disc is thought of as continued by reflection in the points of its border,
 // S(b - h) = 2 S(b) - S(b + h) in one direction, which has continuous first derivatives and three times the
 // second ones at most. G goes there only from the boundary's own zone, and D does not reach there. Rounding:
-// computed first derivatives enter a, b, n with relative errors below 1e-7 if a box is not much smaller than
-// the rounding of points over 1e-9, which is asked for; 1e-6 is added.
+// first derivatives of a piece of degree p and side w are differences of points times p / w, off by at most
+// some 4 p / w times what points are off by. Asked for is that this is below 1e-9 of a w, so a, b and n have
+// relative errors below 1e-7 (p <= 25); 1e-6 is added.
 //
 // References: [Milnor 1965] for degrees. Why not all of |S - L|: the wall of a frustum needs a hundred times
 // as many triangles. Why not distances from planes: where the foot leaves a triangle its neighbour has to be
@@ -70,7 +71,9 @@ Bending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool
     const double a = norm(j.d[1]), b = norm(j.d[2]), hu = on[0].length() / 2, hv = on[1].length() / 2;
     const Vec<3> m = cross(j.d[1], j.d[2]);
     if (!(a * b > 0) || !(norm(m) > kRounding * a * b)) return out;
-    if (!(value_error_bound(surface.geometry(), on) <= 1e-9 * std::min(a * hu, b * hv))) return out;
+    const double resolved =
+        std::min(a * std::min(hu, surface.thinnest_piece(0)), b * std::min(hv, surface.thinnest_piece(1)));
+    if (!(value_error_bound(surface.geometry(), on) <= 1e-9 * resolved)) return out;
     const double c = std::abs(dot(j.d[1], j.d[2])) / (a * b);
     const auto swing = [&](const Curvature& k) {
         return std::hypot((k.uu * hu + k.uv * hv) / a, (k.uv * hu + k.vv * hv) / b) + kRounding;

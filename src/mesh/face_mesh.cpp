@@ -25,6 +25,7 @@ namespace {
 
 constexpr int kSeparateRounds = 16;
 constexpr std::size_t kPatience = 16;  // times the points that are expected
+constexpr std::size_t kHope = 4;       // likewise, where there is another way
 
 // The boundary with equal corners merged, ready for the triangulation.
 struct Polygon {
@@ -154,10 +155,10 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     // Leaves and boundary say how many points to expect; many times as many mean that something does not
     // converge.
     const std::size_t limit = std::size_t(max_triangles) / 2 + points.size();
-    const std::size_t most =
-        std::isfinite(demands.max_edge)
-            ? limit
-            : std::min(limit, kPatience * (points.size() + tree->corners().size()) + 10'000);
+    const std::size_t expected = points.size() + tree->corners().size() + 600;
+    const std::size_t most = std::isfinite(demands.max_edge)
+                                 ? limit
+                                 : std::min(limit, (knows_normals ? kHope : kPatience) * expected);
     for (int round = 0; round < kSeparateRounds; ++round) {
         if (!filler.refine(most))
             return most == limit

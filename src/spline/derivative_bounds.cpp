@@ -24,7 +24,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace freiform {
 
@@ -285,21 +284,31 @@ DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3
 
 template <std::size_t N, int D>
 DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&geometry) {
+    thinnest_.fill(kInfinity);
     std::visit(
         [&](const auto& g) {
+            using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); }) {
                 auto pieces = decompose(g);
-                for (std::size_t d = 0; d < N; ++d) kinks_[d] = kinks_of(g, pieces, int(d));
+                for (std::size_t d = 0; d < N; ++d) {
+                    kinks_[d] = kinks_of(g, pieces, int(d));
+                    const auto& b = pieces.breaks(int(d));
+                    for (std::size_t i = 1; i < b.size(); ++i)
+                        thinnest_[d] = std::min(thinnest_[d], b[i] - b[i - 1]);
+                }
                 pieces_ = std::move(pieces);
             } else if constexpr (requires { g.profile; }) {
                 profile_ = std::make_shared<const DerivativeQuery<1, 3>>(g.profile);
-                constexpr std::size_t axis = requires { g.direction; }
-                ? 0 : 1;
+                constexpr std::size_t axis = std::same_as<G, Revolution>;
                 kinks_[axis].assign(profile_->kinks(0).begin(), profile_->kinks(0).end());
+                thinnest_[axis] = profile_->thinnest_piece(0);
             } else if constexpr (requires { g.base; }) {
                 base_ = std::make_shared<const DerivativeQuery<2, 3>>(*g.base);
-                for (std::size_t d = 0; d < N; ++d)  // where the base has a kink, its offset is torn
-                    for (Kink k : base_->kinks(int(d))) kinks_[d].push_back({k.at, kInfinity});
+                for (std::size_t d = 0; d < N; ++d) {
+                    thinnest_[d] = base_->thinnest_piece(int(d));
+                    for (Kink k : base_->kinks(int(d)))  // where the base has a kink, its offset is torn
+                        kinks_[d].push_back({k.at, kInfinity});
+                }
             }
         },
         geometry);

@@ -1,5 +1,6 @@
 #include "support/shapes.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <gtest/gtest.h>
@@ -134,6 +135,22 @@ TEST(DerivativeBounds, of_coordinates_of_plane_curves_hold_for_each_by_itself) {
                 }
             }
         }
+    }
+}
+
+TEST(DerivativeBounds, the_thinnest_piece_is_the_shortest_knot_span) {
+    const auto basis = *BSplineBasis::make(2, {0, 0, 0, 1, 1.25, 4, 4, 4});
+    const auto spline =
+        *Curve<Vec<3>>::make({basis}, Net<1, Vec<3>>({5}, std::vector<Vec<3>>(5, Vec<3>{{1, 0, 2}})));
+    const CurveGeometry<3> profile = spline;
+    EXPECT_EQ((DerivativeQuery<1, 3>(profile).thinnest_piece(0)), 0.25);
+    const SurfaceGeometry turned = Revolution{profile, {}, {{0, 0, 1}}},
+                          moved = Extrusion{profile, {{0, 1, 0}}},
+                          offset = OffsetSurface{std::make_shared<const SurfaceGeometry>(moved), 0.5};
+    for (const auto& [surface, along_profile] : {std::pair(&turned, 1), {&moved, 0}, {&offset, 0}}) {
+        const DerivativeQuery<2, 3> query(*surface);
+        EXPECT_EQ(query.thinnest_piece(along_profile), 0.25);
+        EXPECT_EQ(query.thinnest_piece(1 - along_profile), kInfinity);
     }
 }
 
