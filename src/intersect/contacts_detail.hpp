@@ -3,6 +3,8 @@
 #pragma once
 #include "search_detail.hpp"
 
+#include <freiform/core/result.hpp>
+#include <freiform/core/text.hpp>
 #include <freiform/intersect/contact.hpp>
 
 namespace freiform::detail {
@@ -13,7 +15,15 @@ struct Raw {
     Contact<D, N> c;
     int sign = 0;           // how it crosses; 0: not known
     bool at_joint = false;  // its box reaches over a knot, where the curve goes on
+    // Pair of pieces, and the parameters (bits) that were moved from the end of a closed domain to its begin.
+    std::array<int, 3> from{};
 };
+
+inline Result<void> check_accuracy(const IntersectOptions& options) {
+    if (!(options.accuracy >= 0))
+        return refuse(RefusalKind::invalid, "accuracy", text(options.accuracy, " is not a length >= 0"));
+    return {};
+}
 
 // Parameters of a piece to those of the object, outwards; 0 and 1 are knots exactly.
 inline double global(const Interval& on, double t) {
@@ -88,12 +98,14 @@ std::vector<Contact<D, N>> joined(std::vector<Raw<D, N>> all) {
     std::vector<Raw<D, N>> out;
     for (Raw<D, N>& r : all) {
         bool known = false;
-        for (Raw<D, N>& o : out)
-            if (touch(o.c.box, r.c.box)) {
-                join(o, r);
-                known = true;
-                break;
-            }
+        for (Raw<D, N>& o : out) {
+            // Proven ones of one pair of pieces are different ones, however near they are.
+            const bool differ = o.from == r.from && o.c.is_proven() && r.c.is_proven();
+            if (differ || !touch(o.c.box, r.c.box)) continue;
+            join(o, r);
+            known = true;
+            break;
+        }
         if (!known) out.push_back(r);
     }
     std::vector<Contact<D, N>> contacts;

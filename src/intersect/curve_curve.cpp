@@ -227,6 +227,7 @@ private:
         r.c.gap = std::scalbn(std::sqrt(double(D)) * 1.01 * (max_abs(x - y) + e), exponent_);
         if constexpr (D == 2)
             if (exact && r.c.multiplicity == 1) r.sign = cross(u, v) < 0 ? 1 : -1;
+        r.from = {i, j, 0};
         const Interval oa = on(a_, i), ob = on(b_, j);
         r.c.at = {freiform::detail::global(oa, r.c.at[0]), freiform::detail::global(ob, r.c.at[1])};
         if (r.at_joint)  // the neighbour may have it beyond the knot
@@ -241,6 +242,7 @@ private:
     // The two ends of a closed curve are one place: the beginning.
     static void wrap(const ArcPieces<1, P>& c, Raw<D, 2>& r, std::size_t k) {
         if (!c.closed[0] || r.c.box[k].hi < c.domain[0].hi) return;
+        r.from[2] |= 1 << k;
         const double period = c.domain[0].length();
         r.c.at[k] = std::max(r.c.at[k] - period, c.domain[0].lo);
         r.c.box[k] = {r.c.box[k].lo - period, c.domain[0].lo};
@@ -341,12 +343,6 @@ Intersections<Space<P>::kDim, 2> pair_of(CurvePair<P>& work, const ArcPieces<1, 
     return answer;
 }
 
-Result<void> check(const IntersectOptions& options) {
-    if (!(options.accuracy >= 0))
-        return refuse(RefusalKind::invalid, "accuracy", text(options.accuracy, " is not a length >= 0"));
-    return {};
-}
-
 }  // namespace
 
 template <class P>
@@ -356,7 +352,7 @@ IntersectCurve<P>::IntersectCurve(const Curve<P>& curve)
 template <class P>
 requires(Space<P>::kDim == 2 || Space<P>::kDim == 3) Result < Intersections < Space<P>::kDim,
 2 >> intersect(const Curve<P>& a, const Curve<P>& b, const IntersectOptions& options) {
-    if (auto ok = check(options); !ok) return std::unexpected(ok.error());
+    if (auto ok = check_accuracy(options); !ok) return std::unexpected(ok.error());
     CurvePair<P> work;
     return pair_of(work, arc_pieces(a), arc_pieces(b), options);
 }
@@ -368,7 +364,7 @@ requires(Space<P>::kDim == 2 ||
                                                      std::span<Intersections<Space<P>::kDim, 2>> out,
                                                      const IntersectOptions& options) {
     FF_REQUIRE(a.size() == b.size() && a.size() == out.size());
-    if (auto ok = check(options); !ok) return ok;
+    if (auto ok = check_accuracy(options); !ok) return ok;
     constexpr std::size_t kChunk = 64;
     parallel_for((a.size() + kChunk - 1) / kChunk, 4, [&](std::size_t chunk) {
         CurvePair<P> work;

@@ -133,11 +133,13 @@ private:
         if (r.at_joint)  // the neighbour may have it beyond the knot
             for (Interval& t : r.c.box) t = {t.lo - 2 * t.length(), t.hi + 2 * t.length()};
         r.c.box = global(i, j, r.c.box, r.at_joint);
+        r.from = {i, j, 0};
         for (std::size_t k = 0; k < 3; ++k) {
             const Interval whole = domain(k);
             r.c.at[k] = detail::global(piece(k, i, j), r.c.at[k]);
             r.c.box[k] = hull(r.c.box[k], {r.c.at[k], r.c.at[k]});
             if (!closed(k) || r.c.box[k].hi < whole.hi) continue;
+            r.from[2] |= 1 << k;
             r.c.at[k] = std::max(r.c.at[k] - whole.length(), whole.lo);  // both ends are one place
             r.c.box[k] = {r.c.box[k].lo - whole.length(), whole.lo};
         }
@@ -153,18 +155,12 @@ private:
     Answer answer_;
 };
 
-Result<void> check_accuracy(const IntersectOptions& options) {
-    if (!(options.accuracy >= 0))
-        return refuse(RefusalKind::invalid, "accuracy", text(options.accuracy, " is not a length >= 0"));
-    return {};
-}
-
 Result<void> check_line(const StraightLine& line, std::size_t i) {
     const std::string where = text("lines[", i, "]");
     if (!is_finite(line.point) || !is_finite(line.direction))
         return refuse(RefusalKind::nonfinite, where, "has a number that is not finite");
     if (max_abs(line.direction) == 0) return refuse(RefusalKind::invalid, where, "has no direction");
-    if (!(line.on.lo <= line.on.hi))
+    if (!(line.on.lo < line.on.hi))
         return refuse(RefusalKind::invalid, where, text("runs over [", line.on.lo, ", ", line.on.hi, "]"));
     return {};
 }
@@ -216,12 +212,15 @@ Result<void> IntersectSurface<P>::intersect(std::span<const StraightLine> lines,
         for (std::size_t i = chunk * kChunk; i < std::min(lines.size(), (chunk + 1) * kChunk); ++i) {
             out[i] = {};
             const Interval on = inside(lines[i], box);
-            if (!(on.lo < on.hi)) continue;
+            const bool beyond = !std::isfinite(on.lo) || !std::isfinite(on.hi);  // doubles, not the surface
+            if (!beyond && !(on.lo < on.hi)) continue;
             const auto basis = BSplineBasis::bezier(1, on);
             const auto end = [&](double t) {
                 return Space<P>::lift(lines[i].point + t * lines[i].direction, 1);
             };
-            if (basis)
+            if (beyond || !basis)
+                out[i].undecided.push_back({on, pieces_->domain[0], pieces_->domain[1]});
+            else
                 out[i] = work.run(
                     arc_pieces(Curve<P>::trusted({*basis}, Net<1, P>({2}, {end(on.lo), end(on.hi)}))),
                     *pieces_, options);

@@ -135,33 +135,39 @@ int sign_at(const Whole& f, double t) {
     return sum.sign();
 }
 
+// A polynomial and its isolated roots.
+struct Zeros {
+    const std::vector<Integer>& of;
+    const std::vector<Root>& all;
+};
+
 // The sign of f at a root of another polynomial; nothing if that would take more than doubles to tell.
-std::optional<int> sign_at(const Whole& f, const Root& root, const std::vector<Integer>& of) {
+std::optional<int> sign_at(const Whole& f, const Root& root, const Zeros& zeros) {
     if (vanishes(f)) return 0;
     if (root.at.lo == root.at.hi) return sign_at(f, root.at.lo);
     const std::vector<Integer> c = bernstein_of(f);
     const auto near = [&](const Root& r) { return r.at.overlaps(root.at); };
     const std::vector<Root> roots = integer_roots(c, 0);
     if (std::none_of(roots.begin(), roots.end(), near)) return sign_at(f, root.at.lo);
-    const std::vector<Root> common = common_roots(std::array{c, of}, 0);
-    if (std::any_of(common.begin(), common.end(), [&](const Root& r) {
-            return r.at.overlaps(root.at);  // roots of R are isolated: it is this one
-        }))
-        return 0;
+    // A common root is one of R: this one, if its interval meets that of no other.
+    for (const Root& r : common_roots(std::array{c, zeros.of}, 0))
+        if (near(r) && std::count_if(zeros.all.begin(), zeros.all.end(),
+                                     [&](const Root& o) { return o.at.overlaps(r.at); }) == 1)
+            return 0;
     return std::nullopt;
 }
 
 // Does v1 / (v0 + v1) lie in `on` at a root? Nothing if it is not known.
 std::optional<bool> lies_in(const std::array<Whole, 2>& v, const Interval& on, const Root& root,
-                            const std::vector<Integer>& of) {
+                            const Zeros& zeros) {
     const Whole sum = v[0] + v[1];
-    const auto whole = sign_at(sum, root, of);
+    const auto whole = sign_at(sum, root, zeros);
     if (!whole || *whole == 0) return std::nullopt;
     const auto side = [&](double t) -> std::optional<int> {  // of v1 - t (v0 + v1)
         const auto [a, b] = dyadic(t);
         Whole g = sum;
         for (std::size_t i = 0; i < g.s.size(); ++i) g.s[i] = (a + b) * v[1].s[i] - a * g.s[i];
-        const auto s = sign_at(g, root, of);
+        const auto s = sign_at(g, root, zeros);
         if (!s) return std::nullopt;
         return *s * *whole;
     };
@@ -306,10 +312,11 @@ bool ExactPair::coincide() {
 std::optional<bool> ExactPair::meets(const Side& side, const Root& root, const Interval& cell, bool high,
                                      const ExactCurve& on, const ExactCurve& of) {
     const auto& v = side.place[high];
-    const auto in = lies_in(v, cell, root, side.resultant);
+    const Zeros zeros{side.resultant, side.roots};
+    const auto in = lies_in(v, cell, root, zeros);
     if (!in || !*in || on.third.is_zero()) return in;
     const auto apart =
-        sign_at(on.third * composed(of.x[2], v) - on.x[2] * composed(of.third, v), root, side.resultant);
+        sign_at(on.third * composed(of.x[2], v) - on.x[2] * composed(of.third, v), root, zeros);
     if (!apart) return std::nullopt;
     return *apart == 0;
 }

@@ -8,7 +8,9 @@
 //
 // Parts of both that move on in one common direction have no other contacts than those of the overlap:
 // a curve that moves on does not meet itself. `settled` looks at the control points over the interval that
-// both parts cover.
+// both parts cover. That interval comes from Newton's method, and that the curves are together over it is
+// seen at its ends and in the middle only: here, beside overlaps, no other contact is an estimate, not a
+// proof.
 #pragma once
 #include "exact_pair_detail.hpp"
 #include "parts_detail.hpp"
@@ -121,7 +123,10 @@ public:
             return true;
         };
         const Interval t{b_[ib].from[0], b_[ib].from[0] + b_[ib].width[0]};
-        const double s0 = inverse(ia, t.lo), s1 = inverse(ia, t.hi), w = a_[ia].width[0];
+        double s0 = 0, s1 = 0, between = 0;
+        if (!inverse(ia, t.lo, s0) || !inverse(ia, t.hi, s1) || !inverse(ia, t.middle(), between))
+            return false;
+        const double w = a_[ia].width[0];
         Interval on{std::min({a_[ia].from[0], s0, s1}), std::max({a_[ia].from[0] + w, s0, s1})};
         const double wider = 0.05 * on.length();
         on = {std::max(0.0, on.lo - wider), std::min(1.0, on.hi + wider)};
@@ -153,18 +158,20 @@ private:
     }
     static void place(const Curve& c, int piece, double t, Vec<D>& x, Vec<D>& d) { c.at(piece, &t, x, &d); }
 
-    // The parameter of a near that of b, from the middle of a part.
-    double inverse(int ia, double t) const {
+    // The parameter of a, continued beyond its ends, where it passes by the point of b; from the middle of a
+    // part.
+    bool inverse(int ia, double t, double& s) const {
         Vec<D> y, ignored, x, d;
         place(b_, pb_, t, y, ignored);
-        double s = a_[ia].from[0] + 0.5 * a_[ia].width[0];
+        s = a_[ia].from[0] + 0.5 * a_[ia].width[0];
         for (int i = 0; i < 8; ++i) {
             place(a_, pa_, s, x, d);
             const double step = dot(y - x, d) / dot(d, d);
-            if (!std::isfinite(step)) break;
+            if (!std::isfinite(step)) return false;
             s = std::clamp(s + step, -1.0, 2.0);
         }
-        return s;
+        place(a_, pa_, s, x, d);
+        return norm(y - x) <= 4 * reach();
     }
 
     // Does the other curve pass by an end? The feet that are near enough.

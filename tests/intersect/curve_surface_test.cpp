@@ -130,6 +130,9 @@ TEST(IntersectSurfaces, bad_lines_are_refused) {
     EXPECT_EQ(ready.intersect({{{0, NAN, 0}}, {{0, 0, 1}}}).error().kind, RefusalKind::nonfinite);
     EXPECT_EQ(ready.intersect({{{0, 0, 0}}, {{0, 0, 0}}}).error().where, "lines[0]");
     EXPECT_FALSE(ready.intersect({{{0, 0, 0}}, {{0, 0, 1}}, {1, 0}}).has_value());
+    EXPECT_FALSE(ready.intersect({{{1, 1, 0}}, {{0, 0, 1}}, {0, 0}}).has_value()) << "a point is no line";
+    // Parameters beyond doubles are not taken for no contact.
+    EXPECT_EQ(must(ready.intersect({{{1, 1, -4}}, {{0, 0, 0x1p-1070}}})).undecided.size(), 1u);
     EXPECT_FALSE(ready.intersect({{{0, 0, 0}}, {{0, 0, 1}}}, {.accuracy = -1}).has_value());
 }
 

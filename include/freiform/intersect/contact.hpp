@@ -25,7 +25,9 @@ struct Contact {
     std::array<Interval, N> box{};  // contains `at`, and the parameters of all roots that are meant
     Vec<D> point{};                 // of one of the objects at `at`
     double gap = 0;                 // bound: how far the points of both objects at `at` are from each other
-    int least = 1, most = 1;        // so many points of `box` are roots
+    // So many isolated points of `box` are roots. Where the two run along each other, all of a `possible` box
+    // may be.
+    int least = 1, most = 1;
     // Of intersection, as in Bezout's theorem: 1 at an angle, 2 for circles that touch, 3 where one crosses
     // its osculating circle. 0: not known.
     int multiplicity = 1;

@@ -25,7 +25,8 @@ private:
 };
 
 // All pairs of parameters with A(s) = B(t). Outside the boxes of contacts, the overlaps and what is
-// undecided there is none, and that is proven, rounding included.
+// undecided there is none, and that is proven, rounding included; beside overlaps, where parts of both curves
+// run along each other, it is an estimate.
 //
 // Plane curves: where they cross at an angle, the answer is one proven root. Where they touch, or run along
 // each other, rounding leaves something open; pieces whose coefficients are the given numbers (Bezier

@@ -38,7 +38,7 @@ public:
     explicit IntersectSurface(const Surface<P>& surface);
     // at[0] is t. The line is cut where it leaves the box of the control points; the two ends are rounded, so
     // that the answer is that of a line within a few units in the last place. Refuses lines that are not
-    // finite, whose direction is zero, and empty intervals; in parallel, of the first such line.
+    // finite, whose direction is zero, and intervals without length; in parallel, of the first such line.
     // REQUIRES spans of one size.
     Result<void> intersect(std::span<const StraightLine> lines, std::span<Intersections<3, 3>> out,
                            const IntersectOptions& options = {}) const;
