@@ -40,6 +40,7 @@
 // Why not elimination (implicit form, resultants)? Degree (n - 1)(n - 2) in one parameter, with coefficients
 // that doubles cannot hold for n > 4.
 #include "arc_detail.hpp"
+#include "halved_arcs_detail.hpp"
 #include "self_contact_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -58,20 +59,9 @@ namespace freiform {
 
 namespace {
 
-using detail::add_points;
 using detail::Arc;
 using detail::meet_at_most_once;
 using detail::moves_on;
-
-template <class P>
-struct Part {
-    static constexpr int D = Space<P>::kDim;
-    std::vector<P> b;
-    double error = 0;                // of the numbers in b
-    int still_lo = 0, still_hi = 0;  // legs at the ends that are exactly zero
-    int left = -1, right = -1;       // halves, once they are made
-    Arc<D> arc;
-};
 
 template <class P>
 class Search {
@@ -84,38 +74,11 @@ public:
     Search(const Curve<P>& curve, std::span<const Interval> closed, std::span<const double> errors,
            double accuracy, int max_pairs)
         : curve_(curve),
+          pieces_(curve, errors),
           accuracy_(accuracy),
           max_pairs_(max_pairs),
           closed_(closed.begin(), closed.end()),
-          exact_(errors.empty()) {
-        const BezierPieces<1, P> pieces(curve);
-        const BSplineBasis& basis = curve.basis();
-        const int p = basis.degree();
-        for (int i = 0; i < pieces.extent()[0]; ++i) {
-            Part<P> part;
-            const auto net = pieces.net({i});
-            double most = 0;
-            for (int j = 0; j <= p; ++j) part.b.push_back(net({j})), most = std::max(most, max_abs(net({j})));
-            part.arc.on = pieces.box({i})[0];
-            const int s = basis.span(part.arc.on.lo);
-            const bool exact =
-                p > 0 && basis.knot(s - p + 1) == part.arc.on.lo && basis.knot(s + p) == part.arc.on.hi;
-            if (exact) {
-                while (part.still_lo < p && net({part.still_lo}) == net({part.still_lo + 1})) ++part.still_lo;
-                while (part.still_hi < p && net({p - part.still_hi}) == net({p - part.still_hi - 1}))
-                    ++part.still_hi;
-            } else {
-                part.error = (12 * p + 8) * kUnitRoundoff * most + 0x1p-1060;
-            }
-            if (!errors.empty()) part.error += errors[std::size_t(i)];
-            if (i > 0) jumps_.push_back(basis.multiplicity(part.arc.on.lo) > p);
-            finish(part);
-            parts_.push_back(std::move(part));
-        }
-        const Interval domain = basis.domain();
-        parameter_error_ = 4 * kUnitRoundoff * std::max(std::abs(domain.lo), std::abs(domain.hi));
-        count_ = int(parts_.size());
-    }
+          exact_(errors.empty()) {}
 
     // Of no more than `most` pairs of pieces that are near each other; else nothing.
     std::optional<std::vector<Meeting>> run(std::size_t most) {
@@ -144,12 +107,12 @@ private:
     // Pieces whose boxes overlap along the first coordinate, found from left to right.
     bool queue_near_pieces(std::size_t most) {
         std::vector<int> order;
-        order.resize(std::size_t(count_));
+        order.resize(std::size_t(pieces_.count()));
         std::iota(order.begin(), order.end(), 0);
         std::sort(order.begin(), order.end(),
                   [&](int i, int j) { return arc(i).box.lo[0] < arc(j).box.lo[0]; });
         double error = 0;
-        for (int i = 0; i < count_; ++i) error = std::max(error, 2.02 * arc(i).error);
+        for (int i = 0; i < pieces_.count(); ++i) error = std::max(error, 2.02 * arc(i).error);
         std::vector<Pair> pairs;
         for (std::size_t k = 0; k < order.size(); ++k) {
             const int i = order[k];
@@ -166,66 +129,25 @@ private:
         return true;
     }
 
-    // Where the curve goes on without a jump around t.
-    Interval stretch_around(double t) const {
-        Interval on = curve_.basis().domain();
-        for (int i = 1; i < count_; ++i) {
-            const double at = parts_[std::size_t(i)].arc.on.lo;
-            if (jumps_[std::size_t(i) - 1]) (at <= t ? on.lo : on.hi) = at;
-            if (at > t && on.hi == at) break;
-        }
-        return on;
-    }
-    const Arc<D>& arc(int i) const { return parts_[std::size_t(i)].arc; }
+    const Arc<D>& arc(int i) const { return pieces_.arc(i); }
 
     // By more than the ends of halves, whose parameters are rounded, may be off.
     bool overlap(const Interval& a, const Interval& b) const {
-        return std::min(a.hi, b.hi) - std::max(a.lo, b.lo) > parameter_error_;
-    }
-
-    void finish(Part<P>& part) {
-        const int n = int(part.b.size()) - 1;
-        const bool point = part.still_lo == n;
-        add_points(part.arc, part.b, part.error, point ? 0 : part.still_lo, point ? 0 : part.still_hi);
-    }
-
-    // Makes the halves of a part, exactly at half of its local parameter; `on` says where that is up to
-    // parameter_error_: a mean of two ends that are off by 2 u of the largest parameter is so, too.
-    bool halve(int i) {
-        if (parts_[std::size_t(i)].left >= 0) return true;
-        const Part<P>& whole = parts_[std::size_t(i)];
-        const double middle = whole.arc.on.middle();
-        if (!(whole.arc.on.lo < middle && middle < whole.arc.on.hi)) return false;
-        double most = 0;
-        for (const P& p : whole.b) most = std::max(most, max_abs(p));
-        const int n = int(whole.b.size());
-        const double e = whole.error + 1.01 * n * kUnitRoundoff * most + 0x1p-1060;
-        Part<P> left{whole.b, e, whole.still_lo, 0, -1, -1, {}},
-            right{whole.b, e, 0, whole.still_hi, -1, -1, {}};
-        keep_left(Fibre<P>{left.b.data(), n, 1}, 0.5);
-        keep_right(Fibre<P>{right.b.data(), n, 1}, 0.5);
-        left.arc.on = {whole.arc.on.lo, middle};
-        right.arc.on = {middle, whole.arc.on.hi};
-        finish(left);
-        finish(right);
-        const int at = int(parts_.size());
-        parts_[std::size_t(i)].left = at;
-        parts_[std::size_t(i)].right = at + 1;
-        parts_.push_back(std::move(left));
-        parts_.push_back(std::move(right));
-        return true;
+        return std::min(a.hi, b.hi) - std::max(a.lo, b.lo) > pieces_.parameter_error();
     }
 
     void look_at_one(int i, bool may_halve) {
-        if (parts_[std::size_t(i)].b.size() < 2 || moves_on<D>({&arc(i)})) return;
-        if (!may_halve || arc(i).box.diagonal() <= smallest(arc(i)) || !halve(i)) {
+        if (pieces_.is_point(i) || moves_on<D>({&arc(i)})) return;
+        const bool small = arc(i).box.diagonal() <= smallest(arc(i));
+        const auto halves = may_halve && !small ? pieces_.halves(i) : std::nullopt;
+        if (!halves) {
             open_.push_back(given_up(may_halve, arc(i).on, arc(i).on));
             return;
         }
-        const Part<P>& p = parts_[std::size_t(i)];
-        queue_.push_back({p.left, p.left});
-        queue_.push_back({p.right, p.right});
-        queue_.push_back({p.left, p.right});
+        const auto [left, right] = *halves;
+        queue_.push_back({left, left});
+        queue_.push_back({right, right});
+        queue_.push_back({left, right});
     }
 
     static Meeting given_up(bool looked_at, const Interval& a, const Interval& b) {
@@ -238,11 +160,7 @@ private:
     double smallest(const Arc<D>& a) const { return std::max(accuracy_, 16 * a.error); }
 
     bool are_neighbours(const Arc<D>& a, const Arc<D>& b) const {
-        if (a.on.hi == b.on.lo) {
-            for (int i = 1; i < count_; ++i)
-                if (parts_[std::size_t(i)].arc.on.lo == b.on.lo) return !jumps_[std::size_t(i) - 1];
-            return true;
-        }
+        if (a.on.hi == b.on.lo) return !pieces_.jumps_at(b.on.lo);
         return std::any_of(closed_.begin(), closed_.end(),
                            [&](const Interval& whole) { return a.on.lo == whole.lo && b.on.hi == whole.hi; });
     }
@@ -266,43 +184,13 @@ private:
         const bool flat = !neighbours && parallel &&
                           std::max(detail::thickness(a), detail::thickness(b)) <= least && D == 2;
         const int larger = size_a >= size_b ? pair.a : pair.b;
-        if (!may_halve || small || flat || !halve(larger)) {
+        const auto halves = may_halve && !small && !flat ? pieces_.halves(larger) : std::nullopt;
+        if (!halves) {
             open_.push_back(given_up(may_halve, arc(pair.a).on, arc(pair.b).on));
             return;
         }
-        const Part<P>& p = parts_[std::size_t(larger)];
-        for (const int half : {p.left, p.right})
+        for (const int half : *halves)
             queue_.push_back(larger == pair.a ? Pair{half, pair.b} : Pair{pair.a, half});
-    }
-
-    // The control points of the curve over an interval, which may reach over knots.
-    Arc<D> arc_over(const Interval& on) const {
-        Arc<D> out;
-        out.on = on;
-        for (int i = 0; i < count_; ++i) {
-            const Part<P>& part = parts_[std::size_t(i)];
-            const Interval own = part.arc.on;
-            const double lo = std::max(on.lo, own.lo), hi = std::min(on.hi, own.hi);
-            if (!(lo < hi)) continue;
-            std::vector<P> b = part.b;
-            double most = 0;
-            for (const P& p : b) most = std::max(most, max_abs(p));
-            const int n = int(b.size());
-            // Local parameters are off by 6 u, their quotients, with divisors of at least 1/2, by 24 u; that
-            // moves coefficients by 2 n times as much of the largest. Each cut has 3 n roundings of its own.
-            const double e = part.error + 60 * n * kUnitRoundoff * most + 0x1p-1060;
-            const double from = (lo - own.lo) / own.length(), to = (hi - own.lo) / own.length();
-            const Fibre<P> row{b.data(), n, 1};
-            if (from <= 0.5) {
-                if (lo > own.lo) keep_right(row, from);
-                if (hi < own.hi) keep_left(row, std::clamp((to - from) / (1 - from), 0.0, 1.0));
-            } else {
-                if (hi < own.hi) keep_left(row, to);
-                keep_right(row, std::clamp(from / to, 0.0, 1.0));
-            }
-            add_points(out, b, e, 0, 0);
-        }
-        return out;
     }
 
     // One crossing of the arcs at most. True: it has been found, here or before. (Plane curves.)
@@ -339,8 +227,8 @@ private:
                     size / speed, 4 * kUnitRoundoff * std::max(std::abs(whole.lo), std::abs(whole.hi)));
                 return Interval{std::max(whole.lo, x - r), std::min(whole.hi, x + r)};
             };
-            const Arc<2> p = arc_over(around(s, vs, stretch_around(s))),
-                         q = arc_over(around(t, vt, stretch_around(t)));
+            const Arc<2> p = pieces_.arc_over(around(s, vs, pieces_.stretch_around(s))),
+                         q = pieces_.arc_over(around(t, vt, pieces_.stretch_around(t)));
             if (p.on.overlaps(q.on)) return false;
             if (!detail::is_certainly_crossing(p, q)) continue;
             if (!overlap(p.on, a.on) || !overlap(q.on, b.on) || !meet_at_most_once({&a, &p}, {&b, &q}))
@@ -388,13 +276,13 @@ private:
         }
         for (Meeting& m : united) {
             for (Interval* on : {&m.first, &m.second}) {
-                const Interval stretch = stretch_around(on->middle());  // not over a jump
-                *on = {std::max(stretch.lo, on->lo - parameter_error_),
-                       std::min(stretch.hi, on->hi + parameter_error_)};
+                const Interval stretch = pieces_.stretch_around(on->middle());  // not over a jump
+                *on = {std::max(stretch.lo, on->lo - pieces_.parameter_error()),
+                       std::min(stretch.hi, on->hi + pieces_.parameter_error())};
             }
             m.point = 0.5 * (curve_(m.first.middle()) + curve_(m.second.middle()));
             for (const Interval& on : {m.first, m.second}) {
-                const Arc<D> a = arc_over(on);
+                const Arc<D> a = pieces_.arc_over(on);
                 for (const Vec<D>& y : a.points) m.bound = std::max(m.bound, norm(y - m.point) + 2 * a.error);
             }
             m.bound = m.bound * (1 + 8 * kUnitRoundoff) + 2 * curve_.value_error_bound();
@@ -404,12 +292,11 @@ private:
     }
 
     const Curve<P>& curve_;
-    double accuracy_, parameter_error_ = 0;
-    int max_pairs_, count_ = 0;
+    detail::HalvedArcs<P> pieces_;
+    double accuracy_;
+    int max_pairs_;
     std::vector<Interval> closed_;
     bool exact_;  // the coefficients are those given
-    std::deque<Part<P>> parts_;
-    std::vector<char> jumps_;  // at the beginning of piece i + 1
     std::deque<Pair> queue_;
     std::vector<Meeting> found_, open_;
     std::vector<std::pair<Arc<D>, Arc<D>>> arcs_;  // of the certain ones in found_

@@ -1,4 +1,5 @@
 #include "support/random.hpp"
+#include "support/refusal.hpp"
 
 #include <freiform/basis/bspline.hpp>
 
@@ -9,18 +10,11 @@
 namespace freiform {
 namespace {
 
+using test::expect_refusal;
 using test::must;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-template <class T>
-void expect_refusal(const Result<T>& r, RefusalKind kind, std::string_view where) {
-    ASSERT_FALSE(r.has_value());
-    EXPECT_EQ(name_of(r.error().kind), name_of(kind)) << r.error().message;
-    EXPECT_EQ(r.error().where, where) << r.error().message;
-    EXPECT_FALSE(r.error().message.empty());
-}
 
 TEST(BSplineBasis, refuses_what_is_no_basis_and_says_where) {
     using K = RefusalKind;
