@@ -62,25 +62,36 @@ Curvature seconds(const DerivativeBounds<2>& b) { return {b(2, 0), b(1, 1), b(0,
 
 }  // namespace
 
-Bending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals) {
+BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                      const Jet<2, 1, Vec<3>>& j) {
     const std::array<Interval, 2> on{box.side(0), box.side(1)};
-    Bending out;
-    out.full = seconds(surface(on));
-    if (!knows_normals || !out.full.is_finite()) return out;
-    const auto j = jet<1>(surface.geometry(), {on[0].middle(), on[1].middle()});
+    BoxBending out;
+    const auto set = [&](const DerivativeBounds<2>& all) {
+        out.full = seconds(all);
+        out.first[0] = all(1, 0), out.first[1] = all(0, 1);
+    };
     const double a = norm(j.d[1]), b = norm(j.d[2]), hu = on[0].length() / 2, hv = on[1].length() / 2;
     const Vec<3> m = cross(j.d[1], j.d[2]);
-    if (!(a * b > 0) || !(norm(m) > kRounding * a * b)) return out;
-    const double resolved =
-        std::min(a * std::min(hu, surface.thinnest_piece(0)), b * std::min(hv, surface.thinnest_piece(1)));
-    if (!(value_error_bound(surface.geometry(), on) <= 1e-9 * resolved)) return out;
+    const auto is_resolved = [&] {
+        const double side = std::min(a * std::min(hu, surface.thinnest_piece(0)),
+                                     b * std::min(hv, surface.thinnest_piece(1)));
+        return surface.value_error(on) <= 1e-9 * side;
+    };
+    if (!knows_normals || !(a * b > 0) || !(norm(m) > kRounding * a * b) || !is_resolved()) {
+        set(surface(on));
+        return out;
+    }
+    const Vec<3> n = unit(m);
+    const auto both = surface.both(n, on);
+    set(both.all);
+    if (!out.full.is_finite()) return out;
     const double c = std::abs(dot(j.d[1], j.d[2])) / (a * b);
     const auto swing = [&](const Curvature& k) {
         return std::hypot((k.uu * hu + k.uv * hv) / a, (k.uv * hu + k.vv * hv) / b) + kRounding;
     };
     out.a = a, out.b = b;
-    out.n = unit(m);
-    const Curvature along = seconds(surface.along(out.n, on));
+    out.n = n;
+    const Curvature along = seconds(both.along);
     out.across = {std::min(along.uu, out.full.uu), std::min(along.uv, out.full.uv),
                   std::min(along.vv, out.full.vv)};
     const double change = swing(out.full);

@@ -42,6 +42,22 @@ bool has_common_part(const Box<2>& a, const Box<2>& b) {
     return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
 }
 
+// The second derivatives at one place, along the normal if there is one and it is asked for.
+Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal) {
+    const Vec<3> m = cross(j(1, 0), j(0, 1));
+    if (!along_normal || !(norm(m) > 0)) return {norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2))};
+    const Vec<3> n = unit(m);
+    return {std::abs(dot(n, j(2, 0))), std::abs(dot(n, j(1, 1))), std::abs(dot(n, j(0, 2)))};
+}
+
+// The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
+int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
+    const double by_u = c.uu * size[0] * size[0], by_v = c.vv * size[1] * size[1],
+                 by_both = c.uv * size[0] * size[1];
+    if (by_both > std::max(by_u, by_v)) return length[0] >= length[1] ? 0 : 1;
+    return by_u >= by_v ? 0 : 1;
+}
+
 // Half of the squared min-containment radius with the metric diag(A, B).
 double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
     const auto length2 = [&](const Vec<2>& p, const Vec<2>& q) {
@@ -139,47 +155,48 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             continue;
         }
         Node& node = tree.nodes_[std::size_t(item.node)];
-        node.bending = bending_of(surface, box, knows_normals);
-        // What holds for the whole holds for a part: of very small boxes rounding would make the bound
-        // larger.
-        Curvature& c = node.bending.full;
-        c.restrict_to(item.outer);
-        const double kinks = tree.kink_bound(box);
-        const double error = c.along(size[0], size[1]) / 8 + kinks;
-        const auto first = surface({box.side(0), box.side(1)}, 1);
-        const double length[2] = {first(1, 0) * size[0], first(0, 1) * size[1]};
-        const bool short_enough = std::max(length[0], length[1]) <= demands.max_edge;
-        const bool fine = tree.accept(node, error, tolerance);
-        if ((fine && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
-        if (item.depth == kMaxDepth) {
-            if (!std::isfinite(error))
-                return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
-                              "the surface has no bounded curvature here");
-            continue;
+        // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but
+        // the last boxes, they need not be found.
+        const auto middle = jet<2>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
+        Curvature matters = seen_at(middle, knows_normals);
+        double length[2] = {norm(middle(1, 0)) * size[0], norm(middle(0, 1)) * size[1]};
+        std::optional<Cut> cut;
+        if (matters.along(size[0], size[1]) / 8 > tolerance && item.depth < kMaxDepth)
+            cut = tree.cut(box, longer_side(matters, size, length));
+        Curvature outer = item.outer;
+        if (!cut) {
+            const BoxBending bending =
+                bending_of(surface, box, knows_normals, {{middle.d[0], middle.d[1], middle.d[2]}});
+            node.bending = bending;
+            // What holds for the whole holds for a part: of very small boxes rounding would make the bound
+            // larger.
+            Curvature& c = node.bending.full;
+            c.restrict_to(item.outer);
+            outer = c;
+            const double error = c.along(size[0], size[1]) / 8 + tree.kink_bound(box);
+            for (int d = 0; d < 2; ++d) length[d] = bending.first[d] * size[d];
+            const bool short_enough = std::max(length[0], length[1]) <= demands.max_edge;
+            const bool fine = tree.accept(node, error, tolerance);
+            if ((fine && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
+            if (item.depth == kMaxDepth) {
+                if (!std::isfinite(error))
+                    return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
+                                  "the surface has no bounded curvature here");
+                continue;
+            }
+            matters = node.bending.least > 0 ? node.bending.seen(0) : c;
+            const int axis = fine || !std::isfinite(error) ? int(length[0] < length[1])
+                                                           : longer_side(matters, size, length);
+            cut = tree.cut(box, axis);
+            if (!cut) continue;  // no double between the ends
         }
         if (++leaves > max_leaves)
             return refuse(
                 RefusalKind::limit, "max_triangles",
                 text("the tolerance ", tolerance, " needs more than ", 2 * max_leaves, " triangles"));
-        // Cut at a kink if there is one, else where the curvature asks for, else through the longer
-        // direction.
-        const Curvature matters = node.bending.least > 0 ? node.bending.seen(0) : c;
-        const double by_u = matters.uu * size[0] * size[0], by_v = matters.vv * size[1] * size[1],
-                     by_both = matters.uv * size[0] * size[1];
-        int axis = by_u >= by_v ? 0 : 1;
-        if (fine || by_both > std::max(by_u, by_v) || !std::isfinite(error))
-            axis = length[0] >= length[1] ? 0 : 1;
-        double at = box.side(axis).middle(), nearest = size[axis];
-        for (int d = 0; d < 2; ++d)
-            for (const Kink& k : tree.kinks_[std::size_t(d)])
-                if (box.lo[d] < k.at && k.at < box.hi[d] && k.jump > 0) {
-                    const double distance = std::abs(k.at - box.side(d).middle()) / size[d] * size[axis];
-                    if (distance < nearest) nearest = distance, axis = d, at = k.at;
-                }
-        if (!(box.lo[axis] < at && at < box.hi[axis])) continue;  // no double between the ends
+        const auto [axis, at] = *cut;
         const int child = int(tree.nodes_.size());
         node.child = child;
-        const Curvature outer = c;
         for (int half = 1; half >= 0; --half) {
             Box<2> part = box;
             (half == 0 ? part.hi : part.lo)[axis] = at;
@@ -205,7 +222,23 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             all_flat = all_flat && n.flat;
         }
     if (all_flat) tree.knows_normals_ = false;
+    tree.find_corners();
     return tree;
+}
+
+// At the kink that is nearest to the middle if there is one, else across the axis.
+std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Box<2>& box, int axis) const {
+    const Vec<2> size = box.hi - box.lo;
+    Cut out{axis, box.side(axis).middle()};
+    double nearest = size[axis];
+    for (int d = 0; d < 2; ++d)
+        for (const Kink& k : kinks_[std::size_t(d)])
+            if (box.lo[d] < k.at && k.at < box.hi[d] && k.jump > 0) {
+                const double distance = std::abs(k.at - box.side(d).middle()) / size[d] * size[axis];
+                if (distance < nearest) nearest = distance, out = {d, k.at};
+            }
+    if (!(box.lo[out.axis] < out.at && out.at < box.hi[out.axis])) return std::nullopt;
+    return out;
 }
 
 // Whether the two triangles of a leaf keep the tolerance, without a shift or with one.
@@ -279,7 +312,7 @@ std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& bo
     return worst;
 }
 
-std::vector<CurvatureTree::Corner> CurvatureTree::corners() const {
+void CurvatureTree::find_corners() {
     struct Hash {
         std::size_t operator()(const Vec<2>& p) const {
             const auto mix = [](double x) {
@@ -289,7 +322,6 @@ std::vector<CurvatureTree::Corner> CurvatureTree::corners() const {
         }
     };
     std::unordered_set<Vec<2>, Hash> seen;
-    std::vector<Corner> out;
     std::vector<int> stack{0};
     while (!stack.empty()) {
         const Node& n = nodes_[std::size_t(stack.back())];
@@ -302,10 +334,9 @@ std::vector<CurvatureTree::Corner> CurvatureTree::corners() const {
         }
         for (int k = 0; k < 4; ++k) {
             const Vec<2> corner{{k & 1 ? n.box.hi[0] : n.box.lo[0], k & 2 ? n.box.hi[1] : n.box.lo[1]}};
-            if (seen.insert(corner).second) out.push_back({corner, n.box.hi - n.box.lo});
+            if (seen.insert(corner).second) corners_.push_back({corner, n.box.hi - n.box.lo});
         }
     }
-    return out;
 }
 
 Vec<2> CurvatureTree::mean_leaf() const {

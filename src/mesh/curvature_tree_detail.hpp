@@ -53,8 +53,13 @@ struct Bending {
     Curvature seen(double turn) const { return across.plus(tilt + turn, full); }
 };
 
-// Of S over the box. `knows_normals`: false leaves all but `full` unknown.
-Bending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals);
+// Of S over the box, with bounds of |S_u| and |S_v|. `knows_normals`: false leaves all else unknown.
+// `middle`: derivatives in the middle of the box.
+struct BoxBending : Bending {
+    double first[2] = {};
+};
+BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                      const Jet<2, 1, Vec<3>>& middle);
 
 // How points of the mesh find their feet on S.
 struct Shift {
@@ -97,7 +102,7 @@ public:
         Vec<2> at{}, leaf{};  // leaf: side lengths of a leaf that has it
     };
     // Corners of the leaves that are not outside, each once, neighbours near each other in the list.
-    std::vector<Corner> corners() const;
+    std::span<const Corner> corners() const { return corners_; }
     // Mean side lengths of those leaves.
     Vec<2> mean_leaf() const;
 
@@ -109,8 +114,15 @@ private:
         bool outside = false;
         bool flat = false;  // fine without a shift
     };
+    struct Cut {
+        int axis;
+        double at;
+    };
     bool accept(Node& node, double error, double tolerance) const;
+    std::optional<Cut> cut(const Box<2>& box, int axis) const;
+    void find_corners();
     std::vector<Node> nodes_;
+    std::vector<Corner> corners_;
     bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;
 };

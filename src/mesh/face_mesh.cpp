@@ -68,7 +68,6 @@ double scale_for(double x) {
 // A segment between two corners that are the same point in space (a pole) belongs to this face alone, so it
 // may be cut where the leaves of the tree are.
 void cut_poles(Polygon& polygon, const FaceBoundary& boundary, const CurvatureTree& tree) {
-    std::vector<Vec<2>> corners;
     const std::vector<Triangulation::Segment> before = std::move(polygon.segments);
     polygon.segments.clear();
     for (const auto& s : before) {
@@ -77,13 +76,11 @@ void cut_poles(Polygon& polygon, const FaceBoundary& boundary, const CurvatureTr
             polygon.segments.push_back(s);
             continue;
         }
-        if (corners.empty())
-            for (const auto& c : tree.corners()) corners.push_back(c.at);
         const Vec<2> p = boundary.uv[std::size_t(a)], q = boundary.uv[std::size_t(b)], d = q - p;
         std::vector<std::pair<double, Vec<2>>> cuts;  // by the part of the way
         if (d[0] == 0 || d[1] == 0) {
             const int axis = d[0] == 0 ? 1 : 0;
-            for (const Vec<2>& c : corners)
+            for (const auto& [c, leaf] : tree.corners())
                 if (c[1 - axis] == p[1 - axis] && (c[axis] - p[axis]) * (c[axis] - q[axis]) < 0)
                     cuts.push_back({(c[axis] - p[axis]) / d[axis], c});
         } else {

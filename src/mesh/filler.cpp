@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kNearPoint = 1e-3;    // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;  // of the box of the face: shorter is rounding
+constexpr double kLittle = 1.0 / 256;  // of the error: what a shift may add without a closer look
+constexpr double kMargin = 0.125;      // of the box of the face: what is looked at beyond it
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
 
@@ -24,6 +26,15 @@ Filler::Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuer
     for (const Vec<2>& p : t.points()) box.add(unscaled(p));
     least_ = kLeastLength * (box.hi - box.lo);
     limits_ = limits(surface.geometry());
+    if (tree.is_all_plain()) return;
+    const Vec<2> margin = kMargin * (box.hi - box.lo);
+    whole_ = {clamped(box.lo - margin, limits_), clamped(box.hi + margin, limits_)};
+    whole_bends_ = over_clamped(whole_);
+}
+
+Curvature Filler::over_clamped(const Box<2>& box) const {
+    const auto own = surface_({box.side(0), box.side(1)});
+    return {own(2, 0), own(1, 1), own(0, 2)};
 }
 
 Vec<3> Filler::position(int vertex) {
@@ -108,7 +119,7 @@ Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::ar
     }
     if (!(at.least > 0)) return k;
     const Vec<2> reach = reach_of(at, e);
-    Box<2> around{box.lo - reach, box.hi + reach};
+    const Box<2> around{box.lo - reach, box.hi + reach};
     if (tree_.meets_kink(around)) return k;
     double reflected = 1;
     for (int d = 0; d < 2; ++d)
@@ -116,13 +127,15 @@ Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::ar
             reflected = 3;
             if (reach[d] > limits_[std::size_t(d)].length()) return k;
         }
-    auto near = tree_.all_over(around);
-    if (!near) {
-        around = {clamped(around.lo, limits_), clamped(around.hi, limits_)};
-        const auto own = surface_({around.side(0), around.side(1)});
-        near = {own(2, 0), own(1, 1), own(0, 2)};
+    // What holds everywhere serves where it is enough.
+    const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
+    Shift shift;
+    if (whole_.contains(inside.lo) && whole_.contains(inside.hi))
+        shift = shift_of(at, e, whole_bends_, reflected);
+    if (!(shift.exists && shift.q <= kLittle)) {
+        const auto near = tree_.all_over(around);
+        shift = shift_of(at, e, near ? *near : over_clamped(inside), reflected);
     }
-    const Shift shift = shift_of(at, e, *near, reflected);
     if (!shift.exists) return k;
     k.shifted = true;
     k.curvature = at.seen(shift.turn);
@@ -147,7 +160,8 @@ const Filler::Known& Filler::known(int triangle) {
     const Bending over = tree_.over(box);
     Known k = judged(over, box, corner, plain);
     if (!(k.bound <= demands_.tolerance)) {
-        Bending own = bending_of(surface_, box, plain < 3);
+        const auto middle = jet<1>(surface_.geometry(), {box.side(0).middle(), box.side(1).middle()});
+        Bending own = bending_of(surface_, box, plain < 3, middle);
         own.full.restrict_to(over.full);
         if (const Known second = judged(own, box, corner, plain); second.bound <= k.bound) k = second;
     }

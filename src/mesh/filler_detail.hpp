@@ -48,11 +48,14 @@ private:
     // Makes all corners plain; false if they are.
     bool make_plain(int triangle, std::vector<int>& judge_again);
     Known judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain) const;
+    Curvature over_clamped(const Box<2>& box) const;
     const CurvatureTree& tree_;
     const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
     std::array<Interval, 2> limits_;
+    Box<2> whole_;           // somewhat more than the face, within the limits
+    Curvature whole_bends_;  // over it
     std::vector<char> plain_;        // of vertices, as far as one is
     std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
 };

@@ -5,6 +5,7 @@
 #include <freiform/spline/geometry.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -76,9 +77,18 @@ public:
     DerivativeBounds<N> operator()(const std::array<Interval, N>& box, int order = 2) const;
     // Of the coordinate n . f instead of f, for a vector n of length 1: bounds of |n . f_a|.
     DerivativeBounds<N> along(const Vec<D>& n, const std::array<Interval, N>& box, int order = 2) const;
+    // Both of f and of n . f: what the two above say, for little more than one costs.
+    struct Both {
+        DerivativeBounds<N> all, along;
+    };
+    Both both(const Vec<D>& n, const std::array<Interval, N>& box, int order = 2) const;
     // The smallest side along the axis of a polynomial or rational piece; infinite where there is no spline.
     // First derivatives are rounded as if values were divided by no less.
     double thinnest_piece(int axis) const { return thinnest_[std::size_t(axis)]; }
+    // value_error_bound of the geometry, which for splines takes as long as they are large, found once.
+    double value_error(const std::array<Interval, N>& box) const {
+        return value_error_ ? *value_error_ : value_error_bound(*geometry_, box);
+    }
     // Inside the domain, in increasing order. Between kinks the first derivative is continuous.
     std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
 
@@ -87,6 +97,7 @@ private:
     const Geometry* geometry_;
     std::array<std::vector<Kink>, N> kinks_;
     std::array<double, N> thinnest_;
+    std::optional<double> value_error_;
     std::variant<std::monostate, BezierPieces<N, Vec<D>>, BezierPieces<N, Hom<D>>> pieces_;
     std::shared_ptr<const DerivativeQuery<1, 3>> profile_;  // of an extrusion or revolution
     std::shared_ptr<const DerivativeQuery<2, 3>> base_;     // of an offset
