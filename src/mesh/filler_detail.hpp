@@ -54,8 +54,8 @@ private:
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
     std::array<Interval, 2> limits_;
-    Box<2> whole_;           // somewhat more than the face, within the limits
-    Curvature whole_bends_;  // over it
+    Box<2> whole_;                   // somewhat more than the face, within the limits
+    Curvature whole_bends_;          // over it
     std::vector<char> plain_;        // of vertices, as far as one is
     std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
 };

@@ -59,6 +59,25 @@ TEST(DerivativeBounds, of_a_small_box_come_near_the_derivatives_there) {
     }
 }
 
+TEST(DerivativeBounds, asked_for_both_are_those_asked_for_one_by_one) {
+    std::mt19937 rng(10);
+    for (const auto& [name, surface, on] : surfaces_of_every_kind(5)) {
+        const DerivativeQuery<2, 3> query(surface);
+        for (int k = 0; k < 10; ++k) {
+            std::array<Interval, 2> box;
+            for (std::size_t d = 0; d < 2; ++d) {
+                box[d].lo = uniform(rng, on[d].lo, on[d].middle());
+                box[d].hi = uniform(rng, on[d].middle(), on[d].hi);
+            }
+            const Vec<3> n = unit(Vec<3>{{uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, 1, 2)}});
+            const auto both = query.both(n, box);
+            EXPECT_EQ(both.all.d, query(box).d) << name;
+            EXPECT_EQ(both.along.d, query.along(n, box).d) << name;
+            EXPECT_EQ(query.value_error(box), value_error_bound(surface, box)) << name;
+        }
+    }
+}
+
 TEST(DerivativeBounds, scale_exactly_with_powers_of_two) {
     std::mt19937 rng(9);
     const auto s = random_patch<2, Hom<3>>(rng, {3, 3}, 3);
