@@ -18,6 +18,8 @@ struct Arrays {
         double* begin = record[d].data();  // of a line of the cache, as records are
         while (reinterpret_cast<std::size_t>(begin) % (kernel::Axis::kLine * sizeof(double)) != 0) ++begin;
         wire.get(begin, test::records_of(axis));
+        for (std::size_t k = 0; k < test::spans_of(axis); ++k)
+            wire.get(test::span_of(begin + k * axis.stride));
         bucket[d] = wire.get_many<int>(std::size_t(axis.buckets));
         axis.record = begin;
         axis.bucket = bucket[d].data();
@@ -34,13 +36,13 @@ struct Arrays {
 // Where the results of n points go.
 struct Results {
     std::vector<double> jets, normals, curvatures;
-    Results(const kernel::Net& net, std::size_t n, kernel::Output& out)
-        : jets(n * test::size_of(net, out)),
-          normals(out.normals ? 3 * n : 0),
-          curvatures(out.curvatures ? 2 * n : 0) {
-        out.jets = jets.data();
-        out.normals = normals.empty() ? nullptr : normals.data();
-        out.curvatures = curvatures.empty() ? nullptr : curvatures.data();
+    Results(const kernel::Net& net, std::size_t n, test::Request& r)
+        : jets(r.jets ? n * test::size_of(net, r.out) : 0),
+          normals(r.normals ? 3 * n : 0),
+          curvatures(r.curvatures ? 2 * n : 0) {
+        r.out.jets = r.jets ? jets.data() : nullptr;
+        r.out.normals = r.normals ? normals.data() : nullptr;
+        r.out.curvatures = r.curvatures ? curvatures.data() : nullptr;
     }
     void put(test::Wire& wire) const {
         wire.put(jets.data(), jets.size());
@@ -53,10 +55,10 @@ void scattered(test::Wire& wire, const kernel::Kernels& kernels) {
     Arrays arrays;
     const kernel::Net net = arrays.get(wire);
     const auto at = wire.get_many<double>(wire.get<std::size_t>());
-    auto out = wire.get<kernel::Output>();
+    auto request = wire.get<test::Request>();
     const std::size_t n = at.size() / std::size_t(net.axes);
-    const Results results(net, n, out);
-    kernels.scattered(net, at.data(), n, out);
+    const Results results(net, n, request);
+    kernels.scattered(net, at.data(), n, request.out);
     kernels.flush();
     results.put(wire);
 }
@@ -80,12 +82,12 @@ void grid_row(test::Wire& wire, const kernel::Kernels& kernels) {
     const auto part = wire.get_many<kernel::GridPart>(std::size_t(last.parts));
     const auto weights = wire.get_many<double>(std::size_t(last.parts) * last.stride());
     const auto row = wire.get<std::size_t>();
-    auto out = wire.get<kernel::Output>();
-    const auto outer = wire.get_many<double>(row * test::outer_orders(net, out.order));
+    auto request = wire.get<test::Request>();
+    const auto outer = wire.get_many<double>(row * test::outer_orders(net, request.out.order));
     last.part = part.data();
     last.weights = weights.data();
-    const Results results(net, std::size_t(last.count), out);
-    kernels.grid_row(net, last, outer.data(), row, out);
+    const Results results(net, std::size_t(last.count), request);
+    kernels.grid_row(net, last, outer.data(), row, request.out);
     kernels.flush();
     results.put(wire);
 }

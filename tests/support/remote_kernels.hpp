@@ -1,5 +1,5 @@
 // Kernels of another processor, which an emulator runs: a stand-in for kernel::Kernels that sends everything
-// through a pipe. For one test at a time.
+// through a pipe. One of them at a time.
 #pragma once
 #include <kernel_wire.hpp>
 #include <spawn.h>
@@ -13,8 +13,8 @@ namespace freiform::test {
 
 class RemoteKernels {
 public:
-    // Starts `emulator program`. running() afterwards says whether it answered.
-    RemoteKernels(const char* emulator, const char* program) {
+    // Starts the program of the first word with the others. running() afterwards says whether it answered.
+    explicit RemoteKernels(std::vector<std::string> words) {
         int to[2], from[2];
         if (pipe(to) != 0 || pipe(from) != 0) return;
         posix_spawn_file_actions_t actions;
@@ -22,9 +22,11 @@ public:
         posix_spawn_file_actions_adddup2(&actions, to[0], 0);
         posix_spawn_file_actions_adddup2(&actions, from[1], 1);
         for (const int fd : {to[0], to[1], from[0], from[1]}) posix_spawn_file_actions_addclose(&actions, fd);
-        std::string words[2] = {emulator, program};
-        char* arguments[] = {words[0].data(), words[1].data(), nullptr};
-        const bool started = posix_spawn(&child_, emulator, &actions, nullptr, arguments, environ) == 0;
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        const bool started =
+            posix_spawn(&child_, arguments[0], &actions, nullptr, arguments.data(), environ) == 0;
         posix_spawn_file_actions_destroy(&actions);
         close(to[0]), close(from[1]);
         wire().to = fdopen(to[1], "wb"), wire().from = fdopen(from[0], "rb");
@@ -50,6 +52,8 @@ private:
     }
     static void put(const kernel::Axis& axis) {
         wire().put(axis.record, records_of(axis));
+        for (std::size_t k = 0; k < spans_of(axis); ++k)
+            wire().put(*reinterpret_cast<const kernel::Span*>(axis.record + k * axis.stride));
         wire().put(axis.bucket, std::size_t(axis.buckets));
     }
     static void put(const kernel::Net& net) {
@@ -60,7 +64,7 @@ private:
     }
     static void get_results(const kernel::Net& net, std::size_t n, const kernel::Output& out) {
         std::fflush(wire().to);
-        wire().get(out.jets, n * size_of(net, out));
+        if (out.jets) wire().get(out.jets, n * size_of(net, out));
         if (out.normals) wire().get(out.normals, 3 * n);
         if (out.curvatures) wire().get(out.curvatures, 2 * n);
     }
@@ -71,7 +75,7 @@ private:
         put(net);
         wire().put(n * std::size_t(net.axes));
         wire().put(at, n * std::size_t(net.axes));
-        wire().put(out);
+        wire().put(request(out));
         get_results(net, n, out);
     }
     static void weights(const kernel::Axis& axis, const double* at, std::size_t n, int order, double* out,
@@ -94,7 +98,7 @@ private:
         wire().put(last.part, std::size_t(last.parts));
         wire().put(last.weights, std::size_t(last.parts) * last.stride());
         wire().put(row);
-        wire().put(out);
+        wire().put(request(out));
         wire().put(outer, row * outer_orders(net, out.order));
         get_results(net, std::size_t(last.count), out);
     }
