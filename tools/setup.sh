@@ -9,9 +9,10 @@ occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 test="libgtest-dev librapidcheck-dev libboost-dev"
-ci="python3 clang-22 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user"
-bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
+ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
+command -v node >/dev/null || ci="$ci nodejs"
+bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
 
 purpose=${1:-demo}
 case $purpose in
@@ -50,6 +51,7 @@ what_for() {
         gmsh-doc | occt-misc) echo "models to compare on" ;;
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
         g++-aarch64-linux-gnu | qemu-user) echo "the kernels for ARM, and a processor to test them on" ;;
+        nodejs) echo "runs the kernels for WebAssembly in a test" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;
     esac
