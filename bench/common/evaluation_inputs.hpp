@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <ctime>
 #include <vector>
 
 namespace freiform::bench {
@@ -53,13 +51,13 @@ inline CurveInput helix() {
 }
 
 struct SurfaceInput {
-    static constexpr int kSize = 20;
+    int degree = 3, size = 20;                              // the same along both axes
     std::vector<double> knots_u, knots_v, points, weights;  // row-major, u slow
 };
 inline SurfaceInput hills() {
-    constexpr int n = SurfaceInput::kSize;
     Sequence random(1001);
     SurfaceInput s;
+    const int n = s.size;
     s.knots_u = uneven_knots(n, random);
     s.knots_v = uneven_knots(n, random);
     for (int i = 0; i < n; ++i)
@@ -72,10 +70,24 @@ inline SurfaceInput hills() {
     return s;
 }
 
+// n x n control points of any degree, equal spans on [0, 1].
+inline SurfaceInput rough(int degree, int n) {
+    SurfaceInput s{degree, n, {}, {}, {}, {}};
+    for (int i = 0; i <= n + degree; ++i)
+        s.knots_u.push_back(std::clamp(double(i - degree) / (n - degree), 0.0, 1.0));
+    s.knots_v = s.knots_u;
+    Sequence random(std::uint64_t(1000 * degree + n));
+    for (int i = 0; i < n * n; ++i) {
+        s.points.insert(s.points.end(), {double(i / n) / n, double(i % n) / n, 0.1 * random.next()});
+        s.weights.push_back(0.5 + 1.5 * random.next());
+    }
+    return s;
+}
+
 inline constexpr int kPoints = 1000000, kGrid = 1000;
-inline std::vector<double> scattered(std::uint64_t seed) {
+inline std::vector<double> scattered(std::uint64_t seed, std::size_t count = kPoints) {
     Sequence random(seed);
-    std::vector<double> v(kPoints);
+    std::vector<double> v(count);
     for (double& x : v) x = random.next();
     return v;
 }
@@ -87,27 +99,6 @@ inline std::vector<double> grid_axis() {
     std::vector<double> v;
     for (int i = 0; i < kGrid; ++i) v.push_back((i + 0.5) / kGrid);
     return v;
-}
-
-// Prints the task and the quartiles of the time of a point, in nanoseconds, over some runs of `job`; `sample`
-// is a number of the result, by which programs are compared. Time of the processor, which other jobs of the
-// machine disturb less than that of the clock; of several threads (`wall`) by the clock.
-template <class Job, class Sample>
-void task(const char* name, Job&& job, Sample&& sample, bool wall = false) {
-    const auto now = [&] {
-        timespec t{};
-        clock_gettime(wall ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &t);
-        return 1e9 * double(t.tv_sec) + double(t.tv_nsec);
-    };
-    std::vector<double> ns;
-    for (int i = 0; i < 9; ++i) {
-        const double start = now();
-        job();
-        ns.push_back((now() - start) / kPoints);
-    }
-    std::sort(ns.begin(), ns.end());
-    std::printf("%s %.6g %.6g %.6g %.6g %.17g\n", name, ns[0], ns[2], ns[4], ns[6], double(sample()));
-    std::fflush(stdout);
 }
 
 }  // namespace freiform::bench

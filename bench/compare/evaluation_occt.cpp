@@ -7,14 +7,15 @@
 #include <Geom_BSplineSurface.hxx>
 #include <TColStd_Array2OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
-#include <evaluation_inputs.hpp>
+#include <evaluation_tasks.hpp>
+#include <memory>
 
 namespace {
 
 using namespace freiform::bench;
 
 Handle(Geom_BSplineSurface) make_surface(const SurfaceInput& s) {
-    constexpr int n = SurfaceInput::kSize;
+    const int n = s.size, p = s.degree;
     TColgp_Array2OfPnt points(1, n, 1, n);
     TColStd_Array2OfReal weights(1, n, 1, n);
     for (int i = 0; i < n; ++i)
@@ -23,23 +24,40 @@ Handle(Geom_BSplineSurface) make_surface(const SurfaceInput& s) {
             points(i + 1, j + 1) = gp_Pnt(s.points[3 * k], s.points[3 * k + 1], s.points[3 * k + 2]);
             weights(i + 1, j + 1) = s.weights[k];
         }
-    const auto knots = [](const std::vector<double>& t) {  // simple ones inside
-        TColStd_Array1OfReal k(1, int(t.size()) - 6);
-        for (int i = 1; i <= k.Length(); ++i) k(i) = t[std::size_t(i + 2)];
+    const auto knots = [p](const std::vector<double>& t) {  // simple ones inside
+        TColStd_Array1OfReal k(1, int(t.size()) - 2 * p);
+        for (int i = 1; i <= k.Length(); ++i) k(i) = t[std::size_t(i + p - 1)];
         return k;
     };
-    TColStd_Array1OfInteger multiplicities(1, n - 2);
+    TColStd_Array1OfInteger multiplicities(1, n - p + 1);
     multiplicities.Init(1);
-    multiplicities(1) = multiplicities(n - 2) = 4;
+    multiplicities(1) = multiplicities(n - p + 1) = p + 1;
     return new Geom_BSplineSurface(points, weights, knots(s.knots_u), knots(s.knots_v), multiplicities,
-                                   multiplicities, 3, 3);
+                                   multiplicities, p, p);
 }
 
 gp_Vec normal_of(const gp_Vec& a, const gp_Vec& b) { return a.Crossed(b).Normalized(); }
 
+// One task for each point of the plots.
+void sweep() {
+    each_sweep([](int points, int degree, int size) {
+        const Handle(Geom_BSplineSurface) surface = make_surface(rough(degree, size));
+        const std::size_t n = std::size_t(points);
+        const auto u = std::make_shared<std::vector<double>>(scattered(2001, n));
+        const auto v = std::make_shared<std::vector<double>>(scattered(2002, n));
+        const auto out = std::make_shared<std::vector<gp_Pnt>>(n);
+        task(
+            sweep_name("sweep", points, degree, size), n,
+            [=] {
+                for (std::size_t i = 0; i < n; ++i) surface->D0((*u)[i], (*v)[i], (*out)[i]);
+            },
+            [=] { return (*out)[0].Z(); });
+    });
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     const Handle(Geom_BSplineSurface) surface = make_surface(hills());
     const GeomAdaptor_Surface adaptor(surface);
     const auto c = helix();
@@ -57,13 +75,13 @@ int main() {
     const auto x = [&] { return out[kPlace].X(); };
     const auto normal_x = [&] { return normals[kPlace].X(); };
     task(
-        "scattered",
+        "scattered", n,
         [&] {
             for (std::size_t i = 0; i < n; ++i) surface->D0(u[i], v[i], out[i]);
         },
         x);
     task(
-        "scattered_d1_normal",
+        "scattered_d1_normal", n,
         [&] {
             for (std::size_t i = 0; i < n; ++i) {
                 surface->D1(u[i], v[i], out[i], d1[i], d2[i]);
@@ -72,14 +90,14 @@ int main() {
         },
         normal_x);
     task(
-        "grid",
+        "grid", n,
         [&] {
             for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
                 for (std::size_t j = 0; j < axis.size(); ++j, ++k) adaptor.D0(axis[i], axis[j], out[k]);
         },
         x);
     task(
-        "grid_normal",
+        "grid_normal", n,
         [&] {
             for (std::size_t i = 0, k = 0; i < axis.size(); ++i)
                 for (std::size_t j = 0; j < axis.size(); ++j, ++k) {
@@ -90,7 +108,7 @@ int main() {
         normal_x);
     const auto along = [&](const char* name, const std::vector<double>& at) {
         task(
-            name,
+            name, n,
             [&] {
                 for (std::size_t i = 0; i < n; ++i) curve.D0(at[i], out[i]);
             },
@@ -98,7 +116,7 @@ int main() {
     };
     const auto derivatives = [&](const char* name, const std::vector<double>& at) {
         task(
-            name,
+            name, n,
             [&] {
                 for (std::size_t i = 0; i < n; ++i) curve.D2(at[i], out[i], d1[i], d2[i]);
             },
@@ -108,4 +126,6 @@ int main() {
     along("curve_random", random);
     derivatives("curve_sorted_d2", in_order);
     derivatives("curve_random_d2", random);
+    sweep();
+    return run_tasks(argc, argv);
 }

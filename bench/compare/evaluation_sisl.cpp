@@ -1,24 +1,56 @@
 // The tasks of evaluation.cpp with SISL. SISL is under the AGPL: this program is for comparison, and never
 // shipped.
-#include <evaluation_inputs.hpp>
+#include <evaluation_tasks.hpp>
+#include <memory>
 #include <sisl.h>
 
-int main() {
-    using namespace freiform::bench;
-    auto s = hills();
+namespace {
+
+using namespace freiform::bench;
+
+std::vector<double> homogeneous(const std::vector<double>& points, const std::vector<double>& weights) {
+    std::vector<double> h;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) h.push_back(weights[i] * points[3 * i + k]);
+        h.push_back(weights[i]);
+    }
+    return h;
+}
+
+// SISL has the first parameter fastest: u and v are exchanged.
+SISLSurf* make_surface(SurfaceInput s) {
+    auto net = homogeneous(s.points, s.weights);
+    return newSurf(s.size, s.size, s.degree + 1, s.degree + 1, s.knots_v.data(), s.knots_u.data(), net.data(),
+                   2, 3, 1);
+}
+
+// One task for each point of the plots.
+void sweep() {
+    each_sweep([](int points, int degree, int size) {
+        const std::shared_ptr<SISLSurf> surface(make_surface(rough(degree, size)), freeSurf);
+        const std::size_t n = std::size_t(points);
+        const auto u = std::make_shared<std::vector<double>>(scattered(2001, n));
+        const auto v = std::make_shared<std::vector<double>>(scattered(2002, n));
+        const auto out = std::make_shared<std::vector<double>>(3 * n);
+        task(
+            sweep_name("sweep", points, degree, size), n,
+            [=] {
+                int left1 = 0, left2 = 0, status = 0;
+                for (std::size_t i = 0; i < n; ++i) {
+                    double at[2] = {(*v)[i], (*u)[i]}, normal[3];
+                    s1421(surface.get(), 0, at, &left1, &left2, &(*out)[3 * i], normal, &status);
+                }
+            },
+            [=] { return (*out)[2]; });
+    });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
     auto c = helix();
-    const auto homogeneous = [](const std::vector<double>& points, const std::vector<double>& weights) {
-        std::vector<double> h;
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            for (std::size_t k = 0; k < 3; ++k) h.push_back(weights[i] * points[3 * i + k]);
-            h.push_back(weights[i]);
-        }
-        return h;
-    };
-    // SISL has the first parameter fastest: u and v are exchanged.
-    auto net = homogeneous(s.points, s.weights), line = homogeneous(c.points, c.weights);
-    SISLSurf* surface = newSurf(SurfaceInput::kSize, SurfaceInput::kSize, 4, 4, s.knots_v.data(),
-                                s.knots_u.data(), net.data(), 2, 3, 1);
+    auto line = homogeneous(c.points, c.weights);
+    SISLSurf* surface = make_surface(hills());
     SISLCurve* curve = newCurve(CurveInput::kSize, 4, c.knots.data(), line.data(), 2, 3, 1);
     if (!surface || !curve) return 1;
     const auto u = scattered(2001), v = scattered(2002), random = scattered(4001), in_order = sorted(random);
@@ -28,7 +60,7 @@ int main() {
     int left1 = 0, left2 = 0, status = 0;
     bool ok = true;
     task(
-        "scattered",
+        "scattered", n,
         [&] {
             for (std::size_t i = 0; i < n; ++i) {
                 double at[2] = {v[i], u[i]}, normal[3];
@@ -38,7 +70,7 @@ int main() {
         },
         [&] { return out[3 * kPlace]; });
     task(
-        "scattered_d1_normal",
+        "scattered_d1_normal", n,
         [&] {
             for (std::size_t i = 0; i < n; ++i) {
                 double at[2] = {v[i], u[i]}, normal[3];
@@ -51,14 +83,14 @@ int main() {
         },
         [&] { return normals[3 * kPlace]; });
     task(
-        "grid",
+        "grid", n,
         [&] {
             s1506(surface, 0, kGrid, axis.data(), kGrid, axis.data(), out.data(), normals.data(), &status);
             ok = ok && status >= 0;
         },
         [&] { return out[3 * kPlace]; });
     task(
-        "grid_normal",
+        "grid_normal", n,
         [&] {
             s1506(surface, 1, kGrid, axis.data(), kGrid, axis.data(), out.data(), normals.data(), &status);
             ok = ok && status >= 0;
@@ -68,20 +100,22 @@ int main() {
         const std::size_t size = 3 * std::size_t(order + 1);
         left1 = 0;
         task(
-            name,
-            [&] {
+            name, n,
+            [&, size, order] {
                 for (std::size_t i = 0; i < n; ++i) {
                     s1227(curve, order, at[i], &left1, &out[size * i], &status);
                     ok = ok && status >= 0;
                 }
             },
-            [&] { return out[size * kPlace + size - 3]; });
+            [&, size] { return out[size * kPlace + size - 3]; });
     };
     along("curve_sorted", in_order, 0);
     along("curve_random", random, 0);
     along("curve_sorted_d2", in_order, 2);
     along("curve_random_d2", random, 2);
+    sweep();
+    const int failed = run_tasks(argc, argv);
     freeSurf(surface);
     freeCurve(curve);
-    return ok ? 0 : 1;
+    return ok ? failed : 1;
 }

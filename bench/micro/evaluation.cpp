@@ -1,29 +1,16 @@
-// Time of a point against the number of points, the degree and the number of control points; many small
-// patches at once. tools/bench_micro.py runs it and draws.
+// Derivatives and curvatures against the degree, grids, many small patches at once. tools/bench_micro.py runs
+// it.
 #include <freiform/core/parallel.hpp>
 #include <freiform/spline/prepared.hpp>
 
 #include <benchmark/benchmark.h>
-#include <evaluation_inputs.hpp>
+#include <patches.hpp>
 
 namespace {
 
 using namespace freiform;
 
-// A rational surface of n x n control points, uniform clamped knots on [0, 1].
-Surface<Hom<3>> surface_of(int degree, int n) {
-    std::vector<double> knots;
-    for (int i = 0; i <= n + degree; ++i)
-        knots.push_back(std::clamp(double(i - degree) / (n - degree), 0.0, 1.0));
-    const auto basis = *BSplineBasis::make(degree, knots);
-    bench::Sequence random(std::uint64_t(1000 * degree + n));
-    std::vector<Hom<3>> net;
-    for (int i = 0; i < n * n; ++i) {
-        const Vec<3> p{{double(i / n) / n, double(i % n) / n, 0.1 * random.next()}};
-        net.push_back(weighted(p, 0.5 + 1.5 * random.next()));
-    }
-    return *Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({n, n}, std::move(net)));
-}
+Surface<Hom<3>> surface_of(int degree, int n) { return bench::patch_of(bench::rough(degree, n)); }
 
 std::vector<Param<2>> parameters(std::size_t n) {
     bench::Sequence random(2001);
@@ -32,38 +19,22 @@ std::vector<Param<2>> parameters(std::size_t n) {
     return at;
 }
 
-// Points scattered over a surface: of them, of its degree, of its control points along each side.
+// Points scattered over a surface of 20 x 20 control points: of them, of its degree.
+template <class Out>
 void scattered(benchmark::State& state) {
-    const auto fast = PreparedPatch<2, Hom<3>>::make(surface_of(int(state.range(1)), int(state.range(2))));
+    const auto fast = PreparedPatch<2, Hom<3>>::make(surface_of(int(state.range(1)), 20));
     const auto at = parameters(std::size_t(state.range(0)));
-    std::vector<Vec<3>> out(at.size());
+    std::vector<Out> out(at.size());
     for (auto _ : state) {
-        if (!fast->evaluate(at, out)) state.SkipWithError("refused");
+        if (!fast->evaluate(at, std::span(out))) state.SkipWithError("refused");
         benchmark::DoNotOptimize(out.data());
     }
     state.SetItemsProcessed(state.iterations() * state.range(0));
 }
-// The same with one point after the other.
-void single(benchmark::State& state) {
-    const auto surface = surface_of(int(state.range(1)), int(state.range(2)));
-    const auto at = parameters(std::size_t(state.range(0)));
-    std::vector<Vec<3>> out(at.size());
-    for (auto _ : state) {
-        for (std::size_t i = 0; i < at.size(); ++i) out[i] = surface(at[i]);
-        benchmark::DoNotOptimize(out.data());
-    }
-    state.SetItemsProcessed(state.iterations() * state.range(0));
-}
-void curvatures(benchmark::State& state) {
-    const auto fast = PreparedPatch<2, Hom<3>>::make(surface_of(int(state.range(1)), int(state.range(2))));
-    const auto at = parameters(std::size_t(state.range(0)));
-    std::vector<Curvatures> out(at.size());
-    for (auto _ : state) {
-        if (!fast->evaluate(at, out)) state.SkipWithError("refused");
-        benchmark::DoNotOptimize(out.data());
-    }
-    state.SetItemsProcessed(state.iterations() * state.range(0));
-}
+void first_derivatives(benchmark::State& state) { scattered<Jet<2, 1, Vec<3>>>(state); }
+void second_derivatives(benchmark::State& state) { scattered<Jet<2, 2, Vec<3>>>(state); }
+void curvatures(benchmark::State& state) { scattered<Curvatures>(state); }
+
 // Square grids of so many points along each side.
 void grid(benchmark::State& state) {
     const auto fast = PreparedPatch<2, Hom<3>>::make(surface_of(int(state.range(1)), int(state.range(2))));
@@ -111,20 +82,13 @@ void many_in_a_loop(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations() * std::int64_t(job.out.size()));
 }
 
-void points_degree_size(benchmark::internal::Benchmark* b) {
-    for (const int points : {1, 8, 64, 512, 4096, 32768, 262144}) b->Args({points, 3, 20});
-    for (const int degree : {1, 2, 4, 5, 7, 9}) b->Args({4096, degree, 20});
-    for (const int size : {4, 8, 50, 100, 200}) b->Args({4096, 3, size});
+void degrees(benchmark::internal::Benchmark* b) {
+    for (const int degree : {1, 2, 3, 4, 5, 7}) b->Args({4096, degree});
 }
 
-BENCHMARK(scattered)->Apply(points_degree_size);
-BENCHMARK(single)
-    ->Args({64, 3, 20})
-    ->Args({64, 1, 20})
-    ->Args({64, 5, 20})
-    ->Args({64, 9, 20})
-    ->Args({64, 3, 200});
-BENCHMARK(curvatures)->Args({4096, 3, 20});
+BENCHMARK(first_derivatives)->Apply(degrees);
+BENCHMARK(second_derivatives)->Apply(degrees);
+BENCHMARK(curvatures)->Apply(degrees);
 BENCHMARK(grid)->Args({8, 3, 20})->Args({30, 3, 20})->Args({100, 3, 20})->Args({300, 3, 20});
 BENCHMARK(many_at_once)->Arg(4)->Arg(10)->Arg(20);
 BENCHMARK(many_in_a_loop)->Arg(4)->Arg(10)->Arg(20);

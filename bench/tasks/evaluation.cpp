@@ -2,7 +2,9 @@
 #include <freiform/core/parallel.hpp>
 #include <freiform/spline/prepared.hpp>
 
-#include <evaluation_inputs.hpp>
+#include <evaluation_tasks.hpp>
+#include <memory>
+#include <patches.hpp>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -11,15 +13,6 @@
 namespace {
 
 using namespace freiform;
-
-template <std::size_t N>
-Net<N, Hom<3>> net_of(const Index<N>& extent, const std::vector<double>& points,
-                      const std::vector<double>& weights) {
-    std::vector<Hom<3>> c;
-    for (std::size_t i = 0; i < weights.size(); ++i)
-        c.push_back(weighted(Vec<3>{{points[3 * i], points[3 * i + 1], points[3 * i + 2]}}, weights[i]));
-    return {extent, std::move(c)};
-}
 
 constexpr std::size_t kPlace = 123456;  // of the sample
 
@@ -52,18 +45,38 @@ void store_past(std::vector<Vec<3>>& out) {
     while (p < end) *p++ = 1;
 }
 
-int run() {
-    const auto s = bench::hills();
-    const auto c = bench::helix();
-    const int n = bench::SurfaceInput::kSize;
-    const auto surface =
-        Surface<Hom<3>>::make({*BSplineBasis::make(3, s.knots_u), *BSplineBasis::make(3, s.knots_v)},
-                              net_of<2>({n, n}, s.points, s.weights));
-    const auto curve = Curve<Hom<3>>::make({*BSplineBasis::make(3, c.knots)},
-                                           net_of<1>({bench::CurveInput::kSize}, c.points, c.weights));
-    if (!surface || !curve) return 1;
-    const auto fast = PreparedPatch<2, Hom<3>>::make(*surface);
-    const auto quick = PreparedPatch<1, Hom<3>>::make(*curve);
+// Points scattered over surfaces of any degree and size, prepared and one by one.
+void sweep() {
+    bench::each_sweep([](int points, int degree, int size) {
+        const auto surface = bench::patch_of(bench::rough(degree, size));
+        const auto fast = PreparedPatch<2, Hom<3>>::make(surface);
+        const auto u = bench::scattered(2001, std::size_t(points)),
+                   v = bench::scattered(2002, std::size_t(points));
+        const auto at = std::make_shared<std::vector<Param<2>>>();
+        for (std::size_t i = 0; i < u.size(); ++i) at->push_back({u[i], v[i]});
+        const auto out = std::make_shared<std::vector<Vec<3>>>(at->size());
+        const auto z = [out] { return (*out)[0][2]; };
+        bench::task(
+            bench::sweep_name("sweep", points, degree, size), at->size(),
+            [=] {
+                if (!fast->evaluate(*at, *out)) std::abort();
+            },
+            z);
+        if (points != 64 && points != 4096) return;
+        bench::task(
+            bench::sweep_name("one_by_one", points, degree, size), at->size(),
+            [=] {
+                for (std::size_t i = 0; i < at->size(); ++i) (*out)[i] = surface((*at)[i]);
+            },
+            z);
+    });
+}
+
+int run(int argc, char** argv) {
+    const auto surface = bench::patch_of(bench::hills());
+    const auto curve = bench::patch_of(bench::helix());
+    const auto fast = PreparedPatch<2, Hom<3>>::make(surface);
+    const auto quick = PreparedPatch<1, Hom<3>>::make(curve);
     if (!fast || !quick) return 1;
     const auto u = bench::scattered(2001), v = bench::scattered(2002);
     std::vector<Param<2>> at;
@@ -80,51 +93,60 @@ int run() {
     const auto second_x = [&] { return curve_jets[kPlace].d[2][0]; };
     set_max_threads(1);
     bench::task(
-        "scattered", [&] { ok = ok && fast->evaluate(at, out); }, x);
+        "scattered", bench::kPoints, [&] { ok = ok && fast->evaluate(at, out); }, x);
     bench::task(
-        "scattered_unprepared", [&] { ok = ok && surface->evaluate(at, out); }, x);
+        "scattered_unprepared", bench::kPoints, [&] { ok = ok && surface.evaluate(at, out); }, x);
     bench::task(
-        "scattered_normal", [&] { ok = ok && fast->evaluate(at, out, normals); }, normal_x);
+        "scattered_normal", bench::kPoints, [&] { ok = ok && fast->evaluate(at, out, normals); }, normal_x);
     bench::task(
-        "scattered_d1_normal", [&] { ok = ok && fast->evaluate(at, std::span(jets), std::span(normals)); },
-        normal_x);
+        "scattered_d1_normal", bench::kPoints,
+        [&] { ok = ok && fast->evaluate(at, std::span(jets), std::span(normals)); }, normal_x);
     bench::task(
-        "grid", [&] { ok = ok && fast->evaluate_grid(axes, out); }, x);
+        "grid", bench::kPoints, [&] { ok = ok && fast->evaluate_grid(axes, out); }, x);
     bench::task(
-        "grid_normal", [&] { ok = ok && fast->evaluate_grid(axes, out, normals); }, normal_x);
+        "grid_normal", bench::kPoints, [&] { ok = ok && fast->evaluate_grid(axes, out, normals); }, normal_x);
     const auto random = bench::scattered(4001), sorted = bench::sorted(random);
     bench::task(
-        "curve_sorted", [&] { ok = ok && quick->evaluate(sorted, out); }, x);
+        "curve_sorted", bench::kPoints, [&] { ok = ok && quick->evaluate(sorted, out); }, x);
     bench::task(
-        "curve_random", [&] { ok = ok && quick->evaluate(random, out); }, x);
+        "curve_random", bench::kPoints, [&] { ok = ok && quick->evaluate(random, out); }, x);
     bench::task(
-        "curve_sorted_d2", [&] { ok = ok && quick->evaluate(sorted, std::span(curve_jets)); }, second_x);
+        "curve_sorted_d2", bench::kPoints, [&] { ok = ok && quick->evaluate(sorted, std::span(curve_jets)); },
+        second_x);
     bench::task(
-        "curve_random_d2", [&] { ok = ok && quick->evaluate(random, std::span(curve_jets)); }, second_x);
+        "curve_random_d2", bench::kPoints, [&] { ok = ok && quick->evaluate(random, std::span(curve_jets)); },
+        second_x);
     bench::task(
-        "scattered_one_thread", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
-    set_max_threads(2);
+        "scattered_one_thread", bench::kPoints, [&] { ok = ok && fast->evaluate(at, out); }, x, true);
     bench::task(
-        "scattered_two_threads", [&] { ok = ok && fast->evaluate(at, out); }, x, true);
+        "scattered_two_threads", bench::kPoints,
+        [&] {
+            set_max_threads(2);
+            ok = ok && fast->evaluate(at, out);
+            set_max_threads(1);
+        },
+        x, true);
     std::vector<float> single(3 * at.size());
-    set_max_threads(1);
     bench::task(
-        "scattered_single_precision", [&] { ok = ok && fast->evaluate(at, std::span(single)); },
-        [&] { return single[3 * kPlace]; });
+        "scattered_single_precision", bench::kPoints,
+        [&] { ok = ok && fast->evaluate(at, std::span(single)); }, [&] { return single[3 * kPlace]; });
     // How fast memory takes points of three doubles.
     bench::task(
-        "store",
+        "store", bench::kPoints,
         [&] {
             std::fill(out.begin(), out.end(), Vec<3>{{1, 2, 3}});
         },
         x);
     bench::task(
-        "store_past", [&] { store_past(out); }, x);
-    std::printf("# kernels %s bound %.3g processors %.2f\n", std::string(instruction_set()).c_str(),
-                fast->value_error_bound(), processors());
-    return ok ? 0 : 1;
+        "store_past", bench::kPoints, [&] { store_past(out); }, x);
+    sweep();
+    const double got = processors();
+    set_max_threads(1);
+    const int failed =
+        bench::run_tasks(argc, argv, std::string(instruction_set()), fast->value_error_bound(), got);
+    return ok ? failed : 1;
 }
 
 }  // namespace
 
-int main() { return run(); }
+int main(int argc, char** argv) { return run(argc, argv); }

@@ -52,18 +52,45 @@ __attribute__((noinline)) static void grid_row_of(const Net& net, const GridAxis
 
 // Points of three coordinates: several vectors at once, since each of them is a chain of dependent operations
 // that a processor cannot look past.
-template <int P>
-__attribute__((noinline)) static void grid_points(const Net& net, const GridAxis& last, const double* outer,
+template <int P, bool Rational>
+__attribute__((noinline)) static void grid_points(const GridAxis& last, const double* outer,
                                                   const Output& out) {
     constexpr int kBlock = 2;
     const int p = P >= 0 ? P : last.degree, groups = (last.count + kWidth - 1) / kWidth, parts = last.parts;
     const GridPart* part = last.part;
     const double* weights = last.weights;
     const std::size_t stride = last.stride();
-    const bool rational = net.rational;
     Sink to;
     to.open(out.jets, out.past);
     for (int group = 0, at = 0; group < groups; group += kBlock) {
+        // Most blocks lie in one span: a coefficient is spread over the lanes once for all vectors, and
+        // nothing leaves the registers.
+        if (at + 1 < parts && part[at + 1].group == group + 1 && part[at + 1].first == part[at].first &&
+            (at + 2 == parts || part[at + 2].group != group + 1) && (group + kBlock) * kWidth <= last.count) {
+            const double* from = outer + std::size_t(part[at].first) * 4;
+            const double *w0 = weights, *w1 = weights + stride;
+            V x0 = all(0), y0 = x0, z0 = x0, u0 = x0, x1 = x0, y1 = x0, z1 = x0, u1 = x0, v[3 * kBlock];
+            each<P >= 0 ? P + 1 : -1>(p + 1, [&](int j) FF_BODY {
+                const V f = load(w0 + j * kWidth), g = load(w1 + j * kWidth);
+                const V a = all(from[4 * j]), b = all(from[4 * j + 1]), c = all(from[4 * j + 2]);
+                x0 += a * f, y0 += b * f, z0 += c * f;
+                x1 += a * g, y1 += b * g, z1 += c * g;
+                if constexpr (Rational) {
+                    const V d = all(from[4 * j + 3]);
+                    u0 += d * f, u1 += d * g;
+                }
+            });
+            if constexpr (Rational) {
+                const V u[kBlock] = {u0, u1};
+                V r[kBlock];
+                reciprocals<kBlock>(u, r);
+                x0 *= r[0], y0 *= r[0], z0 *= r[0], x1 *= r[1], y1 *= r[1], z1 *= r[1];
+            }
+            interleave(x0, y0, z0, v), interleave(x1, y1, z1, v + 3);
+            to.template put_all<3 * kBlock>(v);
+            at += kBlock, weights += kBlock * stride;
+            continue;
+        }
         V s[kBlock][4], w[kBlock], v[3 * kBlock];
         each<kBlock>(kBlock, [&](int q) FF_BODY {
             V x = all(0), y = x, z = x, u = x;
@@ -78,7 +105,7 @@ __attribute__((noinline)) static void grid_points(const Net& net, const GridAxis
             }
             s[q][0] = x, s[q][1] = y, s[q][2] = z, w[q] = u;
         });
-        if (rational) {
+        if constexpr (Rational) {
             V r[kBlock];
             reciprocals<kBlock>(w, r);
             each<kBlock>(kBlock, [&](int q) FF_BODY { each<3>(3, [&](int c) FF_BODY { s[q][c] *= r[q]; }); });
@@ -96,9 +123,13 @@ __attribute__((noinline)) static void grid_points(const Net& net, const GridAxis
 
 static void grid_row(const Net& net, const GridAxis& last, const double* outer, std::size_t row,
                      const Output& out) {
-    if (out.order == 0 && net.axes == 2 && net.dim == 3)
-        return last.degree == 3 ? grid_points<3>(net, last, outer, out)
-                                : grid_points<-1>(net, last, outer, out);
+    if (out.order == 0 && net.axes == 2 && net.dim == 3) {
+        if (last.degree == 3)
+            return net.rational ? grid_points<3, true>(last, outer, out)
+                                : grid_points<3, false>(last, outer, out);
+        return net.rational ? grid_points<-1, true>(last, outer, out)
+                            : grid_points<-1, false>(last, outer, out);
+    }
     const auto with_order = [&]<int N, int C>() {
         if (out.order == 0) return grid_row_of<N, 0, C>(net, last, outer, row, out);
         if (out.order == 1) return grid_row_of<N, 1, C>(net, last, outer, row, out);

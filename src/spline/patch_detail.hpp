@@ -80,12 +80,17 @@ Result<PreparedNet> prepared(const std::array<B, N>& bases, const Tuples& net) {
     return PreparedNet::make(splines, net);
 }
 
-// Whether this many points pay for the tables: making those costs as much as so many points, or so.
+// Whether this many points pay for the tables, which take as long as so many points save, for each span of
+// each axis and each of its p + 1 functions. order: of derivatives; kGrid: values on a grid, which takes far
+// less than scattered points without tables too. Measured: bench/THRESHOLDS.md.
+inline constexpr int kGrid = 3;
 template <std::size_t N, Basis B>
-bool worth_preparing(const std::array<B, N>& bases, std::size_t coefficients, std::size_t points) {
-    std::size_t worth = coefficients / 4;
-    for (const B& b : bases) worth += 16 * std::size_t(b.degree() + 1) * std::size_t(b.size());
-    return points >= worth;
+bool worth_preparing(const std::array<B, N>& bases, int order, std::size_t points) {
+    constexpr double kWorth[3][4] = {{33, 8, 7, 33}, {11, 3.5, 1.7, 50}, {11, 1.8, 0.7, 50}};
+    double functions = 0;
+    for (const B& b : bases)
+        functions += double(b.degree() + 1) * std::max(1, is_closed(b) ? b.size() : b.size() - b.degree());
+    return double(points) >= kWorth[N - 1][order] * functions;
 }
 
 template <std::size_t N>
@@ -144,7 +149,7 @@ typename Patch<N, P, B>::Point Patch<N, P, B>::operator()(const Param<N>& u) con
 template <std::size_t N, Coefficient P, Basis B>
 std::optional<Result<void>> Patch<N, P, B>::by_kernels(std::span<const Param<N>> at, int order,
                                                        std::size_t slots, double* out) const {
-    if (!detail::worth_preparing(bases_, net_.flat().size(), at.size())) return {};
+    if (!detail::worth_preparing(bases_, order, at.size())) return {};
     const auto fast = detail::prepared(bases_, tuples(net_.flat()));
     if (!fast) return {};
     return fast->evaluate(detail::plain<N>(at), order, slots, {out}, Outside::refuse);
@@ -238,7 +243,7 @@ Result<Net<N, PointOf<P>>> evaluate_grid(const Patch<N, P, B>& s,
         extent[d] = int(std::min<std::size_t>(axes[d].size(), 0x7fffffff));
     }
     if (const auto points = count_of(extent);
-        points > 0 && detail::worth_preparing(s.bases(), s.net().flat().size(), std::size_t(points))) {
+        points > 0 && detail::worth_preparing(s.bases(), detail::kGrid, std::size_t(points))) {
         if (const auto fast = detail::prepared(s.bases(), tuples(s.net().flat()))) {
             Net<N, PointOf<P>> out(extent);
             if (auto ok = fast->evaluate_grid(axes, 0, 1, {numbers(out.flat()).data()}); !ok)
