@@ -21,7 +21,7 @@ preparing, threads and stores past the caches pay: [THRESHOLDS.md](THRESHOLDS.md
 
 ![Time against the degree](micro-degree.svg)
 
-Degrees 1, 2, 3 and 5 have loops of their own, second derivatives degrees 3 and 5.
+Degrees 1, 2, 3 and 5 have loops of their own.
 
 ## A thousand bicubic patches, each on a small grid
 

@@ -176,10 +176,8 @@ __attribute__((noinline)) static void scattered_of(const Net& net, const double*
         const int n = int(count - from < std::size_t(kTile) ? count - from : std::size_t(kTile));
         for (int d = 0; d < N; ++d) locate(net.axis[d], at, N, d, n, N == 1, !net.rational, local[d]);
         with_degree(plain ? net.axis[0].degree : -1, [&]<int P>(Degree<P>) FF_BODY {
-            // Second derivatives of surfaces: of the most common degrees alone, for the sake of compile time.
             const int all = (n + kWidth - 1) / kWidth * kWidth;
-            contract_tile<N == 3 || (N == 2 && K == 2 && P != 3 && P != 5) ? -1 : P, N, K>(net, local, all,
-                                                                                           h);
+            contract_tile<N == 3 ? -1 : P, N, K>(net, local, all, h);
         });
         finish_tile<N, K>(net, h, local, n, out, to);
     }
