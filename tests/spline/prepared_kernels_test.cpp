@@ -214,6 +214,7 @@ template <std::size_t N, class P, class F>
 Errors worst_of(F&& with_each, std::vector<int> degrees, std::array<int, N> counts, std::uint64_t seed) {
     Random random(seed);
     Errors worst;
+    if (test::kAddressSanitizer) degrees.resize(2);  // exact arithmetic takes ten times as long there
     for (const int p : degrees) {
         const auto basis = [&](std::size_t axis) {
             const int q = p == 4 && axis > 0 ? 2 : p;
@@ -262,7 +263,7 @@ TEST_P(EveryKernel, gives_volumes_within_the_documented_distance_of_exact_arithm
     Errors others;
     others.take(worst_of<2, Vec<2>>(each, {3, 4}, {1, 9}, 9));
     others.take(worst_of<2, Hom<4>>(each, {3, 4}, {1, 9}, 10));
-    others.take(worst_of<3, Hom<4>>(each, {2}, {1, 2, 5}, 11));
+    others.take(worst_of<3, Hom<4>>(each, {1, 2}, {1, 2, 5}, 11));
     expect_below("2 or 4 coordinates", others, {{10, 6, 6}});
 }
 
