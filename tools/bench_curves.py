@@ -5,19 +5,16 @@ Runs bench-curves and its siblings of bench/compare, each a process of its own, 
 this one. Writes bench/CURVES.md; with --print only prints it. The time of a task is the shortest of many runs.
 """
 import argparse
-import datetime
 import importlib.util
 import json
 import math
 import os
-import pathlib
-import platform
 import random
-import subprocess
 import sys
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from bench_shared import duration, head, keep_shortest, parse, ratio, run, write
+
 ROUNDS = 4
 COUNT = 100_000  # parameters
 PROGRAMS = [("freiform", "bench-curves"), ("Open CASCADE", "bench-curves-occt"), ("Boost", "bench-curves-boost")]
@@ -49,23 +46,6 @@ def text(c):
     words += [x.hex() for p in c["net"] for x in p]
     words.append(str(len(c["at"])))
     return " ".join(words + [t.hex() for t in c["at"]])
-
-
-def run(program, c):
-    """task -> numbers; `seconds` is one of them."""
-    done = subprocess.run([str(program)], input=text(c), capture_output=True, text=True, timeout=300, check=True)
-    out = {}
-    for line in done.stdout.splitlines():
-        task, *words = line.split()
-        if words == ["failed"]:
-            out[task] = None
-            continue
-        numbers = {"seconds": float(words[0])}
-        for word in words[1:]:
-            key, value = word.split("=")
-            numbers[key] = float.fromhex(value) if "0x" in value else float(value)
-        out[task] = numbers
-    return out
 
 
 def shortest(job, budget=0.4):
@@ -127,27 +107,12 @@ def measure(programs):
     for c in CURVES:
         mine = results[c["name"]] = {}
         for _ in range(ROUNDS):
-            answers = [(name, run(programs / program, c)) for name, program in PROGRAMS if (programs / program).is_file()]
+            answers = [(name, run(programs / program, text(c))) for name, program in PROGRAMS if (programs / program).is_file()]
             if importlib.util.find_spec("scipy"):
                 answers.append(("SciPy", scipy_tasks(c)))
             for name, tasks in answers:
-                kept = mine.setdefault(name, {})
-                for task, numbers in tasks.items():
-                    old = kept.get(task)
-                    if old is None or (numbers and numbers["seconds"] < old["seconds"]):
-                        kept[task] = numbers
+                keep_shortest(mine.setdefault(name, {}), tasks)
     return results
-
-
-def duration(seconds):
-    for unit, size in (("ns", 1e-9), ("µs", 1e-6), ("ms", 1e-3)):
-        if seconds < 1000 * size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds:.3g} s"
-
-
-def ratio(other, mine):
-    return f"{other / mine:.2g}" if other / mine < 100 else f"{other / mine:.0f}"
 
 
 def simple_table(results, tasks, names):
@@ -233,8 +198,7 @@ def losses(results):
 
 PAGE = """# Curves beside other libraries
 
-Made by `make bench` (`tools/bench_curves.py`); do not edit. {when}, {machine}; {build}. Load when it began: {load:.1f} on {cores}
-processors (more than 1 per processor: others were at work, and times are too long, unevenly).
+{head}
 
 One thread. The time is the shortest of many runs in each of {rounds} processes; in brackets the ratio to this library, above
 1 where that is slower. Open CASCADE works through GeomAdaptor_Curve, which keeps the piece it was in; SciPy through BSpline
@@ -266,28 +230,16 @@ which none of the others offers.
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("--programs", type=pathlib.Path, default=ROOT / "build" / "bin")
-    arguments.add_argument("--print", action="store_true", dest="only_print")
-    options = arguments.parse_args()
-    if not (options.programs / "bench-curves").is_file():
-        sys.exit(f"{options.programs / 'bench-curves'} is not built (make bench builds it)")
-    load = os.getloadavg()[0]
-    results = measure(options.programs)
+    options = parse(argparse.ArgumentParser(description=__doc__.splitlines()[0]), "bench-curves")
     build = json.loads((options.programs / "bench.json").read_text()) if (options.programs / "bench.json").is_file() else {}
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8") if line.startswith("model name")),
-               platform.machine())
+    top = head("bench_curves.py", f"{build.get('compiler', '')} {build.get('flags', '')}".strip())
+    results = measure(options.programs)
     tasks = [("evaluate_sorted", "value, sorted"), ("evaluate_random", "value, random"), ("evaluate_accurate", "accurate value"),
              ("split", "split in two")]
-    page = PAGE.format(when=datetime.date.today().isoformat(), machine=cpu, rounds=ROUNDS, count=COUNT, load=load, cores=os.cpu_count(),
-                       build=f"{build.get('compiler', '')} {build.get('flags', '')}".strip(), losses=losses(results),
-                       simple=simple_table(results, tasks, ["Open CASCADE", "SciPy", "Boost"]),
-                       length=length_table(results), flatten=flatten_table(results))
-    if options.only_print:
-        print(page)
-    else:
-        (ROOT / "bench" / "CURVES.md").write_text(page, encoding="utf-8")
-        print(f"bench/CURVES.md: {page.count(chr(10))} lines")
+    write(options, "CURVES.md",
+          PAGE.format(head=top, rounds=ROUNDS, count=COUNT, losses=losses(results),
+                      simple=simple_table(results, tasks, ["Open CASCADE", "SciPy", "Boost"]),
+                      length=length_table(results), flatten=flatten_table(results)))
 
 
 # Debian's SciPy belongs to Debian's Python, which need not be the first on the path.

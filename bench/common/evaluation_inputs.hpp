@@ -37,11 +37,11 @@ struct CurveInput {
     static constexpr int kSize = 100;
     std::vector<double> knots, points, weights;  // points: x y z, not weighted
 };
-inline CurveInput helix() {
-    Sequence random(3001);
-    CurveInput c{uneven_knots(CurveInput::kSize, random), {}, {}};
-    for (int i = 0; i < CurveInput::kSize; ++i) {
-        const double s = i / (CurveInput::kSize - 1.0), turn = 4 * 3.14159265358979323846 * s;
+inline CurveInput helix(int n = CurveInput::kSize, std::uint64_t seed = 3001) {
+    Sequence random(seed);
+    CurveInput c{uneven_knots(n, random), {}, {}};
+    for (int i = 0; i < n; ++i) {
+        const double s = i / (n - 1.0), turn = 4 * 3.14159265358979323846 * s;
         c.points.push_back(std::cos(turn) + 0.4 * (random.next() - 0.5));
         c.points.push_back(std::sin(turn) + 0.4 * (random.next() - 0.5));
         c.points.push_back(2 * s + 0.4 * (random.next() - 0.5));
@@ -54,10 +54,9 @@ struct SurfaceInput {
     int degree = 3, size = 20;                              // the same along both axes
     std::vector<double> knots_u, knots_v, points, weights;  // row-major, u slow
 };
-inline SurfaceInput hills() {
-    Sequence random(1001);
-    SurfaceInput s;
-    const int n = s.size;
+inline SurfaceInput hills(int n = 20, std::uint64_t seed = 1001) {
+    Sequence random(seed);
+    SurfaceInput s{3, n, {}, {}, {}, {}};
     s.knots_u = uneven_knots(n, random);
     s.knots_v = uneven_knots(n, random);
     for (int i = 0; i < n; ++i)

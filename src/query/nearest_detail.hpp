@@ -63,6 +63,12 @@ public:
         int products = 0;
         double radius = 0;                  // |N| <= radius
         double lightest = 1, heaviest = 1;  // W
+
+        std::size_t control_points() const {
+            std::size_t n = 1;
+            for (std::size_t d = 0; d < std::size_t(params); ++d) n *= std::size_t(degree[d] + 1);
+            return n;
+        }
     };
     struct Node {
         Coords lo{}, hi{};
@@ -87,7 +93,7 @@ private:
 
 // What a search needs of memory, kept from one to the next.
 struct NearestTree::Scratch {
-    std::vector<double> blocks, shifted;
+    std::vector<double> blocks;
     std::vector<std::pair<double, int>> nodes;
 };
 

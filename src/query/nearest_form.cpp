@@ -10,39 +10,90 @@ using Parameters = NearestTree::Parameters;
 
 namespace {
 
-// Second differences along d and e, times the degrees: the least, and the largest absolute one.
-struct Bend {
-    double least = std::numeric_limits<double>::infinity(), most = 0;
+// F as [outer][size][inner] with axis d in the middle.
+struct Sides {
+    int outer = 1, size = 1, inner = 1;
 };
+Sides sides(const NearestForm& form, int d) {
+    Sides s;
+    for (int k = 0; k < form.params; ++k)
+        (k < d ? s.outer : k == d ? s.size : s.inner) *= 2 * form.degree[std::size_t(k)] + 1;
+    return s;
+}
 
-Bend bend(const NearestForm& form, int d, int e) {
-    const int params = form.params;
-    const auto& degree = form.degree;
-    const double* f = form.f;
-    std::array<int, kMostParams> size{1, 1, 1}, stride{};
-    int s = 1;
-    for (int k = params - 1; k >= 0; --k) {
-        size[std::size_t(k)] = 2 * degree[std::size_t(k)] + 1;
-        stride[std::size_t(k)] = s;
-        s *= size[std::size_t(k)];
+// The range of f(0) .. f(count - 1), of none: 0 to 0. Four at a time do not wait for each other.
+template <class F>
+void widen(Interval& range, int count, F&& f) {
+    double lo[4], hi[4];
+    for (int k = 0; k < 4; ++k) lo[k] = range.lo, hi[k] = range.hi;
+    int i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (int k = 0; k < 4; ++k) {
+            const double v = f(i + k);
+            lo[k] = v < lo[k] ? v : lo[k];
+            hi[k] = v > hi[k] ? v : hi[k];
+        }
+    for (; i < count; ++i) {
+        const double v = f(i);
+        lo[0] = v < lo[0] ? v : lo[0];
+        hi[0] = v > hi[0] ? v : hi[0];
     }
-    const int sd = stride[std::size_t(d)], se = stride[std::size_t(e)];
-    std::array<int, kMostParams> end = size;
-    --end[std::size_t(d)], --end[std::size_t(e)];
-    const double m = size[std::size_t(d)] - 1, factor = d == e ? m * (m - 1) : m * (size[std::size_t(e)] - 1);
-    Bend b;
-    for (int x = 0; x < end[0]; ++x)
-        for (int y = 0; y < end[1]; ++y)
-            for (int z = 0; z < end[2]; ++z) {
-                const double* g = f + x * stride[0] + y * stride[1] + z * stride[2];
-                const double v = factor * ((g[sd + se] - g[sd]) - (g[se] - g[0]));
-                b.least = std::min(b.least, v);
-                b.most = std::max(b.most, std::abs(v));
+    range.lo = std::min(std::min(lo[0], lo[1]), std::min(lo[2], lo[3]));
+    range.hi = std::max(std::max(hi[0], hi[1]), std::max(hi[2], hi[3]));
+}
+
+constexpr Interval kNothing{std::numeric_limits<double>::infinity(),
+                            -std::numeric_limits<double>::infinity()};
+
+// Second differences along the axis d.
+Interval own_bend(const NearestForm& form, int d) {
+    const Sides s = sides(form, d);
+    Interval range = kNothing;
+    for (int o = 0; o < s.outer; ++o) {
+        const double* g = form.f + o * s.size * s.inner;
+        widen(range, (s.size - 2) * s.inner,
+              [&](int i) { return (g[i + 2 * s.inner] - g[i + s.inner]) - (g[i + s.inner] - g[i]); });
+    }
+    return range;
+}
+// Along d, then e > d.
+Interval mixed_bend(const NearestForm& form, int d, int e) {
+    const Sides s = sides(form, d), r = sides(form, e);
+    Interval range = kNothing;
+    for (int o = 0; o < s.outer; ++o)
+        for (int i = 0; i + 1 < s.size; ++i)
+            for (int q = 0; q < s.inner; q += r.size * r.inner) {
+                const double *g = form.f + (o * s.size + i) * s.inner + q, *h = g + s.inner;
+                widen(range, (r.size - 1) * r.inner,
+                      [&](int k) { return (h[k + r.inner] - g[k + r.inner]) - (h[k] - g[k]); });
             }
-    return b;
+    return range;
 }
 
 }  // namespace
+
+NearestForm::Least NearestForm::least() const {
+    double lo[4] = {f[0], f[0], f[0], f[0]};
+    int i = 0;
+    for (; i + 4 <= count; i += 4)
+        for (int k = 0; k < 4; ++k) lo[k] = f[i + k] < lo[k] ? f[i + k] : lo[k];
+    for (; i < count; ++i) lo[0] = f[i] < lo[0] ? f[i] : lo[0];
+    const double value = std::min(std::min(lo[0], lo[1]), std::min(lo[2], lo[3]));
+    std::size_t at = 0;
+    if (!(value > 0))
+        while (at + 1 < std::size_t(count) && f[at] != value) ++at;
+    return {value, at};
+}
+
+Interval NearestForm::slope(int axis) const {
+    const Sides s = sides(*this, axis);
+    Interval range = kNothing;
+    for (int o = 0; o < s.outer; ++o) {
+        const double* g = f + o * s.size * s.inner;
+        widen(range, (s.size - 1) * s.inner, [&](int i) { return g[i + s.inner] - g[i]; });
+    }
+    return range;
+}
 
 Parameters NearestForm::place(std::size_t i, const Parameters& lo, const Parameters& hi) const {
     Parameters t{};
@@ -56,24 +107,27 @@ Parameters NearestForm::place(std::size_t i, const Parameters& lo, const Paramet
 }
 
 bool NearestForm::convex(double eps) const {
-    const int n = params;
     double own[kMostParams], mixed[kMostParams][kMostParams] = {};
-    for (int d = 0; d < n; ++d) {
-        const double m = 2 * degree[std::size_t(d)];
-        if (m < 2) return false;
-        own[d] = bend(*this, d, d).least - 8 * eps * m * (m - 1);
-        if (!(own[d] > 0)) return false;
+    int axes[kMostParams], n = 0;  // those that F depends on
+    for (int d = 0; d < params; ++d)
+        if (degree[std::size_t(d)] > 0) axes[n++] = d;
+    for (int a = 0; a < n; ++a) {
+        const double m = 2 * degree[std::size_t(axes[a])];
+        own[a] = m * (m - 1) * (own_bend(*this, axes[a]).lo - 8 * eps);
+        if (!(own[a] > 0)) return false;
     }
-    for (int d = 0; d < n; ++d)
-        for (int e = 0; e < d; ++e)
-            mixed[d][e] = mixed[e][d] =
-                bend(*this, d, e).most + 16 * eps * degree[std::size_t(d)] * (2.0 * degree[std::size_t(e)]);
-    if (n == 1) return true;
+    for (int a = 0; a < n; ++a)
+        for (int b = 0; b < a; ++b) {
+            const Interval range = mixed_bend(*this, axes[b], axes[a]);
+            mixed[a][b] = mixed[b][a] = 4.0 * degree[std::size_t(axes[a])] * degree[std::size_t(axes[b])] *
+                                        (std::max(-range.lo, range.hi) + 8 * eps);
+        }
+    if (n < 2) return true;
     if (n == 2) return own[0] * own[1] * (1 - 8 * kUnitRoundoff) > mixed[0][1] * mixed[0][1];
-    for (int d = 0; d < n; ++d) {  // Gershgorin's circles
+    for (int a = 0; a < n; ++a) {  // Gershgorin's circles
         double sum = 0;
-        for (int e = 0; e < n; ++e) sum += mixed[d][e];
-        if (!(own[d] * (1 - 8 * kUnitRoundoff) > sum)) return false;
+        for (int b = 0; b < n; ++b) sum += mixed[a][b];
+        if (!(own[a] * (1 - 8 * kUnitRoundoff) > sum)) return false;
     }
     return true;
 }
@@ -141,22 +195,6 @@ std::optional<Parameters> NearestForm::inner_corner(double eps) const {
         if (f[i] < least) least = f[i], corner = t;
     }
     return corner;
-}
-
-int NearestForm::longest_axis() const {
-    int best_axis = 0;
-    double most = -1;
-    std::size_t stride = std::size_t(count);
-    for (int d = 0; d < params; ++d) {
-        const std::size_t n = std::size_t(2 * degree[std::size_t(d)] + 1);
-        stride /= n;
-        double change = 0;
-        for (std::size_t i = 0; i < std::size_t(count); ++i)
-            if (i / stride % n + 1 < n) change = std::max(change, std::abs(f[i + stride] - f[i]));
-        change *= double(n - 1);
-        if (change > most) most = change, best_axis = d;
-    }
-    return best_axis;
 }
 
 }  // namespace freiform::detail

@@ -10,20 +10,25 @@ struct NearestForm {
     using Parameters = NearestTree::Parameters;
 
     int params = 1;
-    std::array<int, kMostParams> degree{};  // p_d
+    std::array<int, kMostParams> degree{};  // p_d; 0: does not depend on parameter d
     int count = 1;                          // of coefficients
     const double* f = nullptr;              // F, the last parameter fastest
 
+    struct Least {
+        double value;
+        std::size_t at;
+    };
+    Least least() const;
     // The parameters (Greville abscissae) of coefficient i, in a block over [lo, hi].
     Parameters place(std::size_t i, const Parameters& lo, const Parameters& hi) const;
+    // The least and the largest first difference along the axis.
+    Interval slope(int axis) const;
     // Is F certainly convex? `eps` bounds the error of its coefficients.
     bool convex(double eps) const;
     // A lower bound of a convex F by its tangent at x.
     double below_tangent(const Parameters& x, double eps) const;
     // The corner with the least F, each parameter 0 or 1, if F is certainly negative there.
     std::optional<Parameters> inner_corner(double eps) const;
-    // The axis along which F changes most.
-    int longest_axis() const;
 };
 
 }  // namespace freiform::detail
