@@ -1,5 +1,5 @@
 // nearest: the point of a document's objects that is nearest to each given point, with the proof that none is
-// nearer.
+// nearer; the farthest; all within a radius.
 #include "input.hpp"
 
 #include <freiform/io/points.hpp>
@@ -13,7 +13,8 @@ namespace {
 
 struct NearestArguments {
     std::string file, object, points;
-    std::optional<double> accuracy;
+    std::optional<double> accuracy, radius;
+    bool farthest = false;
 };
 
 // Of the objects with one number of coordinates.
@@ -27,9 +28,120 @@ struct Answers {
     std::string plain;
 };
 
+// Writes where a point of an object is: what all answers have in common.
+struct Place {
+    const Input& input;
+    const Asked& asked;
+
+    std::size_t object(std::size_t i) const { return asked.index[i]; }
+    std::size_t params(std::size_t i) const {
+        const Shape& shape = input.object(object(i)).shape;
+        return type_name(shape) == "triangle" ? 2 : std::max<std::size_t>(bases_of(shape).size(), 1);
+    }
+    template <class Answer>
+    void write(json::Writer& w, const Answer& n) const {
+        w.field("object", object(n.object))
+            .field("name", input.object(object(n.object)).name)
+            .key("parameters")
+            .array(std::span<const double>(n.at.data(), params(n.object)))
+            .key("point")
+            .array(n.point.c)
+            .field("distance", n.distance);
+    }
+    template <class Answer>
+    std::string plain(const Answer& n) const {
+        std::string where, place;
+        for (std::size_t d = 0; d < params(n.object); ++d) where += text(where.empty() ? "" : ", ", n.at[d]);
+        for (const double x : n.point.c) place += text(place.empty() ? "" : ", ", x);
+        return text(input.label(object(n.object)), ": at ", where, ", point ", place, ", distance ",
+                    n.distance);
+    }
+    template <int D>
+    void write_regions(json::Writer& w, const NearRegions<D>& all) const {
+        w.begin_array();
+        for (const auto& r : all.regions) {
+            w.new_line(2).begin_object();
+            write(w, r);
+            w.key("box").begin_array();
+            for (std::size_t d = 0; d < params(r.object); ++d) w.array(std::array{r.box[d].lo, r.box[d].hi});
+            w.end_array().field("stretch", r.stretch).field("point_error", r.point_error).end_object();
+        }
+        w.end_array();
+    }
+    template <int D>
+    std::string plain_regions(const NearRegions<D>& all, std::string_view indent) const {
+        std::string out;
+        for (const auto& r : all.regions) {
+            std::string box;
+            for (std::size_t d = 0; d < params(r.object); ++d)
+                box += text(box.empty() ? "" : " x ", "[", r.box[d].lo, ", ", r.box[d].hi, "]");
+            out += text(indent, plain(r), ", in ", box, r.stretch ? ", a stretch\n" : "\n");
+        }
+        return out;
+    }
+};
+
+template <int D>
+Result<void> answer_nearest(const NearestQuery& query, const std::vector<Vec<D>>& points, double accuracy,
+                            const Place& place, Answers& out) {
+    std::vector<Nearest<D>> nearest(points.size());
+    if (auto done = query.nearest<D>(points, nearest, {.accuracy = accuracy}); !done) return done;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Nearest<D>& n = nearest[i];
+        const auto same = query.as_near<D>(points[i], n);
+        if (!same) return std::unexpected(same.error());
+        const bool many = same->regions.size() > 1 || same->regions[0].stretch;
+        out.w.new_line(1).begin_object().key("query").array(points[i].c);
+        place.write(out.w, n);
+        out.w.field("lower_bound", n.lower_bound).field("point_error", n.point_error).field("many", many);
+        if (many) {
+            out.w.key("as_near");
+            place.write_regions<D>(out.w, *same);
+            out.w.field("complete", same->complete);
+        }
+        out.w.end_object();
+        out.plain += text(place.plain(n), ", at least ", n.lower_bound, "\n");
+        if (many) out.plain += "  as near, as far as can be told:\n" + place.plain_regions<D>(*same, "    ");
+    }
+    return {};
+}
+
+template <int D>
+Result<void> answer_farthest(const NearestQuery& query, const std::vector<Vec<D>>& points, double accuracy,
+                             const Place& place, Answers& out) {
+    std::vector<Farthest<D>> farthest(points.size());
+    if (auto done = query.farthest<D>(points, farthest, {.accuracy = accuracy}); !done) return done;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Farthest<D>& n = farthest[i];
+        out.w.new_line(1).begin_object().key("query").array(points[i].c);
+        place.write(out.w, n);
+        out.w.field("upper_bound", n.upper_bound).field("point_error", n.point_error).end_object();
+        out.plain += text(place.plain(n), ", at most ", n.upper_bound, "\n");
+    }
+    return {};
+}
+
+template <int D>
+Result<void> answer_within(const NearestQuery& query, const std::vector<Vec<D>>& points, double radius,
+                           const Place& place, Answers& out) {
+    for (const Vec<D>& p : points) {
+        const auto all = query.within<D>(p, radius);
+        if (!all) return std::unexpected(all.error());
+        out.w.new_line(1).begin_object().key("query").array(p.c).key("regions");
+        place.write_regions<D>(out.w, *all);
+        out.w.field("complete", all->complete).end_object();
+        std::string where;
+        for (const double x : p.c) where += text(where.empty() ? "" : ", ", x);
+        out.plain += text(where, ": ", all->regions.size(), " regions within ", radius,
+                          all->complete ? "" : ", larger than need be: the work was ended", "\n",
+                          place.plain_regions<D>(*all, "  "));
+    }
+    return {};
+}
+
 template <int D>
 Result<void> answer(const Input& input, const Asked& asked, const std::vector<std::vector<double>>& rows,
-                    double accuracy, Answers& out) {
+                    const NearestArguments& options, Answers& out) {
     const auto query = NearestQuery::make(asked.objects);
     if (!query) return std::unexpected(query.error());
     std::vector<Vec<D>> points;
@@ -38,42 +150,19 @@ Result<void> answer(const Input& input, const Asked& asked, const std::vector<st
         for (int d = 0; d < D; ++d) p[d] = row[std::size_t(d)];
         points.push_back(p);
     }
-    std::vector<Nearest<D>> nearest(points.size());
-    if (auto done = query->nearest<D>(points, nearest, {.accuracy = accuracy}); !done) return done;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Nearest<D>& n = nearest[i];
-        const std::size_t object = asked.index[n.object];
-        const Shape& shape = input.object(object).shape;
-        const std::size_t params = std::max<std::size_t>(bases_of(shape).size(), 1);
-        const bool triangle = type_name(shape) == "triangle";
-        const std::span<const double> at(n.at.data(), triangle ? 2 : params);
-        out.w.new_line(1)
-            .begin_object()
-            .field("object", object)
-            .field("name", input.object(object).name)
-            .key("query")
-            .array(points[i].c)
-            .key("parameters")
-            .array(at)
-            .key("point")
-            .array(n.point.c)
-            .field("distance", n.distance)
-            .field("lower_bound", n.lower_bound)
-            .field("point_error", n.point_error)
-            .end_object();
-        std::string where;
-        for (const double t : at) where += text(where.empty() ? "" : ", ", t);
-        std::string place;
-        for (const double x : n.point.c) place += text(place.empty() ? "" : ", ", x);
-        out.plain += text(input.label(object), ": at ", where, ", point ", place, ", distance ", n.distance,
-                          ", at least ", n.lower_bound, "\n");
-    }
-    return {};
+    const Place place{input, asked};
+    const double accuracy = options.accuracy.value_or(0);
+    if (options.radius) return answer_within<D>(*query, points, *options.radius, place, out);
+    if (options.farthest) return answer_farthest<D>(*query, points, accuracy, place, out);
+    return answer_nearest<D>(*query, points, accuracy, place, out);
 }
 
 Result<void> run_nearest(const Context& context, const NearestArguments& options) {
-    const double accuracy = options.accuracy.value_or(0);
-    if (!(accuracy >= 0)) wrong_usage("--accuracy needs a distance that is not negative");
+    if (options.radius && (options.farthest || options.accuracy))
+        wrong_usage("--radius goes with neither --farthest nor --accuracy");
+    if (options.radius && !(*options.radius >= 0))
+        wrong_usage("--radius needs a distance that is not negative");
+    if (!(options.accuracy.value_or(0) >= 0)) wrong_usage("--accuracy needs a distance that is not negative");
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     const auto lines = read_number_lines(options.points, context.read_options());
@@ -107,10 +196,10 @@ Result<void> run_nearest(const Context& context, const NearestArguments& options
     Answers out;
     out.w.begin_object().key("results").begin_array();
     const Asked& a = asked.begin()->second;
-    const auto done = dimension == 1   ? answer<1>(*input, a, lines->row, accuracy, out)
-                      : dimension == 2 ? answer<2>(*input, a, lines->row, accuracy, out)
-                      : dimension == 3 ? answer<3>(*input, a, lines->row, accuracy, out)
-                                       : answer<4>(*input, a, lines->row, accuracy, out);
+    const auto done = dimension == 1   ? answer<1>(*input, a, lines->row, options, out)
+                      : dimension == 2 ? answer<2>(*input, a, lines->row, options, out)
+                      : dimension == 3 ? answer<3>(*input, a, lines->row, options, out)
+                                       : answer<4>(*input, a, lines->row, options, out);
     if (!done) return done;
     out.w.end_array().end_object();
     return emit(context, context.json ? out.w.take() + "\n" : out.plain);
@@ -120,11 +209,14 @@ Result<void> run_nearest(const Context& context, const NearestArguments& options
 
 void add_nearest(CommandLine& line) {
     const auto options = std::make_shared<NearestArguments>();
-    const Command command = line.add(
-        "nearest", "The nearest point of all objects, with a lower bound that proves it",
-        "  freiform nearest curves.json --points queries.csv\n"
-        "  freiform nearest teapot.bpt --points xyz.csv --accuracy 1e-9 --json\n"
-        "No point of any object is nearer than lower_bound; the point itself is known up to point_error.");
+    const Command command =
+        line.add("nearest", "The nearest point of all objects, with a lower bound that proves it",
+                 "  freiform nearest curves.json --points queries.csv\n"
+                 "  freiform nearest teapot.bpt --points xyz.csv --accuracy 1e-9 --json\n"
+                 "  freiform nearest curves.json --points queries.csv --radius 2.5\n"
+                 "No point of any object is nearer than lower_bound; the point itself is known up to "
+                 "point_error. Where others\n"
+                 "are as near, as far as can be told, all of them are listed, as boxes of parameters.");
     command.file(options->file);
     command.word("--points", options->points, "A line of coordinates for each point")
         .shown_as("FILE.csv")
@@ -132,6 +224,10 @@ void add_nearest(CommandLine& line) {
     command.number(
         "--accuracy", options->accuracy,
         "How far the lower bound may stay below the distance (default 0: as far as rounding allows)");
+    command.number(
+        "--radius", options->radius,
+        "Instead: all within this distance, as boxes of parameters with the nearest point in each");
+    command.flag("--farthest", options->farthest, "Instead: the farthest point, with an upper bound");
     command.object(options->object);
     command.answer_file();
     command.limits();

@@ -6,6 +6,8 @@
 #include <freiform/query/nearest.hpp>
 #include <freiform/spline/bezier.hpp>
 
+#include <algorithm>
+
 namespace freiform {
 
 namespace {
@@ -14,6 +16,13 @@ template <class P>
 void append(std::vector<double>& out, const P& p) {
     for (int k = 0; k < Space<P>::kDim; ++k) out.push_back(p[k]);
     out.push_back(Space<P>::weight(p));
+}
+
+template <int D>
+Vec<D> first_of(const std::array<double, detail::kMostCoords>& x) {
+    Vec<D> v;
+    for (int k = 0; k < D; ++k) v[k] = x[std::size_t(k)];
+    return v;
 }
 
 }  // namespace
@@ -90,9 +99,9 @@ Result<NearestQuery> NearestQuery::make(std::span<const NearestObject> objects, 
 
 int NearestQuery::coordinates() const { return tree_->coords(); }
 
-template <int D>
-Result<void> NearestQuery::nearest(std::span<const Vec<D>> points, std::span<Nearest<D>> out,
-                                   const NearestOptions& options) const {
+template <int D, class Answer, class Ask>
+Result<void> NearestQuery::each_point(std::span<const Vec<D>> points, std::span<Answer> out,
+                                      const NearestOptions& options, Ask&& ask) const {
     FF_REQUIRE(out.size() == points.size());
     FF_REQUIRE(D == coordinates());
     if (!(options.accuracy >= 0))
@@ -106,14 +115,28 @@ Result<void> NearestQuery::nearest(std::span<const Vec<D>> points, std::span<Nea
     constexpr std::size_t kChunk = 64;
     parallel_for((points.size() + kChunk - 1) / kChunk, 1, [&](std::size_t c) {
         detail::NearestTree::Scratch scratch;
-        for (std::size_t i = c * kChunk; i < std::min(points.size(), (c + 1) * kChunk); ++i) {
-            const auto f = tree_->find(points[i].c.data(), options.accuracy, options.max_parts, scratch);
-            Nearest<D>& n = out[i];
-            n = {f.object, f.at, {}, f.distance, f.point_error, f.lower_bound};
-            for (int k = 0; k < D; ++k) n.point[k] = f.point[std::size_t(k)];
-        }
+        for (std::size_t i = c * kChunk; i < std::min(points.size(), (c + 1) * kChunk); ++i)
+            ask(points[i].c.data(), scratch, out[i]);
     });
     return {};
+}
+
+template <int D>
+Result<void> NearestQuery::nearest(std::span<const Vec<D>> points, std::span<Nearest<D>> out,
+                                   const NearestOptions& options) const {
+    return each_point<D>(points, out, options, [&](const double* p, auto& scratch, Nearest<D>& n) {
+        const auto f = tree_->find(p, options.accuracy, options.max_parts, scratch);
+        n = {f.object, {f.at[0], f.at[1], f.at[2]}, first_of<D>(f.point), f.distance, f.point_error, f.bound};
+    });
+}
+
+template <int D>
+Result<void> NearestQuery::farthest(std::span<const Vec<D>> points, std::span<Farthest<D>> out,
+                                    const NearestOptions& options) const {
+    return each_point<D>(points, out, options, [&](const double* p, auto& scratch, Farthest<D>& n) {
+        const auto f = tree_->find_farthest(p, options.accuracy, options.max_parts, scratch);
+        n = {f.object, {f.at[0], f.at[1], f.at[2]}, first_of<D>(f.point), f.distance, f.point_error, f.bound};
+    });
 }
 
 template <int D>
@@ -122,6 +145,49 @@ Result<Nearest<D>> NearestQuery::nearest(const Vec<D>& point, const NearestOptio
     if (auto done = nearest<D>(std::span(&point, 1), std::span(&out, 1), options); !done)
         return std::unexpected(done.error());
     return out;
+}
+
+template <int D>
+Result<Farthest<D>> NearestQuery::farthest(const Vec<D>& point, const NearestOptions& options) const {
+    Farthest<D> out;
+    if (auto done = farthest<D>(std::span(&point, 1), std::span(&out, 1), options); !done)
+        return std::unexpected(done.error());
+    return out;
+}
+
+template <int D>
+Result<NearRegions<D>> NearestQuery::within(const Vec<D>& point, double radius, double finest,
+                                            const NearestOptions& options) const {
+    if (!(radius >= 0))
+        return refuse(RefusalKind::invalid, "radius",
+                      text("is ", radius, ", a distance that is not negative is expected"));
+    if (!(finest >= 0 && finest <= 1))
+        return refuse(RefusalKind::invalid, "finest", text("is ", finest, ", expected 0 to 1"));
+    NearRegions<D> all;
+    const auto done = each_point<D>(
+        std::span(&point, 1), std::span(&all, 1), options,
+        [&](const double* p, auto& scratch, NearRegions<D>& out) {
+            const auto cells = tree_->cells(p, radius, finest, options.max_parts, scratch, out.complete);
+            for (const auto& region : detail::regions_of(cells)) {
+                const auto f = tree_->found(region, p);
+                out.regions.push_back({region.object,
+                                       {region.box[0], region.box[1], region.box[2]},
+                                       {f.at[0], f.at[1], f.at[2]},
+                                       first_of<D>(f.point),
+                                       f.distance,
+                                       f.point_error,
+                                       region.stretch});
+            }
+            std::ranges::stable_sort(out.regions, {}, &NearRegion<D>::distance);
+        });
+    if (!done) return std::unexpected(done.error());
+    return all;
+}
+
+template <int D>
+Result<NearRegions<D>> NearestQuery::as_near(const Vec<D>& point, const Nearest<D>& found,
+                                             const NearestOptions& options) const {
+    return within<D>(point, found.distance + found.point_error, 0, options);
 }
 
 #define FF_INSTANTIATE(P)                                         \
@@ -138,10 +204,17 @@ FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
 
-#define FF_DIMENSION(D)                                                                            \
-    template Result<void> NearestQuery::nearest<D>(std::span<const Vec<D>>, std::span<Nearest<D>>, \
-                                                   const NearestOptions&) const;                   \
-    template Result<Nearest<D>> NearestQuery::nearest<D>(const Vec<D>&, const NearestOptions&) const;
+#define FF_DIMENSION(D)                                                                                 \
+    template Result<void> NearestQuery::nearest<D>(std::span<const Vec<D>>, std::span<Nearest<D>>,      \
+                                                   const NearestOptions&) const;                        \
+    template Result<Nearest<D>> NearestQuery::nearest<D>(const Vec<D>&, const NearestOptions&) const;   \
+    template Result<void> NearestQuery::farthest<D>(std::span<const Vec<D>>, std::span<Farthest<D>>,    \
+                                                    const NearestOptions&) const;                       \
+    template Result<Farthest<D>> NearestQuery::farthest<D>(const Vec<D>&, const NearestOptions&) const; \
+    template Result<NearRegions<D>> NearestQuery::within<D>(const Vec<D>&, double, double,              \
+                                                            const NearestOptions&) const;               \
+    template Result<NearRegions<D>> NearestQuery::as_near<D>(const Vec<D>&, const Nearest<D>&,          \
+                                                             const NearestOptions&) const;
 FF_DIMENSION(1)
 FF_DIMENSION(2)
 FF_DIMENSION(3)

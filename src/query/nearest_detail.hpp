@@ -4,7 +4,10 @@
 #include <freiform/core/interval.hpp>
 #include <freiform/core/result.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -33,8 +36,22 @@ struct NearestFound {
     std::size_t object = 0;
     std::array<double, kMostParams> at{};
     std::array<double, kMostCoords> point{};
-    double distance = 0, point_error = 0, lower_bound = 0;
+    double distance = 0, point_error = 0;
+    double bound = 0;  // lower or upper, as was asked for
 };
+
+// A cell of parameters, of points that may be as near as asked for.
+struct NearestCell {
+    std::uint32_t object = 0;
+    std::array<Interval, kMostParams> box{};  // of the object
+    int piece = 0;
+    std::array<double, kMostParams> at{};  // in the piece: the nearest point that was looked at
+    double square = 0;                     // of its distance, in divided units
+    bool whole = false;                    // all points of the cell are as near, but for rounding
+    bool stretch = false;                  // `whole`, and a sixteenth of a piece or more along some axis
+};
+// Cells of one object whose closed boxes touch as one, with the nearest point of all.
+std::vector<NearestCell> regions_of(std::vector<NearestCell> cells);
 
 class NearestTree {
 public:
@@ -44,6 +61,12 @@ public:
 
     struct Scratch;
     NearestFound find(const double* point, double accuracy, int max_parts, Scratch& scratch) const;
+    NearestFound find_farthest(const double* point, double accuracy, int max_parts, Scratch& scratch) const;
+    // All that is nearer than `radius` is in the cells, none of which is longer than `finest` of a piece
+    // unless it is `whole`, or the budget is spent and `complete` becomes false.
+    std::vector<NearestCell> cells(const double* point, double radius, double finest, int max_parts,
+                                   Scratch& scratch, bool& complete) const;
+    NearestFound found(const NearestCell& cell, const double* point) const;
 
     using Parameters = std::array<double, kMostParams>;
     using Coords = std::array<double, kMostCoords>;
@@ -78,12 +101,30 @@ public:
 
 private:
     template <int D>
+    friend struct NearestBlocks;
+    template <int D>
     friend struct NearestSearch;
     template <int D>
+    friend struct NearestExtent;
+    template <int D>
     NearestFound find_in(const double* point, double accuracy, int max_parts, Scratch& scratch) const;
+    template <int D>
+    NearestFound found_at(int piece, const Parameters& at, const double* point) const;
+    template <class F>
+    auto with_coords(F&& f) const;  // f(integral constant of coords_)
+    std::array<Interval, kMostParams> box_of(int piece, const Parameters& lo, const Parameters& hi) const;
+
+    static double in_domain(const Interval& on, double t) {
+        return t >= 1 ? on.hi : std::clamp(on.lo + t * (on.hi - on.lo), on.lo, on.hi);
+    }
+    // By 2^exponent_: powers of two, which a product does not round, where they are doubles.
+    double divided(double x) const { return moderate_ ? x * down_ : std::scalbn(x, -exponent_); }
+    double multiplied(double x) const { return moderate_ ? x * up_ : std::scalbn(x, exponent_); }
     void build(int begin, int end, std::vector<Node>& boxes);
 
     int coords_ = 1, exponent_ = 0;
+    bool moderate_ = true;
+    double down_ = 1, up_ = 1;
     double largest_ = 0;  // |coordinate|, in units of 2^exponent_
     double slip_ = 0;     // pieces are at most so far from the objects, in these units
     std::vector<Piece> pieces_;

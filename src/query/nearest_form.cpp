@@ -72,7 +72,7 @@ Interval mixed_bend(const NearestForm& form, int d, int e) {
 
 }  // namespace
 
-NearestForm::Least NearestForm::least() const {
+NearestForm::Extreme NearestForm::least() const {
     double lo[4] = {f[0], f[0], f[0], f[0]};
     int i = 0;
     for (; i + 4 <= count; i += 4)
@@ -83,6 +83,11 @@ NearestForm::Least NearestForm::least() const {
     if (!(value > 0))
         while (at + 1 < std::size_t(count) && f[at] != value) ++at;
     return {value, at};
+}
+
+NearestForm::Extreme NearestForm::most() const {
+    const double* at = std::max_element(f, f + count);
+    return {*at, std::size_t(at - f)};
 }
 
 Interval NearestForm::slope(int axis) const {

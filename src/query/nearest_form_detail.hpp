@@ -14,11 +14,12 @@ struct NearestForm {
     int count = 1;                          // of coefficients
     const double* f = nullptr;              // F, the last parameter fastest
 
-    struct Least {
+    struct Extreme {
         double value;
         std::size_t at;
     };
-    Least least() const;
+    Extreme least() const;
+    Extreme most() const;
     // The parameters (Greville abscissae) of coefficient i, in a block over [lo, hi].
     Parameters place(std::size_t i, const Parameters& lo, const Parameters& hi) const;
     // The least and the largest first difference along the axis.

@@ -88,6 +88,8 @@ Result<NearestTree> NearestTree::make(std::vector<const NearestSource*> sources,
     if (!std::isfinite(largest))
         return refuse(RefusalKind::ill_conditioned, "objects", "a point divided by its weight is not finite");
     t.exponent_ = exponent_of(largest);
+    t.moderate_ = std::abs(t.exponent_) < 1000;
+    if (t.moderate_) t.down_ = std::scalbn(1.0, -t.exponent_), t.up_ = std::scalbn(1.0, t.exponent_);
     t.largest_ = std::scalbn(largest, -t.exponent_) * (1 + 4 * kUnitRoundoff);
     // Numerator and weight after k roundings: chain.hpp; and one more in N = w x - w c.
     t.slip_ = std::sqrt(double(D)) * 1.03 * (2 * roundings + 7) * kUnitRoundoff * t.largest_;

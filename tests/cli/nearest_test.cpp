@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace freiform::test {
@@ -50,6 +51,45 @@ TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {
                              "--points", path("p.csv")});
     EXPECT_EQ(trimmed.code, 1);
     EXPECT_NE(trimmed.err.find("trimmed"), std::string::npos) << trimmed.err;
+}
+
+constexpr const char* kParabola =
+    R"({"freiform": 1, "objects": [{"name": "p", "type": "curve", "points": [[-2,4],[0,-4],[2,4]]}]})";
+
+TEST_F(NearestCommand, says_where_else_is_as_near) {
+    const std::string p = file("p.json", kParabola);
+    const Ran r = run({"nearest", p, "--points", file("q.csv", "0,2\n1,3\n"), "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto results = nlohmann::json::parse(r.out)["results"];
+    EXPECT_EQ(results[0]["many"], true);
+    EXPECT_EQ(results[0]["complete"], true);
+    ASSERT_EQ(results[0]["as_near"].size(), 2u);
+    for (const auto& one : results[0]["as_near"]) {
+        EXPECT_EQ(one["stretch"], false);
+        EXPECT_LE(one["box"][0][0], one["parameters"][0]);
+        EXPECT_GE(one["box"][0][1], one["parameters"][0]);
+    }
+    EXPECT_EQ(results[1]["many"], false);
+    EXPECT_FALSE(results[1].contains("as_near"));
+    const Ran plain = run({"nearest", p, "--points", path("q.csv")});
+    EXPECT_NE(plain.out.find("as near, as far as can be told"), std::string::npos) << plain.out;
+}
+
+TEST_F(NearestCommand, lists_what_is_within_a_radius_and_finds_the_farthest) {
+    const std::string p = file("p.json", kParabola);
+    const std::string q = file("q.csv", "0,2\n");
+    const Ran near = run({"nearest", p, "--points", q, "--radius", "1.5", "--json"});
+    ASSERT_EQ(near.code, 0) << near.out << near.err;
+    const auto within = nlohmann::json::parse(near.out)["results"][0];
+    EXPECT_EQ(within["regions"].size(), 2u);
+    EXPECT_EQ(run({"nearest", p, "--points", q, "--radius", "1"}).out, "0, 2: 0 regions within 1\n");
+    const Ran far = run({"nearest", p, "--points", q, "--farthest", "--json"});
+    ASSERT_EQ(far.code, 0) << far.out << far.err;
+    const auto farthest = nlohmann::json::parse(far.out)["results"][0];
+    EXPECT_NEAR(farthest["distance"].get<double>(), std::sqrt(8.0), 1e-15);  // an end of the parabola
+    EXPECT_GE(farthest["upper_bound"], farthest["distance"]);
+    EXPECT_EQ(run({"nearest", p, "--points", q, "--farthest", "--radius", "1"}).code, 2);
+    EXPECT_EQ(run({"nearest", p, "--points", q, "--radius", "-1"}).code, 2);
 }
 
 }  // namespace

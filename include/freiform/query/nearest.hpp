@@ -24,6 +24,38 @@ struct Nearest {
     double lower_bound = 0;
 };
 
+template <int D>
+struct Farthest {
+    std::size_t object = 0;
+    std::array<double, 3> at{};
+    Vec<D> point{};
+    double distance = 0;     // to `point`
+    double point_error = 0;  // as of Nearest
+    // bound: no point of any object is farther than this. The largest distance lies in
+    // [distance - point_error, upper_bound].
+    double upper_bound = 0;
+};
+
+// Some points of one object that hang together, as a box of parameters, and the nearest of them.
+template <int D>
+struct NearRegion {
+    std::size_t object = 0;
+    std::array<Interval, 3> box{};  // contains the region; may contain more
+    std::array<double, 3> at{};     // of a point of the object in the box, the nearest that was seen:
+    Vec<D> point{};
+    double distance = 0, point_error = 0;
+    // Not just about one point: at least a sixteenth of a Bezier piece, along some axis, is within the radius
+    // or nearer to it than rounding can tell. Of an arc about its centre, and a radius that is its own, all
+    // of it.
+    bool stretch = false;
+};
+template <int D>
+struct NearRegions {
+    // No point of any object within the radius is outside of these boxes. Nearest first.
+    std::vector<NearRegion<D>> regions;
+    bool complete = true;  // false: max_parts ended the search, and boxes are larger than asked for
+};
+
 struct NearestOptions {
     // A distance: how far lower_bound may stay below `distance`. With 0 the search goes on until rounding
     // ends it; what remains is what the answer says, distance + point_error - lower_bound. An estimate of
@@ -78,7 +110,32 @@ public:
     template <int D>
     Result<Nearest<D>> nearest(const Vec<D>& point, const NearestOptions& options = {}) const;
 
+    // The farthest points, with the same refusals. `accuracy`: how far upper_bound may stay above `distance`.
+    //   auto far = q->farthest<3>(point);   // far->distance <= far->upper_bound
+    template <int D>
+    Result<void> farthest(std::span<const Vec<D>> points, std::span<Farthest<D>> out,
+                          const NearestOptions& options = {}) const;
+    template <int D>
+    Result<Farthest<D>> farthest(const Vec<D>& point, const NearestOptions& options = {}) const;
+
+    // All that is within `radius` of the point. Boxes are cut until their sides are `finest` of a Bezier
+    // piece (0: as short as doubles allow), so that regions nearer to each other than that may be one. A
+    // region that runs through the seam of a closed object, or a pole, comes as several. Refuses what
+    // nearest() refuses, a negative radius and `finest` outside [0, 1].
+    template <int D>
+    Result<NearRegions<D>> within(const Vec<D>& point, double radius, double finest = 0x1p-5,
+                                  const NearestOptions& options = {}) const;
+    // What is as near as `found`, the answer of nearest() for the point, as far as that is known: all within
+    // distance + point_error. More than one region, or a stretch: the nearest point is one of many. The
+    // nearest point is known no better than found.distance - found.lower_bound.
+    template <int D>
+    Result<NearRegions<D>> as_near(const Vec<D>& point, const Nearest<D>& found,
+                                   const NearestOptions& options = {}) const;
+
 private:
+    template <int D, class Answer, class Ask>
+    Result<void> each_point(std::span<const Vec<D>> points, std::span<Answer> out,
+                            const NearestOptions& options, Ask&& ask) const;
     std::shared_ptr<const detail::NearestTree> tree_;
 };
 
