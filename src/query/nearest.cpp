@@ -7,6 +7,7 @@
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
+#include <tuple>
 
 namespace freiform {
 
@@ -178,7 +179,8 @@ Result<NearRegions<D>> NearestQuery::within(const Vec<D>& point, double radius, 
                                        f.point_error,
                                        region.stretch});
             }
-            std::ranges::stable_sort(out.regions, {}, &NearRegion<D>::distance);
+            std::ranges::sort(out.regions, {},
+                              [](const NearRegion<D>& r) { return std::tuple(r.distance, r.object, r.at); });
         });
     if (!done) return std::unexpected(done.error());
     return all;

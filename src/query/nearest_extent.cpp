@@ -17,6 +17,7 @@
 #include "query/nearest_blocks_detail.hpp"
 
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace freiform::detail {
@@ -224,8 +225,8 @@ struct NearestExtent : NearestBlocks<D> {
 };
 
 std::vector<NearestCell> regions_of(std::vector<NearestCell> cells) {
-    std::ranges::stable_sort(cells, [](const NearestCell& a, const NearestCell& b) {
-        return a.object != b.object ? a.object < b.object : a.box[0].lo < b.box[0].lo;
+    std::ranges::sort(cells, {}, [](const NearestCell& c) {
+        return std::tuple(c.object, c.box[0].lo, c.box[1].lo, c.box[2].lo, c.piece);
     });
     std::vector<std::size_t> root(cells.size());
     for (std::size_t i = 0; i < root.size(); ++i) root[i] = i;
