@@ -1,10 +1,11 @@
 // nearest: the point of a document's objects that is nearest to each given point, with the proof that none is
 // nearer; the farthest; all within a radius.
-#include "input.hpp"
+#include "nearest_models.hpp"
 
 #include <freiform/io/points.hpp>
 #include <freiform/query/nearest.hpp>
 
+#include <algorithm>
 #include <map>
 
 namespace freiform::cli {
@@ -14,7 +15,7 @@ namespace {
 struct NearestArguments {
     std::string file, object, points;
     std::optional<double> accuracy, radius;
-    bool farthest = false;
+    bool farthest = false, signed_distance = false;
 };
 
 // Of the objects with one number of coordinates.
@@ -29,7 +30,7 @@ struct Answers {
 };
 
 // Writes where a point of an object is: what all answers have in common.
-struct Place {
+struct PlaceWriter {
     const Input& input;
     const Asked& asked;
 
@@ -83,7 +84,7 @@ struct Place {
 
 template <int D>
 Result<void> answer_nearest(const NearestQuery& query, const std::vector<Vec<D>>& points, double accuracy,
-                            const Place& place, Answers& out) {
+                            const PlaceWriter& place, Answers& out) {
     std::vector<Nearest<D>> nearest(points.size());
     if (auto done = query.nearest<D>(points, nearest, {.accuracy = accuracy}); !done) return done;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -108,7 +109,7 @@ Result<void> answer_nearest(const NearestQuery& query, const std::vector<Vec<D>>
 
 template <int D>
 Result<void> answer_farthest(const NearestQuery& query, const std::vector<Vec<D>>& points, double accuracy,
-                             const Place& place, Answers& out) {
+                             const PlaceWriter& place, Answers& out) {
     std::vector<Farthest<D>> farthest(points.size());
     if (auto done = query.farthest<D>(points, farthest, {.accuracy = accuracy}); !done) return done;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -123,7 +124,7 @@ Result<void> answer_farthest(const NearestQuery& query, const std::vector<Vec<D>
 
 template <int D>
 Result<void> answer_within(const NearestQuery& query, const std::vector<Vec<D>>& points, double radius,
-                           const Place& place, Answers& out) {
+                           const PlaceWriter& place, Answers& out) {
     for (const Vec<D>& p : points) {
         const auto all = query.within<D>(p, radius);
         if (!all) return std::unexpected(all.error());
@@ -150,7 +151,7 @@ Result<void> answer(const Input& input, const Asked& asked, const std::vector<st
         for (int d = 0; d < D; ++d) p[d] = row[std::size_t(d)];
         points.push_back(p);
     }
-    const Place place{input, asked};
+    const PlaceWriter place{input, asked};
     const double accuracy = options.accuracy.value_or(0);
     if (options.radius) return answer_within<D>(*query, points, *options.radius, place, out);
     if (options.farthest) return answer_farthest<D>(*query, points, accuracy, place, out);
@@ -167,6 +168,15 @@ Result<void> run_nearest(const Context& context, const NearestArguments& options
     if (!input) return std::unexpected(input.error());
     const auto lines = read_number_lines(options.points, context.read_options());
     if (!lines) return std::unexpected(lines.error());
+    if (std::ranges::any_of(input->chosen, [&](std::size_t i) {
+            return std::holds_alternative<Model>(input->object(i).shape) ||
+                   std::holds_alternative<TrimmedSurface>(input->object(i).shape);
+        }))
+        return nearest_of_models(
+            context, *input, lines->row,
+            {options.accuracy.value_or(0), options.signed_distance, options.radius || options.farthest});
+    if (options.signed_distance)
+        return refuse(RefusalKind::no_answer, shown(options.file), "has no solid model: --signed needs one");
     std::map<int, Asked> asked;  // by the number of coordinates
     for (const std::size_t i : input->chosen)
         std::visit(
@@ -214,6 +224,7 @@ void add_nearest(CommandLine& line) {
                  "  freiform nearest curves.json --points queries.csv\n"
                  "  freiform nearest teapot.bpt --points xyz.csv --accuracy 1e-9 --json\n"
                  "  freiform nearest curves.json --points queries.csv --radius 2.5\n"
+                 "  freiform nearest part.step --points xyz.csv --signed\n"
                  "No point of any object is nearer than lower_bound; the point itself is known up to "
                  "point_error. Where others\n"
                  "are as near, as far as can be told, all of them are listed, as boxes of parameters.");
@@ -227,6 +238,8 @@ void add_nearest(CommandLine& line) {
     command.number(
         "--radius", options->radius,
         "Instead: all within this distance, as boxes of parameters with the nearest point in each");
+    command.flag("--signed", options->signed_distance,
+                 "Of solid models: negative distances inside; refused where the surface is not closed");
     command.flag("--farthest", options->farthest, "Instead: the farthest point, with an upper bound");
     command.object(options->object);
     command.answer_file();

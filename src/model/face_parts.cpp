@@ -3,6 +3,8 @@
 // at most sqrt(3) value_error_bound, which is added.
 #include "face_parts_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,10 +67,13 @@ std::optional<FacePart> FaceParts::whole() const {
     return part_over(box, all, false);
 }
 
-std::vector<FacePart> FaceParts::halves(const FacePart& part) const {
+std::vector<FacePart> FaceParts::halves(const FacePart& part, bool by_bend) const {
     const Vec<2> size = part.box.hi - part.box.lo;
-    const auto d = (*surface_)({part.box.side(0), part.box.side(1)}, 1);
-    const double along[2] = {d(1, 0) * size[0], d(0, 1) * size[1]};
+    const auto d = (*surface_)({part.box.side(0), part.box.side(1)}, by_bend ? 2 : 1);
+    double along[2] = {d(1, 0) * size[0], d(0, 1) * size[1]};
+    if (const double bend[2] = {d(2, 0) * size[0] * size[0], d(0, 2) * size[1] * size[1]};
+        by_bend && bend[0] != bend[1])
+        along[0] = bend[0], along[1] = bend[1];
     int axis = along[0] >= along[1] ? 0 : 1;
     if (!std::isfinite(along[0]) || !std::isfinite(along[1])) axis = size[0] >= size[1] ? 0 : 1;
     std::vector<FacePart> out;
@@ -83,6 +88,39 @@ std::vector<FacePart> FaceParts::halves(const FacePart& part) const {
         break;
     }
     return out;
+}
+
+// Along u, with c the chord between two corners: S_u du is within e = d20 du^2 + d11 du dv of c, since c is a
+// mean of it over one side, and n . S_u du within e_n of n . c for any direction n, with the bounds of n . S
+// in e_n. S - q is within r of m - q, m the mean of the corners. So with n along m - q, (S - q) . S_u du is
+// within |m - q| e_n + r (|c| + e) of (m - q) . c. Not where the first derivatives jump: there the least
+// distance needs no critical point.
+bool FaceParts::may_have_foot(const FacePart& part, const Vec<3>& q) const {
+    for (int axis = 0; axis < 2; ++axis)
+        for (const Kink& k : surface_->kinks(axis))
+            if (part.box.side(axis).contains(k.at)) return true;
+    const Vec<2> size = part.box.hi - part.box.lo;
+    const auto d = (*surface_)({part.box.side(0), part.box.side(1)});
+    const Vec<3> m = 0.25 * ((part.corner[0] + part.corner[1]) + (part.corner[2] + part.corner[3])) - q;
+    double scale = max_abs(q);
+    for (const Vec<3>& c : part.corner) scale = std::max(scale, max_abs(c));
+    // Coordinates and their sums: a few u of their size.
+    const double rounding =
+        32 * 0x1p-53 * scale + value_error_bound(face_->surface, {part.box.side(0), part.box.side(1)});
+    const double r = (d(1, 0) * size[0] + d(0, 1) * size[1]) / 2 + part.error + 4 * rounding, far = norm(m);
+    const Vec<3> chord[2] = {part.corner[1] - part.corner[0], part.corner[2] - part.corner[0]};
+    if (!(far > 0)) return true;
+    const auto n = surface_->along((1 / far) * m, {part.box.side(0), part.box.side(1)});
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto bent = [&](const DerivativeBounds<2>& b) {
+            const double own = axis == 0 ? b(2, 0) : b(0, 2), s = size[axis];
+            return own * s * s + b(1, 1) * size[0] * size[1] + 4 * rounding;
+        };
+        const double e = bent(d), e_n = bent(n) + 4 * kUnitRoundoff * e;  // n is not quite of length 1
+        if (std::abs(dot(m, chord[axis])) > (far * e_n + r * (norm(chord[axis]) + e)) * (1 + 1e-12))
+            return false;
+    }
+    return true;
 }
 
 }  // namespace freiform

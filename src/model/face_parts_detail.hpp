@@ -34,10 +34,15 @@ public:
 
     // All of the face as one part; nothing if the face is empty.
     std::optional<FacePart> whole() const;
-    // The parts of its two halves that are not outside; none where the box cannot be halved.
-    std::vector<FacePart> halves(const FacePart& part) const;
+    // The parts of its two halves that are not outside; none where the box cannot be halved. Across the longer
+    // side in space, or (`by_bend`) the side along which the surface bends more.
+    std::vector<FacePart> halves(const FacePart& part, bool by_bend = false) const;
+    // False: the distance from q has no critical point on the part, proven, so that its least value over the
+    // face is on the boundary of the face or elsewhere.
+    bool may_have_foot(const FacePart& part, const Vec<3>& q) const;
     Vec<3> value(const Vec<2>& uv) const { return jet<0>(face_->surface, uv.c).value(); }
     const FaceRegion& region() const { return region_; }
+    const DerivativeQuery<2, 3>& surface() const { return *surface_; }
 
 private:
     FaceParts(const Face& face, FaceRegion region)

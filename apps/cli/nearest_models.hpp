@@ -1,0 +1,17 @@
+// nearest, of solid models and trimmed surfaces.
+#pragma once
+#include "input.hpp"
+
+namespace freiform::cli {
+
+struct ModelsAsked {
+    double accuracy = 0;
+    bool with_sign = false;
+    bool otherwise = false;  // a radius, or the farthest point: not answered here
+};
+
+// Refuses other objects beside them, with the place.
+Result<void> nearest_of_models(const Context& context, const Input& input,
+                               const std::vector<std::vector<double>>& rows, const ModelsAsked& asked);
+
+}  // namespace freiform::cli

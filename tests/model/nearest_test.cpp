@@ -1,0 +1,140 @@
+// Nearest points of solids whose distance is known, of a trimmed face, and against samples of the faces.
+#include <freiform/model/nearest.hpp>
+
+#include <gtest/gtest.h>
+#include <support/random.hpp>
+#include <support/sanitizer.hpp>
+#include <support/solids.hpp>
+
+namespace freiform::test {
+namespace {
+
+ModelNearestQuery query_of(Model m) { return must(ModelNearestQuery::make(std::move(m))); }
+
+Vec<3> point_in(Random& random, double reach) {
+    return {{random.real(-reach, reach), random.real(-reach, reach), random.real(-reach, reach)}};
+}
+
+void expect_proven(const ModelNearest& n, double distance, double within) {
+    EXPECT_NEAR(n.distance, distance, within);
+    EXPECT_LE(n.lower_bound, distance + 1e-13);
+    EXPECT_GE(n.lower_bound, n.distance - within);
+}
+
+TEST(ModelNearest, of_a_sphere_is_along_the_radius) {
+    const Vec<3> centre{{1, 2, 3}};
+    const auto query = query_of(sphere(centre, 2));
+    Random random(3);
+    for (int k = 0; k < cases(30); ++k) {
+        const Vec<3> q = centre + point_in(random, 4);
+        const auto n = must(query.nearest(q));
+        expect_proven(n, std::abs(norm(q - centre) - 2), 2e-8);
+        EXPECT_NEAR(norm(n.point - centre), 2, 1e-13);
+    }
+    // At the poles, where the parameters are degenerate, and on the seam.
+    for (const Vec<3>& d : {Vec<3>{{0, 0, 3}}, Vec<3>{{0, 0, -1}}, Vec<3>{{3, 0, 0}}, Vec<3>{{1, 0, 1}}})
+        expect_proven(must(query.nearest(centre + d, {.accuracy = 1e-5})), std::abs(norm(d) - 2), 2e-5);
+}
+
+TEST(ModelNearest, from_the_centre_of_a_sphere_the_budget_ends_and_the_bound_holds) {
+    const auto query = query_of(sphere({}, 1));
+    const auto n = must(query.nearest(Vec<3>{}, {.max_parts = 500}));
+    EXPECT_NEAR(n.distance, 1, 1e-14);
+    EXPECT_LE(n.lower_bound, 1);
+    EXPECT_GE(n.lower_bound, 0.9);
+}
+
+TEST(ModelNearest, of_a_torus_is_that_of_its_circle) {
+    const auto query = query_of(torus(3, 1));
+    Random random(5);
+    for (int k = 0; k < cases(20); ++k) {
+        const Vec<3> q = point_in(random, 5);
+        const double ring = std::hypot(std::hypot(q[0], q[1]) - 3, q[2]);
+        expect_proven(must(query.nearest(q)), std::abs(ring - 1), 2e-8);
+    }
+}
+
+// A square [0, 1]^2 with a triangle cut off: u + v <= 1 is left.
+Model half_of_a_square() {
+    Model m;
+    const auto line = [](Vec<3> a, Vec<3> b) { return CurveGeometry<3>(Line<3>{a, b - a}); };
+    const Vec<3> a{}, b{{1, 0, 0}}, c{{0, 1, 0}};
+    m.vertices = {{a, 0}, {b, 0}, {c, 0}};
+    const Interval on{0, 1};
+    m.edges = {{line(a, b), false, on, 0, 1, 0, "low"},
+               {line(b, c), false, on, 1, 2, 0, "slant"},
+               {line(c, a), false, on, 2, 0, 0, "left"}};
+    Face f;
+    f.surface = Surface<Vec<3>>::trusted(
+        {*BSplineBasis::bezier(1), *BSplineBasis::bezier(1)},
+        Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
+    f.loops = {{{{0, false, segment(on, {{0, 0}}, {{1, 0}})},
+                 {1, false, segment(on, {{1, 0}}, {{0, 1}})},
+                 {2, false, segment(on, {{0, 1}}, {{0, 0}})}}}};
+    m.faces = {f};
+    return must(make_model(std::move(m)));
+}
+
+TEST(ModelNearest, stays_on_what_trimming_leaves) {
+    const auto query = query_of(half_of_a_square());
+    const auto inside = must(query.nearest(Vec<3>{{0.25, 0.25, 2}}));
+    expect_proven(inside, 2, 1e-8);
+    EXPECT_EQ(inside.edge, -1);
+    EXPECT_NEAR(inside.uv[0], 0.25, 1e-6);
+    // Above what was cut off: the foot is on the slant, at (0.5, 0.5).
+    const auto off = must(query.nearest(Vec<3>{{1, 1, 1}}));
+    expect_proven(off, std::sqrt(1.5), 1e-8);
+    EXPECT_EQ(off.edge, 1);
+    EXPECT_EQ(off.vertex, -1);
+    EXPECT_NEAR(off.t, 0.5, 1e-6);
+    const auto corner = must(query.nearest(Vec<3>{{2, -1, 0}}));
+    expect_proven(corner, std::sqrt(2.0), 1e-8);
+    EXPECT_EQ(corner.vertex, 1);
+    Random random(9);
+    for (int k = 0; k < cases(30); ++k) {
+        const Vec<3> q = point_in(random, 2);
+        double least = 1e300;
+        for (int i = 0; i <= 100; ++i)
+            for (int j = 0; i + j <= 100; ++j)
+                least = std::min(least, norm(Vec<3>{{i / 100.0, j / 100.0, 0}} - q));
+        const auto n = must(query.nearest(q));
+        EXPECT_LE(n.distance, least + 1e-12);
+        EXPECT_LE(n.lower_bound, least);
+        EXPECT_GE(n.lower_bound, n.distance - 1e-8);
+    }
+}
+
+TEST(ModelNearest, scales_and_moves_with_the_model) {
+    Random random(11);
+    for (const int e : {200, -200}) {
+        const double by = std::scalbn(1.0, e);
+        const auto query = query_of(sphere({{1, 0, 0}}, 2)), big = query_of(sphere({{by, 0, 0}}, 2 * by));
+        for (int k = 0; k < 4; ++k) {
+            const Vec<3> q = point_in(random, 4);
+            const auto a = must(query.nearest(q)), b = must(big.nearest(by * q));
+            EXPECT_NEAR(b.distance / by, a.distance, 1e-13);
+            EXPECT_GE(b.lower_bound / by, a.distance - 2e-8);
+            EXPECT_LE(b.lower_bound / by, a.distance + 1e-13);
+        }
+    }
+    for (const double far : {1e20, 1e150, 1e300}) {
+        const auto n = must(query_of(sphere({}, 1)).nearest(Vec<3>{{far, far / 8, far / 2}}));
+        EXPECT_NEAR(n.distance / far, 1.125, 1e-12);
+        EXPECT_LE(n.lower_bound, n.distance);
+        EXPECT_GE(n.lower_bound, 0.99 * far);
+    }
+}
+
+TEST(ModelNearest, refuses_nonsense) {
+    EXPECT_EQ(ModelNearestQuery::make({}).error().kind, RefusalKind::invalid);
+    const auto query = query_of(half_of_a_square());
+    const std::array<Vec<3>, 2> points{{{{0, 0, 0}}, {{std::nan(""), 0, 0}}}};
+    std::array<ModelNearest, 2> out;
+    EXPECT_EQ(query.nearest(points, out).error().where, "points[1]");
+    EXPECT_EQ(query.nearest(points[0], {.accuracy = -1}).error().where, "accuracy");
+    EXPECT_EQ(query.nearest(points[0], {.accuracy = std::nan("")}).error().where, "accuracy");
+    EXPECT_EQ(query.nearest(points[0], {.max_parts = 0}).error().where, "max_parts");
+}
+
+}  // namespace
+}  // namespace freiform::test
