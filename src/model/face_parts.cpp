@@ -44,16 +44,24 @@ std::optional<FacePart> FaceParts::part_over(const Box<2>& box, const std::vecto
     if (!part.crossing && !known_inside && !region_.is_inside(0.5 * (box.lo + box.hi))) return std::nullopt;
     const Vec<2> size = box.hi - box.lo;
     const auto d = (*surface_)({box.side(0), box.side(1)});
+    part.rounding = 2 * value_error_bound(face_->surface, {box.side(0), box.side(1)});
     part.error =
         (d(2, 0) * size[0] * size[0] + 2 * d(1, 1) * size[0] * size[1] + d(0, 2) * size[1] * size[1]) / 8 +
         kink_bound_of(surface_->kinks(0), box.side(0)) + kink_bound_of(surface_->kinks(1), box.side(1)) +
-        2 * value_error_bound(face_->surface, {box.side(0), box.side(1)});
+        part.rounding;
     part.error *= 1 + 1e-14;
     part.size = std::max(d(1, 0) * size[0], d(0, 1) * size[1]);
     if (std::isnan(part.error)) part.error = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 4; ++k)
         part.corner[std::size_t(k)] = value({{k & 1 ? box.hi[0] : box.lo[0], k & 2 ? box.hi[1] : box.lo[1]}});
     return part;
+}
+
+bool FaceParts::holds(const FacePart& part, const Vec<2>& uv) const {
+    if (!part.crossing) return true;
+    for (const int i : part.near)
+        if (region_.meets({uv, uv}, std::size_t(i))) return false;
+    return region_.is_inside(uv);
 }
 
 std::optional<FacePart> FaceParts::whole() const {

@@ -18,6 +18,7 @@ struct FacePart {
     Box<2> box;
     std::array<Vec<3>, 4> corner;
     double error = 0;       // bound, rounding included; may be infinite
+    double rounding = 0;    // bound: of the corners
     double size = 0;        // the longest side of the box, in space: a bound
     bool crossing = false;  // the boundary may run through it; else it is wholly inside the face
     std::vector<int> near;  // chords of the region that meet it
@@ -34,12 +35,14 @@ public:
 
     // All of the face as one part; nothing if the face is empty.
     std::optional<FacePart> whole() const;
-    // The parts of its two halves that are not outside; none where the box cannot be halved. Across the longer
-    // side in space, or (`by_bend`) the side along which the surface bends more.
+    // The parts of its two halves that are not outside; none where the box cannot be halved. Across the
+    // longer side in space, or (`by_bend`) the side along which the surface bends more.
     std::vector<FacePart> halves(const FacePart& part, bool by_bend = false) const;
     // False: the distance from q has no critical point on the part, proven, so that its least value over the
     // face is on the boundary of the face or elsewhere.
     bool may_have_foot(const FacePart& part, const Vec<3>& q) const;
+    // True: the point of the part's box is on the face, proven.
+    bool holds(const FacePart& part, const Vec<2>& uv) const;
     Vec<3> value(const Vec<2>& uv) const { return jet<0>(face_->surface, uv.c).value(); }
     const FaceRegion& region() const { return region_; }
     const DerivativeQuery<2, 3>& surface() const { return *surface_; }

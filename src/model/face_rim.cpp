@@ -34,11 +34,14 @@ void FaceRim::bound(const Face& face, const DerivativeQuery<2, 3>& surface) {
     }
     const auto d = surface(box);
     const auto times = [](double a, double b) { return a == 0 || b == 0 ? 0 : a * b; };  // infinite a
-    error = (times(d(2, 0), side[0] * side[0]) + 2 * times(d(1, 1), side[0] * side[1]) +
-             times(d(0, 2), side[1] * side[1])) /
-                8 +
-            times(d(1, 0), bend[0]) + times(d(0, 1), bend[1]) + kink_bound_of(surface.kinks(0), box[0]) +
-            kink_bound_of(surface.kinks(1), box[1]) + 2 * value_error_bound(face.surface, box);
+    const double flat = (times(d(2, 0), side[0] * side[0]) + 2 * times(d(1, 1), side[0] * side[1]) +
+                         times(d(0, 2), side[1] * side[1])) /
+                            8 +
+                        kink_bound_of(surface.kinks(0), box[0]) + kink_bound_of(surface.kinks(1), box[1]);
+    // Without bounds of second derivatives: every point of l is within half of its length of one of its ends.
+    const double length = times(d(1, 0), side[0]) + times(d(0, 1), side[1]);
+    error = (flat < length / 2 ? flat : length / 2) + times(d(1, 0), bend[0]) + times(d(0, 1), bend[1]) +
+            2 * value_error_bound(face.surface, box);
     error *= 1 + 1e-12;
     if (std::isnan(error)) error = std::numeric_limits<double>::infinity();
 }

@@ -49,11 +49,18 @@ double away_from(std::span<const Vec<3>> corners, const Vec<3>& near, const Vec<
     return std::max(0.0, least - kRoundings * scale);
 }
 
+// By the second derivatives, and by the first ones alone, where the second have no bounds.
 double away_from(const FacePart& part, const Vec<3>& q) {
-    if (!std::isfinite(part.error)) return 0;
-    double least = kInfinity;
-    for (const Triangle3& t : part.triangles()) least = std::min(least, away_from(t, closest_point(t, q), q));
-    return std::max(0.0, least - part.error);
+    const double reach = 2 * part.size + part.rounding;
+    double least = norm(q - part.corner[0]) - reach - kRoundings * (max_abs(q) + max_abs(part.corner[0]));
+    if (!std::isfinite(reach)) least = 0;
+    if (std::isfinite(part.error)) {
+        double flat = kInfinity;
+        for (const Triangle3& t : part.triangles())
+            flat = std::min(flat, away_from(t, closest_point(t, q), q));
+        least = std::max(least, flat - part.error);
+    }
+    return std::max(0.0, least);
 }
 
 double along_chord(const FaceRim& rim, const Vec<3>& q) {
@@ -97,6 +104,8 @@ public:
             else
                 open_rim(all, item);
         }
+        for (std::size_t f = 0; best_.face < 0 && f < all.faces.size(); ++f)  // the budget was too small
+            for (const Vec<2>& uv : all.faces[f].region().points()) take(all, int(f), uv);
         best_.lower_bound = std::min(proven_, best_.distance);
     }
 
@@ -163,7 +172,7 @@ private:
         const FaceParts& parts = all.faces[std::size_t(item.face)];
         --parts_left_;
         if (!all.model.faces[std::size_t(item.face)].loops.empty() && !parts.may_have_foot(part, q_)) return;
-        if (!part.crossing) {  // a step of Gauss and Newton's from the middle, which stays on the part
+        {  // a step of Gauss and Newton's from the middle, which stays in the box
             const Vec<2> middle = 0.5 * (part.box.lo + part.box.hi);
             const auto j = jet<1>(all.model.faces[std::size_t(item.face)].surface, middle.c);
             const Vec<3> r = q_ - j.value(), du = j(1, 0), dv = j(0, 1);
@@ -175,7 +184,7 @@ private:
             }
             for (int k = 0; k < 2; ++k)
                 uv[k] = std::isfinite(uv[k]) ? std::clamp(uv[k], part.box.lo[k], part.box.hi[k]) : middle[k];
-            take(all, item.face, uv);
+            if (parts.holds(part, uv)) take(all, item.face, uv);
         }
         bool can = false;
         for (int k = 0; k < 2; ++k) {

@@ -46,11 +46,6 @@ TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {
                            "--points", path("p.csv"), "--json"});
     EXPECT_EQ(mixed.code, 1);
     EXPECT_NE(mixed.out.find("--object chooses"), std::string::npos) << mixed.out;
-    const Ran trimmed = run({"nearest", file("t.json", R"({"type": "trimmed",
-        "surface": {"degrees": [1, 1], "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "loops": []})"),
-                             "--points", path("p.csv")});
-    EXPECT_EQ(trimmed.code, 1);
-    EXPECT_NE(trimmed.err.find("trimmed"), std::string::npos) << trimmed.err;
 }
 
 constexpr const char* kParabola =
@@ -90,6 +85,37 @@ TEST_F(NearestCommand, lists_what_is_within_a_radius_and_finds_the_farthest) {
     EXPECT_GE(farthest["upper_bound"], farthest["distance"]);
     EXPECT_EQ(run({"nearest", p, "--points", q, "--farthest", "--radius", "1"}).code, 2);
     EXPECT_EQ(run({"nearest", p, "--points", q, "--radius", "-1"}).code, 2);
+}
+
+TEST_F(NearestCommand, keeps_to_what_trimming_leaves) {
+    const auto square = [](const std::string& loops) {
+        return R"({"freiform": 1, "objects": [{"name": "half", "type": "trimmed", "surface": {"degrees": [1, 1],
+            "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "loops": [)" +
+               loops + "]}]}";
+    };
+    const std::string q = file("q.csv", "1,1,1\n");
+    const Ran whole = run({"nearest", file("whole.json", square("")), "--points", q, "--json"});
+    ASSERT_EQ(whole.code, 0) << whole.out << whole.err;
+    EXPECT_NEAR(nlohmann::json::parse(whole.out)["results"][0]["distance"].get<double>(), 1, 1e-14);
+    const std::string half =
+        file("half.json",
+             square(R"([{"degree": 1, "points": [[0,0],[1,0]]}, {"degree": 1, "points": [[1,0],[0,1]]},
+                                {"degree": 1, "points": [[0,1],[0,0]]}])"));
+    const Ran r = run({"nearest", half, "--points", q, "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto n = nlohmann::json::parse(r.out)["results"][0];
+    EXPECT_NEAR(n["distance"].get<double>(), std::sqrt(1.5), 1e-8);
+    EXPECT_LE(n["lower_bound"].get<double>(), std::sqrt(1.5) + 1e-14);
+    EXPECT_GE(n["lower_bound"].get<double>(), std::sqrt(1.5) - 1e-8);
+    EXPECT_EQ(n["edge"], 1);
+    EXPECT_NE(run({"nearest", half, "--points", q}).out.find("on edge 1"), std::string::npos);
+    EXPECT_EQ(run({"nearest", half, "--points", file("plane.csv", "1,2\n")}).code, 1);
+    const Ran open = run({"nearest", half, "--points", q, "--signed"});
+    EXPECT_EQ(open.code, 1);
+    EXPECT_NE(open.err.find("not a closed body"), std::string::npos) << open.err;
+    EXPECT_EQ(run({"nearest", half, "--points", q, "--radius", "1"}).code, 1);
+    const std::string curve = file("p.json", kParabola);
+    EXPECT_EQ(run({"nearest", curve, "--points", path("plane.csv"), "--signed"}).code, 1);
 }
 
 }  // namespace
