@@ -110,8 +110,8 @@ Result<void> nearest_of_models(const Context& context, const Input& input,
         if (auto done = query->nearest(points, nearest, {.accuracy = asked.accuracy}); !done) return done;
         std::vector<SolidInside> inside;
         if (asked.with_sign) {
-            const double accuracy =
-                asked.accuracy > 0 ? asked.accuracy : 1e-6 * summary(query->model()).box.diagonal();
+            // Finer, and the mesh that decides it takes minutes.
+            const double accuracy = 1e-4 * summary(query->model()).box.diagonal();
             auto in =
                 inside_solid(query->model(), points, accuracy, (long long)(context.limits.max_triangles));
             if (!in) return refuse_within(input.label(i), in.error());

@@ -118,5 +118,23 @@ TEST_F(NearestCommand, keeps_to_what_trimming_leaves) {
     EXPECT_EQ(run({"nearest", curve, "--points", path("plane.csv"), "--signed"}).code, 1);
 }
 
+TEST_F(NearestCommand, distances_of_solids_have_a_sign_where_asked) {
+#ifdef FREIFORM_OCCT_BINARY
+    const std::string model = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";
+    const Ran r =
+        run({"nearest", model, "--points", file("p.csv", "0,0,0\n30,10,5\n30,10,0\n"), "--signed", "--json"});
+    if (r.code == 3 && r.out.find("unavailable") != std::string::npos)
+        GTEST_SKIP() << "built without Open CASCADE";
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto results = nlohmann::json::parse(r.out)["results"];
+    EXPECT_EQ(results[0]["side"], "outside");
+    EXPECT_EQ(results[0]["signed_distance"], results[0]["distance"]);
+    EXPECT_EQ(results[1]["side"], "inside");
+    EXPECT_NEAR(results[1]["signed_distance"].get<double>(), -5, 1e-9);
+    EXPECT_EQ(results[2]["side"], "undecided");  // on the surface
+    EXPECT_FALSE(results[2].contains("signed_distance"));
+#endif
+}
+
 }  // namespace
 }  // namespace freiform::test

@@ -104,6 +104,29 @@ TEST(ModelNearest, stays_on_what_trimming_leaves) {
     }
 }
 
+// The unit disc, as a circle in the parameters of a square.
+TEST(ModelNearest, follows_a_round_boundary) {
+    Model m;
+    m.vertices = {{{{1, 0, 0}}, 0}};
+    const Interval on{0, 2 * kPi};
+    m.edges = {{Conic<3>{ConicKind::ellipse, {}, {{1, 0, 0}}, {{0, 1, 0}}}, false, on, 0, 0, 0, "rim"}};
+    Face f;
+    f.surface = Surface<Vec<3>>::trusted(
+        {*BSplineBasis::bezier(1), *BSplineBasis::bezier(1)},
+        Net<2, Vec<3>>({2, 2}, {{{-1, -1, 0}}, {{-1, 1, 0}}, {{1, -1, 0}}, {{1, 1, 0}}}));
+    f.loops = {{{{0, false, Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.5, 0}}, {{0, 0.5}}}}}}};
+    m.faces = {f};
+    const auto query = query_of(must(make_model(std::move(m))));
+    Random random(15);
+    for (int k = 0; k < cases(40); ++k) {
+        const Vec<3> q = point_in(random, 2);
+        const double off = std::max(0.0, std::hypot(q[0], q[1]) - 1);
+        const auto n = must(query.nearest(q));
+        expect_proven(n, std::hypot(off, q[2]), 2e-8);
+        EXPECT_EQ(n.edge >= 0, off > 0);
+    }
+}
+
 TEST(ModelNearest, scales_and_moves_with_the_model) {
     Random random(11);
     for (const int e : {200, -200}) {
