@@ -112,10 +112,15 @@ Result<void> nearest_of_models(const Context& context, const Input& input,
         if (asked.with_sign) {
             // Finer, and the mesh that decides it takes minutes.
             const double accuracy = 1e-4 * summary(query->model()).box.diagonal();
-            auto in =
-                inside_solid(query->model(), points, accuracy, (long long)(context.limits.max_triangles));
+            std::vector<Vec<3>> away;
+            for (std::size_t k = 0; k < points.size(); ++k)
+                if (nearest[k].lower_bound > accuracy) away.push_back(points[k]);
+            const auto in =
+                inside_solid(query->model(), away, accuracy, (long long)(context.limits.max_triangles));
             if (!in) return refuse_within(input.label(i), in.error());
-            inside = *std::move(in);
+            inside.assign(points.size(), {Place::boundary, 0, accuracy});
+            for (std::size_t k = 0, next = 0; k < points.size(); ++k)
+                if (nearest[k].lower_bound > accuracy) inside[k] = (*in)[next++];
         }
         for (std::size_t k = 0; k < points.size(); ++k) {
             FoundOnModel& b = best[k];
