@@ -78,6 +78,9 @@ public:
     Option number(std::string_view name, std::optional<double>& value, std::string_view help) const;
     Option count(std::string_view name, std::optional<int>& value, int least, int most,
                  std::string_view help) const;
+    // The value may be left out where another option follows, or nothing; it is empty then.
+    Option optional_value(std::string_view name, std::function<void(const std::string&)> read,
+                          std::string_view help, std::string_view shown_as) const;
     // Separated by commas.
     Option numbers(std::string_view name, std::vector<double>& values, std::string_view help) const;
 

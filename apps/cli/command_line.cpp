@@ -123,6 +123,14 @@ Option Command::number(std::string_view name, std::optional<double>& value, std:
     return use(name, read, help, "NUMBER");
 }
 
+Option Command::optional_value(std::string_view name, std::function<void(const std::string&)> read,
+                               std::string_view help, std::string_view shown_as) const {
+    CLI::Option* option =
+        app_->add_option_function<std::string>(std::string(name), std::move(read), std::string(help));
+    option->expected(0, 1);
+    return Option(*option).shown_as(shown_as);
+}
+
 Option Command::count(std::string_view name, std::optional<int>& value, int least, int most,
                       std::string_view help) const {
     const auto read = [&value, name = std::string(name), least, most](const std::string& s) {

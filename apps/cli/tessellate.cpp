@@ -1,6 +1,7 @@
 // tessellate: a file to a mesh within a tolerance, and a report of what was reached.
 #include "input.hpp"
 #include "progress.hpp"
+#include "sewing.hpp"
 #include "words.hpp"
 
 #include <freiform/io/mesh_file.hpp>
@@ -16,6 +17,7 @@ namespace {
 struct TessellateArguments {
     std::string file, object;
     std::optional<double> tolerance, max_edge;
+    SewArguments sew;
 };
 
 // The most that a point moves when its coordinates become floats.
@@ -30,11 +32,12 @@ double float_rounding(const TriangleMesh& mesh) {
 }
 
 struct Times {
-    double read = 0, write = 0, total = 0;
+    double read = 0, sew = 0, write = 0, total = 0;
 };
 
-std::string json_report(const Tessellation& t, const Model& model, double predicted, double tolerance,
-                        const std::string& output, double rounding, const Times& times) {
+std::string json_report(const Tessellation& t, const Model& model, const std::optional<Sewing>& sewing,
+                        double predicted, double tolerance, const std::string& output, double rounding,
+                        const Times& times) {
     json::Writer w;
     w.begin_object();
     w.field("triangles", t.mesh.triangles.size())
@@ -46,8 +49,10 @@ std::string json_report(const Tessellation& t, const Model& model, double predic
     w.field("predicted_triangles", std::ceil(predicted));
     w.field("tolerance", tolerance).field("unit", model.unit);
     if (!output.empty()) w.field("output", output).field("storage_rounding", rounding);
+    if (sewing) write_sewing(w, *sewing);
     w.key("seconds").begin_object();
     w.field("read", times.read).field("edges", t.seconds.edges).field("faces", t.seconds.faces);
+    if (sewing) w.field("sew", times.sew);
     w.field("write", times.write).field("total", times.total).end_object();
     w.key("refused").begin_array();
     for (const RefusedFace& r : t.refused)
@@ -71,8 +76,8 @@ std::string json_report(const Tessellation& t, const Model& model, double predic
     return w.take() + "\n";
 }
 
-std::string text_report(const Tessellation& t, const Model& model, double tolerance,
-                        const std::string& output, double rounding, const Times& times) {
+std::string text_report(const Tessellation& t, const Model& model, const std::optional<Sewing>& sewing,
+                        double tolerance, const std::string& output, double rounding, const Times& times) {
     std::string s = text(t.mesh.triangles.size(), " triangles, ", t.mesh.points.size(), " points, ",
                          model.faces.size(), " faces\n");
     s += text("open edges      ", t.topology.open_edges, "\n");
@@ -83,6 +88,7 @@ std::string text_report(const Tessellation& t, const Model& model, double tolera
               model.unit, ")\n");
     s += text("boundary gap    ", t.boundary_gap, " (of the model itself)\n");
     if (rounding > 0) s += text("stored as float ", rounding, " more\n");
+    if (sewing) s += sewing_text(*sewing, model.unit);
     s += text("seconds         ", times.total, "\n");
     for (const RefusedFace& r : t.refused)
         s += text("refused face ", r.face, r.name.empty() ? "" : text(" '", r.name, "'"), ": ",
@@ -110,10 +116,14 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
 
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
-    const auto model = scene_of(*input->document, input->chosen);
+    auto model = scene_of(*input->document, input->chosen);
     if (!model) return std::unexpected(model.error());
     Times times;
     times.read = now() - start;
+    const auto sewing = sewn(*model, options.sew);
+    if (!sewing) return std::unexpected(sewing.error());
+    if (*sewing) *model = (*sewing)->model;
+    times.sew = now() - start - times.read;
 
     TessellateOptions how;
     how.tolerance = options.tolerance.value_or(0);
@@ -152,9 +162,10 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
     times.total = now() - start;
     if (output == "-") return {};
     context.output.clear();  // the report goes to standard output
-    return emit(context, context.json ? json_report(*t, *model, predicted_triangles(*model, how),
-                                                    how.tolerance, output, rounding, times)
-                                      : text_report(*t, *model, how.tolerance, output, rounding, times));
+    return emit(context, context.json
+                             ? json_report(*t, *model, *sewing, predicted_triangles(*model, how),
+                                           how.tolerance, output, rounding, times)
+                             : text_report(*t, *model, *sewing, how.tolerance, output, rounding, times));
 }
 
 }  // namespace
@@ -172,6 +183,7 @@ void add_tessellate(CommandLine& line) {
         "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box)");
     command.number("--max-edge", options->max_edge,
                    "The longest side of a triangle, in the file's unit (default: none)");
+    options->sew.add_to(command);
     command.object(options->object);
     command.output("The mesh: .glb, .stl, .obj or .ply");
     command.limits();

@@ -78,6 +78,40 @@ TEST_F(CliMesh, trimmed_surfaces_of_a_document_become_meshes) {
     EXPECT_EQ(Json::parse(r.out)["triangles"], 2) << r.out;
 }
 
+// Two squares with a slit between them, as a document.
+const std::string kSlit = R"({"objects": [
+    {"type": "surface", "degrees": [1, 1], "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]},
+    {"type": "surface", "degrees": [1, 1], "points": [[[1.0001,0,0],[1.0001,1,0]],[[2,0,0],[2,1,0]]]}]})";
+
+TEST_F(CliMesh, tessellate_sews_where_asked_and_names_what_stays_open) {
+    const auto said = [&](std::vector<std::string> more) {
+        std::vector<std::string> all{"tessellate", "-", "--tolerance", "0.1", "--json"};
+        all.insert(all.end(), more.begin(), more.end());
+        return run(all, kSlit);
+    };
+    EXPECT_EQ(Json::parse(said({}).out)["open_edges"], 8);
+    const Ran r = said({"--sew", "0.001"});
+    ASSERT_EQ(r.code, 0) << r.out;
+    const Json j = Json::parse(r.out);
+    EXPECT_EQ(j["open_edges"], 6);
+    EXPECT_EQ(j["sewing"]["joined"], 1);
+    EXPECT_GE(j["sewing"]["bound"], 0.0000999);
+    EXPECT_NEAR(j["boundary_gap"], 0.0001, 1e-9);
+    ASSERT_EQ(j["sewing"]["remaining_gaps"].size(), 6u);
+    for (const Json& gap : j["sewing"]["remaining_gaps"]) {
+        EXPECT_EQ(gap["kind"], "no_answer");
+        EXPECT_GT(gap["gap"], 0.1);
+        EXPECT_TRUE(gap["face"].is_number() && gap["edge"].is_number());
+    }
+    EXPECT_EQ(Json::parse(said({"--sew", "0.00001"}).out)["sewing"]["joined"], 0);
+    const Ran none = said({"--sew"});
+    EXPECT_EQ(none.code, 3) << "the document gives no tolerance";
+    EXPECT_EQ(
+        run({"tessellate", "-", "--sew", "0.001"}, kSlit).out.find("remaining gaps  6") == std::string::npos,
+        false);
+    EXPECT_EQ(said({"--sew", "x"}).code, 2);
+}
+
 TEST_F(CliMesh, draw_writes_a_picture) {
     const std::string out = file("teapot.png", "");
     const Ran r = run({"draw", kTeapot, "-o", out, "--width", "200", "--height", "150"});

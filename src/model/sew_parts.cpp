@@ -1,0 +1,207 @@
+// What a pass of sewing looks at, and what speaks against a join: essay in sew.cpp.
+#include "sewer_detail.hpp"
+
+#include <freiform/core/parallel.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kExtents = 4;   // of an edge, in bounds of its join
+constexpr double kShortest = 2;  // extent of an edge, in distances that its ends move
+
+}  // namespace
+
+std::vector<Owner> owners_of(const Model& m) {
+    std::vector<Owner> owners(m.edges.size());
+    for (std::size_t f = 0; f < m.faces.size(); ++f)
+        for (std::size_t l = 0; l < m.faces[f].loops.size(); ++l)
+            for (std::size_t c = 0; c < m.faces[f].loops[l].coedges.size(); ++c) {
+                Owner& o = owners[std::size_t(m.faces[f].loops[l].coedges[c].edge)];
+                o = {int(f), int(l), int(c), o.uses + 1};
+            }
+    return owners;
+}
+
+void Sewer::measure_extents() {
+    extent_.resize(m_.edges.size(), -1);
+    edges_at_.clear();
+    for (std::size_t e = 0; e < m_.edges.size(); ++e) {
+        const Edge& edge = m_.edges[e];
+        if (edge.degenerate || owners_[e].uses == 0) continue;
+        edges_at_[edge.start].push_back(int(e));
+        edges_at_[edge.end].push_back(int(e));
+        if (extent_[e] >= 0) continue;
+        if (edge.curve) {
+            extent_[e] = trace_of(*edge.curve, edge.range).extent;
+            continue;
+        }
+        const Owner& o = owners_[e];
+        const Face& f = m_.faces[std::size_t(o.face)];
+        const auto& curve = f.loops[std::size_t(o.loop)].coedges[std::size_t(o.index)].curve;
+        const auto at = [&](double t) { return jet<0>(f.surface, jet<0>(curve, t).value().c).value(); };
+        for (int k = 0; k <= 16; ++k)
+            extent_[e] = std::max(extent_[e],
+                                  norm(at(edge.range.lo + edge.range.length() * k / 16) - at(edge.range.lo)));
+    }
+}
+
+// Where ends of others lie along the edge, clear of its own ends; ends that belong together count once.
+std::vector<double> Sewer::cuts_along(const EdgeTrace& trace, const PointTree& tree,
+                                      std::span<const Vec<3>> at) const {
+    std::vector<int> near;
+    for (std::size_t k = 0; k + 1 < trace.at.size(); ++k) {
+        Box<3> box;
+        box.add(trace.at[k]);
+        box.add(trace.at[k + 1]);
+        const double wide = tolerance_ + norm(trace.at[k + 1] - trace.at[k]) / 4;
+        for (int d = 0; d < 3; ++d) box.lo[d] -= wide, box.hi[d] += wide;
+        const auto found = tree.in(box);
+        near.insert(near.end(), found.begin(), found.end());
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    std::vector<EdgeFoot> feet;
+    for (const int v : near) {
+        const EdgeFoot foot = foot_on(trace, at[std::size_t(v)]);
+        const double room = std::min(norm(foot.point - trace.end(false)), norm(foot.point - trace.end(true)));
+        if (foot.distance <= tolerance_ && room > std::max(kExtents * foot.distance, 0x1p-40 * trace.extent))
+            feet.push_back(foot);
+    }
+    std::sort(feet.begin(), feet.end(), [](const EdgeFoot& x, const EdgeFoot& y) { return x.t < y.t; });
+    std::vector<EdgeFoot> apart;
+    for (const EdgeFoot& f : feet)
+        if (apart.empty() ||
+            norm(f.point - apart.back().point) >
+                std::max(kExtents * std::max(f.distance, apart.back().distance), 0x1p-40 * trace.extent))
+            apart.push_back(f);
+        else if (f.distance < apart.back().distance)
+            apart.back() = f;
+    std::vector<double> t;
+    for (const EdgeFoot& f : apart) t.push_back(f.t);
+    return t;
+}
+
+std::vector<Part> Sewer::parts(bool cut) const {
+    std::vector<Part> whole;
+    for (std::size_t e = 0; e < m_.edges.size(); ++e)
+        if (is_open(e)) {
+            const Edge& edge = m_.edges[e];
+            whole.push_back({int(e), trace_of(*edge.curve, edge.range), {edge.start, edge.end}});
+        }
+    if (!cut) return whole;
+    std::vector<int> ends;
+    for (const Part& p : whole)
+        if (!is_group(p.edge)) ends.insert(ends.end(), p.ends.begin(), p.ends.end());
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    std::vector<Vec<3>> at;
+    for (const int v : ends) at.push_back(m_.vertices[std::size_t(v)].point);
+    const PointTree tree(at);
+    std::vector<std::vector<Part>> cuts(whole.size());
+    parallel_for(whole.size(), 4, [&](std::size_t i) {
+        const Part& p = whole[i];
+        const EdgeTrace& trace = p.trace;
+        const std::vector<double> t = is_group(p.edge) ? std::vector<double>{} : cuts_along(trace, tree, at);
+        for (std::size_t k = 0; k <= t.size(); ++k)
+            cuts[i].push_back({p.edge,
+                               trace_of(*trace.curve, {k == 0 ? trace.on.lo : t[k - 1],
+                                                       k == t.size() ? trace.on.hi : t[k]}),
+                               {k == 0 ? p.ends[0] : -1, k == t.size() ? p.ends[1] : -1}});
+    });
+    std::vector<Part> all;
+    for (auto& list : cuts)
+        for (Part& p : list) all.push_back(std::move(p));
+    return all;
+}
+
+std::vector<Pair> Sewer::candidates(const std::vector<Part>& parts) const {
+    std::vector<Vec<3>> starts;
+    for (const Part& p : parts)
+        for (const bool last : {false, true}) starts.push_back(p.trace.end(last));
+    const PointTree tree(starts);
+    std::vector<Pair> pairs;
+    for (std::size_t a = 0; a < parts.size(); ++a) {
+        Box<3> box;
+        box.add(parts[a].trace.end(false));
+        for (int d = 0; d < 3; ++d) box.lo[d] -= tolerance_, box.hi[d] += tolerance_;
+        for (const int end : tree.in(box)) {
+            const int b = end / 2;
+            const bool reversed = end % 2 == 1;
+            if (b == int(a) || parts[a].edge == parts[std::size_t(b)].edge) continue;
+            const bool groups[2] = {is_group(parts[a].edge), is_group(parts[std::size_t(b)].edge)};
+            if (groups[0] && groups[1]) continue;
+            const bool stays = groups[0] || (!groups[1] && int(a) < b);
+            if (!stays) continue;  // found from the other side
+            if (norm(parts[a].trace.end(true) - parts[std::size_t(b)].trace.end(!reversed)) <= tolerance_)
+                pairs.push_back({int(a), b, reversed, {}});
+        }
+    }
+    return pairs;
+}
+
+// Why the pair may not be joined although it is near enough.
+std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair& p) const {
+    const double bound = p.match->bound;
+    if (!(std::min(a.trace.extent, b.trace.extent) > kExtents * bound))
+        return Refusal{
+            RefusalKind::ill_conditioned, text("edges[", b.edge, "]"),
+            text("is ", b.trace.extent, " large, too short to be told from a point within ", bound)};
+    std::map<int, int> becomes;  // what both unions together do
+    for (const bool last : {false, true}) {
+        const int v = a.ends[last], w = b.ends[p.reversed != last];
+        const Vec<3>&at = a.trace.end(last), &of = b.trace.end(p.reversed != last);
+        for (const int x : {v, w}) {
+            if (x < 0) continue;
+            const int root = vertex(x);
+            std::vector<int> all{root};
+            if (const auto chain = chain_.find(root); chain != chain_.end())
+                all.insert(all.end(), chain->second.begin(), chain->second.end());
+            for (const int y : all) {
+                becomes[vertex(y)] = last ? 1 : 0;
+                const Vec<3>& point = m_.vertices[std::size_t(y)].point;
+                if (!(std::max(norm(point - at), norm(point - of)) <= tolerance_))
+                    return Refusal{RefusalKind::ill_conditioned, text("vertices[", y, "]"),
+                                   text("would become one with a vertex farther away than ", tolerance_)};
+                const auto edges = edges_at_.find(y);
+                if (edges == edges_at_.end()) continue;
+                for (const int e : edges->second)
+                    if (careful_ && !(extent_[std::size_t(e)] > kShortest * norm(at - of)))
+                        return Refusal{RefusalKind::ill_conditioned, text("edges[", e, "]"),
+                                       text("is ", extent_[std::size_t(e)],
+                                            " large and may lie between two ends ", norm(at - of), " apart")};
+            }
+        }
+    }
+    // Ends of one edge that are different vertices stay different.
+    const auto is_closed = [&](const Part& x) {
+        return x.ends[0] >= 0 && x.ends[1] >= 0 && vertex(x.ends[0]) == vertex(x.ends[1]);
+    };
+    const bool closes = is_closed(a) || is_closed(b);
+    const auto name = [&](int v) {
+        const int root = vertex(v);
+        const auto it = becomes.find(root);
+        return it == becomes.end() ? root : closes ? -1 : -1 - it->second;
+    };
+    for (const auto& [root, which] : becomes) {
+        std::vector<int> all{root};
+        if (const auto chain = chain_.find(root); chain != chain_.end())
+            all.insert(all.end(), chain->second.begin(), chain->second.end());
+        for (const int y : all) {
+            const auto edges = edges_at_.find(y);
+            if (edges == edges_at_.end()) continue;
+            for (const int e : edges->second) {
+                const Edge& edge = m_.edges[std::size_t(e)];
+                if (vertex(edge.start) != vertex(edge.end) && name(edge.start) == name(edge.end))
+                    return Refusal{RefusalKind::ill_conditioned, text("edges[", e, "]"),
+                                   "both its ends would become one vertex"};
+            }
+        }
+    }
+    return {};
+}
+
+}  // namespace freiform
