@@ -1,14 +1,14 @@
 // tessellate: a file to a mesh within a tolerance, and a report of what was reached.
 #include "input.hpp"
 #include "progress.hpp"
-#include "sewing.hpp"
+#include "tessellate_report.hpp"
 #include "words.hpp"
 
 #include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
-#include <freiform/model/tessellate.hpp>
 
-#include <cmath>
+#include <algorithm>
+#include <numbers>
 
 namespace freiform::cli {
 
@@ -16,7 +16,8 @@ namespace {
 
 struct TessellateArguments {
     std::string file, object;
-    std::optional<double> tolerance, max_edge;
+    std::vector<double> tolerances;
+    std::optional<double> max_edge, angle, aspect;
     SewArguments sew;
 };
 
@@ -31,73 +32,31 @@ double float_rounding(const TriangleMesh& mesh) {
     return most;
 }
 
-struct Times {
-    double read = 0, sew = 0, write = 0, total = 0;
-};
-
-std::string json_report(const Tessellation& t, const Model& model, const std::optional<Sewing>& sewing,
-                        double predicted, double tolerance, const std::string& output, double rounding,
-                        const Times& times) {
-    json::Writer w;
-    w.begin_object();
-    w.field("triangles", t.mesh.triangles.size())
-        .field("vertices", t.mesh.points.size())
-        .field("faces", model.faces.size());
-    w.field("open_edges", t.topology.open_edges).field("non_manifold_edges", t.topology.non_manifold_edges);
-    w.field("error_bound", t.error_bound).field("boundary_gap", t.boundary_gap);
-    w.field("degenerate_triangles", t.topology.degenerate_triangles);
-    w.field("predicted_triangles", std::ceil(predicted));
-    w.field("tolerance", tolerance).field("unit", model.unit);
-    if (!output.empty()) w.field("output", output).field("storage_rounding", rounding);
-    if (sewing) write_sewing(w, *sewing);
-    w.key("seconds").begin_object();
-    w.field("read", times.read).field("edges", t.seconds.edges).field("faces", t.seconds.faces);
-    if (sewing) w.field("sew", times.sew);
-    w.field("write", times.write).field("total", times.total).end_object();
-    w.key("refused").begin_array();
-    for (const RefusedFace& r : t.refused)
-        w.begin_object()
-            .field("face", r.face)
-            .field("name", r.name)
-            .field("kind", name_of(r.reason.kind))
-            .field("where", r.reason.where)
-            .field("message", r.reason.message)
-            .end_object();
-    for (const Refusal& r : model.refused)
-        w.begin_object()
-            .field("face", r.where)
-            .field("kind", name_of(r.kind))
-            .field("where", r.where)
-            .field("message", r.message)
-            .end_object();
-    w.end_array().key("approximations").begin_array();
-    for (const Approximation& a : model.approximations) write_approximation(w, a);
-    w.end_array().end_object();
-    return w.take() + "\n";
+// The name of the file for one of several tolerances.
+std::string named_by(const std::string& pattern, double tolerance) {
+    std::string name = pattern;
+    const std::size_t at = name.find('%');
+    if (at != std::string::npos) name.replace(at, 1, text(tolerance));
+    return name;
 }
 
-std::string text_report(const Tessellation& t, const Model& model, const std::optional<Sewing>& sewing,
-                        double tolerance, const std::string& output, double rounding, const Times& times) {
-    std::string s = text(t.mesh.triangles.size(), " triangles, ", t.mesh.points.size(), " points, ",
-                         model.faces.size(), " faces\n");
-    s += text("open edges      ", t.topology.open_edges, "\n");
-    if (t.topology.non_manifold_edges > 0) s += text("non-manifold    ", t.topology.non_manifold_edges, "\n");
-    if (t.topology.degenerate_triangles > 0)
-        s += text("degenerate      ", t.topology.degenerate_triangles, "\n");
-    s += text("error bound     ", t.error_bound, " (tolerance ", tolerance, model.unit.empty() ? "" : " ",
-              model.unit, ")\n");
-    s += text("boundary gap    ", t.boundary_gap, " (of the model itself)\n");
-    if (rounding > 0) s += text("stored as float ", rounding, " more\n");
-    if (sewing) s += sewing_text(*sewing, model.unit);
-    s += text("seconds         ", times.total, "\n");
-    for (const RefusedFace& r : t.refused)
-        s += text("refused face ", r.face, r.name.empty() ? "" : text(" '", r.name, "'"), ": ",
-                  r.reason.where, ": ", r.reason.message, "\n");
-    for (const Refusal& r : model.refused) s += text("refused ", r.where, ": ", r.message, "\n");
-    for (const Approximation& a : model.approximations)
-        s += text("approximated ", approximation_text(a), "\n");
-    if (!output.empty()) s += text("written to ", output, "\n");
-    return s;
+std::vector<double> tolerances_of(const Model& model, const TessellateArguments& options) {
+    if (!options.tolerances.empty()) return options.tolerances;
+    const double part = summary(model).box.diagonal() / 1000;
+    remark(text("tolerance ", part, model.unit.empty() ? "" : " ", model.unit,
+                ", a thousandth of the model's box"));
+    return {part};
+}
+
+Result<void> is_of_use(const Result<Tessellation>& t, double timeout) {
+    if (!t && t.error().where == "progress")
+        return refuse(RefusalKind::limit, "--timeout", text("more than ", timeout, " seconds are needed"));
+    if (!t) return std::unexpected(t.error());
+    if (!t->mesh.triangles.empty() || t->refused.empty()) return {};
+    const RefusedFace& first = t->refused[0];
+    return refuse(first.reason.kind == RefusalKind::limit ? RefusalKind::limit : RefusalKind::no_answer,
+                  text("faces[", first.face, "].", first.reason.where),
+                  text("no face could be meshed: ", first.reason.message));
 }
 
 Result<void> run_tessellate(Context& context, const TessellateArguments& options) {
@@ -112,60 +71,64 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
     } else if (output == "-") {
         wrong_usage("-o - needs --to glb, stl, obj or ply");
     }
+    if (options.tolerances.size() > 1 && !output.empty() && output.find('%') == std::string::npos)
+        wrong_usage("several tolerances need a % in the name of the output, such as -o part-%.glb");
     if (output == "-" && context.json) wrong_usage("--json and -o - both want standard output");
 
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     auto model = scene_of(*input->document, input->chosen);
     if (!model) return std::unexpected(model.error());
-    Times times;
-    times.read = now() - start;
+    const double read = now() - start;
     const auto sewing = sewn(*model, options.sew);
     if (!sewing) return std::unexpected(sewing.error());
     if (*sewing) *model = (*sewing)->model;
-    times.sew = now() - start - times.read;
+    const double sew = now() - start - read;
 
-    TessellateOptions how;
-    how.tolerance = options.tolerance.value_or(0);
-    if (!options.tolerance) {
-        how.tolerance = summary(*model).box.diagonal() / 1000;
-        remark(text("tolerance ", how.tolerance, model->unit.empty() ? "" : " ", model->unit,
-                    ", a thousandth of the model's box"));
-    }
-    if (options.max_edge) how.max_edge = *options.max_edge;
-    how.max_triangles = (long long)(context.limits.max_triangles);
     Progress bar("tessellate");
     const double deadline = context.limits.timeout > 0 ? start + context.limits.timeout : 0;
-    how.progress = [&](double part) {
+    const auto progress = [&](double part) {
         bar(part);
         return deadline == 0 || now() < deadline;
     };
-    auto t = tessellate(*model, how);
-    if (!t) {
-        if (t.error().where == "progress")
-            return refuse(RefusalKind::limit, "--timeout",
-                          text("more than ", context.limits.timeout, " seconds are needed"));
-        return std::unexpected(t.error());
+    std::vector<TessellateOptions> all;
+    for (const double tolerance : tolerances_of(*model, options)) {
+        TessellateOptions how;
+        how.tolerance = tolerance;
+        if (options.max_edge) how.max_edge = *options.max_edge;
+        if (options.angle) how.max_angle = *options.angle * (std::numbers::pi / 180);
+        if (options.aspect) how.max_aspect = *options.aspect;
+        how.max_triangles = (long long)(context.limits.max_triangles);
+        how.progress = progress;
+        all.push_back(how);
     }
-    if (t->mesh.triangles.empty() && !t->refused.empty())
-        return refuse(
-            t->refused[0].reason.kind == RefusalKind::limit ? RefusalKind::limit : RefusalKind::no_answer,
-            text("faces[", t->refused[0].face, "].", t->refused[0].reason.where),
-            text("no face could be meshed: ", t->refused[0].reason.message));
-    const double written = now();
-    double rounding = 0;
-    if (!output.empty()) {
-        if (auto ok = write_mesh(t->mesh, output, format); !ok) return ok;
-        if (format == MeshFormat::glb || format == MeshFormat::stl) rounding = float_rounding(t->mesh);
+    const auto results = tessellate(*model, all);
+    for (const auto& t : results)
+        if (auto ok = is_of_use(t, context.limits.timeout); !ok) return ok;
+
+    json::Writer w;
+    std::string said;
+    if (results.size() > 1) w.begin_object().key("runs").begin_array();
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const TriangleMesh& mesh = results[i]->mesh;
+        TessellateReport report{*results[i], *model, *sewing, all[i], named_by(output, all[i].tolerance),
+                                0,           {}};
+        const double written = now();
+        if (!output.empty()) {
+            if (auto ok = write_mesh(mesh, report.output, format); !ok) return ok;
+            if (format == MeshFormat::glb || format == MeshFormat::stl)
+                report.rounding = float_rounding(mesh);
+        }
+        report.seconds = {read, sew, now() - written, now() - start};
+        if (output == "-") return {};
+        if (context.json)
+            write_report(w, report);
+        else
+            said += report_text(report);
     }
-    times.write = now() - written;
-    times.total = now() - start;
-    if (output == "-") return {};
+    if (results.size() > 1) w.end_array().end_object();
     context.output.clear();  // the report goes to standard output
-    return emit(context, context.json
-                             ? json_report(*t, *model, *sewing, predicted_triangles(*model, how),
-                                           how.tolerance, output, rounding, times)
-                             : text_report(*t, *model, *sewing, how.tolerance, output, rounding, times));
+    return emit(context, context.json ? w.take() + "\n" : said);
 }
 
 }  // namespace
@@ -176,13 +139,22 @@ void add_tessellate(CommandLine& line) {
         line.add("tessellate", "Triangles within a tolerance, watertight where the model is closed",
                  "  freiform tessellate teapot.bpt --tolerance 0.01 -o teapot.glb\n"
                  "  freiform tessellate part.step --tolerance 0.05 -o part.stl --json\n"
+                 "  freiform tessellate part.step --tolerance 1,0.1,0.01 -o part-%.glb\n"
+                 "  freiform tessellate part.iges --sew 0.001 --angle 15 -o part.stl\n"
                  "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply");
     command.file(options->file);
-    command.number(
-        "--tolerance", options->tolerance,
-        "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box)");
+    command.numbers(
+        "--tolerance", options->tolerances,
+        "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box); "
+        "several give a mesh each, with a % in the name of the output");
     command.number("--max-edge", options->max_edge,
                    "The longest side of a triangle, in the file's unit (default: none)");
+    command.number("--angle", options->angle,
+                   "The largest angle between a triangle and normals of its part of the surface, in degrees "
+                   "(default: none)");
+    command.number(
+        "--aspect", options->aspect,
+        "An aim: points inside faces lie in boxes at most so much longer than wide (default: none)");
     options->sew.add_to(command);
     command.object(options->object);
     command.output("The mesh: .glb, .stl, .obj or .ply");

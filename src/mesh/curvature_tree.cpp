@@ -175,7 +175,9 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             outer = c;
             const double error = c.along(size[0], size[1]) / 8 + tree.kink_bound(box);
             for (int d = 0; d < 2; ++d) length[d] = bending.first[d] * size[d];
-            const bool short_enough = std::max(length[0], length[1]) <= demands.max_edge;
+            const double longer = std::max(length[0], length[1]), shorter = std::min(length[0], length[1]);
+            const bool round = longer <= demands.max_aspect * shorter || longer <= tolerance;
+            const bool short_enough = longer <= demands.max_edge && round;
             const bool fine = tree.accept(node, error, tolerance);
             if ((fine && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
             if (item.depth == kMaxDepth) {

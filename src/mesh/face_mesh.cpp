@@ -153,9 +153,8 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     // converge.
     const std::size_t limit = std::size_t(max_triangles) / 2 + points.size();
     const std::size_t expected = points.size() + tree->corners().size() + 600;
-    const std::size_t most = std::isfinite(demands.max_edge)
-                                 ? limit
-                                 : std::min(limit, (knows_normals ? kHope : kPatience) * expected);
+    const std::size_t most =
+        demands.shapes_triangles() ? limit : std::min(limit, (knows_normals ? kHope : kPatience) * expected);
     for (int round = 0; round < kSeparateRounds; ++round) {
         if (!filler.refine(most))
             return most == limit

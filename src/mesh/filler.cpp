@@ -2,6 +2,7 @@
 #include "filler_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,12 @@ namespace freiform {
 
 namespace {
 
-constexpr double kNearPoint = 1e-3;    // of a leaf: likewise, for other points
-constexpr double kLeastLength = 1e-9;  // of the box of the face: shorter is rounding
-constexpr double kLittle = 1.0 / 256;  // of the error: what a shift may add without a closer look
-constexpr double kMargin = 0.125;      // of the box of the face: what is looked at beyond it
+constexpr double kPole = 1.0 / 64;
+constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
+constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
+constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
+constexpr double kLittle = 1.0 / 256;           // of the error: what a shift may add without a closer look
+constexpr double kMargin = 0.125;               // of the box of the face: what is looked at beyond it
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
 
@@ -54,9 +57,48 @@ std::pair<double, int> Filler::longest_side(int triangle) {
     return longest;
 }
 
+Filler::Sides Filler::sides(int triangle) {
+    Sides out{0, kInfinity, -1};
+    const auto v = t_.vertices(triangle);
+    for (std::size_t e = 0; e < 3; ++e) {
+        const double length = norm(position(v[(e + 2) % 3]) - position(v[(e + 1) % 3]));
+        if (length > out.longest)
+            out.longest = length, out.edge = t_.is_constrained(triangle, int(e)) ? -1 : int(e);
+        out.shortest = std::min(out.shortest, length);
+    }
+    return out;
+}
+
+// A corner where a first derivative is tiny beside what it is inside: no box with it has bounded normals.
+bool Filler::touches_pole(const std::array<Vec<2>, 3>& corner) const {
+    const Vec<2> middle = (1.0 / 3) * (corner[0] + corner[1] + corner[2]);
+    const auto inside = jet<1>(surface_.geometry(), middle.c);
+    for (const Vec<2>& c : corner) {
+        const auto j = jet<1>(surface_.geometry(), c.c);
+        for (std::size_t d = 1; d < 3; ++d)
+            if (norm(j.d[d]) < kPole * norm(inside.d[d])) return true;
+    }
+    return false;
+}
+
+// Sides of the boundary are given, and a triangle between them and inner points as near as they are long
+// cannot turn less by further points.
+int Filler::turning_side(int triangle) {
+    if (!std::isfinite(demands_.max_angle)) return -1;
+    const Sides s = sides(triangle);
+    if (s.edge < 0 || !(s.longest > kAngleFloor * demands_.tolerance)) return -1;
+    if (t_.points().size() > most_for_angles_) return -1;
+    const auto& v = t_.vertices(triangle);
+    if (touches_pole({uv(v[0]), uv(v[1]), uv(v[2])})) return -1;
+    const double angle = normal_angle_bound(surface_, {uv(v[0]), uv(v[1]), uv(v[2])},
+                                            {position(v[0]), position(v[1]), position(v[2])});
+    return angle <= demands_.max_angle ? -1 : s.edge;
+}
+
 bool Filler::is_fine(int triangle) {
     return bound(triangle) <= demands_.tolerance &&
-           (!std::isfinite(demands_.max_edge) || longest_side(triangle).first <= demands_.max_edge);
+           (!std::isfinite(demands_.max_edge) || longest_side(triangle).first <= demands_.max_edge) &&
+           turning_side(triangle) < 0;
 }
 
 bool Filler::is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf) const {
@@ -84,6 +126,7 @@ void Filler::insert_corners() {
         const Vec<2> x = scaled(corner.at);
         t_.insert(x, -1, [&](int triangle) { return is_near_boundary(triangle, x, corner.leaf); });
     }
+    most_for_angles_ = kPatienceForAngles * (t_.points().size() + 600);
 }
 
 bool Filler::is_plain(int vertex) const {
@@ -181,17 +224,9 @@ bool Filler::improve(int triangle) {
     const auto attempt = [&](const Vec<2>& at) {
         return t_.insert(scaled(at), triangle).status == Triangulation::Insert::done;
     };
-    if (known(triangle).bound <= demands_.tolerance) {  // too long, then
-        const int e = longest_side(triangle).second;
-        return e >= 0 && attempt(0.5 * (corner[(e + 1) % 3] + corner[(e + 2) % 3]));
-    }
-    std::array<std::pair<double, int>, 3> sides;  // by the error that they stand for
-    for (int e = 0; e < 3; ++e) {
-        const Vec<2> d = corner[(e + 2) % 3] - corner[(e + 1) % 3];
-        sides[std::size_t(e)] = {c.along(d[0], d[1]), e};
-    }
-    if (const auto kink = tree_.worst_kink(box); kink && tree_.kink_bound(box) > demands_.tolerance / 4) {
-        const auto [axis, at] = *kink;
+    // Where the side that spans most of a kink crosses it.
+    const auto attempt_on = [&](const std::pair<int, double>& kink) {
+        const auto [axis, at] = kink;
         std::array<std::pair<double, int>, 3> spans;
         for (int e = 0; e < 3; ++e)
             spans[std::size_t(e)] = {std::abs(corner[(e + 2) % 3][axis] - corner[(e + 1) % 3][axis]), e};
@@ -203,7 +238,23 @@ bool Filler::improve(int triangle) {
             x[axis] = at;
             if (attempt(x)) return true;
         }
+        return false;
+    };
+    if (known(triangle).bound <= demands_.tolerance) {  // too long, then, or turning
+        const int turning = turning_side(triangle);
+        const auto [length, longest] = longest_side(triangle);
+        if (const auto kink = tree_.worst_kink(box); kink && turning >= 0 && attempt_on(*kink)) return true;
+        const int e = turning >= 0 && length <= demands_.max_edge ? turning : longest;
+        return e >= 0 && attempt(0.5 * (corner[(e + 1) % 3] + corner[(e + 2) % 3]));
     }
+    std::array<std::pair<double, int>, 3> sides;  // by the error that they stand for
+    for (int e = 0; e < 3; ++e) {
+        const Vec<2> d = corner[(e + 2) % 3] - corner[(e + 1) % 3];
+        sides[std::size_t(e)] = {c.along(d[0], d[1]), e};
+    }
+    if (const auto kink = tree_.worst_kink(box);
+        kink && tree_.kink_bound(box) > demands_.tolerance / 4 && attempt_on(*kink))
+        return true;
     std::sort(sides.rbegin(), sides.rend());
     for (const auto& [error, e] : sides)
         if (!t_.is_constrained(triangle, e) && attempt(0.5 * (corner[(e + 1) % 3] + corner[(e + 2) % 3])))

@@ -29,6 +29,14 @@ private:
     bool improve(int triangle);
     bool is_fine(int triangle);
     Vec<3> position(int vertex);
+    struct Sides {
+        double longest = 0, shortest = 0;
+        int edge = -1;  // the longest one; -1 if it is part of the boundary
+    };
+    Sides sides(int triangle);
+    bool touches_pole(const std::array<Vec<2>, 3>& corner) const;
+    // The side to cut where normals turn too much.
+    int turning_side(int triangle);
     // The longest side that is not part of the boundary, in space; its edge is -1 if there is none.
     std::pair<double, int> longest_side(int triangle);
 
@@ -53,6 +61,7 @@ private:
     const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
+    std::size_t most_for_angles_ = 0;
     std::array<Interval, 2> limits_;
     Box<2> whole_;                   // somewhat more than the face, within the limits
     Curvature whole_bends_;          // over it

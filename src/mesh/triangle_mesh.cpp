@@ -83,6 +83,23 @@ Vec<3> triangle_normal(const TriangleMesh& mesh, std::size_t triangle) {
     return unit(cross(scaled_to_one(u), scaled_to_one(v)));
 }
 
+std::vector<double> smallest_angles(const TriangleMesh& mesh) {
+    std::vector<double> angles(mesh.triangles.size());
+    for (std::size_t t = 0; t < angles.size(); ++t) {
+        const auto p = mesh.points_of(t);
+        double least = 4;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec<3>& at = mesh.points[std::size_t(p[k])];
+            const Vec<3> u = scaled_to_one(direction(at, mesh.points[std::size_t(p[(k + 1) % 3])]));
+            const Vec<3> v = scaled_to_one(direction(at, mesh.points[std::size_t(p[(k + 2) % 3])]));
+            const double across = norm(cross(u, v));
+            least = std::min(least, across > 0 ? std::atan2(across, dot(u, v)) : 0.0);
+        }
+        angles[t] = least;
+    }
+    return angles;
+}
+
 // Method. A counting sort of the directed edges by their lower point, then a small sort at every point; an
 // entry packs the other point, the triangle and the direction into 64 bits.
 std::vector<MeshEdge> edges(const TriangleMesh& mesh) {

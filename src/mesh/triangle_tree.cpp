@@ -35,9 +35,7 @@ double squared_distance(const Box<3>& box, const Vec<3>& p) {
 
 Vec<3> middle_of(const Triangle3& t) { return (1.0 / 3) * (t[0] + t[1] + t[2]); }
 
-}  // namespace
-
-Vec<3> closest_point(const Triangle3& t, const Vec<3>& p) {
+Vec<3> closest_near_one(const Triangle3& t, const Vec<3>& p) {
     const Vec<3> n = cross(t[1] - t[0], t[2] - t[0]);
     const double size = dot(n, n);
     if (size > 0) {
@@ -54,6 +52,25 @@ Vec<3> closest_point(const Triangle3& t, const Vec<3>& p) {
         if (const double d = dot(q - p, q - p); d < least) least = d, best = q;
     }
     return best;
+}
+
+}  // namespace
+
+// Products of six lengths are taken, which leave the range of double for very large and very small triangles:
+// these are moved to the origin and scaled by a power of two.
+Vec<3> closest_point(const Triangle3& triangle, const Vec<3>& to) {
+    const Vec<3>& origin = triangle[0];
+    double most = max_abs(to - origin);
+    for (const Vec<3>& c : triangle) most = std::max(most, max_abs(c - origin));
+    const int e = most > 0 && std::isfinite(most) ? std::ilogb(most) : 0;
+    const auto scaled = [](const Vec<3>& v, int by) {
+        return Vec<3>{{std::scalbn(v[0], by), std::scalbn(v[1], by), std::scalbn(v[2], by)}};
+    };
+    if (e > 100 || e < -100) {
+        const Triangle3 near{{{}, scaled(triangle[1] - origin, -e), scaled(triangle[2] - origin, -e)}};
+        return origin + scaled(closest_near_one(near, scaled(to - origin, -e)), e);
+    }
+    return closest_near_one(triangle, to);
 }
 
 TriangleTree::TriangleTree(std::vector<Triangle3> triangles)

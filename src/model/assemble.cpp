@@ -164,19 +164,28 @@ Result<int> ModelBuilder::add_trimmed(SplineSurface surface,
     Face face;
     face.name = std::move(name), face.colour = colour;
     std::visit([&](auto& s) { face.surface = opened(std::move(s)); }, surface);
+    std::map<std::array<double, 2>, int> vertex_at;  // loops that touch in a vertex have it in common
     for (std::size_t l = 0; l < loops.size(); ++l) {
         if (loops[l].empty()) return refuse(RefusalKind::invalid, text("loops[", l, "]"), "has no curves");
         Loop loop;
-        const int first = int(model_.vertices.size()), count = int(loops[l].size());
+        const int count = int(loops[l].size());
+        std::vector<int> starts;
         for (int c = 0; c < count; ++c) {
             const CurveGeometry<2>& curve = loops[l][std::size_t(c)];
             const Interval on = domain(curve)[0];
             if (!std::isfinite(on.length()))
                 return refuse(RefusalKind::invalid, text("loops[", l, "][", c, "]"), "has no ends");
-            model_.vertices.push_back({jet<0>(face.surface, jet<0>(curve, on.lo).value().c).value(), 0});
+            const Vec<2> uv = jet<0>(curve, on.lo).value();
+            const auto [it, fresh] =
+                vertex_at.try_emplace({uv[0] + 0.0, uv[1] + 0.0}, int(model_.vertices.size()));
+            if (fresh) model_.vertices.push_back({jet<0>(face.surface, uv.c).value(), 0});
+            starts.push_back(it->second);
+        }
+        for (int c = 0; c < count; ++c) {
+            const CurveGeometry<2>& curve = loops[l][std::size_t(c)];
             Edge edge;
-            edge.range = on;
-            edge.start = first + c, edge.end = first + (c + 1) % count;
+            edge.range = domain(curve)[0];
+            edge.start = starts[std::size_t(c)], edge.end = starts[std::size_t((c + 1) % count)];
             model_.edges.push_back(edge);
             loop.coedges.push_back({int(model_.edges.size()) - 1, false, curve});
         }

@@ -17,6 +17,9 @@
 #include "edge_mesh_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
+#include <freiform/mesh/face_mesh.hpp>
+#include <freiform/mesh/normal_cone.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +27,8 @@ namespace freiform {
 
 namespace {
 
-constexpr int kClosedParts = 4;  // a closed edge must not collapse to a slit
+constexpr double kConeOfAngle = 0.5;  // half the angle that normals may turn by
+constexpr int kClosedParts = 4;       // a closed edge must not collapse to a slit
 
 // Where to cut an interval that seems to need `parts` parts: so that equal ones result if it does.
 double first_part(double parts, int least) {
@@ -84,7 +88,11 @@ Vec<3> EdgeMesher::position(int edge, double t) const {
         .value();
 }
 
-SegmentError EdgeMesher::error(int edge, double a, double b) const {
+void EdgeMesher::forget() {
+    for (EdgeMesh& mesh : edges_) mesh.parameters.clear(), mesh.points.clear(), mesh.bound = 0;
+}
+
+SegmentError EdgeMesher::error(int edge, double a, double b, bool turns) const {
     const EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
     const double h = b - a, h2 = h * h / 8;
@@ -110,6 +118,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b) const {
         out.triangle = std::max(out.triangle, along(chord[0], chord[1]) / 6 + kinks);
         out.sliver = std::max(out.sliver, along(sag[0], sag[1]) / 8 + kinks);
         if (e.degenerate) continue;
+        if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
         // The largest stretch of the surface's first derivative: exact in the middle of the box, plus its
         // variation.
         const Vec<2> size = box.hi - box.lo, middle = from + 0.5 * chord;
@@ -137,7 +146,8 @@ double EdgeMesher::estimate(int edge, double tolerance) const {
     return std::isfinite(sum) ? sum : 0;
 }
 
-Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, std::size_t max_segments) {
+Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, double angle,
+                                    std::size_t max_segments) {
     EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
     const Interval on = e.range;
@@ -169,15 +179,20 @@ Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, 
     while (!stack.empty()) {
         const auto [a, b, least] = stack.back();
         stack.pop_back();
-        const SegmentError err = error(edge, a, b);
-        const double length =
-            e.degenerate || !std::isfinite(longest) ? 0 : norm(position(edge, b) - position(edge, a));
+        const bool turns = std::isfinite(angle);
+        const SegmentError err = error(edge, a, b, turns);
+        const double length = e.degenerate || !(std::isfinite(longest) || turns)
+                                  ? 0
+                                  : norm(position(edge, b) - position(edge, a));
         // Errors fall with the square of the length, that of the sliver with the fourth power.
         const double excess = std::max(
             {err.polyline / tolerance, err.triangle / tolerance, std::sqrt(32 * err.sliver / tolerance)});
-        const bool done =
-            length <= longest && excess <= 1 && std::isfinite(err.polyline + err.triangle + err.sliver);
-        const double share = first_part(std::max(std::sqrt(excess), length / longest), least);
+        // Normals turn twice as much over the segment as over the cone's half.
+        const double turn = length > kAngleFloor * tolerance ? err.turn / (kConeOfAngle * angle) : 0;
+        const bool done = length <= longest && turn <= 1 && excess <= 1 &&
+                          std::isfinite(err.polyline + err.triangle + err.sliver);
+        const double share =
+            first_part(std::max({std::sqrt(excess), length / longest, std::min(turn, 2.0)}), least);
         const double middle = a + (b - a) * share;
         if ((done && least <= 1) || !(a < middle && middle < b)) {
             if (!done)

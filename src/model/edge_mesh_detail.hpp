@@ -31,7 +31,8 @@ struct EdgeMesh {
 struct SegmentError {
     double polyline = 0;  // bound of the distance between the chord and the curve, in space and on every face
     double triangle = 0;  // bound of the interpolation error of a triangle whose longest side is the chord
-    double sliver = 0;    // what the region between chord and parameter curve adds
+    double turn = 0;  // normals of each face over the chord's box are within this angle of one; not of poles
+    double sliver = 0;  // what the region between chord and parameter curve adds
 };
 
 class EdgeMesher {
@@ -39,16 +40,19 @@ public:
     // `faces`: one query per face of the model, in order. All must outlive the mesher.
     EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces);
 
-    // Parameters for which every segment keeps the tolerance and is at most `longest` long. Refuses (limit)
-    // beyond `max_segments`.
-    Result<void> discretise(int edge, double tolerance, double longest, std::size_t max_segments);
+    // Parameters for which every segment keeps the tolerance, is at most `longest` long, and normals turn by
+    // at most `angle` along it where it is longer than kAngleFloor tolerances. Refuses (limit) beyond
+    // `max_segments`.
+    Result<void> discretise(int edge, double tolerance, double longest, double angle,
+                            std::size_t max_segments);
+    void forget();  // all parameters
     // Cuts segment `index` of the edge into two.
     void split(int edge, int index);
 
     EdgeMesh& mesh(int edge) { return edges_[std::size_t(edge)]; }
     const EdgeMesh& mesh(int edge) const { return edges_[std::size_t(edge)]; }
     Vec<3> position(int edge, double t) const;
-    SegmentError error(int edge, double a, double b) const;
+    SegmentError error(int edge, double a, double b, bool turns) const;
 
 private:
     double estimate(int edge, double tolerance) const;

@@ -7,7 +7,7 @@
 // inner edges that two faces happen to have both (a strip between the same two corners), which would be
 // non-manifold. Accuracy: see curvature_tree.cpp for triangles and edge_mesh.cpp for what lies between
 // polygon and parameter curve. The rounding of evaluated points is added to the bound.
-#include "face_boundary_detail.hpp"
+#include "tessellator_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -25,8 +25,6 @@ namespace freiform {
 
 namespace {
 
-// What triangles beside the boundary add to the bound of an edge at most: see bending.cpp.
-constexpr double kBesideBoundary = 1 + 1.0 / 64;
 constexpr int kConflictRounds = 12;  // each halves the segments that touch
 constexpr int kManifoldRounds = 4;
 
@@ -34,52 +32,22 @@ double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-class Tessellator {
-public:
-    Tessellator(const Model& model, const TessellateOptions& options)
-        : model_(model),
-          options_(options),
-          queries_(model.faces.size()),
-          boundaries_(model.faces.size()),
-          meshes_(model.faces.size()),
-          extra_(model.faces.size()),
-          refusals_(model.faces.size()) {}
+}  // namespace
 
-    Result<Tessellation> run();
-
-private:
-    std::size_t faces() const { return model_.faces.size(); }
-    bool is_refused(std::size_t f) const { return refusals_[f].has_value(); }
-    Result<void> discretise_edges();
-    void number_points();
-    void assemble(std::size_t face);
-    void refuse_boundary(std::size_t face, const BoundaryConflict& conflict);
-    void resolve_conflicts();
-    Result<void> fill(std::span<const std::size_t> which);
-    std::vector<std::size_t> non_manifold_faces();
-    Tessellation collect();
-    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards,
-                     const Jet<2, 1, Vec<3>>& here) const;
-    double rounding_of(std::size_t face) const;
-
-    const Model& model_;
-    const TessellateOptions& options_;
-    double tolerance_ = 0, rounding_ = 0;
-    std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> queries_;
-    std::unique_ptr<EdgeMesher> edges_;
-    std::vector<Vec<3>> points_;  // on vertices and edges
-    std::vector<BoundaryOfFace> boundaries_;
-    std::vector<FaceMesh> meshes_;
-    std::vector<std::vector<Vec<2>>> extra_;
-    std::vector<std::optional<Refusal>> refusals_;
-};
+SharedWork::SharedWork(const Model& model)
+    : queries([&] {
+          std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> all;
+          for (const Face& f : model.faces) all.push_back(std::make_unique<DerivativeQuery<2, 3>>(f.surface));
+          return all;
+      }()),
+      edges(model, queries) {}
 
 Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
     parallel_for(model_.edges.size(), 4, [&](std::size_t e) {
         if (edges_->mesh(int(e)).uses.empty()) return;
         if (auto ok = edges_->discretise(int(e), tolerance_ / kBesideBoundary, options_.max_edge,
-                                         std::size_t(options_.max_triangles));
+                                         options_.max_angle, std::size_t(options_.max_triangles));
             !ok)
             failed[e] = ok.error();
     });
@@ -195,7 +163,8 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     parallel_for(which.size(), 1, [&](std::size_t i) {
         const std::size_t f = which[i];
         if (is_refused(f) || stop) return;
-        auto mesh = mesh_face(*queries_[f], boundaries_[f].polygon, {tolerance_, options_.max_edge},
+        auto mesh = mesh_face(*queries_[f], boundaries_[f].polygon,
+                              {tolerance_, options_.max_edge, options_.max_angle, options_.max_aspect},
                               options_.max_triangles, extra_[f]);
         if (mesh) {
             if ((total += (long long)(mesh->triangles.size())) > options_.max_triangles) stop = true;
@@ -265,98 +234,6 @@ std::vector<std::size_t> Tessellator::non_manifold_faces() {
     return {again.begin(), again.end()};
 }
 
-// Unit normal, from the jet at uv; where the surface has none (a pole), that of a point a little inside the
-// triangle.
-Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
-                              const Jet<2, 1, Vec<3>>& here) const {
-    const SurfaceGeometry& surface = model_.faces[f].surface;
-    for (double step : {0.0, 1e-6, 1e-4, 1e-2, 0.5}) {
-        const Vec<2> at = (1 - step) * uv + step * inwards;
-        const auto j = step == 0 ? here : jet<1>(surface, at.c);
-        const Vec<3> m = cross(j.d[1], j.d[2]);
-        if (norm(m) > 1e-9 * norm(j.d[1]) * norm(j.d[2]) && max_abs(j.d[1]) > 0 && max_abs(j.d[2]) > 0) {
-            // A vanishing derivative leaves the direction of the other to chance.
-            const auto inner = jet<1>(surface, inwards.c);
-            if (norm(j.d[1]) > 1e-9 * norm(inner.d[1]) && norm(j.d[2]) > 1e-9 * norm(inner.d[2]))
-                return unit(m);
-        }
-    }
-    return {};
-}
-
-double Tessellator::rounding_of(std::size_t f) const {
-    Box<2> box;
-    for (const Vec<2>& p : boundaries_[f].polygon.uv) box.add(p);
-    return box.is_empty() ? 0 : 2 * value_error_bound(model_.faces[f].surface, {box.side(0), box.side(1)});
-}
-
-Tessellation Tessellator::collect() {
-    Tessellation out;
-    out.mesh.unit = model_.unit;
-    out.mesh.points = points_;
-    std::vector<char> flipped(faces(), 0);
-    for (const Shell& s : model_.shells)
-        for (const FaceUse& u : s.faces) flipped[std::size_t(u.face)] = u.reversed;
-    std::vector<const Colour*> body_colour(faces(), nullptr);
-    for (const Body& b : model_.bodies)
-        if (b.colour)
-            for (int s : b.shells)
-                for (const FaceUse& u : model_.shells[std::size_t(s)].faces)
-                    body_colour[std::size_t(u.face)] = &*b.colour;
-    for (std::size_t f = 0; f < faces(); ++f) {
-        const Face& face = model_.faces[f];
-        if (is_refused(f)) {
-            out.refused.push_back({int(f), face.name, *refusals_[f]});
-            continue;
-        }
-        const FaceMesh& m = meshes_[f];
-        const bool flip = face.reversed != bool(flipped[f]);
-        const int base = int(out.mesh.vertices.size());
-        std::vector<Vec<2>> inwards(m.uv.size());
-        for (const auto& t : m.triangles)
-            for (int k = 0; k < 3; ++k)
-                inwards[std::size_t(t[std::size_t(k)])] =
-                    (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
-        for (std::size_t i = 0; i < m.uv.size(); ++i) {
-            MeshVertex v;
-            v.uv = m.uv[i];
-            v.point = m.point[i];
-            const auto here = jet<1>(face.surface, m.uv[i].c);
-            if (v.point < 0) {
-                v.point = int(out.mesh.points.size());
-                out.mesh.points.push_back(here.value());
-            }
-            v.normal = normal_at(f, m.uv[i], inwards[i], here);
-            if (flip) v.normal = -v.normal;
-            out.mesh.vertices.push_back(v);
-        }
-        MeshPart part{face.name, face.colour, int(out.mesh.triangles.size()), 0, int(f)};
-        if (!part.colour && body_colour[f]) part.colour = *body_colour[f];
-        for (auto t : m.triangles) {
-            if (flip) std::swap(t[1], t[2]);
-            for (int& i : t) i += base;
-            const std::size_t last = out.mesh.triangles.size();
-            out.mesh.triangles.push_back(t);
-            const auto p = out.mesh.points_of(last);
-            if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) out.mesh.triangles.pop_back();
-        }
-        part.count = int(out.mesh.triangles.size()) - part.first;
-        out.mesh.parts.push_back(part);
-
-        FaceReport report{int(f), part.count, m.bound, boundaries_[f].gap};
-        for (const Loop& l : face.loops)
-            for (const Coedge& c : l.coedges)
-                report.error_bound =
-                    std::max(report.error_bound, kBesideBoundary * edges_->mesh(c.edge).bound);
-        report.error_bound += rounding_of(f);
-        out.error_bound = std::max(out.error_bound, report.error_bound);
-        out.boundary_gap = std::max(out.boundary_gap, report.boundary_gap);
-        out.faces.push_back(report);
-    }
-    out.topology = topology(out.mesh);
-    return out;
-}
-
 Result<Tessellation> Tessellator::run() {
     const double start = now();
     Box<3> box;
@@ -364,9 +241,7 @@ Result<Tessellation> Tessellator::run() {
     rounding_ = 1e-12 * box.scale();
     // Room for the sliver between polygon and parameter curve (a 32nd) and for rounding.
     tolerance_ = options_.tolerance * (1 - 1.0 / 16);
-    if (auto ok = check_budget(model_, options_); !ok) return std::unexpected(ok.error());
     for (std::size_t f = 0; f < faces(); ++f) {
-        queries_[f] = std::make_unique<DerivativeQuery<2, 3>>(model_.faces[f].surface);
         if (model_.faces[f].loops.empty())
             refusals_[f] = Refusal{RefusalKind::invalid, "loops", "the face has no boundary"};
         for (int axis = 0; axis < 2; ++axis)
@@ -375,7 +250,7 @@ Result<Tessellation> Tessellator::run() {
                     refusals_[f] = Refusal{RefusalKind::unsupported, text(axis == 0 ? "u = " : "v = ", k.at),
                                            "the surface is torn here (a knot of multiplicity degree + 1)"};
     }
-    edges_ = std::make_unique<EdgeMesher>(model_, queries_);
+    edges_->forget();
     if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
     resolve_conflicts();
     const double meshed_edges = now();
@@ -391,9 +266,9 @@ Result<Tessellation> Tessellator::run() {
     return out;
 }
 
-}  // namespace
+namespace {
 
-Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options) {
+Result<void> check_options(const TessellateOptions& options) {
     if (!std::isfinite(options.tolerance))
         return refuse(RefusalKind::nonfinite, "tolerance",
                       text(options.tolerance, " is not a finite number"));
@@ -401,7 +276,33 @@ Result<Tessellation> tessellate(const Model& model, const TessellateOptions& opt
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not positive"));
     if (!(options.max_edge > 0))
         return refuse(RefusalKind::invalid, "max_edge", text(options.max_edge, " is not positive"));
-    return Tessellator(model, options).run();
+    if (!(options.max_angle > 0))
+        return refuse(RefusalKind::invalid, "max_angle", text(options.max_angle, " is not positive"));
+    if (!(options.max_aspect > 1))
+        return refuse(RefusalKind::invalid, "max_aspect", text(options.max_aspect, " is not above 1"));
+    return {};
+}
+
+}  // namespace
+
+std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const TessellateOptions> options) {
+    std::optional<SharedWork> shared;
+    std::vector<Result<Tessellation>> all;
+    for (const TessellateOptions& how : options) {
+        auto ok = check_options(how);
+        if (ok) ok = check_budget(model, how);
+        if (!ok) {
+            all.push_back(std::unexpected(ok.error()));
+            continue;
+        }
+        if (!shared) shared.emplace(model);
+        all.push_back(Tessellator(model, *shared, how).run());
+    }
+    return all;
+}
+
+Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options) {
+    return std::move(tessellate(model, std::span(&options, 1)).front());
 }
 
 }  // namespace freiform

@@ -52,4 +52,17 @@ TEST(TriangleTree, without_triangles_finds_nothing) {
     EXPECT_EQ(TriangleTree({}).nearest({{0, 0, 0}}).triangle, -1);
 }
 
+TEST(TriangleTree, nearest_points_scale_exactly_with_powers_of_two) {
+    const Triangle3 t{{{{0, 0, 0}}, {{1, 0.25, 0}}, {{0.5, 1, 0.75}}}};
+    for (const Vec<3>& p : {Vec<3>{{0.6875, -0.3125, 1.125}}, Vec<3>{{-1, 0.5, 0.25}}, Vec<3>{{2, 0.5, -1}}})
+        for (const int k : {-300, -90, 90, 300}) {
+            const double f = std::ldexp(1.0, k);
+            const Vec<3> one = closest_point(t, p);
+            const Vec<3> other = closest_point({f * t[0], f * t[1], f * t[2]}, f * p);
+            EXPECT_LE(norm((1 / f) * other - one), 1e-15) << k;
+            EXPECT_NEAR(TriangleTree({{f * t[0], f * t[1], f * t[2]}}).nearest(f * p).distance / f,
+                        norm(p - one), 1e-15);
+        }
+}
+
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <freiform/model/deviation.hpp>
 
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <support/sanitizer.hpp>
 
@@ -44,7 +45,7 @@ struct Bump {
 };
 
 // How much of the promise is used up: measured distance / proven distance. Above 1 the proof is wrong.
-double used(const Model& model, double tolerance, double& bound) {
+double used(const Model& model, double tolerance, double& bound, std::size_t parts = 1500) {
     const auto t = tessellate(model, {.tolerance = tolerance, .max_triangles = 100'000, .progress = {}});
     if (!t) {
         EXPECT_EQ(t.error().kind, RefusalKind::limit) << t.error().message;
@@ -52,7 +53,7 @@ double used(const Model& model, double tolerance, double& bound) {
     }
     EXPECT_TRUE(t->refused.empty());
     bound = t->error_bound + t->boundary_gap;
-    const auto d = deviation(model, t->mesh, {.max_parts = 1500});
+    const auto d = deviation(model, t->mesh, {.max_parts = parts});
     EXPECT_TRUE(d);
     return d ? d->measured / bound : 0;
 }
@@ -76,6 +77,103 @@ TEST(Adversary, a_search_for_the_worst_bump_does_not_break_the_bound) {
         worst = std::max(worst, most);
     }
     EXPECT_GE(worst, 0.3) << "the bound is far too large, or nothing was searched";
+}
+
+constexpr std::size_t kFewParts = 300;  // where there are many models
+
+// How many: FREIFORM_ADVERSARIES=1000 looks at all.
+int adversaries(int usual) {
+    const char* said = std::getenv("FREIFORM_ADVERSARIES");
+    return said ? std::atoi(said) : cases(usual);
+}
+
+// One coefficient raised in a flat spline of 24 x 24, at every place when all are asked for.
+TEST(Adversary, a_bump_is_seen_wherever_it_is) {
+    const int all = 24 * 24, count = std::min(adversaries(2), all);
+    const auto basis = *BSplineBasis::clamped_uniform(3, 24);
+    double worst = 0;
+    for (int n = 0; n < count; ++n) {
+        const int at = count == all ? n : (n * 241 + 100) % all;
+        std::vector<Vec<3>> c;
+        for (int i = 0; i < 24; ++i)
+            for (int j = 0; j < 24; ++j) c.push_back({{double(i), double(j), i * 24 + j == at ? 5.0 : 0.0}});
+        ModelBuilder builder;
+        ASSERT_TRUE(builder.add(*Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({24, 24}, c))));
+        const auto model = std::move(builder).finish();
+        double bound = 0;
+        const double u = used(*model, 0.2, bound, kFewParts);
+        EXPECT_LE(bound, 0.2) << at;
+        EXPECT_LE(u, 1) << at;
+        EXPECT_GE(u, 0.02) << at << ": the bump was not meshed or not seen";
+        worst = std::max(worst, u);
+    }
+    if (count == all) std::printf("bumps: %d, largest measured / bound %.3f\n", count, worst);
+}
+
+TEST(Adversary, spheres_of_any_size_keep_the_bound) {
+    for (const double r : {1e6, 1e-5, 0x1p300, 0x1p-300})
+        for (const Vec<3>& centre : {Vec<3>{{3 * r, -r, 2 * r}}}) {
+            double bound = 0;
+            EXPECT_LE(used(test::sphere(centre, r), 0.05 * r, bound, kFewParts), 1) << r;
+            EXPECT_LE(bound, 0.05 * r) << r;
+        }
+}
+
+// Coordinate ascent on measured / bound from random starts: each step changes one number of a small surface
+// and is kept if more of the bound is used up.
+struct Patchlet {
+    static constexpr int kSize = 5;
+    std::array<double, kSize * kSize> z{}, weight{};
+    double tolerance = 0.01;
+
+    Model model() const {
+        const auto basis = *BSplineBasis::clamped_uniform(3, kSize);
+        std::vector<Hom<3>> c;
+        for (int i = 0; i < kSize; ++i)
+            for (int k = 0; k < kSize; ++k) {
+                const double w = weight[std::size_t(i * kSize + k)];
+                c.push_back(
+                    {{w * i / (kSize - 1.0), w * k / (kSize - 1.0), w * z[std::size_t(i * kSize + k)], w}});
+            }
+        ModelBuilder builder;
+        EXPECT_TRUE(builder.add(*Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({kSize, kSize}, c))));
+        return *std::move(builder).finish();
+    }
+};
+
+TEST(Adversary, a_maximiser_does_not_break_the_bound) {
+    Random rng(41);
+    const int count = std::max(adversaries(4), 2), steps = 10;
+    double worst = 0;
+    for (int done = 0; done < count;) {
+        Patchlet best;
+        for (double& x : best.z) x = rng.chance(0.5) ? rng.real(-0.5, 0.5) : 0;
+        for (double& w : best.weight) w = rng.chance(0.3) ? std::exp2(rng.real(-2, 2)) : 1;
+        best.tolerance = std::exp2(rng.real(-5, -3));
+        double most = 0;
+        for (int step = 0; step < steps && done < count; ++step, ++done) {
+            Patchlet p = best;
+            const auto at = std::size_t(rng.integer(0, 24));
+            if (step > 0) {
+                if (rng.chance(0.6))
+                    p.z[at] += rng.real(-0.2, 0.2);
+                else if (rng.chance(0.6))
+                    p.weight[at] = std::clamp(p.weight[at] * std::exp2(rng.real(-2, 2)), 0.125, 8.0);
+                else
+                    p.tolerance = std::clamp(p.tolerance * std::exp2(rng.real(-1, 1)), 0.01, 0.2);
+            }
+            double bound = 0;
+            const double u = used(p.model(), p.tolerance, bound, kFewParts);
+            EXPECT_LE(u, 1) << done;
+            EXPECT_LE(bound, p.tolerance) << done;
+            if (u > most) most = u, best = p;
+        }
+        worst = std::max(worst, most);
+    }
+    if (count >= 100) std::printf("surfaces: %d, largest measured / bound %.3f\n", count, worst);
+    if (count >= 100) {
+        EXPECT_GE(worst, 0.2);
+    }
 }
 
 // A closed polygon around `centre` with spikes; neighbouring spikes may nearly touch.

@@ -4,6 +4,7 @@
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -35,11 +36,24 @@ struct FaceMesh {
     double bound = 0;  // of the interpolation error of all triangles
 };
 
+// Of the tolerance: where normals cannot be bounded, triangles as small as this are left as they are.
+inline constexpr double kAngleFloor = 1;
+
 // What triangles must keep to; distances in model units.
 struct FaceDemands {
     double tolerance = 0;  // of their interpolation bounds, > 0
     // No side of a triangle inside the face is longer (sides on the boundary are given).
     double max_edge = std::numeric_limits<double>::infinity();
+    // normal_angle_bound of every triangle (radians), except where a triangle's longest side lies on the
+    // boundary or is no longer than kAngleFloor times the tolerance, at poles, and beyond many times the points
+    // that the tolerance needs: those are left as they are.
+    double max_angle = std::numeric_limits<double>::infinity();
+    // An aim: no box of points that the face is begun with is longer than this times its width in space.
+    double max_aspect = std::numeric_limits<double>::infinity();
+
+    bool shapes_triangles() const {
+        return std::isfinite(max_edge) || std::isfinite(max_angle) || std::isfinite(max_aspect);
+    }
 };
 
 // About how many triangles the part of the surface over `box` needs: from its curvature at samples, in

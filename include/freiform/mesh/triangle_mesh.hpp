@@ -67,6 +67,10 @@ struct MeshTopology {
     int misoriented_edges = 0;     // used by two triangles in the same direction
     int degenerate_triangles = 0;  // two equal points, or an area that is exactly zero
 };
+// The smallest angle of each triangle, in radians; 0 without area. Estimates: in double precision. REQUIRES a
+// mesh that `validate` accepts.
+std::vector<double> smallest_angles(const TriangleMesh& mesh);
+
 // REQUIRES a mesh that `validate` accepts.
 MeshTopology topology(const TriangleMesh& mesh);
 

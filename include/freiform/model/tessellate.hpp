@@ -5,12 +5,19 @@
 #include <freiform/model/model.hpp>
 
 #include <functional>
+#include <span>
 
 namespace freiform {
 
 struct TessellateOptions {
-    double tolerance = 0;                  // distance in model units, > 0
-    double max_edge = kInfinity;           // the longest side of a triangle, likewise, > 0
+    double tolerance = 0;         // distance in model units, > 0
+    double max_edge = kInfinity;  // the longest side of a triangle, likewise, > 0
+    // The largest angle (radians) between a triangle and normals of its part of the surface, > 0. Triangles are
+    // refined for it where that may help (FaceDemands::max_angle); Tessellation says what was reached.
+    double max_angle = kInfinity;
+    // An aim, > 1: inside faces points are placed in boxes that are at most so much longer than wide, in
+    // space. Points on edges stay where they are.
+    double max_aspect = kInfinity;
     long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
     // Called with a fraction in [0, 1], from any thread; false stops with a refusal (limit).
     std::function<bool(double)> progress = {};
@@ -27,6 +34,8 @@ struct FaceReport {
     int triangles = 0;
     double error_bound = 0;
     double boundary_gap = 0;
+    double angle_bound = 0;  // as Tessellation's
+    int angle_exceeded = 0;  // triangles with a bound above max_angle
 };
 
 struct Tessellation {
@@ -40,6 +49,10 @@ struct Tessellation {
     // How far the model contradicts itself: the largest distance between a mesh point on an edge and the
     // place where a face's own parameter curve puts it. Not an error of the mesh.
     double boundary_gap = 0;
+    // Where max_angle is given: the largest angle between a triangle and any normal of the surface over it, a
+    // bound (pi where some triangle has none, as at poles); and how many triangles have one above max_angle.
+    double angle_bound = 0;
+    int angle_exceeded = 0;
     std::vector<FaceReport> faces;
     std::vector<RefusedFace> refused;
     struct {
@@ -49,10 +62,14 @@ struct Tessellation {
 
 // Every edge is discretised once and shared by its faces, so that a closed shell gives a closed mesh. A face
 // that cannot be meshed is listed in `refused`; the others are delivered. Refuses the whole for a tolerance
-// that is not a positive number, a longest side that is not positive, and for limits: before any work if an
-// estimate says that they are far away. Sides between boundary points can exceed max_edge by twice the gap.
-// Results do not depend on the number of threads.
+// that is not a positive number, a longest side or angle that is not positive, an aspect up to 1, and for
+// limits: before any work if an estimate says that they are far away. Sides between boundary points can
+// exceed max_edge by twice the gap. Results do not depend on the number of threads.
 Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options);
+
+// One after the other for all options, with the work shared that does not depend on them: what the single
+// calls give, bit for bit.
+std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const TessellateOptions> options);
 
 // About how many triangles that would give, from curvatures at samples; without making any. An estimate, not
 // a bound. REQUIRES options that `tessellate` does not refuse.

@@ -1,0 +1,91 @@
+// Bending (bending.cpp) proves |N - n| <= tilt over a box, for unit vectors N and n: an angle of 2 asin(tilt
+// / 2).
+//
+// A box about a triangle is twice as large as the triangle, so it is cut in four once if that brings the
+// parts that meet the triangle nearer. The angle between a triangle's normal m and N is at most that between
+// m and n and the angle of the cone.
+//
+// Accuracy. m is a cross product of differences of doubles: each component is off by at most 4 2^-52 |d| |e|
+// (two products of factors with errors 2^-53, and a difference), |m| by less than 7 2^-52 |d| |e|, and its
+// direction by the asin of that over |m|. n is off by some 2^-51, acos is not used where it is steep (atan2
+// of |m x n| and m . n); 1e-12 covers both and the rest.
+#include "curvature_tree_detail.hpp"
+
+#include <freiform/mesh/normal_cone.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kCrossError = 7 * 0x1p-52, kAngleError = 1e-12;
+
+bool has_kink_inside(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
+    for (int axis = 0; axis < 2; ++axis)
+        for (const Kink& k : surface.kinks(axis))
+            if (box.lo[axis] < k.at && k.at < box.hi[axis]) return true;
+    return false;
+}
+
+// Scaled by a power of two, so that products neither overflow nor vanish.
+Vec<3> near_one(const Vec<3>& v) {
+    const double m = max_abs(v);
+    if (!(m > 0) || !std::isfinite(m)) return v;
+    const int e = std::ilogb(m);
+    return {{std::scalbn(v[0], -e), std::scalbn(v[1], -e), std::scalbn(v[2], -e)}};
+}
+
+double angle_between(const Vec<3>& a, const Vec<3>& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+
+// Not wholly on one outer side of the triangle; counter-clockwise. Rounding only keeps boxes that could go.
+bool may_meet(const Box<2>& box, const std::array<Vec<2>, 3>& t) {
+    const double slack = 1e-12 * box.scale();
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2>&a = t[k], d = t[(k + 1) % 3] - t[k];
+        double most = -1;
+        for (int corner = 0; corner < 4; ++corner) {
+            const Vec<2> p{{corner & 1 ? box.hi[0] : box.lo[0], corner & 2 ? box.hi[1] : box.lo[1]}};
+            most = std::max(most, cross(d, p - a) + slack * (std::abs(d[0]) + std::abs(d[1])));
+        }
+        if (most < 0) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+NormalCone normal_cone(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
+    if (has_kink_inside(surface, box)) return {};
+    const Bending at = bending_of(surface, box, true);
+    if (!(at.least > 0) || !(at.tilt < 2)) return {at.n, kPi};
+    return {at.n, std::min(kPi, 2 * std::asin(at.tilt / 2) + kAngleError)};
+}
+
+double normal_angle_bound(const DerivativeQuery<2, 3>& surface, const std::array<Vec<2>, 3>& uv,
+                          const std::array<Vec<3>, 3>& corners) {
+    const Vec<3> d = near_one(corners[1] - corners[0]), e = near_one(corners[2] - corners[0]);
+    const Vec<3> m = cross(d, e);
+    const double turned = kCrossError * norm(d) * norm(e) / norm(m);
+    if (!(turned < 0.5)) return kPi;
+    const double own = 1.1 * turned + kAngleError;
+    Box<2> box;
+    for (const Vec<2>& p : uv) box.add(p);
+    const auto angle = [&](const Box<2>& b) {
+        const NormalCone cone = normal_cone(surface, b);
+        return cone.angle < kPi ? std::min(kPi, angle_between(m, cone.axis) + cone.angle + own) : kPi;
+    };
+    const double whole = angle(box);
+    double parts = 0;
+    const Vec<2> middle = 0.5 * (box.lo + box.hi);
+    for (int i = 0; i < 4 && parts < whole; ++i) {
+        Box<2> part = box;
+        for (int axis = 0; axis < 2; ++axis) (i >> axis & 1 ? part.lo : part.hi)[axis] = middle[axis];
+        if (may_meet(part, uv)) parts = std::max(parts, angle(part));
+    }
+    return std::min(whole, parts);
+}
+
+}  // namespace freiform

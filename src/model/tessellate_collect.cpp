@@ -1,0 +1,129 @@
+// What comes out of a tessellation: mesh, normals, bounds. Essay in tessellate.cpp.
+#include "tessellator_detail.hpp"
+
+#include <freiform/core/parallel.hpp>
+#include <freiform/mesh/normal_cone.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+// Unit normal, from the jet at uv; where the surface has none (a pole), that of a point a little inside the
+// triangle.
+Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
+                              const Jet<2, 1, Vec<3>>& here) const {
+    const SurfaceGeometry& surface = model_.faces[f].surface;
+    for (double step : {0.0, 1e-6, 1e-4, 1e-2, 0.5}) {
+        const Vec<2> at = (1 - step) * uv + step * inwards;
+        const auto j = step == 0 ? here : jet<1>(surface, at.c);
+        const Vec<3> m = cross(j.d[1], j.d[2]);
+        if (norm(m) > 1e-9 * norm(j.d[1]) * norm(j.d[2]) && max_abs(j.d[1]) > 0 && max_abs(j.d[2]) > 0) {
+            // A vanishing derivative leaves the direction of the other to chance.
+            const auto inner = jet<1>(surface, inwards.c);
+            if (norm(j.d[1]) > 1e-9 * norm(inner.d[1]) && norm(j.d[2]) > 1e-9 * norm(inner.d[2]))
+                return unit(m);
+        }
+    }
+    return {};
+}
+
+double Tessellator::rounding_of(std::size_t f) const {
+    Box<2> box;
+    for (const Vec<2>& p : boundaries_[f].polygon.uv) box.add(p);
+    return box.is_empty() ? 0 : 2 * value_error_bound(model_.faces[f].surface, {box.side(0), box.side(1)});
+}
+
+// With the points of the mesh itself, which on edges are not those of the face.
+void Tessellator::measure_angles(Tessellation& out) const {
+    parallel_for(out.faces.size(), 1, [&](std::size_t i) {
+        FaceReport& report = out.faces[i];
+        const MeshPart& part = out.mesh.parts[i];
+        for (int k = part.first; k < part.first + part.count; ++k) {
+            auto t = out.mesh.triangles[std::size_t(k)];
+            const auto uv = [&](std::size_t c) { return out.mesh.vertices[std::size_t(t[c])].uv; };
+            if (cross(uv(1) - uv(0), uv(2) - uv(0)) < 0) std::swap(t[1], t[2]);
+            const auto point = [&](std::size_t c) {
+                return out.mesh.points[std::size_t(out.mesh.vertices[std::size_t(t[c])].point)];
+            };
+            const double angle = normal_angle_bound(*queries_[std::size_t(report.face)],
+                                                    {uv(0), uv(1), uv(2)}, {point(0), point(1), point(2)});
+            report.angle_bound = std::max(report.angle_bound, angle);
+            report.angle_exceeded += !(angle <= options_.max_angle);
+        }
+    });
+    for (const FaceReport& f : out.faces) {
+        out.angle_bound = std::max(out.angle_bound, f.angle_bound);
+        out.angle_exceeded += f.angle_exceeded;
+    }
+}
+
+Tessellation Tessellator::collect() {
+    Tessellation out;
+    out.mesh.unit = model_.unit;
+    out.mesh.points = points_;
+    std::vector<char> flipped(faces(), 0);
+    for (const Shell& s : model_.shells)
+        for (const FaceUse& u : s.faces) flipped[std::size_t(u.face)] = u.reversed;
+    std::vector<const Colour*> body_colour(faces(), nullptr);
+    for (const Body& b : model_.bodies)
+        if (b.colour)
+            for (int s : b.shells)
+                for (const FaceUse& u : model_.shells[std::size_t(s)].faces)
+                    body_colour[std::size_t(u.face)] = &*b.colour;
+    for (std::size_t f = 0; f < faces(); ++f) {
+        const Face& face = model_.faces[f];
+        if (is_refused(f)) {
+            out.refused.push_back({int(f), face.name, *refusals_[f]});
+            continue;
+        }
+        const FaceMesh& m = meshes_[f];
+        const bool flip = face.reversed != bool(flipped[f]);
+        const int base = int(out.mesh.vertices.size());
+        std::vector<Vec<2>> inwards(m.uv.size());
+        for (const auto& t : m.triangles)
+            for (int k = 0; k < 3; ++k)
+                inwards[std::size_t(t[std::size_t(k)])] =
+                    (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
+        for (std::size_t i = 0; i < m.uv.size(); ++i) {
+            MeshVertex v;
+            v.uv = m.uv[i];
+            v.point = m.point[i];
+            const auto here = jet<1>(face.surface, m.uv[i].c);
+            if (v.point < 0) {
+                v.point = int(out.mesh.points.size());
+                out.mesh.points.push_back(here.value());
+            }
+            v.normal = normal_at(f, m.uv[i], inwards[i], here);
+            if (flip) v.normal = -v.normal;
+            out.mesh.vertices.push_back(v);
+        }
+        MeshPart part{face.name, face.colour, int(out.mesh.triangles.size()), 0, int(f)};
+        if (!part.colour && body_colour[f]) part.colour = *body_colour[f];
+        for (auto t : m.triangles) {
+            if (flip) std::swap(t[1], t[2]);
+            for (int& i : t) i += base;
+            const std::size_t last = out.mesh.triangles.size();
+            out.mesh.triangles.push_back(t);
+            const auto p = out.mesh.points_of(last);
+            if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) out.mesh.triangles.pop_back();
+        }
+        part.count = int(out.mesh.triangles.size()) - part.first;
+        out.mesh.parts.push_back(part);
+
+        FaceReport report{int(f), part.count, m.bound, boundaries_[f].gap};
+        for (const Loop& l : face.loops)
+            for (const Coedge& c : l.coedges)
+                report.error_bound =
+                    std::max(report.error_bound, kBesideBoundary * edges_->mesh(c.edge).bound);
+        report.error_bound += rounding_of(f);
+        out.error_bound = std::max(out.error_bound, report.error_bound);
+        out.boundary_gap = std::max(out.boundary_gap, report.boundary_gap);
+        out.faces.push_back(report);
+    }
+    if (std::isfinite(options_.max_angle)) measure_angles(out);
+    out.topology = topology(out.mesh);
+    return out;
+}
+
+}  // namespace freiform

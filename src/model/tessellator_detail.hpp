@@ -1,0 +1,64 @@
+// The state of a tessellation: how it is made is in tessellate.cpp, what comes out of it in
+// tessellate_collect.cpp.
+#pragma once
+#include "face_boundary_detail.hpp"
+
+#include <freiform/mesh/face_mesh.hpp>
+#include <freiform/model/tessellate.hpp>
+
+namespace freiform {
+
+// What triangles beside the boundary add to the bound of an edge at most: see bending.cpp.
+constexpr double kBesideBoundary = 1 + 1.0 / 64;
+
+// What does not depend on the options: bounds of the derivatives of all surfaces and curves, ready to be
+// asked.
+struct SharedWork {
+    explicit SharedWork(const Model& model);
+    std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> queries;
+    EdgeMesher edges;
+};
+
+class Tessellator {
+public:
+    Tessellator(const Model& model, SharedWork& shared, const TessellateOptions& options)
+        : model_(model),
+          options_(options),
+          queries_(shared.queries),
+          edges_(&shared.edges),
+          boundaries_(model.faces.size()),
+          meshes_(model.faces.size()),
+          extra_(model.faces.size()),
+          refusals_(model.faces.size()) {}
+
+    Result<Tessellation> run();
+
+private:
+    std::size_t faces() const { return model_.faces.size(); }
+    bool is_refused(std::size_t f) const { return refusals_[f].has_value(); }
+    Result<void> discretise_edges();
+    void number_points();
+    void assemble(std::size_t face);
+    void refuse_boundary(std::size_t face, const BoundaryConflict& conflict);
+    void resolve_conflicts();
+    Result<void> fill(std::span<const std::size_t> which);
+    std::vector<std::size_t> non_manifold_faces();
+    Tessellation collect();
+    void measure_angles(Tessellation& out) const;
+    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards,
+                     const Jet<2, 1, Vec<3>>& here) const;
+    double rounding_of(std::size_t face) const;
+
+    const Model& model_;
+    const TessellateOptions& options_;
+    double tolerance_ = 0, rounding_ = 0;
+    const std::vector<std::unique_ptr<DerivativeQuery<2, 3>>>& queries_;
+    EdgeMesher* edges_;
+    std::vector<Vec<3>> points_;  // on vertices and edges
+    std::vector<BoundaryOfFace> boundaries_;
+    std::vector<FaceMesh> meshes_;
+    std::vector<std::vector<Vec<2>>> extra_;
+    std::vector<std::optional<Refusal>> refusals_;
+};
+
+}  // namespace freiform
