@@ -112,6 +112,36 @@ TEST_F(CliMesh, tessellate_sews_where_asked_and_names_what_stays_open) {
     EXPECT_EQ(said({"--sew", "x"}).code, 2);
 }
 
+TEST_F(CliMesh, tessellate_takes_several_tolerances_and_shapes) {
+    const auto single = [&](const char* tolerance) {
+        return Json::parse(run({"tessellate", kTeapot, "--tolerance", tolerance, "--json"}).out)["triangles"];
+    };
+    const std::string out = path("pot-%.ply");
+    const Ran r = run({"tessellate", kTeapot, "--tolerance", "0.5,0.05", "-o", out, "--json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json runs = Json::parse(r.out)["runs"];
+    ASSERT_EQ(runs.size(), 2u);
+    EXPECT_EQ(runs[0]["triangles"], single("0.5"));
+    EXPECT_EQ(runs[1]["triangles"], single("0.05"));
+    EXPECT_TRUE(std::filesystem::exists(path("pot-0.5.ply")) &&
+                std::filesystem::exists(path("pot-0.05.ply")));
+    EXPECT_EQ(runs[1]["output"], path("pot-0.05.ply"));
+    EXPECT_EQ(run({"tessellate", kTeapot, "--tolerance", "0.5,0.05", "-o", path("pot.ply")}).code, 2);
+
+    const Json plain = Json::parse(run({"tessellate", kTeapot, "--tolerance", "0.5", "--json"}).out);
+    EXPECT_FALSE(plain.contains("angle_bound"));
+    EXPECT_LE(plain["smallest_angles"]["least"], plain["smallest_angles"]["0.5"]);
+    const Json turned =
+        Json::parse(run({"tessellate", kTeapot, "--tolerance", "0.5", "--angle", "30", "--json"}).out);
+    EXPECT_NEAR(turned["angle"].get<double>(), 30, 1e-12);
+    EXPECT_GT(turned["triangles"], plain["triangles"]);
+    EXPECT_TRUE(turned["angle_exceeded"].is_number() && turned["angle_bound"].is_number());
+    const Json round =
+        Json::parse(run({"tessellate", kTeapot, "--tolerance", "0.5", "--aspect", "1.5", "--json"}).out);
+    EXPECT_GT(round["smallest_angles"]["0.5"], plain["smallest_angles"]["0.5"]);
+    EXPECT_EQ(run({"tessellate", kTeapot, "--tolerance", "0.5", "--angle", "-1"}).code, 3);
+}
+
 TEST_F(CliMesh, draw_writes_a_picture) {
     const std::string out = file("teapot.png", "");
     const Ran r = run({"draw", kTeapot, "-o", out, "--width", "200", "--height", "150"});
