@@ -1,0 +1,288 @@
+// One cubic piece of a branch of a section: in space and in the parameters of the surface, with a bound.
+//
+// Notation. C(t) in space, q(t) in the parameters, 0 <= t <= 1; E = C - S o q. h: signed distance from the
+// plane.
+//
+// Accuracy. Over a part of length 1, |E| <= max |E(ends)| + max |E''| / 8, and
+//     |E''| <= |C''| + |S_uu| u'^2 + 2 |S_uv u' v'| + |S_vv| v'^2 + |S_u u''| + |S_v v''|
+// with derivatives of S bounded over a box that contains q. If S has a kink in the box along an axis, S is
+// replaced by S with that parameter fixed, off by the width of the box times |S_u|, twice.
+//
+// So |h(S(q))| <= |h(C)| + |E| = r. If the slope of h along u is at least m over the box and its
+// surroundings, a zero of h is at most r / m away from q along u, and is the only one there: the branch.
+// Where the axis changes between two parts, h is monotone along both in the rectangle of q and the two zeros,
+// which one monotone arc joins. So the zeros are one curve that follows q from end to end; its distance from
+// C is at most |E| + |S_u| r / m.
+#pragma once
+#include "section_field_detail.hpp"
+
+#include <optional>
+
+namespace freiform::detail {
+
+template <class V>
+using CubicPiece = std::array<V, 4>;
+template <class V>
+std::array<CubicPiece<V>, 2> halved(const CubicPiece<V>& b) {
+    const V a01 = 0.5 * (b[0] + b[1]), a12 = 0.5 * (b[1] + b[2]), a23 = 0.5 * (b[2] + b[3]);
+    const V a = 0.5 * (a01 + a12), c = 0.5 * (a12 + a23), m = 0.5 * (a + c);
+    return {CubicPiece<V>{b[0], a01, a, m}, {m, c, a23, b[3]}};
+}
+
+struct SectionPiece {
+    CubicPiece<Vec<3>> space{};
+    CubicPiece<Vec<2>> at{};
+    double length = 0;  // of its interval of parameters
+    std::array<Vec<3>, 2> tangent{};
+    std::array<Vec<2>, 2> slope{};
+};
+
+struct PieceBound {
+    double surface = 0, plane = 0, all = 0;
+    void include(const PieceBound& o) {
+        surface = std::max(surface, o.surface), plane = std::max(plane, o.plane), all = std::max(all, o.all);
+    }
+};
+
+template <class P>
+class PieceProof {
+public:
+    // `on_side`: q runs along a side of the surface that lies in the plane.
+    PieceProof(const SectionField<P>& field, double tolerance, bool on_side)
+        : field_(field), tolerance_(tolerance), on_side_(on_side) {}
+
+    // Nothing: no bound up to the tolerance.
+    std::optional<PieceBound> operator()(const SectionPiece& piece) const {
+        PieceBound bound;
+        bound.plane = plane_bound(piece);
+        const double a = error_at(piece.space[0], piece.at[0]), b = error_at(piece.space[3], piece.at[3]);
+        if (!prove(piece.space, piece.at, a, b, 0, bound)) return std::nullopt;
+        return bound;
+    }
+    // Without a proof that follows the branch: everything is in a small box.
+    PieceBound by_size(const SectionPiece& piece, std::array<Interval, 2> around) const {
+        PieceBound bound;
+        bound.plane = plane_bound(piece);
+        double reach = 0;
+        for (int i = 1; i < 4; ++i)
+            reach = std::max(reach, norm(piece.space[std::size_t(i)] - piece.space[0]));
+        for (int k = 0; k < 2; ++k) {
+            Interval& on = around[std::size_t(k)];
+            on = hull(on, {piece.at[0][k], piece.at[0][k]});
+        }
+        const DerivativeBounds<2> d = field_.query(around, 1);
+        bound.surface = 1.01 * (reach + error_at(piece.space[0], piece.at[0]));
+        bound.all = 1.01 * (bound.surface + d(1, 0) * around[0].length() + d(0, 1) * around[1].length());
+        return bound;
+    }
+    // What `operator()` will hardly do better than.
+    double estimate(const SectionPiece& piece) const {
+        double most = 0;
+        auto [left, right] = halved(piece.space);
+        auto [first, second] = halved(piece.at);
+        const std::array<std::pair<Vec<3>, Vec<2>>, 3> places{{{left[3], first[3]},
+                                                               {halved(left)[0][3], halved(first)[0][3]},
+                                                               {halved(right)[0][3], halved(second)[0][3]}}};
+        for (const auto& [x, u] : places) {
+            if (!is_inside(u)) return kInfinity;
+            const auto jet = field_.surface.template jet<1>({u[0], u[1]});
+            double off = norm(x - jet.value());
+            const double h = std::abs(field_.height(jet.value()));
+            double slope = 0;
+            for (int k = 0; k < 2; ++k) {
+                const Vec<3>& d = jet.d[std::size_t(k) + 1];
+                const double size = norm(d);
+                if (size > 0) slope = std::max(slope, std::abs(dot(field_.unit_normal, d)) / size);
+            }
+            if (!on_side_ && h > 0) off += slope > 0 ? h / slope : kInfinity;
+            most = std::max(most, off);
+        }
+        return most;
+    }
+
+private:
+    static constexpr int kDeepest = 24;
+
+    bool is_inside(const Vec<2>& u) const {
+        const auto on = field_.surface.domain();
+        return on[0].contains(u[0]) && on[1].contains(u[1]);
+    }
+    double plane_bound(const SectionPiece& piece) const {
+        double most = 0;
+        for (const Vec<3>& p : piece.space)
+            most = std::max(most, std::abs(field_.height(p)) + field_.height_error(p));
+        return 1.01 * most;
+    }
+    double error_at(const Vec<3>& x, const Vec<2>& u) const {
+        const Vec<3> s = field_.surface({u[0], u[1]});
+        return 1.01 * (norm(x - s) + 1.8 * (field_.rounding + 32 * kUnitRoundoff * max_abs(x)));
+    }
+
+    bool prove(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q, double ea, double eb, int depth,
+               PieceBound& bound) const {
+        if (const auto here = bound_over(c, q, std::max(ea, eb), bound.plane)) {
+            if (here->all <= tolerance_) {
+                bound.include(*here);
+                return true;
+            }
+        }
+        if (depth == kDeepest || std::max(ea, eb) > tolerance_) return false;
+        const auto [c0, c1] = halved(c);
+        const auto [q0, q1] = halved(q);
+        const double em = error_at(c0[3], q0[3]);
+        return prove(c0, q0, ea, em, depth + 1, bound) && prove(c1, q1, em, eb, depth + 1, bound);
+    }
+
+    template <class V>
+    static double bend_of(const CubicPiece<V>& b) {
+        return 6 * std::max(norm(b[2] - 2 * b[1] + b[0]), norm(b[3] - 2 * b[2] + b[1]));
+    }
+    std::optional<PieceBound> bound_over(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q,
+                                         double ends, double plane) const {
+        std::array<Interval, 2> box{Interval{q[0][0], q[0][0]}, {q[0][1], q[0][1]}};
+        std::array<double, 2> speed{}, bend{}, slack{};
+        const auto domain = field_.surface.domain();
+        for (int k = 0; k < 2; ++k) {
+            const std::size_t a = std::size_t(k);
+            for (const Vec<2>& p : q) box[a] = hull(box[a], {p[k], p[k]});
+            slack[a] = 8 * kUnitRoundoff * std::max(std::abs(domain[a].lo), std::abs(domain[a].hi));
+            if (box[a].lo < domain[a].lo - slack[a] || box[a].hi > domain[a].hi + slack[a])
+                return std::nullopt;
+            box[a] = {clamped(box[a].lo - slack[a], domain[a]), clamped(box[a].hi + slack[a], domain[a])};
+            for (std::size_t i = 0; i < 3; ++i)
+                speed[a] = std::max(speed[a], 3 * std::abs(q[i + 1][k] - q[i][k]));
+            for (std::size_t i = 0; i < 2; ++i)
+                bend[a] = std::max(bend[a], 6 * std::abs(q[i + 2][k] - 2 * q[i + 1][k] + q[i][k]));
+            speed[a] += 8 * slack[a], bend[a] += 32 * slack[a];
+        }
+        const DerivativeBounds<2> d = field_.query(box, 2);
+        const std::array<double, 2> first{d(1, 0), d(0, 1)}, second{d(2, 0), d(0, 2)};
+        double most = bend_of(c) * 1.01, aside = 0, shift = 0;
+        std::array<bool, 2> fixed{};
+        for (std::size_t a = 0; a < 2; ++a) {
+            for (const Kink& kink : field_.query.kinks(int(a)))
+                fixed[a] = fixed[a] || (box[a].lo < kink.at && kink.at < box[a].hi);
+            if (fixed[a])
+                aside += 2 * first[a] * box[a].length();
+            else
+                most += second[a] * speed[a] * speed[a] + first[a] * bend[a];
+            shift += first[a] * slack[a];
+        }
+        if (!fixed[0] && !fixed[1]) most += 2 * d(1, 1) * speed[0] * speed[1];
+        PieceBound bound;
+        bound.plane = plane;
+        bound.surface = 1.01 * (ends + most / 8 + aside + 4 * shift);
+        if (on_side_) {
+            bound.all = bound.surface;
+            return bound;
+        }
+        const double off = to_branch(box, first, bound.surface + plane);
+        bound.all = 1.01 * (bound.surface + off);
+        return bound;
+    }
+
+    // How far the branch is from points of the surface over the box whose height is at most `height`.
+    double to_branch(const std::array<Interval, 2>& box, const std::array<double, 2>& first,
+                     double height) const {
+        std::array<Interval, 2> in, wide;  // places, of cyclic axes beyond the domain
+        const double size = std::max(first[0] * box[0].length(), first[1] * box[1].length());
+        Index<2> from{}, to{};
+        for (int k = 0; k < 2; ++k) {
+            const std::size_t a = std::size_t(k);
+            in[a] = {field_.place(k, box[a].lo), field_.place(k, box[a].hi)};
+            const int n = field_.count(k), piece = std::clamp(int(in[a].lo), 0, n - 1);
+            const double whole = first[a] * field_.span(k, piece);
+            const double more = std::max(0x1p-20, whole > size ? 0.5 * size / whole : 0.5);
+            wide[a] = {in[a].lo - more, in[a].hi + more};
+            if (!field_.options.cyclic[a])
+                wide[a] = {std::max(wide[a].lo, 0.0), std::min(wide[a].hi, double(n))};
+            from[a] = int(std::floor(wide[a].lo));
+            to[a] = std::max(from[a], int(std::ceil(wide[a].hi)) - 1);
+        }
+        std::array<Slope, 2> slope;
+        std::array<double, 2> reach{};  // of the surface, by places
+        double weight = 0;
+        for (int i = from[0]; i <= to[0]; ++i)
+            for (int j = from[1]; j <= to[1]; ++j) {
+                const int n = field_.count(0), m = field_.count(1);
+                const Index<2> piece{(i % n + n) % n, (j % m + m) % m};
+                weight = std::max(weight, field_.weight[field_.piece_at(piece)]);
+                std::array<Interval, 2> part, of;
+                for (int k = 0; k < 2; ++k) {
+                    const std::size_t a = std::size_t(k);
+                    const double by = piece[a] - (k == 0 ? i : j);
+                    part[a] = {std::max(wide[a].lo + by, double(piece[a])),
+                               std::min(wide[a].hi + by, piece[a] + 1.0)};
+                    of[a] = {field_.parameter(k, part[a].lo), field_.parameter(k, part[a].hi)};
+                }
+                const DerivativeBounds<2> d = field_.query(of, 1);
+                for (int k = 0; k < 2; ++k) {
+                    const std::size_t a = std::size_t(k);
+                    slope[a].include(slope_over(piece, part, k));
+                    reach[a] = std::max(reach[a], d.d[a + 1] * field_.span(k, piece[a]));
+                }
+            }
+        double best = kInfinity;
+        for (std::size_t a = 0; a < 2; ++a) {
+            if (slope[a].sign != 1 && slope[a].sign != -1) continue;
+            const double off = 1.01 * height * field_.to_function * weight / slope[a].least;
+            if (in[a].lo - off >= wide[a].lo && in[a].hi + off <= wide[a].hi)
+                best = std::min(best, off * reach[a]);
+        }
+        return best;
+    }
+
+    // Of the function, by places.
+    struct Slope {
+        double least = kInfinity;
+        int sign = 2;  // 2: nothing seen; 0: both
+        void include(const Slope& o) {
+            least = std::min(least, o.least);
+            sign = sign == 2 || sign == o.sign ? o.sign : 0;
+        }
+    };
+    // Of the part, or of a longer one around it: very short ones say nothing but rounding.
+    Slope slope_over(const Index<2>& piece, const std::array<Interval, 2>& part, int axis) const {
+        const auto& f = field_.function;
+        const std::size_t at = field_.piece_at(piece), block = std::size_t(f.block());
+        LevelBlock b{{}, f.degree, {}, f.error[at]};
+        for (std::size_t k = 0; k < 2; ++k) b.on[k] = {double(piece[k]), piece[k] + 1.0};
+        for (std::size_t n = 0; n < block; ++n) b.c.push_back(f.points[at * block + n][0]);
+        b.error += 2 * kUnitRoundoff * b.most();
+        const Slope own = slope_of(part_of(b, part), axis);
+        auto around = part;
+        bool longer = false;
+        for (Interval& on : around) {
+            const double lack = std::max(0.0, 0x1p-10 - on.length());
+            longer = longer || lack > 0;
+            on = {on.lo - lack, on.hi + lack};
+        }
+        if (!longer) return own;
+        const Slope other = slope_of(part_of(b, around), axis);
+        return own.sign == 0 || other.least > own.least ? other : own;
+    }
+    static Slope slope_of(const LevelBlock& b, int axis) {
+        const std::size_t k = std::size_t(axis);
+        Slope s;
+        if (b.degree[k] == 0 || !(b.on[k].length() > 0)) return {0, 0};
+        Index<2> extent{b.degree[0] + 1, b.degree[1] + 1};
+        --extent[k];
+        const double factor = b.degree[k] / b.on[k].length();
+        each_index(extent, [&](const Index<2>& at) {
+            Index<2> next = at;
+            ++next[k];
+            const double d = b.coefficient(next[0], next[1]) - b.coefficient(at[0], at[1]);
+            const double size = std::abs(d) - 2.02 * b.error - 4 * kUnitRoundoff * b.most();
+            const int sign = size > 0 ? d > 0 ? 1 : -1 : 0;
+            s.sign = s.sign == 2 || s.sign == sign ? sign : 0;
+            s.least = std::min(s.least, 0.99 * factor * std::max(size, 0.0));
+        });
+        return s;
+    }
+
+    const SectionField<P>& field_;
+    double tolerance_;
+    bool on_side_;
+};
+
+}  // namespace freiform::detail
