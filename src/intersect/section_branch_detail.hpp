@@ -170,8 +170,9 @@ private:
         return out;
     }
 
-    // Cubic from point i to point j, as on a circle with these tangents, if they are no noise. It begins with the tangent that the
-    // piece before it ends with, so that nothing moves when the join is left out of the spline.
+    // Cubic from point i to point j, as on a circle with these tangents, if they are no noise. It begins with
+    // the tangent that the piece before it ends with, so that nothing moves when the join is left out of the
+    // spline.
     SectionPiece piece(std::size_t i, std::size_t j, const SectionPiece* before, double t) const {
         Frame a = frame(points_[i], points_[i].step, points_[i + 1].x);
         const Frame b = frame(points_[j], points_[j - 1].step, points_[j - 1].x);
@@ -184,6 +185,7 @@ private:
         const double chord = norm(b.point - a.point);
         const double half = 0.5 * std::acos(std::clamp(dot(a.tangent, b.tangent), -1.0, 1.0));
         out.length = half > 1e-4 && half < 1.2 ? chord * 2 * std::tan(half / 2) / std::sin(half) : chord;
+        if (!(out.length > 0x1p-40 * t)) out.length = std::max(0x1p-40 * t, tolerance_);
         out.length = (t + out.length) - t;  // as the knots will have it
         const double h = out.length / 3;
         out.space = {a.point, a.point + h * a.tangent, b.point - h * b.tangent, b.point};
@@ -193,14 +195,48 @@ private:
         return out;
     }
 
+    // Two points of a closed branch are joined by two ways. A piece follows the one between points i and j if
+    // some point of the other one is farther from it than the branch is from the piece.
+    bool leaves_out_some(const SectionPiece& p, std::size_t i, std::size_t j, bool closed) const {
+        if (!closed || !branch_) return true;
+        Box<3> box;
+        for (const Vec<3>& x : p.space) box.add(x);
+        const double more = 1.01 * tolerance_ + 64 * kUnitRoundoff * box.scale() + 4 * field_.rounding;
+        const Vec<3> by{{more, more, more}};
+        box.lo -= by, box.hi += by;
+        for (std::size_t k = 0; k + 1 < points_.size(); ++k)
+            if ((k < i || k > j) && (k != 0 || j + 1 < points_.size()) && !box.contains(point_of(points_[k])))
+                return true;
+        return false;
+    }
+    Vec<3> point_of(const BranchPoint& p) const {
+        Param<2> u;
+        for (int axis = 0; axis < 2; ++axis) {
+            const std::size_t k = std::size_t(axis);
+            const int n = field_.count(axis);
+            const double base = field_.options.cyclic[k] ? n * std::floor(p.x[k] / n) : 0;
+            u[k] = field_.parameter(axis, std::clamp(p.x[k] - base, 0.0, double(n)));
+        }
+        return field_.surface(u);
+    }
+    // A loop of two cells has other points than the two in which they meet.
+    void add_middles() {
+        std::vector<BranchPoint> all;
+        for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+            all.push_back(points_[i]);
+            all.push_back(between(points_[i], points_[i + 1], 0.5));
+        }
+        all.push_back(points_.back());
+        points_ = std::move(all);
+    }
     // Is there room for another point behind point i?
     bool is_long(std::size_t i) const {
         const Place &a = points_[i].x, &b = points_[i + 1].x;
         return std::max(std::abs(a[0] - b[0]), std::abs(a[1] - b[1])) > 4 * kShortest;
     }
 
-    // Contains the arc between two points of a cell along the axis along which f is monotone: opposite signs all
-    // along both sides of it, as near to the points as that is certain.
+    // Contains the arc between two points of a cell along the axis along which f is monotone: opposite signs
+    // all along both sides of it, as near to the points as that is certain.
     Interval strip(const BranchPoint& a, const BranchPoint& b, int axis) const {
         const std::size_t m = std::size_t(axis), f = 1 - m;
         const LevelCell& c = cell(a.step);
@@ -222,7 +258,8 @@ private:
             const Interval on{std::min(p[m], q[m]) - more, std::max(p[m], q[m]) + more};
             const bool below = on.lo <= c.on[m].lo || is_beyond(on.lo, -sign);
             const bool above = on.hi >= c.on[m].hi || is_beyond(on.hi, sign);
-            if (below && above) return {std::max(on.lo, c.on[m].lo) + shift, std::min(on.hi, c.on[m].hi) + shift};
+            if (below && above)
+                return {std::max(on.lo, c.on[m].lo) + shift, std::min(on.hi, c.on[m].hi) + shift};
         }
         return {c.on[m].lo + shift, c.on[m].hi + shift};
     }
@@ -232,7 +269,8 @@ private:
         for (int axis = 0; axis < 2; ++axis) {
             const std::size_t k = std::size_t(axis);
             Interval on{std::min(a[k], b[k]), std::max(a[k], b[k])};
-            if (branch_ && axis == monotone_axis(points_[i].step)) on = strip(points_[i], points_[i + 1], axis);
+            if (branch_ && axis == monotone_axis(points_[i].step))
+                on = strip(points_[i], points_[i + 1], axis);
             const int n = field_.count(axis);
             const double base = field_.options.cyclic[k] ? n * std::floor((a[k] + b[k]) / (2 * n)) : 0;
             on = {std::clamp(on.lo - base, 0.0, double(n)), std::clamp(on.hi - base, 0.0, double(n))};
@@ -254,6 +292,7 @@ private:
 
 template <class P>
 SectionBranch BranchFit<P>::fitted(bool closed) {
+    if (closed && branch_) add_middles();
     add_stops();
     const PieceProof<P> proof(field_, tolerance_, branch_ == nullptr);
     std::vector<SectionPiece> pieces;
@@ -267,11 +306,12 @@ SectionBranch BranchFit<P>::fitted(bool closed) {
         // The longest piece that is near enough: doubled while it is, then halved.
         std::size_t good = i, bad = most + 1;
         std::optional<PieceBound> best;
-        SectionPiece chosen;
+        SectionPiece chosen{};
         int refined = 0;
         for (std::size_t j = std::min(i + step, most); j > i;) {
             const SectionPiece p = piece(i, j, pieces.empty() ? nullptr : &pieces.back(), t);
-            const auto proven = proof.estimate(p) <= 0.7 * tolerance_ ? proof(p) : std::nullopt;
+            const bool good_guess = leaves_out_some(p, i, j, closed) && proof.estimate(p) <= 0.7 * tolerance_;
+            const auto proven = good_guess ? proof(p) : std::nullopt;
             if (proven)
                 good = j, best = proven, chosen = p;
             else

@@ -8,11 +8,11 @@
 // with derivatives of S bounded over a box that contains q. If S has a kink in the box along an axis, S is
 // replaced by S with that parameter fixed, off by the width of the box times |S_u|, twice.
 //
-// So |h(S(q))| <= |h(C)| + |E| = r. If the slope of h along u is at least m over the box and its
-// surroundings, a zero of h is at most r / m away from q along u, and is the only one there: the branch.
-// Where the axis changes between two parts, h is monotone along both in the rectangle of q and the two zeros,
-// which one monotone arc joins. So the zeros are one curve that follows q from end to end; its distance from
-// C is at most |E| + |S_u| r / m.
+// So |h(S(q))| <= |h(C)| + |E| = r; or r is found like |E|, with derivatives of h. If the slope of h along u
+// is at least m over the box and its surroundings, a zero of h is at most r / m away from q along u, and is
+// the only one there: the branch. Where the axis changes between two parts, h is monotone along both in the
+// rectangle of q and the two zeros, which one monotone arc joins. So the zeros are one curve that follows q
+// from end to end; its distance from C is at most |E| + |S_u| r / m.
 #pragma once
 #include "section_field_detail.hpp"
 
@@ -56,6 +56,7 @@ public:
         PieceBound bound;
         bound.plane = plane_bound(piece);
         const double a = error_at(piece.space[0], piece.at[0]), b = error_at(piece.space[3], piece.at[3]);
+        parts_ = 0;
         if (!prove(piece.space, piece.at, a, b, 0, bound)) return std::nullopt;
         return bound;
     }
@@ -102,6 +103,7 @@ public:
 
 private:
     static constexpr int kDeepest = 24;
+    static constexpr int kMostParts = 2000;  // of one piece; shorter pieces need fewer
 
     bool is_inside(const Vec<2>& u) const {
         const auto on = field_.surface.domain();
@@ -126,7 +128,7 @@ private:
                 return true;
             }
         }
-        if (depth == kDeepest || std::max(ea, eb) > tolerance_) return false;
+        if (depth == kDeepest || ++parts_ > kMostParts || std::max(ea, eb) > tolerance_) return false;
         const auto [c0, c1] = halved(c);
         const auto [q0, q1] = halved(q);
         const double em = error_at(c0[3], q0[3]);
@@ -176,7 +178,23 @@ private:
             bound.all = bound.surface;
             return bound;
         }
-        const double off = to_branch(box, first, bound.surface + plane);
+        if (bound.surface > tolerance_) return std::nullopt;
+        double height = bound.surface + plane;
+        double off = to_branch(box, first, height);
+        if (bound.surface + off > tolerance_ && !fixed[0] && !fixed[1]) {
+            // Where the plane is nearly tangential, the height of S o q is known better than its place.
+            const DerivativeBounds<2> n = field_.query.along(field_.unit_normal, box, 2);
+            const double own = std::max(std::abs(field_.height(field_.surface({q[0][0], q[0][1]}))),
+                                        std::abs(field_.height(field_.surface({q[3][0], q[3][1]})))) +
+                               1.8 * field_.rounding + field_.height_error(c[0]) + field_.height_error(c[3]) +
+                               4 * (n(1, 0) * slack[0] + n(0, 1) * slack[1]);
+            height = std::min(
+                height,
+                1.01 * (own + (n(2, 0) * speed[0] * speed[0] + 2 * n(1, 1) * speed[0] * speed[1] +
+                               n(0, 2) * speed[1] * speed[1] + n(1, 0) * bend[0] + n(0, 1) * bend[1]) /
+                                  8));
+            off = to_branch(box, first, height);
+        }
         bound.all = 1.01 * (bound.surface + off);
         return bound;
     }
@@ -259,7 +277,7 @@ private:
         }
         if (!longer) return own;
         const Slope other = slope_of(part_of(b, around), axis);
-        return own.sign == 0 || other.least > own.least ? other : own;
+        return other.sign != 0 && (own.sign == 0 || other.least > own.least) ? other : own;
     }
     static Slope slope_of(const LevelBlock& b, int axis) {
         const std::size_t k = std::size_t(axis);
@@ -283,6 +301,7 @@ private:
     const SectionField<P>& field_;
     double tolerance_;
     bool on_side_;
+    mutable int parts_ = 0;
 };
 
 }  // namespace freiform::detail
