@@ -146,6 +146,7 @@ void add_continuity(CommandLine& line);
 void add_inside(CommandLine& line);
 void add_nearest(CommandLine& line);
 void add_intersect(CommandLine& line);
+void add_section(CommandLine& line);
 void add_interpolate(CommandLine& line);
 void add_flatten(CommandLine& line);
 void add_length(CommandLine& line);

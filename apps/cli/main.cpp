@@ -28,6 +28,7 @@ void add_commands(CommandLine& line) {
     add_inside(line);
     add_nearest(line);
     add_intersect(line);
+    add_section(line);
     add_interpolate(line);
     add_flatten(line);
     add_length(line);
