@@ -100,6 +100,19 @@ bool is_pole(const SectionField<P>& field, const LevelSide& side) {
     return box.diagonal() <= 64 * kUnitRoundoff * box.scale();
 }
 
+// `fit(tolerance)` as near as asked for; where that is not reached, the best of some wider tolerances.
+template <class F>
+SectionBranch nearest_fit(double tolerance, double rounding, F&& fit) {
+    double t = std::max(tolerance, rounding);
+    SectionBranch best = fit(t);
+    for (int k = 0; k < 6 && best.bound > t; ++k) {
+        t *= 64;
+        if (t >= best.bound) break;
+        if (SectionBranch next = fit(t); next.bound < best.bound) best = std::move(next);
+    }
+    return best;
+}
+
 }  // namespace
 
 template <class P>
@@ -109,11 +122,18 @@ requires(Space<P>::kDim == 3) Result<Section> section(const Surface<P>& surface,
     SectionField<P> field(surface, plane);
     field.options.max_cells = options.max_cells;
     const LevelSet set = level_set(field.function, field.options);
-    BranchFit<P> fit(field, options.tolerance);
     Section out;
-    for (const LevelBranch& b : set.branches) out.branches.push_back(fit.branch(b, set.cells));
+    double scale = 0;
+    for (const P& p : surface.net().flat()) scale = std::max(scale, max_abs(Space<P>::project(p)));
+    const auto add = [&](auto&& fit) {
+        out.branches.push_back(nearest_fit(options.tolerance, 0x1p-42 * scale, [&](double tolerance) {
+            return fit(BranchFit<P>(field, tolerance));
+        }));
+    };
+    for (const LevelBranch& b : set.branches)
+        add([&](BranchFit<P>&& fit) { return fit.branch(b, set.cells); });
     for (const LevelSide& s : set.sides)
-        if (!is_pole(field, s)) out.branches.push_back(fit.side(s));
+        if (!is_pole(field, s)) add([&](BranchFit<P>&& fit) { return fit.side(s); });
     for (const LevelNode& n : set.nodes) out.nodes.push_back(node_of(field, n));
     for (const auto& box : set.flat) out.overlaps.push_back(box_of(field, box));
     for (const auto& box : set.undecided) out.undecided.push_back(box_of(field, box));

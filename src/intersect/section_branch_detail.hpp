@@ -48,6 +48,7 @@ private:
         Vec<3> point{}, tangent{};
         Vec<2> at{}, slope{};
     };
+    static constexpr int kMostAdded = 4096;       // a backstop: a tolerance below rounding
     static constexpr double kShortest = 0x1p-30;  // places
 
     int monotone_axis(int step) const { return branch_ ? cell(step).simple_axis() : 1 - along_; }
@@ -299,7 +300,7 @@ SectionBranch BranchFit<P>::fitted(bool closed) {
     PieceBound bound;
     double t = 0;
     std::size_t step = 1;
-    int halvings = 0;  // in a row; a backstop
+    int added = 0;  // points where not even the shortest piece was near enough
     for (std::size_t i = 0; i + 1 < points_.size();) {
         std::size_t most = i + 1;
         while (most + 1 < points_.size() && !points_[most].stop) ++most;
@@ -332,14 +333,13 @@ SectionBranch BranchFit<P>::fitted(bool closed) {
             const BranchPoint &a = points_[i], &b = points_[i + 1];
             const SectionPiece p = piece(i, i + 1, pieces.empty() ? nullptr : &pieces.back(), t);
             const PieceBound size = proof.by_size(p, around(i));
-            if (size.all > tolerance_ && is_long(i) && ++halvings < 100) {
+            if (size.all > tolerance_ && is_long(i) && !proof.is_exhausted() && ++added < kMostAdded) {
                 points_.insert(points_.begin() + std::ptrdiff_t(i) + 1, between(a, b, 0.5));
                 step = 1;
                 continue;
             }
             good = i + 1, best = size, chosen = p;
         }
-        halvings = 0;
         bound.include(*best);
         pieces.push_back(chosen);
         t += chosen.length;

@@ -56,10 +56,13 @@ public:
         PieceBound bound;
         bound.plane = plane_bound(piece);
         const double a = error_at(piece.space[0], piece.at[0]), b = error_at(piece.space[3], piece.at[3]);
+        if (is_exhausted()) return std::nullopt;
         parts_ = 0;
         if (!prove(piece.space, piece.at, a, b, 0, bound)) return std::nullopt;
         return bound;
     }
+    // A backstop for the whole branch: then pieces have the bounds that they have.
+    bool is_exhausted() const { return all_parts_ >= kMostPartsOfAll; }
     // Without a proof that follows the branch: everything is in a small box.
     PieceBound by_size(const SectionPiece& piece, std::array<Interval, 2> around) const {
         PieceBound bound;
@@ -104,6 +107,7 @@ public:
 private:
     static constexpr int kDeepest = 24;
     static constexpr int kMostParts = 2000;  // of one piece; shorter pieces need fewer
+    static constexpr int kMostPartsOfAll = 100'000;
 
     bool is_inside(const Vec<2>& u) const {
         const auto on = field_.surface.domain();
@@ -122,13 +126,15 @@ private:
 
     bool prove(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q, double ea, double eb, int depth,
                PieceBound& bound) const {
+        ++all_parts_;
         if (const auto here = bound_over(c, q, std::max(ea, eb), bound.plane)) {
             if (here->all <= tolerance_) {
                 bound.include(*here);
                 return true;
             }
         }
-        if (depth == kDeepest || ++parts_ > kMostParts || std::max(ea, eb) > tolerance_) return false;
+        if (depth == kDeepest || ++parts_ > kMostParts || is_exhausted() || std::max(ea, eb) > tolerance_)
+            return false;
         const auto [c0, c1] = halved(c);
         const auto [q0, q1] = halved(q);
         const double em = error_at(c0[3], q0[3]);
@@ -301,7 +307,7 @@ private:
     const SectionField<P>& field_;
     double tolerance_;
     bool on_side_;
-    mutable int parts_ = 0;
+    mutable int parts_ = 0, all_parts_ = 0;
 };
 
 }  // namespace freiform::detail

@@ -319,6 +319,50 @@ TEST(Section, follows_corners_of_creased_surfaces) {
     EXPECT_NEAR(length_of(cut), 2 * std::sqrt(1.5), 1e-5);
 }
 
+TEST(Section, of_degenerate_surfaces_is_what_it_can_be) {
+    const auto line = must(BSplineBasis::bezier(1)), square = must(BSplineBasis::bezier(2));
+    const auto surface = [&](auto&& point) {
+        Net<2, Vec<3>> net({3, 2});
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 2; ++j) net.view()({i, j}) = point(i, j);
+        return must(Surface<Vec<3>>::make({square, line}, std::move(net)));
+    };
+    // A curve: the same point for all u.
+    const Section point = checked_section(surface([](int, int j) {
+                                              return Vec<3>{{0, 0, j - 0.3}};
+                                          }),
+                                          kGround, 1e-3);
+    ASSERT_EQ(point.branches.size(), 1u);
+    EXPECT_LT(length_of(point), 1e-2);
+    EXPECT_LT(norm(point.branches[0].curve(0)), 1e-3);
+    // A point, on the plane and beside it.
+    EXPECT_EQ(checked_section(surface([](int, int) { return Vec<3>{}; }), kGround, 1e-3).overlaps.size(), 1u);
+    const Section none = checked_section(surface([](int, int) {
+                                             return Vec<3>{{0, 0, 1e-300}};
+                                         }),
+                                         kGround, 1e-3);
+    EXPECT_TRUE(none.branches.empty() && none.nodes.empty() && none.overlaps.empty());
+    // Through a corner of the domain there is a node, or a branch that ends there.
+    const Section corner = checked_section(surface([](int i, int j) {
+                                               return Vec<3>{{i / 2.0, double(j), i / 2.0 - j}};
+                                           }),
+                                           kGround, 1e-3);
+    EXPECT_EQ(corner.branches.size(), 1u);
+    EXPECT_NEAR(length_of(corner), std::sqrt(2.0), 1e-3);
+    for (const SectionNode& n : corner.nodes) EXPECT_EQ(n.kind, SectionNodeKind::unclear);
+}
+
+TEST(Section, says_what_it_reached_where_the_tolerance_is_below_rounding) {
+    const auto s = quadratic(-0.25, 0, 0, 0, 0, 1);  // straight branches
+    const Section cut = must(section(s, kGround, {.tolerance = 1e-17}));
+    ASSERT_EQ(cut.branches.size(), 2u);
+    for (const SectionBranch& b : cut.branches) {
+        EXPECT_GT(b.bound, 1e-17);
+        EXPECT_LT(b.bound, 1e-8);
+        expect_bounds_hold(s, kGround, b);
+    }
+}
+
 TEST(Section, scales_with_powers_of_two) {
     std::mt19937 rng(5);
     const auto s = landscape(rng, 3, 6, 0.3);
