@@ -5,6 +5,8 @@
 //
 // Accuracy. Over a part of length 1, |E| <= max |E(ends)| + max |E''| / 8, and
 //     |E''| <= |C''| + |S_uu| u'^2 + 2 |S_uv u' v'| + |S_vv| v'^2 + |S_u u''| + |S_v v''|
+// or, where E'' is continuous, since |4 D - E''(middle)| <= |E'''| / 6 for D = E(0) - 2 E(middle) + E(1),
+//     |E| <= max |E(ends)| + |D| / 2 + max |E'''| / 12
 // with derivatives of S bounded over a box that contains q. If S has a kink in the box along an axis, S is
 // replaced by S with that parameter fixed, off by the width of the box times |S_u|, twice.
 //
@@ -55,7 +57,7 @@ public:
     std::optional<PieceBound> operator()(const SectionPiece& piece) const {
         PieceBound bound;
         bound.plane = plane_bound(piece);
-        const double a = error_at(piece.space[0], piece.at[0]), b = error_at(piece.space[3], piece.at[3]);
+        const Sample a = sample(piece.space[0], piece.at[0]), b = sample(piece.space[3], piece.at[3]);
         if (is_exhausted()) return std::nullopt;
         parts_ = 0;
         if (!prove(piece.space, piece.at, a, b, 0, bound)) return std::nullopt;
@@ -119,36 +121,68 @@ private:
             most = std::max(most, std::abs(field_.height(p)) + field_.height_error(p));
         return 1.01 * most;
     }
-    double error_at(const Vec<3>& x, const Vec<2>& u) const {
+    // E and the height of the surface at one place; what each is off by.
+    struct Sample {
+        Vec<3> off{};
+        double height = 0, error = 0;
+        double size() const { return 1.01 * (norm(off) + error); }
+    };
+    Sample sample(const Vec<3>& x, const Vec<2>& u) const {
         const Vec<3> s = field_.surface({u[0], u[1]});
-        return 1.01 * (norm(x - s) + 1.8 * (field_.rounding + 32 * kUnitRoundoff * max_abs(x)));
+        return {x - s, field_.height(s),
+                1.8 * (field_.rounding + 64 * kUnitRoundoff * max_abs(x)) + field_.height_error(s)};
     }
+    double error_at(const Vec<3>& x, const Vec<2>& u) const { return sample(x, u).size(); }
 
-    bool prove(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q, double ea, double eb, int depth,
-               PieceBound& bound) const {
+    bool prove(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q, const Sample& a, const Sample& b,
+               int depth, PieceBound& bound) const {
         ++all_parts_;
-        if (const auto here = bound_over(c, q, std::max(ea, eb), bound.plane)) {
+        const auto [c0, c1] = halved(c);
+        const auto [q0, q1] = halved(q);
+        const Sample m = sample(c0[3], q0[3]);
+        const std::array<const Sample*, 3> samples{&a, &m, &b};
+        if (const auto here = bound_over(c, q, samples, bound.plane)) {
             if (here->all <= tolerance_) {
                 bound.include(*here);
                 return true;
             }
         }
-        if (depth == kDeepest || ++parts_ > kMostParts || is_exhausted() || std::max(ea, eb) > tolerance_)
+        if (depth == kDeepest || ++parts_ > kMostParts || is_exhausted() ||
+            std::max({a.size(), m.size(), b.size()}) > tolerance_)
             return false;
-        const auto [c0, c1] = halved(c);
-        const auto [q0, q1] = halved(q);
-        const double em = error_at(c0[3], q0[3]);
-        return prove(c0, q0, ea, em, depth + 1, bound) && prove(c1, q1, em, eb, depth + 1, bound);
+        return prove(c0, q0, a, m, depth + 1, bound) && prove(c1, q1, m, b, depth + 1, bound);
     }
 
     template <class V>
     static double bend_of(const CubicPiece<V>& b) {
         return 6 * std::max(norm(b[2] - 2 * b[1] + b[0]), norm(b[3] - 2 * b[2] + b[1]));
     }
+    template <class V>
+    static double twist_of(const CubicPiece<V>& b) {
+        return 6 * norm((b[3] - b[0]) - 3 * (b[2] - b[1]));
+    }
+    // Of the third derivative of S o q, or of one coordinate of it.
+    static double third_of(const DerivativeBounds<2>& d, const std::array<double, 2>& speed,
+                           const std::array<double, 2>& bend, const std::array<double, 2>& twist) {
+        const double u = speed[0], v = speed[1];
+        return d(3, 0) * u * u * u + 3 * d(2, 1) * u * u * v + 3 * d(1, 2) * u * v * v + d(0, 3) * v * v * v +
+               3 * (d(2, 0) * u * bend[0] + d(1, 1) * (u * bend[1] + v * bend[0]) + d(0, 2) * v * bend[1]) +
+               d(1, 0) * twist[0] + d(0, 1) * twist[1];
+    }
+    // No line over which second derivatives jump is inside.
+    bool is_twice_smooth(const std::array<Interval, 2>& box) const {
+        for (int k = 0; k < 2; ++k)
+            for (const int line : field_.stops[std::size_t(k)]) {
+                const double at = field_.bezier.breaks(k)[std::size_t(line)];
+                if (box[std::size_t(k)].lo < at && at < box[std::size_t(k)].hi) return false;
+            }
+        return true;
+    }
     std::optional<PieceBound> bound_over(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q,
-                                         double ends, double plane) const {
+                                         const std::array<const Sample*, 3>& at, double plane) const {
+        const double ends = std::max(at[0]->size(), at[2]->size());
         std::array<Interval, 2> box{Interval{q[0][0], q[0][0]}, {q[0][1], q[0][1]}};
-        std::array<double, 2> speed{}, bend{}, slack{};
+        std::array<double, 2> speed{}, bend{}, twist{}, slack{};
         const auto domain = field_.surface.domain();
         for (int k = 0; k < 2; ++k) {
             const std::size_t a = std::size_t(k);
@@ -161,9 +195,11 @@ private:
                 speed[a] = std::max(speed[a], 3 * std::abs(q[i + 1][k] - q[i][k]));
             for (std::size_t i = 0; i < 2; ++i)
                 bend[a] = std::max(bend[a], 6 * std::abs(q[i + 2][k] - 2 * q[i + 1][k] + q[i][k]));
+            twist[a] = 6 * std::abs((q[3][k] - q[0][k]) - 3 * (q[2][k] - q[1][k])) + 64 * slack[a];
             speed[a] += 8 * slack[a], bend[a] += 32 * slack[a];
         }
-        const DerivativeBounds<2> d = field_.query(box, 2);
+        const bool smooth = is_twice_smooth(box);
+        const DerivativeBounds<2> d = field_.query(box, smooth ? 3 : 2);
         const std::array<double, 2> first{d(1, 0), d(0, 1)}, second{d(2, 0), d(0, 2)};
         double most = bend_of(c) * 1.01, aside = 0, shift = 0;
         std::array<bool, 2> fixed{};
@@ -177,9 +213,16 @@ private:
             shift += first[a] * slack[a];
         }
         if (!fixed[0] && !fixed[1]) most += 2 * d(1, 1) * speed[0] * speed[1];
+        double between = most / 8 + aside;
+        const double errors = at[0]->error + 2 * at[1]->error + at[2]->error;
+        if (smooth && !fixed[0] && !fixed[1]) {
+            const double second_difference = norm(at[0]->off - 2 * at[1]->off + at[2]->off) + errors;
+            between = std::min(between, 1.01 * (second_difference / 2 +
+                                                (twist_of(c) + third_of(d, speed, bend, twist)) / 12));
+        }
         PieceBound bound;
         bound.plane = plane;
-        bound.surface = 1.01 * (ends + most / 8 + aside + 4 * shift);
+        bound.surface = 1.01 * (ends + between + 4 * shift);
         if (on_side_) {
             bound.all = bound.surface;
             return bound;
@@ -189,16 +232,18 @@ private:
         double off = to_branch(box, first, height);
         if (bound.surface + off > tolerance_ && !fixed[0] && !fixed[1]) {
             // Where the plane is nearly tangential, the height of S o q is known better than its place.
-            const DerivativeBounds<2> n = field_.query.along(field_.unit_normal, box, 2);
-            const double own = std::max(std::abs(field_.height(field_.surface({q[0][0], q[0][1]}))),
-                                        std::abs(field_.height(field_.surface({q[3][0], q[3][1]})))) +
-                               1.8 * field_.rounding + field_.height_error(c[0]) + field_.height_error(c[3]) +
-                               4 * (n(1, 0) * slack[0] + n(0, 1) * slack[1]);
-            height = std::min(
-                height,
-                1.01 * (own + (n(2, 0) * speed[0] * speed[0] + 2 * n(1, 1) * speed[0] * speed[1] +
-                               n(0, 2) * speed[1] * speed[1] + n(1, 0) * bend[0] + n(0, 1) * bend[1]) /
-                                  8));
+            const DerivativeBounds<2> n = field_.query.along(field_.unit_normal, box, smooth ? 3 : 2);
+            const double own =
+                std::max(std::abs(at[0]->height) + at[0]->error, std::abs(at[2]->height) + at[2]->error) +
+                4 * (n(1, 0) * slack[0] + n(0, 1) * slack[1]);
+            double more = (n(2, 0) * speed[0] * speed[0] + 2 * n(1, 1) * speed[0] * speed[1] +
+                           n(0, 2) * speed[1] * speed[1] + n(1, 0) * bend[0] + n(0, 1) * bend[1]) /
+                          8;
+            if (smooth)
+                more = std::min(more,
+                                (std::abs(at[0]->height - 2 * at[1]->height + at[2]->height) + errors) / 2 +
+                                    third_of(n, speed, bend, twist) / 12);
+            height = std::min(height, 1.01 * (own + more));
             off = to_branch(box, first, height);
         }
         bound.all = 1.01 * (bound.surface + off);
