@@ -5,8 +5,7 @@
 // nothing is linked by guess; then each chain is followed by splines (section_branch_detail.hpp), each piece
 // of which is proven to stay near the branch (section_fit_detail.hpp).
 //
-// Cost. A bicubic patch with one branch, to 1e-6 of its size: some milliseconds, nearly all of it in the
-// proof, which looks at about sqrt(length / tolerance) parts of each branch.
+// Cost. Nearly all of it is the proof, which looks at about (length / tolerance)^(1/3) parts of each branch.
 //
 // Accuracy. The function is the exact scalar product at each control point, rounded once: the proof of
 // completeness holds with the bound of that rounding, and of knot insertion, in each cell.

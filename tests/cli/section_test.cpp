@@ -38,6 +38,10 @@ TEST_F(SectionCommand, takes_a_point_and_a_normal) {
     EXPECT_EQ(all["branches"].size(), 4u) << r.out;
     ASSERT_EQ(all["nodes"].size(), 1u);
     EXPECT_EQ(all["nodes"][0]["kind"], "crossing");
+    const Ran higher = run({"section", "-", "--plane", "7,8,0.5,0,0,-2", "-o", "d.json", "--json"}, saddle);
+    EXPECT_EQ(SectionJson::parse(higher.out)["branches"].size(), 2u) << higher.err;
+    const Ran at = run({"eval", "d.json", "--object", "0", "--at", "0.1"});
+    EXPECT_NEAR(SectionJson::parse(at.out)["results"][0]["point"][2].get<double>(), 0.5, 1e-12) << at.err;
     const Ran nothing = run({"section", "-", "--plane", "0,0,9,0,0,2", "-o", "c.json"}, saddle);
     EXPECT_EQ(nothing.out, "the plane meets nothing\n");
 }

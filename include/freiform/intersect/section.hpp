@@ -73,7 +73,7 @@ struct Section {
 // are branches; a side that is a point is not. Where it only lies in the plane within rounding there is a
 // node, or undecided boxes.
 //
-// Time: of each branch, some multiple of sqrt(length / tolerance), and bounded by backstops.
+// Time: for each branch some multiple of (length / tolerance)^(1/3), and bounded by backstops.
 //
 // Refuses tolerances that are not positive, planes without normal or with numbers that are not finite.
 //   const auto cut = section(surface, {{0, 0, 1}, -2.0}, {.tolerance = 1e-6});   // z = 2
