@@ -178,11 +178,16 @@ private:
             }
         return true;
     }
-    std::optional<PieceBound> bound_over(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q,
-                                         const std::array<const Sample*, 3>& at, double plane) const {
-        const double ends = std::max(at[0]->size(), at[2]->size());
-        std::array<Interval, 2> box{Interval{q[0][0], q[0][0]}, {q[0][1], q[0][1]}};
+    // A box that contains q, bounds of its derivatives, and what its rounding is. Nothing: it leaves the
+    // domain.
+    struct PathOver {
+        std::array<Interval, 2> box{};
         std::array<double, 2> speed{}, bend{}, twist{}, slack{};
+    };
+    std::optional<PathOver> path_over(const CubicPiece<Vec<2>>& q) const {
+        PathOver path;
+        auto& [box, speed, bend, twist, slack] = path;
+        box = {Interval{q[0][0], q[0][0]}, {q[0][1], q[0][1]}};
         const auto domain = field_.surface.domain();
         for (int k = 0; k < 2; ++k) {
             const std::size_t a = std::size_t(k);
@@ -198,6 +203,14 @@ private:
             twist[a] = 6 * std::abs((q[3][k] - q[0][k]) - 3 * (q[2][k] - q[1][k])) + 64 * slack[a];
             speed[a] += 8 * slack[a], bend[a] += 32 * slack[a];
         }
+        return path;
+    }
+    std::optional<PieceBound> bound_over(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q,
+                                         const std::array<const Sample*, 3>& at, double plane) const {
+        const double ends = std::max(at[0]->size(), at[2]->size());
+        const auto path = path_over(q);
+        if (!path) return std::nullopt;
+        const auto& [box, speed, bend, twist, slack] = *path;
         const bool smooth = is_twice_smooth(box);
         const DerivativeBounds<2> d = field_.query(box, smooth ? 3 : 2);
         const std::array<double, 2> first{d(1, 0), d(0, 1)}, second{d(2, 0), d(0, 2)};
@@ -232,22 +245,28 @@ private:
         double off = to_branch(box, first, height);
         if (bound.surface + off > tolerance_ && !fixed[0] && !fixed[1]) {
             // Where the plane is nearly tangential, the height of S o q is known better than its place.
-            const DerivativeBounds<2> n = field_.query.along(field_.unit_normal, box, smooth ? 3 : 2);
-            const double own =
-                std::max(std::abs(at[0]->height) + at[0]->error, std::abs(at[2]->height) + at[2]->error) +
-                4 * (n(1, 0) * slack[0] + n(0, 1) * slack[1]);
-            double more = (n(2, 0) * speed[0] * speed[0] + 2 * n(1, 1) * speed[0] * speed[1] +
-                           n(0, 2) * speed[1] * speed[1] + n(1, 0) * bend[0] + n(0, 1) * bend[1]) /
-                          8;
-            if (smooth)
-                more = std::min(more,
-                                (std::abs(at[0]->height - 2 * at[1]->height + at[2]->height) + errors) / 2 +
-                                    third_of(n, speed, bend, twist) / 12);
-            height = std::min(height, 1.01 * (own + more));
+            height = std::min(height, height_over(*path, at, smooth));
             off = to_branch(box, first, height);
         }
         bound.all = 1.01 * (bound.surface + off);
         return bound;
+    }
+
+    double height_over(const PathOver& path, const std::array<const Sample*, 3>& at, bool smooth) const {
+        const auto& [box, speed, bend, twist, slack] = path;
+        const DerivativeBounds<2> n = field_.query.along(field_.unit_normal, box, smooth ? 3 : 2);
+        const double ends =
+            std::max(std::abs(at[0]->height) + at[0]->error, std::abs(at[2]->height) + at[2]->error);
+        const double shift = 4 * (n(1, 0) * slack[0] + n(0, 1) * slack[1]);
+        double more = (n(2, 0) * speed[0] * speed[0] + 2 * n(1, 1) * speed[0] * speed[1] +
+                       n(0, 2) * speed[1] * speed[1] + n(1, 0) * bend[0] + n(0, 1) * bend[1]) /
+                      8;
+        if (smooth) {
+            const double difference = std::abs(at[0]->height - 2 * at[1]->height + at[2]->height);
+            const double errors = at[0]->error + 2 * at[1]->error + at[2]->error;
+            more = std::min(more, (difference + errors) / 2 + third_of(n, speed, bend, twist) / 12);
+        }
+        return 1.01 * (ends + shift + more);
     }
 
     // How far the branch is from points of the surface over the box whose height is at most `height`.

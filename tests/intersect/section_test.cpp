@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 #include <map>
-#include <numeric>
 
 namespace freiform::test {
 namespace {
@@ -33,7 +32,6 @@ int closed_in(const Section& s) {
     return int(std::ranges::count_if(s.branches, [](const SectionBranch& b) { return b.closed; }));
 }
 
-// What the bounds of a branch say, at many places.
 template <class P>
 void expect_bounds_hold(const Surface<P>& s, const CutPlane& plane, const SectionBranch& b) {
     const Interval on = b.curve.domain()[0];
@@ -67,7 +65,7 @@ Section checked_section(const Surface<P>& s, const CutPlane& plane, double toler
     return cut;
 }
 
-// Components and length of the zeros on a dense grid of triangles: open ones, closed ones.
+// Components and length of the zeros on a dense grid of triangles.
 struct Dense {
     int open = 0, closed = 0;
     double length = 0;
@@ -152,7 +150,6 @@ TEST(Section, of_rational_splines_has_the_branches_of_a_dense_grid) {
     }
 }
 
-// A circle: every point at the radius from the centre, once round.
 void expect_circle(const SectionBranch& b, const Vec<3>& centre, double radius, double more = 0) {
     EXPECT_TRUE(b.closed);
     const Interval on = b.curve.domain()[0];
@@ -215,7 +212,6 @@ TEST(Section, of_a_torus_is_what_geometry_says) {
 
 // z = sum of c_ij u^i v^j on [-1, 1]^2, as one patch of degree 2 x 2.
 Surface<Vec<3>> quadratic(double c00, double c10, double c01, double c20, double c11, double c02) {
-    // The blossom at u1, u2 and v1, v2 in {-1, 1}.
     Net<2, Vec<3>> net({3, 3});
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
