@@ -60,6 +60,10 @@ struct BoxBending : Bending {
 };
 BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
                       const Jet<2, 1, Vec<3>>& middle);
+inline BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals) {
+    return bending_of(surface, box, knows_normals,
+                      jet<1>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()}));
+}
 
 // How points of the mesh find their feet on S.
 struct Shift {

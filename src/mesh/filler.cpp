@@ -203,8 +203,7 @@ const Filler::Known& Filler::known(int triangle) {
     const Bending over = tree_.over(box);
     Known k = judged(over, box, corner, plain);
     if (!(k.bound <= demands_.tolerance)) {
-        const auto middle = jet<1>(surface_.geometry(), {box.side(0).middle(), box.side(1).middle()});
-        Bending own = bending_of(surface_, box, plain < 3, middle);
+        Bending own = bending_of(surface_, box, plain < 3);
         own.full.restrict_to(over.full);
         if (const Known second = judged(own, box, corner, plain); second.bound <= k.bound) k = second;
     }

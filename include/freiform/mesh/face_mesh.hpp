@@ -45,8 +45,8 @@ struct FaceDemands {
     // No side of a triangle inside the face is longer (sides on the boundary are given).
     double max_edge = std::numeric_limits<double>::infinity();
     // normal_angle_bound of every triangle (radians), except where a triangle's longest side lies on the
-    // boundary or is no longer than kAngleFloor times the tolerance, at poles, and beyond many times the points
-    // that the tolerance needs: those are left as they are.
+    // boundary or is no longer than kAngleFloor times the tolerance, at poles, and beyond many times the
+    // points that the tolerance needs: those are left as they are.
     double max_angle = std::numeric_limits<double>::infinity();
     // An aim: no box of points that the face is begun with is longer than this times its width in space.
     double max_aspect = std::numeric_limits<double>::infinity();

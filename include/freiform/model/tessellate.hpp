@@ -12,8 +12,8 @@ namespace freiform {
 struct TessellateOptions {
     double tolerance = 0;         // distance in model units, > 0
     double max_edge = kInfinity;  // the longest side of a triangle, likewise, > 0
-    // The largest angle (radians) between a triangle and normals of its part of the surface, > 0. Triangles are
-    // refined for it where that may help (FaceDemands::max_angle); Tessellation says what was reached.
+    // The largest angle (radians) between a triangle and normals of its part of the surface, > 0. Triangles
+    // are refined for it where that may help (FaceDemands::max_angle); Tessellation says what was reached.
     double max_angle = kInfinity;
     // An aim, > 1: inside faces points are placed in boxes that are at most so much longer than wide, in
     // space. Points on edges stay where they are.
