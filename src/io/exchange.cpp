@@ -275,16 +275,8 @@ Refusal why(const Outcome& o, const std::string& path, const ImportLimits& limit
         if (refusal->where.empty()) refusal->where = path;
         return *refusal;
     }
-    if (WIFSIGNALED(o.status)) {
-        const std::string ended = text("the reader ended with signal ", signal_name(WTERMSIG(o.status)));
-        // It does not always notice that it got no more memory. Its libraries take addresses, too.
-        if (o.most_memory + kAddressesOfLibraries > limits.memory_bytes / 2)
-            return {RefusalKind::limit, path,
-                    text(ended, "; it used ", double(o.most_memory) / (1 << 20), " of the ", mebibytes,
-                         " MiB that it may use, and probably needs more")};
-        return {RefusalKind::unreadable, path, text(ended, "; the file is probably damaged")};
-    }
-    const int code = WEXITSTATUS(o.status);
+    const bool signalled = WIFSIGNALED(o.status);
+    const int code = signalled ? 0 : WEXITSTATUS(o.status);
     // What the dynamic loader says where there is no room for the libraries.
     if (code == 127 && (o.words.find("failed to map") != std::string::npos ||
                         o.words.find("annot allocate memory") != std::string::npos))
@@ -294,7 +286,15 @@ Refusal why(const Outcome& o, const std::string& path, const ImportLimits& limit
         return {RefusalKind::unavailable, path,
                 text("the reader of STEP, IGES and BREP files cannot be started", o.words.empty() ? "" : ": ",
                      first_bytes(o.words))};
-    return {RefusalKind::unreadable, path, text("the reader ended with status ", code)};
+    const std::string ended = signalled
+                                  ? text("the reader ended with signal ", signal_name(WTERMSIG(o.status)))
+                                  : text("the reader ended with status ", code);
+    // It and its libraries do not always notice that they got no more memory. Libraries take addresses, too.
+    if (o.most_memory + kAddressesOfLibraries > limits.memory_bytes / 2)
+        return {RefusalKind::limit, path,
+                text(ended, "; it used ", double(o.most_memory) / (1 << 20), " of the ", mebibytes,
+                     " MiB that it may use, and probably needs more")};
+    return {RefusalKind::unreadable, path, signalled ? ended + "; the file is probably damaged" : ended};
 }
 
 }  // namespace
