@@ -24,7 +24,6 @@ namespace freiform::detail {
 
 namespace {
 
-using Parameters = NearestTree::Parameters;
 constexpr double kLongCell = 1.0 / 16;  // of a piece
 
 }  // namespace
@@ -33,6 +32,7 @@ template <int D>
 struct NearestExtent : NearestBlocks<D> {
     using Base = NearestBlocks<D>;
     using Head = typename Base::Head;
+    using Parameters = NearestTree::Parameters;
     using Base::halve, Base::heads, Base::piece, Base::seen, Base::tree;
     int parts_left = 0;
 
