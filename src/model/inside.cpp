@@ -1,7 +1,9 @@
 // Idea. A mesh and the surface that it approximates, each point within B of its partner, go round a point in
 // the same way if the point is farther than B from the mesh: moving every point of one straight to its
 // partner never meets it. So a coarse mesh decides for most points, and finer ones only for those that are
-// near the surface.
+// near the surface. Those are first taken away from it: where the nearest point of the surface is proven to
+// be farther than d, everything within d of the point has the same side, so steps of less than d away from
+// the foot, each about twice the last, lead to where the coarse mesh decides.
 //
 // Method. The winding number of a closed mesh is the number of triangles that a half-line crosses, +1 where
 // it leaves and -1 where it enters. The half-line is parallel to an axis, so that which triangles it crosses
@@ -10,14 +12,20 @@
 // lies ahead or behind is the sign of a determinant, in numbers with bounds; where it is not certain, as on
 // triangles parallel to the half-line, another axis is tried.
 //
-// Cost. Some comparisons for each triangle and point, in the first mesh; in each finer one (tolerance / 8)
-// for the points that are left.
+// What closes a model between faces that do not quite meet is within boundary_gap of them. That is known at
+// the points of a mesh on the edges alone; twice as much is kept away from.
+//
+// Cost. Some comparisons for each triangle and point, in the first mesh; some searches for the nearest point
+// for each that is near. In finer meshes (tolerance / 8) the same for the points that are left, in thin walls
+// and narrow gaps. A mesh has 1 / tolerance triangles, so that they end at kMostFine.
 //
 // Why not count the crossings with the surface itself: tangents and edges, decided exactly, take more than
 // the distance to the surface, which answers the question where it has an answer.
 #include <freiform/core/bounded.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/model/inside.hpp>
+#include <freiform/model/nearest.hpp>
 #include <freiform/model/tessellate.hpp>
 #include <freiform/poly/predicates.hpp>
 
@@ -28,6 +36,10 @@
 namespace freiform {
 
 namespace {
+
+constexpr long long kMostFine = 500'000;  // triangles of a mesh other than the first
+constexpr int kMostSteps = 64;            // away from the surface,
+constexpr int kInVain = 5;                // and as many that bring it no farther: a corner takes three
 
 struct Corners {
     Vec<3> a, b, c;  // from the point
@@ -146,6 +158,115 @@ Result<Tessellation> closed_mesh(const Model& model, double tolerance, long long
     return t;
 }
 
+struct SideMesh {
+    std::vector<MeshTriangle> triangles;
+    double off;  // bound: of the distance of its points from the surface, and the other way round
+};
+
+// The points whose side is not known yet, and what is known of them.
+class SideSearch {
+public:
+    SideSearch(const Model& model, std::span<const Vec<3>> points, double accuracy)
+        : model_(model), points_(points), box_(summary(model).box), accuracy_(accuracy), out_(points.size()) {
+        for (std::size_t i = 0; i < points.size(); ++i) open_.push_back({i, points[i], 0, kInfinity});
+    }
+
+    double size() const { return box_.diagonal(); }
+    bool done() const { return open_.empty(); }
+    std::vector<SolidInside> answers() && {
+        for (const Open& o : open_) out_[o.index] = {Place::boundary, 0, o.upper};
+        return std::move(out_);
+    }
+
+    Result<void> decide(const SideMesh& mesh) {
+        std::vector<std::optional<int>> winding(open_.size());
+        std::vector<char> clear(open_.size(), 0);
+        parallel_for(open_.size(), 1, [&](std::size_t i) {
+            Open& o = open_[i];
+            const double distance = distance_to(mesh.triangles, o.at), off = mesh.off + rounding(o.at);
+            clear[i] = distance - off > 0;
+            if (o.at == points_[o.index]) {
+                o.lower = std::max(o.lower, distance - off);
+                o.upper = std::min(o.upper, distance + off);
+            }
+            for (int axis = 2; axis >= 0 && clear[i] && !winding[i]; --axis)
+                winding[i] = winding_along(mesh.triangles, o.at, axis);
+        });
+        std::vector<Open> left;
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            const Open& o = open_[i];
+            if (!clear[i]) {
+                left.push_back(o);
+                continue;
+            }
+            if (!winding[i])
+                return refuse(RefusalKind::ill_conditioned, text("points[", o.index, "]"),
+                              "lies in the planes of triangles of the mesh, so that rounding hides its side");
+            out_[o.index] = {*winding[i] > 0 ? Place::inside : Place::outside, *winding[i], o.lower};
+        }
+        open_ = std::move(left);
+        return {};
+    }
+
+    // Points that the surface is too near to are answered as on it. False: nothing is left, or nothing known.
+    bool take_away(double off, double gap) {
+        if (open_.empty()) return false;
+        const auto query = ModelNearestQuery::make(model_);
+        if (!query) return false;
+        std::vector<char> near(open_.size(), 0);
+        parallel_for(open_.size(), 1,
+                     [&](std::size_t i) { near[i] = !leads_away(*query, open_[i], off, gap); });
+        std::vector<Open> left;
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            if (near[i] && open_[i].upper <= accuracy_)
+                out_[open_[i].index] = {Place::boundary, 0, open_[i].upper};
+            else
+                left.push_back(open_[i]);
+        }
+        open_ = std::move(left);
+        return !open_.empty();
+    }
+
+private:
+    struct Open {
+        std::size_t index;
+        Vec<3> at;            // on the same side as the point
+        double lower, upper;  // bounds of the distance of the point from the surface
+    };
+
+    // Differences, a division and norms of numbers up to the size of what is looked at.
+    double rounding(const Vec<3>& p) const { return 64 * 0x1p-53 * (box_.scale() + max_abs(p)); }
+
+    bool leads_away(const ModelNearestQuery& query, Open& o, double off, double gap) const {
+        double accuracy = accuracy_ / 4, farthest = 0;
+        for (int step = 0, since = 0; step < kMostSteps && since < kInVain; ++step) {
+            const auto near = query.nearest(o.at, {.accuracy = accuracy});
+            if (!near) return false;
+            if (step == 0) {
+                o.lower = std::max(o.lower, near->lower_bound);
+                o.upper = std::min(o.upper, near->distance + near->point_error);
+            }
+            if (near->lower_bound > 2 * off) return true;
+            since = near->lower_bound > 1.125 * farthest ? 0 : since + 1;
+            farthest = std::max(farthest, near->lower_bound);
+            const double free = (near->lower_bound - 2 * gap - rounding(o.at)) * 0.875;
+            if (!(free > 0)) return false;
+            const Vec<3> to = o.at + (free / near->distance) * (o.at - near->point);
+            if (to == o.at) return false;
+            o.at = to;
+            accuracy = std::max(accuracy, near->distance / 8);
+        }
+        return false;
+    }
+
+    const Model& model_;
+    std::span<const Vec<3>> points_;
+    Box<3> box_;
+    double accuracy_;
+    std::vector<Open> open_;
+    std::vector<SolidInside> out_;
+};
+
 }  // namespace
 
 Result<std::vector<SolidInside>> inside_solid(const Model& model, std::span<const Vec<3>> points,
@@ -156,50 +277,21 @@ Result<std::vector<SolidInside>> inside_solid(const Model& model, std::span<cons
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i]))
             return refuse(RefusalKind::nonfinite, text("points[", i, "]"), "is not finite");
-    const Box<3> box = summary(model).box;
-    std::vector<SolidInside> out(points.size());
-    std::vector<std::size_t> open(points.size());
-    for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
-    for (double tolerance = std::max(box.diagonal() / 64, accuracy / 4);;
-         tolerance = std::max(tolerance / 8, accuracy / 4)) {
-        const auto t = closed_mesh(model, tolerance, max_triangles);
+    SideSearch search(model, points, accuracy);
+    double tolerance = std::max(search.size() / 64, accuracy / 4);
+    for (bool first = true;; first = false) {
+        const auto t =
+            closed_mesh(model, tolerance, first ? max_triangles : std::min(max_triangles, kMostFine));
+        if (!t && !first && t.error().kind == RefusalKind::limit) break;
         if (!t) return std::unexpected(t.error());
-        const double off = t->error_bound + t->boundary_gap;
-        const auto triangles = boxed_triangles(t->mesh);
-        std::vector<double> distance(open.size());
-        std::vector<std::optional<int>> winding(open.size());
-        // At least and at most so far from the surface. Rounding: differences, a division and norms of
-        // numbers up to the size of what is looked at.
-        const auto away = [&](std::size_t i) {
-            const double rounding = 64 * 0x1p-53 * (box.scale() + max_abs(points[open[i]]));
-            return Interval{distance[i] - rounding - off, distance[i] + rounding + off};
-        };
-        parallel_for(open.size(), 1, [&](std::size_t i) {
-            const Vec<3>& p = points[open[i]];
-            distance[i] = distance_to(triangles, p);
-            if (away(i).lo > 0)
-                for (int axis = 2; axis >= 0 && !winding[i]; --axis)
-                    winding[i] = winding_along(triangles, p, axis);
-        });
-        const bool last = tolerance <= accuracy / 4;
-        std::vector<std::size_t> left;
-        for (std::size_t i = 0; i < open.size(); ++i) {
-            SolidInside& answer = out[open[i]];
-            if (away(i).lo > 0) {
-                if (!winding[i])
-                    return refuse(
-                        RefusalKind::ill_conditioned, text("points[", open[i], "]"),
-                        "lies in the planes of triangles of the mesh, so that rounding hides its side");
-                answer = {*winding[i] > 0 ? Place::inside : Place::outside, *winding[i], away(i).lo};
-            } else if (last) {
-                answer = {Place::boundary, 0, away(i).hi};
-            } else {
-                left.push_back(open[i]);
-            }
-        }
-        open = std::move(left);
-        if (open.empty()) return out;
+        const SideMesh mesh{boxed_triangles(t->mesh), t->error_bound + t->boundary_gap};
+        if (auto done = search.decide(mesh); !done) return std::unexpected(done.error());
+        if (first && search.take_away(mesh.off, t->boundary_gap))
+            if (auto done = search.decide(mesh); !done) return std::unexpected(done.error());
+        if (search.done() || tolerance <= accuracy / 4) break;
+        tolerance = std::max(tolerance / 8, accuracy / 4);
     }
+    return std::move(search).answers();
 }
 
 }  // namespace freiform

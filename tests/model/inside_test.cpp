@@ -1,3 +1,4 @@
+#include "support/sanitizer.hpp"
 #include "support/solids.hpp"
 
 #include <freiform/model/inside.hpp>
@@ -67,8 +68,61 @@ TEST(InsideSolid, open_models_and_nonsense_are_refused) {
     const Model ball = test::sphere({}, 1);
     EXPECT_EQ(inside_solid(ball, nan, 1e-3).error().kind, RefusalKind::nonfinite);
     EXPECT_EQ(inside_solid(ball, origin, 0).error().kind, RefusalKind::invalid);
-    EXPECT_EQ(inside_solid(ball, std::vector<Vec<3>>{{{1, 0, 0}}}, 1e-9, 1000).error().kind,
-              RefusalKind::limit);
+    EXPECT_EQ(inside_solid(ball, origin, 1e-3, 10).error().kind, RefusalKind::limit);
+}
+
+// A mesh that is as near would have millions of triangles.
+TEST(InsideSolid, points_near_the_surface_are_decided_by_a_coarse_mesh) {
+    const double R = 3, r = 1, accuracy = 1e-8;
+    std::mt19937 rng(14);
+    std::vector<Vec<3>> points;
+    std::vector<double> away;
+    for (int i = 0; i < 3 * test::cases(20); ++i) {
+        const double a = 7 * uniform(rng), b = 7 * uniform(rng), d = std::pow(10, -1 - 6 * uniform(rng));
+        away.push_back(i % 3 == 2 ? 0 : i % 3 == 1 ? d : -d);
+        const double tube = r + away.back(), axis = R + tube * std::cos(b);
+        points.push_back({{axis * std::cos(a), axis * std::sin(a), tube * std::sin(b)}});
+    }
+    const auto in = inside_solid(test::torus(R, r), points, accuracy, 5000);
+    ASSERT_TRUE(in) << in.error().message;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SolidInside& s = (*in)[i];
+        if (away[i] == 0) {
+            EXPECT_EQ(s.place, Place::boundary) << i;
+            EXPECT_LE(s.distance, accuracy) << i;
+        } else {
+            EXPECT_EQ(s.place, away[i] < 0 ? Place::inside : Place::outside) << i << ": " << away[i];
+            EXPECT_LE(s.distance, std::abs(away[i]) + 1e-14) << i;
+            EXPECT_GE(s.distance, std::abs(away[i]) - accuracy) << i;
+        }
+    }
+}
+
+// Between two spheres that are nearer to each other than any mesh within the budget can tell.
+TEST(InsideSolid, the_side_in_a_wall_too_thin_for_the_budget_is_left_open) {
+    Model shell = test::sphere({}, 1);
+    const Model inner = test::sphere({}, 1 - 1e-6);
+    shell.vertices.insert(shell.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+    for (Edge e : inner.edges) {
+        e.start += 2, e.end += 2;
+        shell.edges.push_back(e);
+    }
+    Face face = inner.faces[0];
+    face.reversed = true;
+    for (Coedge& c : face.loops[0].coedges) c.edge += 3;
+    shell.faces.push_back(face);
+    shell = test::in_one_body(std::move(shell));
+    const Vec<3> along = unit(Vec<3>{{3, 4, 5}});
+    const std::vector<Vec<3>> points = {(1 - 5e-7) * along, 0.99999 * along, 1.00001 * along, along};
+    const auto in = inside_solid(shell, points, 1e-8, 3000);
+    ASSERT_TRUE(in) << in.error().message;
+    EXPECT_EQ((*in)[0].place, Place::boundary);
+    EXPECT_GE((*in)[0].distance, 4.999e-7);
+    EXPECT_LE((*in)[0].distance, 6e-7);
+    EXPECT_EQ((*in)[1].place, Place::outside);  // in the void
+    EXPECT_EQ((*in)[2].place, Place::outside);
+    EXPECT_EQ((*in)[3].place, Place::boundary);
+    EXPECT_LE((*in)[3].distance, 1e-8);
 }
 
 }  // namespace
