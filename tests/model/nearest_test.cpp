@@ -44,6 +44,37 @@ TEST(ModelNearest, from_the_centre_of_a_sphere_the_budget_ends_and_the_bound_hol
     EXPECT_GE(n.lower_bound, 0.9);
 }
 
+// Cut short, the answer is a point of the model that may not be the nearest, and the bound may not be above
+// the true distance.
+TEST(ModelNearest, what_a_small_budget_proves_is_true_and_its_point_is_on_the_model) {
+    Random random(17);
+    const auto ball = query_of(sphere({}, 1)), ring = query_of(torus(3, 1));
+    const auto from_ball = [](const Vec<3>& x) { return std::abs(norm(x) - 1); };
+    const auto from_ring = [](const Vec<3>& x) {
+        return std::abs(std::hypot(std::hypot(x[0], x[1]) - 3, x[2]) - 1);
+    };
+    int cut_short = 0, proven_some = 0;
+    const auto check = [&](const ModelNearestQuery& query, auto&& distance, int budget, double reach) {
+        const Vec<3> q = point_in(random, reach);
+        const auto n = must(query.nearest(q, {.max_parts = budget}));
+        ASSERT_GE(n.face, 0);
+        EXPECT_LE(distance(n.point), 1e-13);
+        EXPECT_NEAR(norm(n.point - q), n.distance, 1e-13);
+        EXPECT_LE(n.lower_bound, distance(q) + 1e-13) << budget;
+        EXPECT_GE(n.distance, distance(q) - 1e-13);
+        cut_short += n.distance > distance(q) + 1e-3;
+        proven_some += n.lower_bound > distance(q) / 2;
+    };
+    const int points = std::max(cases(20), 8);
+    for (const int budget : {1, 2, 3, 5, 8, 13, 21})
+        for (int k = 0; k < points; ++k) {
+            check(ball, from_ball, budget, 3);
+            check(ring, from_ring, budget, 5);
+        }
+    EXPECT_GE(cut_short, points) << "the budgets are no test";
+    EXPECT_GE(proven_some, points) << "nothing was proven";
+}
+
 TEST(ModelNearest, of_a_torus_is_that_of_its_circle) {
     const auto query = query_of(torus(3, 1));
     Random random(5);
@@ -102,6 +133,24 @@ TEST(ModelNearest, stays_on_what_trimming_leaves) {
         EXPECT_LE(n.lower_bound, least);
         EXPECT_GE(n.lower_bound, n.distance - 1e-8);
     }
+}
+
+// The first part of the surface has no foot and is done; nothing was seen yet when the budget ends.
+TEST(ModelNearest, a_budget_of_one_part_still_gives_a_point) {
+    const auto query = query_of(half_of_a_square());
+    Random random(19);
+    int early = 0;
+    for (int k = 0; k < 40; ++k) {
+        const Vec<3> q = point_in(random, 4);
+        const auto n = must(query.nearest(q, {.max_parts = 1})), all = must(query.nearest(q));
+        ASSERT_EQ(n.face, 0);
+        EXPECT_NEAR(norm(n.point - q), n.distance, 1e-13);
+        EXPECT_TRUE(n.point[2] == 0 && n.point[0] >= 0 && n.point[1] >= 0 && n.point[0] + n.point[1] <= 1);
+        EXPECT_LE(n.lower_bound, all.distance);
+        EXPECT_GE(n.distance, all.lower_bound);
+        early += n.distance > all.distance + 1e-3;
+    }
+    EXPECT_GT(early, 0);
 }
 
 // The unit disc, as a circle in the parameters of a square.

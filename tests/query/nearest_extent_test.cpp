@@ -2,6 +2,7 @@
 #include <freiform/make/conic.hpp>
 #include <freiform/query/nearest.hpp>
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <support/random.hpp>
 #include <support/shapes.hpp>
@@ -167,21 +168,38 @@ TEST(NearestExtent, scales_exactly_with_powers_of_two) {
 
 TEST(NearestExtent, a_spent_budget_is_said_and_what_is_proven_holds) {
     std::mt19937 rng(13);
-    const auto patch = random_patch<2, Hom<3>>(rng, {3, 3}, 3);
-    const auto query = query_of(patch);
-    const Vec<3> q{{0.1, 0.2, 0.3}};
-    const auto few = must(query.within<3>(q, 1, 0x1p-5, {.max_parts = 3}));
-    EXPECT_FALSE(few.complete);
-    const auto far = must(query.farthest<3>(q, {.max_parts = 1})), all = must(query.farthest<3>(q));
-    EXPECT_GE(far.upper_bound, all.distance);
-    EXPECT_LE(far.distance, all.upper_bound);
-    each_sample(patch, 24, [&](const auto& at, const Vec<3>& x) {
-        if (norm(x - q) > 1 - 1e-12) return;
-        bool covered = false;
-        for (const auto& r : few.regions)
-            covered = covered || (r.box[0].contains(at[0]) && r.box[1].contains(at[1]));
-        EXPECT_TRUE(covered);
-    });
+    Random random(14);
+    int open = 0, beaten = 0;
+    for (int trial = 0; trial < 6; ++trial) {
+        const auto patch = random_patch<2, Hom<3>>(rng, {3, 3}, 3);
+        const auto query = query_of(patch);
+        const Vec<3> q = point_within(random, 0.5);
+        const double radius = must(query.nearest<3>(q)).distance + 0.3;
+        const auto whole = must(query.within<3>(q, radius));
+        EXPECT_TRUE(whole.complete);
+        const double most = must(query.farthest<3>(q)).distance;
+        for (const int budget : {1, 2, 4, 8, 16}) {
+            const auto few = must(query.within<3>(q, radius, 0x1p-5, {.max_parts = budget}));
+            EXPECT_FALSE(few.complete) << budget;
+            const auto covered = [&](const std::array<double, 3>& at) {
+                return std::ranges::any_of(few.regions, [&](const NearRegion<3>& r) {
+                    return r.box[0].contains(at[0]) && r.box[1].contains(at[1]);
+                });
+            };
+            for (const auto& r : whole.regions)
+                if (r.distance < radius - 1e-12) EXPECT_TRUE(covered(r.at));
+            each_sample(patch, 24, [&](const auto& at, const Vec<3>& x) {
+                if (norm(x - q) <= radius - 1e-12) EXPECT_TRUE(covered(at));
+            });
+            const auto far = must(query.farthest<3>(q, {.max_parts = budget}));
+            EXPECT_GE(far.upper_bound, most) << budget;
+            EXPECT_LE(far.distance, most + 1e-7);
+            open += far.upper_bound > most + 1e-3;
+            beaten += far.distance < most - 1e-12;
+        }
+    }
+    EXPECT_GT(open, 0) << "the budgets are no test";
+    EXPECT_GT(beaten, 0) << "the farthest point was seen at once";
 }
 
 TEST(NearestExtent, refuses_nonsense) {
