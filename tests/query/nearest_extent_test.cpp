@@ -141,6 +141,28 @@ TEST(NearestExtent, two_feet_at_the_same_distance_are_both_said) {
     EXPECT_EQ(must(two.as_near<2>(above, must(two.nearest<2>(above)))).regions.size(), 2u);
 }
 
+// A trough has two feet at the same first parameter: what touches in one parameter alone is not one region.
+TEST(NearestExtent, feet_that_differ_in_the_second_parameter_are_two) {
+    std::vector<Vec<3>> net;
+    for (const double x : {-1.0, 1.0})
+        for (const Vec<2>& p : {Vec<2>{{-2, 4}}, Vec<2>{{0, -4}}, Vec<2>{{2, 4}}})
+            net.push_back({{x, p[0], p[1]}});
+    const auto trough = must(Surface<Vec<3>>::make({*BSplineBasis::bezier(1), *BSplineBasis::bezier(2)},
+                                                   Net<2, Vec<3>>({2, 3}, net)));  // z = y^2
+    const auto query = query_of(trough);
+    const Vec<3> q{{0.25, 0, 2}};
+    for (const auto& both : {must(query.as_near<3>(q, must(query.nearest<3>(q)))),
+                             must(query.within<3>(q, std::sqrt(1.75) + 1e-6))}) {
+        ASSERT_EQ(both.regions.size(), 2u);
+        for (const auto& r : both.regions) {
+            EXPECT_NEAR(std::abs(r.point[1]), std::sqrt(1.5), 1e-6);
+            EXPECT_NEAR(r.distance, std::sqrt(1.75), 1e-13);
+            EXPECT_TRUE(r.box[0].contains(0.625));
+        }
+        EXPECT_LT(both.regions[0].point[1] * both.regions[1].point[1], 0);
+    }
+}
+
 TEST(NearestExtent, scales_exactly_with_powers_of_two) {
     std::mt19937 rng(9);
     Random random(10);
@@ -200,6 +222,27 @@ TEST(NearestExtent, a_spent_budget_is_said_and_what_is_proven_holds) {
     }
     EXPECT_GT(open, 0) << "the budgets are no test";
     EXPECT_GT(beaten, 0) << "the farthest point was seen at once";
+}
+
+// Where weights are small, what the coefficients prove of a part that was not looked at is divided by them.
+TEST(NearestExtent, a_spent_budget_knows_how_light_a_rational_piece_is) {
+    const auto object = [](const std::array<double, 5>& y, const std::array<double, 5>& w) {
+        std::vector<Hom<2>> net;
+        for (std::size_t i = 0; i < 5; ++i) net.push_back(weighted(Vec<2>{{0, y[i]}}, w[i]));
+        return NearestObject::of(
+            must(Curve<Hom<2>>::make({*BSplineBasis::bezier(4)}, Net<1, Hom<2>>({5}, net))));
+    };
+    // One with a farther box, which is looked at first and takes the budget, and one with farther points.
+    const auto query = must(NearestQuery::make(std::array{
+        object({0, 0, 30, 0, 0}, {1, 1, 0.01, 1, 1}), object({0, 20, 20, 20, 0}, {1, 0.05, 0.05, 0.05, 1})}));
+    const double most = 0.875 / (0.125 + 0.05 * 0.875);  // at 1/2
+    const auto all = must(query.farthest<2>(Vec<2>{}));
+    EXPECT_NEAR(all.distance, most, 1e-13);
+    EXPECT_NEAR(all.upper_bound, most, 1e-9);
+    EXPECT_EQ(all.object, 1u);
+    const auto few = must(query.farthest<2>(Vec<2>{}, {.max_parts = 1}));
+    EXPECT_LT(few.distance, most - 1) << "the budget is no test";
+    EXPECT_GE(few.upper_bound, most);
 }
 
 TEST(NearestExtent, refuses_nonsense) {
