@@ -218,7 +218,7 @@ public:
                      [&](std::size_t i) { near[i] = !leads_away(*query, open_[i], off, gap); });
         std::vector<Open> left;
         for (std::size_t i = 0; i < open_.size(); ++i) {
-            if (near[i] && open_[i].upper <= accuracy_)
+            if (near[i] && open_[i].upper <= std::max(accuracy_, gap))  // finer meshes have the same gap
                 out_[open_[i].index] = {Place::boundary, 0, open_[i].upper};
             else
                 left.push_back(open_[i]);

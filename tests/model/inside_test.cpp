@@ -98,6 +98,24 @@ TEST(InsideSolid, points_near_the_surface_are_decided_by_a_coarse_mesh) {
     }
 }
 
+// The circle of an edge is 1e-4 beside the faces that meet there: as near as that there is no side.
+TEST(InsideSolid, nearer_than_faces_are_from_each_other_the_side_is_left_open) {
+    Model can = test::frustum(1, 1, 1);
+    std::get<Conic<3>>(*can.edges[1].curve).x[0] += 1e-4;
+    std::get<Conic<3>>(*can.edges[1].curve).y[1] += 1e-4;
+    can = test::in_one_body(std::move(can));
+    const auto beside = [](double d) { return (1 + d) * Vec<3>{{0.6, 0.8, 0}} + Vec<3>{{0, 0, 0.5}}; };
+    const std::vector<Vec<3>> points = {beside(0), beside(5e-5), beside(-5e-5), beside(1e-3), beside(-1e-3)};
+    const auto in = inside_solid(can, points, 1e-8, 20000);
+    ASSERT_TRUE(in) << in.error().message;
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ((*in)[i].place, Place::boundary) << i;
+        EXPECT_NEAR((*in)[i].distance, i == 0 ? 0 : 5e-5, 1e-8) << i;
+    }
+    EXPECT_EQ((*in)[3].place, Place::outside);
+    EXPECT_EQ((*in)[4].place, Place::inside);
+}
+
 // Between two spheres that are nearer to each other than any mesh within the budget can tell.
 TEST(InsideSolid, the_side_in_a_wall_too_thin_for_the_budget_is_left_open) {
     Model shell = test::sphere({}, 1);

@@ -10,7 +10,8 @@ namespace freiform {
 
 struct SolidInside {
     // boundary: the point is nearer to the surface than `distance`, and on which side it lies is not known.
-    // `distance` is about the accuracy asked for, and more only where the budget of work was spent.
+    // `distance` is about the accuracy asked for, and more only where faces are farther from each other on
+    // their edges or the budget of work was spent.
     Place place = Place::outside;
     int winding =
         0;  // times that the surface goes round the point: 1 inside a solid, 0 outside and in its voids
