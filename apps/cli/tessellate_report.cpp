@@ -26,7 +26,7 @@ std::vector<double> angle_quantiles(const TriangleMesh& mesh) {
 
 void write_shapes(json::Writer& w, const TessellateReport& r) {
     if (std::isfinite(r.how.max_angle))
-        w.field("angle", kDegrees * r.how.max_angle)
+        w.field("angle", r.how.max_angle / (std::numbers::pi / 180))
             .field("angle_bound", kDegrees * r.t.angle_bound)
             .field("angle_exceeded", r.t.angle_exceeded);
     if (std::isfinite(r.how.max_aspect)) w.field("aspect", r.how.max_aspect);

@@ -54,8 +54,7 @@ namespace freiform {
 namespace {
 
 constexpr double kRounding = 1e-6;
-constexpr double kLeastStretch = 0.1, kMostTurn = 0.5, kMostQ = 1.0 / 16;
-constexpr double kChord = 1.06;  // chord over sine of angles with sines up to kMostTurn
+constexpr double kLeastStretch = 0.1, kMostQ = 1.0 / 16;
 constexpr double kDisc = 2.5;
 
 Curvature seconds(const DerivativeBounds<2>& b) { return {b(2, 0), b(1, 1), b(0, 2)}; }

@@ -38,6 +38,9 @@ struct Curvature {
 // from second derivatives that `c` bounds there. See the essay in curvature_tree.cpp.
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d);
 
+inline constexpr double kMostTurn = 0.5;  // sine of what normals may turn by within a box
+inline constexpr double kChord = 1.06;    // chord over sine of angles with such sines
+
 // What is known of S over a part of the plane: essay in bending.cpp, with its notation.
 struct Bending {
     Curvature full;       // of S

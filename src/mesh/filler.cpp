@@ -233,6 +233,7 @@ bool Filler::improve(int triangle) {
         for (const auto& [span, e] : spans) {
             const Vec<2> p = corner[(e + 1) % 3], q = corner[(e + 2) % 3];
             if (t_.is_constrained(triangle, e) || (p[axis] - at) * (q[axis] - at) >= 0) continue;
+            if (std::min(std::abs(p[axis] - at), std::abs(q[axis] - at)) <= least_[axis]) continue;
             Vec<2> x = p + ((at - p[axis]) / (q[axis] - p[axis])) * (q - p);
             x[axis] = at;
             if (attempt(x)) return true;

@@ -1,6 +1,10 @@
 // Bending (bending.cpp) proves |N - n| <= tilt over a box, for unit vectors N and n: an angle of 2 asin(tilt
 // / 2).
 //
+// Where S_d jumps by at most J across lines inside the box, n . S_d does so too, and |DS d| may be less by as
+// much: with j = |(J_u / a, J_v / b)| / least the turn of bending.cpp becomes (turn + j) / (1 - j). So the
+// knots of rational circles, whose jumps are rounding, do no harm.
+//
 // A box about a triangle is twice as large as the triangle, so it is cut in four once if that brings the
 // parts that meet the triangle nearer. The angle between a triangle's normal m and N is at most that between
 // m and n and the angle of the cone.
@@ -21,13 +25,38 @@ namespace freiform {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kWidth = 1.0 / 16;
+constexpr double kResolved = 2.1e9;  // twice what bending_of asks for half of a side
+constexpr double kRoundedJump = 1e-9;
 constexpr double kCrossError = 7 * 0x1p-52, kAngleError = 1e-12;
 
-bool has_kink_inside(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
-    for (int axis = 0; axis < 2; ++axis)
-        for (const Kink& k : surface.kinks(axis))
-            if (box.lo[axis] < k.at && k.at < box.hi[axis]) return true;
-    return false;
+// The jumps of the first derivative along the axis inside the box: a bound of their sum.
+double jumps_inside(const DerivativeQuery<2, 3>& surface, const Box<2>& box, int axis) {
+    double sum = 0;
+    for (const Kink& k : surface.kinks(axis))
+        if (box.lo[axis] < k.at && k.at < box.hi[axis]) sum += k.jump;
+    return sum;
+}
+
+// First derivatives over a very small box are all rounding (bending.cpp); over a larger one they are not, and
+// normals turn little more. Not over kinks that are more than rounding.
+Box<2> widened(const DerivativeQuery<2, 3>& surface, Box<2> box) {
+    const auto j = jet<1>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
+    const double resolved = kResolved * surface.value_error({box.side(0), box.side(1)});
+    for (int axis = 0; axis < 2; ++axis) {
+        const double own = norm(j.d[std::size_t(1 + axis)]), other = norm(j.d[std::size_t(2 - axis)]);
+        const double width = std::max(kWidth * box.side(1 - axis).length() * other, resolved) / own;
+        const double more = (width - box.side(axis).length()) / 2;
+        if (!(more > 0) || !std::isfinite(more)) continue;
+        double lo = box.lo[axis] - more, hi = box.hi[axis] + more;
+        for (const Kink& k : surface.kinks(axis)) {
+            if (k.jump <= kRoundedJump * own) continue;
+            if (k.at <= box.lo[axis]) lo = std::max(lo, k.at);
+            if (k.at >= box.hi[axis]) hi = std::min(hi, k.at);
+        }
+        box.lo[axis] = lo, box.hi[axis] = hi;
+    }
+    return box;
 }
 
 // Scaled by a power of two, so that products neither overflow nor vanish.
@@ -58,10 +87,15 @@ bool may_meet(const Box<2>& box, const std::array<Vec<2>, 3>& t) {
 }  // namespace
 
 NormalCone normal_cone(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
-    if (has_kink_inside(surface, box)) return {};
-    const Bending at = bending_of(surface, box, true);
-    if (!(at.least > 0) || !(at.tilt < 2)) return {at.n, kPi};
-    return {at.n, std::min(kPi, 2 * std::asin(at.tilt / 2) + kAngleError)};
+    const Box<2> around = widened(surface, box);
+    const Bending at = bending_of(surface, around, true);
+    if (!(at.least > 0)) return {at.n, kPi};
+    const double jump =
+        std::hypot(jumps_inside(surface, around, 0) / at.a, jumps_inside(surface, around, 1) / at.b) /
+        at.least * (1 + 1e-9);
+    const double tilt = (at.tilt + kChord * jump) / (1 - jump);
+    if (!(jump < 0.5) || !(tilt <= kChord * kMostTurn)) return {at.n, kPi};
+    return {at.n, std::min(kPi, 2 * std::asin(tilt / 2) + kAngleError)};
 }
 
 double normal_angle_bound(const DerivativeQuery<2, 3>& surface, const std::array<Vec<2>, 3>& uv,

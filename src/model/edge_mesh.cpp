@@ -27,8 +27,9 @@ namespace freiform {
 
 namespace {
 
-constexpr double kConeOfAngle = 0.5;  // half the angle that normals may turn by
-constexpr int kClosedParts = 4;       // a closed edge must not collapse to a slit
+constexpr double kConeOfAngle =
+    0.375;  // of the angle, what half a cone along a segment may have: triangles reach farther
+constexpr int kClosedParts = 4;  // a closed edge must not collapse to a slit
 
 // Where to cut an interval that seems to need `parts` parts: so that equal ones result if it does.
 double first_part(double parts, int least) {

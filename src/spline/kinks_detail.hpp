@@ -5,11 +5,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace freiform {
 
+// One line of the differences between two rational pieces: A^, w, and the jumps of their derivatives.
+template <int D>
+struct JumpLine {
+    Vec<D> point{}, jump{};
+    double weight = 0, weight_jump = 0;
+};
+
+// The largest coefficient of w [A^_d] - A^ [w_d], of degree 2 q along the other axis: a product of
+// polynomials in Bernstein form.
+template <int D>
+double largest_of_product(const std::vector<JumpLine<D>>& lines) {
+    const int q = int(lines.size()) - 1;
+    const auto choose = [](int n, int k) {  // exact up to n = 50
+        double c = 1;
+        for (int i = 1; i <= k; ++i) c = c * (n - k + i) / i;
+        return c;
+    };
+    double most = 0;
+    for (int m = 0; m <= 2 * q; ++m) {
+        Vec<D> sum{};
+        for (int i = std::max(0, m - q); i <= std::min(m, q); ++i) {
+            const auto &a = lines[std::size_t(i)], &b = lines[std::size_t(m - i)];
+            sum += (choose(q, i) * choose(q, m - i) / choose(2 * q, m)) *
+                   (a.weight * b.jump - b.weight_jump * a.point);
+        }
+        most = std::max(most, norm(sum));
+    }
+    return most;
+}
+
 // Bound of the jump of c_d between two neighbouring Bezier pieces, from the jumps of numerator and weight:
-// c_d = (A^_d - w_d (c - c0)) / w on both sides, with A^ and w continuous.
+// c_d = (A^_d - w_d (c - c0)) / w on both sides, with A^ and w continuous. For two parameters also as the
+// quotient (w [A^_d] - A^ [w_d]) / w^2, in which the jumps of a rational circle cancel.
 template <std::size_t N, class P>
 double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
     constexpr int D = Space<P>::kDim;
@@ -21,6 +53,7 @@ double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
     const double hl = pieces.box(left)[d].length(), hr = pieces.box(right)[d].length();
     if (p == 0) return kInfinity;
     const PointOf<P> c0 = project(r(Index<N>{}));
+    std::vector<JumpLine<D>> lines;
     double radius = 0, jump = 0, weight_jump = 0, weight_min = kInfinity, largest = 0;
     bool torn = false;
     each_fibre(axis, l.extent, [&](const Index<N>& at) {
@@ -35,6 +68,7 @@ double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
             offset[i] = hat(b[0]);
             largest = std::max({largest, std::abs(a[p][i]), std::abs(b[0][i])});
         }
+        if (Space<P>::kRational && N <= 2) lines.push_back({offset, diff, wr, step});
         radius = std::max(radius, norm(offset) / wr);
         jump = std::max(jump, norm(diff));
         weight_jump = std::max(weight_jump, std::abs(step));
@@ -44,8 +78,19 @@ double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
     });
     if (torn) return kInfinity;
     const double slip = 64 * (p + 1) * kUnitRoundoff * largest * p * (1 / hl + 1 / hr);
-    return (jump + weight_jump * radius + slip * (1 + (Space<P>::kRational ? 1 : 0))) / weight_min *
-           (1 + 64 * kUnitRoundoff);
+    const double crude =
+        (jump + weight_jump * radius + slip * (1 + (Space<P>::kRational ? 1 : 0))) / weight_min;
+    const double grow = 1 + 64 * kUnitRoundoff;
+    if (lines.empty()) return crude * grow;
+    double weight_max = 0, reach = 0;
+    for (const auto& line : lines)
+        weight_max = std::max(weight_max, line.weight), reach = std::max(reach, norm(line.point));
+    const double weight_slip = 64 * (p + 1) * kUnitRoundoff * weight_max * p * (1 / hl + 1 / hr);
+    const double rounding = weight_max * slip + reach * weight_slip +
+                            8 * kUnitRoundoff * largest * (weight_jump + weight_slip) +
+                            16 * (int(lines.size()) + 2) * kUnitRoundoff *
+                                (weight_max * (jump + slip) + reach * (weight_jump + weight_slip));
+    return std::min(crude, (largest_of_product<D>(lines) + 2 * rounding) / (weight_min * weight_min)) * grow;
 }
 
 template <std::size_t N, class P>

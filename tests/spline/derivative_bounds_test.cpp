@@ -120,6 +120,44 @@ TEST(DerivativeBounds, kinks_are_found_and_their_jumps_bounded) {
     for (const Kink& k : circle_query.kinks(0)) EXPECT_LE(k.jump, 1e-12);
 }
 
+TEST(DerivativeBounds, jumps_of_rational_surfaces_are_bounded_and_those_of_round_ones_vanish) {
+    std::mt19937 rng(11);
+    const auto kinked = *BSplineBasis::make(2, {0, 0, 0, 1, 1, 3, 3, 3});
+    double tightest = 0;
+    for (int round = 0; round < 50; ++round) {
+        std::vector<Hom<3>> c;
+        for (int i = 0; i < 20; ++i)
+            c.push_back(weighted(Vec<3>{{uniform(rng, 4, 6), uniform(rng, -1, 1), uniform(rng, -1, 1)}},
+                                 uniform(rng, 0.3, 2)));
+        const SurfaceGeometry s =
+            *Surface<Hom<3>>::make({kinked, *BSplineBasis::bezier(3)}, Net<2, Hom<3>>({5, 4}, c));
+        const DerivativeQuery<2, 3> query(s);
+        ASSERT_EQ(query.kinks(0).size(), 1u);
+        double most = 0;
+        for (int k = 0; k <= 40; ++k)
+            most = std::max(most, norm(jet<1>(s, {std::nextafter(1.0, 2.0), k / 40.0})(1, 0) -
+                                       jet<1>(s, {std::nextafter(1.0, 0.0), k / 40.0})(1, 0)));
+        EXPECT_LE(most, query.kinks(0)[0].jump * (1 + 1e-12));
+        tightest = std::max(tightest, most / query.kinks(0)[0].jump);
+    }
+    EXPECT_GT(tightest, 0.5);
+
+    // A cone between two circles whose weights differ: smooth, though its homogeneous pieces are not.
+    const double w = std::sqrt(0.5);
+    const double xy[5][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < 5; ++i)
+        for (int k = 0; k < 2; ++k)
+            c.push_back(weighted(Vec<3>{{xy[i][0] * (1 + k), xy[i][1] * (1 + k), 10.0 * k}},
+                                 (i % 2 ? w : 1) * (1 + 2 * k)));
+    const SurfaceGeometry cone =
+        *Surface<Hom<3>>::make({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2}), *BSplineBasis::bezier(1)},
+                               Net<2, Hom<3>>({5, 2}, c));
+    const DerivativeQuery<2, 3> query(cone);
+    ASSERT_EQ(query.kinks(0).size(), 1u);
+    EXPECT_LE(query.kinks(0)[0].jump, 1e-10);
+}
+
 TEST(DerivativeBounds, of_coordinates_of_plane_curves_hold_for_each_by_itself) {
     std::mt19937 rng(8);
     const auto basis = *BSplineBasis::clamped_uniform(3, 7);
