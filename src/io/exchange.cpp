@@ -278,8 +278,8 @@ Refusal why(const Outcome& o, const std::string& path, const ImportLimits& limit
     const bool signalled = WIFSIGNALED(o.status);
     const int code = signalled ? 0 : WEXITSTATUS(o.status);
     // What the dynamic loader says where there is no room for the libraries.
-    if (code == 127 && (o.words.find("failed to map") != std::string::npos ||
-                        o.words.find("annot allocate memory") != std::string::npos))
+    if (code == 127 &&
+        (o.words.find("failed to map") != std::string::npos || o.words.find("emory") != std::string::npos))
         return {RefusalKind::limit, path,
                 text("the reader needs more than the ", mebibytes, " MiB that it may use")};
     if (code == 126 || code == 127)
