@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdio>
+#include <ctime>
 
 namespace freiform::bench {
 
