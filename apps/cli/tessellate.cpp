@@ -111,8 +111,8 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
     if (results.size() > 1) w.begin_object().key("runs").begin_array();
     for (std::size_t i = 0; i < results.size(); ++i) {
         const TriangleMesh& mesh = results[i]->mesh;
-        TessellateReport report{*results[i], *model, *sewing, all[i], named_by(output, all[i].tolerance),
-                                0,           {}};
+        TessellateReport report{*results[i], *model, *sewing,      all[i], named_by(output, all[i].tolerance),
+                                0,           {},     options.angle};
         const double written = now();
         if (!output.empty()) {
             if (auto ok = write_mesh(mesh, report.output, format); !ok) return ok;

@@ -25,8 +25,8 @@ std::vector<double> angle_quantiles(const TriangleMesh& mesh) {
 }
 
 void write_shapes(json::Writer& w, const TessellateReport& r) {
-    if (std::isfinite(r.how.max_angle))
-        w.field("angle", r.how.max_angle / (std::numbers::pi / 180))
+    if (r.angle)
+        w.field("angle", *r.angle)
             .field("angle_bound", kDegrees * r.t.angle_bound)
             .field("angle_exceeded", r.t.angle_exceeded);
     if (std::isfinite(r.how.max_aspect)) w.field("aspect", r.how.max_aspect);
@@ -38,9 +38,8 @@ void write_shapes(json::Writer& w, const TessellateReport& r) {
 
 std::string shapes_text(const TessellateReport& r) {
     std::string s;
-    if (std::isfinite(r.how.max_angle)) {
-        s += text("angle bound     ", kDegrees * r.t.angle_bound, " degrees (asked for ",
-                  kDegrees * r.how.max_angle, ")");
+    if (r.angle) {
+        s += text("angle bound     ", kDegrees * r.t.angle_bound, " degrees (asked for ", *r.angle, ")");
         s += r.t.angle_exceeded == 0 ? std::string("\n")
                                      : text(", above that ", r.t.angle_exceeded, " triangles\n");
     }

@@ -16,6 +16,7 @@ struct TessellateReport {
     struct Seconds {
         double read = 0, sew = 0, write = 0, total = 0;
     } seconds;
+    std::optional<double> angle;  // asked for, in degrees
 };
 
 void write_report(json::Writer& w, const TessellateReport& r);

@@ -57,14 +57,13 @@ std::pair<double, int> Filler::longest_side(int triangle) {
     return longest;
 }
 
-Filler::Sides Filler::sides(int triangle) {
-    Sides out{0, kInfinity, -1};
+Filler::LongestSide Filler::longest_of_all(int triangle) {
+    LongestSide out;
     const auto v = t_.vertices(triangle);
     for (std::size_t e = 0; e < 3; ++e) {
         const double length = norm(position(v[(e + 2) % 3]) - position(v[(e + 1) % 3]));
         if (length > out.longest)
             out.longest = length, out.edge = t_.is_constrained(triangle, int(e)) ? -1 : int(e);
-        out.shortest = std::min(out.shortest, length);
     }
     return out;
 }
@@ -85,7 +84,7 @@ bool Filler::touches_pole(const std::array<Vec<2>, 3>& corner) const {
 // cannot turn less by further points.
 int Filler::turning_side(int triangle) {
     if (!std::isfinite(demands_.max_angle)) return -1;
-    const Sides s = sides(triangle);
+    const LongestSide s = longest_of_all(triangle);
     if (s.edge < 0 || !(s.longest > kAngleFloor * demands_.tolerance)) return -1;
     if (t_.points().size() > most_for_angles_) return -1;
     const auto& v = t_.vertices(triangle);

@@ -29,11 +29,11 @@ private:
     bool improve(int triangle);
     bool is_fine(int triangle);
     Vec<3> position(int vertex);
-    struct Sides {
-        double longest = 0, shortest = 0;
+    struct LongestSide {
+        double longest = 0;
         int edge = -1;  // the longest one; -1 if it is part of the boundary
     };
-    Sides sides(int triangle);
+    LongestSide longest_of_all(int triangle);
     bool touches_pole(const std::array<Vec<2>, 3>& corner) const;
     // The side to cut where normals turn too much.
     int turning_side(int triangle);

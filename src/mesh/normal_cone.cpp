@@ -39,16 +39,19 @@ double jumps_inside(const DerivativeQuery<2, 3>& surface, const Box<2>& box, int
 }
 
 // First derivatives over a very small box are all rounding (bending.cpp); over a larger one they are not, and
-// normals turn little more. Not over kinks that are more than rounding.
+// normals turn little more. Not over kinks that are more than rounding, nor beyond the ends of splines.
 Box<2> widened(const DerivativeQuery<2, 3>& surface, Box<2> box) {
     const auto j = jet<1>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
+    const auto ends = limits(surface.geometry());
     const double resolved = kResolved * surface.value_error({box.side(0), box.side(1)});
     for (int axis = 0; axis < 2; ++axis) {
         const double own = norm(j.d[std::size_t(1 + axis)]), other = norm(j.d[std::size_t(2 - axis)]);
         const double width = std::max(kWidth * box.side(1 - axis).length() * other, resolved) / own;
         const double more = (width - box.side(axis).length()) / 2;
         if (!(more > 0) || !std::isfinite(more)) continue;
-        double lo = box.lo[axis] - more, hi = box.hi[axis] + more;
+        const Interval end = ends[std::size_t(axis)];
+        double lo = std::max(box.lo[axis] - more, std::min(box.lo[axis], end.lo)),
+               hi = std::min(box.hi[axis] + more, std::max(box.hi[axis], end.hi));
         for (const Kink& k : surface.kinks(axis)) {
             if (k.jump <= kRoundedJump * own) continue;
             if (k.at <= box.lo[axis]) lo = std::max(lo, k.at);

@@ -42,6 +42,10 @@ double largest_of_product(const std::vector<JumpLine<D>>& lines) {
 // Bound of the jump of c_d between two neighbouring Bezier pieces, from the jumps of numerator and weight:
 // c_d = (A^_d - w_d (c - c0)) / w on both sides, with A^ and w continuous. For two parameters also as the
 // quotient (w [A^_d] - A^ [w_d]) / w^2, in which the jumps of a rational circle cancel.
+//
+// Accuracy. [A^_d] is off by `slip` (the rounding of coefficients, times p / h on both sides), [w_d] by
+// `weight_slip`, A^ by 4 u of the largest coefficient; a coefficient of the product is a mean of q + 1 terms
+// at most, each with some ten roundings.
 template <std::size_t N, class P>
 double jump_between(const BezierPieces<N, P>& pieces, Index<N> left, int axis) {
     constexpr int D = Space<P>::kDim;

@@ -117,6 +117,56 @@ TEST(TessellateShapes, cones_of_normals_hold_all_of_them) {
     EXPECT_EQ(normal_angle_bound(fold, {Vec<2>{}, Vec<2>{}, Vec<2>{}}, {}), kPi) << "no area";
 }
 
+// The cone of the box, after a look at normals there.
+double checked_cone(const DerivativeQuery<2, 3>& query, const Box<2>& box) {
+    const NormalCone cone = normal_cone(query, box);
+    for (int k = 0; k <= 40; ++k) {
+        const double x = k / 40.0, y = (k * 7 % 41) / 40.0;
+        const Vec<2> at{{box.lo[0] + x * (box.hi[0] - box.lo[0]), box.lo[1] + y * (box.hi[1] - box.lo[1])}};
+        const Vec<3> n = normal(query.geometry(), at.c);
+        EXPECT_LE(std::atan2(norm(cross(n, cone.axis)), dot(n, cone.axis)), cone.angle);
+    }
+    return cone.angle;
+}
+
+TEST(TessellateShapes, boxes_without_width_have_cones_at_the_border_too) {
+    Random rng(9);
+    for (int i = 0; i < cases(20); ++i) {
+        std::vector<Vec<3>> c;
+        for (int a = 0; a < 5; ++a)
+            for (int b = 0; b < 5; ++b) c.push_back({{a / 4.0, b / 4.0, 0.05 * rng.real(-1, 1)}});
+        const auto basis = *BSplineBasis::clamped_uniform(3, 5);
+        const SurfaceGeometry s = *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({5, 5}, c));
+        const DerivativeQuery<2, 3> query(s);
+        const Interval u = domain(s)[0];
+        for (const double v : {u.lo, u.middle(), u.hi}) {
+            const double from = rng.real(u.lo, u.lo + 0.9 * u.length()), to = from + 0.1 * u.length();
+            EXPECT_LT(checked_cone(query, {{{from, v}}, {{to, v}}}), 1);
+            EXPECT_LT(checked_cone(query, {{{v, from}}, {{v, to}}}), 1);
+        }
+    }
+    // Far from the origin values are known to some 1e-10 only; the plane is one all the same.
+    const SurfaceGeometry plane = Extrusion{Line<3>{{{1e4, 2e4, 0}}, {{1, 0, 0}}}, {{0, 1, 0}}};
+    EXPECT_LT(checked_cone(DerivativeQuery<2, 3>(plane), {{{7, 8}}, {{7 + 1e-5, 8 + 1e-5}}}), 1e-4);
+}
+
+TEST(TessellateShapes, the_knots_of_rational_circles_do_not_end_cones) {
+    const double w = std::sqrt(0.5);
+    const double xy[5][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < 5; ++i)
+        for (int k = 0; k < 2; ++k)
+            c.push_back(weighted(Vec<3>{{xy[i][0] * (1 + k), xy[i][1] * (1 + k), 10.0 * k}},
+                                 (i % 2 ? w : 1) * (1 + 2 * k)));
+    const SurfaceGeometry cone =
+        *Surface<Hom<3>>::make({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2}), *BSplineBasis::bezier(1)},
+                               Net<2, Hom<3>>({5, 2}, c));
+    const DerivativeQuery<2, 3> query(cone);
+    EXPECT_LT(checked_cone(query, {{{0.95, 0.4}}, {{1.05, 0.5}}}), 0.3);
+    EXPECT_LT(checked_cone(query, {{{1, 0.4}}, {{1.1, 0.5}}}), 0.3);
+    EXPECT_LT(checked_cone(query, {{{1, 0.4}}, {{1, 0.5}}}), 0.1);
+}
+
 TEST(TessellateShapes, an_aspect_makes_triangles_rounder) {
     for (const Model& m : {frustum(2, 1, 3), torus(6, 0.5)}) {
         const auto plain = tessellate(m, {.tolerance = 0.03});

@@ -9,8 +9,8 @@
 namespace freiform {
 
 // All unit normals (in the sense of S_u x S_v) over a box are within `angle` (radians) of `axis`: a bound,
-// rounding included; pi where none was found (poles, kinks inside the box, normals that turn by more than a
-// right angle).
+// rounding included; pi where none was found (poles, kinks inside the box that are more than rounding,
+// normals that turn too much).
 struct NormalCone {
     Vec<3> axis{};
     double angle = std::numbers::pi;
