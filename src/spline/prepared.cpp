@@ -148,7 +148,7 @@ Result<void> PreparedNet::evaluate_single(std::span<const double> at, float* poi
     return {};
 }
 
-double PreparedNet::value_error_bound() const { return tables_->error; }
+double PreparedNet::error_bound(std::size_t slot) const { return tables_->errors[slot]; }
 
 }  // namespace detail
 

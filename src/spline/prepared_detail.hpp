@@ -45,7 +45,7 @@ struct PreparedNet::Tables {
     kernel::Net net;                          // without pointers
     Index<3> extent{1, 1, 1}, size{1, 1, 1};  // of the net, unwound and as given; the last axis last
     Lines coefficients;
-    double error = 0;
+    std::vector<double> errors;  // bounds, of each partial derivative up to kernel::kMaxOrder
 
     kernel::Net view() const;
     bool any_closed() const;
@@ -63,7 +63,8 @@ inline constexpr std::size_t kPastFrom = std::size_t(4) << 20;  // bytes
 kernel::Output output(const PreparedNet::Destination& to, std::size_t first, int order, std::size_t slots,
                       std::size_t dim, bool past);
 
-// A bound of the rounding of a value, argument in prepared_tables.cpp.
+// Bounds of the rounding of a value, and of all partial derivatives up to kernel::kMaxOrder, in graded order.
 double batch_error_bound(std::span<const int> degrees, const Tuples& net);
+std::vector<double> batch_error_bounds(std::span<const BSplineBasis> bases, const Tuples& net);
 
 }  // namespace freiform::detail

@@ -12,26 +12,9 @@
 //
 // Why not: powers of x - a need no quotient, but their terms have both signs and add up to as much as 2^p.
 //
-// Accuracy of values. u = 2^-53, p_d degrees, parameters inside the domain; relative roundings, counted.
-//   r      the distances of x from both ends: 2, the reciprocal 1.2, the product 1: 4.2.
-//   N_i    a coefficient C(p, k) e_ik rounded once from doubled precision (whose error, p 2^-95, the
-//   factor 1.01
-//          below pays), and a product and a sum, p times: its term has p factors r at most, 6.2 p + 1.
-//   power  far, the inverse of b - a, their product: 3; p - 1 products of such, and one with the sum: 4 p. At
-//   the
-//          ends of the span it is exactly 1 and r exactly 0. Degree 0 is exact.
-//          Together n_d = 10.2 p_d + 1 for p_d > 0.
-//   sums   curve: none but those of N_i, whose entries are the coefficients of the piece, each rounded
-//          once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights are
-//          multiplied, then summed in one go: (p_0 + 1) (p_1 + 1) + 1 along the outer two, p_2 + 1.
-// Contracted products and sums have fewer. So k = sum n_d + sums, g = 1.01 k u, and as for single values (see
-// patch_detail.hpp) |computed - exact| <= g c + e, e = h sum (p_d + 1) for underflow with h the smallest
-// denormal number, twice since a power may be multiplied with the sum; rational, with numerator and
-// denominator off by g c W + e and g W + e,
-//     (2 g c + (1 + c) e / w_min) / (1 - g - e / w_min)
-// and 2.2 roundings of the quotient (reciprocal 1.2, product 1) instead of one.
+// Accuracy: prepared_bounds.cpp.
 //
-// References: [Borden et al. 2011] extraction; [Higham 2002, ch. 3] counting.
+// References: [Borden et al. 2011] extraction.
 #include "coefficients_detail.hpp"
 #include "prepared_detail.hpp"
 
@@ -175,19 +158,6 @@ bool PreparedNet::Tables::any_closed() const {
     return std::ranges::any_of(axis, [](const AxisTable& a) { return a.basis.is_closed(); });
 }
 
-double batch_error_bound(std::span<const int> degrees, const Tuples& net) {
-    const double unit = std::numeric_limits<double>::epsilon() / 2;
-    const double denormal = std::numeric_limits<double>::denorm_min();
-    double roundings = 0, terms = 1;
-    for (const int p : degrees) roundings += p > 0 ? 10.2 * p + 1 : 0, terms += 2 * (p + 1);
-    if (degrees.size() == 2) roundings += degrees[0] + degrees[1] + 2;
-    if (degrees.size() == 3) roundings += (degrees[0] + 1) * (degrees[1] + 1) + degrees[2] + 2;
-    const double g = 1.01 * roundings * unit, lost = terms * denormal;
-    const auto [c, w_min] = reach_of(net);
-    if (!net.rational) return g * c + lost;
-    return 1.02 * ((2 * g + 2.2 * unit) * c + (1 + c) * (lost / w_min)) + lost;
-}
-
 namespace {
 
 // What PreparedPatch::make promises about sizes.
@@ -245,9 +215,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     n.dim = net.dim();
     n.rational = net.rational;
     const int lanes = 4 * n.planes();
-    std::vector<int> degrees;
-    for (const BSplineBasis& b : bases) degrees.push_back(b.degree());
-    tables->error = batch_error_bound(degrees, net);
+    tables->errors = batch_error_bounds(bases, net);
     if (bases.size() == 1) {
         std::vector<double> curve(net.count() * std::size_t(lanes), 0.0);
         for (std::size_t i = 0; i < net.count(); ++i)

@@ -63,11 +63,15 @@ INSTANTIATE_TEST_SUITE_P(On, EveryKernel, testing::Values("here", "neon", "simd1
 // the weight.
 struct Errors {
     double order[3] = {};
-    double normal = 0;  // in units of those of its two tangents, seen from their product
-    double share = 0;   // of the proven bound of a value
+    double normal = 0;     // in units of those of its two tangents, seen from their product
+    double share[3] = {};  // of the proven bounds
+    double normal_share = 0;
     void take(const Errors& other) {
-        for (int k = 0; k < 3; ++k) order[k] = std::max(order[k], other.order[k]);
-        normal = std::max(normal, other.normal), share = std::max(share, other.share);
+        for (int k = 0; k < 3; ++k) {
+            order[k] = std::max(order[k], other.order[k]);
+            share[k] = std::max(share[k], other.share[k]);
+        }
+        normal = std::max(normal, other.normal), normal_share = std::max(normal_share, other.normal_share);
     }
 };
 
@@ -143,7 +147,8 @@ struct ExactGrid {
         return unit;
     }
     template <int K>
-    void judge(const std::vector<Jet<N, K, Point>>& found, Errors& worst) const {
+    void judge(const std::vector<Jet<N, K, Point>>& found, const PreparedPatch<N, P>& by,
+               Errors& worst) const {
         const auto orders = jet_orders<N>(K);
         for (std::size_t i = 0; i < judged.size(); ++i)
             for (std::size_t s = 0; s < orders.size(); ++s) {
@@ -152,6 +157,9 @@ struct ExactGrid {
                 for (int c = 0; c < Point::kCoords; ++c) {
                     const double off = gap(found[judged[i]].d[s][c], jets[i][s][std::size_t(c)]);
                     worst.order[total] = std::max(worst.order[total], off / unit(i, orders[s]));
+                    const double bound = by.error_bound(orders[s]);
+                    EXPECT_LE(off, bound);
+                    if (bound > 0) worst.share[total] = std::max(worst.share[total], off / bound);
                 }
             }
     }
@@ -160,10 +168,10 @@ struct ExactGrid {
             for (int c = 0; c < Point::kCoords; ++c) {
                 const double off = gap(found[judged[i]][c], jets[i][0][std::size_t(c)]);
                 worst.order[0] = std::max(worst.order[0], off / unit(i, {}));
-                worst.share = std::max(worst.share, off / bound);
+                worst.share[0] = std::max(worst.share[0], off / bound);
             }
     }
-    void judge_normals(const std::vector<Vec<3>>& found, Errors& worst) const {
+    void judge_normals(const std::vector<Vec<3>>& found, const PreparedPatch<N, P>& by, Errors& worst) const {
         const auto length = [](const std::vector<Twice>& x) {
             return std::hypot(x[0].high, x[1].high, x[2].high);
         };
@@ -171,6 +179,9 @@ struct ExactGrid {
             const double one = unit(i, {1, 0}) * length(jets[i][2]) + unit(i, {0, 1}) * length(jets[i][1]);
             const double off = test::distance(freiform::unit(products[i]), found[judged[i]]);
             worst.normal = std::max(worst.normal, off / (one / norm(products[i]) + 0x1p-53));
+            const double bound =
+                by.normal_error_bound(length(jets[i][1]), length(jets[i][2]), norm(products[i]));
+            worst.normal_share = std::max(worst.normal_share, off / bound);
         }
     }
 };
@@ -188,9 +199,9 @@ Errors errors_of(const ExactGrid<N, P>& exact, const PreparedPatch<N, P>& fast) 
     const auto judge = [&](bool ran) {
         ASSERT_TRUE(ran);
         exact.judge_values(points, fast.value_error_bound(), worst);
-        exact.judge(first, worst);
-        exact.judge(second, worst);
-        if constexpr (N == 2 && Point::kCoords == 3) exact.judge_normals(normals, worst);
+        exact.judge(first, fast, worst);
+        exact.judge(second, fast, worst);
+        if constexpr (N == 2 && Point::kCoords == 3) exact.judge_normals(normals, fast, worst);
     };
     if constexpr (N == 2 && Point::kCoords == 3) {
         judge(fast.evaluate(exact.at, std::span(first), std::span(normals)) &&
@@ -233,15 +244,17 @@ Errors worst_of(F&& with_each, std::vector<int> degrees, std::array<int, N> coun
 }
 
 void expect_below(const char* what, const Errors& found, const Errors& limit) {
-    std::printf("  %-18s %8.2f %8.2f %8.2f %8.2f %10.3f\n", what, found.order[0], found.order[1],
-                found.order[2], found.normal, found.share);
+    std::printf("  %-22s %8.2f %8.2f %8.2f %8.2f %9.4f %8.4f %8.4f %8.4f\n", what, found.order[0],
+                found.order[1], found.order[2], found.normal, found.share[0], found.share[1], found.share[2],
+                found.normal_share);
     for (int k = 0; k < 3; ++k) EXPECT_LE(found.order[k], limit.order[k]) << what << " order " << k;
     EXPECT_LE(found.normal, limit.normal) << what;
-    EXPECT_LE(found.share, 1) << what;
+    for (int k = 0; k < 3; ++k) EXPECT_LE(found.share[k], 1) << what << " order " << k;
+    EXPECT_LE(found.normal_share, 1) << what;
 }
 
 // The table of docs/evaluation.md. Printed: units of a value, of first and second derivatives and normals;
-// the part of the bound of values.
+// the parts of the proven bounds of all four.
 TEST_P(EveryKernel, gives_curves_within_the_documented_distance_of_exact_arithmetic) {
     const auto each = [&](const auto& check) { with_each(check); };
     expect_below("curve", worst_of<1, Vec<3>>(each, {1, 2, 3, 4, 5, 8}, {31}, 1), {{10, 6, 6}});

@@ -16,7 +16,10 @@
 #include <freiform/core/tuples.hpp>
 #include <freiform/spline/patch.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numeric>
 
 namespace freiform {
 
@@ -48,7 +51,7 @@ public:
     Result<void> evaluate_grid(std::span<const std::span<const double>> axes, int order, std::size_t slots,
                                const Destination& to) const;
     Result<void> evaluate_single(std::span<const double> at, float* points, Outside outside) const;
-    double value_error_bound() const;
+    double error_bound(std::size_t slot) const;
 
     struct Tables;
     const Tables& tables() const { return *tables_; }
@@ -106,8 +109,7 @@ public:
         FF_REQUIRE(at.size() == out.size());
         return net_.evaluate(plain(at), K, jet_size(N, K), {first(out)}, outside);
     }
-    // With the unit vector of S_u x S_v, to a few units in the last place of that product; zero where the
-    // product is zero.
+    // With the unit vector of S_u x S_v, within normal_error_bound(); zero where the product is zero.
     Result<void> evaluate(std::span<const Param<N>> at, std::span<Point> out, std::span<Vec<3>> normals,
                           Outside outside = Outside::refuse) const
         requires(N == 2 && std::same_as<Point, Vec<3>>) {
@@ -162,8 +164,20 @@ public:
         return net_.evaluate_grid(axes, 2, 0, {nullptr, nullptr, pairs(out)});
     }
 
-    // A bound of |computed - exact| in each coordinate of a value.
-    double value_error_bound() const { return net_.value_error_bound(); }
+    // A bound of |computed - exact| in each coordinate of a value, and of a partial derivative of total order
+    // <= 2, at any parameter of the domain.
+    double value_error_bound() const { return net_.error_bound(0); }
+    double error_bound(const Index<N>& orders) const {
+        FF_REQUIRE(std::accumulate(orders.begin(), orders.end(), 0) <= 2 && std::ranges::min(orders) >= 0);
+        return net_.error_bound(jet_slot(orders));
+    }
+    // A bound of |computed - exact| of a unit normal where S_u, S_v and S_u x S_v have these lengths.
+    double normal_error_bound(double su, double sv, double product) const requires(N == 2) {
+        constexpr double kUnit = 0x1p-53;
+        const double root = std::sqrt(3.0), eu = root * error_bound({1, 0}), ev = root * error_bound({0, 1});
+        const double off = eu * sv + ev * su + eu * ev + 4 * kUnit * su * sv;
+        return (2 * off / product + 4 * kUnit) * (1 + 16 * kUnit);
+    }
 
 private:
     explicit PreparedPatch(detail::PreparedNet net) : net_(std::move(net)) {}
