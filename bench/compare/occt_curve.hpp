@@ -1,4 +1,4 @@
-// A curve as Open CASCADE has it, from weighted coefficients and knots that may repeat.
+// Curves and surfaces as Open CASCADE has them, from weighted coefficients and knots that may repeat.
 #pragma once
 #include <Geom_BSplineCurve.hxx>
 #include <TColStd_Array1OfInteger.hxx>
@@ -23,18 +23,26 @@ struct Poles {
     }
 };
 
-inline Handle(Geom_BSplineCurve)
-    bspline(const Poles& poles, const std::vector<double>& knots, int degree, bool rational) {
+struct Knots {
     std::vector<double> distinct;
     std::vector<int> often;
-    for (const double t : knots) {
-        if (!distinct.empty() && distinct.back() == t)
-            ++often.back();
-        else
-            distinct.push_back(t), often.push_back(1);
+    explicit Knots(const std::vector<double>& knots) {
+        for (const double t : knots) {
+            if (!distinct.empty() && distinct.back() == t)
+                ++often.back();
+            else
+                distinct.push_back(t), often.push_back(1);
+        }
     }
-    const TColStd_Array1OfReal at(distinct.front(), 1, int(distinct.size()));
-    const TColStd_Array1OfInteger multiplicities(often.front(), 1, int(often.size()));
+    TColStd_Array1OfReal at() const { return {distinct.front(), 1, int(distinct.size())}; }
+    TColStd_Array1OfInteger multiplicities() const { return {often.front(), 1, int(often.size())}; }
+};
+
+inline Handle(Geom_BSplineCurve)
+    bspline(const Poles& poles, const std::vector<double>& knots, int degree, bool rational) {
+    const Knots k(knots);
+    const TColStd_Array1OfReal at = k.at();
+    const TColStd_Array1OfInteger multiplicities = k.multiplicities();
     if (rational) return new Geom_BSplineCurve(poles.points, poles.weights, at, multiplicities, degree);
     return new Geom_BSplineCurve(poles.points, at, multiplicities, degree);
 }

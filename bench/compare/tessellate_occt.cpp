@@ -1,18 +1,29 @@
-// bench-tessellate-occt FILE --relative R [--diagonal D] [--repetitions N] [--times-only]
+// bench-tessellate-occt FILE|hills|hills-with-holes --relative R [--diagonal D] [--repetitions N]
+// [--times-only]
 //
 // The same as bench-tessellate with the mesher of Open CASCADE: deflection R times the diagonal, 0.5 radians,
 // one thread, faces as the file has them (no sewing). Also prints the diagonal, in millimetres.
+#include "hills_face.hpp"
+#include "occt_curve.hpp"
 #include "report_fields.hpp"
 
 #include <freiform/core/text.hpp>
 
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <Geom2dConvert.hxx>
+#include <Geom2d_BSplineCurve.hxx>
+#include <Geom2d_Circle.hxx>
 #include <GeomAdaptor_Surface.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -21,6 +32,8 @@
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_Version.hxx>
+#include <TColStd_Array2OfReal.hxx>
+#include <TColgp_Array2OfPnt.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
@@ -32,7 +45,35 @@ namespace {
 using namespace freiform;
 using namespace freiform::bench;
 
+TopoDS_Shape made(const HillsFace& face) {
+    const SurfaceInput& s = face.surface;
+    TColgp_Array2OfPnt points(1, s.size, 1, s.size);
+    TColStd_Array2OfReal weights(1, s.size, 1, s.size);
+    for (int i = 0; i < s.size; ++i)
+        for (int j = 0; j < s.size; ++j) {
+            const std::size_t at = std::size_t(i * s.size + j);
+            const double* p = &s.points[3 * at];
+            points.SetValue(i + 1, j + 1, gp_Pnt(p[0], p[1], p[2]));
+            weights.SetValue(i + 1, j + 1, s.weights[at]);
+        }
+    const Knots u(s.knots_u), v(s.knots_v);
+    const Handle(Geom_Surface) surface = new Geom_BSplineSurface(
+        points, weights, u.at(), v.at(), u.multiplicities(), v.multiplicities(), s.degree, s.degree);
+    BRepBuilderAPI_MakeFace maker(surface, 0, 1, 0, 1, 1e-7);
+    for (const HillsFace::Hole& hole : face.holes) {
+        const Handle(Geom2d_Curve) circle =
+            new Geom2d_Circle(gp_Ax2d(gp_Pnt2d(hole.u, hole.v), gp_Dir2d(1, 0)), hole.radius, false);
+        const Handle(Geom2d_Curve) spline = Geom2dConvert::CurveToBSplineCurve(circle);
+        maker.Add(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(spline, surface).Edge()).Wire());
+    }
+    TopoDS_Shape shape = maker.Face();
+    BRepLib::BuildCurves3d(shape);
+    BRepLib::SameParameter(shape, 1e-6);
+    return shape;
+}
+
 TopoDS_Shape read(const std::string& file) {
+    if (const auto face = hills_face(file)) return made(*face);
     TopoDS_Shape shape;
     const std::string ending = file.substr(file.rfind('.') + 1);
     const auto transfer = [&](auto reader) {
@@ -134,7 +175,8 @@ int run(const Arguments& a) {
 int main(int count, char** values) {
     const std::optional<Arguments> a = parse(count, values);
     if (!a) {
-        std::cerr << "usage: bench-tessellate-occt FILE --relative R [--diagonal D] [--repetitions N] "
+        std::cerr << "usage: bench-tessellate-occt FILE|hills|hills-with-holes --relative R [--diagonal D] "
+                     "[--repetitions N] "
                      "[--times-only]\n";
         return 2;
     }

@@ -1,12 +1,14 @@
-// bench-tessellate FILE --relative R [--diagonal D] [--repetitions N] [--times-only]
+// bench-tessellate FILE|hills|hills-with-holes --relative R [--diagonal D] [--repetitions N] [--times-only]
 //
 // Tessellates FILE with freiform within R times the diagonal, with one thread and with two, and prints one
 // line of JSON: the times of every repetition, what the library proves, and what an independent look from
 // outside finds. D is the diagonal in millimetres (in the unit of the file, where it names none); otherwise
 // that of the model's box.
+#include "hills_face.hpp"
 #include "report_fields.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/io/document.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/tessellate.hpp>
@@ -35,6 +37,53 @@ double millimetres(const std::string& unit) {
     if (unit == "inch") return 25.4;
     if (unit == "ft" || unit == "foot") return 304.8;
     return 1;
+}
+
+// The document of the face.
+std::string written(const HillsFace& face) {
+    const SurfaceInput& s = face.surface;
+    json::Writer w;
+    const auto points = [&] {
+        w.key("points").begin_array();
+        for (std::size_t i = 0, n = std::size_t(s.size); i < n; ++i) {
+            w.begin_array();
+            for (std::size_t j = 0; j < n; ++j) w.array(std::span(s.points).subspan(3 * (i * n + j), 3));
+            w.end_array();
+        }
+        w.end_array().key("weights").begin_array();
+        for (std::size_t i = 0, n = std::size_t(s.size); i < n; ++i)
+            w.array(std::span(s.weights).subspan(i * n, n));
+        w.end_array();
+    };
+    const auto loop = [&](int degree, const std::vector<std::array<double, 2>>& at) {
+        w.begin_array().begin_object().field("degree", degree);
+        if (degree == 2) {
+            w.key("knots").array(std::array{0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4});
+            w.key("weights").begin_array();
+            for (int i = 0; i < 9; ++i) w.value(i % 2 ? std::sqrt(0.5) : 1.0);
+            w.end_array();
+        } else {
+            w.key("knots").array(std::array{0, 0, 1, 2, 3, 4, 4});
+        }
+        w.key("points").begin_array();
+        for (const auto& p : at) w.array(p);
+        w.end_array().end_object().end_array();
+    };
+    w.begin_object().field("type", "trimmed").key("surface").begin_object().field("type", "surface");
+    w.key("degrees").array(std::array{3, 3}).key("knots").begin_array().array(s.knots_u).array(s.knots_v);
+    w.end_array();
+    points();
+    w.end_object().key("loops").begin_array();
+    loop(1, {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}});
+    for (const HillsFace::Hole& hole : face.holes) {
+        std::vector<std::array<double, 2>> corners;
+        constexpr int kX[9] = {1, 1, 0, -1, -1, -1, 0, 1, 1}, kY[9] = {0, -1, -1, -1, 0, 1, 1, 1, 0};
+        for (int i = 0; i < 9; ++i)
+            corners.push_back({hole.u + hole.radius * kX[i], hole.v + hole.radius * kY[i]});
+        loop(2, corners);
+    }
+    w.end_array().end_object();
+    return w.take();
 }
 
 std::vector<FaceTriangles> look(const Model& model, const TriangleMesh& mesh) {
@@ -91,7 +140,8 @@ void write_refused(json::Writer& w, const Tessellation& t, const Model& model) {
 }
 
 int run(const Arguments& a) {
-    const auto document = read_any(a.file);
+    const auto face = hills_face(a.file);
+    const auto document = face ? read_document(written(*face)) : read_any(a.file);
     if (!document) return fail(document.error());
     const auto model = scene_of(*document);
     if (!model) return fail(model.error());
@@ -135,8 +185,8 @@ int run(const Arguments& a) {
 int main(int count, char** values) {
     const std::optional<Arguments> a = parse(count, values);
     if (!a) {
-        std::cerr
-            << "usage: bench-tessellate FILE --relative R [--diagonal D] [--repetitions N] [--times-only]\n";
+        std::cerr << "usage: bench-tessellate FILE|hills|hills-with-holes --relative R [--diagonal D] "
+                     "[--repetitions N] [--times-only]\n";
         return 2;
     }
     return run(*a);

@@ -3,13 +3,18 @@
 // Idea: most of a face lies inside the box of the edges; only parts that may reach beyond it are cut finer,
 // those first that may reach farthest. A part of a face is within its error of two triangles
 // (face_parts.cpp), so its box is that of its corners, wider by the error; parts outside the boundary are
-// left out, which a box over all parameters between the loops cannot do. Cost: at most kMostBoxParts parts
-// for each face; a plane face, which its boundary encloses, needs none. Accuracy: contains the face; beyond
-// it by kBoxEnough of the diagonal, where the number of parts suffices.
+// left out, which a box over all parameters between the loops cannot do. Where too many parts are left, the
+// tight box of the whole spline is one as well, and the intersection of both is taken. Cost: at most
+// kMostBoxParts parts for each face, as many pieces of a spline; a plane face, which its boundary encloses,
+// needs none. Accuracy: contains the face; beyond it by kBoxEnough of the diagonal, where the number of parts
+// suffices, or that of the spline where the face is most of it.
 #include "face_box_detail.hpp"
 #include "face_parts_detail.hpp"
 
+#include <freiform/query/bounds.hpp>
+
 #include <algorithm>
+#include <limits>
 
 namespace freiform {
 
@@ -32,6 +37,22 @@ bool is_divisible(const FacePart& p) {
     for (int d = 0; d < 2; ++d)
         if (const double m = p.box.side(d).middle(); p.box.lo[d] < m && m < p.box.hi[d]) return true;
     return false;
+}
+
+// Of the whole surface, where it is a spline.
+Box<3> box_of_spline(const SurfaceGeometry& surface, double accuracy) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const Box<3> all{Box<3>::filled(-kInfinity), Box<3>::filled(kInfinity)};
+    return std::visit(
+        [&](const auto& s) {
+            if constexpr (requires { s.net(); }) {
+                const auto tight = tight_box(s, accuracy, kMostBoxParts);
+                return tight ? tight->box : all;
+            } else {
+                return all;
+            }
+        },
+        surface);
 }
 
 // How far the inner box is exceeded.
@@ -78,6 +99,11 @@ std::optional<Box<3>> box_of_face(const Face& face, const std::vector<Edge>& edg
         seen += 2;
     }
     for (const FacePart& part : heap) out.add(box_around(part));
+    if (!heap.empty()) {
+        const Box<3> spline = box_of_spline(face.surface, kBoxEnough * inner.diagonal());
+        for (int i = 0; i < 3; ++i)
+            out.lo[i] = std::max(out.lo[i], spline.lo[i]), out.hi[i] = std::min(out.hi[i], spline.hi[i]);
+    }
     if (!out.is_empty() && !std::isfinite(out.diagonal())) return std::nullopt;
     return out;
 }

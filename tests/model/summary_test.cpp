@@ -1,4 +1,7 @@
+#include "support/random.hpp"
 #include "support/solids.hpp"
+
+#include <freiform/query/bounds.hpp>
 
 #include <gtest/gtest.h>
 
@@ -23,6 +26,27 @@ TEST(Summary, boxes_contain_the_model_and_little_more) {
             EXPECT_NEAR(box.lo[i], c.lo[i], 0.02 * norm(c.hi - c.lo)) << c.name;
             EXPECT_NEAR(box.hi[i], c.hi[i], 0.02 * norm(c.hi - c.lo)) << c.name;
         }
+    }
+}
+
+TEST(Summary, boxes_of_faces_with_many_bumps_contain_little_more) {
+    Random random(8);
+    const auto basis = *BSplineBasis::clamped_uniform(3, 20);
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < 20; ++i)
+        for (int k = 0; k < 20; ++k)
+            c.push_back(
+                weighted(Vec<3>{{i / 19.0, k / 19.0, 0.1 * random.real(-1, 1)}}, random.real(0.5, 2)));
+    const auto surface = *Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({20, 20}, c));
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(surface));
+    const Box<3> box = summary(*std::move(builder).finish()).box;
+    const Box<3> tight = tight_box(surface, 1e-6)->box;
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_LE(box.lo[i], tight.lo[i] + 1e-6);
+        EXPECT_GE(box.hi[i], tight.hi[i] - 1e-6);
+        EXPECT_NEAR(box.lo[i], tight.lo[i], 0.02);
+        EXPECT_NEAR(box.hi[i], tight.hi[i], 0.02);
     }
 }
 
