@@ -161,16 +161,22 @@ FF_INLINE void finish(const Net& net, V (*s)[4], int left, const Output& out, Si
     }
 }
 
-// The sums over the coefficients of one vector of a tile. h: for each slot and plane those of the tile, four
-// numbers each.
+// The sums over the coefficients of one vector of a tile, of which `left` are asked for. h: for each slot and
+// plane those of the tile, four numbers each. A single one is spread: memory would make a vector wait for
+// what has just been stored in parts.
 template <int N, int K>
-FF_INLINE void sums_of(const Net& net, const double* h, int g, V (*s)[4], V* weight) {
+FF_INLINE void sums_of(const Net& net, const double* h, int g, int left, V (*s)[4], V* weight) {
     constexpr int kCount = Slots<N, K>::kCount;
     const int planes = net.planes();
     each < N<3 ? kCount : -1>(
                kCount,
                [&](int k) FF_BODY {
                    const double* from = h + k * planes * 4 * kTile + 4 * g;
+                   if (left == 1) {
+                       for (int c = 0; c < 4; ++c) s[k][c] = all(from[c]);
+                       weight[k] = all(from[(planes - 1) * 4 * kTile + 3]);
+                       return;
+                   }
                    transpose(from, s[k]);
                    weight[k] = s[k][3];
                    if (planes == 2) {
@@ -235,7 +241,7 @@ __attribute__((noinline)) static void finish_tile(const Net& net, const double* 
         if (N == 1 && l->uniform[g / kWidth])
             sums_of_run<(N == 1 ? K : 0)>(net.axis[0], *l, g, s, weight);
         else
-            sums_of<N, K>(net, h, g, s, weight);
+            sums_of<N, K>(net, h, g, n - g, s, weight);
         if (net.rational) project<N, K>(s, weight);
         if (K > 0 || !net.rational) put_factors<N, K>(net, l, g, s);
         finish<N, K>(net, s, n - g, out, to);

@@ -81,10 +81,8 @@ __attribute__((noinline)) static void grid_points(const GridAxis& last, const do
                 }
             });
             if constexpr (Rational) {
-                const V u[kBlock] = {u0, u1};
-                V r[kBlock];
-                reciprocals<kBlock>(u, r);
-                x0 *= r[0], y0 *= r[0], z0 *= r[0], x1 *= r[1], y1 *= r[1], z1 *= r[1];
+                const V r0 = reciprocal(u0), r1 = reciprocal(u1);
+                x0 *= r0, y0 *= r0, z0 *= r0, x1 *= r1, y1 *= r1, z1 *= r1;
             }
             interleave(x0, y0, z0, v), interleave(x1, y1, z1, v + 3);
             to.template put_all<3 * kBlock>(v);
@@ -106,9 +104,10 @@ __attribute__((noinline)) static void grid_points(const GridAxis& last, const do
             s[q][0] = x, s[q][1] = y, s[q][2] = z, w[q] = u;
         });
         if constexpr (Rational) {
-            V r[kBlock];
-            reciprocals<kBlock>(w, r);
-            each<kBlock>(kBlock, [&](int q) FF_BODY { each<3>(3, [&](int c) FF_BODY { s[q][c] *= r[q]; }); });
+            each<kBlock>(kBlock, [&](int q) FF_BODY {
+                const V r = reciprocal(w[q]);
+                each<3>(3, [&](int c) FF_BODY { s[q][c] *= r; });
+            });
         }
         if ((group + kBlock) * kWidth <= last.count) {
             each<kBlock>(kBlock, [&](int q) FF_BODY { interleave(s[q][0], s[q][1], s[q][2], v + 3 * q); });
@@ -162,18 +161,25 @@ static void flush() {
 }
 
 static bool inside(const double* at, std::size_t n, int axes, const double* lo, const double* hi) {
+    constexpr std::size_t kAtOnce = 4;  // so that nothing waits for the comparison before
     std::size_t i = 0;
-    I ok = all(0) == all(0);
+    bool fine = true;
     if (axes < 3) {
         V low = all(lo[0]), high = all(hi[0]);
         for (int k = 1; k < kWidth; k += 2) low[k] = lo[axes - 1], high[k] = hi[axes - 1];
+        I ok[kAtOnce];
+        each<kAtOnce>(0, [&](int k) FF_BODY { ok[k] = all(0) == all(0); });
+        for (; i + kAtOnce * std::size_t(kWidth) <= n; i += kAtOnce * std::size_t(kWidth))
+            each<kAtOnce>(0, [&](int k) FF_BODY {
+                const V x = load(at + i + k * kWidth);
+                ok[k] &= (x >= low) & (x <= high);
+            });
         for (; i + std::size_t(kWidth) <= n; i += std::size_t(kWidth)) {
             const V x = load(at + i);
-            ok &= (x >= low) & (x <= high);
+            ok[0] &= (x >= low) & (x <= high);
         }
+        fine = all_of(ok[0] & ok[1] & ok[2] & ok[3]);
     }
-    bool fine = true;
-    for (int k = 0; k < kWidth; ++k) fine &= ok[k] != 0;
     for (; i < n; ++i) {
         const std::size_t d = i % std::size_t(axes);
         fine &= (at[i] >= lo[d]) & (at[i] <= hi[d]);

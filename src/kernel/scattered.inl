@@ -140,9 +140,8 @@ template <int P, int N, int K>
 __attribute__((noinline)) static void contract_tile(const Net& from, const Local* l, int n, double* h) {
     const Net net = from;  // what is stored cannot change it
     if constexpr (N == 1) {
-        for (int i = 0; i < n; i += kWidth)
-            for (int k = i; k < i + kWidth && !l[0].uniform[i / kWidth]; ++k)
-                contract_curve<P, K>(net, l[0], k, h + 4 * k);
+        for (int i = 0; i < n; ++i)
+            if (!l[0].uniform[i / kWidth]) contract_curve<P, K>(net, l[0], i, h + 4 * i);
     } else if constexpr (P >= 0) {
         constexpr int kSize = (K + 1) * kLanes<P>;
         alignas(64) double w[N][kTile * kSize];
@@ -164,6 +163,14 @@ __attribute__((noinline)) static void contract_tile(const Net& from, const Local
     }
 }
 
+// What the lanes behind the last point are computed from; nobody asks for it, but they must hold numbers. (A
+// single last one is spread over all of them.)
+template <int N, int K>
+FF_INLINE void repeat_last(const Net& net, int n, double* h) {
+    for (int k = 0; k < Slots<N, K>::kCount * net.planes(); ++k, h += 4 * kTile)
+        for (int i = n; i % kWidth != 0; ++i) store4(h + 4 * i, load4(h + 4 * (n - 1)));
+}
+
 template <int N, int K>
 __attribute__((noinline)) static void scattered_of(const Net& net, const double* at, std::size_t count,
                                                    const Output& out) {
@@ -176,9 +183,9 @@ __attribute__((noinline)) static void scattered_of(const Net& net, const double*
         const int n = int(count - from < std::size_t(kTile) ? count - from : std::size_t(kTile));
         for (int d = 0; d < N; ++d) locate(net.axis[d], at, N, d, n, N == 1, !net.rational, local[d]);
         with_degree(plain ? net.axis[0].degree : -1, [&]<int P>(Degree<P>) FF_BODY {
-            const int all = (n + kWidth - 1) / kWidth * kWidth;
-            contract_tile<N == 3 ? -1 : P, N, K>(net, local, all, h);
+            contract_tile<N == 3 ? -1 : P, N, K>(net, local, n, h);
         });
+        if (n % kWidth > 1) repeat_last<N, K>(net, n, h);
         finish_tile<N, K>(net, h, local, n, out, to);
     }
     close(to, out);

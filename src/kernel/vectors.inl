@@ -64,36 +64,9 @@ FF_INLINE V spread(V4 w, int i) {
 #endif
 inline constexpr int kPerVector = kWidth / 4;  // coefficients in a V
 
-// 1 / w to within 1.2 * 2^-53, relatively. REQUIRES 2^-1000 <= w <= 2^1000. Newton's step squares the error
-// of the estimate, 2^-14, twice: the second step adds the rounding of its one sum to 2^-55.
-FF_INLINE V reciprocal(V w) {
-#if defined(__AVX512F__)
-    const __m512d one = _mm512_set1_pd(1);
-    __m512d r = _mm512_maskz_rcp14_pd(0xff, (__m512d)w);
-    r = _mm512_fmadd_pd(r, _mm512_fnmadd_pd((__m512d)w, r, one), r);
-    r = _mm512_fmadd_pd(r, _mm512_fnmadd_pd((__m512d)w, r, one), r);
-    return (V)r;
-#else
-    return all(1) / w;
-#endif
-}
-
-// The same of several, side by side: one is a chain in which each operation waits for the last.
-template <int Count>
-FF_INLINE void reciprocals(const V* w, V* r) {
-#if defined(__AVX512F__)
-    const __m512d one = _mm512_set1_pd(1);
-    __m512d e[Count], x[Count];
-    each<Count>(Count, [&](int i) FF_BODY { x[i] = _mm512_maskz_rcp14_pd(0xff, (__m512d)w[i]); });
-    for (int step = 0; step < 2; ++step) {
-        each<Count>(Count, [&](int i) FF_BODY { e[i] = _mm512_fnmadd_pd((__m512d)w[i], x[i], one); });
-        each<Count>(Count, [&](int i) FF_BODY { x[i] = _mm512_fmadd_pd(x[i], e[i], x[i]); });
-    }
-    each<Count>(Count, [&](int i) FF_BODY { r[i] = (V)x[i]; });
-#else
-    each<Count>(Count, [&](int i) FF_BODY { r[i] = all(1) / w[i]; });
-#endif
-}
+// 1 / w. Not by the estimate of 2^-14 that AVX-512 has and Newton's steps: these take four fused operations
+// of the units that everything else waits for, a division hardly any.
+FF_INLINE V reciprocal(V w) { return all(1) / w; }
 
 // 1 / sqrt(x) to within 4 * 2^-53, relatively. REQUIRES 2^-1000 <= x <= 2^1000.
 FF_INLINE V reciprocal_root(V x) {
@@ -166,40 +139,6 @@ FF_INLINE void store_three(double* p, V4 v) {
     *reinterpret_cast<V2u*>(p) = __builtin_shufflevector(v, v, 0, 1);
     p[2] = v[2];
 #endif
-}
-
-// The numbers at kWidth addresses.
-FF_INLINE V gather(I at) {
-#if defined(__AVX512F__)
-    return (V)_mm512_mask_i64gather_pd(_mm512_setzero_pd(), 0xff, (__m512i)at, nullptr, 1);
-#elif defined(__AVX2__)
-    return (V)_mm256_i64gather_pd(nullptr, (__m256i)at, 1);
-#else
-    V v;
-    for (int i = 0; i < kWidth; ++i) v[i] = *reinterpret_cast<const double*>(std::size_t(at[i]));
-    return v;
-#endif
-}
-// The addresses of lines table[index] of `from`.
-FF_INLINE I gather_lines(const double* from, const int* table, Half index) {
-    const I base = I{} + (long long)reinterpret_cast<std::size_t>(from);
-#if defined(__AVX512F__)
-    return ((I)_mm512_maskz_cvtepu32_epi64(0xff, _mm256_i32gather_epi32(table, (__m256i)index, 4)) << 6) +
-           base;
-#elif defined(__AVX2__)
-    return ((I)_mm256_cvtepu32_epi64(_mm_i32gather_epi32(table, (__m128i)index, 4)) << 6) + base;
-#else
-    I at = base;
-    for (int i = 0; i < kWidth; ++i) at[i] += (long long)table[index[i]] << 6;
-    return at;
-#endif
-}
-
-FF_INLINE void store_addresses(const double** to, I at) {
-    if constexpr (sizeof(to[0]) == sizeof(at[0]))
-        *reinterpret_cast<Iu*>(to) = at;
-    else
-        for (int i = 0; i < kWidth; ++i) to[i] = reinterpret_cast<const double*>(std::size_t(at[i]));
 }
 
 // The first three numbers of kWidth places, one in each lane.

@@ -5,6 +5,7 @@
 #include <freiform/core/parallel.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -26,16 +27,6 @@ bool is_good(const BSplineBasis& basis, double x) {
     return std::isfinite(x) && (basis.is_closed() || basis.domain().contains(x));
 }
 
-// Whether all parameters may be handed to the kernels as they are.
-bool all_inside(const Tables& t, std::span<const double> at) {
-    double lo[3], hi[3];
-    for (std::size_t d = 0; d < t.axis.size(); ++d) {
-        const Interval on = t.axis[d].basis.domain();
-        lo[d] = on.lo, hi[d] = on.hi;
-    }
-    return kernels().inside(at.data(), at.size(), int(t.axis.size()), lo, hi);
-}
-
 // The refusal of the first parameter that is not good, if there is one.
 Result<void> check(const Tables& t, std::span<const double> at) {
     const std::size_t axes = t.axis.size();
@@ -50,13 +41,29 @@ Result<void> check(const Tables& t, std::span<const double> at) {
 
 // f(first, count) for pieces of n points, on several threads if there are many. Where pieces begin does not
 // depend on the threads.
-void in_chunks(std::size_t n, const std::function<void(std::size_t, std::size_t)>& f) {
+template <class F>
+void in_chunks(std::size_t n, F&& f) {
     if (n < PreparedPatch<1, Vec<1>>::kParallelFrom) {
         for (std::size_t i = 0; i < n; i += kChunk) f(i, std::min(kChunk, n - i));
         return;
     }
     parallel_for((n + kChunk - 1) / kChunk, kChunksFrom / 2,
                  [&](std::size_t i) { f(i * kChunk, std::min(kChunk, n - i * kChunk)); });
+}
+
+// Whether all parameters may be handed to the kernels as they are.
+bool all_inside(const Tables& t, std::span<const double> at) {
+    double lo[3], hi[3];
+    const std::size_t axes = t.axis.size();
+    for (std::size_t d = 0; d < axes; ++d) {
+        const Interval on = t.axis[d].basis.domain();
+        lo[d] = on.lo, hi[d] = on.hi;
+    }
+    std::atomic<bool> fine = true;
+    in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
+        if (!kernels().inside(at.data() + first * axes, count * axes, int(axes), lo, hi)) fine = false;
+    });
+    return fine;
 }
 
 // Parameters that the kernels can take: good ones, of closed axes wrapped, bad ones replaced.
@@ -119,7 +126,7 @@ Result<void> PreparedNet::evaluate(std::span<const double> at, int order, std::s
     const bool plain = all_inside(t, at);
     if (!plain && outside == Outside::refuse)
         if (auto ok = check(t, at); !ok) return ok;
-    const kernel::Net net = t.view();
+    const kernel::Net& net = t.ready;
     const bool past =
         at.size() / axes * to.numbers(slots * std::size_t(net.dim)) * sizeof(double) > kPastFrom;
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
@@ -135,7 +142,7 @@ Result<void> PreparedNet::evaluate_single(std::span<const double> at, float* poi
     const bool plain = all_inside(t, at);
     if (!plain && outside == Outside::refuse)
         if (auto ok = check(t, at); !ok) return ok;
-    const kernel::Net net = t.view();
+    const kernel::Net& net = t.ready;
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
         double some[512 * 4];
         for (std::size_t i = first; i < first + count; i += 512) {

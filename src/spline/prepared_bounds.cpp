@@ -5,17 +5,15 @@
 //
 // Functions. The derivative of order o of the functions of an axis is (far / h)^p far^-o sum_k C(p - o, k)
 // D_k r^k, D_k = p! / (p - o)! times the o-th differences of the non-negative e_ik (prepared_tables.cpp).
-//   r      the distances of x from both ends: 2, the reciprocal 1.2, the product 1: 4.2.
-//   terms  a coefficient C D_k rounded once from doubled precision (whose error, p 2^-95 of the e_ik, the
-//   factor
-//          1.01 below pays), and a product and a sum, p - o times: a term has p - o factors r at most,
-//          6.2 (p - o) + 1.
+//   r      the distances of x from both ends: 2, the reciprocal 1, the product 1: 4.
+//   terms  a coefficient C D_k rounded once from doubled precision (whose error, p 2^-95 of the e_ik, is
+//          paid by the factor 1.01 below), and a product and a sum, p - o times: a term has p - o factors
+//          r at most, 6 (p - o) + 1.
 //   power  far, the inverse of h, their product: 3; p - 1 products of such, and one with the sum: 4 p. At the
-//          ends of the span it is exactly 1 and r exactly 0. Degree 0 is exact. 1 / far takes 2.2 and a
-//          product for each order. Together n_d = 10.2 p_d + 1 at most for p_d > 0, whatever the order.
+//          ends of the span it is exactly 1 and r exactly 0. Degree 0 is exact. 1 / far takes 2 and a
+//          product for each order. Together n_d = 10 p_d + 1 at most for p_d > 0, whatever the order.
 //   sums   curve: none but those of the functions, whose entries are the coefficients of the piece, each
-//   rounded
-//          once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights are
+//          rounded once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights are
 //          multiplied, then summed in one go: (p_0 + 1) (p_1 + 1) + 1 along the outer two, p_2 + 1.
 // Contracted products and sums have fewer. So with k = sum n_d + sums, g = 1.01 k u, a sum is off by at most
 // g times the sum of the absolute values of its terms, and by e = h sum (p_d + 1) for underflow with h the
@@ -24,7 +22,7 @@
 // Values. The e_ik of one k add up to 1. So |computed - exact| <= g c + e; rational, with numerator and
 // denominator off by g c w + e and g w + e,
 //     (2 g c + (1 + c) e / w_min) / (1 - g - e / w_min)
-// and 2.2 roundings of the quotient (reciprocal 1.2, product 1) instead of one.
+// and 2 roundings of the quotient (reciprocal, product) instead of one.
 //
 // Derivatives. The absolute values of the differences of order o add up to 2^o, so those of the terms to at
 // most c T, T = prod_d T_d, T_d = p! / (p - o)! (2 / h_d)^o with h_d the shortest span: |computed - exact| <=
@@ -32,7 +30,7 @@
 //     w S_a = A_a - sum_{0 < b <= a} C(a, b) w_b S_{a-b},    |A_a| <= c W T_a,  |w_b| <= W T_b,
 // so M_a = q (c T_a + sum C(a, b) T_b M_{a-b}), M_0 = c, bounds |S_a|. A_a / w, w_b / w and w are off by g q
 // c T_a, g q T_b and g w; a product of the sum has 2 roundings and takes part in 3 differences, the
-// quotient 2.2, the powers of 1 / far after it 4.2 for each order. So, E_b the errors of the others,
+// quotient 2, the powers of 1 / far after it 4 for each order. So, E_b the errors of the others,
 //     E_a <= 1.02 ((2 g + 16 u) M_a + q sum C(a, b) T_b E_{a-b}),
 // where 1.02 pays for products of errors (g < 1e-10), and e / w_min times the same sum with M, as above.
 //
@@ -62,7 +60,7 @@ struct Counted {
 };
 Counted counted(std::span<const int> degrees) {
     double roundings = 0, terms = 1;
-    for (const int p : degrees) roundings += p > 0 ? 10.2 * p + 1 : 0, terms += 2 * (p + 1);
+    for (const int p : degrees) roundings += p > 0 ? 10.0 * p + 1 : 0, terms += 2 * (p + 1);
     if (degrees.size() == 2) roundings += degrees[0] + degrees[1] + 2;
     if (degrees.size() == 3) roundings += (degrees[0] + 1) * (degrees[1] + 1) + degrees[2] + 2;
     return {1.01 * roundings * kUnit, terms * std::numeric_limits<double>::denorm_min()};
@@ -130,7 +128,7 @@ double batch_error_bound(std::span<const int> degrees, const Tuples& net) {
     const auto [g, lost] = counted(degrees);
     const auto [c, w_min] = reach_of(net);
     if (!net.rational) return g * c + lost;
-    return 1.02 * ((2 * g + 2.2 * kUnit) * c + (1 + c) * (lost / w_min)) + lost;
+    return 1.02 * ((2 * g + 2 * kUnit) * c + (1 + c) * (lost / w_min)) + lost;
 }
 
 std::vector<double> batch_error_bounds(std::span<const BSplineBasis> bases, const Tuples& net) {

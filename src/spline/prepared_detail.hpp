@@ -47,6 +47,8 @@ struct PreparedNet::Tables {
     Lines coefficients;
     std::vector<double> errors;  // bounds, of each partial derivative up to kernel::kMaxOrder
 
+    kernel::Net ready;  // the view of these tables
+
     kernel::Net view() const;
     bool any_closed() const;
 };

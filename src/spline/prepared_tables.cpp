@@ -36,22 +36,18 @@ struct Knots {
     double knot(int i) const { return basis.knot(i); }
 };
 
-// How far a lookup by equal buckets may be off: rounded up to 2^k - 1.
-void make_search(AxisTable& table) {
+// Looks up spans by `buckets` equal parts of the domain; returns how far a lookup may be off, in spans.
+int put_buckets(AxisTable& table, std::size_t buckets) {
     kernel::Axis& a = table.axis;
     const std::size_t spans = std::size_t(a.spans);
-    const Interval on{table.span(0).lo, table.span(spans - 1).hi};
-    a.lo = on.lo;
-    // Few buckets should have two spans, all of them should stay in the cache.
-    a.buckets =
-        int(std::min<std::size_t>(std::max(std::min<std::size_t>(64 * spans, 2048), 8 * spans), 1 << 20));
-    a.scale = a.buckets / on.length();
+    a.buckets = int(buckets);
+    a.scale = a.buckets / (table.span(spans - 1).hi - a.lo);
     // The same expression as in the kernels, which is monotone; so a parameter at or above the start of a
     // span is in its bucket or a later one.
     const auto bucket_of = [&](double x) { return std::min(int((x - a.lo) * a.scale), a.buckets - 1); };
-    table.bucket.assign(std::size_t(a.buckets), 0);
+    table.bucket.assign(buckets, 0);
     int most = 0;
-    for (std::size_t s = 0, b = 0; b < table.bucket.size(); ++b) {
+    for (std::size_t s = 0, b = 0; b < buckets; ++b) {
         while (s + 1 < spans && bucket_of(table.span(s + 1).lo) < int(b)) ++s;
         table.bucket[b] = int(s * (a.stride / kernel::Axis::kLine));
         int more = 0;
@@ -60,6 +56,19 @@ void make_search(AxisTable& table) {
             ++more;
         most = std::max(most, more);
     }
+    return most;
+}
+
+// As few buckets as leave one step, since they share the cache with the coefficients; if that takes too many,
+// the number of steps is rounded up to 2^k - 1.
+void make_search(AxisTable& table) {
+    kernel::Axis& a = table.axis;
+    const std::size_t spans = std::size_t(a.spans), limit = std::size_t(1) << 20;
+    const std::size_t end = std::min(std::max(std::min<std::size_t>(64 * spans, 2048), 8 * spans), limit);
+    a.lo = table.span(0).lo;
+    std::size_t buckets = std::min(2 * spans, end);
+    int most = put_buckets(table, buckets);
+    while (most > 1 && buckets < end) most = put_buckets(table, buckets = std::min(2 * buckets, end));
     while (a.steps < most) a.steps = 2 * a.steps + 1;
     const double infinity = std::numeric_limits<double>::infinity();
     for (std::size_t s = 0; s + 1 < spans; ++s) table.span(s).next = table.span(s + 1).lo;
@@ -222,6 +231,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
             place(net, i, &curve[i * std::size_t(lanes)],
                   &curve[i * std::size_t(lanes) + std::size_t(lanes) - 4]);
         tables->axis.push_back(make_axis(bases[0], curve, lanes));
+        tables->ready = tables->view();
         return PreparedNet(std::move(tables));
     }
     Index<3>&extent = tables->extent, &size = tables->size;
@@ -245,6 +255,7 @@ Result<PreparedNet> PreparedNet::make(std::span<const BSplineBasis> bases, const
     n.plane = n.planes() == 2 ? all + 8 : 0;
     tables->coefficients.assign(n.plane + all + 8, 0.0);
     put_coefficients(*tables, net, tables->coefficients.data());
+    tables->ready = tables->view();
     return PreparedNet(std::move(tables));
 }
 

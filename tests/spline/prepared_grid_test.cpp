@@ -6,6 +6,7 @@
 #include <prepared.hpp>
 #include <random.hpp>
 #include <reference.hpp>
+#include <refusal.hpp>
 
 namespace freiform {
 namespace {
@@ -244,6 +245,60 @@ TEST(PreparedPatch, results_do_not_depend_on_place_in_the_batch_nor_on_threads) 
             ASSERT_EQ(single[0].d, first[i].d);
         }
     });
+}
+
+// Batches of fewer points than a vector has lanes take ways of their own.
+template <std::size_t N, class P>
+void expect_short_batches_to_agree(unsigned seed) {
+    Random random(seed);
+    const auto patch = test::random_patch<N, P>(random, 3, {.spans = 3});
+    const auto fast = prepared(patch);
+    const auto at = test::parameters<N, P>(random, patch, 40);
+    with_every_variant([&] {
+        std::vector<PointOf<P>> values(at.size());
+        std::vector<Jet<N, 2, PointOf<P>>> jets(at.size());
+        ASSERT_TRUE(fast.evaluate(at, values));
+        ASSERT_TRUE(fast.evaluate(at, std::span(jets)));
+        for (std::size_t n = 1; n <= 17; ++n)
+            for (std::size_t first : {std::size_t(0), std::size_t(5), at.size() - n}) {
+                const auto some = std::span(at).subspan(first, n);
+                std::vector<PointOf<P>> few(n);
+                std::vector<Jet<N, 2, PointOf<P>>> few_jets(n);
+                ASSERT_TRUE(fast.evaluate(some, few));
+                ASSERT_TRUE(fast.evaluate(some, std::span(few_jets)));
+                for (std::size_t i = 0; i < n; ++i) {
+                    ASSERT_EQ(few[i], values[first + i]) << n << " points, " << i;
+                    ASSERT_EQ(few_jets[i].d, jets[first + i].d) << n << " points, " << i;
+                }
+            }
+    });
+}
+TEST(PreparedPatch, short_batches_give_the_bits_of_long_ones) {
+    expect_short_batches_to_agree<1, Hom<3>>(72);
+    expect_short_batches_to_agree<1, Hom<4>>(73);
+    expect_short_batches_to_agree<2, Vec<3>>(74);
+    expect_short_batches_to_agree<2, Hom<3>>(75);
+    expect_short_batches_to_agree<2, Hom<4>>(76);
+    expect_short_batches_to_agree<3, Hom<3>>(77);
+}
+
+TEST(PreparedPatch, large_batches_are_checked_to_their_end_before_anything_is_written) {
+    Random random(78);
+    const auto surface = test::random_patch<2, Hom<3>>(random, 2, {.ends = test::Ends::clamped});
+    const auto fast = prepared(surface);
+    const auto on = surface.domain();
+    const std::size_t n = 70001;
+    for (const std::size_t place : {std::size_t(0), std::size_t(4096), std::size_t(40000), n - 1})
+        for (const int threads : {1, 0}) {
+            std::vector<Param<2>> at(n, {on[0].lo, on[1].hi});
+            at[place][0] = std::nextafter(on[0].hi, on[0].hi + 1);
+            std::vector<Vec<3>> out(n, Vec<3>{{7, 7, 7}});
+            set_max_threads(threads);
+            test::expect_refusal(fast.evaluate(at, out), RefusalKind::out_of_domain,
+                                 text("at[", place, "][0]"));
+            set_max_threads(0);
+            ASSERT_EQ(std::ranges::count(out, Vec<3>{{7, 7, 7}}), std::ptrdiff_t(n));
+        }
 }
 
 }  // namespace
