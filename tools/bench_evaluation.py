@@ -212,31 +212,40 @@ In the plots bars go from quartile to quartile.
 ## What was tried, and what would be next
 
 - Grids: vectors of parameters, two of them side by side since one is a chain of dependent operations, divided by one
-  reciprocal a point and stored past the caches in whole lines, whatever the alignment of the result. The line on memory above
+  reciprocal a point, a division of which goes beside the fused operations (5 % less than an estimate with two of Newton's steps), and stored past the caches in whole lines, whatever the alignment of the result. The line on memory above
   is what such stores take without any computing: a grid cannot be faster. Storing into the caches takes 1.9 times as long as past
-  them (3.1 and 1.6 ns on an AMD EPYC, of which 1.2 ns are computing: 16 fused operations, four for the reciprocal and nine
+  them (3.1 and 1.6 ns on an AMD EPYC, of which 1 ns or so is computing: 16 fused operations, a division and nine
   shuffles for eight points, about what that processor issues). Where the output begins makes no difference that could be measured (stores
   are shifted to whole lines); pages of 2 MiB gain a tenth; memory that was never touched costs 15 ns a point more, in every program. Blocks
   within one span share the spread coefficients: 5 to 20 % with AVX2, a quarter with SSE2, nothing with AVX-512. Accumulating in
   single precision would halve the work and is not allowed.
-- Next for grids: two rows at once, which would load the weights, a fifth of all loads, once for both; Horner's rule in the parameter of the span
-  instead of weights, which saves a quarter of the fused operations and loses the proof that all terms have one sign.
+- Without gain on grids: parts of 32768 points instead of 4096 for a thread.
+- Next for grids: Horner's rule in r = near / far, the columns of a row made once for each of its spans, which saves a quarter of the fused
+  operations and keeps all terms of one sign; vectors across spans would be put together by masks, so that bits do not depend on the place.
 - Scattered points of a surface: basis functions by Horner's rule in r = near / far on half spans instead of Bernstein polynomials
   times a matrix (a coefficient costs one load and one fused operation, all terms stay positive, and powers of 1 - t cancel in what is
   rational): 20.0 to 16.6 ns at the time. Finding spans and placing parameters in them in two loops instead of one, which was a single
-  chain of operations waiting for one another: 16.6 to 13.9 ns. Spans by gathers with the step to the next span always
+  chain of operations waiting for one another: 16.6 to 13.9 ns. The step to the next span always
   taken instead of a branch that is sometimes wrong: nothing by itself, 3 ns in two loops.
-- Profiled now: two fifths are the sums over the coefficients, a third finds spans, a sixth the basis functions, the rest is projection and
-  stores. Checking all parameters before anything is written reads them twice, 1.3 to 2.7 ns where memory is slow.
-- Without gain on scattered points: tiles of 32 (3 % slower) or 128 points (6 % slower); fetching parameters ahead (2 % slower); coefficients
+- After that, 4096 points of the surface above, least of many runs in turn with what was before: as few buckets for finding spans as
+  leave one step, since coefficients share the cache with them, 12.3 to 11.8 ns; one lookup after the other instead of gathers, 11.8 to
+  11.6; written out eight at a time, 11.4 to 11.2; divisions instead of estimates of reciprocals with Newton's steps, 11.6 to 11.4. A million
+  points: 15.6 to 14.7 by these; parameters asked for some pages ahead where the results do not stay in the cache, to 13.4.
+- One point in a call: 222 ns before, 81 now. It was two thirds waiting: a vector from numbers that were stored one by one a moment ago has to
+  wait until they are in the cache, so a single parameter is spread over the lanes from a register.
+- All parameters are checked before anything is written; the threads that evaluate share that, which was the part that one of them did alone.
+- Profiled now: a third are the sums over the coefficients, a third finds spans, a sixth the basis functions, the rest is projection and
+  stores. Checking reads all parameters twice, 1 ns where memory is slow.
+- Without gain on scattered points: tiles of 32 (3 % slower) or 128 points (6 % slower); fetching parameters ahead where all is in the cache (2 % slower), or for the check;
+  two points at once in the sums with one fold for both (1 % slower, derivatives 1 % faster); coefficients
   read from where lines of the cache begin (values nothing, derivatives 7 %, and it would double the net); results collected in registers
   before they go past the caches. AVX2, with half the width, takes a fifth more with derivatives: what bounds it are loads and the
   length of the chains. With others at work on the machine the ratio to SISL was between 13.9 and 15.2 in four runs.
 - Four vectors of a grid at once instead of two gain nothing; coefficients that begin with a line of the cache 5 %.
 - Second derivatives of surfaces with loops of their own for degrees 1, 2 and 5, as 3 had: 90 to 23, 90 to 34 and 140 to 51 ns (degree 5
   with AVX2: 130 to 62), for 1 KB of program and no time of the compiler that could be measured.
-- Next: two points at once in the sums of the coefficients, with one fold for both; finding spans by comparing with knots that are kept
-  in registers where there are few; the kernels of old processors (SSE2) in vectors of two, which g++ does not make of vectors of four.
+- Next: the Bezier coefficients of every box of spans in the powers of both r, 512 bytes for a bicubic one, which need no basis functions, as
+  long as all of them stay in the second cache; finding spans by looking up knots that are kept in registers where there are few; the kernels of old processors (SSE2) in vectors of two, which g++ does not make of vectors of four.
 """
 
 

@@ -107,11 +107,14 @@ template <int P>
 __attribute__((noinline)) static void locate_of(const Axis& from, const double* at, int axes, int d, int n,
                                                 bool look_for_runs, bool scaled, Local& l) {
     const Axis axis = from;  // what is stored cannot change it
-    for (int g = 0; g < n; g += kWidth) store(l.ratio + g, parameters(at + g * axes, axes, d, n - g));
+    if (!look_for_runs) {
+        for (int g = 0; g < n; g += kWidth) store(l.ratio + g, parameters(at + g * axes, axes, d, n - g));
+        find(axis, l.ratio, (n + kWidth - 1) / kWidth * kWidth, l.record);
+    }
     const double* known = nullptr;
-    if (!look_for_runs) find(axis, l.ratio, (n + kWidth - 1) / kWidth * kWidth, l.record);
     for (int g = 0; look_for_runs && g < n; g += kWidth) {
-        const V x = load(l.ratio + g);
+        const V x = parameters(at + g * axes, axes, d, n - g);
+        store(l.ratio + g, x);
         bool same = known && in_span(axis, x, known);
         if (same) {
             for (int i = 0; i < kWidth; ++i) l.record[g + i] = known;

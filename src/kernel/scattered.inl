@@ -140,8 +140,9 @@ template <int P, int N, int K>
 __attribute__((noinline)) static void contract_tile(const Net& from, const Local* l, int n, double* h) {
     const Net net = from;  // what is stored cannot change it
     if constexpr (N == 1) {
-        for (int i = 0; i < n; ++i)
-            if (!l[0].uniform[i / kWidth]) contract_curve<P, K>(net, l[0], i, h + 4 * i);
+        for (int g = 0; g < n; g += kWidth)
+            for (int i = g; i < g + kWidth && i < n && !l[0].uniform[g / kWidth]; ++i)
+                contract_curve<P, K>(net, l[0], i, h + 4 * i);
     } else if constexpr (P >= 0) {
         constexpr int kSize = (K + 1) * kLanes<P>;
         alignas(64) double w[N][kTile * kSize];
@@ -171,6 +172,14 @@ FF_INLINE void repeat_last(const Net& net, int n, double* h) {
         for (int i = n; i % kWidth != 0; ++i) store4(h + 4 * i, load4(h + 4 * (n - 1)));
 }
 
+// Asks for the n numbers that follow some pages later: processors stop fetching ahead where a page ends.
+// Behind the end of the parameters this does nothing.
+FF_INLINE void fetch_ahead(const double* at, int n) {
+    const std::size_t from = reinterpret_cast<std::size_t>(at) + 8 * std::size_t(n) * sizeof(double);
+    for (std::size_t i = 0; i < std::size_t(n) * sizeof(double); i += 64)
+        __builtin_prefetch(reinterpret_cast<const void*>(from + i));
+}
+
 template <int N, int K>
 __attribute__((noinline)) static void scattered_of(const Net& net, const double* at, std::size_t count,
                                                    const Output& out) {
@@ -181,6 +190,7 @@ __attribute__((noinline)) static void scattered_of(const Net& net, const double*
     const bool plain = net.planes() == 1 && (N == 1 || (N == 2 && net.axis[0].degree == net.axis[1].degree));
     for (std::size_t from = 0; from < count; from += kTile, at += N * kTile) {
         const int n = int(count - from < std::size_t(kTile) ? count - from : std::size_t(kTile));
+        if (N > 1 && out.past) fetch_ahead(at, N * kTile);
         for (int d = 0; d < N; ++d) locate(net.axis[d], at, N, d, n, N == 1, !net.rational, local[d]);
         with_degree(plain ? net.axis[0].degree : -1, [&]<int P>(Degree<P>) FF_BODY {
             contract_tile<N == 3 ? -1 : P, N, K>(net, local, n, h);
