@@ -4,7 +4,7 @@
 set -euo pipefail
 
 build="g++ cmake ninja-build ccache pkg-config"
-library="libtbb-dev nlohmann-json3-dev libcli11-dev"
+library="libtbb-dev nlohmann-json3-dev libpugixml-dev libcli11-dev"
 occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
@@ -35,6 +35,7 @@ what_for() {
         ccache) echo "makes the second build quick" ;;
         pkg-config) echo "finds epoxy, EGL and cairo" ;;
         libtbb-dev) echo "threads" ;;
+        libpugixml-dev) echo "reads XML, for SVG" ;;
         nlohmann-json3-dev) echo "reads and writes JSON and glTF" ;;
         libcli11-dev) echo "the options of the command line" ;;
         libocct-data-exchange-dev) echo "reads STEP, IGES and BREP (the largest: 400 MB)" ;;

@@ -5,6 +5,8 @@
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
+#include <freiform/io/file.hpp>
+#include <freiform/io/svg.hpp>
 #include <freiform/trim/loops.hpp>
 
 namespace freiform::cli {
@@ -13,6 +15,7 @@ namespace {
 
 struct Report {
     double bound = 0;  // the largest of all objects
+    double drawn = 0;  // of what SVG has no curve for
     int removed = 0;
     std::vector<std::string> turned;  // loops, as objects[i].loops[j]
 };
@@ -68,25 +71,50 @@ std::string output_format(const Context& context) {
     return ending;
 }
 
+// The picture with all its styles, where nothing else is asked for.
+Result<std::string> svg_again(const Context& context, const ConvertArguments& options, std::size_t& objects) {
+    const auto bytes = read_file(options.file, context.read_options().max_bytes);
+    if (!bytes) return std::unexpected(bytes.error());
+    const auto picture = read_svg(*bytes);
+    if (!picture) return std::unexpected(picture.error());
+    objects = picture->shapes.size();
+    return write_svg(*picture);
+}
+
+Result<std::string> written(const Document& document, std::string_view format,
+                            const ConvertArguments& options, Report& report) {
+    if (format == "json") return write_document(document);
+    if (format == "bpt") return write_bpt(document);
+    const auto picture = picture_of(document, options.tolerance.value_or(1e-6));
+    if (!picture) return std::unexpected(picture.error());
+    report.drawn = picture->bound;
+    return write_svg(picture->picture);
+}
+
 Result<void> run_convert(const Context& context, const ConvertArguments& options) {
     if (options.reduce && !(*options.reduce >= 0))
         wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
-    if (format != "json" && format != "bpt")
-        wrong_usage(text("convert writes .json and .bpt, not \"", format, "\"",
+    if (format != "json" && format != "bpt" && format != "svg")
+        wrong_usage(text("convert writes .json, .bpt and .svg, not \"", format, "\"",
                          format == "stl" || format == "obj" || format == "ply" || format == "glb"
                              ? "; freiform tessellate writes triangles"
                              : ""));
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     Report report;
+    const bool as_it_is = format == "svg" && options.file != "-" &&
+                          format_of_name(options.file) == FileFormat::svg && !options.changes() &&
+                          options.object.empty();
     const auto out = converted(*input, options, report);
     if (!out) {
         Refusal r = out.error();
         if (r.where.starts_with("objects[")) r.where = text(shown(options.file), ": ", r.where);
         return std::unexpected(std::move(r));
     }
-    const auto bytes = format == "json" ? Result<std::string>(write_document(*out)) : write_bpt(*out);
+    std::size_t objects = out->objects.size();
+    const auto bytes =
+        as_it_is ? svg_again(context, options, objects) : written(*out, format, options, report);
     if (!bytes) {
         Refusal r = bytes.error();
         r.where = text(shown(options.file), ": ", r.where);
@@ -95,16 +123,16 @@ Result<void> run_convert(const Context& context, const ConvertArguments& options
     if (auto ok = emit(context, *bytes); !ok) return ok;
     if (options.reduce && !context.json)
         remark(text(report.removed, " knots removed, no point moved by more than ", report.bound));
+    if (report.drawn > 0 && !context.json)
+        remark(text("approximated, no point moved by more than ", report.drawn));
     if (options.orient_loops && !context.json) {
         for (const std::string& loop : report.turned) remark(loop + " turned round");
         if (report.turned.empty()) remark("all loops are turned as they should be");
     }
     if (!context.json || context.output.empty() || context.output == "-") return {};
     json::Writer w;
-    w.begin_object()
-        .field("output", context.output)
-        .field("format", format)
-        .field("objects", out->objects.size());
+    w.begin_object().field("output", context.output).field("format", format).field("objects", objects);
+    if (format == "svg") w.field("error_bound", report.drawn);
     if (options.reduce) w.field("removed_knots", report.removed).field("bound", report.bound);
     if (options.orient_loops) {
         w.key("turned_loops").begin_array();
@@ -124,6 +152,7 @@ void add_convert(CommandLine& line) {
         "  freiform convert teapot.bpt -o teapot.json\n"
         "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
         "  freiform convert surface.json --to-bezier -o patches.bpt\n"
+        "  freiform convert drawing.svg -o drawing.json\n"
         "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
         "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
         "--reverse, --to-bezier.\n"
@@ -133,7 +162,7 @@ void add_convert(CommandLine& line) {
         "opposite\n"
         "edge: --axis u, v or w.");
     command.file(options->file);
-    command.output("The file to write: .json or .bpt");
+    command.output("The file to write: .json, .bpt or .svg");
     command.object(options->object);
     command.flag("--to-bezier", options->to_bezier,
                  "Cut splines into their Bezier pieces, an object for each");
@@ -152,6 +181,9 @@ void add_convert(CommandLine& line) {
         "turned");
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
+    command.number(
+        "--tolerance", options->tolerance,
+        "How far what SVG has no curve for may be off (default 1e-6); the bound reached is reported");
     command.limits();
     command.action(options, run_convert);
 }

@@ -12,7 +12,7 @@ struct ConvertArguments {
     std::string file, object, axis;
     bool to_bezier = false, reverse = false, to_triangles = false, to_surfaces = false, orient_loops = false;
     std::optional<int> elevate;
-    std::optional<double> split, reduce;
+    std::optional<double> split, reduce, tolerance;
     std::vector<double> knots;
 
     bool changes() const {

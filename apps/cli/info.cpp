@@ -161,7 +161,18 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
         }
         w.end_object();
     }
-    w.end_array().end_object();
+    w.end_array();
+    if (!d.left_out.empty()) {
+        w.key("left_out").begin_array();
+        for (const Refusal& r : d.left_out)
+            w.begin_object()
+                .field("kind", name_of(r.kind))
+                .field("where", r.where)
+                .field("message", r.message)
+                .end_object();
+        w.end_array();
+    }
+    w.end_object();
     return w.take() + "\n";
 }
 

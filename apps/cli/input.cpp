@@ -18,6 +18,7 @@ Result<Input> read_input(const Context& context, const std::string& file, const 
     if (!document) return std::unexpected(document.error());
     auto chosen = selected(*document, object);
     if (!chosen) return std::unexpected(chosen.error());
+    for (const Refusal& r : document->left_out) remark(text(shown(file), ": ", r.where, ": ", r.message));
     remark_changes(*document, *chosen);
     return Input{file, std::make_shared<const Document>(*std::move(document)), *std::move(chosen)};
 }

@@ -76,6 +76,7 @@ struct Object {
 struct Document {
     std::string unit;  // "mm", "m", "inch", ...; may be empty
     std::vector<Object> objects;
+    std::vector<Refusal> left_out = {};  // what of a file has no object, and why
 };
 
 }  // namespace freiform

@@ -4,6 +4,7 @@
 #include <freiform/io/file.hpp>
 #include <freiform/io/quake3.hpp>
 #include <freiform/io/read.hpp>
+#include <freiform/io/svg.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,12 +15,12 @@ namespace freiform {
 
 namespace {
 
-constexpr std::string_view kKnown = ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .bsp, .map";
+constexpr std::string_view kKnown = ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .svg, .bsp, .map";
 
 }  // namespace
 
 std::string_view name_of(FileFormat format) {
-    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep", "bsp", "map"};
+    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep", "bsp", "map", "svg"};
     return kNames[int(format)];
 }
 
@@ -36,6 +37,7 @@ std::optional<FileFormat> format_of_name(std::string_view name) {
     if (ending == "brep" || ending == "brp") return FileFormat::brep;
     if (ending == "bsp") return FileFormat::quake3_bsp;
     if (ending == "map") return FileFormat::quake3_map;
+    if (ending == "svg") return FileFormat::svg;
     return std::nullopt;
 }
 
@@ -44,6 +46,8 @@ std::optional<FileFormat> format_of_content(std::string_view bytes) {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos) return std::nullopt;
     const std::string_view s = bytes.substr(first);
+    if (s.starts_with("<svg") || (s.starts_with("<?xml") && s.substr(0, 4096).find("<svg") != s.npos))
+        return FileFormat::svg;
     if (s.starts_with("IBSP")) return FileFormat::quake3_bsp;
     if (s[0] == '{' || s[0] == '[') return FileFormat::json;
     if (s.starts_with("ISO-10303-21")) return FileFormat::step;
@@ -94,6 +98,12 @@ Result<Document> import_bytes(std::string_view bytes, const ReadOptions& options
     return document;
 }
 
+Result<Document> read_svg_document(std::string_view bytes) {
+    const auto picture = read_svg(bytes);
+    if (!picture) return std::unexpected(picture.error());
+    return document_of(*picture);
+}
+
 // The file as part of the place, once.
 Result<Document> within(const std::string& label, Result<Document> document) {
     if (document) return document;
@@ -121,6 +131,7 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
     return within(label, *format == FileFormat::json         ? read_document(*bytes)
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
+                         : *format == FileFormat::svg        ? read_svg_document(*bytes)
                                                              : read_bpt(*bytes));
 }
 

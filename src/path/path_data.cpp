@@ -11,6 +11,7 @@
 // size is written as cubics that near.
 #include "path_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/scan.hpp>
 
 #include <algorithm>
@@ -205,6 +206,8 @@ Arc arc_of(const PathSegment& s) {
     // Points a cos t + b sin t are farthest where tan 2 t = 2 a.b / (a.a - b.b).
     const double t = std::atan2(2 * dot(a, b), dot(a, a) - dot(b, b)) / 2;
     const Vec<2> major = std::cos(t) * a + std::sin(t) * b, minor = std::cos(t) * b - std::sin(t) * a;
+    if (std::abs(norm(major) - norm(minor)) <= 8 * kUnitRoundoff * norm(major))
+        return {norm(major), norm(major), 0, cross(a, b) > 0};
     return {norm(major), norm(minor), std::atan2(major[1], major[0]) * (180 / std::numbers::pi),
             cross(a, b) > 0};
 }

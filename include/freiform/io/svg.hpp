@@ -1,0 +1,69 @@
+// Drawings in SVG: the geometry of what they show, read and written.
+//
+// Coordinates are those of the viewBox, with the y axis pointing up: y changes its sign, exactly, and nothing
+// else does. So a drawing that was read and is written again has the same numbers in it.
+#pragma once
+#include <freiform/core/interval.hpp>
+#include <freiform/path/path.hpp>
+#include <freiform/shape.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace freiform {
+
+enum class FillRule { nonzero, evenodd };
+enum class LineCap { butt, round, square };
+enum class LineJoin { miter, miter_clip, round, bevel, arcs };
+
+// Lengths in the units of the picture: what a transform does to them is counted in.
+struct StrokeStyle {
+    double width = 1, miter_limit = 4;
+    LineCap cap = LineCap::butt;
+    LineJoin join = LineJoin::miter;
+    std::vector<double> dashes;  // none: a solid line; otherwise an even number of them
+    double dash_offset = 0;
+};
+
+struct SvgShape {
+    std::string id;       // may be empty
+    std::string element;  // "path", "rect", ..
+    Path path;
+    std::string fill = "black", stroke = "none";  // as they are written
+    FillRule fill_rule = FillRule::nonzero;
+    StrokeStyle line;
+};
+
+struct SvgPicture {
+    Box<2> view;  // of the viewBox, or of width and height; empty where the file says nothing
+    std::string
+        unit;  // "mm", "cm", "inch" if the file says that a unit of the viewBox is one; otherwise empty
+    std::vector<SvgShape> shapes;
+    // What is not among the shapes, or not as the file says, with the line: text, images, what cannot be
+    // read.
+    std::vector<Refusal> left_out;
+};
+
+// Elements: path, rect, circle, ellipse, line, polyline, polygon, in svg, g, a, switch and use. Transforms,
+// units, nested viewports, styles by attributes, `style` and style sheets (selectors of one type, class or
+// id). What is in defs or hidden is not shown. References to other files and entities of a document type are
+// not followed. Refuses (unreadable) what is not XML or not SVG, (limit) more than max_bytes, more elements
+// than 200 MiB hold, 10^6 shown elements or 10^7 segments (as nested `use` makes them).
+Result<SvgPicture> read_svg(std::string_view bytes, std::size_t max_bytes = std::size_t(256) << 20);
+
+// Each subpath that has a segment as a curve, called as its shape, "/2" and so on after the first.
+Document document_of(const SvgPicture& picture);
+
+// Refuses (unsupported) objects that are not plane curves; what SVG has no curve for is approximated within
+// the tolerance (`bound`: what was reached).
+struct SvgOfDocument {
+    SvgPicture picture;
+    double bound = 0;
+};
+Result<SvgOfDocument> picture_of(const Document& document, double tolerance);
+
+// A path element for each shape. Paints that refer to gradients or patterns become grey.
+std::string write_svg(const SvgPicture& picture);
+
+}  // namespace freiform
