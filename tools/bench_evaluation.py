@@ -231,13 +231,13 @@ In the plots bars go from quartile to quartile.
   leave one step, since coefficients share the cache with them, 12.3 to 11.8 ns; one lookup after the other instead of gathers, 11.8 to
   11.6; written out eight at a time, 11.4 to 11.2; divisions instead of estimates of reciprocals with Newton's steps, 11.6 to 11.4. A million
   points: 15.6 to 14.7 by these; parameters asked for some pages ahead where the results do not stay in the cache, to 13.4.
-- One point in a call: 222 ns before, 81 now. It was two thirds waiting: a vector from numbers that were stored one by one a moment ago has to
+- One point in a call: 222 ns before, 81 now. Much of it was waiting: a vector from numbers that were stored one by one a moment ago has to
   wait until they are in the cache, so a single parameter is spread over the lanes from a register.
 - All parameters are checked before anything is written; the threads that evaluate share that, which was the part that one of them did alone.
-- Profiled now: a third are the sums over the coefficients, a third finds spans, a sixth the basis functions, the rest is projection and
+- Profiled before the last of these: a third are the sums over the coefficients, a third finds spans, a sixth the basis functions, the rest is projection and
   stores. Checking reads all parameters twice, 1 ns where memory is slow.
 - Without gain on scattered points: tiles of 32 (3 % slower) or 128 points (6 % slower); fetching parameters ahead where all is in the cache (2 % slower), or for the check;
-  two points at once in the sums with one fold for both (1 % slower, derivatives 1 % faster); coefficients
+  two points at once in the sums with one fold for both (1 % slower, no clear change of derivatives); coefficients
   read from where lines of the cache begin (values nothing, derivatives 7 %, and it would double the net); results collected in registers
   before they go past the caches. AVX2, with half the width, takes a fifth more with derivatives: what bounds it are loads and the
   length of the chains. With others at work on the machine the ratio to SISL was between 13.9 and 15.2 in four runs.
