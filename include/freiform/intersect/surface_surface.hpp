@@ -1,0 +1,73 @@
+// Where two surfaces meet: every branch, none missed, as splines.
+#pragma once
+#include <freiform/intersect/contact.hpp>
+#include <freiform/spline/patch.hpp>
+
+#include <string_view>
+#include <vector>
+
+namespace freiform {
+
+struct SurfaceIntersectOptions {
+    double tolerance = 0;       // a distance; positive
+    int max_pairs = 2'000'000;  // a backstop: pairs of parts of both surfaces that are looked at
+};
+
+// What a branch ends at, beside a node (>= 0).
+inline constexpr int kAtBorder = -1;      // of one of the surfaces
+inline constexpr int kAtUnresolved = -2;  // one of the boxes of which nothing is known
+
+// One branch. The curves run over the same interval, [0, length] roughly: a(at_a(t)) and b(at_b(t)) are near
+// curve(t).
+struct SurfaceBranch {
+    Curve<Vec<3>> curve;       // cubic; C^1 where the surfaces are
+    Curve<Vec<2>> at_a, at_b;  // parameters of both surfaces; they jump where a seam is crossed
+    bool closed = false;       // ends where it begins
+    std::array<int, 2> ends{kAtBorder, kAtBorder};
+    // No point curve(t) is farther from a(at_a(t)), and so from the first surface; from the second one.
+    double bound_a = 0, bound_b = 0;
+    double bound() const { return std::max(bound_a, bound_b); }
+};
+
+enum class SurfaceNodeKind {
+    touch,     // the surfaces touch: nothing, one point, or a loop, all within the box
+    crossing,  // branches cross, or pass each other by, within the box
+    along,     // the surfaces run along each other within the tolerance: they touch along a curve, or overlap
+};
+std::string_view name_of(SurfaceNodeKind kind);
+
+// Parameters of both surfaces where they are so near to each other, and so parallel, that the tolerance does
+// not tell how they meet.
+struct SurfaceNode {
+    SurfaceNodeKind kind = SurfaceNodeKind::along;
+    std::array<Interval, 2> box_a{}, box_b{};  // over the seam of a closed surface: all of its period
+    std::array<double, 2> at_a{}, at_b{};      // where they are nearest, or parallel, as an estimate
+    Vec<3> point{};                            // of the first surface there
+    double gap = 0;  // bound: how far the points of both at these parameters are from each other
+    int arms = 0;    // branches that end there
+    std::vector<std::array<Interval, 4>> cells;  // (u, v, s, t): what `box` is the hull of
+};
+
+struct SurfaceIntersection {
+    std::vector<SurfaceBranch> branches;
+    std::vector<SurfaceNode> nodes;
+    // Parameters of both of which nothing is known: the budget ended.
+    std::vector<std::array<Interval, 4>> undecided;
+};
+
+// The intersection of two surfaces. Outside of the branches, the cells of nodes and what is undecided they do
+// not meet, and that is proven, rounding included.
+//
+// Branches are found by proof, small closed ones like others, and none twice. Where the surfaces touch within
+// the tolerance, at a point or along a curve, or overlap, there is a node instead, and branches end there;
+// they go on over the seam of a closed surface (also of one that is closed because its first and last control
+// points are the same), and end at the border of one of them.
+//
+// Refuses tolerances that are not positive.
+//   const auto found = intersect(a, b, SurfaceIntersectOptions{.tolerance = 1e-6});
+template <class P, class Q>
+requires(Space<P>::kDim == 3 &&
+         Space<Q>::kDim == 3) Result<SurfaceIntersection> intersect(const Surface<P>& a, const Surface<Q>& b,
+                                                                    const SurfaceIntersectOptions& options);
+
+}  // namespace freiform

@@ -1,0 +1,130 @@
+// The bound of branches; branch_proof_detail.hpp is the essay.
+#include "branch_proof_detail.hpp"
+
+namespace freiform::detail {
+
+namespace {
+
+constexpr int kDeepestHalf = 20, kMostHalves = 400;
+
+template <class V>
+double bend_of_arc(const CubicArc<V>& b) {
+    return 6 * std::max(norm(b[2] - 2 * b[1] + b[0]), norm(b[3] - 2 * b[2] + b[1]));
+}
+
+struct ArcSpeeds {
+    std::array<Interval, 2> box{};
+    std::array<double, 2> speed{}, bend{}, twist{}, slack{};
+};
+// A box that contains q, bounds of its derivatives, and what its rounding is. Nothing: it leaves the domain.
+std::optional<ArcSpeeds> speeds_of(const CubicArc<Vec<2>>& q, const std::array<Interval, 2>& domain) {
+    ArcSpeeds out;
+    auto& [box, speed, bend, twist, slack] = out;
+    for (int k = 0; k < 2; ++k) {
+        const std::size_t a = std::size_t(k);
+        box[a] = {q[0][k], q[0][k]};
+        for (const Vec<2>& p : q) box[a] = hull(box[a], {p[k], p[k]});
+        slack[a] = 8 * kUnitRoundoff * std::max(std::abs(domain[a].lo), std::abs(domain[a].hi));
+        if (box[a].lo < domain[a].lo - slack[a] || box[a].hi > domain[a].hi + slack[a]) return std::nullopt;
+        box[a] = {clamped(box[a].lo - slack[a], domain[a]), clamped(box[a].hi + slack[a], domain[a])};
+        for (std::size_t i = 0; i < 3; ++i)
+            speed[a] = std::max(speed[a], 3 * std::abs(q[i + 1][k] - q[i][k]));
+        for (std::size_t i = 0; i < 2; ++i)
+            bend[a] = std::max(bend[a], 6 * std::abs(q[i + 2][k] - 2 * q[i + 1][k] + q[i][k]));
+        twist[a] = 6 * std::abs((q[3][k] - q[0][k]) - 3 * (q[2][k] - q[1][k])) + 64 * slack[a];
+        speed[a] += 8 * slack[a], bend[a] += 32 * slack[a];
+    }
+    return out;
+}
+// Of the third derivative of S o q.
+double third_of_arc(const DerivativeBounds<2>& d, const ArcSpeeds& s) {
+    const double u = s.speed[0], v = s.speed[1];
+    return d(3, 0) * u * u * u + 3 * d(2, 1) * u * u * v + 3 * d(1, 2) * u * v * v + d(0, 3) * v * v * v +
+           3 * (d(2, 0) * u * s.bend[0] + d(1, 1) * (u * s.bend[1] + v * s.bend[0]) +
+                d(0, 2) * v * s.bend[1]) +
+           d(1, 0) * s.twist[0] + d(0, 1) * s.twist[1];
+}
+
+const BSplineBasis& basis_of_sheet(const SurfaceGeometry& g, int axis) {
+    if (const auto* s = std::get_if<Surface<Vec<3>>>(&g)) return s->basis(axis);
+    return std::get<Surface<Hom<3>>>(g).basis(axis);
+}
+
+}  // namespace
+
+BranchProof::BranchProof(const SurfaceGeometry& geometry, const Sheet& sheet)
+    : query_(geometry), sheet_(sheet) {
+    for (int k = 0; k < 2; ++k) {
+        const BSplineBasis& basis = basis_of_sheet(geometry, k);
+        const auto& breaks = sheet.breaks(k);
+        for (std::size_t i = 1; i + 1 < breaks.size(); ++i)
+            if (basis.multiplicity(breaks[i]) >= basis.degree() - 1)
+                stops_[std::size_t(k)].push_back(breaks[i]);
+    }
+}
+
+BranchProof::Sample BranchProof::sample(const Vec<3>& x, const Vec<2>& u) const {
+    return {x - sheet_.at(u[0], u[1]).point,
+            1.8 * (sheet_.inner_error() + 64 * kUnitRoundoff * std::max(max_abs(x), sheet_.scale()))};
+}
+
+std::optional<double> BranchProof::operator()(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q,
+                                              double tolerance) const {
+    tolerance_ = tolerance, most_ = 0, parts_ = 0;
+    const auto inside = [&](const Vec<2>& u) { return contains(u); };
+    if (!inside(q[0]) || !inside(q[3])) return std::nullopt;
+    if (!prove(c, q, sample(c[0], q[0]), sample(c[3], q[3]), 0)) return std::nullopt;
+    return most_;
+}
+
+bool BranchProof::prove(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a,
+                        const Sample& b, int depth) const {
+    const auto [c0, c1] = arc_halves(c);
+    const auto [q0, q1] = arc_halves(q);
+    if (!contains(q0[3])) return false;
+    const Sample m = sample(c0[3], q0[3]);
+    const double here = bound_over(c, q, a, m, b);
+    if (here <= tolerance_) {
+        most_ = std::max(most_, here);
+        return true;
+    }
+    if (depth == kDeepestHalf || ++parts_ > kMostHalves ||
+        std::max({a.size(), m.size(), b.size()}) > tolerance_)
+        return false;
+    return prove(c0, q0, a, m, depth + 1) && prove(c1, q1, m, b, depth + 1);
+}
+
+double BranchProof::bound_over(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a,
+                               const Sample& m, const Sample& b) const {
+    const auto path = speeds_of(q, sheet_.domain());
+    if (!path) return kInfinity;
+    const auto& [box, speed, bend, twist, slack] = *path;
+    std::array<bool, 2> fixed{};
+    bool smooth = true;
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (const double at : stops_[k]) smooth = smooth && !(box[k].lo < at && at < box[k].hi);
+        for (const Kink& kink : query_.kinks(int(k)))
+            fixed[k] = fixed[k] || (box[k].lo < kink.at && kink.at < box[k].hi);
+    }
+    smooth = smooth && !fixed[0] && !fixed[1];
+    const DerivativeBounds<2> d = query_(box, smooth ? 3 : 2);
+    const std::array<double, 2> first{d(1, 0), d(0, 1)}, second{d(2, 0), d(0, 2)};
+    double most = 1.01 * bend_of_arc(c), aside = 0, shift = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (fixed[k])
+            aside += 2 * first[k] * box[k].length();
+        else
+            most += second[k] * speed[k] * speed[k] + first[k] * bend[k];
+        shift += first[k] * slack[k];
+    }
+    if (!fixed[0] && !fixed[1]) most += 2 * d(1, 1) * speed[0] * speed[1];
+    double between = most / 8 + aside;
+    if (smooth) {
+        const double difference = norm(a.off - 2 * m.off + b.off) + a.error + 2 * m.error + b.error;
+        const double twisted = 6 * norm((c[3] - c[0]) - 3 * (c[2] - c[1]));
+        between = std::min(between, 1.01 * (difference / 2 + (twisted + third_of_arc(d, *path)) / 12));
+    }
+    return 1.01 * (std::max(a.size(), b.size()) + between + 4 * shift);
+}
+
+}  // namespace freiform::detail

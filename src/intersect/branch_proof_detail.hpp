@@ -1,0 +1,63 @@
+// How far a cubic piece of a curve is from a surface along a cubic piece of parameters: a bound.
+//
+// Notation. C(t) in space, q(t) in the parameters, 0 <= t <= 1; E = C - S o q.
+//
+// Accuracy. Over a part of length 1, |E| <= max |E(ends)| + max |E''| / 8, and
+//     |E''| <= |C''| + |S_uu| u'^2 + 2 |S_uv u' v'| + |S_vv| v'^2 + |S_u u''| + |S_v v''|
+// or, where E'' is continuous, since |4 D - E''(middle)| <= |E'''| / 6 for D = E(0) - 2 E(middle) + E(1),
+//     |E| <= max |E(ends)| + |D| / 2 + max |E'''| / 12
+// with derivatives of S bounded over a box that contains q. If S has a kink in the box along an axis, S is
+// replaced by S with that parameter fixed, off by the width of the box times |S_u|, twice.
+#pragma once
+#include "sheet_detail.hpp"
+
+#include <freiform/spline/derivative_bounds.hpp>
+
+#include <optional>
+
+namespace freiform::detail {
+
+template <class V>
+using CubicArc = std::array<V, 4>;
+template <class V>
+std::array<CubicArc<V>, 2> arc_halves(const CubicArc<V>& b) {
+    const V a01 = 0.5 * (b[0] + b[1]), a12 = 0.5 * (b[1] + b[2]), a23 = 0.5 * (b[2] + b[3]);
+    const V a = 0.5 * (a01 + a12), c = 0.5 * (a12 + a23), m = 0.5 * (a + c);
+    return {CubicArc<V>{b[0], a01, a, m}, {m, c, a23, b[3]}};
+}
+
+class BranchProof {
+public:
+    BranchProof(const SurfaceGeometry& geometry, const Sheet& sheet);
+
+    // The bound; nothing: it is not up to the tolerance.
+    std::optional<double> operator()(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q,
+                                     double tolerance) const;
+    // At one place, rounding included.
+    double off(const Vec<3>& x, const Vec<2>& u) const { return sample(x, u).size(); }
+    bool contains(const Vec<2>& u) const {
+        return sheet_.domain()[0].contains(u[0]) && sheet_.domain()[1].contains(u[1]);
+    }
+    // Lines of parameters over which second derivatives jump.
+    const std::vector<double>& stops(int axis) const { return stops_[std::size_t(axis)]; }
+
+private:
+    struct Sample {
+        Vec<3> off{};
+        double error = 0;
+        double size() const { return 1.01 * (norm(off) + error); }
+    };
+    Sample sample(const Vec<3>& x, const Vec<2>& u) const;
+    bool prove(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a, const Sample& b,
+               int depth) const;
+    double bound_over(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a, const Sample& m,
+                      const Sample& b) const;
+
+    DerivativeQuery<2, 3> query_;
+    const Sheet& sheet_;
+    std::array<std::vector<double>, 2> stops_;
+    mutable double tolerance_ = 0, most_ = 0;
+    mutable int parts_ = 0;
+};
+
+}  // namespace freiform::detail

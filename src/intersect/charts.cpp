@@ -1,0 +1,210 @@
+// The search for charts; charts_detail.hpp is the essay.
+#include "charts_detail.hpp"
+
+namespace freiform::detail {
+
+namespace {
+
+constexpr std::size_t kMostToRefine = 60'000;
+
+}  // namespace
+
+void Charts::search(double nearness, double finest, int max_pairs) {
+    max_pairs_ = max_pairs, nearness_ = nearness;
+    nodes_.assign(1, Node{});
+    open_.assign(1, 0);
+    look_at_all();
+    struct Batch {
+        std::vector<int> nodes;
+        double nearness;
+    };
+    std::vector<Batch> batches;
+    const auto divide = [&](std::vector<int> nodes) {
+        for (auto& group : neighbours(std::move(nodes))) batches.push_back({std::move(group), nearness_});
+    };
+    divide(std::move(given_up_));
+    while (!batches.empty()) {
+        const Batch batch = std::move(batches.back());
+        batches.pop_back();
+        if (batch.nearness <= finest || batch.nodes.size() > kMostToRefine) {
+            finish(batch.nodes);
+            continue;
+        }
+        const std::size_t charts = charts_.size(), left = left_.size();
+        given_up_.clear();
+        nearness_ = batch.nearness * 0x1p-4;
+        for (const int n : batch.nodes) split(n);
+        look_at_all();
+        // About a point there are always as many; along a curve four times as many, for nothing.
+        if (left_.size() > left || 2 * given_up_.size() > 5 * batch.nodes.size() + 2000) {
+            for (const int n : batch.nodes) nodes_[std::size_t(n)].left = -1;
+            charts_.resize(charts);
+            left_.resize(left);
+            finish(batch.nodes);
+        } else {
+            divide(std::move(given_up_));
+        }
+    }
+}
+
+void Charts::look_at_all() {
+    while (!open_.empty()) {
+        const int node = open_.back();
+        open_.pop_back();
+        if (++looked_at_ <= max_pairs_) {
+            look(node);
+            continue;
+        }
+        const PartPair p = nodes_[std::size_t(node)].parts;
+        if (!are_apart((*sheets_[0])[p.a], (*sheets_[1])[p.b])) left_.push_back(p);
+    }
+}
+
+void Charts::finish(const std::vector<int>& nodes) {
+    Cluster c;
+    for (const int n : nodes) {
+        nodes_[std::size_t(n)].cluster = int(clusters_.size());
+        c.cores.push_back(core(nodes_[std::size_t(n)].parts));
+    }
+    clusters_.push_back(std::move(c));
+}
+
+// Groups of pairs that touch, over a sweep along the first parameter.
+std::vector<std::vector<int>> Charts::neighbours(std::vector<int> nodes) const {
+    std::vector<std::vector<int>> out;
+    if (nodes.size() > kMostToRefine) {
+        out.push_back(std::move(nodes));
+        return out;
+    }
+    std::vector<std::pair<std::array<Interval, 4>, int>> cells;
+    for (const int n : nodes) cells.push_back({core(nodes_[std::size_t(n)].parts), n});
+    std::ranges::sort(cells, [](const auto& a, const auto& b) { return a.first[0].lo < b.first[0].lo; });
+    std::vector<std::size_t> root(cells.size());
+    const auto find = [&](std::size_t i) {
+        while (root[i] != i) i = root[i] = root[root[i]];
+        return i;
+    };
+    double widest = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        root[i] = i, widest = std::max(widest, cells[i].first[0].length());
+    const auto link = [&](std::size_t i, std::size_t j) {
+        bool touch = true;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Interval p = cells[i].first[k], q = cells[j].first[k], on = domain(k);
+            touch = touch && (p.overlaps(q) || (is_cyclic(k) && ((p.lo == on.lo && q.hi == on.hi) ||
+                                                                 (q.lo == on.lo && p.hi == on.hi))));
+        }
+        if (touch) root[find(i)] = find(j);
+    };
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        for (std::size_t j = i; j-- > 0 && cells[j].first[0].lo + widest >= cells[i].first[0].lo;) link(i, j);
+    if (is_cyclic(0)) {
+        std::vector<std::size_t> first, last;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (cells[i].first[0].lo == domain(0).lo) first.push_back(i);
+            if (cells[i].first[0].hi == domain(0).hi) last.push_back(i);
+        }
+        for (const std::size_t i : first)
+            for (const std::size_t j : last) link(i, j);
+    }
+    std::vector<int> group(cells.size(), -1);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        int& g = group[find(i)];
+        if (g < 0) g = int(out.size()), out.emplace_back();
+        out[std::size_t(g)].push_back(cells[i].second);
+    }
+    return out;
+}
+
+bool Charts::has_core_at(PartPair p, const Place4& x) const {
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Interval on = (*sheets_[k / 2])[k < 2 ? p.a : p.b].on[k % 2], all = domain(k);
+        const double slack = 0x1p-42 * std::max(all.length(), std::max(std::abs(all.lo), std::abs(all.hi)));
+        const auto is_in = [&](double t) { return on.lo - slack <= t && t <= on.hi + slack; };
+        if (!is_in(x[k]) && !(is_cyclic(k) && (is_in(x[k] - all.length()) || is_in(x[k] + all.length()))))
+            return false;
+    }
+    return true;
+}
+
+void Charts::leaves_at(const Place4& x, Leaves& out) const {
+    out.charts.clear(), out.clusters.clear();
+    std::array<int, 512> stack;  // two for each halving
+    std::size_t count = 0;
+    stack[count++] = 0;
+    while (count > 0) {
+        const Node& n = nodes_[std::size_t(stack[--count])];
+        if (!has_core_at(n.parts, x)) continue;
+        if (n.chart >= 0) out.charts.push_back(n.chart);
+        if (n.cluster >= 0) out.clusters.push_back(n.cluster);
+        if (n.left >= 0) stack[count++] = n.left, stack[count++] = n.left + 1;
+    }
+}
+
+bool Charts::are_apart(const SheetPart& p, const SheetPart& q) const {
+    const double e = 1.01 * (p.error + q.error);
+    for (int k = 0; k < 3; ++k)
+        if (p.box.lo[k] - q.box.hi[k] > e || q.box.lo[k] - p.box.hi[k] > e) return true;
+    return false;
+}
+
+// Along the normal of one of them. `near`: together they are no thicker along both than what is asked for.
+bool Charts::are_apart_by_slabs(PartPair p, bool& near) const {
+    const double e = (*sheets_[0])[p.a].error + (*sheets_[1])[p.b].error;
+    const double rounding = 8 * kUnitRoundoff * (sheets_[0]->scale() + sheets_[1]->scale());
+    near = true;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const SheetPart& own = (*sheets_[i])[i == 0 ? p.a : p.b];
+        const Sheet& other = *sheets_[1 - i];
+        const Vec<3>* h = other.hull(i == 0 ? p.b : p.a);
+        Interval range{kInfinity, -kInfinity};
+        for (int k = 0; k < other.block(); ++k) {
+            const double x = dot(own.normal, h[k]);
+            range = {std::min(range.lo, x), std::max(range.hi, x)};
+        }
+        const double slack = 1.8 * e + rounding;
+        if (range.lo - own.slab.hi > slack || own.slab.lo - range.hi > slack) return true;
+        const Interval both = freiform::hull(range, own.slab);
+        near = near && both.length() <= nearness_ + 4 * slack;
+    }
+    return false;
+}
+
+void Charts::look(int node) {
+    const PartPair p = nodes_[std::size_t(node)].parts;
+    const SheetPart &a = (*sheets_[0])[p.a], &b = (*sheets_[1])[p.b];
+    if (are_apart(a, b)) return;
+    if (a.is_one_piece() && b.is_one_piece()) {
+        bool near = false;
+        if (are_apart_by_slabs(p, near)) return;
+        const Answer answer = settle(p);
+        if (answer == Answer::chart) nodes_[std::size_t(node)].chart = int(charts_.size()) - 1;
+        if (answer != Answer::open) return;
+        if (near) {
+            given_up_.push_back(node);
+            return;
+        }
+    }
+    split(node);
+}
+
+void Charts::split(int node) {
+    const PartPair p = nodes_[std::size_t(node)].parts;
+    const SheetPart &a = (*sheets_[0])[p.a], &b = (*sheets_[1])[p.b];
+    std::size_t first = a.extent() < b.extent();
+    if (a.is_one_piece() != b.is_one_piece()) first = a.is_one_piece();
+    for (const std::size_t i : {first, 1 - first}) {
+        const int part = i == 0 ? p.a : p.b;
+        if (!sheets_[i]->split(part)) continue;
+        const int half = (*sheets_[i])[part].left, left = int(nodes_.size());
+        nodes_[std::size_t(node)].left = left;
+        for (const int h : {half, half + 1}) {
+            open_.push_back(int(nodes_.size()));
+            nodes_.push_back({i == 0 ? PartPair{h, p.b} : PartPair{p.a, h}});
+        }
+        return;
+    }
+    given_up_.push_back(node);
+}
+
+}  // namespace freiform::detail

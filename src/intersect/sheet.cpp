@@ -1,0 +1,345 @@
+// The tree of parts of a surface; sheet_detail.hpp is the essay.
+#include "sheet_detail.hpp"
+
+namespace freiform::detail {
+
+namespace {
+
+// Values and derivatives of the Bernstein polynomials of degree n.
+struct BernsteinRow {
+    std::array<double, kMaxDegree + 1> b, d;
+    BernsteinRow(int n, double t) {
+        const double s = 1 - t;
+        b[0] = 1;
+        for (int r = 1; r <= n; ++r) {
+            if (r == n)
+                for (int i = 0; i <= n; ++i)
+                    d[std::size_t(i)] =
+                        n * ((i > 0 ? b[std::size_t(i) - 1] : 0) - (i < n ? b[std::size_t(i)] : 0));
+            double carry = 0;
+            for (std::size_t i = 0; i < std::size_t(r); ++i) {
+                const double x = b[i];
+                b[i] = carry + s * x;
+                carry = t * x;
+            }
+            b[std::size_t(r)] = carry;
+        }
+        if (n == 0) d[0] = 0;
+    }
+};
+
+bool is_joined_sheet(const Surface<Hom<3>>& s, int axis) {
+    const BSplineBasis& b = s.basis(axis);
+    const Interval on = b.domain();
+    const int p = b.degree(), n = b.size();
+    if (p == 0 || b.knot(1) != on.lo || b.knot(n + p - 1) != on.hi) return false;
+    bool same = true, point = true;
+    const auto net = s.net().view();
+    each_fibre(axis, net.extent, [&](const Index<2>& at) {
+        Index<2> last = at;
+        last[std::size_t(axis)] = n - 1;
+        same = same && net(at) == net(last);
+        for (int i = 1; i < n; ++i) {
+            Index<2> inner = at;
+            inner[std::size_t(axis)] = i;
+            point = point && net(inner) == net(at);
+        }
+    });
+    return same && !point;
+}
+
+// Halves of one row of control points: `left` begins as a copy.
+void halve_row(Hom<3>* left, Hom<3>* right, int n, int stride) {
+    for (int i = 0; i <= n; ++i) right[i * stride] = left[i * stride];
+    for (int r = 1; r <= n; ++r) {
+        for (int k = 0; k <= n - r; ++k)
+            right[k * stride] = 0.5 * (right[k * stride] + right[(k + 1) * stride]);
+        left[r * stride] = right[0];
+    }
+}
+
+// The row over [lo, hi] of [0, 1], or beyond.
+void restrict_row(Hom<3>* p, int n, int stride, Interval on) {
+    const auto blend = [&](int i, int j, double t) {
+        for (int c = 0; c < 4; ++c) p[i * stride][c] = (1 - t) * p[i * stride][c] + t * p[j * stride][c];
+    };
+    if (on.hi != 1) {
+        for (int r = 1; r <= n; ++r)
+            for (int i = n; i >= r; --i) {
+                for (int c = 0; c < 4; ++c)
+                    p[i * stride][c] = (1 - on.hi) * p[(i - 1) * stride][c] + on.hi * p[i * stride][c];
+            }
+    }
+    if (on.lo != 0) {
+        const double t = on.lo / on.hi;
+        for (int r = 1; r <= n; ++r)
+            for (int i = 0; i <= n - r; ++i) blend(i, i + 1, t);
+    }
+}
+
+}  // namespace
+
+Sheet::Sheet(const Surface<Hom<3>>& surface) {
+    const BezierPieces<2, Hom<3>> all(surface);
+    double roundings = 0, most = 0, least = kInfinity;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const BSplineBasis& basis = surface.basis(int(k));
+        degree_[k] = basis.degree();
+        count_[k] = all.extent()[k];
+        breaks_[k] = all.breaks(int(k));
+        domain_[k] = basis.domain();
+        cyclic_[k] = basis.is_closed() || is_joined_sheet(surface, int(k));
+        roundings += 12 * degree_[k] + 8;
+    }
+    block_ = (degree_[0] + 1) * (degree_[1] + 1);
+    each_index(all.extent(), [&](const Index<2>& at) {
+        const auto net = all.net(at);
+        each_index(net.extent, [&](const Index<2>& i) { pieces_.push_back(net(i)); });
+    });
+    for (const Hom<3>& p : pieces_) {
+        scale_ = std::max(scale_, max_abs(Space<Hom<3>>::project(p)));
+        most = std::max(most, p.weight()), least = std::min(least, p.weight());
+    }
+    unit_ = 2.1 * kUnitRoundoff * (most / least) * scale_;
+    // Outside of [0, 1] by kMargin the polynomials are at most (1 + 2 kMargin)^n times as large.
+    const double stretch = std::pow(1 + 2 * kMargin, degree_[0] + degree_[1]);
+    inner_error_ = unit_ * (roundings + 16 * (degree_[0] + degree_[1] + 2));
+    value_error_ = stretch * inner_error_;
+    SheetPart root;
+    root.to = count_, root.on = domain_;
+    root.roundings = roundings;
+    add(root);
+}
+
+Sheet::Piece Sheet::locate(std::size_t axis, double x) const {
+    const auto& b = breaks_[axis];
+    if (cyclic_[axis]) {
+        const double period = b.back() - b.front();
+        if (x < b.front()) x += period;
+        if (x > b.back()) x -= period;
+    }
+    const int i =
+        std::clamp(int(std::upper_bound(b.begin(), b.end(), x) - b.begin()) - 1, 0, count_[axis] - 1);
+    return {i, (x - b[std::size_t(i)]) / width(axis, i)};
+}
+
+Sheet::At Sheet::at(double u, double v) const {
+    const Piece i = locate(0, u), j = locate(1, v);
+    const BernsteinRow bu(degree_[0], i.t), bv(degree_[1], j.t);
+    const Hom<3>* p = pieces_.data() + std::size_t(i.index * count_[1] + j.index) * std::size_t(block_);
+    std::array<double, 4> x{}, du{}, dv{};
+    for (std::size_t r = 0; r <= std::size_t(degree_[0]); ++r) {
+        std::array<double, 4> c{}, d{};
+        for (std::size_t s = 0; s <= std::size_t(degree_[1]); ++s, ++p)
+            for (std::size_t k = 0; k < 4; ++k) c[k] += bv.b[s] * p->c[k], d[k] += bv.d[s] * p->c[k];
+        for (std::size_t k = 0; k < 4; ++k)
+            x[k] += bu.b[r] * c[k], du[k] += bu.d[r] * c[k], dv[k] += bu.b[r] * d[k];
+    }
+    At out;
+    const double w = 1 / x[3], wu = w / width(0, i.index), wv = w / width(1, j.index);
+    for (std::size_t k = 0; k < 3; ++k) {
+        out.point.c[k] = x[k] * w;
+        out.d[0].c[k] = (du[k] - out.point.c[k] * du[3]) * wu;
+        out.d[1].c[k] = (dv[k] - out.point.c[k] * dv[3]) * wv;
+    }
+    return out;
+}
+
+// Box and the rest of a part from its control points.
+void Sheet::finish(SheetPart& part) const {
+    part.error = unit_ * part.roundings;
+    if (!part.is_one_piece()) {
+        for (int i = part.from[0]; i < part.to[0]; ++i)
+            for (int j = part.from[1]; j < part.to[1]; ++j) {
+                const Hom<3>* p = pieces_.data() + std::size_t(i * count_[1] + j) * std::size_t(block_);
+                for (int k = 0; k < block_; ++k) part.box.add(Space<Hom<3>>::project(p[k]));
+            }
+        return;
+    }
+    const Vec<3>* h = hull_.data() + part.net;
+    for (int k = 0; k < block_; ++k) part.box.add(h[k]);
+    const int n = degree_[0], m = degree_[1], w = m + 1;
+    part.normal = unit(cross(h[n * w + m] - h[0], h[m] - h[n * w]));
+    part.slab = {kInfinity, -kInfinity};
+    for (int k = 0; k < block_; ++k) {
+        const double x = dot(part.normal, h[k]);
+        part.slab = {std::min(part.slab.lo, x), std::max(part.slab.hi, x)};
+    }
+}
+
+int Sheet::add(SheetPart part) {
+    const bool one = part.to[0] - part.from[0] == 1 && part.to[1] - part.from[1] == 1;
+    if (one && !part.is_one_piece()) {
+        part.net = int(nets_.size());
+        part.local = {Interval{0, 1}, Interval{0, 1}};
+        const auto first = pieces_.begin() +
+                           std::ptrdiff_t(part.from[0] * count_[1] + part.from[1]) * std::ptrdiff_t(block_);
+        nets_.insert(nets_.end(), first, first + block_);
+    }
+    if (part.is_one_piece())
+        for (std::size_t k = hull_.size(); k < nets_.size(); ++k)
+            hull_.push_back(Space<Hom<3>>::project(nets_[k]));
+    finish(part);
+    parts_.push_back(part);
+    return int(parts_.size()) - 1;
+}
+
+bool Sheet::split(int index) {
+    SheetPart whole = (*this)[index];
+    if (whole.left >= 0) return true;
+    SheetPart a = whole, b = whole;
+    a.box = b.box = {};
+    a.slopes = b.slopes = {-1, -1};
+    if (!whole.is_one_piece()) {
+        const std::size_t k = whole.to[0] - whole.from[0] < whole.to[1] - whole.from[1];
+        const int middle = (whole.from[k] + whole.to[k]) / 2;
+        a.to[k] = b.from[k] = middle;
+        a.on[k].hi = b.on[k].lo = breaks_[k][std::size_t(middle)];
+    } else {
+        const int n = degree_[0], m = degree_[1], w = m + 1;
+        const Vec<3>* h = hull(index);
+        // The longer way across, along rows of control points.
+        std::array<double, 2> length{};
+        for (int r = 0; r <= n; ++r) {
+            double sum = 0;
+            for (int s = 0; s < m; ++s) sum += norm(h[r * w + s + 1] - h[r * w + s]);
+            length[1] = std::max(length[1], sum);
+        }
+        for (int s = 0; s <= m; ++s) {
+            double sum = 0;
+            for (int r = 0; r < n; ++r) sum += norm(h[(r + 1) * w + s] - h[r * w + s]);
+            length[0] = std::max(length[0], sum);
+        }
+        std::size_t k = length[1] > length[0];
+        if (whole.local[k].length() <= 0x1p-40) k = 1 - k;
+        if (whole.local[k].length() <= 0x1p-40) return false;
+        const double middle = whole.local[k].middle();
+        a.local[k].hi = b.local[k].lo = middle;
+        const double at = breaks_[k][std::size_t(whole.from[k])] + middle * width(k, whole.from[k]);
+        a.on[k].hi = b.on[k].lo = at;
+        a.roundings = b.roundings = whole.roundings + degree_[k];
+        a.net = int(nets_.size()), b.net = a.net + block_;
+        nets_.resize(nets_.size() + std::size_t(2 * block_));
+        std::copy_n(nets_.begin() + whole.net, block_, nets_.begin() + a.net);
+        Hom<3>*l = nets_.data() + a.net, *r = nets_.data() + b.net;
+        if (k == 0)
+            for (int s = 0; s <= m; ++s) halve_row(l + s, r + s, n, w);
+        else
+            for (int i = 0; i <= n; ++i) halve_row(l + i * w, r + i * w, m, 1);
+    }
+    const int left = add(a);
+    add(b);
+    parts_[std::size_t(index)].left = left;
+    return true;
+}
+
+void Sheet::add_slopes_of(const Hom<3>* net, const std::array<double, 2>& width, double roundings,
+                          Slopes& out) const {
+    Box<3> box;
+    double w_lo = kInfinity, w_hi = 0;
+    for (int k = 0; k < block_; ++k) {
+        w_lo = std::min(w_lo, net[k].weight()), w_hi = std::max(w_hi, net[k].weight());
+        if (!(net[k].weight() > 0)) {
+            w_lo = -1;
+            break;
+        }
+        box.add(Space<Hom<3>>::project(net[k]));
+    }
+    const int stride = degree_[1] + 1;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        SlopeBox own;
+        if (!(w_lo > 0)) {
+            own.lo = Box<3>::filled(-kInfinity), own.hi = Box<3>::filled(kInfinity);
+            out[axis].include(own);
+            continue;
+        }
+        const Vec<3> m = 0.5 * (box.lo + box.hi), reach = 0.5 * (box.hi - box.lo);
+        const double w_mid = 0.5 * (w_lo + w_hi), factor = degree_[axis] / (w_mid * width[axis]);
+        const int step = axis == 0 ? stride : 1;
+        double dw = 0;
+        for (int r = 0; r <= degree_[0] - (axis == 0); ++r)
+            for (int s = 0; s <= degree_[1] - (axis == 1); ++s) {
+                const Hom<3>&p = net[r * stride + s], &q = net[r * stride + s + step];
+                const double w = q.weight() - p.weight();
+                dw = std::max(dw, std::abs(w));
+                for (int k = 0; k < 3; ++k) {
+                    const double d = factor * ((q[k] - p[k]) - m[k] * w);
+                    own.lo[k] = std::min(own.lo[k], d), own.hi[k] = std::max(own.hi[k], d);
+                }
+            }
+        if (degree_[axis] == 0) own.lo = own.hi = Vec<3>{};
+        const double varies = (w_hi - w_lo) / (2 * w_lo),
+                     rounding = 8 * degree_[axis] * roundings * unit_ / width[axis];
+        for (int k = 0; k < 3; ++k) {
+            const double more = 1.01 * (varies * std::max(std::abs(own.lo[k]), std::abs(own.hi[k])) +
+                                        reach[k] * dw * factor * w_mid / w_lo + rounding);
+            own.lo[k] -= more, own.hi[k] += more;
+        }
+        out[axis].include(own);
+    }
+}
+
+// Over a rectangle of the parameters of one piece, or beyond.
+void Sheet::add_slopes(int piece, const std::array<Interval, 2>& local, Slopes& out) const {
+    std::array<Hom<3>, 64> small;
+    std::vector<Hom<3>> large(block_ > 64 ? std::size_t(block_) : 0);
+    Hom<3>* net = block_ > 64 ? large.data() : small.data();
+    std::copy_n(pieces_.data() + std::size_t(piece) * std::size_t(block_), block_, net);
+    const int n = degree_[0], m = degree_[1], w = m + 1;
+    for (int s = 0; s <= m; ++s) restrict_row(net + s, n, w, local[0]);
+    for (int r = 0; r <= n; ++r) restrict_row(net + r * w, m, 1, local[1]);
+    const std::array<double, 2> size{local[0].length() * width(0, piece / count_[1]),
+                                     local[1].length() * width(1, piece % count_[1])};
+    const double stretch = std::pow(1 + 2 * kMargin, n + m);
+    add_slopes_of(net, size, stretch * (12 * (n + m) + 16 + 12 * (n + m)), out);
+}
+
+const Sheet::Slopes& Sheet::slopes(int index, bool around) {
+    const std::size_t which = around;
+    if ((*this)[index].slopes[which] >= 0) return slopes_[std::size_t((*this)[index].slopes[which])];
+    const SheetPart& part = (*this)[index];
+    Slopes out;
+    if (!around) {
+        add_slopes_of(nets_.data() + part.net, {part.on[0].length(), part.on[1].length()}, part.roundings,
+                      out);
+    } else {
+        // The pieces that the surroundings reach, each with its part of them.
+        struct Share {
+            int piece;
+            Interval local;
+        };
+        std::array<std::vector<Share>, 2> shares;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double more = kMargin * part.on[k].length() * (1 + 0x1p-20);
+            const Interval wide{part.on[k].lo - more, part.on[k].hi + more};
+            const double period = breaks_[k].back() - breaks_[k].front();
+            const auto piece_at = [&](int i) {
+                const int own = ((i % count_[k]) + count_[k]) % count_[k];
+                const double lo = breaks_[k][std::size_t(own)] + (i - own) / count_[k] * period;
+                return std::pair(own, Interval{lo, lo + width(k, own)});
+            };
+            const int least = cyclic_[k] ? part.from[k] - 2 * count_[k] : 0;
+            const int most = cyclic_[k] ? part.from[k] + 2 * count_[k] : count_[k] - 1;
+            int first = part.from[k];
+            while (first > least && piece_at(first).second.lo > wide.lo) --first;
+            for (int i = first; i <= most; ++i) {
+                const auto [own, whole] = piece_at(i);
+                if (whole.lo >= wide.hi) break;
+                Interval on{std::max(wide.lo, whole.lo), std::min(wide.hi, whole.hi)};
+                if (i == least) on.lo = wide.lo;
+                if (i == most) on.hi = wide.hi;
+                const double size = whole.length();
+                if (on.lo < on.hi)
+                    shares[k].push_back({own, {(on.lo - whole.lo) / size, (on.hi - whole.lo) / size}});
+            }
+        }
+        for (const Share& u : shares[0])
+            for (const Share& v : shares[1])
+                add_slopes(u.piece * count_[1] + v.piece, {u.local, v.local}, out);
+    }
+    parts_[std::size_t(index)].slopes[which] = int(slopes_.size());
+    slopes_.push_back(out);
+    return slopes_.back();
+}
+
+}  // namespace freiform::detail

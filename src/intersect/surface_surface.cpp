@@ -1,0 +1,199 @@
+// Intersections of two surfaces.
+//
+// Idea. The curve is covered by charts: boxes of the four parameters in each of which it is proven to be one
+// arc (charts_detail.hpp). Everywhere else the surfaces are proven to be apart, or are so near to each other
+// and so parallel that the tolerance does not tell how they meet. Branches are followed from chart to chart
+// (trace_detail.hpp) and fitted by splines (branch_fit_detail.hpp) whose distance from both surfaces is
+// proven (branch_proof_detail.hpp).
+//
+// Method. Pairs of parts of both surfaces are halved until boxes or slabs along a normal tell them apart, or
+// they have a chart. A loop, however small, is in charts like any other branch: none needs a starting point
+// that a heuristic finds. Pairs closer than a fraction of the tolerance all over are given up; clusters of
+// few of them are looked at again, ever finer, since they are about a place where the surfaces touch, or
+// nearly do, and often do not.
+//
+// Cost. Charts are as long as the angle of the surfaces, divided by how much they bend, allows: some hundreds
+// along a branch that goes over a surface, a microsecond or two each; as much again for the proof of the fit.
+//
+// Accuracy. That nothing is missed holds for the surfaces as they are given: the rounding of extraction,
+// halving and evaluation is counted. So do the bounds of branches.
+//
+// References. [Hohmeyer 1991] and [Sederberg Meyers 1988] stop where normals cannot be parallel, so that
+// there are no loops, and begin branches at borders; [Krawczyk 1969] is the test for one zero.
+//
+// Why not border points of pieces, linked within pieces? Where a branch runs along the border of a piece, or
+// touches it, rounding decides how many there are, and branches are lost or doubled. Charts overlap, so no
+// border matters but those of the surfaces.
+#include "branch_fit_detail.hpp"
+
+#include <freiform/core/text.hpp>
+
+namespace freiform {
+
+std::string_view name_of(SurfaceNodeKind kind) {
+    switch (kind) {
+        case SurfaceNodeKind::touch:
+            return "touch";
+        case SurfaceNodeKind::crossing:
+            return "crossing";
+        case SurfaceNodeKind::along:
+            break;
+    }
+    return "along";
+}
+
+namespace {
+
+using namespace detail;
+
+Surface<Hom<3>> weighted_net(const Surface<Vec<3>>& s) { return to_rational(s); }
+const Surface<Hom<3>>& weighted_net(const Surface<Hom<3>>& s) { return s; }
+
+// (A - B) . A_u, (A - B) . A_v, N . B_s, N . B_t with N = A_u x A_v: all zero where the distance of one
+// surface from the other does not change.
+std::array<double, 4> parallel_at(const Charts& charts, const Place4& x) {
+    const Charts::Value v = charts.value(x);
+    const Vec<3> n = unit(cross(v.d[0], v.d[1]));
+    return {dot(v.f, v.d[0]), dot(v.f, v.d[1]), dot(n, v.d[2]), dot(n, v.d[3])};
+}
+
+// Newton's method with differences for derivatives, from the middle of the cell where the surfaces are
+// nearest; where it leads out of the box, that middle.
+Place4 nearest_in(const Charts& charts, const Cluster& cluster, const std::array<Interval, 4>& box) {
+    Place4 best{};
+    double least = kInfinity;
+    for (const auto& cell : cluster.cores) {
+        Place4 x;
+        for (std::size_t k = 0; k < 4; ++k) x[k] = cell[k].middle();
+        if (const double off = norm(charts.value(x).f); off < least) least = off, best = x;
+    }
+    Place4 x = best;
+    for (int i = 0; i < 20; ++i) {
+        const auto g = parallel_at(charts, x);
+        std::array<std::array<double, 5>, 4> m{};  // the system, with its right-hand side
+        for (std::size_t k = 0; k < 4; ++k) {
+            Place4 y = x;
+            const double h = std::max(1e-4 * box[k].length(), 1e-7 * charts.domain(k).length());
+            y[k] += x[k] + h <= charts.domain(k).hi ? h : -h;
+            const auto gy = parallel_at(charts, y);
+            for (std::size_t r = 0; r < 4; ++r) m[r][k] = (gy[r] - g[r]) / (y[k] - x[k]);
+        }
+        for (std::size_t r = 0; r < 4; ++r) m[r][4] = g[r];
+        for (std::size_t k = 0; k < 4; ++k) {
+            std::size_t pivot = k;
+            for (std::size_t r = k + 1; r < 4; ++r)
+                if (std::abs(m[r][k]) > std::abs(m[pivot][k])) pivot = r;
+            std::swap(m[k], m[pivot]);
+            if (m[k][k] == 0) return best;
+            for (std::size_t r = 0; r < 4; ++r)
+                if (r != k)
+                    for (std::size_t c = 5; c-- > k;) m[r][c] -= m[r][k] / m[k][k] * m[k][c];
+        }
+        double step = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double d = m[k][4] / m[k][k];
+            x[k] -= d;
+            step = std::max(step, std::abs(d) / box[k].length());
+            if (!(x[k] >= box[k].lo - box[k].length() && x[k] <= box[k].hi + box[k].length())) return best;
+            x[k] = clamped(x[k], charts.domain(k));
+        }
+        if (step < 1e-9) break;
+    }
+    return x;
+}
+
+std::array<Interval, 4> hull_of(const Cluster& cluster) {
+    std::array<Interval, 4> box = cluster.cores.front();
+    for (const auto& cell : cluster.cores)
+        for (std::size_t k = 0; k < 4; ++k) box[k] = hull(box[k], cell[k]);
+    return box;
+}
+
+Box<3> place_of(const Charts& charts, const Cluster& cluster) {
+    Box<3> place;
+    for (const auto& cell : cluster.cores)
+        for (const double u : {cell[0].lo, cell[0].hi})
+            for (const double v : {cell[1].lo, cell[1].hi}) place.add(charts.sheet(0).at(u, v).point);
+    return place;
+}
+
+// What begins and ends at one node, is no longer than it and does not leave its box is a part of it.
+bool is_within_node(const Charts& charts, const Trace& t) {
+    if (t.ends[0] < 0 || t.ends[0] != t.ends[1]) return false;
+    const Cluster& cluster = charts.clusters()[std::size_t(t.ends[0])];
+    const auto box = hull_of(cluster);
+    double left = place_of(charts, cluster).diagonal();
+    Vec<3> last = charts.sheet(0).at(t.points[0].x[0], t.points[0].x[1]).point;
+    for (const TracePoint& p : t.points) {
+        for (std::size_t k = 0; k < 4; ++k)
+            if (!box[k].contains(p.x[k])) return false;
+        const Vec<3> x = charts.sheet(0).at(p.x[0], p.x[1]).point;
+        left -= norm(x - last);
+        if (left < 0) return false;
+        last = x;
+    }
+    return true;
+}
+
+SurfaceNode node_of(const Charts& charts, const Cluster& cluster, int arms, double tolerance) {
+    SurfaceNode node;
+    const std::array<Interval, 4> box = hull_of(cluster);
+    const Place4 x = nearest_in(charts, cluster, box);
+    node.box_a = {box[0], box[1]}, node.box_b = {box[2], box[3]};
+    node.at_a = {x[0], x[1]}, node.at_b = {x[2], x[3]};
+    node.point = charts.sheet(0).at(x[0], x[1]).point;
+    node.gap = 1.01 * (norm(charts.value(x).f) + 1.8 * charts.error_at(x));
+    node.arms = arms;
+    const bool is_point =
+        place_of(charts, cluster).diagonal() <= std::max(64 * tolerance, 0x1p-10 * charts.sheet(0).scale());
+    node.kind = !is_point   ? SurfaceNodeKind::along
+                : arms == 0 ? SurfaceNodeKind::touch
+                            : SurfaceNodeKind::crossing;
+    node.cells = cluster.cores;
+    return node;
+}
+
+}  // namespace
+
+template <class P, class Q>
+requires(Space<P>::kDim == 3 &&
+         Space<Q>::kDim == 3) Result<SurfaceIntersection> intersect(const Surface<P>& a, const Surface<Q>& b,
+                                                                    const SurfaceIntersectOptions& options) {
+    const double tolerance = options.tolerance;
+    if (!(tolerance > 0) || !std::isfinite(tolerance))
+        return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a length > 0"));
+    Sheet sheet_a(weighted_net(a)), sheet_b(weighted_net(b));
+    Charts charts(sheet_a, sheet_b);
+    // Finer, rounding leaves no chart beside a place where the surfaces touch.
+    const double finest =
+        std::max(0x1p-36 * tolerance, 0x1p8 * (sheet_a.inner_error() + sheet_b.inner_error()));
+    charts.search(tolerance, finest, options.max_pairs);
+    std::vector<Trace> traces = Tracer(charts).all();
+    const SurfaceGeometry geometry_a(a), geometry_b(b);
+    const BranchProof proof_a(geometry_a, sheet_a), proof_b(geometry_b, sheet_b);
+    SurfaceIntersection out;
+    std::vector<int> arms(charts.clusters().size());
+    for (Trace& t : traces) {
+        const std::array<int, 2> ends = t.ends;
+        if (is_within_node(charts, t)) continue;
+        out.branches.push_back(TraceFit(charts, {&proof_a, &proof_b}, tolerance)(std::move(t)));
+        out.branches.back().ends = ends;
+        for (const int end : ends)
+            if (end >= 0) ++arms[std::size_t(end)];
+    }
+    for (std::size_t i = 0; i < arms.size(); ++i)
+        out.nodes.push_back(node_of(charts, charts.clusters()[i], arms[i], tolerance));
+    for (const PartPair& p : charts.left()) out.undecided.push_back(charts.core(p));
+    return out;
+}
+
+template Result<SurfaceIntersection> intersect(const Surface<Vec<3>>&, const Surface<Vec<3>>&,
+                                               const SurfaceIntersectOptions&);
+template Result<SurfaceIntersection> intersect(const Surface<Vec<3>>&, const Surface<Hom<3>>&,
+                                               const SurfaceIntersectOptions&);
+template Result<SurfaceIntersection> intersect(const Surface<Hom<3>>&, const Surface<Vec<3>>&,
+                                               const SurfaceIntersectOptions&);
+template Result<SurfaceIntersection> intersect(const Surface<Hom<3>>&, const Surface<Hom<3>>&,
+                                               const SurfaceIntersectOptions&);
+
+}  // namespace freiform
