@@ -46,7 +46,7 @@ double Charts::error_at(const Place4& x) const {
     return 1.01 * sum;
 }
 
-bool Charts::newton(Place4& x, std::size_t fixed, const std::array<double, 4>& width) const {
+bool Charts::newton(Place4& x, std::size_t fixed, const std::array<double, 4>& width, double until) const {
     double last = kInfinity;
     for (int i = 0; i < 12; ++i) {
         const Value v = value(x);
@@ -60,15 +60,15 @@ bool Charts::newton(Place4& x, std::size_t fixed, const std::array<double, 4>& w
         }
         if (!(step < 4)) return false;
         // Convergence is quadratic: what is left is far below this step.
-        if (step <= 0x1p-27 || (step >= 0.5 * last && step < 0x1p-20)) return true;
+        if (step <= until || (step >= 0.5 * last && step < 0x1p-20)) return true;
         last = step;
     }
     return false;
 }
 
-std::optional<ArcZero> Charts::zero(const Chart& c, Place4 x) const {
+std::optional<ArcZero> Charts::zero(const Chart& c, Place4 x, double until) const {
     const std::array<double, 4> width{c.width(0), c.width(1), c.width(2), c.width(3)};
-    if (!newton(x, c.free, width)) return std::nullopt;
+    if (!newton(x, c.free, width, until)) return std::nullopt;
     const Value v = value(x);
     const double error = error_at(x);
     double off = 0;
@@ -128,6 +128,8 @@ bool Charts::set_up(Chart& c, const Sheet::Slopes& a, const Sheet::Slopes& b,
     }
     c.slope /= 1 - c.q;
     if (!(c.slope < kMostSlope)) return false;
+    for (std::size_t r = 0; r < 4; ++r)
+        c.along[r] = r == c.free ? 1 : drift[r] * c.width(r) / c.width(c.free);
     // y' = -(1 + R)^-1 Y F_free, |R| <= q.
     std::array<double, 4> sure{};
     for (std::size_t r = 0; r < 4; ++r) {
@@ -145,7 +147,7 @@ Charts::Answer Charts::settle(PartPair p) {
     const SheetPart &a = (*sheets_[0])[p.a], &b = (*sheets_[1])[p.b];
     c.core = {a.on[0], a.on[1], b.on[0], b.on[1]};
     std::array<double, 4> drift{};
-    if (!set_up(c, sheets_[0]->slopes(p.a, false), sheets_[1]->slopes(p.b, false), drift) || c.q > 0.4)
+    if (!set_up(c, sheets_[0]->slopes(p.a, false), sheets_[1]->slopes(p.b, false), drift) || c.q > 0.25)
         return Answer::open;
     if (!set_up(c, sheets_[0]->slopes(p.a, true), sheets_[1]->slopes(p.b, true), drift)) return Answer::open;
     const Answer answer = seed(c, drift);
@@ -166,7 +168,7 @@ Charts::Answer Charts::seed(Chart& c, const std::array<double, 4>& drift) const 
         if (std::abs(d) > 1.01 * (reach * (1 + c.q) + e)) return Answer::nothing;
         x[k] -= d * c.width(k);
     }
-    const auto found = zero(c, x);
+    const auto found = zero(c, x, 0x1p-7);
     if (!found) return Answer::open;
     c.seed = found->x;
     for (std::size_t k = 0; k < 4; ++k)

@@ -9,6 +9,13 @@ constexpr std::size_t kMostToRefine = 60'000;
 
 }  // namespace
 
+Charts::Charts(Sheet& a, Sheet& b) : sheets_{&a, &b} {
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Interval on = domain(k);
+        slack_[k] = 0x1p-42 * std::max(on.length(), std::max(std::abs(on.lo), std::abs(on.hi)));
+    }
+}
+
 void Charts::search(double nearness, double finest, int max_pairs) {
     max_pairs_ = max_pairs, nearness_ = nearness;
     nodes_.assign(1, Node{});
@@ -55,8 +62,7 @@ void Charts::look_at_all() {
             look(node);
             continue;
         }
-        const PartPair p = nodes_[std::size_t(node)].parts;
-        if (!are_apart((*sheets_[0])[p.a], (*sheets_[1])[p.b])) left_.push_back(p);
+        left_.push_back(nodes_[std::size_t(node)].parts);
     }
 }
 
@@ -117,12 +123,13 @@ std::vector<std::vector<int>> Charts::neighbours(std::vector<int> nodes) const {
 }
 
 bool Charts::has_core_at(PartPair p, const Place4& x) const {
+    const auto &a = (*sheets_[0])[p.a].on, &b = (*sheets_[1])[p.b].on;
     for (std::size_t k = 0; k < 4; ++k) {
-        const Interval on = (*sheets_[k / 2])[k < 2 ? p.a : p.b].on[k % 2], all = domain(k);
-        const double slack = 0x1p-42 * std::max(all.length(), std::max(std::abs(all.lo), std::abs(all.hi)));
-        const auto is_in = [&](double t) { return on.lo - slack <= t && t <= on.hi + slack; };
-        if (!is_in(x[k]) && !(is_cyclic(k) && (is_in(x[k] - all.length()) || is_in(x[k] + all.length()))))
-            return false;
+        const Interval on = k < 2 ? a[k] : b[k - 2];
+        const auto is_in = [&](double t) { return on.lo - slack_[k] <= t && t <= on.hi + slack_[k]; };
+        if (is_in(x[k])) continue;
+        const double period = domain(k).length();
+        if (!is_cyclic(k) || !(is_in(x[k] - period) || is_in(x[k] + period))) return false;
     }
     return true;
 }
@@ -173,7 +180,6 @@ bool Charts::are_apart_by_slabs(PartPair p, bool& near) const {
 void Charts::look(int node) {
     const PartPair p = nodes_[std::size_t(node)].parts;
     const SheetPart &a = (*sheets_[0])[p.a], &b = (*sheets_[1])[p.b];
-    if (are_apart(a, b)) return;
     if (a.is_one_piece() && b.is_one_piece()) {
         bool near = false;
         if (are_apart_by_slabs(p, near)) return;
@@ -199,8 +205,9 @@ void Charts::split(int node) {
         const int half = (*sheets_[i])[part].left, left = int(nodes_.size());
         nodes_[std::size_t(node)].left = left;
         for (const int h : {half, half + 1}) {
-            open_.push_back(int(nodes_.size()));
-            nodes_.push_back({i == 0 ? PartPair{h, p.b} : PartPair{p.a, h}});
+            const PartPair pair = i == 0 ? PartPair{h, p.b} : PartPair{p.a, h};
+            if (!are_apart((*sheets_[0])[pair.a], (*sheets_[1])[pair.b])) open_.push_back(int(nodes_.size()));
+            nodes_.push_back({pair});
         }
         return;
     }

@@ -32,6 +32,7 @@ struct Chart {
     std::size_t free = 0;
     std::array<Vec<3>, 4> y{};  // rows of Y, that of `free` is empty
     double q = 0, slope = 0;    // S
+    Place4 along{};             // about how x changes with the free parameter
     Place4 seed{};
     int forward = 1;    // the free parameter rises in the direction of the product of the normals
     int branch = -1;    // that came here
@@ -52,7 +53,7 @@ struct Cluster {
 
 class Charts {
 public:
-    Charts(Sheet& a, Sheet& b) : sheets_{&a, &b} {}
+    Charts(Sheet& a, Sheet& b);
 
     // Finds all. What is no farther apart than `nearness` all over a pair of parts is halved no more; what
     // such pairs are about, if it seems to be one point, down to `finest`.
@@ -75,10 +76,12 @@ public:
     Value value(const Place4& x) const;
     // Of each coordinate of f.
     double error_at(const Place4& x) const;
-    // Newton's method with parameter `fixed` as it is. False: no convergence near x.
-    bool newton(Place4& x, std::size_t fixed, const std::array<double, 4>& width) const;
+    // Newton's method with parameter `fixed` as it is, until a step is so many lengths. False: no
+    // convergence.
+    bool newton(Place4& x, std::size_t fixed, const std::array<double, 4>& width,
+                double until = 0x1p-27) const;
     // The zero of the chart near x with its free parameter.
-    std::optional<ArcZero> zero(const Chart& chart, Place4 x) const;
+    std::optional<ArcZero> zero(const Chart& chart, Place4 x, double until = 0x1p-27) const;
     // The null vector of the derivatives in units of length along the curve in space: dx/ds, and the tangent.
     struct Direction {
         Place4 x{};
@@ -129,6 +132,7 @@ private:
     std::vector<PartPair> left_;
     double nearness_ = 0;
     int looked_at_ = 0, max_pairs_ = 0;
+    std::array<double, 4> slack_{};  // of parameters, that rounding may move a place by
 };
 
 }  // namespace freiform::detail

@@ -27,6 +27,13 @@ std::vector<Trace> Tracer::all() {
 std::optional<Trace> Tracer::from(int chart) {
     auto& all = charts_.charts();
     TracePoint start{all[std::size_t(chart)].seed, chart, false};
+    // Seeds are as near as a proof needs; at borders they are on them.
+    if (const auto exact = charts_.zero(all[std::size_t(chart)], start.x)) {
+        bool inside = true;
+        for (std::size_t k = 0; k < 4; ++k)
+            inside = inside && (charts_.is_cyclic(k) || charts_.domain(k).contains(exact->x[k]));
+        if (inside) start.x = exact->x;
+    }
     for (std::size_t k = 0; k < 4; ++k) start.x[k] = charts_.wrapped(k, start.x[k]);
     charts_.leaves_at(start.x, leaves_);
     for (const int i : leaves_.charts)
@@ -104,10 +111,9 @@ Tracer::Step Tracer::step(TracePoint& from, int direction, std::vector<TracePoin
                            0.98 * Sheet::kMargin * w / std::max(c.slope, 0.7));
     if (by * sense <= 0) by = sense * kBeyond * w;
     std::optional<ArcZero> next;
-    const Charts::Direction d = charts_.direction(x);
     for (int i = 0; i < 4 && !next; ++i, by /= 2) {
         Place4 y = x;
-        for (std::size_t k = 0; k < 4; ++k) y[k] += d.x[k] / d.x[f] * by;
+        for (std::size_t k = 0; k < 4; ++k) y[k] += c.along[k] * by;
         y[f] = x[f] + by;
         next = charts_.zero(c, y);
     }
