@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""tools/bench_intersect.py [--programs DIR] [--print]: intersections of plane curves beside Open CASCADE and plain subdivision.
+"""tools/bench_intersect.py [--programs DIR] [--print]: intersections of plane curves and of surfaces beside Open CASCADE and plain subdivision.
 
-Runs bench-intersect and bench-intersect-occt in turns, each a process of its own, and writes bench/INTERSECT.md; with
+Runs bench-intersect, bench-surface_pairs and the same with Open CASCADE in turns, each a process of its own, and writes bench/INTERSECT.md; with
 --print only prints it. The time of a task is the shortest of all runs.
 """
 import argparse
@@ -13,7 +13,12 @@ TASKS = [("cubics", "1000 pairs of Bézier cubics"), ("splines", "50 pairs of cu
 METHODS = [("freiform", "bench-intersect", ""), ("plain subdivision", "bench-intersect", "_plain"),
            ("Open CASCADE", "bench-intersect-occt", "")]
 
-PAGE = """# Intersections of plane curves beside others
+SURFACE_TASKS = [("rational", "10 x 10 control points, rational"), ("polynomial", "10 x 10 control points"),
+                 ("loops", "20 x 20 control points, many small loops; tolerance 1e-4"),
+                 ("single", "4 x 4 control points: one Bézier patch each")]
+SURFACE_METHODS = [("freiform", "bench-surface_pairs"), ("Open CASCADE", "bench-surface_pairs-occt")]
+
+PAGE = """# Intersections beside others
 
 {head}
 
@@ -25,14 +30,23 @@ truth here. Open CASCADE is Geom2dAPI_InterCurveCurve at 1e-9.
 | task | | time per pair | roots | missed | invented | doubled |
 |---|---|---:|---:|---:|---:|---:|
 {rows}
+
+## Two surfaces
+
+Ten pairs of hills each; the tolerance is 1e-6 where nothing else is said. The time is that of the branches as splines in space
+(here with both parameter curves and bounds). The truth is from a fine grid. Open CASCADE is GeomAPI_IntSS.
+
+| ten pairs of | | time per pair | branches of | length of |
+|---|---|---:|---:|---:|
+{surfaces}
 """
 
 
-def measure(programs):
+def measure(programs, names):
     """program -> task -> numbers."""
     best = {}
     for _ in range(ROUNDS):
-        for program in dict.fromkeys(p for _, p, _ in METHODS):
+        for program in names:
             if (programs / program).is_file():
                 keep_shortest(best.setdefault(program, {}), run(programs / program))
     return best
@@ -52,10 +66,27 @@ def table(best):
     return "\n".join(rows)
 
 
+def surface_table(best):
+    rows = []
+    for task, title in SURFACE_TASKS:
+        own = best["bench-surface_pairs"][task]["seconds"]
+        for name, program in SURFACE_METHODS:
+            n = best.get(program, {}).get(task)
+            if not n:
+                continue
+            beside = "" if name == "freiform" else f" ({ratio(n['seconds'], own)})"
+            rows.append(f"| {title} | {name} | {duration(n['seconds'])}{beside} | {n['branches']:.0f} of {n['true_branches']:.0f} "
+                        f"| {n['length']:.2f} of {n['true_length']:.2f} |")
+    return "\n".join(rows)
+
+
 def main():
     options = parse(argparse.ArgumentParser(description=__doc__.splitlines()[0]), "bench-intersect")
     top = head("bench_intersect.py")
-    write(options, "INTERSECT.md", PAGE.format(head=top, rounds=ROUNDS, rows=table(measure(options.programs))))
+    curves = measure(options.programs, dict.fromkeys(p for _, p, _ in METHODS))
+    surfaces = measure(options.programs, [p for _, p in SURFACE_METHODS])
+    write(options, "INTERSECT.md",
+          PAGE.format(head=top, rounds=ROUNDS, rows=table(curves), surfaces=surface_table(surfaces)))
 
 
 if __name__ == "__main__":

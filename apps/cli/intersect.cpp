@@ -1,8 +1,9 @@
-// intersect: where the curves of two files meet each other, or curves of one the surfaces of the other.
-#include "input.hpp"
+// intersect: where the curves and surfaces of two files meet.
+#include "surface_meetings.hpp"
 
 #include <freiform/intersect/curve_curve.hpp>
 #include <freiform/intersect/curve_surface.hpp>
+#include <freiform/io/document.hpp>
 
 #include <variant>
 
@@ -11,7 +12,7 @@ namespace freiform::cli {
 namespace {
 
 struct IntersectArguments {
-    std::string a, b, object_a, object_b;
+    std::string a, b, object_a, object_b, curves;
     std::optional<double> tolerance;
 };
 
@@ -26,7 +27,8 @@ struct Chosen {
 
 class Meeting {
 public:
-    Meeting(const Input& a, const Input& b, double tolerance) : a_(a), b_(b), tolerance_(tolerance) {}
+    Meeting(const Input& a, const Input& b, std::optional<double> tolerance)
+        : a_(a), b_(b), given_(tolerance), tolerance_(tolerance.value_or(0)) {}
 
     Result<void> meet(const Chosen& a, const Chosen& b) {
         at_ = {a.index, b.index};
@@ -42,9 +44,18 @@ public:
             for (const auto& row : *rows) row(w);
             w.end_array();
         }
+        surfaces_.write(w);
         return w.end_object().take() + "\n";
     }
-    std::string plain() const { return plain_.empty() ? "no intersection\n" : plain_; }
+    std::string plain() const {
+        const std::string all = plain_ + surfaces_.plain();
+        return all.empty() ? "no intersection\n" : all;
+    }
+    Document curves() const {
+        Document out = surfaces_.curves();
+        out.unit = a_.document->unit;
+        return out;
+    }
 
 private:
     using Row = std::function<void(json::Writer&)>;
@@ -56,8 +67,7 @@ private:
             return refuse(RefusalKind::no_answer, where(),
                           "one has 2 coordinates, the other 3; --object-a and --object-b choose");
         else if constexpr (X::kParams == 2 && Y::kParams == 2)
-            return refuse(RefusalKind::no_answer, where(),
-                          "are two surfaces; answered are curves with curves, and curves with surfaces");
+            return meet_surfaces(x, y);
         else if constexpr (!std::same_as<typename X::Coefficients, typename Y::Coefficients>)
             return meet_shapes(rational(x), rational(y));
         else if constexpr (X::kParams == 2)
@@ -69,6 +79,23 @@ private:
         else
             return take(intersect(x, y, options()),
                         [](const auto& at) { return std::pair(first(at), rest(at)); });
+    }
+    template <class P, class Q>
+    Result<void> meet_surfaces(const Surface<P>& x, const Surface<Q>& y) {
+        Box<3> box;
+        for (const Vec<3>& p : points(x)) box.add(p);
+        const double tolerance = given_.value_or(1e-6 * box.diagonal());
+        const auto found = intersect(x, y, SurfaceIntersectOptions{.tolerance = tolerance});
+        if (!found) return refuse_within(where(), found.error());
+        surfaces_.add(*found, at_, where());
+        for (const auto& open : found->undecided) undecided_.push_back(text(where(), ": ", shown_box(open)));
+        return {};
+    }
+    template <std::size_t N>
+    static std::string shown_box(const std::array<Interval, N>& box) {
+        std::string s;
+        for (const Interval& t : box) s += text(s.empty() ? "[" : " x [", t.lo, ", ", t.hi, "]");
+        return s;
     }
     template <std::size_t N, int D>
     static Patch<N, Hom<D>> rational(const Patch<N, Vec<D>>& p) {
@@ -133,12 +160,7 @@ private:
             plain_ += text(where(), ": overlap over [", o.a.lo, ", ", o.a.hi, "] and [", o.b.lo, ", ", o.b.hi,
                            "]", o.reversed ? ", reversed" : "", ", gap at most ", o.gap, "\n");
         }
-        for (const auto& box : found->undecided) {
-            std::string shown_box;
-            for (const Interval& t : box)
-                shown_box += text(shown_box.empty() ? "[" : " x [", t.lo, ", ", t.hi, "]");
-            undecided_.push_back(text(where(), ": ", shown_box));
-        }
+        for (const auto& box : found->undecided) undecided_.push_back(text(where(), ": ", shown_box(box)));
         return {};
     }
     static void write_box(json::Writer& w, const std::vector<Interval>& box) {
@@ -154,10 +176,12 @@ private:
     }
 
     const Input &a_, &b_;
+    std::optional<double> given_;
     double tolerance_;
     std::array<std::size_t, 2> at_{};
     std::vector<Row> points_, possible_, overlaps_;
     std::string plain_;
+    SurfaceMeetings surfaces_;
     std::vector<std::string> undecided_;
 };
 
@@ -179,8 +203,8 @@ Result<std::vector<Chosen>> operands(const Input& input) {
 }
 
 Result<void> run_intersect(const Context& context, const IntersectArguments& options) {
-    const double tolerance = options.tolerance.value_or(0);
-    if (!(tolerance >= 0)) wrong_usage("--tolerance needs a distance that is not negative");
+    if (!(options.tolerance.value_or(0) >= 0))
+        wrong_usage("--tolerance needs a distance that is not negative");
     const auto a = read_input(context, options.a, options.object_a);
     if (!a) return std::unexpected(a.error());
     const auto b = read_input(context, options.b, options.object_b);
@@ -188,7 +212,7 @@ Result<void> run_intersect(const Context& context, const IntersectArguments& opt
     const auto in_a = operands(*a), in_b = operands(*b);
     if (!in_a) return std::unexpected(in_a.error());
     if (!in_b) return std::unexpected(in_b.error());
-    Meeting meeting(*a, *b, tolerance);
+    Meeting meeting(*a, *b, options.tolerance);
     for (const Chosen& x : *in_a)
         for (const Chosen& y : *in_b)
             if (auto done = meeting.meet(x, y); !done) return done;
@@ -200,6 +224,11 @@ Result<void> run_intersect(const Context& context, const IntersectArguments& opt
                       text(open.size(), " boxes are undecided after all the work that is allowed: ", boxes,
                            open.size() > 8 ? "; .." : ""));
     }
+    if (!options.curves.empty()) {
+        Context file;
+        file.output = options.curves;
+        if (auto ok = emit(file, write_document(meeting.curves())); !ok) return ok;
+    }
     return emit(context, context.json ? meeting.json() : meeting.plain());
 }
 
@@ -208,9 +237,10 @@ Result<void> run_intersect(const Context& context, const IntersectArguments& opt
 void add_intersect(CommandLine& line) {
     const auto options = std::make_shared<IntersectArguments>();
     const Command command =
-        line.add("intersect", "Where curves meet curves, or surfaces: every place, with a proof",
+        line.add("intersect", "Where curves and surfaces meet each other: every place, with a proof",
                  "  freiform intersect road.json river.json\n"
                  "  freiform intersect rays.json teapot.bpt --tolerance 1e-9 --json\n"
+                 "  freiform intersect hull.json deck.json --tolerance 1e-4 --curves seam.json\n"
                  "Outside of what is listed there is no intersection. \"possible\": within rounding they may "
                  "meet, or pass "
                  "by at most \"gap\" apart.");
@@ -219,7 +249,10 @@ void add_intersect(CommandLine& line) {
     command.number(
         "--tolerance", options->tolerance,
         "Curves at most this far apart over an interval overlap; possible points with such a gap count as "
-        "points (default 0: what rounding asks for)");
+        "points (default 0: what rounding asks for). Of two surfaces, how far branches may be from either "
+        "(default: 1e-6 of the size of the first)");
+    command.word("--curves", options->curves, "Where the branches of surfaces go, as curves of a document")
+        .shown_as("FILE.json");
     command.word("--object-a", options->object_a, "Only this object of A").shown_as("NAME|INDEX");
     command.word("--object-b", options->object_b, "Only this object of B").shown_as("NAME|INDEX");
     command.answer_file();

@@ -29,12 +29,13 @@ void Charts::search(double nearness, double finest, int max_pairs) {
     const auto divide = [&](std::vector<int> nodes) {
         for (auto& group : neighbours(std::move(nodes))) batches.push_back({std::move(group), nearness_});
     };
+    for (const auto& group : neighbours(std::move(same_))) finish(group, true);
     divide(std::move(given_up_));
     while (!batches.empty()) {
         const Batch batch = std::move(batches.back());
         batches.pop_back();
         if (batch.nearness <= finest || batch.nodes.size() > kMostToRefine) {
-            finish(batch.nodes);
+            finish(batch.nodes, false);
             continue;
         }
         const std::size_t charts = charts_.size(), left = left_.size();
@@ -47,7 +48,7 @@ void Charts::search(double nearness, double finest, int max_pairs) {
             for (const int n : batch.nodes) nodes_[std::size_t(n)].left = -1;
             charts_.resize(charts);
             left_.resize(left);
-            finish(batch.nodes);
+            finish(batch.nodes, false);
         } else {
             divide(std::move(given_up_));
         }
@@ -66,8 +67,9 @@ void Charts::look_at_all() {
     }
 }
 
-void Charts::finish(const std::vector<int>& nodes) {
+void Charts::finish(const std::vector<int>& nodes, bool same) {
     Cluster c;
+    c.same = same;
     for (const int n : nodes) {
         nodes_[std::size_t(n)].cluster = int(clusters_.size());
         c.cores.push_back(core(nodes_[std::size_t(n)].parts));
@@ -181,6 +183,10 @@ void Charts::look(int node) {
     const PartPair p = nodes_[std::size_t(node)].parts;
     const SheetPart &a = (*sheets_[0])[p.a], &b = (*sheets_[1])[p.b];
     if (a.is_one_piece() && b.is_one_piece()) {
+        if (sheets_[0]->has_piece_of(p.a, *sheets_[1], p.b)) {
+            same_.push_back(node);
+            return;
+        }
         bool near = false;
         if (are_apart_by_slabs(p, near)) return;
         const Answer answer = settle(p);

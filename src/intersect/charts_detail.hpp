@@ -49,6 +49,7 @@ struct ArcZero {
 // them.
 struct Cluster {
     std::vector<std::array<Interval, 4>> cores;
+    bool same = false;  // the control points of whole pieces are the same, in one of their orders
 };
 
 class Charts {
@@ -114,7 +115,7 @@ private:
     void look(int node);
     void look_at_all();
     std::vector<std::vector<int>> neighbours(std::vector<int> nodes) const;
-    void finish(const std::vector<int>& nodes);
+    void finish(const std::vector<int>& nodes, bool same);
     bool has_core_at(PartPair p, const Place4& x) const;
     bool are_apart(const SheetPart& p, const SheetPart& q) const;
     bool are_apart_by_slabs(PartPair p, bool& near) const;
@@ -128,7 +129,7 @@ private:
     std::vector<Chart> charts_;
     std::vector<Cluster> clusters_;
     std::vector<Node> nodes_;
-    std::vector<int> open_, given_up_;
+    std::vector<int> open_, given_up_, same_;
     std::vector<PartPair> left_;
     double nearness_ = 0;
     int looked_at_ = 0, max_pairs_ = 0;

@@ -147,6 +147,27 @@ Sheet::At Sheet::at(double u, double v) const {
     return out;
 }
 
+bool Sheet::has_piece_of(int part, const Sheet& other, int part_of_other) const {
+    const SheetPart &p = (*this)[part], &q = other[part_of_other];
+    for (const SheetPart* x : {&p, &q})
+        if (x->local[0] != Interval{0, 1} || x->local[1] != Interval{0, 1}) return false;
+    const int n = degree_[0], m = degree_[1];
+    const Hom<3>*a = nets_.data() + p.net, *b = other.nets_.data() + q.net;
+    for (const bool swapped : {false, true}) {
+        if (other.degree_ != (swapped ? std::array{m, n} : degree_)) continue;
+        for (int turn = 0; turn < 4; ++turn) {
+            bool same = true;
+            for (int i = 0; i <= n && same; ++i)
+                for (int j = 0; j <= m && same; ++j) {
+                    const int r = turn & 1 ? n - i : i, s = turn & 2 ? m - j : j;
+                    same = a[i * (m + 1) + j] == b[swapped ? s * (n + 1) + r : r * (m + 1) + s];
+                }
+            if (same) return true;
+        }
+    }
+    return false;
+}
+
 // Box and the rest of a part from its control points.
 void Sheet::finish(SheetPart& part) const {
     part.error = unit_ * part.roundings;

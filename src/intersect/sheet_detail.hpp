@@ -61,6 +61,10 @@ public:
     double value_error() const { return value_error_; }
     const std::vector<double>& breaks(int axis) const { return breaks_[std::size_t(axis)]; }
 
+    // Both parts are whole pieces, of the same control points in the same or a reversed order, along the same
+    // or the other axis each.
+    bool has_piece_of(int part, const Sheet& other, int part_of_other) const;
+
     struct At {
         Vec<3> point{};
         std::array<Vec<3>, 2> d{};

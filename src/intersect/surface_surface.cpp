@@ -36,6 +36,8 @@ std::string_view name_of(SurfaceNodeKind kind) {
             return "touch";
         case SurfaceNodeKind::crossing:
             return "crossing";
+        case SurfaceNodeKind::overlap:
+            return "overlap";
         case SurfaceNodeKind::along:
             break;
     }
@@ -146,9 +148,10 @@ SurfaceNode node_of(const Charts& charts, const Cluster& cluster, int arms, doub
     node.arms = arms;
     const bool is_point =
         place_of(charts, cluster).diagonal() <= std::max(64 * tolerance, 0x1p-10 * charts.sheet(0).scale());
-    node.kind = !is_point   ? SurfaceNodeKind::along
-                : arms == 0 ? SurfaceNodeKind::touch
-                            : SurfaceNodeKind::crossing;
+    node.kind = cluster.same ? SurfaceNodeKind::overlap
+                : !is_point  ? SurfaceNodeKind::along
+                : arms == 0  ? SurfaceNodeKind::touch
+                             : SurfaceNodeKind::crossing;
     node.cells = cluster.cores;
     return node;
 }

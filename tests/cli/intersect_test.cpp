@@ -11,6 +11,33 @@ constexpr const char* kArches = R"({"freiform": 1, "objects": [
     {"name": "arch", "type": "curve", "points": [[0,0],[1,2],[3,2],[4,0]]},
     {"name": "high", "type": "curve", "points": [[0,9],[1,9]]}]})";
 
+// z = x^2 + y^2 over [-1, 1]^2.
+constexpr const char* kBowl = R"({"type": "surface", "points": [
+    [[-1,-1,2],[-1,0,0],[-1,1,2]], [[0,-1,0],[0,0,-2],[0,1,0]], [[1,-1,2],[1,0,0],[1,1,2]]]})";
+
+TEST_F(IntersectCommand, surfaces_meet_in_curves) {
+    const std::string bowl = file("bowl.json", kBowl);
+    const std::string level = file("level.json", R"({"type": "surface", "points": [
+        [[-2,-2,0.25],[-2,2,0.25]], [[2,-2,0.25],[2,2,0.25]]]})");
+    const Ran r =
+        run({"intersect", bowl, level, "--tolerance", "1e-6", "--json", "--curves", path("c.json")});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto all = nlohmann::json::parse(r.out);
+    ASSERT_EQ(all["curves"].size(), 1u) << r.out;
+    const auto& c = all["curves"][0];
+    EXPECT_EQ(c["closed"], true);
+    EXPECT_LE(c["bound"], 1e-6);
+    EXPECT_EQ(c["curve"]["points"][0].size(), 3u);
+    EXPECT_EQ(c["a"]["points"][0].size(), 2u);
+    EXPECT_EQ(c["b"]["knots"].back(), c["curve"]["knots"].back());
+    EXPECT_TRUE(all["nodes"].empty());
+    const Ran length = run({"length", path("c.json"), "--json"});
+    ASSERT_EQ(length.code, 0) << length.err;
+    EXPECT_NEAR(nlohmann::json::parse(length.out)["objects"][0]["value"].get<double>(), 3.14159265, 1e-4);
+    const Ran plain = run({"intersect", bowl, level});
+    EXPECT_NE(plain.out.find("closed branch"), std::string::npos) << plain.out;
+}
+
 TEST_F(IntersectCommand, lists_points_with_their_kind_and_parameters) {
     const std::string a = file("a.json", kArches);
     const std::string b = file("b.json", R"({"type": "curve", "points": [[2,0],[2,3]], "weights": [1, 2]})");
@@ -60,9 +87,11 @@ TEST_F(IntersectCommand, lines_meet_the_teapot) {
 
 TEST_F(IntersectCommand, says_what_is_not_answered) {
     const std::string a = file("a.json", kArches);
-    const Ran two = run({"intersect", kTeapot, kTeapot, "--json"});
-    EXPECT_EQ(two.code, 1);
-    EXPECT_NE(two.out.find("two surfaces"), std::string::npos) << two.out;
+    const std::string bowl = file("bowl.json", kBowl);
+    const Ran two = run({"intersect", bowl, bowl, "--json"});
+    EXPECT_EQ(two.code, 0);
+    EXPECT_EQ(nlohmann::json::parse(two.out)["nodes"][0]["kind"], "overlap");
+    EXPECT_EQ(run({"intersect", bowl, bowl, "--tolerance", "0"}).code, 3);
     EXPECT_EQ(run({"intersect", a, kTeapot}).code, 1);
     EXPECT_EQ(run({"intersect", a}).code, 2);
     EXPECT_EQ(run({"intersect", a, a, "--tolerance", "-1"}).code, 2);

@@ -186,6 +186,17 @@ TEST(SurfaceSurface, what_runs_along_is_a_node) {
     EXPECT_TRUE(overlap.branches.empty());
     ASSERT_EQ(overlap.nodes.size(), 1u);
     EXPECT_EQ(overlap.nodes[0].kind, SurfaceNodeKind::along);
+    // Turned by a reversed and exchanged net.
+    const auto bowl = quadratic([](double x, double y) { return x * x + 2 * y * y + x * y; });
+    std::vector<Vec<3>> c(9);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            c[std::size_t(3 * i + j)] = bowl.net().flat()[std::size_t(3 * (2 - j) + i)];
+    const auto turned = must(Surface<Vec<3>>::make(bowl.bases(), Net<2, Vec<3>>({3, 3}, c)));
+    const auto same = met(bowl, turned, 1e-6);
+    EXPECT_TRUE(same.branches.empty());
+    ASSERT_EQ(same.nodes.size(), 1u);
+    EXPECT_EQ(same.nodes[0].kind, SurfaceNodeKind::overlap);
 }
 
 TEST(SurfaceSurface, the_order_of_the_surfaces_does_not_matter) {

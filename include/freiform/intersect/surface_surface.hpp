@@ -32,6 +32,7 @@ struct SurfaceBranch {
 enum class SurfaceNodeKind {
     touch,     // the surfaces touch: nothing, one point, or a loop, all within the box
     crossing,  // branches cross, or pass each other by, within the box
+    overlap,   // they are the same over the cells, exactly: the control points of whole pieces are
     along,     // the surfaces run along each other within the tolerance: they touch along a curve, or overlap
 };
 std::string_view name_of(SurfaceNodeKind kind);

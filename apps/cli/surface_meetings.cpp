@@ -1,0 +1,65 @@
+#include "surface_meetings.hpp"
+
+namespace freiform::cli {
+
+namespace {
+
+template <int D>
+void write_spline(json::Writer& w, std::string_view key, const Curve<Vec<D>>& curve) {
+    w.key(key).begin_object().field("degree", curve.basis().degree());
+    w.key("knots").array(curve.basis().knots());
+    w.key("points").begin_array();
+    for (const Vec<D>& p : curve.net().flat()) w.array(p.c);
+    w.end_array().end_object();
+}
+void write_sides(json::Writer& w, std::string_view key, const std::array<Interval, 2>& box) {
+    w.key(key).begin_array();
+    for (const Interval& t : box) w.array(std::array{t.lo, t.hi});
+    w.end_array();
+}
+
+}  // namespace
+
+void SurfaceMeetings::add(const SurfaceIntersection& found, const std::array<std::size_t, 2>& objects,
+                          const std::string& where) {
+    const int before = int(nodes_.size());
+    for (const SurfaceBranch& b : found.branches) {
+        auto ends = b.ends;  // nodes of the whole answer
+        for (int& end : ends)
+            if (end >= 0) end += before;
+        branches_.push_back([=](json::Writer& w) {
+            w.new_line(1).begin_object().key("objects").array(objects).field("closed", b.closed);
+            w.key("ends").array(ends);
+            w.field("bound", b.bound()).field("a_bound", b.bound_a).field("b_bound", b.bound_b);
+            write_spline(w, "curve", b.curve);
+            write_spline(w, "a", b.at_a);
+            write_spline(w, "b", b.at_b);
+            w.end_object();
+        });
+        curves_.objects.push_back({text("intersection ", branches_.size()), b.curve});
+        plain_ += text(where, ": ", b.closed ? "closed" : "open", " branch, ", b.curve.basis().size(),
+                       " control points, within ", b.bound(), " of both\n");
+    }
+    for (const SurfaceNode& n : found.nodes) {
+        nodes_.push_back([=](json::Writer& w) {
+            w.new_line(1).begin_object().key("objects").array(objects).field("kind", name_of(n.kind));
+            w.key("a").array(n.at_a).key("b").array(n.at_b).key("point").array(n.point.c);
+            w.field("gap", n.gap).field("arms", n.arms).field("cells", n.cells.size());
+            write_sides(w, "a_box", n.box_a);
+            write_sides(w, "b_box", n.box_b);
+            w.end_object();
+        });
+        plain_ += text(where, ": ", name_of(n.kind), " at ", n.point[0], ", ", n.point[1], ", ", n.point[2],
+                       ", ", n.arms, " branches end there, gap at most ", n.gap, "\n");
+    }
+}
+
+void SurfaceMeetings::write(json::Writer& w) const {
+    for (const auto& [key, rows] : {std::pair("curves", &branches_), {"nodes", &nodes_}}) {
+        w.key(key).begin_array();
+        for (const Row& row : *rows) row(w);
+        w.end_array();
+    }
+}
+
+}  // namespace freiform::cli
