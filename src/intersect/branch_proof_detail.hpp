@@ -26,6 +26,12 @@ std::array<CubicArc<V>, 2> arc_halves(const CubicArc<V>& b) {
     return {CubicArc<V>{b[0], a01, a, m}, {m, c, a23, b[3]}};
 }
 
+// Bounds of a piece of parameters: a box, derivatives, and how far rounding moves it.
+struct ArcSpeeds {
+    std::array<Interval, 2> box{};
+    std::array<double, 2> speed{}, bend{}, twist{}, slack{};
+};
+
 class BranchProof {
 public:
     BranchProof(const SurfaceGeometry& geometry, const Sheet& sheet);
@@ -48,10 +54,19 @@ private:
         double size() const { return 1.01 * (norm(off) + error); }
     };
     Sample sample(const Vec<3>& x, const Vec<2>& u) const;
+    // What is known of the surface over a box of parameters.
+    struct Bending {
+        DerivativeBounds<2> d;
+        std::array<bool, 2> kinked{};
+        bool smooth = true;
+    };
+    Bending bending(const std::array<Interval, 2>& box) const;
+    // `over`: of a box around q, if that has been found.
     bool prove(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a, const Sample& b,
-               int depth) const;
-    double bound_over(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a, const Sample& m,
-                      const Sample& b) const;
+               int depth, const Bending* over) const;
+
+    double bound_over(const CubicArc<Vec<3>>& c, const ArcSpeeds& path,
+                      const std::array<const Sample*, 3>& at, const Bending& over) const;
 
     DerivativeQuery<2, 3> query_;
     const Sheet& sheet_;

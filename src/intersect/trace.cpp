@@ -45,6 +45,7 @@ std::optional<Trace> Tracer::from(int chart) {
     all[std::size_t(chart)].passed = all[std::size_t(chart)].seed[all[std::size_t(chart)].free];
     if (!leaves_.charts.empty()) start.chart = leaves_.charts[0];
     Chart& first = all[std::size_t(start.chart)];
+    touched_ = {chart, start.chart};
     first.branch = branch_, first.passed = start.x[first.free];
 
     Trace out;
@@ -178,8 +179,7 @@ Tracer::Step Tracer::arrive(std::vector<TracePoint>& way, int direction) {
     for (const int i : leaves_.charts) {
         Chart& c = all[std::size_t(i)];
         if (c.branch >= 0 && c.branch != branch_) {
-            for (Chart& other : all)
-                if (other.branch == branch_) other.branch = c.branch;
+            for (const int other : touched_) all[std::size_t(other)].branch = c.branch;
             return Step::known;
         }
         if (next < 0 || i != at.chart) next = i;
@@ -215,7 +215,10 @@ Tracer::Step Tracer::arrive(std::vector<TracePoint>& way, int direction) {
     }
     at.chart = next;
     Chart& c = all[std::size_t(next)];
-    if (c.branch < 0) c.branch = branch_, c.passed = at.x[c.free];
+    if (c.branch < 0) {
+        c.branch = branch_, c.passed = at.x[c.free];
+        touched_.push_back(next);
+    }
     return Step::on;
 }
 

@@ -38,6 +38,7 @@ private:
     Charts& charts_;
     Charts::Leaves leaves_;
     int branch_ = 0, cluster_ = -1;
+    std::vector<int> touched_;  // charts of this branch
 };
 
 }  // namespace freiform::detail
