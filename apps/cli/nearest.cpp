@@ -15,6 +15,7 @@ namespace {
 struct NearestArguments {
     std::string file, object, points;
     std::optional<double> accuracy, radius;
+    std::optional<int> count;
     bool farthest = false, signed_distance = false;
 };
 
@@ -141,6 +142,34 @@ Result<void> answer_within(const NearestQuery& query, const std::vector<Vec<D>>&
 }
 
 template <int D>
+Result<void> answer_feet(const NearestQuery& query, const std::vector<Vec<D>>& points, int count,
+                         const PlaceWriter& place, Answers& out) {
+    for (const Vec<D>& p : points) {
+        const auto all = query.feet<D>(p, count);
+        if (!all) return std::unexpected(all.error());
+        out.w.new_line(1).begin_object().key("query").array(p.c).key("feet").begin_array();
+        std::string where;
+        for (const double x : p.c) where += text(where.empty() ? "" : ", ", x);
+        out.plain += text(where, ":\n");
+        for (const NearFoot<D>& f : all->feet) {
+            out.w.new_line(2).begin_object();
+            place.write(out.w, f.foot);
+            out.w.field("lower_bound", f.foot.lower_bound).field("point_error", f.foot.point_error);
+            out.w.field("stretch", f.stretch).end_object();
+            out.plain += text("  ", place.plain(f.foot), ", at least ", f.foot.lower_bound,
+                              f.stretch ? ", a stretch\n" : "\n");
+        }
+        out.w.end_array();
+        const bool none = all->others == std::numeric_limits<double>::infinity();
+        if (!none) out.w.field("others_lower_bound", all->others);
+        out.w.field("complete", all->complete).end_object();
+        out.plain +=
+            none ? std::string("  there are no others\n") : text("  others: at least ", all->others, "\n");
+    }
+    return {};
+}
+
+template <int D>
 Result<void> answer(const Input& input, const Asked& asked, const std::vector<std::vector<double>>& rows,
                     const NearestArguments& options, Answers& out) {
     const auto query = NearestQuery::make(asked.objects);
@@ -153,6 +182,7 @@ Result<void> answer(const Input& input, const Asked& asked, const std::vector<st
     }
     const PlaceWriter place{input, asked};
     const double accuracy = options.accuracy.value_or(0);
+    if (options.count) return answer_feet<D>(*query, points, *options.count, place, out);
     if (options.radius) return answer_within<D>(*query, points, *options.radius, place, out);
     if (options.farthest) return answer_farthest<D>(*query, points, accuracy, place, out);
     return answer_nearest<D>(*query, points, accuracy, place, out);
@@ -161,6 +191,8 @@ Result<void> answer(const Input& input, const Asked& asked, const std::vector<st
 Result<void> run_nearest(const Context& context, const NearestArguments& options) {
     if (options.radius && (options.farthest || options.accuracy))
         wrong_usage("--radius goes with neither --farthest nor --accuracy");
+    if (options.count && (options.radius || options.farthest || options.accuracy || options.signed_distance))
+        wrong_usage("--k goes with none of --radius, --farthest, --accuracy and --signed");
     if (options.radius && !(*options.radius >= 0))
         wrong_usage("--radius needs a distance that is not negative");
     if (!(options.accuracy.value_or(0) >= 0)) wrong_usage("--accuracy needs a distance that is not negative");
@@ -172,9 +204,9 @@ Result<void> run_nearest(const Context& context, const NearestArguments& options
             return std::holds_alternative<Model>(input->object(i).shape) ||
                    std::holds_alternative<TrimmedSurface>(input->object(i).shape);
         }))
-        return nearest_of_models(
-            context, *input, lines->row,
-            {options.accuracy.value_or(0), options.signed_distance, options.radius || options.farthest});
+        return nearest_of_models(context, *input, lines->row,
+                                 {options.accuracy.value_or(0), options.signed_distance,
+                                  options.radius || options.farthest || options.count});
     if (options.signed_distance)
         return refuse(RefusalKind::no_answer, shown(options.file), "has no solid model: --signed needs one");
     std::map<int, Asked> asked;  // by the number of coordinates
@@ -224,6 +256,7 @@ void add_nearest(CommandLine& line) {
                  "  freiform nearest curves.json --points queries.csv\n"
                  "  freiform nearest teapot.bpt --points xyz.csv --accuracy 1e-9 --json\n"
                  "  freiform nearest curves.json --points queries.csv --radius 2.5\n"
+                 "  freiform nearest curves.json --points queries.csv --k 3\n"
                  "  freiform nearest part.step --points xyz.csv --signed\n"
                  "No point of any object is nearer than lower_bound; the point itself is known up to "
                  "point_error. Where others\n"
@@ -238,6 +271,8 @@ void add_nearest(CommandLine& line) {
     command.number(
         "--radius", options->radius,
         "Instead: all within this distance, as boxes of parameters with the nearest point in each");
+    command.count("--k", options->count, 1, 1'000'000,
+                  "Instead: the K nearest local minima of the distance, and how far all others are at least");
     command.flag("--signed", options->signed_distance,
                  "Of solid models: negative distances inside; refused where the surface is not closed");
     command.flag("--farthest", options->farthest, "Instead: the farthest point, with an upper bound");

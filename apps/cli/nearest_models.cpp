@@ -83,8 +83,9 @@ void print_on_model(const Input& input, const Model& model, const Vec<3>& q, con
 Result<void> nearest_of_models(const Context& context, const Input& input,
                                const std::vector<std::vector<double>>& rows, const ModelsAsked& asked) {
     if (asked.otherwise)
-        return refuse(RefusalKind::no_answer, input.label(input.chosen[0]),
-                      "--radius and --farthest are answered for curves, surfaces, volumes and triangles");
+        return refuse(
+            RefusalKind::no_answer, input.label(input.chosen[0]),
+            "--radius, --k and --farthest are answered for curves, surfaces, volumes and triangles");
     std::vector<Vec<3>> points;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (rows[i].size() != 3)

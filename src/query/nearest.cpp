@@ -192,6 +192,29 @@ Result<NearRegions<D>> NearestQuery::as_near(const Vec<D>& point, const Nearest<
     return within<D>(point, found.distance + found.point_error, 0, options);
 }
 
+template <int D>
+Result<NearestFeet<D>> NearestQuery::feet(const Vec<D>& point, int count,
+                                          const NearestOptions& options) const {
+    if (count < 1) return refuse(RefusalKind::invalid, "count", text("is ", count, ", expected 1 or more"));
+    NearestFeet<D> all;
+    const auto done =
+        each_point<D>(std::span(&point, 1), std::span(&all, 1), options,
+                      [&](const double* p, auto& scratch, NearestFeet<D>& out) {
+                          for (const auto& [f, box, stretch] :
+                               tree_->feet(p, count, options.max_parts, scratch, out.others, out.complete))
+                              out.feet.push_back({{f.object,
+                                                   {f.at[0], f.at[1], f.at[2]},
+                                                   first_of<D>(f.point),
+                                                   f.distance,
+                                                   f.point_error,
+                                                   f.bound},
+                                                  {box[0], box[1], box[2]},
+                                                  stretch});
+                      });
+    if (!done) return std::unexpected(done.error());
+    return all;
+}
+
 #define FF_INSTANTIATE(P)                                         \
     template NearestObject NearestObject::of(const Patch<1, P>&); \
     template NearestObject NearestObject::of(const Patch<2, P>&); \
@@ -206,16 +229,17 @@ FF_INSTANTIATE(Hom<2>)
 FF_INSTANTIATE(Hom<3>)
 FF_INSTANTIATE(Hom<4>)
 
-#define FF_DIMENSION(D)                                                                                 \
-    template Result<void> NearestQuery::nearest<D>(std::span<const Vec<D>>, std::span<Nearest<D>>,      \
-                                                   const NearestOptions&) const;                        \
-    template Result<Nearest<D>> NearestQuery::nearest<D>(const Vec<D>&, const NearestOptions&) const;   \
-    template Result<void> NearestQuery::farthest<D>(std::span<const Vec<D>>, std::span<Farthest<D>>,    \
-                                                    const NearestOptions&) const;                       \
-    template Result<Farthest<D>> NearestQuery::farthest<D>(const Vec<D>&, const NearestOptions&) const; \
-    template Result<NearRegions<D>> NearestQuery::within<D>(const Vec<D>&, double, double,              \
-                                                            const NearestOptions&) const;               \
-    template Result<NearRegions<D>> NearestQuery::as_near<D>(const Vec<D>&, const Nearest<D>&,          \
+#define FF_DIMENSION(D)                                                                                     \
+    template Result<void> NearestQuery::nearest<D>(std::span<const Vec<D>>, std::span<Nearest<D>>,          \
+                                                   const NearestOptions&) const;                            \
+    template Result<Nearest<D>> NearestQuery::nearest<D>(const Vec<D>&, const NearestOptions&) const;       \
+    template Result<void> NearestQuery::farthest<D>(std::span<const Vec<D>>, std::span<Farthest<D>>,        \
+                                                    const NearestOptions&) const;                           \
+    template Result<Farthest<D>> NearestQuery::farthest<D>(const Vec<D>&, const NearestOptions&) const;     \
+    template Result<NearestFeet<D>> NearestQuery::feet<D>(const Vec<D>&, int, const NearestOptions&) const; \
+    template Result<NearRegions<D>> NearestQuery::within<D>(const Vec<D>&, double, double,                  \
+                                                            const NearestOptions&) const;                   \
+    template Result<NearRegions<D>> NearestQuery::as_near<D>(const Vec<D>&, const Nearest<D>&,              \
                                                              const NearestOptions&) const;
 FF_DIMENSION(1)
 FF_DIMENSION(2)

@@ -71,6 +71,16 @@ struct NearestBlocks {
             for (std::size_t k = 0; k < std::size_t(D); ++k) sum += seen.local[k] * form[m * (k + 1) + i];
             f[i] = sum;
         }
+        begin_with_whole();
+    }
+    // W^2 on all of the piece, instead of F.
+    void push_weights() {
+        const std::size_t m = std::size_t(piece->products);
+        if (scratch.blocks.size() < m) scratch.blocks.resize(m);
+        std::copy_n(tree.numbers_.data() + piece->forms + m * std::size_t(D + 1), m, block(0));
+        begin_with_whole();
+    }
+    void begin_with_whole() {
         Head whole;
         for (std::size_t d = 0; d < std::size_t(piece->params); ++d) whole.hi[d] = 1;
         whole.degree = piece->degree;
@@ -111,10 +121,18 @@ struct NearestBlocks {
         heads.push_back(other);
     }
 
+    // The block at the top, once more.
+    void copy_top() {
+        const std::size_t top = heads.size() - 1, n = std::size_t(piece->products);
+        scratch.blocks.resize(std::max(scratch.blocks.size(), (top + 2) * n));
+        std::copy_n(block(top), std::size_t(heads[top].count), block(top + 1));
+        heads.push_back(Head(heads[top]));
+    }
     // Keeps of the block at the top the face at the low or the high end of the axis.
-    void keep_face(std::size_t axis, bool high) {
-        Head& h = heads.back();
-        double* f = block(heads.size() - 1);
+    void keep_face(std::size_t axis, bool high) { keep_face(axis, high, heads.size() - 1); }
+    void keep_face(std::size_t axis, bool high, std::size_t which) {
+        Head& h = heads[which];
+        double* f = block(which);
         const Sides s = sides(h, axis);
         for (std::size_t o = 0; o < s.outer; ++o)
             for (std::size_t i = 0; i < s.inner; ++i)

@@ -40,6 +40,12 @@ struct NearestFound {
     double bound = 0;  // lower or upper, as was asked for
 };
 
+struct NearestFootFound {
+    NearestFound foot;
+    std::array<Interval, kMostParams> box{};
+    bool stretch = false;
+};
+
 // A cell of parameters, of points that may be as near as asked for.
 struct NearestCell {
     std::uint32_t object = 0;
@@ -67,6 +73,10 @@ public:
     std::vector<NearestCell> cells(const double* point, double radius, double finest, int max_parts,
                                    Scratch& scratch, bool& complete) const;
     NearestFound found(const NearestCell& cell, const double* point) const;
+    // The `count` nearest local minima of the distance, nearest first; `others`: all that are not among them
+    // are at least so far.
+    std::vector<NearestFootFound> feet(const double* point, int count, int max_parts, Scratch& scratch,
+                                       double& others, bool& complete) const;
 
     using Parameters = std::array<double, kMostParams>;
     using Coords = std::array<double, kMostCoords>;
@@ -106,6 +116,8 @@ private:
     friend struct NearestSearch;
     template <int D>
     friend struct NearestExtent;
+    template <int D>
+    friend struct NearestFeetSearch;
     template <int D>
     NearestFound find_in(const double* point, double accuracy, int max_parts, Scratch& scratch) const;
     template <int D>

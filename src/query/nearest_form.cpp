@@ -137,6 +137,22 @@ bool NearestForm::convex(double eps) const {
     return true;
 }
 
+bool NearestForm::concave_along(int axis, double eps) const { return own_bend(*this, axis).hi < -8 * eps; }
+
+// h_dd h_ee < h_de^2 with the largest h_dd and h_ee of both, and the least |h_de|; with the factors of the
+// degrees.
+bool NearestForm::is_saddle(const NearestForm& g, int d, int e, double eps) const {
+    const double m = 2.0 * degree[std::size_t(d)], n = 2.0 * degree[std::size_t(e)];
+    const auto largest = [&](int axis) {
+        return std::max({own_bend(*this, axis).hi + 8 * eps, own_bend(g, axis).hi + 8 * eps, 0.0});
+    };
+    const int first = std::min(d, e), second = std::max(d, e);
+    const Interval mixed = hull(mixed_bend(*this, first, second), mixed_bend(g, first, second));
+    const double least = m * n * (std::max(mixed.lo, -mixed.hi) - 8 * eps);
+    const double own = (m * (m - 1) * largest(d)) * (n * (n - 1) * largest(e));
+    return least > 0 && least * least * (1 - 8 * kUnitRoundoff) > own;
+}
+
 double NearestForm::below_tangent(const Parameters& x, double eps) const {
     const int n = params;
     double size = 0;

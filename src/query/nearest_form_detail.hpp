@@ -26,6 +26,11 @@ struct NearestForm {
     Interval slope(int axis) const;
     // Is F certainly convex? `eps` bounds the error of its coefficients.
     bool convex(double eps) const;
+    // Is F certainly strictly concave along the axis?
+    bool concave_along(int axis, double eps) const;
+    // Has the Hessian of every average of F and G certainly a negative eigenvalue in the plane of the axes d
+    // and e, everywhere?
+    bool is_saddle(const NearestForm& g, int d, int e, double eps) const;
     // A lower bound of a convex F by its tangent at x.
     double below_tangent(const Parameters& x, double eps) const;
     // The corner with the least F, each parameter 0 or 1, if F is certainly negative there.

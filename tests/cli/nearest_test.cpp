@@ -35,6 +35,23 @@ TEST_F(NearestCommand, says_object_parameters_point_distance_and_lower_bound) {
         << plain.out;
 }
 
+TEST_F(NearestCommand, lists_the_nearest_feet_and_how_far_the_others_are) {
+    const std::string two = file("two.json", kTwoObjects);
+    const std::string at = file("p.csv", "1,3,4\n");
+    const Ran r = run({"nearest", two, "--points", at, "--k", "1", "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto one = nlohmann::json::parse(r.out)["results"][0];
+    ASSERT_EQ(one["feet"].size(), 1u);
+    EXPECT_EQ(one["feet"][0]["distance"], 5.0);
+    EXPECT_GE(one["others_lower_bound"].get<double>(), 5 - 1e-9);
+    EXPECT_LE(one["others_lower_bound"].get<double>(), 6);
+    const Ran all = run({"nearest", two, "--points", at, "--k", "5"});
+    EXPECT_NE(all.out.find("\"roof\": at 0.25, 0.75"), std::string::npos) << all.out;
+    EXPECT_NE(all.out.find("there are no others"), std::string::npos) << all.out;
+    EXPECT_EQ(run({"nearest", two, "--points", at, "--k", "0"}).code, 2);
+    EXPECT_EQ(run({"nearest", two, "--points", at, "--k", "2", "--farthest"}).code, 2);
+}
+
 TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {
     const std::string two = file("two.json", kTwoObjects);
     EXPECT_EQ(run({"nearest", two, "--points", file("p.csv", "1,2\n")}).code, 1);

@@ -56,6 +56,22 @@ struct NearRegions {
     bool complete = true;  // false: max_parts ended the search, and boxes are larger than asked for
 };
 
+// A foot: a point of an object that has none nearer beside it. Ends, borders and corners can be feet.
+template <int D>
+struct NearFoot {
+    Nearest<D> foot;                // lower_bound: of the object over the box
+    std::array<Interval, 3> box{};  // contains its parameters
+    bool stretch = false;           // as of NearRegion: all of a stretch of points is as near
+};
+template <int D>
+struct NearestFeet {
+    std::vector<NearFoot<D>> feet;  // nearest first
+    // bound: every foot that is in none of the boxes, and not beside one of `feet`, is at least so far;
+    // infinite: there is no other.
+    double others = 0;
+    bool complete = true;  // false: max_parts ended the search, and nearer feet than `others` may be missing
+};
+
 struct NearestOptions {
     // A distance: how far lower_bound may stay below `distance`. With 0 the search goes on until rounding
     // ends it; what remains is what the answer says, distance + point_error - lower_bound. An estimate of
@@ -117,6 +133,13 @@ public:
                           const NearestOptions& options = {}) const;
     template <int D>
     Result<Farthest<D>> farthest(const Vec<D>& point, const NearestOptions& options = {}) const;
+
+    // The `count` nearest feet. Feet of one object nearer to each other than 2^-26 of the size of all objects
+    // are one. A point is left out only where the distance decreases from it; that the others are feet is an
+    // estimate where knots, seams or poles meet. Refuses what nearest() refuses, and a count below 1.
+    //   auto all = q->feet<3>(point, 4);   // all->feet[1].foot.distance
+    template <int D>
+    Result<NearestFeet<D>> feet(const Vec<D>& point, int count, const NearestOptions& options = {}) const;
 
     // All that is within `radius` of the point. Boxes are cut until their sides are `finest` of a Bezier
     // piece (0: as short as doubles allow), so that regions nearer to each other than that may be one. A
