@@ -139,6 +139,7 @@ void add_tessellate(CommandLine& line);
 void add_check(CommandLine& line);
 void add_bounds(CommandLine& line);
 void add_features(CommandLine& line);
+void add_distance(CommandLine& line);
 void add_draw(CommandLine& line);
 void add_conic(CommandLine& line);
 void add_implicit(CommandLine& line);

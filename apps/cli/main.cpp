@@ -27,6 +27,7 @@ void add_commands(CommandLine& line) {
     add_continuity(line);
     add_inside(line);
     add_nearest(line);
+    add_distance(line);
     add_intersect(line);
     add_section(line);
     add_interpolate(line);

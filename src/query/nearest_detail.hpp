@@ -64,6 +64,7 @@ public:
     static Result<NearestTree> make(std::vector<const NearestSource*> sources, std::size_t max_bytes);
 
     int coords() const { return coords_; }
+    int exponent() const { return exponent_; }  // coordinates are kept in units of 2^exponent
 
     struct Scratch;
     NearestFound find(const double* point, double accuracy, int max_parts, Scratch& scratch) const;
@@ -118,6 +119,8 @@ private:
     friend struct NearestExtent;
     template <int D>
     friend struct NearestFeetSearch;
+    template <int D>
+    friend class PieceSide;
     template <int D>
     NearestFound find_in(const double* point, double accuracy, int max_parts, Scratch& scratch) const;
     template <int D>

@@ -52,6 +52,26 @@ TEST_F(NearestCommand, lists_the_nearest_feet_and_how_far_the_others_are) {
     EXPECT_EQ(run({"nearest", two, "--points", at, "--k", "2", "--farthest"}).code, 2);
 }
 
+TEST_F(NearestCommand, distance_of_two_files_says_both_places) {
+    const std::string two = file("two.json", kTwoObjects);
+    const std::string dot = file("dot.json", R"({"freiform": 1, "objects": [
+        {"name": "post", "type": "curve", "points": [[2,2,6],[2,2,7]]}]})");
+    const Ran r = run({"distance", two, dot, "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto d = nlohmann::json::parse(r.out);
+    EXPECT_EQ(d["distance"], 3.0);
+    EXPECT_GE(d["lower_bound"].get<double>(), 3 - 1e-7);
+    EXPECT_EQ(d["a"]["name"], "roof");
+    EXPECT_EQ(d["a"]["parameters"], (std::vector<double>{0.5, 0.5}));
+    EXPECT_EQ(d["b"]["parameters"], (std::vector<double>{1}));
+    const Ran line = run({"distance", two, dot, "--object-a", "line"});
+    EXPECT_NE(line.out.find("distance 6.32455"), std::string::npos) << line.out;
+    const std::string plane = file("plane.json", R"({"type": "curve", "points": [[0,0],[1,0]]})");
+    EXPECT_EQ(run({"distance", two, plane}).code, 1);
+    EXPECT_EQ(run({"distance", two}).code, 2);
+    EXPECT_EQ(run({"distance", two, dot, "--accuracy", "-1"}).code, 2);
+}
+
 TEST_F(NearestCommand, refuses_points_and_objects_that_do_not_go_together) {
     const std::string two = file("two.json", kTwoObjects);
     EXPECT_EQ(run({"nearest", two, "--points", file("p.csv", "1,2\n")}).code, 1);

@@ -114,6 +114,7 @@ public:
                                      std::size_t max_bytes = std::size_t(2) << 30);
 
     int coordinates() const;
+    const detail::NearestTree& tree() const { return *tree_; }
 
     // Many points, in parallel. REQUIRES out.size() == points.size(), D == coordinates(). Refuses, before any
     // output, points that are not finite (with the index), a negative accuracy and max_parts < 1.

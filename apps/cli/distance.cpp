@@ -1,0 +1,132 @@
+// distance: the least distance between the objects of two files, with both places and a proof.
+#include "input.hpp"
+
+#include <freiform/query/distance.hpp>
+
+namespace freiform::cli {
+
+namespace {
+
+struct DistanceArguments {
+    std::string a, b, object_a, object_b;
+    std::optional<double> accuracy;
+    std::optional<int> max_pairs;
+};
+
+// What has a distance, of one number of coordinates.
+struct DistanceSet {
+    std::vector<std::size_t> index;  // in the document
+    std::vector<NearestObject> objects;
+    std::vector<std::size_t> params;
+    int coordinates = 0;
+};
+
+Result<DistanceSet> distance_set(const Input& input) {
+    DistanceSet out;
+    for (const std::size_t i : input.chosen) {
+        const bool taken = std::visit(
+            [&](const auto& s) {
+                using S = std::remove_cvref_t<decltype(s)>;
+                if constexpr (TensorPatch<S> || TriangularPatch<S>) {
+                    const int own = Space<typename S::Coefficients>::kDim;
+                    if (out.coordinates != 0 && own != out.coordinates) return false;
+                    out.coordinates = own;
+                    out.index.push_back(i);
+                    out.objects.push_back(NearestObject::of(s));
+                    if constexpr (TensorPatch<S>)
+                        out.params.push_back(S::kParams);
+                    else
+                        out.params.push_back(2);
+                    return true;
+                } else {
+                    remark_left_out(input, i);
+                    return true;
+                }
+            },
+            input.object(i).shape);
+        if (!taken)
+            return refuse(RefusalKind::no_answer, input.label(i),
+                          text("has another number of coordinates than ", input.label(out.index[0]), ", ",
+                               out.coordinates, "; --object-a and --object-b choose"));
+    }
+    if (out.objects.empty())
+        return refuse(RefusalKind::no_answer, shown(input.file),
+                      "has no curve, surface, volume or triangle to be far from");
+    return out;
+}
+
+template <int D>
+Result<void> answer_distance(const Context& context, const std::array<const Input*, 2>& input,
+                             const std::array<DistanceSet, 2>& sets, const DistanceOptions& options) {
+    const auto a = NearestQuery::make(sets[0].objects), b = NearestQuery::make(sets[1].objects);
+    if (!a) return std::unexpected(a.error());
+    if (!b) return std::unexpected(b.error());
+    const auto d = least_distance<D>(*a, *b, options);
+    if (!d) return std::unexpected(d.error());
+    json::Writer w;
+    w.begin_object().field("distance", d->distance).field("lower_bound", d->lower_bound);
+    w.field("point_error", d->point_error);
+    std::string plain = text("distance ", d->distance, ", at least ", d->lower_bound, "\n");
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::size_t k = d->object[i], object = sets[i].index[k];
+        const std::span<const double> at(d->at[i].data(), sets[i].params[k]);
+        w.key(i == 0 ? "a" : "b").begin_object().field("object", object);
+        w.field("name", input[i]->object(object).name).key("parameters").array(at);
+        w.key("point").array(d->point[i].c).end_object();
+        std::string where, place;
+        for (const double x : at) where += text(where.empty() ? "" : ", ", x);
+        for (const double x : d->point[i].c) place += text(place.empty() ? "" : ", ", x);
+        plain += text("  ", input[i]->label(object), ": at ", where, ", point ", place, "\n");
+    }
+    w.end_object();
+    return emit(context, context.json ? w.take() + "\n" : plain);
+}
+
+Result<void> run_distance(const Context& context, const DistanceArguments& options) {
+    if (!(options.accuracy.value_or(0) >= 0)) wrong_usage("--accuracy needs a distance that is not negative");
+    const auto a = read_input(context, options.a, options.object_a);
+    if (!a) return std::unexpected(a.error());
+    const auto b = read_input(context, options.b, options.object_b);
+    if (!b) return std::unexpected(b.error());
+    auto set_a = distance_set(*a), set_b = distance_set(*b);
+    if (!set_a) return std::unexpected(set_a.error());
+    if (!set_b) return std::unexpected(set_b.error());
+    const int n = set_a->coordinates;
+    if (n != set_b->coordinates)
+        return refuse(
+            RefusalKind::no_answer, shown(options.b),
+            text("has objects with ", set_b->coordinates, " coordinates, ", shown(options.a), " with ", n));
+    DistanceOptions how;
+    how.accuracy = options.accuracy.value_or(0);
+    how.max_pairs = options.max_pairs.value_or(how.max_pairs);
+    const std::array input{&*a, &*b};
+    const std::array sets{*std::move(set_a), *std::move(set_b)};
+    return n == 1   ? answer_distance<1>(context, input, sets, how)
+           : n == 2 ? answer_distance<2>(context, input, sets, how)
+           : n == 3 ? answer_distance<3>(context, input, sets, how)
+                    : answer_distance<4>(context, input, sets, how);
+}
+
+}  // namespace
+
+void add_distance(CommandLine& line) {
+    const auto options = std::make_shared<DistanceArguments>();
+    const Command command =
+        line.add("distance", "The least distance between two files' objects, with a bound that proves it",
+                 "  freiform distance road.json river.json\n"
+                 "  freiform distance scene.json scene.json --object-a pipe --object-b wall --json\n"
+                 "No two points of the two are nearer to each other than lower_bound.");
+    command.word("A", options->a, "The first file; - is standard input").required();
+    command.word("B", options->b, "The second file").required();
+    command.number("--accuracy", options->accuracy,
+                   "How far the lower bound may stay below the distance (default: 2^-30 of the coordinates)");
+    command.count("--max-pairs", options->max_pairs, 1, 100'000'000,
+                  "Pairs of parts that are looked at before the bound is left as it is (default 200000)");
+    command.word("--object-a", options->object_a, "Only this object of A").shown_as("NAME|INDEX");
+    command.word("--object-b", options->object_b, "Only this object of B").shown_as("NAME|INDEX");
+    command.answer_file();
+    command.limits();
+    command.action(options, run_distance);
+}
+
+}  // namespace freiform::cli
