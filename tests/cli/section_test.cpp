@@ -46,6 +46,36 @@ TEST_F(SectionCommand, takes_a_point_and_a_normal) {
     EXPECT_EQ(nothing.out, "the plane meets nothing\n");
 }
 
+TEST_F(SectionCommand, of_a_trimmed_face_ends_where_it_is_trimmed) {
+    const std::string half = R"({"name": "half", "type": "trimmed", "surface": {"degrees": [1, 1],
+        "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "loops": [[{"degree": 1, "points": [[0,0],[1,0]]},
+        {"degree": 1, "points": [[1,0],[0,1]]}, {"degree": 1, "points": [[0,1],[0,0]]}]]})";
+    const Ran r = run({"section", "-", "--plane", "1,0,0,-0.25", "-o", "c.json", "--json"}, half);
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto all = SectionJson::parse(r.out);
+    ASSERT_EQ(all["branches"].size(), 1u);
+    EXPECT_EQ(all["branches"][0]["closed"], false);
+    EXPECT_EQ(all["branches"][0]["faces"], (std::vector<int>{0}));
+    const auto length = SectionJson::parse(run({"length", "c.json", "--json"}).out);
+    EXPECT_NEAR(length["value"].get<double>(), 0.75, 1e-9);  // not 1: the surface goes on, the face does not
+    ASSERT_EQ(run({"section", "-", "--plane", "1,0,0,-0.25", "-o", "c.svg"}, half).code, 0);
+    EXPECT_EQ(run({"section", "-", "--plane", "1,0,0,-7", "-o", "d.svg"}, half).code, 1);
+}
+
+TEST_F(SectionCommand, of_a_solid_is_closed_and_has_an_area) {
+#ifdef FREIFORM_OCCT_BINARY
+    const std::string model = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";
+    const Ran r = run({"section", model, "--plane", "0,0,1,-5", "-o", "c.json", "--json"});
+    if (r.code == 3 && r.out.find("unavailable") != std::string::npos)
+        GTEST_SKIP() << "built without Open CASCADE";
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto all = SectionJson::parse(r.out);
+    EXPECT_EQ(all["models"][0]["open"], 0);
+    EXPECT_GT(all["models"][0]["area"].get<double>(), 100);
+    for (const auto& b : all["branches"]) EXPECT_EQ(b["closed"], true);
+#endif
+}
+
 TEST_F(SectionCommand, refuses_what_it_does_not_cut) {
     const std::string curve = R"({"type":"curve","points":[[0,0,0],[1,1,1]]})";
     EXPECT_EQ(run({"section", "-", "--plane", "0,0,1,0"}, curve).code, 1);
