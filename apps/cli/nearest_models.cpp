@@ -2,6 +2,7 @@
 
 #include <freiform/model/inside.hpp>
 #include <freiform/model/nearest.hpp>
+#include <freiform/query/nearest.hpp>
 
 #include <algorithm>
 #include <map>
@@ -39,7 +40,80 @@ struct FoundOnModel {
     std::size_t object = 0;
     ModelNearest nearest;
     std::optional<SolidInside> inside;
+    int params = 0;  // of another object, which has no faces: nearest.uv, nearest.t
 };
+
+// The curves, surfaces, volumes and triangles beside models.
+struct Beside {
+    std::vector<std::size_t> index, params;
+    std::vector<NearestObject> objects;
+};
+
+// Nothing: is a model, or trimmed.
+Result<void> add_beside(const Input& input, std::size_t i, Beside& out) {
+    return std::visit(
+        [&](const auto& s) -> Result<void> {
+            using S = std::remove_cvref_t<decltype(s)>;
+            if constexpr (TensorPatch<S> || TriangularPatch<S>) {
+                if constexpr (Space<typename S::Coefficients>::kDim == 3) {
+                    out.index.push_back(i);
+                    out.objects.push_back(NearestObject::of(s));
+                    if constexpr (TensorPatch<S>)
+                        out.params.push_back(S::kParams);
+                    else
+                        out.params.push_back(2);
+                } else {
+                    return refuse(RefusalKind::no_answer, input.label(i),
+                                  text("has ", Space<typename S::Coefficients>::kDim,
+                                       " coordinates, models are in space; --object chooses"));
+                }
+            } else if constexpr (!std::same_as<S, Model> && !std::same_as<S, TrimmedSurface>) {
+                remark_left_out(input, i);
+            }
+            return {};
+        },
+        input.object(i).shape);
+}
+
+// Where these are nearer they take the place, and the least of the lower bounds holds for all.
+Result<void> nearest_beside(const Beside& beside, const std::vector<Vec<3>>& points, double accuracy,
+                            std::vector<FoundOnModel>& best) {
+    if (beside.objects.empty()) return {};
+    const auto query = NearestQuery::make(beside.objects);
+    if (!query) return std::unexpected(query.error());
+    std::vector<Nearest<3>> nearest(points.size());
+    if (auto done = query->nearest<3>(points, nearest, {.accuracy = accuracy}); !done) return done;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const Nearest<3>& n = nearest[k];
+        FoundOnModel& b = best[k];
+        const double lower = std::min(b.nearest.lower_bound, n.lower_bound);
+        if (n.distance < b.nearest.distance) {
+            b = {beside.index[n.object], {}, {}, int(beside.params[n.object])};
+            b.nearest.uv = {{n.at[0], n.at[1]}};
+            b.nearest.t = n.at[2];
+            b.nearest.point = n.point;
+            b.nearest.distance = n.distance;
+            b.nearest.point_error = n.point_error;
+        }
+        b.nearest.lower_bound = lower;
+    }
+    return {};
+}
+
+void print_beside(const Input& input, const Vec<3>& q, const FoundOnModel& f, json::Writer& w,
+                  std::string& plain) {
+    const ModelNearest& n = f.nearest;
+    const std::array at{n.uv[0], n.uv[1], n.t};
+    const std::span<const double> own(at.data(), std::size_t(f.params));
+    w.new_line(1).begin_object().key("query").array(q.c).field("object", f.object);
+    w.field("name", input.object(f.object).name).key("parameters").array(own).key("point").array(n.point.c);
+    w.field("distance", n.distance).field("lower_bound", n.lower_bound).field("point_error", n.point_error);
+    w.end_object();
+    std::string where;
+    for (const double t : own) where += text(where.empty() ? "" : ", ", t);
+    plain += text(input.label(f.object), ": at ", where, ", point ", n.point[0], ", ", n.point[1], ", ",
+                  n.point[2], ", distance ", n.distance, ", at least ", n.lower_bound, "\n");
+}
 
 void print_on_model(const Input& input, const Model& model, const Vec<3>& q, const FoundOnModel& f,
                     json::Writer& w, std::string& plain) {
@@ -95,15 +169,14 @@ Result<void> nearest_of_models(const Context& context, const Input& input,
     }
     std::vector<FoundOnModel> best(points.size());
     std::map<std::size_t, ModelNearestQuery> queries;
+    Beside beside;
     for (const std::size_t i : input.chosen) {
+        if (auto done = add_beside(input, i, beside); !done) return done;
         const Shape& shape = input.object(i).shape;
-        Result<Model> model =
-            refuse(RefusalKind::no_answer, input.label(i),
-                   "is not a model: --object chooses, models and others are asked one by one");
-        if (const auto* m = std::get_if<Model>(&shape))
-            model = *m;
-        else if (const auto* t = std::get_if<TrimmedSurface>(&shape))
-            model = model_of_trimmed(*t);
+        const auto* own = std::get_if<Model>(&shape);
+        const auto* trimmed = std::get_if<TrimmedSurface>(&shape);
+        if (!own && !trimmed) continue;
+        Result<Model> model = own ? Result<Model>(*own) : model_of_trimmed(*trimmed);
         if (!model) return std::unexpected(model.error());
         auto query = ModelNearestQuery::make(*std::move(model));
         if (!query) return refuse_within(input.label(i), query.error());
@@ -111,8 +184,7 @@ Result<void> nearest_of_models(const Context& context, const Input& input,
         if (auto done = query->nearest(points, nearest, {.accuracy = asked.accuracy}); !done) return done;
         std::vector<SolidInside> inside;
         if (asked.with_sign) {
-            // Finer, and the mesh that decides it takes minutes.
-            const double accuracy = 1e-4 * summary(query->model()).box.diagonal();
+            const double accuracy = 1e-6 * summary(query->model()).box.diagonal();
             std::vector<Vec<3>> away;
             for (std::size_t k = 0; k < points.size(); ++k)
                 if (nearest[k].lower_bound > accuracy) away.push_back(points[k]);
@@ -136,11 +208,16 @@ Result<void> nearest_of_models(const Context& context, const Input& input,
         }
         queries.emplace(i, *std::move(query));
     }
+    if (auto done = nearest_beside(beside, points, asked.accuracy, best); !done) return done;
     json::Writer w;
     std::string plain;
     w.begin_object().key("results").begin_array();
-    for (std::size_t k = 0; k < points.size(); ++k)
-        print_on_model(input, queries.at(best[k].object).model(), points[k], best[k], w, plain);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        if (best[k].params > 0)
+            print_beside(input, points[k], best[k], w, plain);
+        else
+            print_on_model(input, queries.at(best[k].object).model(), points[k], best[k], w, plain);
+    }
     w.end_array().end_object();
     return emit(context, context.json ? w.take() + "\n" : plain);
 }

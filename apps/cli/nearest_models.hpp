@@ -10,7 +10,7 @@ struct ModelsAsked {
     bool otherwise = false;  // a radius, or the farthest point: not answered here
 };
 
-// Refuses other objects beside them, with the place.
+// And what stands beside them; refuses objects beside them that are not in space, with the place.
 Result<void> nearest_of_models(const Context& context, const Input& input,
                                const std::vector<std::vector<double>>& rows, const ModelsAsked& asked);
 

@@ -155,11 +155,36 @@ TEST_F(NearestCommand, keeps_to_what_trimming_leaves) {
     EXPECT_EQ(run({"nearest", curve, "--points", path("plane.csv"), "--signed"}).code, 1);
 }
 
+TEST_F(NearestCommand, faces_and_curves_of_one_document_are_asked_together) {
+    const std::string both = file("both.json", R"({"freiform": 1, "objects": [
+        {"name": "square", "type": "trimmed", "surface": {"degrees": [1, 1],
+            "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "loops": []},
+        {"name": "post", "type": "curve", "points": [[5,0,0],[5,0,2]]}]})");
+    const Ran r = run({"nearest", both, "--points", file("q.csv", "0.5,0.5,1\n4,0,1\n"), "--json"});
+    ASSERT_EQ(r.code, 0) << r.out << r.err;
+    const auto results = nlohmann::json::parse(r.out)["results"];
+    EXPECT_EQ(results[0]["name"], "square");
+    EXPECT_EQ(results[0]["face"], 0);
+    EXPECT_EQ(results[1]["name"], "post");
+    EXPECT_EQ(results[1]["parameters"], (std::vector<double>{0.5}));
+    EXPECT_EQ(results[1]["distance"], 1.0);
+    for (const auto& one : results) {
+        EXPECT_LE(one["lower_bound"], one["distance"]);
+        EXPECT_GE(one["lower_bound"].get<double>(), 1 - 1e-6);
+    }
+    const std::string plane = file("plane.json", R"({"freiform": 1, "objects": [
+        {"type": "trimmed", "surface": {"degrees": [1, 1], "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]},
+         "loops": []}, {"type": "curve", "points": [[5,0],[5,2]]}]})");
+    const Ran mixed = run({"nearest", plane, "--points", path("q.csv")});
+    EXPECT_EQ(mixed.code, 1);
+    EXPECT_NE(mixed.err.find("2 coordinates"), std::string::npos) << mixed.err;
+}
+
 TEST_F(NearestCommand, distances_of_solids_have_a_sign_where_asked) {
 #ifdef FREIFORM_OCCT_BINARY
     const std::string model = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";
     const Ran r =
-        run({"nearest", model, "--points", file("p.csv", "0,0,0\n30,10,5\n30,10,0\n"), "--signed", "--json"});
+        run({"nearest", model, "--points", file("p.csv", "0,0,0\n30,10,5\n30,10,0\n30,10,0.001\n"), "--signed", "--json"});
     if (r.code == 3 && r.out.find("unavailable") != std::string::npos)
         GTEST_SKIP() << "built without Open CASCADE";
     ASSERT_EQ(r.code, 0) << r.out << r.err;
@@ -170,6 +195,7 @@ TEST_F(NearestCommand, distances_of_solids_have_a_sign_where_asked) {
     EXPECT_NEAR(results[1]["signed_distance"].get<double>(), -5, 1e-9);
     EXPECT_EQ(results[2]["side"], "undecided");  // on the surface
     EXPECT_FALSE(results[2].contains("signed_distance"));
+    EXPECT_EQ(results[3]["side"], "inside");  // a hundred-thousandth of the size away
 #endif
 }
 
