@@ -2,7 +2,8 @@
 #include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
-#include <freiform/query/bounds.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/model/bounds.hpp>
 
 #include <cmath>
 #include <limits>
@@ -51,9 +52,14 @@ public:
     Result<BoundsAnswer> operator()(const S& s) const {
         return bounded(s, s.coefficients(), 1e-7);
     }
-    // The surface over the box of the loops contains the face; the loops are part of it.
+    // Where derivatives have no bounds: the surface over the box of the loops contains the face; the loops
+    // are part of it.
     Result<BoundsAnswer> operator()(const TrimmedSurface& t) const {
         if (t.loops.empty()) return std::visit(*this, t.surface);
+        Document one;
+        one.objects.push_back({"", t, {}});
+        if (const auto model = scene_of(one))
+            if (const auto b = tight(*model)) return answer_of(b->box, b->slack);
         return std::visit(
             [&](const auto& s) -> Result<BoundsAnswer> {
                 const auto domain = s.domain();
@@ -85,6 +91,7 @@ public:
             t.surface);
     }
     Result<BoundsAnswer> operator()(const Model& m) const {
+        if (const auto b = tight(m)) return answer_of(b->box, b->slack);
         Box<3> inner;
         for (const Vertex& v : m.vertices) inner.add(v.point);
         for (const Edge& e : m.edges) {
@@ -97,6 +104,10 @@ public:
 
 private:
     static constexpr int kSamples = 64;
+
+    Result<TightBox<3>> tight(const Model& m) const {
+        return tight_box(m, accuracy_ ? *accuracy_ : 1e-7 * summary(m).box.diagonal());
+    }
 
     // Where no accuracy was asked for, this fraction of the control points' box.
     template <class S, class P>
@@ -216,7 +227,7 @@ void add_bounds(CommandLine& line) {
     command.number(
         "--accuracy", options->accuracy,
         "How far a side may be from the object, in the unit of the file (curves: 1e-12 of the diagonal, "
-        "else 1e-7). Of models the answer says what was reached");
+        "else 1e-7). The answer says what was reached");
     command.object(options->object);
     command.answer_file();
     command.limits();

@@ -131,4 +131,24 @@ bool FaceParts::may_have_foot(const FacePart& part, const Vec<3>& q) const {
     return true;
 }
 
+// n . x_u is that of the chord but for the second derivatives of n . x, each times the side that it acts
+// along.
+bool FaceParts::may_be_level(const FacePart& part, const Vec<3>& n) const {
+    for (int axis = 0; axis < 2; ++axis)
+        for (const Kink& k : surface_->kinks(axis))
+            if (part.box.side(axis).contains(k.at)) return true;
+    const Vec<2> size = part.box.hi - part.box.lo;
+    const auto bound = surface_->along(n, {part.box.side(0), part.box.side(1)});
+    double scale = 0;
+    for (const Vec<3>& c : part.corner) scale = std::max(scale, max_abs(c));
+    const double rounding = 2 * part.rounding + 32 * kUnitRoundoff * scale;
+    const Vec<3> chord[2] = {part.corner[1] - part.corner[0], part.corner[2] - part.corner[0]};
+    for (int axis = 0; axis < 2; ++axis) {
+        const double own = axis == 0 ? bound(2, 0) : bound(0, 2), s = size[axis];
+        const double bent = own * s * s + bound(1, 1) * size[0] * size[1] + rounding;
+        if (std::abs(dot(n, chord[axis])) > bent * (1 + 1e-12)) return false;
+    }
+    return true;
+}
+
 }  // namespace freiform

@@ -41,6 +41,8 @@ public:
     // False: the distance from q has no critical point on the part, proven, so that its least value over the
     // face is on the boundary of the face or elsewhere.
     bool may_have_foot(const FacePart& part, const Vec<3>& q) const;
+    // False: n . x has no critical point on the part, proven; n of length 1.
+    bool may_be_level(const FacePart& part, const Vec<3>& n) const;
     // True: the point of the part's box is on the face, proven.
     bool holds(const FacePart& part, const Vec<2>& uv) const;
     Vec<3> value(const Vec<2>& uv) const { return jet<0>(face_->surface, uv.c).value(); }

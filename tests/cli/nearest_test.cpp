@@ -183,8 +183,8 @@ TEST_F(NearestCommand, faces_and_curves_of_one_document_are_asked_together) {
 TEST_F(NearestCommand, distances_of_solids_have_a_sign_where_asked) {
 #ifdef FREIFORM_OCCT_BINARY
     const std::string model = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";
-    const Ran r =
-        run({"nearest", model, "--points", file("p.csv", "0,0,0\n30,10,5\n30,10,0\n30,10,0.001\n"), "--signed", "--json"});
+    const Ran r = run({"nearest", model, "--points", file("p.csv", "0,0,0\n30,10,5\n30,10,0\n30,10,0.001\n"),
+                       "--signed", "--json"});
     if (r.code == 3 && r.out.find("unavailable") != std::string::npos)
         GTEST_SKIP() << "built without Open CASCADE";
     ASSERT_EQ(r.code, 0) << r.out << r.err;

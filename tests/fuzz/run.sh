@@ -3,10 +3,32 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 name=$1 seconds=$2
-mkdir -p build-fuzz
+mkdir -p build-fuzz/unity
 corpus=${3:-build-fuzz/corpus-$name}
 mkdir -p "$corpus"
-"${CXX:-clang++-22}" -std=c++23 -O1 -g -DFF_CHECKED=1 -ffp-contract=off -fsanitize=fuzzer,address,undefined -Iinclude -Isrc \
-    "tests/fuzz/${name}_fuzzer.cpp" src/mesh/triangulate*.cpp src/mesh/insertion_order.cpp src/poly/predicates*.cpp \
-    src/poly/integer.cpp src/core/text.cpp src/core/result.cpp -o "build-fuzz/$name"
+flags=(-std=c++23 -DFF_CHECKED=1 -ffp-contract=off -Iinclude -Isrc)
+checks=(-O1 -g -fsanitize=address,undefined -fsanitize=fuzzer-no-link)
+case $name in
+    triangulate)
+        sources=(src/mesh/triangulate*.cpp src/mesh/insertion_order.cpp src/poly/predicates*.cpp src/poly/integer.cpp
+            src/core/text.cpp src/core/result.cpp) ;;
+    *)  # One unit for each layer up to that of the fuzzed one.
+        sources=(src/kernel/*.cpp)
+        for layer in core poly basis spline "$name"; do
+            printf '#include "%s"\n' "$PWD"/src/"$layer"/*.cpp >"build-fuzz/unity/$layer.cpp"
+            sources+=("build-fuzz/unity/$layer.cpp")
+        done ;;
+esac
+compile() {
+    local extra=()
+    case $1 in  # the kernels: vector code that takes minutes with sanitizers, and is not what is fuzzed
+        src/kernel/*) extra=(-O0) ;;
+        *) extra=("${checks[@]}") ;;
+    esac
+    case $1 in *_avx2.cpp) extra+=(-mavx2 -mfma) ;; *_avx512.cpp) extra+=(-mavx512f -mavx512dq -mavx512vl -mfma) ;; esac
+    "${CXX:-clang++-22}" "${flags[@]}" "${extra[@]}" -c "$1" -o "build-fuzz/$name-objects/$(basename "$1" .cpp).o"
+}
+mkdir -p "build-fuzz/$name-objects"
+for source in "${sources[@]}" "tests/fuzz/${name}_fuzzer.cpp"; do compile "$source"; done
+"${CXX:-clang++-22}" -fsanitize=fuzzer,address,undefined build-fuzz/"$name"-objects/*.o -o "build-fuzz/$name"
 "build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len=1024 "$corpus"

@@ -2,10 +2,18 @@
 #include "plane_curves.hpp"
 #include "sturm.hpp"
 
+#include <cstdlib>
+
 namespace freiform::test {
 namespace {
 
 using Grid = std::vector<Vec<2>>;
+
+// How many pairs: FREIFORM_INTERSECTIONS=100000 of random ones, and a hundredth of that of nasty ones.
+int pairs_asked(int usual, int share = 1) {
+    const char* said = std::getenv("FREIFORM_INTERSECTIONS");
+    return said ? std::max(usual, std::atoi(said) / share) : usual;
+}
 
 // Control points that are multiples of 1 / n, so that contacts at tangents and ends are common.
 Grid random_grid(Random& random, int count, int width, int height, int n) {
@@ -61,7 +69,7 @@ Grid sheared(const Grid& g) {  // exact, and different for both coordinates
 TEST(IntersectLaws, counts_are_those_of_exact_arithmetic) {
     Random random(11);
     int tangents = 0, roots = 0;
-    for (int i = 0; i < 250; ++i) {
+    for (int i = 0; i < pairs_asked(250); ++i) {
         const int n = random.integer(1, 3), m = random.integer(1, 4), fine = i % 3 == 0 ? 8 : 1;
         Grid graph = random_grid(random, n + 1, 1, 2, fine);
         for (int k = 0; k <= n; ++k) graph[std::size_t(k)][0] = k;
@@ -140,7 +148,7 @@ void expect_same(const PlaneAnswer& x, const PlaneAnswer& y, double scale, int i
 
 TEST(IntersectLaws, exchanging_the_curves_exchanges_the_answer) {
     Random random(12);
-    for (int i = 0; i < 80; ++i) {
+    for (int i = 0; i < pairs_asked(80, 100); ++i) {
         const auto [a, b] = nasty_pair(random);
         const PlaneAnswer there = meet(a, b);
         PlaneAnswer back = meet(b, a);
@@ -157,7 +165,7 @@ TEST(IntersectLaws, exchanging_the_curves_exchanges_the_answer) {
 
 TEST(IntersectLaws, powers_of_two_scale_the_answer_bit_for_bit) {
     Random random(13);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < pairs_asked(40, 100); ++i) {
         const auto [a, b] = nasty_pair(random);
         const PlaneAnswer plain = meet(a, b);
         for (const int e : {-200, 200}) {
@@ -169,7 +177,7 @@ TEST(IntersectLaws, powers_of_two_scale_the_answer_bit_for_bit) {
 
 TEST(IntersectLaws, reversing_a_curve_reverses_its_parameters) {
     Random random(14);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < pairs_asked(60, 100); ++i) {
         const auto [a, b] = nasty_pair(random);
         const PlaneAnswer there = meet(a, b), back = meet(reverse(a, 0), b);
         ASSERT_EQ(there.contacts.size(), back.contacts.size()) << i;

@@ -1,0 +1,14 @@
+// Tight boxes of solid models.
+#pragma once
+#include <freiform/model/model.hpp>
+#include <freiform/query/bounds.hpp>
+
+namespace freiform {
+
+// The box of all faces as their parameter curves trim them, with `slack` <= accuracy (a length) as far as
+// rounding and `max_parts` for each side allow: the answer says what was reached. Refuses accuracies that are
+// negative or NaN, models without faces, and faces without bounds of their derivatives or of their boundary.
+//   const auto b = tight_box(model, 1e-6);   // b->box.lo, b->slack
+Result<TightBox<3>> tight_box(const Model& model, double accuracy, int max_parts = 20000);
+
+}  // namespace freiform

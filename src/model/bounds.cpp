@@ -1,0 +1,136 @@
+// Idea. How far a model reaches in a direction n: branch and bound over parts of faces and of their
+// boundaries (near_parts.cpp), the one that may reach farthest first. Where n . x is largest over a face it
+// has a critical point inside, or that is on the boundary. So parts where n . x_u or n . x_v certainly does
+// not vanish are done, and boundaries are followed as curves: the bound comes near with the square of the
+// parts' size, along edges too. Points that certainly belong to the model (ends of boundary parts, corners of
+// parts that are wholly inside) say how far it reaches at least.
+//
+// Accuracy. face_parts.cpp and face_rim.cpp bound how far a part leaves its corners or chord, rounding
+// included; scalar products with coordinate axes are exact.
+//
+// References. As in query/bounds.cpp, where control points do what parts do here.
+#include "near_parts_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/model/bounds.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+// The reach in the direction of a coordinate axis, or against it.
+class Reach {
+public:
+    Reach(const detail::ModelParts& all, int axis, double sign, double accuracy, int max_parts)
+        : all_(all), axis_(axis), sign_(sign), parts_left_(max_parts) {
+        for (const FacePart& p : all.parts) parts_.push_back(p);
+        for (const FaceRim& r : all.rims) rims_.push_back(r);
+        for (const NearLeaf& leaf : all.leaves)
+            leaf.part >= 0 ? push_part(leaf.face, leaf.part, kInfinity) : push_rim(leaf.rim, kInfinity);
+        while (!heap_.empty()) {
+            std::ranges::pop_heap(heap_, {}, &Item::most);
+            const Item item = heap_.back();
+            heap_.pop_back();
+            most_ = item.most;
+            if (item.most <= least_ + accuracy || parts_left_-- <= 0) return;
+            if (!(item.rim ? open_rim(item) : open_part(item))) return;
+        }
+        most_ = least_;
+    }
+
+    double most() const { return most_; }    // upper bound
+    double least() const { return least_; }  // and a lower one
+
+private:
+    struct Item {
+        double most;
+        int face, index;
+        bool rim;
+    };
+
+    double along(const Vec<3>& x) const { return sign_ * x[axis_]; }
+    void push(const Item& item, double bound) {
+        heap_.push_back(item);
+        double& most = heap_.back().most;
+        most = std::min(std::isnan(most) ? kInfinity : most, bound);
+        std::ranges::push_heap(heap_, {}, &Item::most);
+    }
+    void push_part(int face, int index, double bound) {
+        const FacePart& p = parts_[std::size_t(index)];
+        double most = -kInfinity;
+        for (const Vec<3>& x : p.corner) most = std::max(most, along(x));
+        if (!p.crossing) least_ = std::max(least_, most - p.rounding);
+        push({most + p.error, face, index, false}, bound);
+    }
+    void push_rim(int index, double bound) {
+        const FaceRim& r = rims_[std::size_t(index)];
+        for (int k = 0; k < 2; ++k) {
+            const Vec<2>& uv = r.uv[std::size_t(k)];
+            const double off = 2 * value_error_bound(all_.model.faces[std::size_t(r.owner)].surface,
+                                                     {Interval{uv[0], uv[0]}, Interval{uv[1], uv[1]}});
+            least_ = std::max(least_, along(r.end[std::size_t(k)]) - off);
+        }
+        push({std::max(along(r.end[0]), along(r.end[1])) + r.error, r.owner, index, true}, bound);
+    }
+    bool open_part(const Item& item) {
+        const FacePart part = parts_[std::size_t(item.index)];
+        const FaceParts& face = all_.faces[std::size_t(item.face)];
+        Vec<3> n{};
+        n[axis_] = sign_;
+        if (!all_.model.faces[std::size_t(item.face)].loops.empty() && !face.may_be_level(part, n))
+            return true;
+        bool can = false;
+        for (int k = 0; k < 2; ++k) {
+            const double m = part.box.side(k).middle();
+            can = can || (part.box.lo[k] < m && m < part.box.hi[k]);
+        }
+        if (!can) return false;
+        for (FacePart& half : face.halves(part, true)) {
+            parts_.push_back(std::move(half));
+            push_part(item.face, int(parts_.size()) - 1, item.most);
+        }
+        return true;
+    }
+    bool open_rim(const Item& item) {
+        const FaceRim rim = rims_[std::size_t(item.index)];
+        const double middle = rim.on.middle();
+        if (!rim.coedge || !(rim.on.lo < middle && middle < rim.on.hi)) return false;
+        for (const Interval half : {Interval{rim.on.lo, middle}, Interval{middle, rim.on.hi}}) {
+            rims_.push_back(all_.rim_over(rim.owner, rim.coedge, rim.curve, half));
+            push_rim(int(rims_.size()) - 1, item.most);
+        }
+        return true;
+    }
+
+    const detail::ModelParts& all_;
+    int axis_;
+    double sign_;
+    int parts_left_;
+    double least_ = -kInfinity, most_ = kInfinity;
+    std::vector<Item> heap_;
+    std::vector<FacePart> parts_;
+    std::vector<FaceRim> rims_;
+};
+
+}  // namespace
+
+Result<TightBox<3>> tight_box(const Model& model, double accuracy, int max_parts) {
+    if (!(accuracy >= 0))
+        return refuse(RefusalKind::invalid, "accuracy",
+                      text("is ", accuracy, ", a length that is not negative is expected"));
+    detail::ModelParts all{model};
+    if (auto done = all.prepare(); !done) return std::unexpected(done.error());
+    TightBox<3> out;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Reach up(all, axis, 1, accuracy, max_parts), down(all, axis, -1, accuracy, max_parts);
+        out.box.hi[axis] = up.most();
+        out.box.lo[axis] = -down.most();
+        out.slack = std::max({out.slack, up.most() - up.least(), down.most() - down.least()});
+    }
+    return out;
+}
+
+}  // namespace freiform
