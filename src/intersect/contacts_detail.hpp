@@ -37,6 +37,45 @@ inline Interval global(const Interval& on, const Interval& t, const Interval& wi
     return {clamped(g.lo, within), clamped(g.hi, within)};
 }
 
+// Where the pieces of a pair are in the parameters of their objects.
+template <std::size_t N>
+struct Where {
+    std::array<Interval, N> piece{}, domain{};
+    std::array<bool, N> closed{};
+};
+template <std::size_t N>
+std::array<Interval, N> global(const Where<N>& where, const std::array<Interval, N>& t, bool beyond = false) {
+    std::array<Interval, N> out;
+    for (std::size_t k = 0; k < N; ++k)
+        out[k] = global(where.piece[k], t[k], beyond ? where.domain[k] : where.piece[k]);
+    return out;
+}
+
+// Parameters of pieces become those of the objects. The two ends of a closed domain are one place, its
+// beginning.
+template <int D, std::size_t N>
+void move_to_objects(Raw<D, N>& r, const Where<N>& where) {
+    if (r.at_joint)  // the neighbour may have it beyond the knot
+        for (Interval& t : r.c.box) t = {t.lo - 2 * t.length(), t.hi + 2 * t.length()};
+    r.c.box = global(where, r.c.box, r.at_joint);
+    for (std::size_t k = 0; k < N; ++k) {
+        const Interval whole = where.domain[k];
+        r.c.at[k] = global(where.piece[k], r.c.at[k]);
+        r.c.box[k] = hull(r.c.box[k], {r.c.at[k], r.c.at[k]});
+        if (!where.closed[k] || r.c.box[k].hi < whole.hi) continue;
+        r.from[2] |= 1 << k;
+        r.c.at[k] = std::max(r.c.at[k] - whole.length(), whole.lo);
+        r.c.box[k] = {r.c.box[k].lo - whole.length(), whole.lo};
+    }
+}
+// Its point, and how far the two objects are from each other there; x, y in units of 2^exponent, each within
+// its part of `error`.
+template <int D, std::size_t N>
+void set_point(Raw<D, N>& r, const Vec<D>& x, const Vec<D>& y, double error, int exponent) {
+    for (int k = 0; k < D; ++k) r.c.point[k] = std::scalbn(x[k], exponent);
+    r.c.gap = std::scalbn(std::sqrt(double(D)) * 1.01 * (max_abs(x - y) + error), exponent);
+}
+
 template <std::size_t N>
 bool touch(const std::array<Interval, N>& a, const std::array<Interval, N>& b) {
     for (std::size_t k = 0; k < N; ++k)

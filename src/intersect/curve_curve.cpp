@@ -124,7 +124,8 @@ private:
         for (const Open<2>& o : search_.open())
             if (!overlaps.settled(o.part_a, o.part_b)) (o.over_budget ? undecided : unclear).push_back(o.box);
         for (const Boxes& box : clusters(unclear)) decide(i, j, box, overlaps);
-        for (const Boxes& box : clusters(undecided)) answer_.undecided.push_back(global(i, j, box));
+        for (const Boxes& box : clusters(undecided))
+            answer_.undecided.push_back(freiform::detail::global(where(i, j), box));
         for (const ExactContact& c : overlaps.isolated()) add_exact(i, j, c);
         for (const Overlap& o : overlaps.overlaps()) {
             Overlap g = o;
@@ -135,12 +136,9 @@ private:
         }
     }
     static Interval on(const PartTree<1, P>& p, int i) { return p.source().box(i)[0]; }
-    Boxes global(int i, int j, const Boxes& t, bool beyond = false) const {
-        const auto within = [&](const Interval& piece, const Interval& domain, const Interval& x) {
-            return freiform::detail::global(piece, x, beyond ? domain : piece);
-        };
-        return {within(on(a_, i), a_.source().domain[0], t[0]),
-                within(on(b_, j), b_.source().domain[0], t[1])};
+    Where<2> where(int i, int j) const {
+        const auto &a = a_.source(), &b = b_.source();
+        return {{on(a_, i), on(b_, j)}, {a.domain[0], b.domain[0]}, {a.closed[0], b.closed[0]}};
     }
 
     void decide(int i, int j, Boxes box, Overlaps<P>& overlaps) {
@@ -217,35 +215,16 @@ private:
         finish(i, j, r, true);
     }
 
-    // Parameters of pieces become those of the curves; point and gap.
     void finish(int i, int j, Raw<D, 2> r, bool exact = false) {
         for (std::size_t k = 0; k < 2; ++k) r.c.at[k] = std::clamp(r.c.at[k], 0.0, 1.0);
         Vec<D> x, y, u, v;
         const double e = a_.at(i, &r.c.at[0], x, &u) + b_.at(j, &r.c.at[1], y, &v);
-        r.c.point = x;
-        for (int k = 0; k < D; ++k) r.c.point[k] = std::scalbn(x[k], exponent_);
-        r.c.gap = std::scalbn(std::sqrt(double(D)) * 1.01 * (max_abs(x - y) + e), exponent_);
+        set_point(r, x, y, e, exponent_);
         if constexpr (D == 2)
             if (exact && r.c.multiplicity == 1) r.sign = cross(u, v) < 0 ? 1 : -1;
         r.from = {i, j, 0};
-        const Interval oa = on(a_, i), ob = on(b_, j);
-        r.c.at = {freiform::detail::global(oa, r.c.at[0]), freiform::detail::global(ob, r.c.at[1])};
-        if (r.at_joint)  // the neighbour may have it beyond the knot
-            for (Interval& t : r.c.box) t = {t.lo - 2 * t.length(), t.hi + 2 * t.length()};
-        r.c.box = global(i, j, r.c.box, r.at_joint);
-        r.c.box[0] = hull(r.c.box[0], {r.c.at[0], r.c.at[0]});
-        r.c.box[1] = hull(r.c.box[1], {r.c.at[1], r.c.at[1]});
-        wrap(a_.source(), r, 0);
-        wrap(b_.source(), r, 1);
+        move_to_objects(r, where(i, j));
         raw_.push_back(r);
-    }
-    // The two ends of a closed curve are one place: the beginning.
-    static void wrap(const ArcPieces<1, P>& c, Raw<D, 2>& r, std::size_t k) {
-        if (!c.closed[0] || r.c.box[k].hi < c.domain[0].hi) return;
-        r.from[2] |= 1 << k;
-        const double period = c.domain[0].length();
-        r.c.at[k] = std::max(r.c.at[k] - period, c.domain[0].lo);
-        r.c.box[k] = {r.c.box[k].lo - period, c.domain[0].lo};
     }
 
     // Parameters of a box with a small distance, by the method of Gauss and Newton, damped.

@@ -64,15 +64,13 @@ public:
 private:
     using Boxes = std::array<Interval, 3>;
 
-    static constexpr std::array<std::size_t, 3> kAxis{0, 0, 1};
-    Interval domain(std::size_t k) const {
-        return k == 0 ? curve_.source().domain[0] : surface_.source().domain[kAxis[k]];
-    }
-    bool closed(std::size_t k) const {
-        return k == 0 ? curve_.source().closed[0] : surface_.source().closed[kAxis[k]];
-    }
-    Interval piece(std::size_t k, int i, int j) const {
-        return k == 0 ? curve_.source().box(i)[0] : surface_.source().box(j)[kAxis[k]];
+    Where<3> where(int i, int j) const {
+        const auto& c = curve_.source();
+        const auto& s = surface_.source();
+        const auto patch = s.box(j);
+        return {{c.box(i)[0], patch[0], patch[1]},
+                {c.domain[0], s.domain[0], s.domain[1]},
+                {c.closed[0], s.closed[0], s.closed[1]}};
     }
 
     void take(int i, int j) {
@@ -102,14 +100,17 @@ private:
             r.c.most = std::max(1, 2 * d[0] * d[1] * curve_.source().degree[0]);
             finish(i, j, r);
         }
-        for (const Boxes& box : clusters(undecided)) answer_.undecided.push_back(global(i, j, box, false));
+        for (const Boxes& box : clusters(undecided))
+            answer_.undecided.push_back(detail::global(where(i, j), box));
     }
 
     bool reaches_boundary(int i, int j, const Boxes& t) const {
+        const Where<3> at = where(i, j);
         for (std::size_t k = 0; k < 3; ++k) {
-            if (closed(k)) continue;
-            const Interval on = piece(k, i, j), whole = domain(k);
-            if ((t[k].lo <= 0 && on.lo == whole.lo) || (t[k].hi >= 1 && on.hi == whole.hi)) return true;
+            if (at.closed[k]) continue;
+            if ((t[k].lo <= 0 && at.piece[k].lo == at.domain[k].lo) ||
+                (t[k].hi >= 1 && at.piece[k].hi == at.domain[k].hi))
+                return true;
             if (k == 0 &&
                 ((t[0].lo <= 0 && curve_.source().jump[std::size_t(i)]) ||
                  (t[0].hi >= 1 && i + 1 < curve_.pieces() && curve_.source().jump[std::size_t(i) + 1])))
@@ -117,32 +118,14 @@ private:
         }
         return false;
     }
-    Boxes global(int i, int j, const Boxes& t, bool beyond) const {
-        Boxes out;
-        for (std::size_t k = 0; k < 3; ++k)
-            out[k] = detail::global(piece(k, i, j), t[k], beyond ? domain(k) : piece(k, i, j));
-        return out;
-    }
 
     void finish(int i, int j, Raw<3, 3> r) {
         for (double& t : r.c.at) t = std::clamp(t, 0.0, 1.0);
         Vec<3> x, y, d[2];
         const double e = curve_.at(i, &r.c.at[0], x, d) + surface_.at(j, &r.c.at[1], y, d);
-        for (int k = 0; k < 3; ++k) r.c.point[k] = std::scalbn(x[k], exponent_);
-        r.c.gap = std::scalbn(1.01 * std::sqrt(3.0) * (max_abs(x - y) + e), exponent_);
-        if (r.at_joint)  // the neighbour may have it beyond the knot
-            for (Interval& t : r.c.box) t = {t.lo - 2 * t.length(), t.hi + 2 * t.length()};
-        r.c.box = global(i, j, r.c.box, r.at_joint);
+        set_point(r, x, y, e, exponent_);
         r.from = {i, j, 0};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Interval whole = domain(k);
-            r.c.at[k] = detail::global(piece(k, i, j), r.c.at[k]);
-            r.c.box[k] = hull(r.c.box[k], {r.c.at[k], r.c.at[k]});
-            if (!closed(k) || r.c.box[k].hi < whole.hi) continue;
-            r.from[2] |= 1 << k;
-            r.c.at[k] = std::max(r.c.at[k] - whole.length(), whole.lo);  // both ends are one place
-            r.c.box[k] = {r.c.box[k].lo - whole.length(), whole.lo};
-        }
+        move_to_objects(r, where(i, j));
         raw_.push_back(r);
     }
 

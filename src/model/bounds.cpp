@@ -10,6 +10,7 @@
 //
 // References. As in query/bounds.cpp, where control points do what parts do here.
 #include "near_parts_detail.hpp"
+#include "query/checks_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/model/bounds.hpp>
@@ -118,9 +119,7 @@ private:
 }  // namespace
 
 Result<TightBox<3>> tight_box(const Model& model, double accuracy, int max_parts) {
-    if (!(accuracy >= 0))
-        return refuse(RefusalKind::invalid, "accuracy",
-                      text("is ", accuracy, ", a length that is not negative is expected"));
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
     detail::ModelParts all{model};
     if (auto done = all.prepare(); !done) return std::unexpected(done.error());
     TightBox<3> out;

@@ -17,6 +17,7 @@
 //
 // References. [Johnson Cohen 1998] for the search.
 #include "near_parts_detail.hpp"
+#include "query/checks_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
@@ -251,14 +252,7 @@ const Model& ModelNearestQuery::model() const { return prepared_->model; }
 Result<void> ModelNearestQuery::nearest(std::span<const Vec<3>> points, std::span<ModelNearest> out,
                                         const ModelNearestOptions& options) const {
     FF_REQUIRE(out.size() == points.size());
-    if (!(options.accuracy >= 0))
-        return refuse(RefusalKind::invalid, "accuracy",
-                      text("is ", options.accuracy, ", a distance that is not negative is expected"));
-    if (options.max_parts < 1) return refuse(RefusalKind::invalid, "max_parts", "is below 1");
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i]))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
-                          "has a coordinate that is not finite");
+    if (auto ok = detail::check_points<3>(points, options.accuracy, options.max_parts); !ok) return ok;
     parallel_for(points.size(), 1,
                  [&](std::size_t i) { out[i] = NearSearch(*prepared_, points[i], options).best(); });
     return {};

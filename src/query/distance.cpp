@@ -20,6 +20,7 @@
 //
 // Why not the polynomial |x - y|^2 in all parameters, as for points: for two bicubic surfaces it has 2401
 // coefficients, and halving it costs more than halving both nets ever does.
+#include "query/checks_detail.hpp"
 #include "query/nearest_blocks_detail.hpp"
 #include "query/pair_search_detail.hpp"
 
@@ -339,9 +340,7 @@ Result<LeastDistance<D>> least_distance(const NearestQuery& a, const NearestQuer
         return refuse(RefusalKind::invalid, "objects",
                       text("the first have ", a.coordinates(), " coordinates, the second ", b.coordinates()));
     FF_REQUIRE(D == a.coordinates());
-    if (!(options.accuracy >= 0))
-        return refuse(RefusalKind::invalid, "accuracy",
-                      text("is ", options.accuracy, ", a distance that is not negative is expected"));
+    if (auto ok = detail::check_accuracy(options.accuracy); !ok) return std::unexpected(ok.error());
     if (options.max_pairs < 1) return refuse(RefusalKind::invalid, "max_pairs", "is below 1");
     const int e = std::max(a.tree().exponent(), b.tree().exponent());
     detail::PieceSide<D> x(a.tree(), std::scalbn(1.0, a.tree().exponent() - e)),

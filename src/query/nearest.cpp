@@ -1,4 +1,5 @@
 // From patches to numbers, and the batch.
+#include "query/checks_detail.hpp"
 #include "query/nearest_detail.hpp"
 
 #include <freiform/basis/named.hpp>
@@ -105,14 +106,7 @@ Result<void> NearestQuery::each_point(std::span<const Vec<D>> points, std::span<
                                       const NearestOptions& options, Ask&& ask) const {
     FF_REQUIRE(out.size() == points.size());
     FF_REQUIRE(D == coordinates());
-    if (!(options.accuracy >= 0))
-        return refuse(RefusalKind::invalid, "accuracy",
-                      text("is ", options.accuracy, ", a distance that is not negative is expected"));
-    if (options.max_parts < 1) return refuse(RefusalKind::invalid, "max_parts", "is below 1");
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (!is_finite(points[i]))
-            return refuse(RefusalKind::nonfinite, text("points[", i, "]"),
-                          "has a coordinate that is not finite");
+    if (auto ok = detail::check_points<D>(points, options.accuracy, options.max_parts); !ok) return ok;
     constexpr std::size_t kChunk = 64;
     parallel_for((points.size() + kChunk - 1) / kChunk, 1, [&](std::size_t c) {
         detail::NearestTree::Scratch scratch;
