@@ -1,7 +1,10 @@
 // distance: the least distance between the objects of two files, with both places and a proof.
 #include "input.hpp"
 
-#include <freiform/query/distance.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/model/distance.hpp>
+
+#include <algorithm>
 
 namespace freiform::cli {
 
@@ -82,12 +85,69 @@ Result<void> answer_distance(const Context& context, const std::array<const Inpu
     return emit(context, context.json ? w.take() + "\n" : plain);
 }
 
+bool has_faces_of_models(const Input& input) {
+    return std::ranges::any_of(input.chosen, [&](std::size_t i) {
+        const Shape& s = input.object(i).shape;
+        return std::holds_alternative<Model>(s) || std::holds_alternative<TrimmedSurface>(s);
+    });
+}
+
+// Faces of models, trimmed and whole surfaces, as one model.
+Result<Scene> faces_of(const Input& input) {
+    for (const std::size_t i : input.chosen)
+        if (with_curve(input.object(i).shape, [](const auto&) {}))
+            return refuse(RefusalKind::no_answer, input.label(i),
+                          "is a curve; distances from models are those between faces; --object-a and "
+                          "--object-b choose");
+    return scene_with_owners(*input.document, input.chosen);
+}
+
+Result<void> distance_of_models(const Context& context, const std::array<const Input*, 2>& input,
+                                const DistanceOptions& options) {
+    std::array<std::optional<ModelNearestQuery>, 2> query;
+    std::array<std::vector<std::size_t>, 2> owner;
+    for (std::size_t i = 0; i < 2; ++i) {
+        auto scene = faces_of(*input[i]);
+        if (!scene) return std::unexpected(scene.error());
+        for (const Refusal& r : scene->model.refused) remark(text(r.where, " is left out: ", r.message));
+        owner[i] = std::move(scene->object_of_face);
+        auto made = ModelNearestQuery::make(std::move(scene->model));
+        if (!made) return refuse_within(shown(input[i]->file), made.error());
+        query[i] = *std::move(made);
+    }
+    const auto d = least_distance(*query[0], *query[1], options);
+    if (!d) return std::unexpected(d.error());
+    json::Writer w;
+    w.begin_object().field("distance", d->distance).field("lower_bound", d->lower_bound);
+    w.field("point_error", d->point_error);
+    std::string plain = text("distance ", d->distance, ", at least ", d->lower_bound, "\n");
+    for (std::size_t i = 0; i < 2; ++i) {
+        const ModelNearest& n = d->at[i];
+        const std::size_t object = owner[i][std::size_t(n.face)];
+        w.key(i == 0 ? "a" : "b").begin_object().field("object", object);
+        w.field("name", input[i]->object(object).name).field("face", n.face);
+        w.key("parameters").array(n.uv.c);
+        if (n.edge >= 0) w.field("edge", n.edge);
+        w.key("point").array(n.point.c).end_object();
+        plain += text("  ", input[i]->label(object), ": face ", n.face, " at ", n.uv[0], ", ", n.uv[1],
+                      n.edge >= 0 ? text(", on edge ", n.edge) : "", ", point ", n.point[0], ", ", n.point[1],
+                      ", ", n.point[2], "\n");
+    }
+    w.end_object();
+    return emit(context, context.json ? w.take() + "\n" : plain);
+}
+
 Result<void> run_distance(const Context& context, const DistanceArguments& options) {
     if (!(options.accuracy.value_or(0) >= 0)) wrong_usage("--accuracy needs a distance that is not negative");
     const auto a = read_input(context, options.a, options.object_a);
     if (!a) return std::unexpected(a.error());
     const auto b = read_input(context, options.b, options.object_b);
     if (!b) return std::unexpected(b.error());
+    DistanceOptions how;
+    how.accuracy = options.accuracy.value_or(0);
+    how.max_pairs = options.max_pairs.value_or(how.max_pairs);
+    const std::array input{&*a, &*b};
+    if (has_faces_of_models(*a) || has_faces_of_models(*b)) return distance_of_models(context, input, how);
     auto set_a = distance_set(*a), set_b = distance_set(*b);
     if (!set_a) return std::unexpected(set_a.error());
     if (!set_b) return std::unexpected(set_b.error());
@@ -96,10 +156,6 @@ Result<void> run_distance(const Context& context, const DistanceArguments& optio
         return refuse(
             RefusalKind::no_answer, shown(options.b),
             text("has objects with ", set_b->coordinates, " coordinates, ", shown(options.a), " with ", n));
-    DistanceOptions how;
-    how.accuracy = options.accuracy.value_or(0);
-    how.max_pairs = options.max_pairs.value_or(how.max_pairs);
-    const std::array input{&*a, &*b};
     const std::array sets{*std::move(set_a), *std::move(set_b)};
     return n == 1   ? answer_distance<1>(context, input, sets, how)
            : n == 2 ? answer_distance<2>(context, input, sets, how)
@@ -115,11 +171,13 @@ void add_distance(CommandLine& line) {
         line.add("distance", "The least distance between two files' objects, with a bound that proves it",
                  "  freiform distance road.json river.json\n"
                  "  freiform distance scene.json scene.json --object-a pipe --object-b wall --json\n"
+                 "  freiform distance bolt.step plate.step\n"
                  "No two points of the two are nearer to each other than lower_bound.");
     command.word("A", options->a, "The first file; - is standard input").required();
     command.word("B", options->b, "The second file").required();
     command.number("--accuracy", options->accuracy,
-                   "How far the lower bound may stay below the distance (default: 2^-30 of the coordinates)");
+                   "How far the lower bound may stay below the distance (default: 2^-30 of the coordinates, "
+                   "2^-24 of the size of models)");
     command.count("--max-pairs", options->max_pairs, 1, 100'000'000,
                   "Pairs of parts that are looked at before the bound is left as it is (default 200000)");
     command.word("--object-a", options->object_a, "Only this object of A").shown_as("NAME|INDEX");

@@ -43,10 +43,15 @@ public:
         source_ = &source;
         degree_ = source.degree;
         block_ = source.block();
-        const double w = std::scalbn(1.0, -source.exponents.weight), x = std::scalbn(w, -exponent);
+        const int light = -source.exponents.weight, small = light - exponent;
+        const double w = std::scalbn(1.0, light), x = std::scalbn(1.0, small);
+        // Tiny numbers are brought to 1 by powers of two that are no doubles.
+        const auto times = [](double v, double factor, int power) {
+            return std::isfinite(factor) ? v * factor : std::scalbn(v, power);
+        };
         points_.resize(source.points.size());
         std::transform(source.points.begin(), source.points.end(), points_.begin(), [&](P p) {
-            for (int k = 0; k < P::kCoords; ++k) p[k] *= k < D ? x : w;
+            for (int k = 0; k < P::kCoords; ++k) p[k] = k < D ? times(p[k], x, small) : times(p[k], w, light);
             return p;
         });
         hull_.clear();
@@ -54,7 +59,9 @@ public:
         for (int i = 0; i < source.pieces(); ++i) {
             Part<N, D> part;
             part.width.fill(1);
-            part.raw_error = source.error[std::size_t(i)] * std::max(x, kRational ? w : 0.0) + 0x1p-1060;
+            part.raw_error = std::max(times(source.error[std::size_t(i)], x, small),
+                                      kRational ? times(source.error[std::size_t(i)], w, light) : 0.0) +
+                             0x1p-1060;
             part.first = i * block_;
             part.piece = i;
             finish(part);

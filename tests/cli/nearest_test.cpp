@@ -68,6 +68,16 @@ TEST_F(NearestCommand, distance_of_two_files_says_both_places) {
     EXPECT_NE(line.out.find("distance 6.32455"), std::string::npos) << line.out;
     const std::string plane = file("plane.json", R"({"type": "curve", "points": [[0,0],[1,0]]})");
     EXPECT_EQ(run({"distance", two, plane}).code, 1);
+    const std::string half = file("half.json", R"({"type": "trimmed", "surface": {"degrees": [1, 1],
+        "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "loops": [[{"degree": 1, "points": [[0,0],[1,0]]},
+        {"degree": 1, "points": [[1,0],[0,1]]}, {"degree": 1, "points": [[0,1],[0,0]]}]]})");
+    const std::string tip = file("tip.json", R"({"type": "surface", "degrees": [1, 1],
+        "points": [[[1,1,1],[1,1,2]],[[2,2,1],[2,2,2]]]})");
+    const Ran trimmed = run({"distance", half, tip, "--json", "--accuracy", "1e-4"});
+    ASSERT_EQ(trimmed.code, 0) << trimmed.out << trimmed.err;
+    EXPECT_NEAR(nlohmann::json::parse(trimmed.out)["distance"].get<double>(), std::sqrt(1.5), 1e-4);
+    EXPECT_LE(nlohmann::json::parse(trimmed.out)["lower_bound"].get<double>(), std::sqrt(1.5));
+    EXPECT_EQ(run({"distance", half, dot}).code, 1);  // a curve and a face
     EXPECT_EQ(run({"distance", two}).code, 2);
     EXPECT_EQ(run({"distance", two, dot, "--accuracy", "-1"}).code, 2);
 }

@@ -123,6 +123,21 @@ TEST(IntersectCurves, the_unit_of_length_does_not_matter) {
     }
 }
 
+// Powers of two that bring these to 1 are no doubles.
+TEST(IntersectCurves, the_smallest_numbers_are_numbers) {
+    for (const double unit : {0x1p-1030, 0x1p-1050, 0x1p-1070}) {
+        const Plane a = plane_bezier({{{0, 0}}, {{8 * unit, 8 * unit}}}),
+                    b = plane_bezier({{{0, 8 * unit}}, {{8 * unit, 0}}});
+        const PlaneAnswer found = meet(a, b);
+        ASSERT_EQ(found.contacts.size(), 1u) << unit;
+        EXPECT_DOUBLE_EQ(found.contacts[0].at[0], 0.5);
+        EXPECT_TRUE(found.contacts[0].is_proven());
+        EXPECT_EQ(found.contacts[0].point[0], 4 * unit);
+        const Plane dot = plane_bezier({{{0, 0}}, {{0, 0}}});
+        EXPECT_EQ(meet(a, dot).contacts.size(), 1u) << unit;
+    }
+}
+
 TEST(IntersectCurves, a_curve_that_is_a_point_meets_a_line_once) {
     const Plane point = plane_bezier({{{1, 1}}, {{1, 1}}, {{1, 1}}, {{1, 1}}});
     const PlaneAnswer a = meet(point, plane_bezier({{{0, 1}}, {{4, 1}}}));

@@ -53,6 +53,7 @@ public:
     Result<ModelNearest> nearest(const Vec<3>& point, const ModelNearestOptions& options = {}) const;
 
     const Model& model() const;
+    const detail::ModelParts& parts() const { return *prepared_; }
 
 private:
     std::shared_ptr<const detail::ModelParts> prepared_;
