@@ -14,7 +14,7 @@ METHODS = [("freiform", "bench-intersect", ""), ("plain subdivision", "bench-int
            ("Open CASCADE", "bench-intersect-occt", "")]
 
 SURFACE_TASKS = [("rational", "10 x 10 control points, rational"), ("polynomial", "10 x 10 control points"),
-                 ("loops", "20 x 20 control points, many small loops; tolerance 1e-4"),
+                 ("loops", "20 x 20 control points, many small loops"),
                  ("single", "4 x 4 control points: one Bézier patch each")]
 SURFACE_METHODS = [("freiform", "bench-surface_pairs"), ("Open CASCADE", "bench-surface_pairs-occt")]
 
@@ -33,7 +33,7 @@ truth here. Open CASCADE is Geom2dAPI_InterCurveCurve at 1e-9.
 
 ## Two surfaces
 
-Ten pairs of hills each; the tolerance is 1e-6 where nothing else is said. The time is that of the branches as splines in space
+Ten pairs of hills each; the tolerance is 1e-6. The time is that of the branches as splines in space
 (here with both parameter curves and bounds). The truth is from a fine grid. Open CASCADE is GeomAPI_IntSS.
 
 | ten pairs of | | time per pair | branches of | length of |

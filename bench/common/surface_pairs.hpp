@@ -26,7 +26,7 @@ inline constexpr int kSurfacePairs = 10;
 inline constexpr SurfacePairTask kSurfacePairTasks[] = {
     {"rational", 10, 8000, true, 0.1, 1e-6, 47, 36.42},
     {"polynomial", 10, 8000, false, 0.1, 1e-6, 46, 36.95},
-    {"loops", 20, 8100, true, 0.02, 1e-4, 182, 112.84},
+    {"loops", 20, 8100, true, 0.02, 1e-6, 182, 112.84},
     {"single", 4, 8200, false, 0.1, 1e-6, 24, 16.01},
 };
 

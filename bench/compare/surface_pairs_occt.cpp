@@ -62,8 +62,8 @@ int main() {
         for (const Handle(Geom_Curve) & line : lines) {
             const double lo = line->FirstParameter(), hi = line->LastParameter();
             gp_Pnt last = line->Value(lo);
-            for (int i = 1; i <= 2000; ++i) {
-                const gp_Pnt p = line->Value(lo + (hi - lo) * i / 2000);
+            for (int i = 1; i <= 20000; ++i) {
+                const gp_Pnt p = line->Value(lo + (hi - lo) * i / 20000);
                 length += last.Distance(p);
                 last = p;
             }

@@ -41,9 +41,9 @@ bool measure(const bench::SurfacePairTask& task) {
         for (const SurfaceBranch& b : f.branches) {
             ++branches;
             const Interval on = b.curve.domain()[0];
-            for (int k = 0; k < 2000; ++k)
-                length += norm(b.curve(on.lo + on.length() * (k + 1) / 2000) -
-                               b.curve(on.lo + on.length() * k / 2000));
+            for (int k = 0; k < 20000; ++k)
+                length += norm(b.curve(on.lo + on.length() * (k + 1) / 20000) -
+                               b.curve(on.lo + on.length() * k / 20000));
         }
     bench::print_surface_task(task, seconds, branches, length);
     return ok;
