@@ -12,6 +12,11 @@
 // patch_detail.hpp), a difference of order k by 2^k e; this is added, so that the bound holds for the exact
 // block.
 //
+// Weights that do not depend on v, as of cylinders and cones: S_v = A_v / w is a block with the same weights,
+// and is taken about a vector c0 of its own, so that S_uv, .. are small where S_v hardly changes: |S_uv| by
+// the formula above would be twice |w_u| |S_v| / w, however short the block is. What weights may depend on v
+// by rounding is in the terms that |w_v|, .. stand in.
+//
 // Differences of an order come from those of the order before: one subtraction each. Rounding of the
 // subtractions is within the 2^k e above, of which twice as much is added.
 //
@@ -130,10 +135,77 @@ private:
 
 }  // namespace
 
+namespace {
+
+// Of A_v, A_vv, .. about multiples of the weights, which are those of the first column: differences along u.
+// found[slot of (i, j)] for j > 0; (0, j): the largest quotient by the weight.
+template <class P>
+std::array<double, jet_size(2, kBoundOrder)> ruled_differences(const NetView<2, const P>& net, int top) {
+    constexpr int D = Space<P>::kDim;
+    std::array<double, jet_size(2, kBoundOrder)> found{};
+    const int rows = net.extent[0], columns = net.extent[1];
+    std::vector<Vec<D>> across(std::size_t(rows) * std::size_t(columns)), e;
+    const auto weight = [&](int r) { return Space<P>::weight(net({r, 0})); };
+    const auto at = [&](int r, int c) { return std::size_t(r * columns + c); };
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c)
+            for (int i = 0; i < D; ++i) across[at(r, c)][i] = net({r, c})[i];
+    for (int j = 1; j <= top && j < columns; ++j) {
+        for (int r = 0; r < rows; ++r)
+            for (int c = 0; c < columns - j; ++c) across[at(r, c)] = across[at(r, c + 1)] - across[at(r, c)];
+        const Vec<D> c0 = (1 / weight(rows / 2)) * across[at(rows / 2, (columns - j) / 2)];
+        e = across;
+        for (int r = 0; r < rows; ++r)
+            for (int c = 0; c < columns - j; ++c) e[at(r, c)] = e[at(r, c)] - weight(r) * c0;
+        for (int i = 0; i + j <= top && i < rows; ++i) {
+            double& most = found[slot_of<2>(i, j)];
+            for (int r = 0; r < rows - i; ++r)
+                for (int c = 0; c < columns - j; ++c) {
+                    if (i > 0) e[at(r, c)] = e[at(r + 1, c)] - e[at(r, c)];
+                    most = std::max(most, norm(e[at(r, c)]) / (i == 0 ? weight(r) : 1));
+                }
+            most *= 1 + 8 * kUnitRoundoff;
+        }
+    }
+    return found;
+}
+
+// Whether weights change along u, along v, by more than restriction to a part rounds them.
+template <class P>
+std::array<bool, 2> weights_change(const NetView<2, const P>& net) {
+    std::array<bool, 2> out{};
+    const double part = 8 * (net.extent[0] + net.extent[1]) * kUnitRoundoff;
+    each_index(net.extent, [&](const Index<2>& at) {
+        const double w = Space<P>::weight(net(at)), alike = part * w;
+        out[0] = out[0] || std::abs(w - Space<P>::weight(net({0, at[1]}))) > alike;
+        out[1] = out[1] || std::abs(w - Space<P>::weight(net({at[0], 0}))) > alike;
+    });
+    return out;
+}
+
+DerivativeBounds<2> with_axes_exchanged(const DerivativeBounds<2>& b) {
+    DerivativeBounds<2> out;
+    for (int i = 0; i <= kBoundOrder; ++i)
+        for (int j = 0; i + j <= kBoundOrder; ++j) out.d[slot_of<2>(i, j)] = b.d[slot_of<2>(j, i)];
+    return out;
+}
+
+}  // namespace
+
 template <std::size_t N, class P>
 DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
                                       int order, double size) {
     constexpr int D = Space<P>::kDim;
+    constexpr bool kRational = Space<P>::kRational;
+    bool ruled = false;
+    if constexpr (N == 2 && kRational) {
+        const auto change = weights_change(net);
+        if (change[1] && !change[0])
+            return with_axes_exchanged(derivative_bounds<2, P>(
+                {net.data, {net.extent[1], net.extent[0]}, {net.stride[1], net.stride[0]}},
+                {width[1], width[0]}, order, size));
+        ruled = change[0] && !change[1] && order > 1;
+    }
     double steps = 8, largest = size, weight_min = kInfinity, weight_max = 0;
     Index<N> centre{};
     for (std::size_t d = 0; d < N; ++d) {
@@ -162,9 +234,11 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
     std::array<double, jet_size(N, kBoundOrder)> weight{}, weight_middle{};
     std::array<Vec<D>, jet_size(N, kBoundOrder)> middle{};
     out.d[0] = radius;
-    constexpr bool kRational = Space<P>::kRational;
     const int top = kRational ? std::min(order + 1, kBoundOrder) : order, across = N == 1 ? 0 : top;
     const DifferenceTable<N, P> found(net, c0, top);
+    std::array<double, jet_size(2, kBoundOrder)> found_ruled{};
+    if constexpr (N == 2 && kRational)
+        if (ruled) found_ruled = ruled_differences(net, top);
     // p (p - 1) .. / width^k along each axis.
     std::array<std::array<double, kBoundOrder + 1>, N> falling{};
     for (std::size_t d = 0; d < N; ++d) {
@@ -173,6 +247,29 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
             falling[d][std::size_t(k) + 1] =
                 falling[d][std::size_t(k)] * (double(net.extent[d] - 1 - k) / width[d]);
     }
+    // The numerator of a derivative with i, j > 0: w S_ij = E_ij - sum C w_k0 S_{i-k,j} - w_i0 (S_0j - c_j) -
+    // terms with w_kl, l > 0, which are rounding; E_ij = A_ij - w_i0 c_j, c_j near S_0j.
+    const auto by_rulings = [&](int i, int j, double factor, double rounding) {
+        const std::size_t of_j = slot_of<N>(0, N == 1 ? 0 : j);
+        const double by_v = falling[N - 1][std::size_t(j)];
+        if (!(by_v > 0)) return kInfinity;
+        // A is taken about c0 in thought; c_j is a multiple of a weight. All with the rounding of
+        // differences.
+        const double own = slip + norm(c0) * weight_slip + (out.d[of_j] / by_v) * weight_slip;
+        double most = std::abs(factor) * (found_ruled[slot_of<N>(i, j)] + rounding * 4 * own);
+        double from_middle = by_v * (found_ruled[of_j] + 16 * own / weight_min);
+        for (int l = 1; l <= j; ++l)
+            from_middle +=
+                kChoose[j][l] * weight[slot_of<N>(0, l)] * out.d[slot_of<N>(0, j - l)] / weight_min;
+        for (int k = 1; k <= i; ++k)
+            most += kChoose[i][k] * weight[slot_of<N>(k, 0)] *
+                    (k < i ? out.d[slot_of<N>(i - k, j)] : from_middle);
+        for (int k = 0; k <= i; ++k)
+            for (int l = 1; l <= j; ++l)
+                most += kChoose[i][k] * kChoose[j][l] * weight[slot_of<N>(k, l)] *
+                        out.d[slot_of<N>(i - k, j - l)];
+        return most;
+    };
     for (int sum = kRational ? 0 : 1; sum <= top; ++sum)
         for (int j = 0; j <= std::min(sum, across); ++j) {
             const int i = sum - j;
@@ -192,6 +289,7 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                         most += choose * weight[part] * out.d[rest];
                         middle[slot] -= (choose * weight_middle[part]) * middle[rest];
                     }
+                if (ruled && i > 0 && j > 0) most = std::min(most, by_rulings(i, j, factor, rounding));
                 most /= weight_min * (1 - 16 * steps * kUnitRoundoff);
                 middle[slot] *= 1 / weight_middle[0];
             }

@@ -59,6 +59,66 @@ TEST(DerivativeBounds, of_a_small_box_come_near_the_derivatives_there) {
     }
 }
 
+// Weights that change along one parameter only: cylinders, cones, and what is neither.
+TEST(DerivativeBounds, of_rational_surfaces_with_rulings_hold_and_do_not_mix_what_is_apart) {
+    std::mt19937 rng(12);
+    for (int round = 0; round < 24; ++round) {
+        const int p = 2 + round % 3, q = 1 + round / 3 % 3, ruling = round % 2;
+        const bool moved = round % 3 == 0;  // the same curve at all v
+        std::vector<Vec<3>> curve;
+        std::vector<double> w;
+        for (int i = 0; i <= p; ++i) {
+            curve.push_back({{uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)}});
+            w.push_back(uniform(rng, 0.3, 2));
+        }
+        std::vector<Hom<3>> c;
+        const int n[2] = {ruling ? q : p, ruling ? p : q};
+        for (int i = 0; i <= n[0]; ++i)
+            for (int k = 0; k <= n[1]; ++k) {
+                const std::size_t a = std::size_t(ruling ? k : i);
+                const double b = ruling ? i : k;
+                const double more = moved ? 0 : uniform(rng, -0.3, 0.3);
+                c.push_back(Space<Hom<3>>::lift(curve[a] + Vec<3>{{0.5 * b + more, b, 2 * b}}, w[a]));
+            }
+        const SurfaceGeometry s =
+            *Surface<Hom<3>>::make({*BSplineBasis::bezier(n[0]), *BSplineBasis::bezier(n[1])},
+                                   Net<2, Hom<3>>({n[0] + 1, n[1] + 1}, c));
+        const DerivativeQuery<2, 3> query(s);
+        for (int k = 0; k < 12; ++k) {
+            std::array<Interval, 2> box;
+            for (auto& side : box) {
+                const double size = std::pow(0.5, uniform(rng, 0, 9));
+                side.lo = uniform(rng, 0, 1 - size), side.hi = side.lo + size;
+            }
+            const auto bound = query(box, 3);
+            if (moved) {
+                EXPECT_LE(bound(1, 1), 1e-6 * bound(0, 1)) << round;
+            }
+            for (int i = 0; i < 20; ++i) {
+                const auto at = [&](int d) {
+                    return uniform(rng, box[std::size_t(d)].lo, box[std::size_t(d)].hi);
+                };
+                const auto j = jet<2>(s, {at(0), at(1)});
+                for (std::size_t slot = 1; slot < 6; ++slot)
+                    ASSERT_LE(norm(j.d[slot]), bound.d[slot] * (1 + 1e-12) + 1e-12) << round << ", " << slot;
+            }
+            // Third derivatives: what second ones change by.
+            const Param<2> lo{box[0].lo, box[1].lo};
+            const auto first = jet<2>(s, lo);
+            for (int axis = 0; axis < 2; ++axis) {
+                Param<2> hi = lo;
+                hi[std::size_t(axis)] = box[std::size_t(axis)].hi;
+                const auto last = jet<2>(s, hi);
+                const double h = box[std::size_t(axis)].length();
+                for (int i = 0; i <= 2; ++i)
+                    EXPECT_LE(norm(last(2 - i, i) - first(2 - i, i)),
+                              h * (axis == 0 ? bound(3 - i, i) : bound(2 - i, i + 1)) * (1 + 1e-9) + 1e-9)
+                        << round;
+            }
+        }
+    }
+}
+
 TEST(DerivativeBounds, asked_for_both_are_those_asked_for_one_by_one) {
     std::mt19937 rng(10);
     for (const auto& [name, surface, on] : surfaces_of_every_kind(5)) {
