@@ -1,7 +1,8 @@
 // Method. Curvature and size of every face at samples say how many triangles it needs (face_mesh.hpp).
 // Samples cost as much as the mesh of a simple face: many are taken only where few say that it may come near
-// the limit. The box of a face is that of points on its parameter curves, so a face with holes counts as one
-// without.
+// the limit; where they are beyond it by far, and as few others at other places too (one may lie where knots
+// are a rounding apart), that is enough. The box of a face is that of points on its parameter
+// curves, so a face with holes counts as one without.
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
@@ -12,7 +13,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kFarBelow = 16;  // one from few samples below the limit by more than this, too
+constexpr double kFarBelow = 16;   // one from few samples below the limit by more than this, too
+constexpr double kHopeless = 256;  // above the limit by more than this
 constexpr int kFewSamples = 3, kManySamples = 12;
 
 double predicted(const Model& model, const TessellateOptions& options, int samples) {
@@ -39,8 +41,10 @@ double predicted_triangles(const Model& model, const TessellateOptions& options)
 
 Result<void> check_budget(const Model& model, const TessellateOptions& options) {
     const double limit = double(options.max_triangles);
-    if (predicted(model, options, kFewSamples) < limit / kFarBelow) return {};
-    const double sum = predicted_triangles(model, options);
+    const double first = predicted(model, options, kFewSamples);
+    if (first < limit / kFarBelow) return {};
+    double sum = first > kHopeless * limit ? predicted(model, options, kFewSamples + 1) : 0;
+    if (!(sum > kHopeless * limit)) sum = predicted_triangles(model, options);
     if (sum <= kFarBeyond * limit) return {};
     return refuse(
         RefusalKind::limit, "max_triangles",
