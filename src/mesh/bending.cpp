@@ -31,11 +31,15 @@
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so
 // by the invariance of the degree every x in D is G(y) for some y, or is y + s (G(y) - y) for some y of the
 // boundary. On triangles without plain vertices |S(x) - L(y)| is the distance above. On those with plain
-// ones, and on the boundary, x lies on the segment from y to F(y). Both its ends are mapped within e of L(y),
-// and S is near the chord between them: |S(x) - L(y)| <= e + K way^2 / 8. On the boundary e is the bound for
-// edges; the rest is less than 1/64 of it if q <= 1/16. Triangles with three plain vertices need no F. So a
-// face can have poles and kinks, with plain vertices around them. The other way round, every L(y) is as near
-// to S(G(y)), which may be beyond the boundary of the face by as much.
+// ones x lies on the segment from y to F(y). Both its ends are mapped within e of L(y), and S is near the
+// chord between them: |S(x) - L(y)| <= e + K way^2 / 8. On the boundary y first goes along its side to the
+// point y' with S(y') above L(y), |y' - y|' <= 8/7 e / least (edge_error.cpp), which covers nothing new, and
+// then straight to x' = F(y). With E the bound for edges S(y') is within E of L(y), and so is the part of
+// S(y') - S(x') along the surface: |y' - x'|' <= E / (least (1 - 4.33 q)), for |y' - x'|' <= 3.65 e / least;
+// between them |S - L(y)| <= E + K |y' - x'|'^2 / 8, and the rest is less than 1/64 of E if q <= 1/16 (sides
+// of triangles with plain vertices: as before). Triangles with three plain vertices need no F. So a face can
+// have poles and kinks, with plain vertices around them. The other way round, every L(y) is as near to
+// S(G(y)), which may be beyond the boundary of the face by as much.
 //
 // A spline that ends within the disc is thought of as continued by reflection in the points of its border,
 // S(b - h) = 2 S(b) - S(b + h) in one direction, which has continuous first derivatives and three times the

@@ -1,24 +1,15 @@
-// Discretisation of edges.
+// Discretisation of edges: where the ends of chords are.
 //
-// Notation: C curve of the edge, p = (u, v) parameter curve on a face with surface S, chord c(t) linear
-// between p(a) and p(b), L(t) linear between the mesh points at a and b, h = b - a, Q as in
-// curvature_tree.cpp, M over the box that contains p([a, b]). Bounds on [a, b]:
-//   |C(t) - linear|        <= h^2/8 max|C''|
-//   |S(p(t)) - linear|     <= h^2/8 max|(S o p)''|,  (S o p)'' = D^2 S(p', p') + S_u u'' + S_v v''
-//   |S(c(t)) - linear|     <= Q(p(b) - p(a)) / 8
-//   |p(t) - c(t)|          <= h^2/8 max|p''|, component by component: the sliver between chord and curve.
-// A point of the sliver lies on a segment from p(t) to c(t); S along it stays within Q(p(t) - c(t)) / 8 of
-// the chord of its ends, and both ends are near L(t). So the faces' region outside the polygon is within
-//   max(|S o p - L|, |S o c - L|) + Q(sliver) / 8
-// of the mesh edge, not counting the gap between S(p) and the mesh points, which the model brings along.
-// A segment that seems to need k parts is cut at floor(k/2)/k of it, so that even curvature gives k equal
-// parts. Triangles with the chord as longest side have error at most Q(p(b) - p(a)) / 6 (R^2 <= longest^2 /
-// 3).
+// Method: every smooth piece of an edge is cut at the kinks of its curves and begun with as many equal parts
+// as samples of its curvature ask for. The bound of a part (edge_error.cpp) says how many parts it needs;
+// errors fall with the square of the length, so the square root of error / tolerance is the number of chords
+// that the part asks for. All parts are moved so that each gets an equal share of the sum, rounded up, until
+// all keep the demands and no fewer would do: two or three times, as a rule, and one that is alike all along,
+// as a circle, gets equal parts. Where that does not converge, the parts that exceed are cut.
 #include "edge_mesh_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
-#include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,12 +20,13 @@ namespace {
 
 constexpr double kConeOfAngle =
     0.375;  // of the angle, what half a cone along a segment may have: triangles reach farther
-constexpr int kClosedParts = 4;  // a closed edge must not collapse to a slit
+constexpr int kClosedParts = 4;      // a closed edge must not collapse to a slit
+constexpr double kPartsAtOnce = 16;  // of a part at a time: bounds over long ones are too large
 
 // Where to cut an interval that seems to need `parts` parts: so that equal ones result if it does.
-double first_part(double parts, int least) {
+double first_part(double parts) {
     constexpr double kMost = 1e6;
-    const double k = std::max({2.0, double(least), std::ceil(parts * (1 + 1e-9))});
+    const double k = std::max(2.0, std::ceil(parts * (1 + 1e-9)));
     return k < kMost ? std::floor(k / 2) / k : 0.5;
 }
 
@@ -62,10 +54,9 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
 }
 
 EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
-    : model_(model), faces_(faces), edges_(model.edges.size()) {
+    : model_(model), faces_(faces), edges_(model.edges.size()), wary_(model.faces.size(), 0) {
     for (std::size_t e = 0; e < model.edges.size(); ++e)
-        if (model.edges[e].curve)
-            edges_[e].curve = std::make_unique<DerivativeQuery<1, 3>>(*model.edges[e].curve);
+        if (model.edges[e].curve) edges_[e].curve = std::make_unique<ChordCurve>(*model.edges[e].curve);
     for (std::size_t f = 0; f < model.faces.size(); ++f)
         for (std::size_t l = 0; l < model.faces[f].loops.size(); ++l) {
             const auto& coedges = model.faces[f].loops[l].coedges;
@@ -74,6 +65,13 @@ EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<Deriv
                 use->face = int(f), use->loop = int(l), use->index = int(c);
                 use->coedge = &coedges[c];
                 use->curve = std::make_unique<DerivativeQuery<1, 2>>(coedges[c].curve);
+                use->lift = lifted(model.faces[f].surface, coedges[c].curve);
+                if (use->lift) {
+                    const auto& own = model.edges[std::size_t(coedges[c].edge)].curve;
+                    if (own && use->lift->shift == 0 && use->lift->speed == 1)
+                        use->twin = distance_of_twins(*own, *use->lift->geometry);
+                    use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
+                }
                 edges_[std::size_t(coedges[c].edge)].uses.push_back(std::move(use));
             }
         }
@@ -91,126 +89,155 @@ Vec<3> EdgeMesher::position(int edge, double t) const {
 
 void EdgeMesher::forget() {
     for (EdgeMesh& mesh : edges_) mesh.parameters.clear(), mesh.points.clear(), mesh.bound = 0;
-}
-
-SegmentError EdgeMesher::error(int edge, double a, double b, bool turns) const {
-    const EdgeMesh& mesh = edges_[std::size_t(edge)];
-    const Edge& e = model_.edges[std::size_t(edge)];
-    const double h = b - a, h2 = h * h / 8;
-    SegmentError out;
-    if (mesh.curve) out.polyline = h2 * (*mesh.curve)({Interval{a, b}})(2);
-    for (const auto& use : mesh.uses) {
-        const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
-        const PlaneCurveBounds plane = coordinate_bounds(*use->curve, {a, b});
-        const DerivativeBounds<1>&du = plane.coordinate[0], &dv = plane.coordinate[1];
-        const Vec<2> from = jet<0>(use->coedge->curve, a).value(), to = jet<0>(use->coedge->curve, b).value();
-        const Vec<2> chord = to - from, sag{{h2 * du(2), h2 * dv(2)}};
-        Box<2> box;
-        for (const Vec<2>& p : {from, to}) {
-            box.add(p - sag);
-            box.add(p + sag);
-        }
-        const auto s = surface({box.side(0), box.side(1)});
-        const auto along = [&](double x, double y) {
-            return s(2, 0) * x * x + 2 * s(1, 1) * std::abs(x * y) + s(0, 2) * y * y;
-        };
-        const double kinks =
-            kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
-        out.triangle = std::max(out.triangle, along(chord[0], chord[1]) / 6 + kinks);
-        out.sliver = std::max(out.sliver, along(sag[0], sag[1]) / 8 + kinks);
-        if (e.degenerate) continue;
-        if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
-        // The largest stretch of the surface's first derivative: exact in the middle of the box, plus its
-        // variation.
-        const Vec<2> size = box.hi - box.lo, middle = from + 0.5 * chord;
-        const auto j = jet<1>(model_.faces[std::size_t(use->face)].surface, middle.c);
-        const double uu = dot(j.d[1], j.d[1]), vv = dot(j.d[2], j.d[2]), uv = dot(j.d[1], j.d[2]);
-        const double stretch = 1.0000001 * std::sqrt((uu + vv + std::hypot(uu - vv, 2 * uv)) / 2) +
-                               (s(2, 0) + s(1, 1)) * size[0] / 2 + (s(1, 1) + s(0, 2)) * size[1] / 2;
-        const double bend = std::min(s(1, 0) * du(2) + s(0, 1) * dv(2), stretch * plane.both(2));
-        out.polyline = std::max(
-            {out.polyline, h2 * (along(du(1), dv(1)) + bend) + kinks, along(chord[0], chord[1]) / 8 + kinks});
-    }
-    return out;
+    std::fill(wary_.begin(), wary_.end(), 0);
 }
 
 // How many segments the curvature at samples asks for: tells hopeless tolerances before they take time. Only
 // an estimate; bounds over long intervals would be far too large for it.
-double EdgeMesher::estimate(int edge, double tolerance) const {
+double EdgeMesher::estimate(int edge, Interval on, double tolerance) const {
     constexpr int kSamples = 8;
     const Edge& e = model_.edges[std::size_t(edge)];
-    if (!e.curve) return 0;
-    const double h = e.range.length() / kSamples;
+    if (!e.curve || std::holds_alternative<Line<3>>(*e.curve)) return 0;
+    const double h = on.length() / kSamples;
     double sum = 0;
-    for (int k = 0; k < kSamples; ++k)
-        sum += std::sqrt(norm(jet<2>(*e.curve, e.range.lo + (k + 0.5) * h)(2)) * h * h / 8 / tolerance);
+    for (int k = 0; k < kSamples; ++k) {
+        const auto j = jet<2>(*e.curve, on.lo + (k + 0.5) * h);
+        const double speed = norm(j.d[1]);
+        const Vec<3> bend = speed > 0 ? j.d[2] - (dot(j.d[2], j.d[1]) / (speed * speed)) * j.d[1] : j.d[2];
+        sum += std::sqrt(norm(bend) * h * h / 8 / tolerance);
+    }
     return std::isfinite(sum) ? sum : 0;
 }
 
-Result<void> EdgeMesher::discretise(int edge, double tolerance, double longest, double angle,
-                                    std::size_t max_segments) {
+// How many chords the part between a and b asks for: up to 1 if its own keeps the demands.
+EdgeMesher::Part EdgeMesher::part(int edge, double a, double b, const EdgeDemands& demands) const {
+    const bool turns = std::isfinite(demands.angle), degenerate = model_.edges[std::size_t(edge)].degenerate;
+    const SegmentError err = error(edge, a, b, demands.tolerance, turns);
+    const double length = degenerate || !(std::isfinite(demands.longest) || turns)
+                              ? 0
+                              : norm(position(edge, b) - position(edge, a));
+    const double bound = err.polyline + err.sliver;
+    // Normals turn twice as much over the segment as over the cone's half.
+    const double turn =
+        length > kAngleFloor * demands.tolerance ? err.turn / (kConeOfAngle * demands.angle) : 0;
+    const double needs = std::max({std::sqrt(std::max(bound, err.triangle) / demands.tolerance),
+                                   length / demands.longest, std::min(turn, 2.0)});
+    return {a, b, std::isnan(needs) ? kInfinity : needs, bound};
+}
+
+// The ends of `count` parts with equal shares of what the old ones ask for.
+std::vector<double> EdgeMesher::shared_out(std::span<const Part> parts, int count) {
+    constexpr double kEven = 0x1p-10;  // of the mean: what every part asks for at least
+    double sum = 0;
+    for (const Part& p : parts) sum += std::min(p.needs, kPartsAtOnce);
+    const double least = sum > 0 ? kEven * sum / double(parts.size()) : 1;
+    const auto share = [&](const Part& p) { return std::min(p.needs, kPartsAtOnce) + least; };
+    sum += least * double(parts.size());
+    std::vector<double> ends{parts.front().a};
+    double before = 0;
+    std::size_t i = 0;
+    for (int k = 1; k < count; ++k) {
+        const double at = sum * k / count;
+        while (i + 1 < parts.size() && before + share(parts[i]) < at) before += share(parts[i++]);
+        const Part& p = parts[i];
+        ends.push_back(p.a + (p.b - p.a) * std::clamp((at - before) / share(p), 0.0, 1.0));
+    }
+    ends.push_back(parts.back().b);
+    return ends;
+}
+
+// Parts of a smooth piece that share the work, as few as were found; some may exceed the demands.
+std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int least,
+                                                      const EdgeDemands& demands,
+                                                      std::size_t max_segments) const {
+    constexpr int kPasses = 12;
+    std::vector<double> ends;
+    const int begin = std::max(
+        least, int(std::ceil(std::min(estimate(edge, on, demands.tolerance), double(max_segments)))));
+    for (int k = 0; k <= begin; ++k) ends.push_back(k == begin ? on.hi : on.lo + on.length() * k / begin);
+    std::vector<Part> now, best;
+    for (int pass = 0; pass < kPasses; ++pass) {
+        std::vector<Part> before = std::move(now);
+        now.clear();
+        double sum = 0;
+        bool fine = true;
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            if (!(ends[i] < ends[i + 1])) return best.empty() ? before : best;
+            now.push_back(part(edge, ends[i], ends[i + 1], demands));
+            sum += std::min(now.back().needs, kPartsAtOnce);
+            fine = fine && now.back().needs <= 1;
+        }
+        if (fine) best = now;
+        double count = std::max(std::ceil(sum * (1 - 1e-9)), double(least));
+        if (!fine && pass > 2) count = std::max(count, double(now.size()) + 1);
+        if (!best.empty() && count >= double(best.size())) break;
+        if (count > double(max_segments)) break;
+        ends = shared_out(now, int(count));
+    }
+    return best.empty() ? now : best;
+}
+
+Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::size_t max_segments) {
     EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
-    const Interval on = e.range;
-    std::vector<double> must{on.lo, on.hi};
-    const auto add_kinks = [&](std::span<const Kink> kinks) {
-        for (const Kink& k : kinks)
-            if (on.lo < k.at && k.at < on.hi) must.push_back(k.at);
-    };
-    if (mesh.curve) add_kinks(mesh.curve->kinks(0));
-    for (const auto& use : mesh.uses) add_kinks(use->curve->kinks(0));
-    std::sort(must.begin(), must.end());
-    must.erase(std::unique(must.begin(), must.end()), must.end());
-
-    if (const double needed = estimate(edge, tolerance); needed > kFarBeyond * double(max_segments))
+    const double tolerance = demands.tolerance;
+    if (const double needed = estimate(edge, e.range, tolerance); needed > kFarBeyond * double(max_segments))
         return refuse(
             RefusalKind::limit, "max_triangles",
             text("edge ", edge, " needs about ", std::ceil(needed), " segments within ", tolerance));
-    mesh.parameters = {on.lo};
+    const std::vector<double> must = smooth_pieces(edge, tolerance);
+    mesh.parameters = {e.range.lo};
     mesh.bound = 0;
-    struct Part {
-        double a, b;
-        int least;  // parts that it is cut into
-    };
-    const bool closed = e.start == e.end && !e.degenerate;
-    std::vector<Part> stack;
-    for (std::size_t i = must.size() - 1; i-- > 0;)
-        stack.push_back(
-            {must[i], must[i + 1], closed ? std::max(kClosedParts / int(must.size() - 1), 1) : 1});
-    while (!stack.empty()) {
-        const auto [a, b, least] = stack.back();
-        stack.pop_back();
-        const bool turns = std::isfinite(angle);
-        const SegmentError err = error(edge, a, b, turns);
-        const double length = e.degenerate || !(std::isfinite(longest) || turns)
-                                  ? 0
-                                  : norm(position(edge, b) - position(edge, a));
-        // Errors fall with the square of the length, that of the sliver with the fourth power.
-        const double excess = std::max(
-            {err.polyline / tolerance, err.triangle / tolerance, std::sqrt(32 * err.sliver / tolerance)});
-        // Normals turn twice as much over the segment as over the cone's half.
-        const double turn = length > kAngleFloor * tolerance ? err.turn / (kConeOfAngle * angle) : 0;
-        const bool done = length <= longest && turn <= 1 && excess <= 1 &&
-                          std::isfinite(err.polyline + err.triangle + err.sliver);
-        const double share =
-            first_part(std::max({std::sqrt(excess), length / longest, std::min(turn, 2.0)}), least);
-        const double middle = a + (b - a) * share;
-        if ((done && least <= 1) || !(a < middle && middle < b)) {
-            if (!done)
+    const int pieces = int(must.size()) - 1;
+    const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / pieces, 1) : 1;
+    for (int i = 0; i < pieces; ++i) {
+        auto stack =
+            equal_parts(edge, {must[std::size_t(i)], must[std::size_t(i) + 1]}, least, demands, max_segments);
+        std::reverse(stack.begin(), stack.end());
+        while (!stack.empty()) {
+            const Part p = stack.back();
+            stack.pop_back();
+            if (p.needs <= 1) {
+                mesh.parameters.push_back(p.b);
+                mesh.bound = std::max(mesh.bound, p.bound);
+                continue;
+            }
+            const double middle = p.a + (p.b - p.a) * first_part(p.needs);
+            if (!(p.a < middle && middle < p.b))
                 return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
-                              text("cannot be brought within ", tolerance, " near parameter ", a));
-            mesh.parameters.push_back(b);
-            mesh.bound = std::max(mesh.bound, err.polyline + err.sliver);
-            continue;
+                              text("cannot be brought within ", tolerance, " near parameter ", p.a));
+            if (mesh.parameters.size() + stack.size() > max_segments)
+                return refuse(
+                    RefusalKind::limit, "max_triangles",
+                    text("edge ", edge, " needs more than ", max_segments, " segments within ", tolerance));
+            stack.push_back(part(edge, middle, p.b, demands));
+            stack.push_back(part(edge, p.a, middle, demands));
         }
-        if (mesh.parameters.size() + stack.size() > max_segments)
-            return refuse(
-                RefusalKind::limit, "max_triangles",
-                text("edge ", edge, " needs more than ", max_segments, " segments within ", tolerance));
-        stack.push_back({middle, b, int(std::ceil(least * (1 - share)))});
-        stack.push_back({a, middle, int(std::ceil(least * share))});
     }
     return {};
+}
+
+// The ends of the edge and the kinks of its curves inside, but for those that are rounding.
+std::vector<double> EdgeMesher::smooth_pieces(int edge, double tolerance) const {
+    constexpr double kLittle = 0x1p-20;
+    const EdgeMesh& mesh = edges_[std::size_t(edge)];
+    const Interval on = model_.edges[std::size_t(edge)].range;
+    std::vector<double> must{on.lo, on.hi};
+    const auto add = [&](std::span<const Kink> kinks, double stretch) {
+        for (const Kink& k : kinks)
+            if (!(k.jump * stretch * on.length() <= kLittle * tolerance)) must.push_back(k.at);
+    };
+    if (mesh.curve) add(mesh.curve->query().kinks(0), 1);
+    for (const auto& use : mesh.uses)
+        for (const Kink& k : use->curve->kinks(0)) {
+            const auto j = jet<1>(faces_[std::size_t(use->face)]->geometry(),
+                                  jet<0>(use->coedge->curve, k.at).value().c);
+            add(std::span(&k, 1), norm(j.d[1]) + norm(j.d[2]));
+        }
+    std::erase_if(must, [&](double t) { return !(on.lo <= t && t <= on.hi); });
+    std::sort(must.begin(), must.end());
+    must.erase(std::unique(must.begin(), must.end()), must.end());
+    return must;
 }
 
 void EdgeMesher::split(int edge, int index) {

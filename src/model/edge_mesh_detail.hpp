@@ -1,5 +1,8 @@
 // Discretisation of edges: once for each edge, fine enough for its own curve and for every face that uses it.
 #pragma once
+#include "chord_curve_detail.hpp"
+
+#include <freiform/core/constants.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -17,6 +20,9 @@ struct CoedgeQuery {
     int face = -1, loop = -1, index = -1;
     const Coedge* coedge = nullptr;
     std::unique_ptr<DerivativeQuery<1, 2>> curve;
+    std::optional<LiftedCurve> lift;
+    std::unique_ptr<ChordCurve> chords;  // of the lift
+    double twin = kInfinity;  // of the distance between lift and edge, if they are the same but for rounding
 };
 
 struct EdgeMesh {
@@ -24,7 +30,7 @@ struct EdgeMesh {
     std::vector<int> points;         // shared mesh points, one for each parameter
     double bound = 0;  // of the distance between polyline and curve, on the edge and on its faces
     std::vector<std::unique_ptr<CoedgeQuery>> uses;
-    std::unique_ptr<DerivativeQuery<1, 3>> curve;
+    std::unique_ptr<ChordCurve> curve;
 };
 
 // What the parameter interval [a, b] of an edge contributes.
@@ -35,31 +41,51 @@ struct SegmentError {
     double sliver = 0;  // what the region between chord and parameter curve adds
 };
 
+struct EdgeDemands {
+    double tolerance = 0;
+    double longest = kInfinity;  // the longest segment
+    // What normals of faces turn by along a segment that is longer than kAngleFloor tolerances, at most.
+    double angle = kInfinity;
+};
+
 class EdgeMesher {
 public:
     // `faces`: one query per face of the model, in order. All must outlive the mesher.
     EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces);
 
-    // Parameters for which every segment keeps the tolerance, is at most `longest` long, and normals turn by
-    // at most `angle` along it where it is longer than kAngleFloor tolerances. Refuses (limit) beyond
-    // `max_segments`.
-    Result<void> discretise(int edge, double tolerance, double longest, double angle,
-                            std::size_t max_segments);
-    void forget();  // all parameters
+    // Parameters for which every segment keeps the demands. Refuses (limit) beyond `max_segments`.
+    Result<void> discretise(int edge, const EdgeDemands& demands, std::size_t max_segments);
+    void forget();  // all parameters, and of which faces to be wary
     // Cuts segment `index` of the edge into two.
     void split(int edge, int index);
+    // On edges of this face distances at equal parameters are to keep the tolerance too: where the face is
+    // not judged by what is seen along its normals.
+    void be_wary(int face) { wary_[std::size_t(face)] = 1; }
+    bool is_wary(int face) const { return wary_[std::size_t(face)] != 0; }
 
     EdgeMesh& mesh(int edge) { return edges_[std::size_t(edge)]; }
     const EdgeMesh& mesh(int edge) const { return edges_[std::size_t(edge)]; }
     Vec<3> position(int edge, double t) const;
-    SegmentError error(int edge, double a, double b, bool turns) const;
+    // `tolerance`: below this errors need not be known better.
+    SegmentError error(int edge, double a, double b, double tolerance, bool turns) const;
 
 private:
-    double estimate(int edge, double tolerance) const;
+    struct Part {
+        double a, b;
+        double needs;  // chords, to keep the demands
+        double bound;
+    };
+    double estimate(int edge, Interval on, double tolerance) const;
+    std::vector<double> smooth_pieces(int edge, double tolerance) const;
+    Part part(int edge, double a, double b, const EdgeDemands& demands) const;
+    static std::vector<double> shared_out(std::span<const Part> parts, int count);
+    std::vector<Part> equal_parts(int edge, Interval on, int least, const EdgeDemands& demands,
+                                  std::size_t max_segments) const;
 
     const Model& model_;
     std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces_;
     std::vector<EdgeMesh> edges_;
+    std::vector<char> wary_;  // by face
 };
 
 }  // namespace freiform

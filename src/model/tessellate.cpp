@@ -8,7 +8,6 @@
 // non-manifold. Accuracy: see curvature_tree.cpp for triangles and edge_mesh.cpp for what lies between
 // polygon and parameter curve. The rounding of evaluated points is added to the bound.
 #include "tessellator_detail.hpp"
-#include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/mesh/face_mesh.hpp>
@@ -19,6 +18,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace freiform {
@@ -46,8 +46,9 @@ Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
     parallel_for(model_.edges.size(), 4, [&](std::size_t e) {
         if (edges_->mesh(int(e)).uses.empty()) return;
-        if (auto ok = edges_->discretise(int(e), tolerance_ / kBesideBoundary, options_.max_edge,
-                                         options_.max_angle, std::size_t(options_.max_triangles));
+        if (auto ok = edges_->discretise(
+                int(e), {tolerance_ / kBesideBoundary, options_.max_edge, options_.max_angle},
+                std::size_t(options_.max_triangles));
             !ok)
             failed[e] = ok.error();
     });
@@ -234,6 +235,60 @@ std::vector<std::size_t> Tessellator::non_manifold_faces() {
     return {again.begin(), again.end()};
 }
 
+Result<void> Tessellator::fill_all() {
+    std::vector<std::size_t> which(faces());
+    std::iota(which.begin(), which.end(), std::size_t(0));
+    for (int round = 0; !which.empty(); ++round) {
+        if (auto ok = fill(which); !ok) return std::unexpected(ok.error());
+        if (round == kManifoldRounds) break;
+        which = non_manifold_faces();
+    }
+    return {};
+}
+
+// Kinks that are more than rounding beside the tolerance.
+bool Tessellator::has_kinks(std::size_t f) const {
+    constexpr double kLittle = 0x1p-20;
+    const auto on = domain(model_.faces[f].surface);
+    for (int axis = 0; axis < 2; ++axis)
+        for (const Kink& k : queries_[f]->kinks(axis))
+            if (!(k.jump * on[std::size_t(axis)].length() <= kLittle * tolerance_)) return true;
+    return false;
+}
+
+// Parameters that are so large or small that their squares leave little room in double precision.
+std::optional<Refusal> Tessellator::far_parameter(std::size_t f) const {
+    constexpr double kLargest = 0x1p320;
+    const auto& loops = model_.faces[f].loops;
+    for (std::size_t l = 0; l < loops.size(); ++l)
+        for (std::size_t c = 0; c < loops[l].coedges.size(); ++c) {
+            const Coedge& coedge = loops[l].coedges[c];
+            const Interval on = model_.edges[std::size_t(coedge.edge)].range;
+            const Vec<2> a = jet<0>(coedge.curve, on.lo).value(), b = jet<0>(coedge.curve, on.hi).value();
+            const double most = std::max({std::abs(on.lo), std::abs(on.hi), max_abs(a), max_abs(b)});
+            if (!(most <= kLargest))
+                return Refusal{RefusalKind::unsupported, text("loops[", l, "][", c, "]"),
+                               text("the parameter ", most, " is larger than 2^320")};
+            if (!(on.length() >= 1 / kLargest))
+                return Refusal{RefusalKind::unsupported, text("loops[", l, "][", c, "]"),
+                               text("the range [", on.lo, ", ", on.hi, "] is shorter than 2^-320")};
+        }
+    return std::nullopt;
+}
+
+// Faces that did not come within the tolerance between edges that are fine across their chords get another
+// try with finer ones. False if there are none.
+bool Tessellator::grow_wary() {
+    bool any = false;
+    for (std::size_t f = 0; f < faces(); ++f)
+        if (refusals_[f] && refusals_[f]->kind == RefusalKind::not_converged && !edges_->is_wary(int(f))) {
+            edges_->be_wary(int(f));
+            refusals_[f].reset();
+            any = true;
+        }
+    return any;
+}
+
 Result<Tessellation> Tessellator::run() {
     const double start = now();
     Box<3> box;
@@ -244,6 +299,7 @@ Result<Tessellation> Tessellator::run() {
     for (std::size_t f = 0; f < faces(); ++f) {
         if (model_.faces[f].loops.empty())
             refusals_[f] = Refusal{RefusalKind::invalid, "loops", "the face has no boundary"};
+        if (auto bad = far_parameter(f)) refusals_[f] = *bad;
         for (int axis = 0; axis < 2; ++axis)
             for (const Kink& k : queries_[f]->kinks(axis))
                 if (!std::isfinite(k.jump) && !refusals_[f])
@@ -251,58 +307,20 @@ Result<Tessellation> Tessellator::run() {
                                            "the surface is torn here (a knot of multiplicity degree + 1)"};
     }
     edges_->forget();
-    if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
-    resolve_conflicts();
-    const double meshed_edges = now();
-    std::vector<std::size_t> which(faces());
-    for (std::size_t f = 0; f < faces(); ++f) which[f] = f;
-    for (int round = 0; !which.empty(); ++round) {
-        if (auto ok = fill(which); !ok) return std::unexpected(ok.error());
-        if (round == kManifoldRounds) break;
-        which = non_manifold_faces();
+    for (std::size_t f = 0; f < faces(); ++f)
+        if (has_kinks(f)) edges_->be_wary(int(f));
+    double in_edges = 0;
+    for (;;) {
+        const double begin = now();
+        if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
+        resolve_conflicts();
+        in_edges += now() - begin;
+        if (auto ok = fill_all(); !ok) return std::unexpected(ok.error());
+        if (!grow_wary()) break;
     }
     Tessellation out = collect();
-    out.seconds = {meshed_edges - start, now() - meshed_edges, now() - start};
+    out.seconds = {in_edges, now() - start - in_edges, now() - start};
     return out;
-}
-
-namespace {
-
-Result<void> check_options(const TessellateOptions& options) {
-    if (!std::isfinite(options.tolerance))
-        return refuse(RefusalKind::nonfinite, "tolerance",
-                      text(options.tolerance, " is not a finite number"));
-    if (!(options.tolerance > 0))
-        return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not positive"));
-    if (!(options.max_edge > 0))
-        return refuse(RefusalKind::invalid, "max_edge", text(options.max_edge, " is not positive"));
-    if (!(options.max_angle > 0))
-        return refuse(RefusalKind::invalid, "max_angle", text(options.max_angle, " is not positive"));
-    if (!(options.max_aspect > 1))
-        return refuse(RefusalKind::invalid, "max_aspect", text(options.max_aspect, " is not above 1"));
-    return {};
-}
-
-}  // namespace
-
-std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const TessellateOptions> options) {
-    std::optional<SharedWork> shared;
-    std::vector<Result<Tessellation>> all;
-    for (const TessellateOptions& how : options) {
-        auto ok = check_options(how);
-        if (ok) ok = check_budget(model, how);
-        if (!ok) {
-            all.push_back(std::unexpected(ok.error()));
-            continue;
-        }
-        if (!shared) shared.emplace(model);
-        all.push_back(Tessellator(model, *shared, how).run());
-    }
-    return all;
-}
-
-Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options) {
-    return std::move(tessellate(model, std::span(&options, 1)).front());
 }
 
 }  // namespace freiform

@@ -1,0 +1,102 @@
+// What callers ask for: options checked, hopeless demands refused, and models of any size brought to a size
+// where products of a few lengths neither overflow nor vanish. Powers of two do that without rounding, so the
+// mesh is that of the model as it was.
+#include "tessellator_detail.hpp"
+#include "triangle_budget_detail.hpp"
+
+#include <freiform/model/rescale.hpp>
+#include <freiform/model/tessellate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace freiform {
+
+namespace {
+
+Result<void> check_options(const TessellateOptions& options) {
+    if (!std::isfinite(options.tolerance))
+        return refuse(RefusalKind::nonfinite, "tolerance",
+                      text(options.tolerance, " is not a finite number"));
+    if (!(options.tolerance > 0))
+        return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not positive"));
+    if (!(options.max_edge > 0))
+        return refuse(RefusalKind::invalid, "max_edge", text(options.max_edge, " is not positive"));
+    if (!(options.max_angle > 0))
+        return refuse(RefusalKind::invalid, "max_angle", text(options.max_angle, " is not positive"));
+    if (!(options.max_aspect > 1))
+        return refuse(RefusalKind::invalid, "max_aspect", text(options.max_aspect, " is not above 1"));
+    return {};
+}
+
+}  // namespace
+
+namespace {
+
+constexpr int kFarExponent = 256;
+
+// The power of two that brings the vertices near 1, if they are so large or small that products of a few
+// lengths overflow or vanish; else 0.
+int far_exponent(const Model& model) {
+    double most = 0;
+    for (const Vertex& v : model.vertices) most = std::max(most, max_abs(v.point));
+    const int exponent = most > 0 && std::isfinite(most) ? std::ilogb(most) : 0;
+    return std::abs(exponent) > kFarExponent ? exponent : 0;
+}
+
+// Back from a model times 2^-exponent. Bounds of what is subnormal grow by its rounding.
+Tessellation scaled_back(Tessellation t, int exponent) {
+    const double rounding = exponent < -std::numeric_limits<double>::digits - kFarExponent
+                                ? 4 * std::numeric_limits<double>::denorm_min()
+                                : 0;
+    for (Vec<3>& p : t.mesh.points)
+        for (double& x : p.c) x = std::ldexp(x, exponent);
+    const auto scale = [&](double& bound) { bound = std::ldexp(bound, exponent) + rounding; };
+    scale(t.error_bound), scale(t.boundary_gap);
+    for (FaceReport& f : t.faces) scale(f.error_bound), scale(f.boundary_gap);
+    return t;
+}
+
+std::vector<Result<Tessellation>> tessellate_far(const Model& model,
+                                                 std::span<const TessellateOptions> options, int exponent) {
+    const auto near = rescaled(model, -exponent);
+    if (!near) return {options.size(), std::unexpected(near.error())};
+    std::vector<TessellateOptions> scaled(options.begin(), options.end());
+    for (TessellateOptions& o : scaled) {
+        o.tolerance = std::max(std::ldexp(o.tolerance, -exponent), std::numeric_limits<double>::denorm_min());
+        o.max_edge = std::ldexp(o.max_edge, -exponent);
+    }
+    auto all = tessellate(*near, scaled);
+    for (auto& t : all)
+        if (t) t = scaled_back(std::move(*t), exponent);
+    return all;
+}
+
+}  // namespace
+
+std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const TessellateOptions> options) {
+    const bool fine = std::all_of(options.begin(), options.end(),
+                                  [](const TessellateOptions& o) { return check_options(o).has_value(); });
+    if (const int exponent = far_exponent(model); exponent != 0 && fine)
+        return tessellate_far(model, options, exponent);
+    std::optional<SharedWork> shared;
+    std::vector<Result<Tessellation>> all;
+    for (const TessellateOptions& how : options) {
+        auto ok = check_options(how);
+        if (ok) ok = check_budget(model, how);
+        if (!ok) {
+            all.push_back(std::unexpected(ok.error()));
+            continue;
+        }
+        if (!shared) shared.emplace(model);
+        all.push_back(Tessellator(model, *shared, how).run());
+    }
+    return all;
+}
+
+Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options) {
+    return std::move(tessellate(model, std::span(&options, 1)).front());
+}
+
+}  // namespace freiform
