@@ -64,6 +64,10 @@ double along_normals(const DerivativeQuery<2, 3>& surface, const Box<2>& box, co
 
 }  // namespace
 
+bool sees_normals(const DerivativeQuery<2, 3>& surface) {
+    return surface.kinks(0).empty() && surface.kinks(1).empty();
+}
+
 double error_beside(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const DerivativeBounds<2>& over,
                     const Vec<2>& chord, double enough, bool wary) {
     const Curvature second{over(2, 0), over(1, 1), over(0, 2)};

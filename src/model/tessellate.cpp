@@ -10,6 +10,7 @@
 #include "tessellator_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/mesh/chord_triangles.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
 
@@ -246,16 +247,6 @@ Result<void> Tessellator::fill_all() {
     return {};
 }
 
-// Kinks that are more than rounding beside the tolerance.
-bool Tessellator::has_kinks(std::size_t f) const {
-    constexpr double kLittle = 0x1p-20;
-    const auto on = domain(model_.faces[f].surface);
-    for (int axis = 0; axis < 2; ++axis)
-        for (const Kink& k : queries_[f]->kinks(axis))
-            if (!(k.jump * on[std::size_t(axis)].length() <= kLittle * tolerance_)) return true;
-    return false;
-}
-
 // Parameters that are so large or small that their squares leave little room in double precision.
 std::optional<Refusal> Tessellator::far_parameter(std::size_t f) const {
     constexpr double kLargest = 0x1p320;
@@ -308,7 +299,7 @@ Result<Tessellation> Tessellator::run() {
     }
     edges_->forget();
     for (std::size_t f = 0; f < faces(); ++f)
-        if (has_kinks(f)) edges_->be_wary(int(f));
+        if (!sees_normals(*queries_[f])) edges_->be_wary(int(f));
     double in_edges = 0;
     for (;;) {
         const double begin = now();

@@ -43,7 +43,6 @@ private:
     void resolve_conflicts();
     Result<void> fill(std::span<const std::size_t> which);
     Result<void> fill_all();
-    bool has_kinks(std::size_t face) const;
     std::optional<Refusal> far_parameter(std::size_t face) const;
     bool grow_wary();
     std::vector<std::size_t> non_manifold_faces();

@@ -11,4 +11,7 @@ namespace freiform {
 double error_beside(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const DerivativeBounds<2>& over,
                     const Vec<2>& chord, double enough, bool wary);
 
+// Whether mesh_face begins by judging the surface by what is seen along its normals: it has no kinks.
+bool sees_normals(const DerivativeQuery<2, 3>& surface);
+
 }  // namespace freiform
