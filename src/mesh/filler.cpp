@@ -121,9 +121,11 @@ bool Filler::is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf)
 }
 
 void Filler::insert_corners() {
+    int hint = -1;  // the last that was inserted may be far away, when many are not
     for (const auto& corner : tree_.corners()) {
         const Vec<2> x = scaled(corner.at);
-        t_.insert(x, -1, [&](int triangle) { return is_near_boundary(triangle, x, corner.leaf); });
+        hint = t_.locate(x, hint).triangle;
+        t_.insert(x, hint, [&](int triangle) { return is_near_boundary(triangle, x, corner.leaf); });
     }
     most_for_angles_ = kPatienceForAngles * (t_.points().size() + 600);
 }

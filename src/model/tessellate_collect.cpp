@@ -10,9 +10,9 @@
 namespace freiform {
 
 // Unit normal, from the jet at uv; where the surface has none (a pole), that of a point a little inside the
-// triangle.
+// triangle. First derivatives above `usual` are not small.
 Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
-                              const Jet<2, 1, Vec<3>>& here) const {
+                              const Jet<2, 1, Vec<3>>& here, const Vec<2>& usual) const {
     const SurfaceGeometry& surface = model_.faces[f].surface;
     for (double step : {0.0, 1e-6, 1e-4, 1e-2, 0.5}) {
         const Vec<2> at = (1 - step) * uv + step * inwards;
@@ -20,6 +20,7 @@ Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inw
         const Vec<3> m = cross(j.d[1], j.d[2]);
         if (norm(m) > 1e-9 * norm(j.d[1]) * norm(j.d[2]) && max_abs(j.d[1]) > 0 && max_abs(j.d[2]) > 0) {
             // A vanishing derivative leaves the direction of the other to chance.
+            if (norm(j.d[1]) > usual[0] && norm(j.d[2]) > usual[1]) return unit(m);
             const auto inner = jet<1>(surface, inwards.c);
             if (norm(j.d[1]) > 1e-9 * norm(inner.d[1]) && norm(j.d[2]) > 1e-9 * norm(inner.d[2]))
                 return unit(m);
@@ -85,16 +86,23 @@ Tessellation Tessellator::collect() {
             for (int k = 0; k < 3; ++k)
                 inwards[std::size_t(t[std::size_t(k)])] =
                     (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
+        std::vector<Jet<2, 1, Vec<3>>> jets(m.uv.size());
+        Vec<2> usual{};
+        for (std::size_t i = 0; i < m.uv.size(); ++i) {
+            jets[i] = jet<1>(face.surface, m.uv[i].c);
+            for (int d = 0; d < 2; ++d)
+                usual[d] = std::max(usual[d], 1e-6 * norm(jets[i].d[std::size_t(d + 1)]));
+        }
         for (std::size_t i = 0; i < m.uv.size(); ++i) {
             MeshVertex v;
             v.uv = m.uv[i];
             v.point = m.point[i];
-            const auto here = jet<1>(face.surface, m.uv[i].c);
+            const auto& here = jets[i];
             if (v.point < 0) {
                 v.point = int(out.mesh.points.size());
                 out.mesh.points.push_back(here.value());
             }
-            v.normal = normal_at(f, m.uv[i], inwards[i], here);
+            v.normal = normal_at(f, m.uv[i], inwards[i], here, usual);
             if (flip) v.normal = -v.normal;
             out.mesh.vertices.push_back(v);
         }

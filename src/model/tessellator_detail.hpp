@@ -48,8 +48,8 @@ private:
     std::vector<std::size_t> non_manifold_faces();
     Tessellation collect();
     void measure_angles(Tessellation& out) const;
-    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards,
-                     const Jet<2, 1, Vec<3>>& here) const;
+    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards, const Jet<2, 1, Vec<3>>& here,
+                     const Vec<2>& usual) const;
     double rounding_of(std::size_t face) const;
 
     const Model& model_;
