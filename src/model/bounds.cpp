@@ -10,10 +10,10 @@
 //
 // References. As in query/bounds.cpp, where control points do what parts do here.
 #include "near_parts_detail.hpp"
-#include "query/checks_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/model/bounds.hpp>
+#include <freiform/query/checks.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Idea. Branch and bound over pairs of parts of faces and of boundaries (query/pair_search_detail.hpp). The
+// Idea. Branch and bound over pairs of parts of faces and of boundaries (query/pair_search.hpp). The
 // tree of boxes of each model comes first, then its prepared parts (near_parts.cpp), then their halves: a
 // part is within its error of the hull of its corners, a part of a boundary within its error of its chord.
 // Every pair that is opened offers the points in the middle of its parts, where these are certainly on the
@@ -10,11 +10,11 @@
 // Cost. Some thousand pairs where one pair of places is nearest. Parts through which the boundary of a face
 // runs reach beyond it by their size, so that there the bound comes near with the size, not with its square.
 #include "near_parts_detail.hpp"
-#include "query/checks_detail.hpp"
-#include "query/pair_search_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/model/distance.hpp>
+#include <freiform/query/checks.hpp>
+#include <freiform/query/pair_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ namespace {
 
 using detail::PairPart;
 
-// The parts of a model as pair_search_detail.hpp wants them.
+// The parts of a model as query/pair_search.hpp wants them.
 class ModelSide {
 public:
     struct Place {

@@ -17,10 +17,10 @@
 //
 // References. [Johnson Cohen 1998] for the search.
 #include "near_parts_detail.hpp"
-#include "query/checks_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/query/checks.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -31,11 +31,11 @@
 // curves, surfaces, volumes and triangles. On surfaces with a maximum along a line both approaches need many
 // pieces; max_pieces ends that, and the slack says so. Why not blocks of whole points? All but one or two of
 // their numbers are halved for nothing, and a program for every number of coordinates is needed.
-#include "query/checks_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/tuples.hpp>
 #include <freiform/query/bounds.hpp>
+#include <freiform/query/checks.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Idea. Branch and bound over pairs of parts of Bezier pieces, the pair that may be nearest first
-// (pair_search_detail.hpp): parts are within the hulls of their control points, halved where they are
+// (query/pair_search.hpp): parts are within the hulls of their control points, halved where they are
 // longest. For each pair that is opened Newton's iteration looks for the nearest points of the two parts, all
 // parameters at once, those at their limits held there while the gradient points outwards. Its direction is
 // what separates the hulls of the halves.
@@ -20,11 +20,11 @@
 //
 // Why not the polynomial |x - y|^2 in all parameters, as for points: for two bicubic surfaces it has 2401
 // coefficients, and halving it costs more than halving both nets ever does.
-#include "query/checks_detail.hpp"
 #include "query/nearest_blocks_detail.hpp"
-#include "query/pair_search_detail.hpp"
 
+#include <freiform/query/checks.hpp>
 #include <freiform/query/distance.hpp>
+#include <freiform/query/pair_search.hpp>
 
 namespace freiform {
 

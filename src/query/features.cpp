@@ -26,10 +26,10 @@
 //
 // Why not closed formulas for cubics? They need the same care with signs of discriminants, and end at
 // degree 3.
-#include "query/checks_detail.hpp"
 #include "query/piecewise_detail.hpp"
 
 #include <freiform/poly/integer_roots.hpp>
+#include <freiform/query/checks.hpp>
 #include <freiform/query/features.hpp>
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // From patches to numbers, and the batch.
-#include "query/checks_detail.hpp"
 #include "query/nearest_detail.hpp"
 
 #include <freiform/basis/named.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/query/checks.hpp>
 #include <freiform/query/nearest.hpp>
 #include <freiform/spline/bezier.hpp>
 
