@@ -105,8 +105,11 @@ Sheet::Sheet(const Surface<Hom<3>>& surface) {
     const double stretch = std::pow(1 + 2 * kMargin, degree_[0] + degree_[1]);
     inner_error_ = unit_ * (roundings + 16 * (degree_[0] + degree_[1] + 2));
     value_error_ = stretch * inner_error_;
-    nets_.reserve(std::size_t(block_) * 8192), hull_.reserve(std::size_t(block_) * 8192),
-        parts_.reserve(8192);
+    // Address space more than memory: what is not used is not touched.
+    const std::size_t parts =
+        std::clamp<std::size_t>(192 * pieces_.size() / std::size_t(block_), 1024, 65536);
+    nets_.reserve(std::size_t(block_) * parts), hull_.reserve(std::size_t(block_) * parts);
+    parts_.reserve(parts);
     SheetPart root;
     root.to = count_, root.on = domain_;
     root.roundings = roundings;
