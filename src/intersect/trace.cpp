@@ -27,12 +27,10 @@ std::vector<Trace> Tracer::all() {
 std::optional<Trace> Tracer::from(int chart) {
     auto& all = charts_.charts();
     TracePoint start{all[std::size_t(chart)].seed, chart, false};
-    // Seeds are as near as a proof needs; at borders they are on them.
+    // Seeds are as near as a proof needs; the zero itself may be beyond the border beside them.
     if (const auto exact = charts_.zero(all[std::size_t(chart)], start.x)) {
-        bool inside = true;
-        for (std::size_t k = 0; k < 4; ++k)
-            inside = inside && (charts_.is_cyclic(k) || charts_.domain(k).contains(exact->x[k]));
-        if (inside) start.x = exact->x;
+        start.x = exact->x;
+        leave(start);
     }
     for (std::size_t k = 0; k < 4; ++k) start.x[k] = charts_.wrapped(k, start.x[k]);
     charts_.leaves_at(start.x, leaves_);
