@@ -12,7 +12,6 @@
 // too.
 #include "filler_detail.hpp"
 
-#include <freiform/mesh/chord_triangles.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/mesh/triangulate.hpp>
 
@@ -203,7 +202,7 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
                            const FaceDemands& demands, long long max_triangles,
                            std::span<const Vec<2>> extra) {
     // Judging by all of the error is dearer but asks nothing of normals, which kinks spoil.
-    const bool smooth = sees_normals(surface);
+    const bool smooth = surface.kinks(0).empty() && surface.kinks(1).empty();
     auto mesh = filled(surface, boundary, demands, max_triangles, extra, smooth);
     if (smooth && !mesh && mesh.error().kind == RefusalKind::not_converged)
         mesh = filled(surface, boundary, demands, max_triangles, extra, false);

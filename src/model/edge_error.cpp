@@ -171,16 +171,14 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
     const double own = mesh.curve ? out.polyline : kInfinity;
     for (const auto& use : mesh.uses) {
         const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
-        const bool wary = wary_[std::size_t(use->face)];
-        if (use->lift && (use->lift->on_plane || !wary)) {
+        if (use->lift) {
             const Vec<2> from = jet<0>(use->coedge->curve, a).value(),
                          to = jet<0>(use->coedge->curve, b).value();
             Box<2> box;
             box.add(from), box.add(to);
             if (!use->lift->on_plane)
-                out.triangle =
-                    std::max(out.triangle, error_beside(surface, box, surface({box.side(0), box.side(1)}),
-                                                        to - from, tolerance, wary));
+                out.triangle = std::max(
+                    out.triangle, error_beside(surface, box, surface({box.side(0), box.side(1)}), to - from));
             if (degenerate) continue;
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
             const Interval there = use->lift->over(on);
@@ -192,12 +190,11 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
         }
         const OnFace face(surface, *use, a, b);
         double sliver = face.along(face.sag) / 8 + face.kinks();
-        out.triangle =
-            std::max(out.triangle, error_beside(surface, face.box, face.over, face.chord, tolerance, wary));
+        out.triangle = std::max(out.triangle, error_beside(surface, face.box, face.over, face.chord));
         if (!degenerate) {
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, face.box).angle);
             double polyline = face.crude();
-            if (polyline > tolerance && !wary)
+            if (polyline > tolerance)
                 if (const auto better = face.across(); better && better->first < polyline) {
                     polyline = better->first;
                     const Vec<2> wide{{face.sag[0] + better->second * std::abs(face.chord[0]),

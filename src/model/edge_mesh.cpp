@@ -54,7 +54,7 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
 }
 
 EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
-    : model_(model), faces_(faces), edges_(model.edges.size()), wary_(model.faces.size(), 0) {
+    : model_(model), faces_(faces), edges_(model.edges.size()) {
     for (std::size_t e = 0; e < model.edges.size(); ++e)
         if (model.edges[e].curve) edges_[e].curve = std::make_unique<ChordCurve>(*model.edges[e].curve);
     for (std::size_t f = 0; f < model.faces.size(); ++f)
@@ -89,7 +89,6 @@ Vec<3> EdgeMesher::position(int edge, double t) const {
 
 void EdgeMesher::forget() {
     for (EdgeMesh& mesh : edges_) mesh.parameters.clear(), mesh.points.clear(), mesh.bound = 0;
-    std::fill(wary_.begin(), wary_.end(), 0);
 }
 
 // How many segments the curvature at samples asks for: tells hopeless tolerances before they take time. Only

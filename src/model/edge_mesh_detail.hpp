@@ -55,13 +55,9 @@ public:
 
     // Parameters for which every segment keeps the demands. Refuses (limit) beyond `max_segments`.
     Result<void> discretise(int edge, const EdgeDemands& demands, std::size_t max_segments);
-    void forget();  // all parameters, and of which faces to be wary
+    void forget();  // all parameters
     // Cuts segment `index` of the edge into two.
     void split(int edge, int index);
-    // On edges of this face distances at equal parameters are to keep the tolerance too: where the face is
-    // not judged by what is seen along its normals.
-    void be_wary(int face) { wary_[std::size_t(face)] = 1; }
-    bool is_wary(int face) const { return wary_[std::size_t(face)] != 0; }
 
     EdgeMesh& mesh(int edge) { return edges_[std::size_t(edge)]; }
     const EdgeMesh& mesh(int edge) const { return edges_[std::size_t(edge)]; }
@@ -85,7 +81,6 @@ private:
     const Model& model_;
     std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces_;
     std::vector<EdgeMesh> edges_;
-    std::vector<char> wary_;  // by face
 };
 
 }  // namespace freiform

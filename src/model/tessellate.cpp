@@ -10,7 +10,6 @@
 #include "tessellator_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
-#include <freiform/mesh/chord_triangles.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
 
@@ -267,19 +266,6 @@ std::optional<Refusal> Tessellator::far_parameter(std::size_t f) const {
     return std::nullopt;
 }
 
-// Faces that did not come within the tolerance between edges that are fine across their chords get another
-// try with finer ones. False if there are none.
-bool Tessellator::grow_wary() {
-    bool any = false;
-    for (std::size_t f = 0; f < faces(); ++f)
-        if (refusals_[f] && refusals_[f]->kind == RefusalKind::not_converged && !edges_->is_wary(int(f))) {
-            edges_->be_wary(int(f));
-            refusals_[f].reset();
-            any = true;
-        }
-    return any;
-}
-
 Result<Tessellation> Tessellator::run() {
     const double start = now();
     Box<3> box;
@@ -298,19 +284,12 @@ Result<Tessellation> Tessellator::run() {
                                            "the surface is torn here (a knot of multiplicity degree + 1)"};
     }
     edges_->forget();
-    for (std::size_t f = 0; f < faces(); ++f)
-        if (!sees_normals(*queries_[f])) edges_->be_wary(int(f));
-    double in_edges = 0;
-    for (;;) {
-        const double begin = now();
-        if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
-        resolve_conflicts();
-        in_edges += now() - begin;
-        if (auto ok = fill_all(); !ok) return std::unexpected(ok.error());
-        if (!grow_wary()) break;
-    }
+    if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
+    resolve_conflicts();
+    const double meshed_edges = now();
+    if (auto ok = fill_all(); !ok) return std::unexpected(ok.error());
     Tessellation out = collect();
-    out.seconds = {in_edges, now() - start - in_edges, now() - start};
+    out.seconds = {meshed_edges - start, now() - meshed_edges, now() - start};
     return out;
 }
 

@@ -44,7 +44,6 @@ private:
     Result<void> fill(std::span<const std::size_t> which);
     Result<void> fill_all();
     std::optional<Refusal> far_parameter(std::size_t face) const;
-    bool grow_wary();
     std::vector<std::size_t> non_manifold_faces();
     Tessellation collect();
     void measure_angles(Tessellation& out) const;
