@@ -8,16 +8,22 @@ corpus=${3:-build-fuzz/corpus-$name}
 mkdir -p "$corpus"
 flags=(-std=c++23 -DFF_CHECKED=1 -ffp-contract=off -Iinclude -Isrc)
 checks=(-O1 -g -fsanitize=address,undefined -fsanitize=fuzzer-no-link)
+libraries=()
 case $name in
     triangulate)
         sources=(src/mesh/triangulate*.cpp src/mesh/insertion_order.cpp src/poly/predicates*.cpp src/poly/integer.cpp
             src/core/text.cpp src/core/result.cpp) ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
-        for layer in core poly basis spline "$name"; do
+        for layer in core poly basis spline $([ "$name" = svg ] && echo path || echo "$name"); do
             printf '#include "%s"\n' "$PWD"/src/"$layer"/*.cpp >"build-fuzz/unity/$layer.cpp"
             sources+=("build-fuzz/unity/$layer.cpp")
-        done ;;
+        done
+        if [ "$name" = svg ]; then
+            printf '#include "%s"\n' "$PWD"/src/io/svg*.cpp >build-fuzz/unity/svg.cpp
+            sources+=(build-fuzz/unity/svg.cpp)
+            libraries=(-lpugixml)
+        fi ;;
 esac
 compile() {
     local extra=()
@@ -31,5 +37,5 @@ compile() {
 mkdir -p "build-fuzz/$name-objects"
 for source in "${sources[@]}" "tests/fuzz/${name}_fuzzer.cpp"; do compile "$source"; done
 export ASAN_OPTIONS=detect_container_overflow=0  # vectors that layers without checks have grown
-"${CXX:-clang++-22}" -fsanitize=fuzzer,address,undefined build-fuzz/"$name"-objects/*.o -o "build-fuzz/$name"
+"${CXX:-clang++-22}" -fsanitize=fuzzer,address,undefined build-fuzz/"$name"-objects/*.o "${libraries[@]}" -o "build-fuzz/$name"
 "build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len=1024 "$corpus"
