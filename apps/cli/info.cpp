@@ -111,6 +111,17 @@ Counts edge_kinds(const Model& m) {
     return kinds;
 }
 
+void write_refusals(json::Writer& w, std::string_view name, const std::vector<Refusal>& list) {
+    w.key(name).begin_array();
+    for (const Refusal& r : list)
+        w.begin_object()
+            .field("kind", name_of(r.kind))
+            .field("where", r.where)
+            .field("message", r.message)
+            .end_object();
+    w.end_array();
+}
+
 void write_approximations(json::Writer& w, const std::vector<Approximation>& list) {
     w.key("approximations").begin_array();
     for (const Approximation& a : list) write_approximation(w, a);
@@ -125,14 +136,7 @@ void write_model_info(json::Writer& w, const Model& m) {
     w.field("seams", s.seams).field("degenerate_edges", s.degenerate_edges);
     write_counts(w, "face_kinds", face_kinds(m));
     write_counts(w, "edge_kinds", edge_kinds(m));
-    w.key("refused").begin_array();
-    for (const Refusal& r : m.refused)
-        w.begin_object()
-            .field("kind", name_of(r.kind))
-            .field("where", r.where)
-            .field("message", r.message)
-            .end_object();
-    w.end_array();
+    write_refusals(w, "refused", m.refused);
     write_approximations(w, m.approximations);
     write_range(w, as_control_box(s.box));
 }
@@ -162,16 +166,7 @@ std::string json_info(const Document& d, const std::string& file, const std::vec
         w.end_object();
     }
     w.end_array();
-    if (!d.left_out.empty()) {
-        w.key("left_out").begin_array();
-        for (const Refusal& r : d.left_out)
-            w.begin_object()
-                .field("kind", name_of(r.kind))
-                .field("where", r.where)
-                .field("message", r.message)
-                .end_object();
-        w.end_array();
-    }
+    if (!d.left_out.empty()) write_refusals(w, "left_out", d.left_out);
     w.end_object();
     return w.take() + "\n";
 }

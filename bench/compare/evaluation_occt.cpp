@@ -4,9 +4,6 @@
 
 #include <GeomAdaptor_Curve.hxx>
 #include <GeomAdaptor_Surface.hxx>
-#include <Geom_BSplineSurface.hxx>
-#include <TColStd_Array2OfReal.hxx>
-#include <TColgp_Array2OfPnt.hxx>
 #include <evaluation_tasks.hpp>
 #include <memory>
 
@@ -14,34 +11,12 @@ namespace {
 
 using namespace freiform::bench;
 
-Handle(Geom_BSplineSurface) make_surface(const SurfaceInput& s) {
-    const int n = s.size, p = s.degree;
-    TColgp_Array2OfPnt points(1, n, 1, n);
-    TColStd_Array2OfReal weights(1, n, 1, n);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            const std::size_t k = std::size_t(i * n + j);
-            points(i + 1, j + 1) = gp_Pnt(s.points[3 * k], s.points[3 * k + 1], s.points[3 * k + 2]);
-            weights(i + 1, j + 1) = s.weights[k];
-        }
-    const auto knots = [p](const std::vector<double>& t) {  // simple ones inside
-        TColStd_Array1OfReal k(1, int(t.size()) - 2 * p);
-        for (int i = 1; i <= k.Length(); ++i) k(i) = t[std::size_t(i + p - 1)];
-        return k;
-    };
-    TColStd_Array1OfInteger multiplicities(1, n - p + 1);
-    multiplicities.Init(1);
-    multiplicities(1) = multiplicities(n - p + 1) = p + 1;
-    return new Geom_BSplineSurface(points, weights, knots(s.knots_u), knots(s.knots_v), multiplicities,
-                                   multiplicities, p, p);
-}
-
 gp_Vec normal_of(const gp_Vec& a, const gp_Vec& b) { return a.Crossed(b).Normalized(); }
 
 // One task for each point of the plots.
 void sweep() {
     each_sweep([](int points, int degree, int size) {
-        const Handle(Geom_BSplineSurface) surface = make_surface(rough(degree, size));
+        const Handle(Geom_BSplineSurface) surface = surface_of(rough(degree, size));
         const std::size_t n = std::size_t(points);
         const auto u = std::make_shared<std::vector<double>>(scattered(2001, n));
         const auto v = std::make_shared<std::vector<double>>(scattered(2002, n));
@@ -58,7 +33,7 @@ void sweep() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    const Handle(Geom_BSplineSurface) surface = make_surface(hills());
+    const Handle(Geom_BSplineSurface) surface = surface_of(hills());
     const GeomAdaptor_Surface adaptor(surface);
     const auto c = helix();
     std::vector<std::array<double, 4>> net;

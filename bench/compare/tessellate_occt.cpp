@@ -23,7 +23,6 @@
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_Circle.hxx>
 #include <GeomAdaptor_Surface.hxx>
-#include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -32,8 +31,6 @@
 #include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
 #include <Standard_Version.hxx>
-#include <TColStd_Array2OfReal.hxx>
-#include <TColgp_Array2OfPnt.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
@@ -46,19 +43,7 @@ using namespace freiform;
 using namespace freiform::bench;
 
 TopoDS_Shape made(const HillsFace& face) {
-    const SurfaceInput& s = face.surface;
-    TColgp_Array2OfPnt points(1, s.size, 1, s.size);
-    TColStd_Array2OfReal weights(1, s.size, 1, s.size);
-    for (int i = 0; i < s.size; ++i)
-        for (int j = 0; j < s.size; ++j) {
-            const std::size_t at = std::size_t(i * s.size + j);
-            const double* p = &s.points[3 * at];
-            points.SetValue(i + 1, j + 1, gp_Pnt(p[0], p[1], p[2]));
-            weights.SetValue(i + 1, j + 1, s.weights[at]);
-        }
-    const Knots u(s.knots_u), v(s.knots_v);
-    const Handle(Geom_Surface) surface = new Geom_BSplineSurface(
-        points, weights, u.at(), v.at(), u.multiplicities(), v.multiplicities(), s.degree, s.degree);
+    const Handle(Geom_Surface) surface = surface_of(face.surface);
     BRepBuilderAPI_MakeFace maker(surface, 0, 1, 0, 1, 1e-7);
     for (const HillsFace::Hole& hole : face.holes) {
         const Handle(Geom2d_Curve) circle =

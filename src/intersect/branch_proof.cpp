@@ -9,40 +9,6 @@ namespace {
 // which take most of the time, are as good over two parts as over one.
 constexpr int kDeepestHalf = 20, kMostHalves = 400, kFirstHalf = 2;
 
-template <class V>
-double bend_of_arc(const CubicArc<V>& b) {
-    return 6 * std::max(norm(b[2] - 2 * b[1] + b[0]), norm(b[3] - 2 * b[2] + b[1]));
-}
-
-// A box that contains q, bounds of its derivatives, and what its rounding is. Nothing: it leaves the domain.
-std::optional<ArcSpeeds> speeds_of(const CubicArc<Vec<2>>& q, const std::array<Interval, 2>& domain) {
-    ArcSpeeds out;
-    auto& [box, speed, bend, twist, slack] = out;
-    for (int k = 0; k < 2; ++k) {
-        const std::size_t a = std::size_t(k);
-        box[a] = {q[0][k], q[0][k]};
-        for (const Vec<2>& p : q) box[a] = hull(box[a], {p[k], p[k]});
-        slack[a] = 8 * kUnitRoundoff * std::max(std::abs(domain[a].lo), std::abs(domain[a].hi));
-        if (box[a].lo < domain[a].lo - slack[a] || box[a].hi > domain[a].hi + slack[a]) return std::nullopt;
-        box[a] = {clamped(box[a].lo - slack[a], domain[a]), clamped(box[a].hi + slack[a], domain[a])};
-        for (std::size_t i = 0; i < 3; ++i)
-            speed[a] = std::max(speed[a], 3 * std::abs(q[i + 1][k] - q[i][k]));
-        for (std::size_t i = 0; i < 2; ++i)
-            bend[a] = std::max(bend[a], 6 * std::abs(q[i + 2][k] - 2 * q[i + 1][k] + q[i][k]));
-        twist[a] = 6 * std::abs((q[3][k] - q[0][k]) - 3 * (q[2][k] - q[1][k])) + 64 * slack[a];
-        speed[a] += 8 * slack[a], bend[a] += 32 * slack[a];
-    }
-    return out;
-}
-// Of the third derivative of S o q.
-double third_of_arc(const DerivativeBounds<2>& d, const ArcSpeeds& s) {
-    const double u = s.speed[0], v = s.speed[1];
-    return d(3, 0) * u * u * u + 3 * d(2, 1) * u * u * v + 3 * d(1, 2) * u * v * v + d(0, 3) * v * v * v +
-           3 * (d(2, 0) * u * s.bend[0] + d(1, 1) * (u * s.bend[1] + v * s.bend[0]) +
-                d(0, 2) * v * s.bend[1]) +
-           d(1, 0) * s.twist[0] + d(0, 1) * s.twist[1];
-}
-
 const BSplineBasis& basis_of_sheet(const SurfaceGeometry& g, int axis) {
     if (const auto* s = std::get_if<Surface<Vec<3>>>(&g)) return s->basis(axis);
     return std::get<Surface<Hom<3>>>(g).basis(axis);

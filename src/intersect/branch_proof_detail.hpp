@@ -9,28 +9,10 @@
 // with derivatives of S bounded over a box that contains q. If S has a kink in the box along an axis, S is
 // replaced by S with that parameter fixed, off by the width of the box times |S_u|, twice.
 #pragma once
+#include "cubic_arc_detail.hpp"
 #include "sheet_detail.hpp"
 
-#include <freiform/spline/derivative_bounds.hpp>
-
-#include <optional>
-
 namespace freiform::detail {
-
-template <class V>
-using CubicArc = std::array<V, 4>;
-template <class V>
-std::array<CubicArc<V>, 2> arc_halves(const CubicArc<V>& b) {
-    const V a01 = 0.5 * (b[0] + b[1]), a12 = 0.5 * (b[1] + b[2]), a23 = 0.5 * (b[2] + b[3]);
-    const V a = 0.5 * (a01 + a12), c = 0.5 * (a12 + a23), m = 0.5 * (a + c);
-    return {CubicArc<V>{b[0], a01, a, m}, {m, c, a23, b[3]}};
-}
-
-// Bounds of a piece of parameters: a box, derivatives, and how far rounding moves it.
-struct ArcSpeeds {
-    std::array<Interval, 2> box{};
-    std::array<double, 2> speed{}, bend{}, twist{}, slack{};
-};
 
 class BranchProof {
 public:

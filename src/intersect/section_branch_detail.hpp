@@ -183,11 +183,7 @@ private:
             if (max_abs(d) <= 1e-9 * max_abs(a.slope) && before->at[3] == a.at) a.slope = before->slope[1];
         }
         SectionPiece out;
-        const double chord = norm(b.point - a.point);
-        const double half = 0.5 * std::acos(std::clamp(dot(a.tangent, b.tangent), -1.0, 1.0));
-        out.length = half > 1e-4 && half < 1.2 ? chord * 2 * std::tan(half / 2) / std::sin(half) : chord;
-        if (!(out.length > 0x1p-40 * t)) out.length = std::max(0x1p-40 * t, tolerance_);
-        out.length = (t + out.length) - t;  // as the knots will have it
+        out.length = arc_interval(a.point, b.point, a.tangent, b.tangent, t, tolerance_);
         const double h = out.length / 3;
         out.space = {a.point, a.point + h * a.tangent, b.point - h * b.tangent, b.point};
         out.at = {a.at, a.at + h * a.slope, b.at - h * b.slope, b.at};

@@ -16,24 +16,16 @@
 // rectangle of q and the two zeros, which one monotone arc joins. So the zeros are one curve that follows q
 // from end to end; its distance from C is at most |E| + |S_u| r / m.
 #pragma once
+#include "cubic_arc_detail.hpp"
 #include "section_field_detail.hpp"
 
 #include <optional>
 
 namespace freiform::detail {
 
-template <class V>
-using CubicPiece = std::array<V, 4>;
-template <class V>
-std::array<CubicPiece<V>, 2> halved(const CubicPiece<V>& b) {
-    const V a01 = 0.5 * (b[0] + b[1]), a12 = 0.5 * (b[1] + b[2]), a23 = 0.5 * (b[2] + b[3]);
-    const V a = 0.5 * (a01 + a12), c = 0.5 * (a12 + a23), m = 0.5 * (a + c);
-    return {CubicPiece<V>{b[0], a01, a, m}, {m, c, a23, b[3]}};
-}
-
 struct SectionPiece {
-    CubicPiece<Vec<3>> space{};
-    CubicPiece<Vec<2>> at{};
+    CubicArc<Vec<3>> space{};
+    CubicArc<Vec<2>> at{};
     double length = 0;  // of its interval of parameters
     std::array<Vec<3>, 2> tangent{};
     std::array<Vec<2>, 2> slope{};
@@ -84,11 +76,12 @@ public:
     // What `operator()` will hardly do better than.
     double estimate(const SectionPiece& piece) const {
         double most = 0;
-        auto [left, right] = halved(piece.space);
-        auto [first, second] = halved(piece.at);
-        const std::array<std::pair<Vec<3>, Vec<2>>, 3> places{{{left[3], first[3]},
-                                                               {halved(left)[0][3], halved(first)[0][3]},
-                                                               {halved(right)[0][3], halved(second)[0][3]}}};
+        auto [left, right] = arc_halves(piece.space);
+        auto [first, second] = arc_halves(piece.at);
+        const std::array<std::pair<Vec<3>, Vec<2>>, 3> places{
+            {{left[3], first[3]},
+             {arc_halves(left)[0][3], arc_halves(first)[0][3]},
+             {arc_halves(right)[0][3], arc_halves(second)[0][3]}}};
         for (const auto& [x, u] : places) {
             if (!is_inside(u)) return kInfinity;
             const auto jet = field_.surface.template jet<1>({u[0], u[1]});
@@ -134,11 +127,11 @@ private:
     }
     double error_at(const Vec<3>& x, const Vec<2>& u) const { return sample(x, u).size(); }
 
-    bool prove(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q, const Sample& a, const Sample& b,
+    bool prove(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, const Sample& a, const Sample& b,
                int depth, PieceBound& bound) const {
         ++all_parts_;
-        const auto [c0, c1] = halved(c);
-        const auto [q0, q1] = halved(q);
+        const auto [c0, c1] = arc_halves(c);
+        const auto [q0, q1] = arc_halves(q);
         const Sample m = sample(c0[3], q0[3]);
         const std::array<const Sample*, 3> samples{&a, &m, &b};
         if (const auto here = bound_over(c, q, samples, bound.plane)) {
@@ -153,22 +146,6 @@ private:
         return prove(c0, q0, a, m, depth + 1, bound) && prove(c1, q1, m, b, depth + 1, bound);
     }
 
-    template <class V>
-    static double bend_of(const CubicPiece<V>& b) {
-        return 6 * std::max(norm(b[2] - 2 * b[1] + b[0]), norm(b[3] - 2 * b[2] + b[1]));
-    }
-    template <class V>
-    static double twist_of(const CubicPiece<V>& b) {
-        return 6 * norm((b[3] - b[0]) - 3 * (b[2] - b[1]));
-    }
-    // Of the third derivative of S o q, or of one coordinate of it.
-    static double third_of(const DerivativeBounds<2>& d, const std::array<double, 2>& speed,
-                           const std::array<double, 2>& bend, const std::array<double, 2>& twist) {
-        const double u = speed[0], v = speed[1];
-        return d(3, 0) * u * u * u + 3 * d(2, 1) * u * u * v + 3 * d(1, 2) * u * v * v + d(0, 3) * v * v * v +
-               3 * (d(2, 0) * u * bend[0] + d(1, 1) * (u * bend[1] + v * bend[0]) + d(0, 2) * v * bend[1]) +
-               d(1, 0) * twist[0] + d(0, 1) * twist[1];
-    }
     // No line over which second derivatives jump is inside.
     bool is_twice_smooth(const std::array<Interval, 2>& box) const {
         for (int k = 0; k < 2; ++k)
@@ -178,43 +155,16 @@ private:
             }
         return true;
     }
-    // A box that contains q, bounds of its derivatives, and what its rounding is. Nothing: it leaves the
-    // domain.
-    struct PathOver {
-        std::array<Interval, 2> box{};
-        std::array<double, 2> speed{}, bend{}, twist{}, slack{};
-    };
-    std::optional<PathOver> path_over(const CubicPiece<Vec<2>>& q) const {
-        PathOver path;
-        auto& [box, speed, bend, twist, slack] = path;
-        box = {Interval{q[0][0], q[0][0]}, {q[0][1], q[0][1]}};
-        const auto domain = field_.surface.domain();
-        for (int k = 0; k < 2; ++k) {
-            const std::size_t a = std::size_t(k);
-            for (const Vec<2>& p : q) box[a] = hull(box[a], {p[k], p[k]});
-            slack[a] = 8 * kUnitRoundoff * std::max(std::abs(domain[a].lo), std::abs(domain[a].hi));
-            if (box[a].lo < domain[a].lo - slack[a] || box[a].hi > domain[a].hi + slack[a])
-                return std::nullopt;
-            box[a] = {clamped(box[a].lo - slack[a], domain[a]), clamped(box[a].hi + slack[a], domain[a])};
-            for (std::size_t i = 0; i < 3; ++i)
-                speed[a] = std::max(speed[a], 3 * std::abs(q[i + 1][k] - q[i][k]));
-            for (std::size_t i = 0; i < 2; ++i)
-                bend[a] = std::max(bend[a], 6 * std::abs(q[i + 2][k] - 2 * q[i + 1][k] + q[i][k]));
-            twist[a] = 6 * std::abs((q[3][k] - q[0][k]) - 3 * (q[2][k] - q[1][k])) + 64 * slack[a];
-            speed[a] += 8 * slack[a], bend[a] += 32 * slack[a];
-        }
-        return path;
-    }
-    std::optional<PieceBound> bound_over(const CubicPiece<Vec<3>>& c, const CubicPiece<Vec<2>>& q,
+    std::optional<PieceBound> bound_over(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q,
                                          const std::array<const Sample*, 3>& at, double plane) const {
         const double ends = std::max(at[0]->size(), at[2]->size());
-        const auto path = path_over(q);
+        const auto path = speeds_of(q, field_.surface.domain());
         if (!path) return std::nullopt;
         const auto& [box, speed, bend, twist, slack] = *path;
         const bool smooth = is_twice_smooth(box);
         const DerivativeBounds<2> d = field_.query(box, smooth ? 3 : 2);
         const std::array<double, 2> first{d(1, 0), d(0, 1)}, second{d(2, 0), d(0, 2)};
-        double most = bend_of(c) * 1.01, aside = 0, shift = 0;
+        double most = bend_of_arc(c) * 1.01, aside = 0, shift = 0;
         std::array<bool, 2> fixed{};
         for (std::size_t a = 0; a < 2; ++a) {
             for (const Kink& kink : field_.query.kinks(int(a)))
@@ -230,8 +180,8 @@ private:
         const double errors = at[0]->error + 2 * at[1]->error + at[2]->error;
         if (smooth && !fixed[0] && !fixed[1]) {
             const double second_difference = norm(at[0]->off - 2 * at[1]->off + at[2]->off) + errors;
-            between = std::min(between, 1.01 * (second_difference / 2 +
-                                                (twist_of(c) + third_of(d, speed, bend, twist)) / 12));
+            between = std::min(
+                between, 1.01 * (second_difference / 2 + (twist_of_arc(c) + third_of_arc(d, *path)) / 12));
         }
         PieceBound bound;
         bound.plane = plane;
@@ -252,7 +202,7 @@ private:
         return bound;
     }
 
-    double height_over(const PathOver& path, const std::array<const Sample*, 3>& at, bool smooth) const {
+    double height_over(const ArcSpeeds& path, const std::array<const Sample*, 3>& at, bool smooth) const {
         const auto& [box, speed, bend, twist, slack] = path;
         const DerivativeBounds<2> n = field_.query.along(field_.unit_normal, box, smooth ? 3 : 2);
         const double ends =
@@ -264,7 +214,7 @@ private:
         if (smooth) {
             const double difference = std::abs(at[0]->height - 2 * at[1]->height + at[2]->height);
             const double errors = at[0]->error + 2 * at[1]->error + at[2]->error;
-            more = std::min(more, (difference + errors) / 2 + third_of(n, speed, bend, twist) / 12);
+            more = std::min(more, (difference + errors) / 2 + third_of_arc(n, path) / 12);
         }
         return 1.01 * (ends + shift + more);
     }
