@@ -75,6 +75,8 @@ private:
     std::vector<double> smooth_pieces(int edge, double tolerance) const;
     Part part(int edge, double a, double b, const EdgeDemands& demands) const;
     static std::vector<double> shared_out(std::span<const Part> parts, int count);
+    std::vector<Part> advanced(int edge, std::span<const Part> known, int least, const EdgeDemands& demands,
+                               std::size_t most) const;
     std::vector<Part> equal_parts(int edge, Interval on, int least, const EdgeDemands& demands,
                                   std::size_t max_segments) const;
 
