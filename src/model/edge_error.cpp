@@ -23,8 +23,8 @@
 // most, and as they are a homotopy from the parameter curve to the chord, none of the sliver is left out.
 // f . S_u p_u'' + f . S_v p_v'' is bounded by that of the middle, where it is one coordinate of p'', and
 // what f . DS changes by. That the chord's map to itself, c(t) -> c(s) with S(c(s)) above L(t), moves points
-// no farther than 8/7 of |S(c(t)) - L(t)| is asked for by (S o c)' . e >= 7/8 |(S o c)'|.
-//
+// no farther than 8/7 of |S(c(t)) - L(t)| is asked for by (S o c)' . e >= 7/8 |(S o c)'|. What e . DS changes
+// by needs a bound of e . D^2 S only where one of all of D^2 S is not enough.
 //
 // Why not all of C'': the quarter of a rational circle takes up to 1.4 times as many chords.
 #include "chord_curve_detail.hpp"
@@ -130,34 +130,44 @@ std::optional<std::pair<double, double>> OnFace::across() const {
         for (const Kink& k : surface.kinks(i))
             if (box.lo[i] < k.at && k.at < box.hi[i]) torn[i] += k.jump;
     const std::array<Interval, 2> sides{box.side(0), box.side(1)};
-    double slope = 0, backward = 0, aside = 0, on_chord = 0, on_curve = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec<3>& f = (*frame)[i];
+    const auto vary = [&](const SecondBounds& seen) {  // of first derivatives, from the middle
+        return Vec<2>{{seen.uu * half[0] + seen.uv * half[1] + torn[0],
+                       seen.uv * half[0] + seen.vv * half[1] + torn[1]}};
+    };
+    const auto seen_along = [&](const Vec<3>& f) {
         const auto b = surface.along(f, sides);
-        const SecondBounds seen{b(2, 0), b(1, 1), b(0, 2)};
-        const Vec<2> g{{dot(f, j(1, 0)), dot(f, j(0, 1))}};
-        const Vec<2> vary{{seen.uu * half[0] + seen.uv * half[1] + torn[0],
-                           seen.uv * half[0] + seen.vv * half[1] + torn[1]}};
-        const double varies = vary[0] * std::abs(x) + vary[1] * std::abs(y);
-        if (i == 0) {
-            slope = dot(g, chord) - varies;
-            backward = ((std::abs(g[0]) + vary[0]) * change[0] + (std::abs(g[1]) + vary[1]) * change[1]) / 2;
-            continue;
-        }
-        aside = std::hypot(aside, std::abs(dot(g, chord)) + varies);
+        return SecondBounds{b(2, 0), b(1, 1), b(0, 2)};
+    };
+    double aside = 0, on_chord = 0, on_curve = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+        const SecondBounds seen = seen_along((*frame)[i]);
+        const Vec<2> g{{dot((*frame)[i], j(1, 0)), dot((*frame)[i], j(0, 1))}}, varies = vary(seen);
+        aside =
+            std::hypot(aside, std::abs(dot(g, chord)) + varies[0] * std::abs(x) + varies[1] * std::abs(y));
         on_chord = std::hypot(on_chord, seen.along(x, y));
         double bend = 0;
         if (change != Vec<2>{} && norm(g) > 0)
             bend = std::min(std::abs(g[0]) * change[0] + std::abs(g[1]) * change[1],
                             norm(g) * (h * h) * use.curve->along(unit(g), {on})(2)) +
-                   vary[0] * change[0] + vary[1] * change[1];
+                   varies[0] * change[0] + varies[1] * change[1];
         on_curve = std::hypot(on_curve, seen.along(speed[0], speed[1]) + bend);
     }
-    if (!(aside * kDirectionSlack <= kSteep * slope) || !(slope > backward * kDirectionSlack))
-        return std::nullopt;
+    const Vec<2> g{{dot((*frame)[0], j(1, 0)), dot((*frame)[0], j(0, 1))}};
+    // (S o c)' . e at least, where it is enough.
+    const auto slope_by = [&](const Vec<2>& varies) -> std::optional<double> {
+        const double slope = dot(g, chord) - (varies[0] * std::abs(x) + varies[1] * std::abs(y));
+        const double backward =
+            ((std::abs(g[0]) + varies[0]) * change[0] + (std::abs(g[1]) + varies[1]) * change[1]) / 2;
+        if (!(aside * kDirectionSlack <= kSteep * slope) || !(slope > backward * kDirectionSlack))
+            return std::nullopt;
+        return slope;
+    };
+    auto slope = slope_by(vary(second));  // all of S'' will do, as a rule
+    if (!slope) slope = slope_by(vary(seen_along((*frame)[0])));
+    if (!slope) return std::nullopt;
     const double rounding = 0x1p-44 * (along(speed) + first[0] * change[0] + first[1] * change[1]);
     return std::pair{(std::max(on_chord, on_curve) / 8 + rounding) * kDirectionSlack + kinks(),
-                     (first[0] * sag[0] + first[1] * sag[1]) / slope * kDirectionSlack};
+                     (first[0] * sag[0] + first[1] * sag[1]) / *slope * kDirectionSlack};
 }
 
 }  // namespace
