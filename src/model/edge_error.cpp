@@ -41,8 +41,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kSteep = 0.55;     // speed across the chord beside that along it: cos atan is above 7/8
-constexpr double kTwins = 0x1p-10;  // of the tolerance
+constexpr double kSteep = 0.55;  // speed across the chord beside that along it: cos atan is above 7/8
 constexpr double kDirectionSlack = 1 + 0x1p-40;  // more than the roundings of directions and sums below
 
 // Bounds of second derivatives.
@@ -192,7 +191,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
             if (degenerate) continue;
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
             const Interval there = use->lift->over(on);
-            const double polyline = 2 * use->twin <= kTwins * tolerance
+            const double polyline = use->is_twin(tolerance)
                                         ? own + 2 * use->twin
                                         : use->chords->across(there, tolerance) + use->chords->kinks(there);
             out.polyline = std::max(out.polyline, polyline);

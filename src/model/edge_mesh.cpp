@@ -77,7 +77,8 @@ EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<Deriv
                     const auto& own = model.edges[std::size_t(coedges[c].edge)].curve;
                     if (own && use->lift->shift == 0 && use->lift->speed == 1)
                         use->twin = distance_of_twins(*own, *use->lift->geometry);
-                    use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
+                    if (use->twin == kInfinity)
+                        use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
                 }
                 edges_[std::size_t(coedges[c].edge)].uses.push_back(std::move(use));
             }
@@ -235,6 +236,9 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
         return refuse(
             RefusalKind::limit, "max_triangles",
             text("edge ", edge, " needs about ", std::ceil(needed), " segments within ", tolerance));
+    for (auto& use : mesh.uses)
+        if (use->lift && !use->chords && !use->is_twin(tolerance))
+            use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
     const std::vector<double> must = smooth_pieces(edge, tolerance);
     mesh.parameters = {e.range.lo};
     mesh.bound = 0;

@@ -21,8 +21,12 @@ struct CoedgeQuery {
     const Coedge* coedge = nullptr;
     std::unique_ptr<DerivativeQuery<1, 2>> curve;
     std::optional<LiftedCurve> lift;
-    std::unique_ptr<ChordCurve> chords;  // of the lift
+    std::unique_ptr<ChordCurve> chords;  // of the lift; for twins made when a tolerance is too small for them
     double twin = kInfinity;  // of the distance between lift and edge, if they are the same but for rounding
+    bool is_twin(double tolerance) const {
+        constexpr double kTwins = 0x1p-10;  // of the tolerance
+        return 2 * twin <= kTwins * tolerance;
+    }
 };
 
 struct EdgeMesh {
