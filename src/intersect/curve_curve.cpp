@@ -126,7 +126,10 @@ private:
         for (const Boxes& box : clusters(unclear)) decide(i, j, box, overlaps);
         for (const Boxes& box : clusters(undecided))
             answer_.undecided.push_back(freiform::detail::global(where(i, j), box));
-        for (const ExactContact& c : overlaps.isolated()) add_exact(i, j, c);
+        for (const ExactContact& c : overlaps.isolated()) {
+            add_exact(i, j, c);
+            if (!overlaps.exact(i, j) || !overlaps.exact(i, j)->coincide()) raw_.back().c.least = 0;
+        }
         for (const Overlap& o : overlaps.overlaps()) {
             Overlap g = o;
             for (double* t : {&g.a.lo, &g.a.hi}) *t = freiform::detail::global(on(a_, i), *t);
@@ -161,7 +164,20 @@ private:
         r.c.multiplicity = 0;
         const bool whole = box[0] == Interval{0, 1} || box[1] == Interval{0, 1};
         r.c.kind = !whole && reaches_end(i, j, box) ? ContactKind::end : ContactKind::possible;
+        if constexpr (D == 2)
+            if (ExactPair* e = overlaps.exact(i, j); e && !e->coincide()) begin_at_end(*e, r.c);
         finish(i, j, r);
+    }
+    // Ends that lie on the other curve are known exactly, cusps and curves that fold along a line included.
+    static void begin_at_end(ExactPair& exact, Contact<D, 2>& c) {
+        std::vector<ExactContact> ends = exact.ends().value_or(std::vector<ExactContact>());
+        std::erase_if(ends, [&](const ExactContact& e) { return !touch(c.box, Boxes{e.a, e.b}); });
+        if (ends.empty()) return;
+        const ExactContact& first = *std::min_element(
+            ends.begin(), ends.end(), [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
+        c.at = {simplest(first.a), simplest(first.b)};
+        c.box = {hull(c.box[0], first.a), hull(c.box[1], first.b)};
+        c.least = 1;
     }
     bool is_known(const ExactContact& c) const {
         return std::any_of(search_.found().begin(), search_.found().end(), [&](const Simple<2>& s) {
@@ -270,11 +286,15 @@ private:
             before->gap = std::max(before->gap, o.gap);
         }
         all = std::move(out);
-        // Contacts at the ends of an overlap belong to it.
+        // Small boxes beside an overlap belong to it; a large one may hold more.
+        const auto is_small = [](const Interval& t, const ArcPieces<1, P>& c) {
+            return t.length() <= 0x1p-6 * c.domain[0].length();
+        };
         std::erase_if(answer_.contacts, [&](const Contact<D, 2>& c) {
             return std::any_of(all.begin(), all.end(), [&](const Overlap& o) {
                 const Interval a{o.a.lo - sa, o.a.hi + sa}, b{o.b.lo - sb, o.b.hi + sb};
                 if (!a.contains(c.at[0]) || !b.contains(c.at[1])) return false;
+                if (!is_small(c.box[0], a_.source()) || !is_small(c.box[1], b_.source())) return false;
                 const double s = (c.at[0] - o.a.lo) / o.a.length(), t = (c.at[1] - o.b.lo) / o.b.length();
                 return std::abs((o.reversed ? 1 - t : t) - s) < 1e-6 && !c.is_proven();
             });

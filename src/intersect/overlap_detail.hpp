@@ -91,6 +91,7 @@ public:
     void begin(int pa, int pb) {
         if (pa == pa_ && pb == pb_) return;
         pa_ = pa, pb_ = pb, asked_ = looked_ = same_ = false;
+        complete_ = true;
         exact_.reset();
         overlaps_.clear();
         isolated_.clear();
@@ -109,39 +110,52 @@ public:
     }
     // Do the parts have no contacts but those of overlaps, and isolated()?
     bool settled(int ia, int ib) const {
-        if (!same_ && overlaps_.empty()) return false;
+        if (!complete_ || (!same_ && overlaps_.empty())) return false;
         const Vec<D> u = a_.chord(ia, 0), v = b_.chord(ib, 0);
         const double sign = dot(u, v) < 0 ? -1 : 1;
         const Vec<D> c = norm(v) * u + sign * norm(u) * v;
-        const auto moves_on = [&](const auto& points, int n, double s, double error) {
-            double size = 0;
-            for (int k = 0; k < D; ++k) size += std::abs(c[k]);
-            for (int i = 0; i + 1 < n; ++i)
+        double size = 0;
+        for (int k = 0; k < D; ++k) size += std::abs(c[k]);
+        // Legs of a double control point at an end of the piece are 0 exactly: a curve may start with one.
+        const auto moves_on = [&](const auto& points, const Curve& curve, int part, const Interval& covers,
+                                  double s, double error) {
+            const auto* p = curve.hull(curve[part].piece);
+            const int n = curve.block();
+            const int begin = n > 2 && covers.lo == 0 && p[0] == p[1],
+                      end = n - 1 - (n > 2 && covers.hi == 1 && p[n - 2] == p[n - 1]);
+            for (int i = begin; i < end; ++i)
                 if (!(s * dot(c, points[std::size_t(i) + 1] - points[std::size_t(i)]) >
                       size * (2.02 * error + 8 * kUnitRoundoff)))
                     return false;
-            return true;
+            return begin < end;
         };
-        const Interval t{b_[ib].from[0], b_[ib].from[0] + b_[ib].width[0]};
-        double s0 = 0, s1 = 0, between = 0;
-        if (!inverse(ia, t.lo, s0) || !inverse(ia, t.hi, s1) || !inverse(ia, t.middle(), between))
-            return false;
-        const double w = a_[ia].width[0];
-        Interval on{std::min({a_[ia].from[0], s0, s1}), std::max({a_[ia].from[0] + w, s0, s1})};
+        // The shorter part on the curve of the longer one, so that neither is continued far beyond its end.
+        const bool first = a_[ia].extent() >= b_[ib].extent();
+        const Curve &longer = first ? a_ : b_, &shorter = first ? b_ : a_;
+        const int il = first ? ia : ib, is = first ? ib : ia;
+        const double from = longer[il].from[0], w = longer[il].width[0], t = shorter[is].from[0],
+                     width = shorter[is].width[0];
+        Interval on{from, from + w};
+        for (const double at : {t, t + 0.5 * width, t + width}) {
+            double s = 0;
+            if (!inverse(longer, il, shorter, is, at, s)) return false;
+            on = hull(on, {s, s});
+        }
         const double wider = 0.05 * on.length();
         on = {std::max(0.0, on.lo - wider), std::min(1.0, on.hi + wider)};
-        if (!(on.length() > 0) || on.length() > 16 * std::max(w, b_[ib].width[0])) return false;
-        const auto all = over(a_.coefficients(pa_), a_.block(), on);
+        if (!(on.length() > 0) || on.length() > 16 * std::max(w, width)) return false;
+        const auto all = over(longer.coefficients(longer[il].piece), longer.block(), on);
         std::vector<Vec<D>> points;
         for (const P& p : all) points.push_back(Space<P>::project(p));
-        const double grown = 64 * a_.block() * kUnitRoundoff + a_[pa_].error;
-        return moves_on(points, int(points.size()), 1, grown) &&
-               moves_on(b_.hull(ib), b_.block(), sign, b_[ib].error);
+        const double grown = 64 * longer.block() * kUnitRoundoff + longer[longer[il].piece].error;
+        return moves_on(points, longer, il, on, first ? 1 : sign, grown) &&
+               moves_on(shorter.hull(is), shorter, is, {t, t + width}, first ? sign : 1, shorter[is].error);
     }
 
     // In parameters of the pieces.
     const std::vector<Overlap>& overlaps() const { return overlaps_; }
-    // Ends that meet, of curves that are the same beyond: of one runs where the other does not.
+    // Ends that meet, of curves that are the same beyond: of one runs where the other does not. Exactly so if
+    // the curves are, otherwise they are only near each other.
     const std::vector<ExactContact>& isolated() const { return isolated_; }
 
 private:
@@ -158,19 +172,21 @@ private:
     }
     static void place(const Curve& c, int piece, double t, Vec<D>& x, Vec<D>& d) { c.at(piece, &t, x, &d); }
 
-    // The parameter of a, continued beyond its ends, where it passes by the point of b; from the middle of a
-    // part.
-    bool inverse(int ia, double t, double& s) const {
+    // The parameter of a curve, continued beyond its ends, where it passes by the point of the other; from
+    // the middle of a part.
+    bool inverse(const Curve& on, int part, const Curve& other, int other_part, double t, double& s) const {
         Vec<D> y, ignored, x, d;
-        place(b_, pb_, t, y, ignored);
-        s = a_[ia].from[0] + 0.5 * a_[ia].width[0];
-        for (int i = 0; i < 8; ++i) {
-            place(a_, pa_, s, x, d);
+        place(other, other[other_part].piece, t, y, ignored);
+        const int piece = on[part].piece;
+        s = on[part].from[0] + 0.5 * on[part].width[0];
+        for (int i = 0; i < 32; ++i) {  // beside a cusp each step leaves a quarter
+            place(on, piece, s, x, d);
             const double step = dot(y - x, d) / dot(d, d);
-            if (!std::isfinite(step)) return false;
+            if (!std::isfinite(step)) break;
             s = std::clamp(s + step, -1.0, 2.0);
+            if (std::abs(step) <= 0x1p-50) break;
         }
-        place(a_, pa_, s, x, d);
+        place(on, piece, s, x, d);
         return norm(y - x) <= 4 * reach();
     }
 
@@ -212,28 +228,41 @@ private:
         return out;
     }
 
-    // 1: b runs with a at this pair; -1: against; 0: not known.
-    int direction(const ExactContact& c) const {
-        Vec<D> x, u, v;
-        place(a_, pa_, c.a.middle(), x, u);
-        place(b_, pb_, c.b.middle(), x, v);
+    // Of the tangent, at a cusp at an end, too; zero at others.
+    static Vec<D> heading(const Curve& c, int piece, double t) {
+        Vec<D> x, d;
+        place(c, piece, t, x, d);
+        const Vec<D>* p = c.hull(piece);
+        const int last = c.block() - 1;
+        for (int k = 1; k <= last && max_abs(d) == 0 && (t == 0 || t == 1); ++k)
+            d = t == 0 ? p[k] - p[0] : p[last] - p[last - k];
+        return max_abs(d) > 0x1p-20 * c[piece].extent() || t == 0 || t == 1 ? d : Vec<D>{};
+    }
+    // 1: b runs with a at this pair; -1: against; 0: neither, or not known.
+    int direction(const ExactContact& c) {
+        const Vec<D> u = heading(a_, pa_, c.a.middle()), v = heading(b_, pb_, c.b.middle());
         const double d = dot(u, v), size = norm(u) * norm(v);
+        if (size == 0) complete_ = false;
         return d > 0.9 * size && d > 0 ? 1 : d < -0.9 * size && d < 0 ? -1 : 0;
     }
 
     void join(std::vector<ExactContact> ends, bool exact) {
         std::sort(ends.begin(), ends.end(), [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
+        std::vector<char> used(ends.size());
         for (std::size_t i = 0; i < ends.size(); ++i) {
             const ExactContact& from = ends[i];
             const int way = direction(from);
             const auto goes = [&](const ExactContact& c, int up) {
                 return (up > 0 ? c.a.hi < 1 : c.a.lo > 0) && (up * way > 0 ? c.b.hi < 1 : c.b.lo > 0);
             };
-            if (way == 0) continue;
+            if (way == 0 || (!exact && is_within_one(from))) continue;
             if (!goes(from, 1)) {
                 if (!goes(from, -1)) isolated_.push_back(from);
+                // The same curve on the left, and not from any begin: one of them turns round.
+                if (exact && goes(from, -1) && !used[i]) complete_ = false;
                 continue;
             }
+            bool ended = false;
             for (std::size_t k = i + 1; k < ends.size(); ++k) {
                 const ExactContact& to = ends[k];
                 if (direction(to) != way || !goes(to, -1) || way * (to.b.lo - from.b.lo) <= 0) continue;
@@ -241,11 +270,44 @@ private:
                 Overlap o{
                     {simplest(from.a), simplest(to.a)}, {std::min(t0, t1), std::max(t0, t1)}, way < 0, 0};
                 if (!exact) o.gap = distance(o);
-                if (exact || o.gap <= reach()) overlaps_.push_back(o);
-                i = k;
-                break;
+                if (exact ? is_followed(o) : o.gap <= reach()) {
+                    overlaps_.push_back(o);
+                    used[k] = ended = true;
+                }
+                if (ended || !exact) break;
             }
+            if (exact && !ended) complete_ = false;
         }
+    }
+
+    bool is_within_one(const ExactContact& c) const {
+        return std::any_of(overlaps_.begin(), overlaps_.end(),
+                           [&](const Overlap& o) { return o.a.overlaps(c.a) && o.b.overlaps(c.b); });
+    }
+    // Does each curve stay with the other, as far as a few points say? It need not if one turns round.
+    bool is_followed(const Overlap& o) const {
+        constexpr int kPoints = 8;
+        const auto stays = [&](const Curve& from, int pf, const Interval& s, const Curve& to, int pt,
+                               const Interval& on) {
+            Vec<D> p, x, d;
+            for (int i = 1; i < kPoints; ++i) {
+                place(from, pf, s.lo + s.length() * i / kPoints, p, d);
+                bool found = false;
+                for (int k = 0; k <= kPoints && !found; ++k) {
+                    double t = on.lo + on.length() * k / kPoints;
+                    for (int n = 0; n < 12 && !found; ++n) {
+                        place(to, pt, t, x, d);
+                        found = norm(p - x) <= reach();
+                        const double step = dot(p - x, d) / dot(d, d);
+                        if (!std::isfinite(step)) break;
+                        t = clamped(t + step, on);
+                    }
+                }
+                if (!found) return false;
+            }
+            return true;
+        };
+        return stays(a_, pa_, o.a, b_, pb_, o.b) && stays(b_, pb_, o.b, a_, pa_, o.a);
     }
 
     // A bound of how far the curves are from each other over these intervals, from their control points.
@@ -290,6 +352,7 @@ private:
     double accuracy_;
     int pa_ = -1, pb_ = -1;
     bool asked_ = false, looked_ = false, same_ = false;
+    bool complete_ = true;  // it is known of all ends that meet whether an overlap begins there
     std::optional<ExactPair> exact_;
     std::vector<Overlap> overlaps_;
     std::vector<ExactContact> isolated_;

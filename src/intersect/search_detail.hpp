@@ -111,7 +111,8 @@ private:
         for (std::size_t k = 0; k < A::kParams; ++k) c[k] = a_.chord(ia, int(k));
         for (std::size_t k = 0; k < B::kParams; ++k) c[A::kParams + k] = -b_.chord(ib, int(k));
         const Rows<N, D> rows = rows_of(c);
-        bool flat = true;
+        // Closed parts have no chord, so nothing to be flat along.
+        bool flat = std::any_of(c.begin(), c.end(), [](const Vec<D>& v) { return max_abs(v) > 0; });
         if (apart(ia, ib, rows.r, e, flat)) return;
         bool ignored = true;
         for (int k = 0; k < rows.extra; ++k)
