@@ -126,10 +126,8 @@ private:
         for (const Boxes& box : clusters(unclear)) decide(i, j, box, overlaps);
         for (const Boxes& box : clusters(undecided))
             answer_.undecided.push_back(freiform::detail::global(where(i, j), box));
-        for (const ExactContact& c : overlaps.isolated()) {
-            add_exact(i, j, c);
-            if (!overlaps.exact(i, j) || !overlaps.exact(i, j)->coincide()) raw_.back().c.least = 0;
-        }
+        const bool same = overlaps.exact(i, j) && overlaps.exact(i, j)->coincide();
+        for (const ExactContact& c : overlaps.isolated()) add_exact(i, j, c, same);
         for (const Overlap& o : overlaps.overlaps()) {
             Overlap g = o;
             for (double* t : {&g.a.lo, &g.a.hi}) *t = freiform::detail::global(on(a_, i), *t);
@@ -211,7 +209,7 @@ private:
         }
         finish(i, j, r);
     }
-    void add_exact(int i, int j, const ExactContact& c) {
+    void add_exact(int i, int j, const ExactContact& c, bool proven = true) {
         // Clusters side by side may both reach to it.
         for (const ExactContact& o : exact_)
             if (o.a == c.a && o.b == c.b) return;
@@ -220,6 +218,7 @@ private:
         r.c.box = {c.a, c.b};
         r.c.at = {simplest(c.a), simplest(c.b)};
         r.c.multiplicity = c.multiplicity;
+        r.c.least = proven;
         const bool end =
             (c.a.lo == c.a.hi || c.b.lo == c.b.hi || c.a == Interval{0, 1} || c.b == Interval{0, 1}) &&
             reaches_end(i, j,

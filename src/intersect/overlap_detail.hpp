@@ -6,6 +6,10 @@
 // is exact: curves of one algebraic curve that leave a common point in the same direction stay together.
 // Otherwise the control points of both over the intervals are compared.
 //
+// A curve that turns round upon itself or the other one has overlaps that no end begins, or ends that are
+// passed more than once. So an exact overlap must be followed by both curves at a few points, and where some
+// pair of ends begins nothing that another ends, or has no direction, nothing is settled: it stays open.
+//
 // Parts of both that move on in one common direction have no other contacts than those of the overlap:
 // a curve that moves on does not meet itself. `settled` looks at the control points over the interval that
 // both parts cover. That interval comes from Newton's method, and that the curves are together over it is
@@ -281,8 +285,10 @@ private:
     }
 
     bool is_within_one(const ExactContact& c) const {
-        return std::any_of(overlaps_.begin(), overlaps_.end(),
-                           [&](const Overlap& o) { return o.a.overlaps(c.a) && o.b.overlaps(c.b); });
+        return std::any_of(overlaps_.begin(), overlaps_.end(), [&](const Overlap& o) {
+            const double x = (c.a.lo - o.a.lo) / o.a.length(), y = (c.b.lo - o.b.lo) / o.b.length();
+            return o.a.overlaps(c.a) && o.b.overlaps(c.b) && std::abs(x - (o.reversed ? 1 - y : y)) < 0.25;
+        });
     }
     // Does each curve stay with the other, as far as a few points say? It need not if one turns round.
     bool is_followed(const Overlap& o) const {

@@ -132,11 +132,20 @@ TEST(IntersectCoincident, closed_pieces_have_no_chord_and_are_searched_all_the_s
     }
 }
 
-// Ends that come nearer than the accuracy, head on: no root is proven.
+// A smooth loop and the same moved: the beginning of each comes near the end of the other, no root is there.
 TEST(IntersectCoincident, ends_that_are_only_near_are_not_proven_to_meet) {
-    const Plane a = plane_bezier({{{0, 0}}, {{1, 0}}, {{2, 0.5}}}),
-                b = plane_bezier({{{2.03125, 0.5}}, {{3, 1}}, {{4, 1}}});
-    for (const auto& c : must(intersect(a, b, {.accuracy = 0.1})).contacts) EXPECT_EQ(c.least, 0);
+    const Plane loop = plane_bezier({{{0, 0}}, {{1, 0}}, {{0, 3}}, {{-1, 0}}, {{0, 0}}});
+    const Plane moved = mapped(loop, [](const Vec<2>& p) { return p + Vec<2>{{0, 1e-5}}; });
+    const PlaneAnswer found = meet(loop, moved, 1e-4);
+    EXPECT_EQ(found.overlaps.size(), 1u);
+    int near = 0;
+    for (const auto& c : found.contacts)
+        if (c.kind == ContactKind::end) {
+            ++near;
+            EXPECT_EQ(c.least, 0);
+            EXPECT_GT(c.gap, 0.9e-5);
+        }
+    EXPECT_EQ(near, 2);
 }
 
 }  // namespace
