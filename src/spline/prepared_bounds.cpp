@@ -13,8 +13,8 @@
 //          ends of the span it is exactly 1 and r exactly 0. Degree 0 is exact. 1 / far takes 2 and a
 //          product for each order. Together n_d = 10 p_d + 1 at most for p_d > 0, whatever the order.
 //   sums   curve: none but those of the functions, whose entries are the coefficients of the piece, each
-//          rounded once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights are
-//          multiplied, then summed in one go: (p_0 + 1) (p_1 + 1) + 1 along the outer two, p_2 + 1.
+//          rounded once. Surface: a product and p_d sums along each axis, p_d + 1. Volume: the outer weights
+//          are multiplied, then summed in one go: (p_0 + 1) (p_1 + 1) + 1 along the outer two, p_2 + 1.
 // Contracted products and sums have fewer. So with k = sum n_d + sums, g = 1.01 k u, a sum is off by at most
 // g times the sum of the absolute values of its terms, and by e = h sum (p_d + 1) for underflow with h the
 // smallest denormal number, twice since a power may be multiplied with the sum.
