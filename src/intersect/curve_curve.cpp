@@ -126,8 +126,10 @@ private:
         for (const Boxes& box : clusters(unclear)) decide(i, j, box, overlaps);
         for (const Boxes& box : clusters(undecided))
             answer_.undecided.push_back(freiform::detail::global(where(i, j), box));
-        const bool same = overlaps.exact(i, j) && overlaps.exact(i, j)->coincide();
-        for (const ExactContact& c : overlaps.isolated()) add_exact(i, j, c, same);
+        if (const auto& isolated = overlaps.isolated(); !isolated.empty()) {
+            const bool same = overlaps.exact(i, j) && overlaps.exact(i, j)->coincide();
+            for (const ExactContact& c : isolated) add_exact(i, j, c, same);
+        }
         for (const Overlap& o : overlaps.overlaps()) {
             Overlap g = o;
             for (double* t : {&g.a.lo, &g.a.hi}) *t = freiform::detail::global(on(a_, i), *t);
