@@ -13,6 +13,8 @@ namespace freiform::cli {
 
 namespace {
 
+constexpr double kSvgTolerance = 1e-6;  // unless given; of the largest object
+
 struct Report {
     double bound = 0;  // the largest of all objects
     double drawn = 0;  // of what SVG has no curve for
@@ -85,7 +87,10 @@ Result<std::string> written(const Document& document, std::string_view format,
                             const ConvertArguments& options, Report& report) {
     if (format == "json") return write_document(document);
     if (format == "bpt") return write_bpt(document);
-    const auto picture = picture_of(document, options.tolerance.value_or(1e-6));
+    double size = 0;
+    for (const Object& o : document.objects) size = std::max(size, control_box(o.shape).diagonal);
+    const auto picture =
+        picture_of(document, options.tolerance.value_or(size > 0 ? kSvgTolerance * size : 1));
     if (!picture) return std::unexpected(picture.error());
     report.drawn = picture->bound;
     return write_svg(picture->picture);
@@ -181,9 +186,10 @@ void add_convert(CommandLine& line) {
         "turned");
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
-    command.number(
-        "--tolerance", options->tolerance,
-        "How far what SVG has no curve for may be off (default 1e-6); the bound reached is reported");
+    command.number("--tolerance", options->tolerance,
+                   "How far what SVG has no curve for may be off (default: a millionth of the largest "
+                   "object); the bound "
+                   "reached is reported");
     command.limits();
     command.action(options, run_convert);
 }

@@ -4,10 +4,9 @@
 // and each path is mapped to the coordinates of the outermost view box with y turned up. An element that is
 // used is walked again at its place. What cannot be shown is named with its line, the rest is delivered.
 //
-// Limits. The tree takes some 72 bytes for an element and 48 for an attribute, so their number is bounded by
-// counting
-// '<' and '=' first. `use` multiplies: what is shown is counted, nesting ends at kMostNested, and an element
-// that is inside itself is not walked again. Entities and document types are not looked at.
+// Limits. The tree takes some 72 bytes for an element and 48 for an attribute: their number is bounded by
+// counting '<' and '=' first. `use` multiplies: what is shown is counted, nesting ends at kMostNested, and an
+// element that is inside itself is not walked again. Entities and document types are not looked at.
 #include "svg_detail.hpp"
 
 #include <freiform/core/scan.hpp>
@@ -66,6 +65,15 @@ bool is_silent(std::string_view element) {
     return std::ranges::find(kSilent, element) != std::end(kSilent);
 }
 
+// Where and how large something is, which style sheets may say too.
+bool is_geometry(std::string_view property) {
+    static constexpr std::string_view kGeometry[] = {"transform", "d",  "x", "y",     "cx",    "cy",
+                                                     "rx",        "ry", "r", "width", "height"};
+    return std::ranges::find(kGeometry, property) != std::end(kGeometry);
+}
+// What is shown of it may be less than its outline.
+constexpr const char* kCuts[] = {"clip-path", "mask"};
+
 // Lengths grow by this under the map.
 double growth(const Affinity<2>& m) {
     return std::sqrt(std::abs(m.linear[0][0] * m.linear[1][1] - m.linear[0][1] * m.linear[1][0]));
@@ -97,6 +105,9 @@ public:
                            " rules of style sheets with selectors of more than a type, class or id"));
         SvgState state{{{{{1, 0}, {0, -1}}}, {}}, {}, {}, 0};
         outermost(root, state);
+        if (unnamed_ > 0)
+            out_.left_out.push_back(
+                {RefusalKind::limit, "", text("and ", unnamed_, " more that are not named one by one")});
         return stopped_ ? Result<SvgPicture>(std::unexpected(*stopped_)) : std::move(out_);
     }
 
@@ -109,7 +120,10 @@ private:
                     id.empty() ? ">" : "\">");
     }
     void leave_out(RefusalKind kind, pugi::xml_node node, std::string why) {
-        if (out_.left_out.size() < kMostLeftOut) out_.left_out.push_back({kind, place(node), std::move(why)});
+        if (out_.left_out.size() < kMostLeftOut)
+            out_.left_out.push_back({kind, place(node), std::move(why)});
+        else
+            ++unnamed_;
     }
 
     void collect(pugi::xml_node root) {
@@ -151,7 +165,7 @@ private:
         const std::pair<const char*, double> units[] = {{"mm", 96 / 25.4}, {"cm", 96 / 2.54}, {"inch", 96}};
         for (const auto& [name, pixels] : units)
             if (box && width && std::abs(*width / box->width / pixels - 1) < 1e-4) out_.unit = name;
-        if (!styled(root, state)) return;
+        if (!styled(root, state) || !moved(root, state)) return;
         m.root_font = state.style.font;
         children(root, state);
     }
@@ -175,11 +189,29 @@ private:
             for (const pugi::xml_attribute& a : node.attributes())
                 if (wanted(a.name())) set(a.name(), a.value());
             for (const Declarations* list : {&css, &own})
-                for (const auto& [property, value] : *list)
+                for (const auto& [property, value] : *list) {
                     if (wanted(property)) set(property, value);
+                    if (size || !is_geometry(property)) continue;
+                    leave_out(RefusalKind::unsupported, node,
+                              text("its style sets ", property, ", which is read as an attribute only"));
+                    style.shown = false;
+                }
             state.metrics.font = style.font;
         }
         return style.shown;
+    }
+
+    // The transform of the element in the state; false where it cannot be read.
+    bool moved(pugi::xml_node node, SvgState& state) {
+        const std::string_view t = node.attribute("transform").value();
+        if (t.empty()) return true;
+        const auto map = transform_of(t);
+        if (!map)
+            leave_out(RefusalKind::unreadable, node,
+                      text("transform \"", t.substr(0, 60), "\" cannot be read"));
+        else
+            state.map = product(state.map, *map);
+        return map.has_value();
     }
 
     void children(pugi::xml_node node, const SvgState& state) {
@@ -199,13 +231,7 @@ private:
             return leave_out(RefusalKind::limit, node,
                              text("elements are nested more than ", kMostNested, " deep"));
         if (!styled(node, state)) return;
-        if (const std::string_view t = node.attribute("transform").value(); !t.empty()) {
-            const auto map = transform_of(t);
-            if (!map)
-                return leave_out(RefusalKind::unreadable, node,
-                                 text("transform \"", t.substr(0, 60), "\" cannot be read"));
-            state.map = product(state.map, *map);
-        }
+        if (!moved(node, state)) return;
         if (name == "g" || name == "a") return children(node, state);
         if (name == "switch") {
             for (pugi::xml_node n = node.first_child(); n; n = n.next_sibling())
@@ -317,42 +343,6 @@ private:
         add(node, name, path, state);
     }
 
-    static Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx,
-                          std::optional<double> ry) {
-        if (!(size[0] > 0) || !(size[1] > 0)) return {};
-        if (rx && *rx < 0) rx.reset();
-        if (ry && *ry < 0) ry.reset();
-        double a = std::min(rx.value_or(ry.value_or(0)), size[0] / 2),
-               b = std::min(ry.value_or(rx.value_or(0)), size[1] / 2);
-        if (!(a > 0) || !(b > 0)) a = b = 0;
-        const Vec<2> end = at + size;
-        Subpath s{{{at[0] + a, at[1]}}, {}, true};
-        Vec<2> last = s.start;
-        const auto line_to = [&](const Vec<2>& p) {
-            if (!(p == last)) s.segments.push_back({1, {last, p}, 1});
-            last = p;
-        };
-        const auto corner = [&](const Vec<2>& middle, const Vec<2>& to) {
-            if (a > 0) s.segments.push_back({2, {last, middle, to}, std::sqrt(0.5)});
-            last = to;
-        };
-        line_to({{end[0] - a, at[1]}}), corner({{end[0], at[1]}}, {{end[0], at[1] + b}});
-        line_to({{end[0], end[1] - b}}), corner(end, {{end[0] - a, end[1]}});
-        line_to({{at[0] + a, end[1]}}), corner({{at[0], end[1]}}, {{at[0], end[1] - b}});
-        line_to({{at[0], at[1] + b}}), corner(at, s.start);
-        line_to(s.start);
-        return {{std::move(s)}};
-    }
-    static Path polygon(const std::vector<double>& v, bool closed) {
-        if (v.size() < 4) return {};
-        Subpath s{{{v[0], v[1]}}, {}, closed};
-        for (std::size_t i = 2; i + 1 < v.size(); i += 2)
-            s.segments.push_back({1, {Vec<2>{{v[i - 2], v[i - 1]}}, Vec<2>{{v[i], v[i + 1]}}}, 1});
-        const Vec<2> last = s.segments.back().back();
-        if (closed && !(last == s.start)) s.segments.push_back({1, {last, s.start}, 1});
-        return {{std::move(s)}};
-    }
-
     void add(pugi::xml_node node, std::string_view name, const Path& path, const SvgState& state) {
         if (path.subpaths.empty() || !state.style.visible) return;
         SvgShape out{node.attribute("id").value(),
@@ -377,6 +367,10 @@ private:
                                text("more than ", kMostSegments, " segments are shown")};
             return;
         }
+        for (const char* cut : kCuts)
+            if (const std::string_view by = node.attribute(cut).value(); !by.empty() && by != "none")
+                leave_out(RefusalKind::unsupported, node,
+                          text(cut, " is not applied: all of its outline is there"));
         const double by = growth(state.map);
         out.line.width *= by, out.line.dash_offset *= by;
         for (double& d : out.line.dashes) d *= by;
@@ -391,16 +385,16 @@ private:
     StyleSheet sheet_;
     SvgPicture out_;
     std::vector<pugi::xml_node> used_;
-    std::size_t shown_ = 0, segments_ = 0;
+    std::size_t shown_ = 0, segments_ = 0, unnamed_ = 0;
     std::optional<Refusal> stopped_;
 };
 
 }  // namespace
 
-Result<SvgPicture> read_svg(std::string_view bytes, std::size_t max_bytes) {
+Result<SvgPicture> read_svg(std::string_view bytes) {
     const std::size_t needed = 72 * std::size_t(std::ranges::count(bytes, '<')) +
                                48 * std::size_t(std::ranges::count(bytes, '=')) + 2 * bytes.size();
-    if (bytes.size() > max_bytes || needed > kMostMemory)
+    if (needed > kMostMemory)
         return refuse(RefusalKind::limit, "",
                       text("the elements of the file would take about ", needed >> 20, " MiB; the limit is ",
                            kMostMemory >> 20));

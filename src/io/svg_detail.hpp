@@ -36,6 +36,11 @@ std::optional<ViewBox> view_box(std::string_view s);
 // From the coordinates of the view box to a viewport of this size at the origin.
 Affinity<2> fitted(const ViewBox& box, double width, double height, std::string_view aspect);
 
+// A rectangle, its corners rounded by quarters of ellipses; none if a side is not positive.
+Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx, std::optional<double> ry);
+// Lines through pairs of numbers, an odd last one apart.
+Path polygon(const std::vector<double>& v, bool closed);
+
 using Declarations = std::vector<std::pair<std::string, std::string>>;  // property, value
 Declarations declarations(std::string_view s);
 

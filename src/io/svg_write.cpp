@@ -81,9 +81,11 @@ Result<SvgOfDocument> picture_of(const Document& document, double tolerance) {
                     return subpath_of(s, tolerance);
                 else
                     return refuse(RefusalKind::unsupported, "",
-                                  text("SVG holds plane curves, and this is ",
-                                       TensorPatch<S> ? "none" : "something else",
-                                       " (freiform draw makes pictures of everything)"));
+                                  text("SVG holds plane curves, not a ", type_name(o.shape),
+                                       type_name(o.shape) == "curve"     ? " in space"
+                                       : type_name(o.shape) == "trimmed" ? " surface"
+                                                                         : "",
+                                       "; freiform draw makes pictures of everything"));
             },
             o.shape);
         if (!subpath) return refuse_within(label, subpath.error());

@@ -103,8 +103,9 @@ double distance_bound(const Homogeneous& p, const std::array<Vec<2>, 4>& q) {
     return (most + 8 * (n + 8) * kUnitRoundoff * 2 * reach) / least * (1 + 1e-12);
 }
 
-// The pieces of one Bezier piece, in order, onto `out`; false where too many are needed.
-bool approximate(Homogeneous piece, double tolerance, SubpathOfCurve& out) {
+// The pieces of one Bezier piece, in order, onto `out`; what stands against it where that cannot be.
+std::optional<Refusal> approximate(Homogeneous piece, double tolerance, SubpathOfCurve& out) {
+    constexpr std::size_t kDeepest = 60;  // halvings
     std::vector<Homogeneous> stack{std::move(piece)};
     while (!stack.empty()) {
         Homogeneous p = std::move(stack.back());
@@ -116,26 +117,35 @@ bool approximate(Homogeneous piece, double tolerance, SubpathOfCurve& out) {
             out.bound = std::max(out.bound, bound);
             continue;
         }
-        if (out.subpath.segments.size() + stack.size() > kMostSegments) return false;
+        if (out.subpath.segments.size() + stack.size() > kMostSegments)
+            return Refusal{RefusalKind::limit, "",
+                           text("within ", tolerance, " it takes more than ", kMostSegments, " segments")};
+        if (stack.size() > kDeepest)
+            return Refusal{RefusalKind::ill_conditioned, "",
+                           text(tolerance, " is below the rounding of the coordinates")};
         Homogeneous left = p;
         keep_left(Fibre<Hom<2>>{left.data(), int(left.size()), 1}, 0.5);
         keep_right(Fibre<Hom<2>>{p.data(), int(p.size()), 1}, 0.5);
         p.front() = left.back();
         stack.push_back(std::move(p)), stack.push_back(std::move(left));
-        if (stack.size() > 60) return false;  // parts of 2^-60 of the piece: the tolerance is below rounding
     }
-    return true;
+    return std::nullopt;
 }
 
 }  // namespace
 
 std::vector<PathSegment> detail::cubics_of(const PathSegment& segment, double tolerance) {
+    const Vec<2> origin = segment.front();  // what counts for rounding is the size of the segment
     Homogeneous p;
     for (int i = 0; i <= segment.degree; ++i)
-        p.push_back(
-            weighted(segment.points[std::size_t(i)], segment.degree == 2 && i == 1 ? segment.weight : 1.0));
+        p.push_back(weighted(segment.points[std::size_t(i)] - origin,
+                             segment.degree == 2 && i == 1 ? segment.weight : 1.0));
     SubpathOfCurve out;
-    if (!approximate(std::move(p), tolerance, out)) return {};
+    for (double near = tolerance; std::isfinite(near) && approximate(p, near, out); near *= 16) out = {};
+    if (out.subpath.segments.empty()) out.subpath.segments.push_back({3, hermite_cubic(p), 1});
+    for (PathSegment& s : out.subpath.segments)
+        for (Vec<2>& x : s.points) x += origin;
+    out.subpath.segments.back().points[3] = segment.back();
     return std::move(out.subpath.segments);
 }
 
@@ -169,9 +179,8 @@ Result<SubpathOfCurve> subpath_of(const Curve<P>& curve, double tolerance) {
         lower(lowered);
         if (const auto s = as_segment(lowered, is_rational(lowered)))
             segments.push_back(*s);
-        else if (!approximate(std::move(p), tolerance, out))
-            return refuse(RefusalKind::limit, text("piece ", i),
-                          text("within ", tolerance, " it takes more than ", kMostSegments, " segments"));
+        else if (auto refused = approximate(std::move(p), tolerance, out))
+            return refuse_within(text("piece ", i), *refused);
         if (i > 0) segments[first].points[0] = segments[first - 1].back();
     }
     out.subpath.closed = out.subpath.segments.back().back() == out.subpath.start;

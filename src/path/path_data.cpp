@@ -221,7 +221,9 @@ double size_of(const PathSegment& s) {
 bool is_kept(const PathSegment& s, const Arc& arc) {
     const auto read = elliptic_arc(s.front(), s.back(), arc.rx, arc.ry, arc.angle * (std::numbers::pi / 180),
                                    false, arc.sweep);
-    const double near = kArcKept * size_of(s);
+    // Reading rounds coordinates as writing has done before.
+    const double near =
+        kArcKept * size_of(s) + 8 * kUnitRoundoff * std::max(max_abs(s.front()), max_abs(s.back()));
     return read.size() == 1 && read[0].degree == 2 && norm(read[0].points[1] - s.points[1]) <= near &&
            std::abs(read[0].weight - s.weight) <= kArcKept;
 }

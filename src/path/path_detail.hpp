@@ -4,7 +4,7 @@
 
 namespace freiform::detail {
 
-// The segment as cubics within the tolerance; nothing where that takes too many.
+// The segment as cubics within the tolerance, or the least one above it that rounding allows.
 std::vector<PathSegment> cubics_of(const PathSegment& segment, double tolerance);
 
 }  // namespace freiform::detail

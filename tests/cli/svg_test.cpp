@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace freiform::test {
@@ -48,6 +49,34 @@ TEST_F(SvgProgram, says_what_it_leaves_out_and_refuses_what_is_damaged) {
     const Ran solid = run({"convert", kTeapot, "-o", "t.svg"});
     EXPECT_EQ(solid.code, 3);
     EXPECT_NE(solid.err.find("SVG holds plane curves"), solid.err.npos) << solid.err;
+}
+
+// Unless it is said how near, a millionth of the size, whatever the unit.
+TEST_F(SvgProgram, approximates_small_and_large_curves_alike) {
+    std::size_t segments = 0;
+    for (const double size : {1e-9, 1.0, 1e9}) {
+        const SvgJson quintic = {{"freiform", 1},
+                                 {"objects",
+                                  {{{"type", "curve"},
+                                    {"degree", 5},
+                                    {"points",
+                                     {{0, 0},
+                                      {size, 2 * size},
+                                      {2 * size, -size},
+                                      {3 * size, size},
+                                      {4 * size, 3 * size},
+                                      {5 * size, 0}}}}}}};
+        file("quintic.json", quintic.dump());
+        const Ran ran = run({"convert", "quintic.json", "-o", "quintic.svg", "--json"});
+        ASSERT_EQ(ran.code, 0) << ran.err;
+        const double bound = SvgJson::parse(ran.out)["error_bound"].get<double>();
+        EXPECT_GT(bound, 1e-8 * size);
+        EXPECT_LE(bound, 6.41e-6 * size);
+        const std::string svg = content(path("quintic.svg"));
+        const auto count = std::size_t(std::ranges::count(svg, 'C'));
+        if (segments > 0) EXPECT_EQ(count, segments) << size;
+        segments = count;
+    }
 }
 
 }  // namespace

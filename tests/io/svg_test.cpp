@@ -56,6 +56,8 @@ TEST(Svg, transforms_act_from_the_inside_out) {
     EXPECT_EQ(data("<path transform='matrix(1 2 3 4 5 6)' d='M 1 1 L 0 0'/>"), "M 9,12 L 5,6");
     EXPECT_EQ(data("<path transform='rotate(180, 5, 5) , translate( 1 )' d='M 0 0 L 1 1'/>"), "M 9,10 L 8,9");
     const SvgPicture skew = picture("<path transform='skewX(45)' d='M 0 1 L 0 2'/>");
+    EXPECT_EQ(data(picture("<path d='M 0 0 L 1 1'/>", "viewBox='0 0 9 9' transform='scale(3)'")),
+              "M 0,0 L 3,3");
     EXPECT_NEAR(skew.shapes[0].path.subpaths[0].start[0], 1, 1e-15);
     const SvgPicture bad =
         picture("\n\n<path id='p' transform='turn(3)' d='M 0 0 L 1 1'/><path d='M 0 0 L 1 1'/>");
@@ -147,6 +149,18 @@ TEST(Svg, what_is_damaged_is_refused_or_named) {
                       }())
                   .left_out.size(),
               1u);
+    // So much is left out that only its number is said.
+    std::string many;
+    for (int i = 0; i < 1500; ++i) many += "<text/>";
+    const SvgPicture all = picture(many);
+    ASSERT_EQ(all.left_out.size(), 1001u);
+    EXPECT_NE(all.left_out.back().message.find("500 more"), std::string::npos) << all.left_out.back().message;
+    // Geometry in styles is not read; what has it is named instead of shown in a wrong place.
+    const SvgPicture moved = picture(
+        "<path style='transform: scale(2)' d='M 0 0 L 1 1'/><circle r='1' style='r: 5px'/>"
+        "<path d='M 3 3 L 4 4' clip-path='url(#c)'/>");
+    EXPECT_EQ(data(moved), "M 3,3 L 4,4");
+    EXPECT_EQ(moved.left_out.size(), 3u);  // the last one for its clip
     // Entities of a document type stay what they are.
     const auto laughs = read_svg("<!DOCTYPE svg [<!ENTITY a \"M 0 0 L 1 1\">]><svg><path d='&a;'/></svg>");
     ASSERT_TRUE(laughs);

@@ -154,6 +154,27 @@ TEST(Path, is_written_so_that_it_is_read_back_the_same) {
     }
 }
 
+// Segments may become several on the way, but none is lost: the way around is as long, and ends in the same
+// points.
+TEST(Path, arcs_far_from_the_origin_or_of_thin_ellipses_are_written_too) {
+    const auto length_of = [](const Path& p) {
+        return std::visit([](const auto& c) { return length(c, 1e-9).value; }, curve_of(p.subpaths[0]));
+    };
+    for (const double far : {1e3, 1e6, 1e9})
+        for (const double thin : {1.0, 1e-3, 1e-7}) {
+            const Path path{{ellipse({{far, -far}}, 1, thin)}};
+            const Path back = read(path_data(path));
+            ASSERT_EQ(back.subpaths.size(), 1u);
+            EXPECT_TRUE(back.subpaths[0].closed);
+            EXPECT_NEAR(length_of(back), length_of(path), 1e-15 * far + 1e-8) << far << ' ' << thin;
+            EXPECT_EQ(back.subpaths[0].segments.back().back(), path.subpaths[0].start);
+        }
+    for (const double weight : {1e-3, 0.3, 1 - 1e-5, 1 - 1e-12}) {
+        const Path path{{{{{0, 0}}, {{2, {Vec<2>{{0, 0}}, {{1, 1}}, {{2, 0}}}, weight}}, false}}};
+        EXPECT_NEAR(length_of(read(path_data(path))), length_of(path), 1e-8) << weight;
+    }
+}
+
 TEST(Path, curves_of_paths_are_the_same_and_come_back) {
     const Path path = read("M 1 0 L 3 1 C 4 2 5 2 6 0 Q 7 1 8 0 A 2 1 30 1 1 9 2 Z");
     const auto curve = std::get<Curve<Hom<2>>>(curve_of(path.subpaths[0]));
@@ -217,6 +238,10 @@ TEST(Path, other_curves_are_approximated_within_the_tolerance) {
     test::expect_refusal(subpath_of(curve, 0), RefusalKind::invalid, "tolerance");
     const auto jumps = *Curve<Vec<2>>::make({*BSplineBasis::make(1, {0, 0, 1, 1, 2, 2})},
                                             Net<1, Vec<2>>({4}, {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{2, 1}}}));
+    const auto quartic =
+        *Curve<Vec<2>>::make({*BSplineBasis::bezier(4)},
+                             Net<1, Vec<2>>({5}, {{{9, 9}}, {{10, 12}}, {{11, 8}}, {{12, 12}}, {{13, 9}}}));
+    test::expect_refusal(subpath_of(quartic, 1e-15), RefusalKind::ill_conditioned, "piece 0");
     test::expect_refusal(subpath_of(jumps, 1), RefusalKind::unsupported, "at 1");
 }
 

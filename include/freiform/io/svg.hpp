@@ -48,9 +48,11 @@ struct SvgPicture {
 // Elements: path, rect, circle, ellipse, line, polyline, polygon, in svg, g, a, switch and use. Transforms,
 // units, nested viewports, styles by attributes, `style` and style sheets (selectors of one type, class or
 // id). What is in defs or hidden is not shown. References to other files and entities of a document type are
-// not followed. Refuses (unreadable) what is not XML or not SVG, (limit) more than max_bytes, more elements
-// than 200 MiB hold, 10^6 shown elements or 10^7 segments (as nested `use` makes them).
-Result<SvgPicture> read_svg(std::string_view bytes, std::size_t max_bytes = std::size_t(256) << 20);
+// not followed. Where something is and how large is read from attributes alone: elements whose styles say it
+// are left out and named. Clips and masks are not applied, and named. Refuses (unreadable) what is not XML or
+// not SVG, (limit) more elements than 200 MiB hold, 10^6 shown elements or 10^7 segments (as nested `use`
+// makes them).
+Result<SvgPicture> read_svg(std::string_view bytes);
 
 // Each subpath that has a segment as a curve, called as its shape, "/2" and so on after the first.
 Document document_of(const SvgPicture& picture);

@@ -57,7 +57,8 @@ std::variant<Curve<Vec<2>>, Curve<Hom<2>>> curve_of(const Subpath& subpath);
 // A curve as a subpath, closed if it ends exactly where it begins. Pieces that are polynomial of degree <= 3,
 // rational of degree 2 without being hyperbolas, or were raised from such, up to rounding; all others as
 // cubics within `tolerance`. Refuses (invalid) tolerances that are not positive, (unsupported) curves that
-// jump, (limit) curves that would need more than 100,000 segments.
+// jump, (limit) curves that would need more than 100,000 segments, (ill_conditioned) tolerances below the
+// rounding of the coordinates.
 struct SubpathOfCurve {
     Subpath subpath;
     double bound =
