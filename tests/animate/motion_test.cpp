@@ -1,0 +1,197 @@
+#include "random.hpp"
+#include "refusal.hpp"
+
+#include <freiform/animate/motion.hpp>
+#include <freiform/make/conic.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+namespace freiform {
+namespace {
+
+using test::Random;
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+Curve<Vec<1>> speed_curve(std::vector<double> values, double length, int degree) {
+    std::vector<Vec<1>> net;
+    for (const double v : values) net.push_back({{v}});
+    const int n = int(values.size());
+    std::vector<double> knots;
+    for (int i = 0; i < n + degree + 1; ++i)
+        knots.push_back(length * std::clamp(i - degree, 0, n - degree) / double(n - degree));
+    auto basis = BSplineBasis::make(degree, knots);
+    return *Curve<Vec<1>>::make({*basis}, Net<1, Vec<1>>({n}, net));
+}
+
+TEST(Motion, keeps_its_limits_and_is_as_fast_as_they_allow) {
+    Random random(11);
+    int reached_speed = 0, reached_acceleration = 0;
+    for (int round = 0; round < 400; ++round) {
+        const MotionLimits limits{std::pow(10, random.real(-1, 1)),
+                                  round % 5 == 0 ? kNoLimit : std::pow(10, random.real(-1, 1)),
+                                  round % 5 == 1 ? kNoLimit : std::pow(10, random.real(-1, 1))};
+        const double length = std::pow(10, random.real(-2, 2));
+        const auto m = *Motion::limited(length, limits);
+        EXPECT_EQ(m.length(), length);
+        const double all = m.duration();
+        double top = 0, most = 0, before = 0;
+        const int n = 2000;
+        for (int i = 0; i <= n; ++i) {
+            const auto s = m.at(all * i / n);
+            EXPECT_GE(s.distance, before - 1e-12 * length);
+            // It goes the same way back.
+            EXPECT_NEAR(s.distance + m.at(all * (n - i) / n).distance, length, 1e-11 * length);
+            EXPECT_LE(s.bound, 1e-13 * length);
+            if (i > 0 && i < n) {
+                // The speed is the derivative.
+                const double h = 1e-4 * all;
+                if (i > 2 && i < n - 2 && std::isfinite(limits.jerk))
+                    EXPECT_NEAR((m.at(all * i / n + h).distance - m.at(all * i / n - h).distance) / (2 * h),
+                                s.speed, 1e-4 * limits.speed + limits.jerk * h * h);
+                top = std::max(top, s.speed), most = std::max(most, std::abs(s.acceleration));
+            }
+            before = s.distance;
+        }
+        EXPECT_LE(top, limits.speed * (1 + 1e-12));
+        EXPECT_LE(most, limits.acceleration * (1 + 1e-12));
+        // At least one of them is reached, or the jerk never rests: then it is length = 2 j (T / 4)^3.
+        const bool fast = top > limits.speed * (1 - 1e-9), strong = most > limits.acceleration * (1 - 1e-2);
+        reached_speed += fast, reached_acceleration += strong;
+        if (!fast && !strong && std::isfinite(limits.jerk))
+            EXPECT_NEAR(2 * limits.jerk * std::pow(all / 4, 3), length, 1e-9 * length);
+        // Known durations without a limit of the jerk.
+        if (std::isinf(limits.jerk) && std::isfinite(limits.acceleration)) {
+            const double v = limits.speed, a = limits.acceleration;
+            EXPECT_NEAR(all, length > v * v / a ? length / v + v / a : 2 * std::sqrt(length / a),
+                        1e-12 * all);
+        }
+        // Where speed and acceleration are reached: length / v + v / a + a / j.
+        const double v = limits.speed, a = limits.acceleration, j = limits.jerk;
+        if (std::isfinite(a) && std::isfinite(j) && v >= a * a / j && length >= v * (v / a + a / j))
+            EXPECT_NEAR(all, length / v + v / a + a / j, 1e-12 * all);
+    }
+    EXPECT_GT(reached_speed, 50);
+    EXPECT_GT(reached_acceleration, 50);
+}
+
+TEST(Motion, phases_join_in_place_speed_and_acceleration) {
+    const auto m = *Motion::limited(10, {2, 1.5, 3});
+    for (int i = 1; i < 100000; ++i) {
+        const double t = m.duration() * i / 100000, h = m.duration() / 100000;
+        const auto a = m.at(t - h), b = m.at(t);
+        EXPECT_LE(std::abs(b.distance - a.distance), 2.001 * h);
+        EXPECT_LE(std::abs(b.speed - a.speed), 1.501 * h);
+        EXPECT_LE(std::abs(b.acceleration - a.acceleration), 3.001 * h);
+    }
+}
+
+TEST(Motion, by_speed_is_the_integral) {
+    // v = 1 + s on [0, 3]: s = e^t - 1.
+    const auto growing = *Motion::with_speed(speed_curve({1, 4}, 3, 1), 1e-9);
+    EXPECT_NEAR(growing.duration(), std::log(4.0), 1e-9);
+    for (double t = 0; t < std::log(4.0); t += 0.01) {
+        const auto s = growing.at(t);
+        EXPECT_LE(std::abs(s.distance - (std::exp(t) - 1)), s.bound);
+        EXPECT_LE(s.bound, 1e-9);
+        EXPECT_NEAR(s.speed, std::exp(t), 1e-8);
+        EXPECT_NEAR(s.acceleration, std::exp(t), 1e-7);
+    }
+    // v = 1 + s^2 on [0, 1]: s = tan t.
+    const auto curved = *Motion::with_speed(speed_curve({1, 1, 2}, 1, 2), 1e-7);
+    double closest = 0;
+    for (double t = 0; t < std::numbers::pi / 4; t += 0.01) {
+        const auto s = curved.at(t);
+        EXPECT_LE(std::abs(s.distance - std::tan(t)), s.bound);
+        closest = std::max(closest, std::abs(s.distance - std::tan(t)) / s.bound);
+    }
+    EXPECT_GT(closest, 0.001);
+    // Against many small steps, of a spline that is almost still in places.
+    const auto v = speed_curve({1, 0.01, 2, 0.02, 3, 1}, 5, 3);
+    const auto m = *Motion::with_speed(v, 1e-6);
+    double time = 0;
+    const int n = 200000;
+    for (int i = 0; i < n; ++i) {
+        time += 5.0 / n / v(5 * (i + 0.5) / n)[0];
+        if (i % 10000 == 9999) EXPECT_NEAR(m.at(time).distance, 5 * (i + 1.0) / n, 2e-6) << i;
+    }
+}
+
+TEST(Motion, refuses_what_cannot_be) {
+    test::expect_refusal(Motion::limited(-1, {}), RefusalKind::invalid, "length");
+    test::expect_refusal(Motion::limited(1, {0}), RefusalKind::invalid, "speed");
+    test::expect_refusal(Motion::limited(1, {1, -1}), RefusalKind::invalid, "acceleration");
+    test::expect_refusal(Motion::limited(1, {kNoLimit}), RefusalKind::invalid, "speed");
+    test::expect_refusal(Motion::uniform(1, 0), RefusalKind::invalid, "duration");
+    test::expect_refusal(Motion::with_speed(speed_curve({1, -1}, 1, 1), 1e-6), RefusalKind::invalid, "speed",
+                         "distance 1");
+    test::expect_refusal(Motion::with_speed(speed_curve({1e-30, 1}, 1, 1), 1e-9), RefusalKind::limit,
+                         "speed");
+    EXPECT_EQ(Motion::limited(0, {})->duration(), 0);
+    EXPECT_EQ(Motion::limited(3, {2})->duration(), 1.5);
+}
+
+TEST(Trajectory, moves_along_a_circle_as_the_formula_says) {
+    const auto ring = *conic_arc(*circle(Vec<2>{{0, 0}}, 2), {0, 1.5 * std::numbers::pi});
+    const double length = 3 * std::numbers::pi;
+    const auto motion = *Motion::limited(length, {2, 1, 4});
+    for (const Facing facing : {Facing::fixed, Facing::least_turning, Facing::upright}) {
+        const auto t = *Trajectory::make(ring.curve, motion, {1e-9, facing});
+        for (int i = 0; i <= 50; ++i) {
+            const double time = motion.duration() * i / 50, angle = motion.at(time).distance / 2;
+            const auto s = *t.at(time);
+            const Vec<3> place{{2 * std::cos(angle), 2 * std::sin(angle), 0}},
+                along{{-std::sin(angle), std::cos(angle), 0}};
+            EXPECT_LE(norm(s.point - place), s.bound + 1e-12);
+            EXPECT_LE(s.bound, 2e-9);
+            EXPECT_LE(norm(s.tangent - along), 1e-8);
+            if (facing == Facing::fixed) {
+                EXPECT_EQ(s.facing, Quaternion{});
+            } else {  // the circle is plane: both are the same
+                EXPECT_LE(norm(rotated(s.facing, {{1, 0, 0}}) - along), 1e-8);
+                EXPECT_LE(norm(rotated(s.facing, {{0, 0, 1}}) - Vec<3>{{0, 0, 1}}), 1e-8);
+            }
+        }
+    }
+}
+
+TEST(Trajectory, least_turning_does_not_turn_about_the_way) {
+    Random random(12);
+    std::vector<Vec<3>> net;
+    for (int i = 0; i < 7; ++i) net.push_back({{double(i), random.real(-1, 1), random.real(-1, 1)}});
+    const auto curve = *Curve<Vec<3>>::make({*BSplineBasis::clamped_uniform(3, 7)}, Net<1, Vec<3>>({7}, net));
+    const double all = length(curve, 1e-9).value;
+    const auto t = *Trajectory::make(curve, *Motion::uniform(all, 1), {1e-8, Facing::least_turning});
+    double turned = 0, upright = 0;
+    const auto other = *Trajectory::make(curve, *Motion::uniform(all, 1), {1e-8, Facing::upright});
+    const int n = 1000;
+    const auto about = [](const Trajectory::State& a, const Trajectory::State& b) {
+        return dot(2.0 * log(conjugate(a.facing) * b.facing), Vec<3>{{1, 0, 0}});
+    };
+    for (int i = 0; i < n; ++i) {
+        turned += std::abs(about(*t.at(double(i) / n), *t.at((i + 1.0) / n)));
+        upright += std::abs(about(*other.at(double(i) / n), *other.at((i + 1.0) / n)));
+    }
+    EXPECT_LT(turned, 1e-3);
+    EXPECT_GT(upright, 0.1);
+    EXPECT_LE(t.at(0.5)->facing_bound, 1e-9);
+    EXPECT_GT(t.at(0.5)->facing_bound, 0);
+}
+
+TEST(Trajectory, refuses_by_name) {
+    const auto line =
+        *Curve<Vec<3>>::make({*BSplineBasis::bezier(1)}, Net<1, Vec<3>>({2}, {{{0, 0, 0}}, {{0, 0, 2}}}));
+    test::expect_refusal(Trajectory::make(line, *Motion::uniform(1, 1), {1e-6}), RefusalKind::invalid,
+                         "motion");
+    test::expect_refusal(Trajectory::make(line, *Motion::uniform(2, 1), {0}), RefusalKind::invalid,
+                         "accuracy");
+    const auto up = *Trajectory::make(line, *Motion::uniform(2, 1), {1e-6, Facing::upright});
+    test::expect_refusal(up.at(0.5), RefusalKind::ill_conditioned, "at 0.5");
+    test::expect_refusal(up.at(NAN), RefusalKind::nonfinite, "time");
+}
+
+}  // namespace
+}  // namespace freiform
