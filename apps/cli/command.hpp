@@ -152,6 +152,8 @@ void add_interpolate(CommandLine& line);
 void add_flatten(CommandLine& line);
 void add_length(CommandLine& line);
 void add_fit(CommandLine& line);
+void add_ease(CommandLine& line);
+void add_animate(CommandLine& line);
 void add_revolve(CommandLine& line);
 void add_extrude(CommandLine& line);
 void add_ruled(CommandLine& line);

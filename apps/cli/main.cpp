@@ -34,6 +34,8 @@ void add_commands(CommandLine& line) {
     add_flatten(line);
     add_length(line);
     add_fit(line);
+    add_ease(line);
+    add_animate(line);
     add_revolve(line);
     add_extrude(line);
     add_ruled(line);

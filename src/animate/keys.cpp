@@ -16,11 +16,11 @@ namespace freiform {
 namespace {
 
 // Into the times of the keys. Repeating and mirroring round once more.
-double brought_inside(double t, Interval on, Outside outside) {
+double brought_inside(double t, Interval on, BeyondKeys outside) {
     if (t >= on.lo && t <= on.hi) return t;
     const double length = on.hi - on.lo;
-    if (outside == Outside::hold || !(length > 0)) return t < on.lo ? on.lo : on.hi;
-    const bool mirror = outside == Outside::mirror;
+    if (outside == BeyondKeys::hold || !(length > 0)) return t < on.lo ? on.lo : on.hi;
+    const bool mirror = outside == BeyondKeys::mirror;
     double rest = std::fmod(t - on.lo, mirror ? 2 * length : length);
     if (rest < 0) rest += mirror ? 2 * length : length;
     if (mirror && rest > length) rest = 2 * length - rest;
@@ -78,7 +78,7 @@ std::array<Bounded, std::size_t(D)> between_keys(const Key<D>& a, const Key<D>& 
 }  // namespace
 
 template <int D>
-Result<Track<D>> Track<D>::make(std::vector<Key<D>> keys, Outside outside) {
+Result<Track<D>> Track<D>::make(std::vector<Key<D>> keys, BeyondKeys outside) {
     if (keys.empty()) return refuse(RefusalKind::invalid, "keys", "at least one key is expected");
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const Key<D>& k = keys[i];

@@ -7,23 +7,50 @@
 #include <freiform/animate/motion.hpp>
 #include <freiform/make/frame_sweep.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
 namespace freiform {
 
 struct Trajectory::Way {
-    // A curve, its arc length, and the surface from the curve to the tips of the frame's first vector.
+    // A curve, its arc length, and the surfaces from its parts to the tips of the frame's first vector.
     template <class P>
     struct Of {
         Curve<P> curve;
         ArcLength<P> length;
-        std::optional<Surface<P>> frame;
+        std::vector<Surface<P>> frame;
     };
     std::variant<Of<Vec<3>>, Of<Hom<3>>> of;
     TrajectoryOptions options;
     double size = 1, frame_bound = 0;
 };
+
+namespace {
+
+// Of the curve between knots where its direction may jump.
+template <class P>
+std::vector<Curve<P>> smooth_parts(const Curve<P>& curve) {
+    const BSplineBasis& basis = curve.basis();
+    std::vector<double> cuts;
+    for (const double t : basis.breaks())
+        if (t == basis.domain().lo || t == basis.domain().hi || basis.multiplicity(t) >= basis.degree())
+            cuts.push_back(t);
+    std::vector<Curve<P>> parts;
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+        parts.push_back(*restrict_to(curve, 0, {cuts[i], cuts[i + 1]}));
+    return parts;
+}
+
+// The vector that the smallest turn from one unit vector to another makes of r, by two reflections.
+Vec<3> turned_along(const Vec<3>& r, const Vec<3>& from, const Vec<3>& to) {
+    const auto reflected = [](const Vec<3>& x, const Vec<3>& n) {
+        return dot(n, n) > 0 ? x - (2 * dot(n, x) / dot(n, n)) * n : x;
+    };
+    return reflected(reflected(r, from), from + to);
+}
+
+}  // namespace
 
 template <class P>
 Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
@@ -33,7 +60,7 @@ Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
     if (!is_finite(options.up) || (options.facing == Facing::upright && options.up == Vec<3>{}))
         return refuse(RefusalKind::invalid, "up", "a direction is expected");
     using Q = InSpace<P>;
-    Way::Of<Q> of{in_space(curve), ArcLength<Q>(in_space(curve), options.accuracy / 2), std::nullopt};
+    Way::Of<Q> of{in_space(curve), ArcLength<Q>(in_space(curve), options.accuracy / 2), {}};
     const Measure length = of.length.total();
     if (!(std::abs(length.value - motion.length()) <= 1e-3 * length.value))
         return refuse(RefusalKind::invalid, "motion",
@@ -42,10 +69,18 @@ Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
     if (options.facing == Facing::least_turning) {
         const auto segment =
             Curve<Vec<2>>::make({*BSplineBasis::bezier(1)}, Net<1, Vec<2>>({2}, {{{0, 0}}, {{size, 0}}}));
-        auto swept = sweep(*segment, of.curve, {1e-9 * size, options.up});
-        if (!swept) return refuse_within("curve", swept.error());
-        bound = swept->bound / size * (1 + 0x1p-50);
-        of.frame = std::move(swept->surface);
+        Vec<3> start = options.up, along{};
+        for (const Curve<Q>& part : smooth_parts(of.curve)) {
+            const Interval on = part.domain()[0];
+            const Vec<3> begins = unit(part.template jet<1>(Param<1>{on.lo}).d[1]);
+            if (!of.frame.empty()) start = turned_along(start, along, begins);
+            auto swept = sweep(*segment, part, {options.facing_accuracy * size, start});
+            if (!swept) return refuse_within("curve", swept.error());
+            bound += swept->bound / size * (1 + 0x1p-50) + 0x1p-48;
+            start = unit(swept->surface(1.0, on.hi) - swept->surface(0.0, on.hi));
+            along = unit(part.template jet<1>(Param<1>{on.hi}).d[1]);
+            of.frame.push_back(std::move(swept->surface));
+        }
     }
     return Trajectory(motion, std::make_shared<const Way>(Way{std::move(of), options, size, bound}));
 }
@@ -80,7 +115,11 @@ Result<Trajectory::State> Trajectory::at(double time) const {
                 side = unit(side);
                 z = cross(out.tangent, side);
             } else {
-                const Vec<3> tip = (*of.frame)(1.0, place->parameter) - (*of.frame)(0.0, place->parameter);
+                const auto after =
+                    std::ranges::upper_bound(of.frame.begin() + 1, of.frame.end(), place->parameter, {},
+                                             [](const auto& f) { return f.domain()[1].lo; });
+                const auto& frame = *(after - 1);
+                const Vec<3> tip = frame(1.0, place->parameter) - frame(0.0, place->parameter);
                 z = unit(tip - dot(tip, out.tangent) * out.tangent);
                 side = cross(z, out.tangent);
                 out.facing_bound = way_->frame_bound;

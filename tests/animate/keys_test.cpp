@@ -164,8 +164,8 @@ TEST(Keys, tangents_are_those_of_the_schemes) {
 
 TEST(Keys, repeat_and_mirror) {
     const std::vector<Key<1>> keys = {{.time = 1, .value = {{0}}}, {.time = 3, .value = {{4}}}};
-    const auto repeated = *Track<1>::make(keys, Outside::repeat),
-               mirrored = *Track<1>::make(keys, Outside::mirror);
+    const auto repeated = *Track<1>::make(keys, BeyondKeys::repeat),
+               mirrored = *Track<1>::make(keys, BeyondKeys::mirror);
     for (const double t : {1.25, 2.0, 2.75}) {
         const double v = (*Track<1>::make(keys))(t)[0];
         for (const double turns : {-6.0, 2.0, 40.0}) EXPECT_EQ(repeated(t + turns)[0], v);

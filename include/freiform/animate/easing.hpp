@@ -9,7 +9,8 @@
 namespace freiform {
 
 // The function y(x) that the cubic Bezier curve with the points (0, 0), (x1, y1), (x2, y2), (1, 1) is the
-// graph of: `cubic-bezier(x1, y1, x2, y2)` of CSS. Outside [0, 1] it goes on along its tangents at the ends.
+// graph of: `cubic-bezier(x1, y1, x2, y2)` of CSS. BeyondKeys [0, 1] it goes on along its tangents at the
+// ends.
 //   const auto ease = *CubicBezierEasing::make(0.25, 0.1, 0.25, 1);
 //   const Bounded y = ease(0.5);
 class CubicBezierEasing {

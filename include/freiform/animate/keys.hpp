@@ -34,7 +34,7 @@ struct Key {
 };
 
 // What holds before the first key and after the last one.
-enum class Outside { hold, repeat, mirror };
+enum class BeyondKeys { hold, repeat, mirror };
 
 // Key frames that were checked; const and safe to share.
 //   const auto track = *Track<1>::make({{.time = 0, .value = {{0}}, .next = Between::step}, {.time = 1,
@@ -44,7 +44,7 @@ class Track {
 public:
     // Keys in the order of time. Refuses, by "keys[i]", none at all, times that do not increase, numbers that
     // are not finite, handles whose time is not between that of their keys, easings that are no functions.
-    static Result<Track> make(std::vector<Key<D>> keys, Outside outside = Outside::hold);
+    static Result<Track> make(std::vector<Key<D>> keys, BeyondKeys outside = BeyondKeys::hold);
 
     const std::vector<Key<D>>& keys() const { return keys_; }
     Interval times() const { return {keys_.front().time, keys_.back().time}; }
@@ -61,9 +61,9 @@ public:
     Result<Curve<Vec<D>>> curve() const;
 
 private:
-    Track(std::vector<Key<D>> keys, Outside outside) : keys_(std::move(keys)), outside_(outside) {}
+    Track(std::vector<Key<D>> keys, BeyondKeys outside) : keys_(std::move(keys)), outside_(outside) {}
     std::vector<Key<D>> keys_;
-    Outside outside_;
+    BeyondKeys outside_;
 };
 
 // Derivatives of the keys from their neighbours, and `hermite` between them: those of Kochanek and Bartels,

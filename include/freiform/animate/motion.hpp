@@ -67,7 +67,8 @@ enum class Facing {
 struct TrajectoryOptions {
     double accuracy = 0;  // > 0: what points may be off along the way, in model units
     Facing facing = Facing::fixed;
-    Vec<3> up{{0, 0, 1}};  // of `upright`; of `least_turning` where z points to at the start
+    Vec<3> up{{0, 0, 1}};           // of `upright`; of `least_turning` where z points to at the start
+    double facing_accuracy = 1e-6;  // > 0; of `least_turning`: what its unit vectors may be off
 };
 
 // A body that moves along a curve in space. Const and safe to share.
