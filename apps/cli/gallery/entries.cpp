@@ -4,7 +4,7 @@
 namespace freiform::cli::gallery {
 
 std::span<const Entry> entries() {
-    static constexpr std::array<Entry, 30> kEntries{{
+    static constexpr std::array<Entry, 31> kEntries{{
         {"R01", "Three descriptions",
          "An explicit curve is the graph of a function, an implicit one the zeros of a function of the "
          "plane, a parametric "
@@ -157,6 +157,11 @@ std::span<const Entry> entries() {
          "Reflections show how surfaces meet: stripes that break have an edge below them, stripes with kinks "
          "a jump of curvature. The first rows of the neighbour decide.",
          "--isolines 5 --control", surface_joints},
+        {"R36", "Key frames and motions",
+         "Between keys a value steps, runs on a line or on a cubic; an easing says how the time is spent. "
+         "Along a "
+         "curve a body moves by the arc length, as fast as limits allow.",
+         "--control", motions},
     }};
     return kEntries;
 }

@@ -58,5 +58,7 @@ Figure trimming(const Document&);
 // surfaces.cpp
 Figure rational_surfaces(const Document&);
 Figure triangles(const Document&);
+// motions.cpp
+Figure motions(const Document&);
 
 }  // namespace freiform::cli::gallery
