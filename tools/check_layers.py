@@ -11,7 +11,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ORDER = [["core"], ["poly", "kernel"], ["basis"], ["spline"], ["make", "path", "query"],
-         ["intersect", "fit", "animate", "colour"], ["trim"], ["mesh"], ["model"], ["shape"], ["io", "gpu"],
+         ["intersect", "fit", "animate", "colour"], ["trim", "region"], ["mesh"], ["model"], ["shape"], ["io", "gpu"],
          ["paint"], ["apps", "bindings"]]
 RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
 
