@@ -28,8 +28,6 @@
 #include "arrangement_detail.hpp"
 
 #include <cmath>
-#include <cstdlib>
-#include <cstdio>
 
 namespace freiform {
 
@@ -92,9 +90,9 @@ Result<Region> made(const std::vector<RegionArc>& arcs, const InResult& in, cons
     for (const Nearness& near : {Nearness{}, Nearness{0, options.tolerance / 8},
                                  Nearness{options.tolerance / 32, options.tolerance / 32}})
         if (auto again = attempt(coarse, in, near, options)) {
-            again->bound += grid;
+            again->bound += 4 * grid;  // of on_grid
             if (again->bound <= options.tolerance) return again;
-        } else if (getenv("DBG")) fprintf(stderr,"again: %s: %s\n",again.error().where.c_str(), again.error().message.c_str());
+        }
     return out;
 }
 

@@ -36,6 +36,8 @@ inline bool is_in(RegionOperation o, bool a, bool b) {
                                                 : a != b;
 }
 
+inline Path path_from(std::string_view data) { return parse_path_data(data).path; }
+
 struct PathOptions {
     int segments = 6;
     bool lattice = false;  // coordinates are small integers
