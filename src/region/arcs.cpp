@@ -20,6 +20,7 @@
 #include <freiform/spline/bezier.hpp>
 
 #include <cmath>
+#include <map>
 
 namespace freiform::detail {
 
@@ -143,6 +144,28 @@ Result<void> add_arcs(const Path& path, int operand, std::vector<RegionArc>& out
             add_arc({1, {end, subpath.start}, 1}, operand, {i, subpath.segments.size()}, out);
     }
     return {};
+}
+
+void cancel_opposite(std::vector<RegionArc>& arcs) {
+    std::map<std::array<double, 11>, std::vector<std::size_t>> open;
+    const auto key = [](const RegionArc& arc, const PathSegment& s) {
+        std::array<double, 11> k{double(s.degree), double(arc.operand), s.degree == 2 ? s.weight : 1};
+        for (std::size_t i = 0; i <= std::size_t(s.degree); ++i)
+            k[3 + 2 * i] = s.points[i][0], k[4 + 2 * i] = s.points[i][1];
+        return k;
+    };
+    std::vector<bool> gone(arcs.size());
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+        const auto opposite = open.find(key(arcs[i], reversed(arcs[i].s)));
+        if (opposite == open.end() || opposite->second.empty()) {
+            open[key(arcs[i], arcs[i].s)].push_back(i);
+            continue;
+        }
+        gone[i] = gone[opposite->second.back()] = true;
+        opposite->second.pop_back();
+    }
+    std::size_t i = 0;
+    std::erase_if(arcs, [&](const RegionArc&) { return gone[i++]; });
 }
 
 bool may_touch(const RegionArc& arc, Interval on, const Vec<2>& a, const Vec<2>& b, double slack) {

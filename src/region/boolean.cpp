@@ -76,9 +76,10 @@ Result<Region> attempt(const std::vector<RegionArc>& arcs, const InResult& in, c
     return Region{*std::move(path), 2 * a->moved + 2 * kPartError * a->scale};
 }
 
-Result<Region> made(const std::vector<RegionArc>& arcs, const InResult& in, const RegionOptions& options) {
+Result<Region> made(std::vector<RegionArc> arcs, const InResult& in, const RegionOptions& options) {
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
+    cancel_opposite(arcs);
     if (arcs.empty()) return Region{};
     auto out = attempt(arcs, in, {}, options);
     if (out || out.error().kind != RefusalKind::ill_conditioned || out.error().where == "tolerance") return out;
@@ -87,6 +88,7 @@ Result<Region> made(const std::vector<RegionArc>& arcs, const InResult& in, cons
     double scale = 0;
     for (const RegionArc& a : arcs) scale = std::max(scale, a.box.scale());
     for (const RegionArc& a : arcs) add_arc(on_grid(a.s, grid, scale), a.operand, a.place, coarse);
+    cancel_opposite(coarse);
     for (const Nearness& near : {Nearness{}, Nearness{0, options.tolerance / 8},
                                  Nearness{options.tolerance / 32, options.tolerance / 32}})
         if (auto again = attempt(coarse, in, near, options)) {
@@ -104,13 +106,13 @@ Result<Region> combine(const Filled& a, const Filled& b, RegionOperation operati
     for (const int k : {0, 1})
         if (const auto ok = add_arcs(k == 0 ? a.path : b.path, k, arcs); !ok)
             return refuse_within(k == 0 ? "a" : "b", ok.error());
-    return made(arcs, {{a.rule, b.rule}, operation}, options);
+    return made(std::move(arcs), {{a.rule, b.rule}, operation}, options);
 }
 
 Result<Region> region_of(const Filled& a, const RegionOptions& options) {
     std::vector<RegionArc> arcs;
     if (const auto ok = add_arcs(a.path, 0, arcs); !ok) return refuse_within("a", ok.error());
-    return made(arcs, {{a.rule, FillRule::nonzero}, RegionOperation::union_of}, options);
+    return made(std::move(arcs), {{a.rule, FillRule::nonzero}, RegionOperation::union_of}, options);
 }
 
 }  // namespace freiform

@@ -1,0 +1,273 @@
+// Bezier curves as arcs of circles, with a bound for the pen that is moved along them.
+//
+// Idea. The sides of a stroke along an arc of a circle are arcs again. So each curve is replaced by arcs: pairs
+// of arcs (biarcs) that join its ends with its tangents there; halved until they are near enough.
+//
+// Notation. C = X / W the curve over a part, in homogeneous form; D = X' W - X W', so that C' = D / W^2. a, n, k
+// the start of an arc, its left normal and its curvature; R = 1 / |k|, c = a + n / k its centre; h half the width
+// of the pen. Everything below is divided by k, so that lines, k = 0, are no other case.
+//
+// Accuracy. The pen at t covers C + r N for |r| <= h, that of the arc c + (R +- r) u. With the point of the arc
+// in the direction of C - c from c, points of equal r differ by at most
+//     | |C - c| - R |  +  h |N - u|.
+// Both come from Bernstein coefficients:
+//   - k (|C - c|^2 - R^2) = f / W^2 with f = k |X - a W|^2 - 2 W n . (X - a W), and |k| (|C - c| + R) is at least
+//     3/2 if C is within R / 2 of the circle (2 for lines);
+//   - the sine of the angle between N and u is at most max |g_i| / (min w (1 - |k| d) |D|), with
+//     g = k (X - a W) . D - W n . D, d the distance from the circle, and |D| at least the least product of the
+//     D_i with the direction of the chord. For sines up to 0.1 the angle, and |N - u|, is at most 1.002 times as
+//     large.
+// If k cross(X - a W, D) - W cross(n, D) has positive coefficients, the direction from c is monotone in t, so
+// that the arc is passed once. The parts of the curve for both arcs meet at a parameter where the curve passes
+// the joint J; what it is beside J along the tangent, e, moves ends of the pen by at most (1 + h / R) e more.
+//   Rounding: all terms are sums of at most 30 products of coordinates relative to a, up to S, rounded a few
+// times: 2^-46 of S (1 + |k| S) for f, of S^2 for D; numbers are rounded to 2^-53 of the coordinates before that.
+//
+// Cost. The angle is off by O(L^2) for parts of length L, so some sqrt(h / tolerance) arcs.
+//
+// References. [Bolton 1975] for biarcs.
+//
+// Why not offsets as cubics? They need fewer pieces, but a bound of their distance from the true offset asks
+// for a proof around every cusp of it; arcs have none, and their ends and insides are known exactly.
+#include "arc_chain_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/spline/jet.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace freiform::detail {
+
+namespace {
+
+constexpr int kDeepest = 40;
+constexpr std::size_t kMaxPieces = 100'000;
+
+using Bern = std::vector<double>;
+
+Bern times(const Bern& a, const Bern& b) {
+    const int p = int(a.size()) - 1, q = int(b.size()) - 1;
+    Bern out(std::size_t(p + q) + 1, 0.0);
+    for (int i = 0; i <= p; ++i)
+        for (int j = 0; j <= q; ++j)
+            out[std::size_t(i + j)] +=
+                binomial(p, i) * binomial(q, j) / binomial(p + q, i + j) * a[std::size_t(i)] * b[std::size_t(j)];
+    return out;
+}
+Bern plus(Bern a, const Bern& b, double factor = 1) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * b[i];
+    return a;
+}
+Bern mul(Bern a, double factor) {
+    for (double& x : a) x *= factor;
+    return a;
+}
+Bern slope(const Bern& a) {
+    Bern out;
+    for (std::size_t i = 0; i + 1 < a.size(); ++i) out.push_back(double(a.size() - 1) * (a[i + 1] - a[i]));
+    return out;
+}
+double largest(const Bern& a) {
+    double m = 0;
+    for (const double x : a) m = std::max(m, std::abs(x));
+    return m;
+}
+
+// The arc from a to b that leaves a in the direction ta.
+ArcPiece arc_from(const Vec<2>& a, const Vec<2>& ta, const Vec<2>& b, const Vec<2>& tb) {
+    ArcPiece piece{a, b, ta, tb, 0, {}};
+    const Vec<2> chord = b - a;
+    const double bend = 2 * cross(ta, chord) / dot(chord, chord);
+    if (std::abs(bend) * norm(chord) < 0x1p-45) return piece;
+    piece.curvature = bend;
+    piece.centre = a + (1 / bend) * piece.normal_a();
+    return piece;
+}
+
+// What the pen along the segment and that along the piece differ by; nothing where there is no bound.
+std::optional<double> difference(const PathSegment& s, const ArcPiece& piece, double h) {
+    const auto net = homogeneous(s);
+    const Vec<2> n = piece.normal_a();
+    const double k = piece.curvature;
+    Bern x, y, w;
+    double least_w = kInfinity, size = 0, scale = 0;
+    for (int i = 0; i <= s.degree; ++i) {
+        const Hom<2>& p = net[std::size_t(i)];
+        x.push_back(p[0] - piece.a[0] * p[2]), y.push_back(p[1] - piece.a[1] * p[2]), w.push_back(p[2]);
+        least_w = std::min(least_w, p[2]);
+        size = std::max({size, std::abs(x.back()), std::abs(y.back())});
+        scale = std::max({scale, std::abs(p[0]), std::abs(p[1]), max_abs(piece.a)});
+    }
+    const Bern wx = slope(w), dx = plus(times(slope(x), w), times(x, wx), -1),
+               dy = plus(times(slope(y), w), times(y, wx), -1);
+    const Vec<2> along = unit(s.back() - s.front());
+    double speed = kInfinity;
+    for (std::size_t i = 0; i < dx.size(); ++i) speed = std::min(speed, along[0] * dx[i] + along[1] * dy[i]);
+    const double noise = 0x1p-46 * size + 0x1p-49 * scale;  // of a coordinate, and of D
+    if (!(speed > noise)) return {};
+    const auto normal = [&](const Bern& u, const Bern& v) { return plus(mul(u, n[0]), v, n[1]); };
+    const Bern f = plus(mul(plus(times(x, x), times(y, y)), k), times(w, normal(x, y)), -2),
+               g = plus(mul(plus(times(x, dx), times(y, dy)), k), times(w, normal(dx, dy)), -1),
+               turn = plus(mul(plus(times(x, dy), times(y, dx), -1), k),
+                           times(w, plus(mul(dy, -n[0]), dx, n[1])));
+    double distance = (largest(f) + 4 * noise * (1 + std::abs(k) * size)) / (least_w * least_w);
+    if (!(distance * std::abs(k) < 0.5)) return {};
+    distance /= k == 0 ? 2 : 1.5;
+    for (const double c : turn)
+        if (!(c > 0)) return {};
+    const double sine = (largest(g) + 4 * noise * (1 + std::abs(k) * size)) /
+                        (least_w * (1 - std::abs(k) * distance) * speed);
+    if (!(sine < 0.1)) return {};
+    return 1.01 * (distance + h * 1.002 * sine);
+}
+
+class ChainMaker {
+public:
+    ChainMaker(double half_width, double tolerance) : h_(half_width), tolerance_(tolerance) {}
+
+    Result<ArcChain> run(const Subpath& subpath) && {
+        std::vector<PathSegment> segments;
+        for (PathSegment s : subpath.segments)
+            if (const Box<2> box = box_of(s); box.lo != box.hi) segments.push_back(s);
+        if (subpath.closed && !segments.empty() && segments.back().back() != subpath.start)
+            segments.push_back({1, {segments.back().back(), subpath.start}, 1});
+        const std::size_t n = segments.size();
+        std::vector<Vec<2>> begin(n), end(n);
+        std::vector<bool> smooth(n, false);  // at the end of each
+        for (std::size_t i = 0; i < n; ++i) {
+            begin[i] = unit(end_tangent(segments[i], false));
+            end[i] = unit(end_tangent(segments[i], true));
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i + 1 == n && !subpath.closed) continue;
+            const std::size_t k = (i + 1) % n;
+            const double apart = h_ * norm(begin[k] - end[i]);
+            if (!(apart <= tolerance_ / 16)) continue;
+            smooth[i] = true;
+            bend_ = std::max(bend_, 1.01 * apart);
+            end[i] = begin[k];
+        }
+        out_.closed = subpath.closed;
+        for (std::size_t i = 0; i < n; ++i) {
+            joint_ = smooth[(i + n - 1) % n] ? PieceJoint::smooth : PieceJoint::corner;
+            if (segments[i].degree == 1) {
+                add({segments[i].points[0], segments[i].points[1], begin[i], begin[i], 0, {}});
+                if (smooth[i]) out_.pieces.back().tb = end[i];
+                continue;
+            }
+            if (const auto ok = approximate(segments[i], begin[i], end[i]); !ok) return std::unexpected(ok.error());
+        }
+        out_.bound += bend_;
+        return std::move(out_);
+    }
+
+private:
+    void add(const ArcPiece& piece) {
+        out_.pieces.push_back(piece);
+        out_.before.push_back(joint_);
+        joint_ = PieceJoint::smooth;
+    }
+    static Vec<2> end_tangent(const PathSegment& s, bool at_end) {
+        for (int i = 1; i <= s.degree; ++i) {
+            const Vec<2> d = at_end ? s.back() - s.points[std::size_t(s.degree - i)]
+                                    : s.points[std::size_t(i)] - s.front();
+            if (max_abs(d) > 0) return d;
+        }
+        return {};
+    }
+
+    struct Part {
+        PathSegment s;
+        Vec<2> begin, end;
+        int depth;
+    };
+    Result<void> approximate(const PathSegment& whole, const Vec<2>& begin, const Vec<2>& end) {
+        const double scale = box_of(whole).scale();
+        std::vector<Part> stack{{whole, begin, end, 0}};
+        while (!stack.empty()) {
+            const Part part = stack.back();
+            stack.pop_back();
+            if (out_.pieces.size() > kMaxPieces)
+                return refuse(RefusalKind::limit, "tolerance",
+                              text("more than ", kMaxPieces, " arcs for a tolerance of ", tolerance_));
+            if (take(part)) continue;
+            const Box<2> box = box_of(part.s);
+            const double size = norm(box.hi - box.lo);
+            if (size < 0x1p-10 * tolerance_ || part.depth == kDeepest || size < 0x1p-40 * scale) {
+                if (size > tolerance_ / 4)
+                    return refuse(RefusalKind::ill_conditioned, "tolerance",
+                                  text(tolerance_, " is below what rounding leaves near (", part.s.front()[0], ", ",
+                                       part.s.front()[1], ")"));
+                turn_round(part, size);
+                continue;
+            }
+            const PathSegment left = part_of(part.s, 0, 0.5);
+            PathSegment right = part_of(part.s, 0.5, 1);
+            right.points[0] = left.back();
+            const Vec<2> middle = unit(tangent_of(part.s, 0.5));
+            if (max_abs(middle) == 0) {  // a cusp, exactly here
+                stack.push_back({right, unit(end_tangent(right, false)), part.end, part.depth + 1});
+                stack.push_back({left, part.begin, unit(end_tangent(left, true)), part.depth + 1});
+                continue;
+            }
+            stack.push_back({right, middle, part.end, part.depth + 1});
+            stack.push_back({left, part.begin, middle, part.depth + 1});
+        }
+        return {};
+    }
+
+    // A part about a cusp, smaller than the tolerance: the pen turns round on the spot.
+    void turn_round(const Part& part, double size) {
+        const Vec<2> d = part.s.back() - part.s.front();
+        out_.bound = std::max(out_.bound, 2 * size);
+        if (max_abs(d) == 0) {
+            joint_ = PieceJoint::round;
+            return;
+        }
+        const Vec<2> along = unit(d);
+        joint_ = PieceJoint::round;
+        add({part.s.front(), part.s.back(), along, along, 0, {}});
+        joint_ = PieceJoint::round;
+    }
+
+    bool take(const Part& part) {
+        const Vec<2>&p = part.s.front(), &q = part.s.back();
+        const Vec<2> v = q - p, t = part.begin + part.end;
+        if (!(dot(part.begin, part.end) > 0.5) || !(dot(v, t) > 0)) return false;
+        const double along = dot(v, t), square = dot(v, v), bend = 2 * (1 - dot(part.begin, part.end));
+        const double d = square / (along + std::sqrt(along * along + bend * square));
+        const Vec<2> from = p + d * part.begin, to = q - d * part.end, joint = 0.5 * (from + to),
+                     direction = unit(to - from);
+        if (!(dot(direction, v) > 0)) return false;
+        // Where the curve passes the joint.
+        Interval on{0, 1};
+        for (int i = 0; i < 50; ++i)
+            (dot(point_of(part.s, on.middle()) - joint, direction) < 0 ? on.lo : on.hi) = on.middle();
+        const double at = on.middle();
+        const ArcPiece first = arc_from(p, part.begin, joint, direction),
+                       second = arc_from(joint, direction, q, part.end);
+        const auto a = difference(part_of(part.s, 0, at), first, h_), b = difference(part_of(part.s, at, 1), second, h_);
+        if (!a || !b) return false;
+        const double beside = std::abs(dot(point_of(part.s, at) - joint, direction)),
+                     tight = std::max(std::abs(first.curvature), std::abs(second.curvature));
+        const double bound = std::max(*a, *b) + 1.1 * (1 + h_ * tight) * beside;
+        if (!(bound <= tolerance_ / 2)) return false;
+        out_.bound = std::max(out_.bound, bound);
+        add(first), add(second);
+        return true;
+    }
+
+    double h_, tolerance_, bend_ = 0;
+    ArcChain out_;
+    PieceJoint joint_ = PieceJoint::smooth;
+};
+
+}  // namespace
+
+Result<ArcChain> arc_chain(const Subpath& subpath, double half_width, double tolerance) {
+    return ChainMaker(half_width, tolerance).run(subpath);
+}
+
+}  // namespace freiform::detail
