@@ -150,6 +150,7 @@ void add_intersect(CommandLine& line);
 void add_section(CommandLine& line);
 void add_interpolate(CommandLine& line);
 void add_flatten(CommandLine& line);
+void add_path(CommandLine& line);
 void add_length(CommandLine& line);
 void add_fit(CommandLine& line);
 void add_ease(CommandLine& line);

@@ -32,6 +32,7 @@ void add_commands(CommandLine& line) {
     add_section(line);
     add_interpolate(line);
     add_flatten(line);
+    add_path(line);
     add_length(line);
     add_fit(line);
     add_ease(line);

@@ -1,27 +1,30 @@
 // Bezier curves as arcs of circles, with a bound for the pen that is moved along them.
 //
-// Idea. The sides of a stroke along an arc of a circle are arcs again. So each curve is replaced by arcs: pairs
-// of arcs (biarcs) that join its ends with its tangents there; halved until they are near enough.
+// Idea. The sides of a stroke along an arc of a circle are arcs again. So each curve is replaced by arcs:
+// pairs of arcs (biarcs) that join its ends with its tangents there; halved until they are near enough.
 //
-// Notation. C = X / W the curve over a part, in homogeneous form; D = X' W - X W', so that C' = D / W^2. a, n, k
-// the start of an arc, its left normal and its curvature; R = 1 / |k|, c = a + n / k its centre; h half the width
-// of the pen. Everything below is divided by k, so that lines, k = 0, are no other case.
+// Notation. C = X / W the curve over a part, in homogeneous form; D = X' W - X W', so that C' = D / W^2. a,
+// n, k the start of an arc, its left normal and its curvature; R = 1 / |k|, c = a + n / k its centre; h half
+// the width of the pen. Everything below is divided by k, so that lines, k = 0, are no other case.
 //
-// Accuracy. The pen at t covers C + r N for |r| <= h, that of the arc c + (R +- r) u. With the point of the arc
-// in the direction of C - c from c, points of equal r differ by at most
+// Accuracy. The pen at t covers C + r N for |r| <= h, that of the arc c + (R +- r) u. With the point of the
+// arc in the direction of C - c from c, points of equal r differ by at most
 //     | |C - c| - R |  +  h |N - u|.
 // Both come from Bernstein coefficients:
-//   - k (|C - c|^2 - R^2) = f / W^2 with f = k |X - a W|^2 - 2 W n . (X - a W), and |k| (|C - c| + R) is at least
+//   - k (|C - c|^2 - R^2) = f / W^2 with f = k |X - a W|^2 - 2 W n . (X - a W), and |k| (|C - c| + R) is at
+//   least
 //     3/2 if C is within R / 2 of the circle (2 for lines);
 //   - the sine of the angle between N and u is at most max |g_i| / (min w (1 - |k| d) |D|), with
-//     g = k (X - a W) . D - W n . D, d the distance from the circle, and |D| at least the least product of the
-//     D_i with the direction of the chord. For sines up to 0.1 the angle, and |N - u|, is at most 1.002 times as
-//     large.
+//     g = k (X - a W) . D - W n . D, d the distance from the circle, and |D| at least the least product of
+//     the D_i with the direction of the chord. For sines up to 0.1 the angle, and |N - u|, is at most 1.002
+//     times as large.
 // If k cross(X - a W, D) - W cross(n, D) has positive coefficients, the direction from c is monotone in t, so
-// that the arc is passed once. The parts of the curve for both arcs meet at a parameter where the curve passes
-// the joint J; what it is beside J along the tangent, e, moves ends of the pen by at most (1 + h / R) e more.
+// that the arc is passed once. The parts of the curve for both arcs meet at a parameter where the curve
+// passes the joint J; what it is beside J along the tangent, e, moves ends of the pen by at most (1 + h / R)
+// e more.
 //   Rounding: all terms are sums of at most 30 products of coordinates relative to a, up to S, rounded a few
-// times: 2^-46 of S (1 + |k| S) for f, of S^2 for D; numbers are rounded to 2^-53 of the coordinates before that.
+// times: 2^-46 of S (1 + |k| S) for f, of S^2 for D; numbers are rounded to 2^-53 of the coordinates before
+// that.
 //
 // Cost. The angle is off by O(L^2) for parts of length L, so some sqrt(h / tolerance) arcs.
 //
@@ -52,8 +55,8 @@ Bern times(const Bern& a, const Bern& b) {
     Bern out(std::size_t(p + q) + 1, 0.0);
     for (int i = 0; i <= p; ++i)
         for (int j = 0; j <= q; ++j)
-            out[std::size_t(i + j)] +=
-                binomial(p, i) * binomial(q, j) / binomial(p + q, i + j) * a[std::size_t(i)] * b[std::size_t(j)];
+            out[std::size_t(i + j)] += binomial(p, i) * binomial(q, j) / binomial(p + q, i + j) *
+                                       a[std::size_t(i)] * b[std::size_t(j)];
     return out;
 }
 Bern plus(Bern a, const Bern& b, double factor = 1) {
@@ -157,7 +160,8 @@ public:
                 if (smooth[i]) out_.pieces.back().tb = end[i];
                 continue;
             }
-            if (const auto ok = approximate(segments[i], begin[i], end[i]); !ok) return std::unexpected(ok.error());
+            if (const auto ok = approximate(segments[i], begin[i], end[i]); !ok)
+                return std::unexpected(ok.error());
         }
         out_.bound += bend_;
         return std::move(out_);
@@ -198,8 +202,8 @@ private:
             if (size < 0x1p-10 * tolerance_ || part.depth == kDeepest || size < 0x1p-40 * scale) {
                 if (size > tolerance_ / 4)
                     return refuse(RefusalKind::ill_conditioned, "tolerance",
-                                  text(tolerance_, " is below what rounding leaves near (", part.s.front()[0], ", ",
-                                       part.s.front()[1], ")"));
+                                  text(tolerance_, " is below what rounding leaves near (", part.s.front()[0],
+                                       ", ", part.s.front()[1], ")"));
                 turn_round(part, size);
                 continue;
             }
@@ -248,7 +252,8 @@ private:
         const double at = on.middle();
         const ArcPiece first = arc_from(p, part.begin, joint, direction),
                        second = arc_from(joint, direction, q, part.end);
-        const auto a = difference(part_of(part.s, 0, at), first, h_), b = difference(part_of(part.s, at, 1), second, h_);
+        const auto a = difference(part_of(part.s, 0, at), first, h_),
+                   b = difference(part_of(part.s, at, 1), second, h_);
         if (!a || !b) return false;
         const double beside = std::abs(dot(point_of(part.s, at) - joint, direction)),
                      tight = std::max(std::abs(first.curvature), std::abs(second.curvature));

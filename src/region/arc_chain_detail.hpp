@@ -27,8 +27,8 @@ struct ArcChain {
     std::vector<ArcPiece> pieces;
     std::vector<PieceJoint> before;  // of each piece; of the first one only if closed
     bool closed = false;
-    // For every point of the pen at a place of the path there is one of the pen at a place of the chain within
-    // this distance, and the other way round.
+    // For every point of the pen at a place of the path there is one of the pen at a place of the chain
+    // within this distance, and the other way round.
     double bound = 0;
 };
 

@@ -11,7 +11,8 @@
 // (split_error(3), spline/bezier.hpp), weights are at most max(1, w), projections and the new weight take 8 u
 // more. With weights that differ by less than 16 that is below 2^-46 of the largest coordinate; arcs of at
 // most half an ellipse have weights between 0 and 1, and the weight of a part is nearer to 1.
-//   may_touch halves: (a + b) / 2 rounds once, so that a level of degree 3 rounds by 3 u; 40 levels are 120 u,
+//   may_touch halves: (a + b) / 2 rounds once, so that a level of degree 3 rounds by 3 u; 40 levels are 120
+//   u,
 // the projection and its test 8 u: with the factor for weights below 2^-44.
 #include "arcs_detail.hpp"
 
@@ -58,8 +59,7 @@ PathSegment part_of(const PathSegment& s, double t0, double t1) {
     if (t0 > 0) keep_right(f, std::min(1.0, t0 / t1));
     PathSegment out = s;
     for (int i = 0; i <= s.degree; ++i) out.points[std::size_t(i)] = project(h[std::size_t(i)]);
-    if (s.degree == 2 && s.weight != 1)
-        out.weight = h[1].weight() / std::sqrt(h[0].weight() * h[2].weight());
+    if (s.degree == 2 && s.weight != 1) out.weight = h[1].weight() / std::sqrt(h[0].weight() * h[2].weight());
     return out;
 }
 
@@ -101,7 +101,8 @@ RegionArc arc_of(const PathSegment& s, int operand, const std::array<std::size_t
 
 }  // namespace
 
-void add_arc(PathSegment s, int operand, const std::array<std::size_t, 2>& place, std::vector<RegionArc>& out) {
+void add_arc(PathSegment s, int operand, const std::array<std::size_t, 2>& place,
+             std::vector<RegionArc>& out) {
     if (s.degree > 1 && is_straight(s)) s = {1, {s.front(), s.back()}, 1};
     if (s.degree > 1 || s.front() != s.back()) out.push_back(arc_of(s, operand, place));
 }
@@ -128,9 +129,9 @@ Result<void> add_arcs(const Path& path, int operand, std::vector<RegionArc>& out
             const auto where = [&] { return text("subpaths[", i, "].segments[", k, "]"); };
             FF_REQUIRE(1 <= s.degree && s.degree <= 3);
             for (int j = 0; j <= s.degree; ++j)
-                if (!is_finite(s.points[std::size_t(j)]) ||
-                    !(max_abs(s.points[std::size_t(j)]) < 0x1p500))
-                    return refuse(RefusalKind::nonfinite, where(), "has a coordinate that is no number, or above 2^500");
+                if (!is_finite(s.points[std::size_t(j)]) || !(max_abs(s.points[std::size_t(j)]) < 0x1p500))
+                    return refuse(RefusalKind::nonfinite, where(),
+                                  "has a coordinate that is no number, or above 2^500");
             if (s.degree == 2 && !(s.weight > 0x1p-20 && s.weight < 0x1p4))
                 return refuse(RefusalKind::unsupported, where(),
                               text("has the weight ", s.weight, ", and not one from 2^-20 to 16"));
@@ -140,7 +141,7 @@ Result<void> add_arcs(const Path& path, int operand, std::vector<RegionArc>& out
             add_arc(s, operand, {i, k}, out);
         }
         const Vec<2> end = subpath.segments.back().back();
-        if (end != subpath.start) 
+        if (end != subpath.start)
             add_arc({1, {end, subpath.start}, 1}, operand, {i, subpath.segments.size()}, out);
     }
     return {};

@@ -29,9 +29,10 @@ struct RegionArc {
 // The arcs that bound the regions, each closed subpath a chain of them. What has no length, and the detours
 // of segments whose control points lie on one line, bound nothing and are left out. Appends to `out`.
 Result<void> add_arcs(const Path& path, int operand, std::vector<RegionArc>& out);
-void add_arc(PathSegment s, int operand, const std::array<std::size_t, 2>& place, std::vector<RegionArc>& out);
-// Pairs of one operand that are the same, one against the other, add nothing to winding numbers, exactly: they
-// are taken out.
+void add_arc(PathSegment s, int operand, const std::array<std::size_t, 2>& place,
+             std::vector<RegionArc>& out);
+// Pairs of one operand that are the same, one against the other, add nothing to winding numbers, exactly:
+// they are taken out.
 void cancel_opposite(std::vector<RegionArc>& arcs);
 // Control points rounded to multiples of `grid`, a power of two; weights to those of about grid / scale.
 PathSegment on_grid(PathSegment s, double grid, double scale);

@@ -1,10 +1,11 @@
 // From the places where arcs meet to edges and bundles.
 //
 // Idea. What cannot be told apart becomes one place: cuts of an arc that overlap, and the parts between cuts
-// that are smaller than rounding. A place may so contain several contacts and short parts of arcs; it is drawn
-// together to one point. That is harmless as long as it is small: the boundary of a region is a sum of edges in
-// which every place begins as often as it ends, and leaving out edges that begin and end at one place keeps
-// that so. The loops that are left wind round every point outside of what was drawn together as before.
+// that are smaller than rounding. A place may so contain several contacts and short parts of arcs; it is
+// drawn together to one point. That is harmless as long as it is small: the boundary of a region is a sum of
+// edges in which every place begins as often as it ends, and leaving out edges that begin and end at one
+// place keeps that so. The loops that are left wind round every point outside of what was drawn together as
+// before.
 //
 // Shared stretches. Both arcs are cut wherever one of them is: a cut is carried over to the nearest parameter
 // of the other one, where it meets a cut that is there for the same reason. Then the edges of both go in
@@ -98,8 +99,10 @@ private:
             if (!united.empty()) {
                 Cut& last = united.back();
                 const bool touch = c.at.lo <= last.at.hi;
-                const Box<2> between = touch ? Box<2>{} : box_of(part_of(out_.arcs[i].s, last.at.hi, c.at.lo));
-                if (touch || norm(between.hi - between.lo) <= std::max(near_.smallest, kSmallest * out_.scale)) {
+                const Box<2> between =
+                    touch ? Box<2>{} : box_of(part_of(out_.arcs[i].s, last.at.hi, c.at.lo));
+                if (touch ||
+                    norm(between.hi - between.lo) <= std::max(near_.smallest, kSmallest * out_.scale)) {
                     m.places.unite(last.place, c.place);
                     last.at = hull(last.at, c.at);
                     continue;
@@ -122,10 +125,10 @@ private:
                     out_.moved = std::max(out_.moved, norm(p - q));
                 }
                 if (2 * out_.moved + kSmallest * out_.scale > options_.tolerance)
-                    return refuse(RefusalKind::ill_conditioned, place_text(out_.arcs[i]),
-                                  text("near ", place_text(p), " segments are so near to each other over ",
-                                       out_.moved, " that they are not told apart; the tolerance is ",
-                                       options_.tolerance));
+                    return refuse(
+                        RefusalKind::ill_conditioned, place_text(out_.arcs[i]),
+                        text("near ", place_text(p), " segments are so near to each other over ", out_.moved,
+                             " that they are not told apart; the tolerance is ", options_.tolerance));
             }
         for (std::size_t k = 0; k < m.places.size(); ++k) out_.places.push_back(m.places.point(int(k)));
         for (const SharedStretch& s : m.shared) {
@@ -208,7 +211,7 @@ private:
     Arrangement out_;
     Nearness near_;
     const RegionOptions& options_;
-    std::vector<std::size_t> first_;                  // edge of each arc
+    std::vector<std::size_t> first_;                 // edge of each arc
     std::vector<std::pair<std::size_t, int>> root_;  // forest of bundles, with orientation
 };
 

@@ -25,7 +25,7 @@ struct Arrangement {
     std::vector<RegionEdge> edges;
     std::vector<Vec<2>> places;
     std::vector<std::vector<std::size_t>> members;  // of each bundle, at the index of its first edge
-    double scale = 0;  // largest coordinate
+    double scale = 0;                               // largest coordinate
     double moved = 0;  // bound: from a place to all that belongs to it, and gaps of bundles
 };
 

@@ -5,8 +5,8 @@
 // those meet. An edge belongs to it if the result lies on exactly one of its sides, and both sides are known
 // exactly (sides.cpp). Nothing is decided by the result of another decision, so nothing can contradict.
 //
-// Method. meetings.cpp finds all places, none missed. arrangement.cpp unites what rounding does not tell apart
-// and cuts arcs into edges. sides.cpp decides. loops.cpp puts together.
+// Method. meetings.cpp finds all places, none missed. arrangement.cpp unites what rounding does not tell
+// apart and cuts arcs into edges. sides.cpp decides. loops.cpp puts together.
 //
 // Accuracy. Let moved be the largest distance from a place to what was drawn together there, and the width of
 // bundles. Take the sum of edges that bounds the exact result, leave out those inside of places, and move the
@@ -82,7 +82,8 @@ Result<Region> made(std::vector<RegionArc> arcs, const InResult& in, const Regio
     cancel_opposite(arcs);
     if (arcs.empty()) return Region{};
     auto out = attempt(arcs, in, {}, options);
-    if (out || out.error().kind != RefusalKind::ill_conditioned || out.error().where == "tolerance") return out;
+    if (out || out.error().kind != RefusalKind::ill_conditioned || out.error().where == "tolerance")
+        return out;
     const double grid = std::exp2(std::floor(std::log2(options.tolerance / 16)));
     std::vector<RegionArc> coarse;
     double scale = 0;

@@ -1,8 +1,8 @@
 // Dashes: a path cut at lengths along it.
 //
-// Method. The arc length of the subpath as one curve (query/length.hpp), whose pieces are the segments, each on
-// an interval of length 1; its inverse says where a dash begins and ends, within the accuracy. What lies between
-// are parts of segments.
+// Method. The arc length of the subpath as one curve (query/length.hpp), whose pieces are the segments, each
+// on an interval of length 1; its inverse says where a dash begins and ends, within the accuracy. What lies
+// between are parts of segments.
 #include "arcs_detail.hpp"
 
 #include <freiform/query/length.hpp>
@@ -73,12 +73,13 @@ std::vector<Dash> dashes_of(const Pattern& pattern, double total) {
 }
 
 template <class P>
-Result<void> cut(const Subpath& path, const Curve<P>& curve, const Pattern& pattern, double accuracy, Path& out) {
+Result<void> cut(const Subpath& path, const Curve<P>& curve, const Pattern& pattern, double accuracy,
+                 Path& out) {
     const ArcLength<P> length(curve, accuracy / 4);
     const double total = length.total().value;
     if (total / pattern.period * double(pattern.lengths.size()) > kMaxDashes)
-        return refuse(RefusalKind::limit, "dashes", text("a subpath of the length ", total, " has more than ",
-                                                         kMaxDashes, " dashes"));
+        return refuse(RefusalKind::limit, "dashes",
+                      text("a subpath of the length ", total, " has more than ", kMaxDashes, " dashes"));
     const std::vector<Dash> dashes = dashes_of(pattern, total);
     std::vector<Subpath> made;
     for (const Dash& d : dashes) {

@@ -27,8 +27,9 @@ public:
         next_.assign(a_.edges.size(), kNone);
         for (std::size_t p = 0; p < a_.places.size(); ++p)
             if (in[p].size() != out[p].size())
-                return refuse(RefusalKind::not_converged, place_text(a_.places[p]),
-                              text(in[p].size(), " edges of the region end here and ", out[p].size(), " begin"));
+                return refuse(
+                    RefusalKind::not_converged, place_text(a_.places[p]),
+                    text(in[p].size(), " edges of the region end here and ", out[p].size(), " begin"));
             else
                 link(in[p], out[p]);
         Path path;
@@ -38,9 +39,9 @@ public:
             std::vector<std::size_t> loop;
             for (std::size_t at = e; !seen[at]; at = next_[at]) loop.push_back(at), seen[at] = true;
             Subpath s = subpath(loop);
-            const bool flat = s.segments.size() <= 2 && std::ranges::all_of(s.segments, [](const PathSegment& x) {
-                                  return x.degree == 1;
-                              });
+            const bool flat =
+                s.segments.size() <= 2 &&
+                std::ranges::all_of(s.segments, [](const PathSegment& x) { return x.degree == 1; });
             if (!flat) path.subpaths.push_back(std::move(s));
         }
         return path;
@@ -88,7 +89,8 @@ private:
 
     Subpath subpath(std::vector<std::size_t> loop) const {
         std::size_t start = 0;
-        while (start < loop.size() && goes_on(loop[(start + loop.size() - 1) % loop.size()], loop[start])) ++start;
+        while (start < loop.size() && goes_on(loop[(start + loop.size() - 1) % loop.size()], loop[start]))
+            ++start;
         std::ranges::rotate(loop, loop.begin() + std::ptrdiff_t(start % loop.size()));
         Subpath out;
         out.closed = true;

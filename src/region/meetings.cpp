@@ -19,7 +19,8 @@
 // Equal segments share all of their length, and their cuts are carried over by the parameter.
 //
 // Accuracy. Cuts at ends of overlaps are rounded by intersect to the nearest doubles; kPad times the domain
-// covers that, and the parameters of double points. What rounding leaves between places is united by the caller (arrangement.cpp).
+// covers that, and the parameters of double points. What rounding leaves between places is united by the
+// caller (arrangement.cpp).
 //
 // References. [Preparata Shamos 1985] for the sweep along one axis.
 #include "meetings_detail.hpp"
@@ -98,7 +99,9 @@ DoubleDouble rounded(const Exact& x) {
 // The parameters of the double point of a cubic, the smaller one first; may lie outside of [0, 1].
 std::optional<std::array<double, 2>> double_point(const PathSegment& s) {
     const auto det = [&](std::size_t i, std::size_t j, std::size_t k) {
-        const auto minus = [&](std::size_t l, int d) { return Exact(s.points[l][d]) - Exact(s.points[i][d]); };
+        const auto minus = [&](std::size_t l, int d) {
+            return Exact(s.points[l][d]) - Exact(s.points[i][d]);
+        };
         return minus(j, 0) * minus(k, 1) - minus(j, 1) * minus(k, 0);
     };
     const Exact a1 = det(0, 3, 2), a2 = det(1, 0, 3), a3 = det(2, 1, 0), d1 = a1 - a2 - a2 + Exact(3) * a3,
@@ -192,8 +195,9 @@ private:
                         std::max(strips_.of(a.lo[1]), strips_.of(b.lo[1])) != s)
                         continue;
                     if (++count > max_pairs_)
-                        return refuse(RefusalKind::limit, "max_pairs",
-                                      text("more than ", max_pairs_, " pairs of segments overlap in their boxes"));
+                        return refuse(
+                            RefusalKind::limit, "max_pairs",
+                            text("more than ", max_pairs_, " pairs of segments overlap in their boxes"));
                     const Pair pair{std::min(order[k], order[l]), std::max(order[k], order[l])};
                     if (is_settled(pair)) continue;
                     (arcs_[pair[0]].is_rational() || arcs_[pair[1]].is_rational() ? out.rational : out.plain)

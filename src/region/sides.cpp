@@ -6,8 +6,8 @@
 // and q are those on both sides of the edge, provided that they differ by what crossing it once adds:
 //     The points of pq that are not on the bundle lie in faces beside it. Edges do not meet in their inner
 //     points, so these are the face on its left, that on its right, and the slits inside of the bundle. p and
-//     q are farther from the edge than the bundle is wide, so they lie in the outer two; and if w(p) - w(q) is
-//     the jump, which is not zero, p lies in the left one.
+//     q are farther from the edge than the bundle is wide, so they lie in the outer two; and if w(p) - w(q)
+//     is the jump, which is not zero, p lies in the left one.
 //
 // Chains. Where a place has two edges with a jump, whoever goes along one of them and around the place comes
 // to the same side of the other one. If the places at both ends were not connected, he would come back on the

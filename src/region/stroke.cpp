@@ -6,19 +6,21 @@
 //
 // Notation. A frame is the pen at a joint: from left, P + h N, to right, P - h N.
 //
-//     left  o-------o-----.          runs: parts one after the other, with the same tangent at the joints, and
+//     left  o-------o-----.          runs: parts one after the other, with the same tangent at the joints,
+//     and
 //           |       |      \               radii above h: one loop along the right side and back on the left
 //         P x---->--x--->   o        tight: radius R <= h; the pen passes over the centre c of the arc. Two
 //           |       |      /               pies about c, of the radii R + h and h - R
 //     right o-------o-----'
 //
-// Frames. Parts that end at a joint have the pen there as a common side, and have it exactly: with P on it, and
-// the centres of tight parts beside it, as corners in between. So they cancel, and nothing is left to rounding.
+// Frames. Parts that end at a joint have the pen there as a common side, and have it exactly: with P on it,
+// and the centres of tight parts beside it, as corners in between. So they cancel, and nothing is left to
+// rounding.
 //
-// References. [SVG 2, 13.5] for joins, caps and dashes.
+// References. SVG 2, section 13.5, for joins, caps and dashes; [Bolton 1975] for the arcs.
 //
-// Why not the outline of both sides at once, with the rule nonzero? Where the radius is below h the inner side
-// runs backwards, and takes away from what other parts cover.
+// Why not the outline of both sides at once, with the rule nonzero? Where the radius is below h the inner
+// side runs backwards, and takes away from what other parts cover.
 #include "arc_chain_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -55,7 +57,8 @@ public:
     void bend_to(const Vec<2>& q, double sine, bool counter_clockwise) {
         const Vec<2> from = at(), chord = q - from;
         if (sine == 0 || max_abs(chord) == 0) return line_to(q);
-        const double cosine = std::sqrt((1 - sine) * (1 + sine)), tangent = (counter_clockwise ? 0.5 : -0.5) * sine / cosine;
+        const double cosine = std::sqrt((1 - sine) * (1 + sine)),
+                     tangent = (counter_clockwise ? 0.5 : -0.5) * sine / cosine;
         const Vec<2> corner = from + 0.5 * chord + tangent * Vec<2>{{chord[1], -chord[0]}};
         loop_.segments.push_back({2, {from, corner, q}, cosine});
     }
@@ -107,7 +110,8 @@ public:
             else if (joined)
                 join(end[i], x.tb, begin[k], y.ta);
         }
-        if (!chain.closed) cap(begin[0], -chain.pieces[0].ta, true), cap(end[n - 1], chain.pieces[n - 1].tb, false);
+        if (!chain.closed)
+            cap(begin[0], -chain.pieces[0].ta, true), cap(end[n - 1], chain.pieces[n - 1].tb, false);
         for (std::size_t i = 0; i < n;) {
             if (is_tight(chain.pieces[i])) {
                 tight(chain.pieces[i], begin[i], end[i]);
@@ -129,7 +133,8 @@ private:
         return is_tight(x) ? std::optional(x.centre) : std::nullopt;
     }
 
-    Frame frame(const Vec<2>& p, const Vec<2>& n, std::initializer_list<std::optional<Vec<2>>> centres) const {
+    Frame frame(const Vec<2>& p, const Vec<2>& n,
+                std::initializer_list<std::optional<Vec<2>>> centres) const {
         std::vector<std::pair<double, Vec<2>>> at{{h_, p + h_ * n}, {0.0, p}, {-h_, p - h_ * n}};
         for (const auto& c : centres)
             if (c) at.push_back({std::clamp(freiform::dot(*c - p, n), -h_, h_), *c});
@@ -162,7 +167,9 @@ private:
         const bool left = x.curvature > 0;
         const Frame &first = left ? begin : end, &last = left ? end : begin;
         const auto pie = [&](bool right_side) {
-            const auto edge = [&](const Frame& f) { return right_side ? f.points.size() - 1 : std::size_t(0); };
+            const auto edge = [&](const Frame& f) {
+                return right_side ? f.points.size() - 1 : std::size_t(0);
+            };
             LoopBuilder loop(x.centre);
             loop.along(first, first.index(x.centre), edge(first));
             loop.bend_to(last.points[edge(last)], half_sine(x), true);
@@ -231,7 +238,8 @@ Result<void> check(const StrokeStyle& style, const RegionOptions& options) {
     if (!(style.miter_limit >= 1))
         return refuse(RefusalKind::invalid, "miter_limit", text(style.miter_limit, " is not at least 1"));
     if (style.join == LineJoin::arcs)
-        return refuse(RefusalKind::unsupported, "join", "joins by arcs are not known; miter, miter-clip, round and bevel are");
+        return refuse(RefusalKind::unsupported, "join",
+                      "joins by arcs are not known; miter, miter-clip, round and bevel are");
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
     return {};
@@ -272,10 +280,13 @@ Result<Region> stroked(const Path& path, const StrokeStyle& style, const RegionO
         pen.stroke(*chain);
     }
     RegionOptions rest = options;
-    rest.tolerance = options.tolerance - bound;
+    rest.tolerance = 0.99 * (options.tolerance - bound);
     auto region = region_of({pen.take()}, rest);
     if (!region) return region;
-    region->bound += bound;
+    // Points and tangents of the loops are rounded to some 30 u of the coordinates.
+    double scale = style.width;
+    for (const RegionArc& a : checked) scale = std::max(scale, a.box.scale() + style.width);
+    region->bound += bound + 0x1p-47 * scale;
     return region;
 }
 

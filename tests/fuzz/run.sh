@@ -15,7 +15,8 @@ case $name in
             src/core/text.cpp src/core/result.cpp) ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
-        for layer in core poly basis spline $([ "$name" = svg ] && echo path || echo "$name"); do
+        case $name in svg) own=path ;; region) own="path query intersect region" ;; *) own=$name ;; esac
+        for layer in core poly basis spline $own; do
             printf '#include "%s"\n' "$PWD"/src/"$layer"/*.cpp >"build-fuzz/unity/$layer.cpp"
             sources+=("build-fuzz/unity/$layer.cpp")
         done
@@ -28,7 +29,7 @@ esac
 compile() {
     local extra=()
     case $1 in  # layers below take many minutes with sanitizers, and are not what is fuzzed
-        src/kernel/* | */spline.cpp | */basis.cpp | */core.cpp) extra=(-O1) ;;
+        src/kernel/* | */spline.cpp | */basis.cpp | */core.cpp | */query.cpp) extra=(-O1) ;;
         *) extra=("${checks[@]}") ;;
     esac
     case $1 in *_avx2.cpp) extra+=(-mavx2 -mfma) ;; *_avx512.cpp) extra+=(-mavx512f -mavx512dq -mavx512vl -mfma) ;; esac

@@ -31,8 +31,8 @@ TEST(SignedArea, agrees_with_polygons_for_all_kinds_of_segments) {
         const Subpath loop = random_loop(random, {.segments = random.integer(1, 5)});
         std::vector<Vec<2>> polygon;
         for (const PathSegment& s : loop.segments) {
-            const auto line = std::visit(
-                [](const auto& c) { return must(flatten(c, {.tolerance = 1e-6})); }, curve_of({s.front(), {s}, false}));
+            const auto line = std::visit([](const auto& c) { return must(flatten(c, {.tolerance = 1e-6})); },
+                                         curve_of({s.front(), {s}, false}));
             polygon.insert(polygon.end(), line.points.begin(), line.points.end() - 1);
         }
         EXPECT_NEAR(signed_area({{loop}}).value, polygon_area(polygon), 1e-4) << i;

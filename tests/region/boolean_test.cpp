@@ -39,11 +39,13 @@ bool obeys_laws(const Filled& a, const Filled& b, Random& random, const RegionOp
         const InsideQuery in = inside_query(r->path);
         for (int i = 0; i < 40; ++i) {
             const Vec<2> p{{random.real(-size / 4, size), random.real(-size / 4, size)}};
-            const bool wanted = is_in(o, is_in(a.rule, in_a.at(p).winding), is_in(b.rule, in_b.at(p).winding));
+            const bool wanted =
+                is_in(o, is_in(a.rule, in_a.at(p).winding), is_in(b.rule, in_b.at(p).winding));
             EXPECT_EQ(in.at(p).winding, int(wanted)) << name_of(o) << ' ' << p[0] << ' ' << p[1];
         }
     }
-    const double whole_a = area(ra->path), whole_b = area(rb->path), slack = 1e-9 * (whole_a + whole_b + size * size * 1e-3);
+    const double whole_a = area(ra->path), whole_b = area(rb->path),
+                 slack = 1e-9 * (whole_a + whole_b + size * size * 1e-3);
     EXPECT_NEAR(areas[0], whole_a + whole_b - areas[1], slack);
     EXPECT_NEAR(areas[2], whole_a - areas[1], slack);
     EXPECT_NEAR(areas[3], areas[0] - areas[1], slack);
@@ -73,12 +75,12 @@ TEST(Combine, nasty_pairs_obey_them_too) {
     const Path star{{polygon({{{0, 3}}, {{2, -3}}, {{-3, 1}}, {{3, 1}}, {{-2, -3}}})}};
     std::vector<std::pair<Path, Path>> pairs{
         {square, square},
-        {square, {{rectangle(2, 0, 4, 2)}}},         // a common edge
-        {square, {{rectangle(2, 1, 4, 3)}}},         // part of an edge
-        {square, {{rectangle(2, 2, 4, 4)}}},         // a corner
-        {square, {{rectangle(0.5, 0.5, 1, 1)}}},     // nested
-        {square, {{rectangle(0, 0, 1, 1)}}},         // nested with common edges
-        {square, {{rectangle(50, 50, 51, 51)}}},     // far
+        {square, {{rectangle(2, 0, 4, 2)}}},                      // a common edge
+        {square, {{rectangle(2, 1, 4, 3)}}},                      // part of an edge
+        {square, {{rectangle(2, 2, 4, 4)}}},                      // a corner
+        {square, {{rectangle(0.5, 0.5, 1, 1)}}},                  // nested
+        {square, {{rectangle(0, 0, 1, 1)}}},                      // nested with common edges
+        {square, {{rectangle(50, 50, 51, 51)}}},                  // far
         {square, {{rectangle(1, 1, 1 + 0x1p-20, 1 + 0x1p-20)}}},  // tiny
         {square, {{polygon({{{0, 0}}, {{2, 2}}, {{0, 2}}, {{2, 2}}, {{0, 0}}})}}},  // there and back
         {square, bow},
@@ -89,7 +91,7 @@ TEST(Combine, nasty_pairs_obey_them_too) {
         {disc, circle(0.5, 0, 0.5)},  // from inside
         {disc, circle(1, 0, 1)},
         {disc, {{rectangle(-1, -1, 1, 1)}}},
-        {disc, {{rectangle(0, -1, 1, 1)}}},  // through the joints
+        {disc, {{rectangle(0, -1, 1, 1)}}},                    // through the joints
         {disc, {{polygon({{{1, 5}}, {{1, -5}}, {{9, 0}}})}}},  // a tangent line
     };
     // A cubic with a loop, with itself, reversed, and with its own chord.
@@ -97,10 +99,12 @@ TEST(Combine, nasty_pairs_obey_them_too) {
     pairs.insert(pairs.end(), {{loop, loop}, {loop, turned}, {loop, {{rectangle(0, -1, 4, 0)}}}});
     Random random(2);
     for (std::size_t i = 0; i < pairs.size(); ++i)
-        EXPECT_TRUE(obeys_laws({pairs[i].first, FillRule(i % 2)}, {pairs[i].second, FillRule(i % 2)}, random)) << i;
+        EXPECT_TRUE(obeys_laws({pairs[i].first, FillRule(i % 2)}, {pairs[i].second, FillRule(i % 2)}, random))
+            << i;
     // Where coordinates are large, or shapes small, beside the tolerance that there is.
     EXPECT_TRUE(obeys_laws({circle(1e6, 1e6, 1)}, {circle(1e6 + 1, 1e6, 1)}, random, {.tolerance = 1e-6}));
-    EXPECT_TRUE(obeys_laws({circle(0, 0, 0x1p-30)}, {circle(0x1p-30, 0, 0x1p-30)}, random, {.tolerance = 0x1p-60}));
+    EXPECT_TRUE(
+        obeys_laws({circle(0, 0, 0x1p-30)}, {circle(0x1p-30, 0, 0x1p-30)}, random, {.tolerance = 0x1p-60}));
 }
 
 TEST(Combine, copies_that_were_turned_and_turned_back_are_the_same) {
@@ -119,8 +123,9 @@ TEST(Combine, polygons_of_small_integers_are_exact) {
     Random random(4);
     const auto polygon_of = [&] {
         const double x = random.integer(0, 4), y = random.integer(0, 4), s = random.integer(1, 5);
-        return random.chance(0.5) ? Path{{rectangle(x, y, x + s, y + random.integer(1, 5))}}
-                                  : Path{{polygon({{{x, y}}, {{x + s, y + s}}, {{x, y + 2 * s}}, {{x - s, y + s}}})}};
+        return random.chance(0.5)
+                   ? Path{{rectangle(x, y, x + s, y + random.integer(1, 5))}}
+                   : Path{{polygon({{{x, y}}, {{x + s, y + s}}, {{x, y + 2 * s}}, {{x - s, y + s}}})}};
     };
     for (int i = 0; i < 60; ++i) {
         const Path a = polygon_of(), b = polygon_of();
@@ -164,7 +169,8 @@ TEST(Combine, scaling_by_powers_of_two_scales_the_answer_bit_for_bit) {
             EXPECT_EQ(there.bound, s * at_home.bound);
             ASSERT_EQ(there.path.subpaths.size(), at_home.path.subpaths.size());
             for (std::size_t k = 0; k < there.path.subpaths.size(); ++k)
-                EXPECT_EQ(path_data({{there.path.subpaths[k]}}), path_data(moved({{at_home.path.subpaths[k]}}, 0, s, {})));
+                EXPECT_EQ(path_data({{there.path.subpaths[k]}}),
+                          path_data(moved({{at_home.path.subpaths[k]}}, 0, s, {})));
         }
     }
 }
@@ -176,12 +182,15 @@ TEST(Combine, refuses_what_it_cannot_answer) {
     expect_refusal(combine({square}, {broken}, RegionOperation::union_of, kFine), RefusalKind::nonfinite,
                    "b.subpaths[0].segments[2]");
     expect_refusal(region_of({square}, {.tolerance = 0}), RefusalKind::invalid, "tolerance");
-    expect_refusal(region_of({square}, {.tolerance = 1e-15}), RefusalKind::ill_conditioned, "tolerance", "rounding");
-    expect_refusal(combine({square}, {square}, RegionOperation::union_of, {.tolerance = 1e-9, .max_pairs = 3}),
-                   RefusalKind::limit, "max_pairs");
+    expect_refusal(region_of({square}, {.tolerance = 1e-15}), RefusalKind::ill_conditioned, "tolerance",
+                   "rounding");
+    expect_refusal(
+        combine({square}, {square}, RegionOperation::union_of, {.tolerance = 1e-9, .max_pairs = 3}),
+        RefusalKind::limit, "max_pairs");
     Path heavy = path_from("M 0 0 Q 1 1 2 0 Z");
     heavy.subpaths[0].segments[0].weight = -1;
-    expect_refusal(region_of({heavy}, kFine), RefusalKind::unsupported, "a.subpaths[0].segments[0]", "weight");
+    expect_refusal(region_of({heavy}, kFine), RefusalKind::unsupported, "a.subpaths[0].segments[0]",
+                   "weight");
     EXPECT_TRUE(must(combine({Path{}}, {Path{}}, RegionOperation::union_of, kFine)).path.subpaths.empty());
 }
 

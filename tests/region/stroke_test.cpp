@@ -63,7 +63,8 @@ void expect_dilation(const Path& path, double width, Random& random, const std::
         const Vec<2> p{{random.real(-1, 5), random.real(-1, 5)}};
         const double d = distance.at(p);
         if (std::abs(d - width / 2) < r->bound + 2e-5) continue;
-        EXPECT_EQ(in.at(p).winding, int(d < width / 2)) << what << " at " << p[0] << ' ' << p[1] << ", distance " << d;
+        EXPECT_EQ(in.at(p).winding, int(d < width / 2))
+            << what << " at " << p[0] << ' ' << p[1] << ", distance " << d;
     }
 }
 
@@ -80,9 +81,9 @@ TEST(Stroked, with_round_caps_and_joins_is_all_that_is_near_the_path) {
 
 TEST(Stroked, where_curves_bend_more_than_the_pen_is_wide_nothing_is_taken_away) {
     Random random(2);
-    for (const char* data : {"M 0.4 3.6 C 3.8 0.4 0.2 0.4 3.6 3.6",   // almost a cusp
-                             "M 0.5 3.5 C 3.5 0.5 0.5 0.5 3.5 3.5",   // a cusp
-                             "M 0 3 C 5 0 -1 0 4 3",                   // a loop
+    for (const char* data : {"M 0.4 3.6 C 3.8 0.4 0.2 0.4 3.6 3.6",  // almost a cusp
+                             "M 0.5 3.5 C 3.5 0.5 0.5 0.5 3.5 3.5",  // a cusp
+                             "M 0 3 C 5 0 -1 0 4 3",                 // a loop
                              "M 2 2 A 0.2 0.2 0 0 1 2.2 2.3 A 0.3 0.3 0 0 0 2.5 2.5", "M 1 1 Q 3 1 1 1.01",
                              "M 1 1 C 3 3 3 3 1 1", "M 0 2 C 1 1 1 1 2 2 S 3 3 4 2"})
         for (const double width : {0.2, 1.3}) expect_dilation(path_from(data), width, random, data);
@@ -104,7 +105,8 @@ TEST(Stroked, lines_and_circles_have_the_areas_of_the_textbook) {
     style.miter_limit = 1.4;
     EXPECT_NEAR(stroke_area("M 0 0 H 4 V 4", style), legs + h * h / 2, 1e-12);
     style.join = LineJoin::miter_clip, style.miter_limit = 1.2;  // the tip is cut off at 1.2 h
-    EXPECT_NEAR(stroke_area("M 0 0 H 4 V 4", style), legs + h * h - std::pow((std::sqrt(2) - 1.2) * h, 2), 1e-12);
+    EXPECT_NEAR(stroke_area("M 0 0 H 4 V 4", style), legs + h * h - std::pow((std::sqrt(2) - 1.2) * h, 2),
+                1e-12);
     style.join = LineJoin::round;
     EXPECT_NEAR(stroke_area("M 0 0 H 4 V 4", style), legs + pi * h * h / 4, 1e-12);
     // A ring, and a disc where the pen passes over the centre.
@@ -129,18 +131,24 @@ TEST(Stroked, dashes_cover_what_the_pattern_says) {
     style.dash_offset = 0.5;
     const Path around = must(dashed(path_from("M 0 0 H 2 V 2 H 0 Z"), style, 1e-9));
     EXPECT_EQ(around.subpaths.size(), 5u);
-    EXPECT_NEAR(area_inside(must(stroked(path_from("M 0 0 H 20 V 20 H 0 Z"), {.width = 0.5, .dashes = {1, 1}}, kUsual)).path),
-                40 * 0.5, 1e-2);
+    EXPECT_NEAR(
+        area_inside(
+            must(stroked(path_from("M 0 0 H 20 V 20 H 0 Z"), {.width = 0.5, .dashes = {1, 1}}, kUsual)).path),
+        40 * 0.5, 1e-2);
     // Half of a circle, in four parts.
-    const Path arcs = must(dashed({{ellipse({{0, 0}}, 1, 1)}}, {.width = 0.1, .dashes = {pi / 4, pi / 4}}, 1e-9));
+    const Path arcs =
+        must(dashed({{ellipse({{0, 0}}, 1, 1)}}, {.width = 0.1, .dashes = {pi / 4, pi / 4}}, 1e-9));
     ASSERT_EQ(arcs.subpaths.size(), 4u);
-    EXPECT_LE(norm(arcs.subpaths[0].segments.back().back() - Vec<2>{{std::cos(pi / 4), std::sin(pi / 4)}}), 1e-8);
+    EXPECT_LE(norm(arcs.subpaths[0].segments.back().back() - Vec<2>{{std::cos(pi / 4), std::sin(pi / 4)}}),
+              1e-8);
 }
 
 TEST(Grown, squares_and_discs_have_the_areas_of_the_textbook) {
     const Path square{{rectangle(0, 0, 2, 2)}}, disc{{ellipse({{0, 0}}, 1, 1)}};
     const RegionOptions fine{.tolerance = 1e-6};
-    const auto grown_area = [&](const Path& p, const OffsetStyle& s) { return area_inside(must(grown({p}, s, fine)).path); };
+    const auto grown_area = [&](const Path& p, const OffsetStyle& s) {
+        return area_inside(must(grown({p}, s, fine)).path);
+    };
     EXPECT_NEAR(grown_area(square, {.distance = 0.5}), 4 + 4 + pi / 4, 1e-9);
     EXPECT_NEAR(grown_area(square, {.distance = 0.5, .join = LineJoin::miter}), 9, 1e-9);
     EXPECT_NEAR(grown_area(square, {.distance = 0.5, .join = LineJoin::bevel}), 8.5, 1e-9);

@@ -1,5 +1,5 @@
-// Paths that bound regions: random and nasty ones, and their winding numbers by another way than the library's
-// operations take.
+// Paths that bound regions: random and nasty ones, and their winding numbers by another way than the
+// library's operations take.
 #pragma once
 #include "random.hpp"
 
@@ -48,8 +48,9 @@ struct PathOptions {
 // A closed subpath of lines, quadratics, conics and cubics with corners anywhere: it crosses itself.
 inline Subpath random_loop(Random& random, const PathOptions& o) {
     const auto point = [&] {
-        return o.lattice ? Vec<2>{{double(random.integer(0, int(o.size))), double(random.integer(0, int(o.size)))}}
-                         : Vec<2>{{random.real(0, o.size), random.real(0, o.size)}};
+        return o.lattice
+                   ? Vec<2>{{double(random.integer(0, int(o.size))), double(random.integer(0, int(o.size)))}}
+                   : Vec<2>{{random.real(0, o.size), random.real(0, o.size)}};
     };
     Subpath out{point(), {}, true};
     Vec<2> at = out.start;

@@ -27,7 +27,7 @@ struct RegionOptions {
     // or come so near to each other that rounding does not tell.
     double tolerance = 0;
     // Backstops: pairs of segments whose boxes overlap.
-    std::size_t max_pairs = 20'000'000;
+    std::size_t max_pairs = 5'000'000;
 };
 
 struct Region {

@@ -4,12 +4,12 @@
 
 namespace freiform {
 
-// What the pen of SVG covers: the line of the width across the path, moved along it, with joins at the corners
-// and caps at the ends; the whole as loops with winding number 1 inside. Curves become arcs of circles, so that
-// both sides of the outline are arcs of circles and lines. Where a segment turns round in a cusp of its own
-// the pen turns round, too (a round join). Dashes begin at the start of each subpath; in a closed one a dash
-// goes on over the start. Subpaths and dashes without length are dots with caps: a disc, a square along the
-// axes, or nothing.
+// What the pen of SVG covers: the line of the width across the path, moved along it, with joins at the
+// corners and caps at the ends; the whole as loops with winding number 1 inside. Curves become arcs of
+// circles, so that both sides of the outline are arcs of circles and lines. Where a segment turns round in a
+// cusp of its own the pen turns round, too (a round join). Dashes begin at the start of each subpath; in a
+// closed one a dash goes on over the start. Subpaths and dashes without length are dots with caps: a disc, a
+// square along the axes, or nothing.
 //
 // `bound` <= tolerance: every point of the region is within it of a point that the pen covers, and the other
 // way round. (Dashes begin and end where they should up to an eighth of the tolerance along the path; the pen
