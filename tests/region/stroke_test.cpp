@@ -89,6 +89,12 @@ TEST(Stroked, where_curves_bend_more_than_the_pen_is_wide_nothing_is_taken_away)
         for (const double width : {0.2, 1.3}) expect_dilation(path_from(data), width, random, data);
 }
 
+TEST(Stroked, the_inside_of_a_bend_does_not_take_away_what_another_part_covers) {
+    // The pen passes over the centre of the arc, and behind it over what it has covered along the line.
+    EXPECT_NEAR(stroke_area("M 0.5 2 H 2 A 0.2 0.2 0 0 1 2.2 2.2", {.width = 1.3, .dashes = {}}),
+                1.5 * 1.3 + pi / 4 * 0.85 * 0.85, 1e-5);
+}
+
 TEST(Stroked, lines_and_circles_have_the_areas_of_the_textbook) {
     const double h = 0.25;
     StrokeStyle style{.width = 2 * h, .dashes = {}};
