@@ -4,6 +4,7 @@
 #include <freiform/intersect/curve_curve.hpp>
 #include <freiform/intersect/curve_surface.hpp>
 #include <freiform/io/document.hpp>
+#include <freiform/io/scene.hpp>
 
 #include <variant>
 
@@ -16,9 +17,10 @@ struct IntersectArguments {
     std::optional<double> tolerance;
 };
 
-// What can be met, of one kind of coefficients for each number of coordinates.
+// What can be met, of one kind of coefficients for each number of coordinates. Models: solid ones and trimmed
+// surfaces.
 using Operand = std::variant<Curve<Hom<2>>, Curve<Hom<3>>, Surface<Hom<3>>, Curve<Vec<2>>, Curve<Vec<3>>,
-                             Surface<Vec<3>>>;
+                             Surface<Vec<3>>, Model>;
 
 struct Chosen {
     std::size_t index;
@@ -32,6 +34,8 @@ public:
 
     Result<void> meet(const Chosen& a, const Chosen& b) {
         at_ = {a.index, b.index};
+        if (std::holds_alternative<Model>(a.shape) || std::holds_alternative<Model>(b.shape))
+            return meet_models(a, b);
         return std::visit([&](const auto& x, const auto& y) { return meet_shapes(x, y); }, a.shape, b.shape);
     }
     const std::vector<std::string>& undecided() const { return undecided_; }
@@ -62,6 +66,37 @@ private:
 
     template <class X, class Y>
     Result<void> meet_shapes(const X& x, const Y& y) {
+        if constexpr (std::same_as<X, Model> || std::same_as<Y, Model>)
+            return {};  // never: meet_models
+        else
+            return meet_splines(x, y);
+    }
+    // A surface is a model of one face.
+    Result<void> meet_models(const Chosen& a, const Chosen& b) {
+        const auto model_of = [](const Input& input, const Chosen& c) -> Result<Model> {
+            if (const auto* m = std::get_if<Model>(&c.shape)) return *m;
+            if (std::holds_alternative<Surface<Vec<3>>>(c.shape) ||
+                std::holds_alternative<Surface<Hom<3>>>(c.shape))
+                return scene_of(*input.document, std::span(&c.index, 1));
+            return refuse(RefusalKind::unsupported, input.label(c.index),
+                          "is a curve: models meet models and surfaces");
+        };
+        const auto x = model_of(a_, a), y = model_of(b_, b);
+        if (!x) return std::unexpected(x.error());
+        if (!y) return std::unexpected(y.error());
+        const double tolerance = given_.value_or(1e-6 * summary(*x).box.diagonal());
+        const auto found = intersect(*x, *y, SurfaceIntersectOptions{.tolerance = tolerance});
+        if (!found) return refuse_within(where(), found.error());
+        surfaces_.add(*found, at_, where());
+        for (const OpenFaces& open : found->open) {
+            const std::string faces = text(where(), ", faces ", open.faces[0], " and ", open.faces[1]);
+            if (open.reason) remark(text(faces, ": nothing is known: ", open.reason->message));
+            for (const auto& box : open.boxes) undecided_.push_back(text(faces, ": ", shown_box(box)));
+        }
+        return {};
+    }
+    template <class X, class Y>
+    Result<void> meet_splines(const X& x, const Y& y) {
         constexpr int D = Space<typename X::Coefficients>::kDim;
         if constexpr (D != Space<typename Y::Coefficients>::kDim)
             return refuse(RefusalKind::no_answer, where(),
@@ -69,7 +104,7 @@ private:
         else if constexpr (X::kParams == 2 && Y::kParams == 2)
             return meet_surfaces(x, y);
         else if constexpr (!std::same_as<typename X::Coefficients, typename Y::Coefficients>)
-            return meet_shapes(rational(x), rational(y));
+            return meet_splines(rational(x), rational(y));
         else if constexpr (X::kParams == 2)
             return take(intersect(y, x, options()),
                         [](const auto& at) { return std::pair(rest(at), first(at)); });
@@ -187,18 +222,26 @@ private:
 
 Result<std::vector<Chosen>> operands(const Input& input) {
     std::vector<Chosen> out;
-    for (const std::size_t i : input.chosen)
+    for (const std::size_t i : input.chosen) {
+        std::optional<std::size_t> trimmed;
         std::visit(
             [&](const auto& s) {
                 if constexpr (std::constructible_from<Operand, decltype(s)>)
                     out.push_back({i, Operand(s)});
+                else if constexpr (std::same_as<std::remove_cvref_t<decltype(s)>, TrimmedSurface>)
+                    trimmed = i;
                 else
                     remark_left_out(input, i);
             },
             input.object(i).shape);
+        if (!trimmed) continue;
+        auto model = scene_of(*input.document, std::span(&*trimmed, 1));
+        if (!model) return std::unexpected(model.error());
+        out.push_back({i, Operand(std::move(*model))});
+    }
     if (out.empty())
         return refuse(RefusalKind::no_answer, shown(input.file),
-                      "has no curve of the plane or of space and no surface to intersect");
+                      "has no curve of the plane or of space, surface or model to intersect");
     return out;
 }
 
@@ -237,10 +280,11 @@ Result<void> run_intersect(const Context& context, const IntersectArguments& opt
 void add_intersect(CommandLine& line) {
     const auto options = std::make_shared<IntersectArguments>();
     const Command command =
-        line.add("intersect", "Where curves and surfaces meet each other: every place, with a proof",
+        line.add("intersect", "Where curves, surfaces and models meet each other: every place, with a proof",
                  "  freiform intersect road.json river.json\n"
                  "  freiform intersect rays.json teapot.bpt --tolerance 1e-9 --json\n"
                  "  freiform intersect hull.json deck.json --tolerance 1e-4 --curves seam.json\n"
+                 "  freiform intersect housing.step pipe.step --tolerance 1e-4 --curves cut.json\n"
                  "Outside of what is listed there is no intersection. \"possible\": within rounding they may "
                  "meet, or pass "
                  "by at most \"gap\" apart.");

@@ -18,40 +18,82 @@ void write_sides(json::Writer& w, std::string_view key, const std::array<Interva
     w.end_array();
 }
 
+// Nodes of the whole answer.
+std::array<int, 2> moved(std::array<int, 2> ends, int by) {
+    for (int& end : ends)
+        if (end >= 0) end += by;
+    return ends;
+}
+
 }  // namespace
+
+void SurfaceMeetings::add_branch(const SurfaceBranch& b, std::array<int, 2> ends,
+                                 const std::array<std::size_t, 2>& objects, const std::string& where,
+                                 const FaceBranch* of_faces) {
+    struct OfFaces {
+        std::array<int, 2> faces;
+        std::array<TrimPlace, 2> trims;
+    };
+    std::optional<OfFaces> own;
+    if (of_faces) own = OfFaces{of_faces->faces, of_faces->trims};
+    branches_.push_back([=](json::Writer& w) {
+        w.new_line(1).begin_object().key("objects").array(objects);
+        if (own) w.key("faces").array(own->faces);
+        w.field("closed", b.closed).key("ends").array(ends);
+        if (own) {
+            w.key("trims").begin_array();
+            for (std::size_t e = 0; e < 2; ++e) {
+                const TrimPlace& t = own->trims[e];
+                if (ends[e] == kAtTrim)
+                    w.array(std::array{t.side, t.loop, t.coedge, t.edge});
+                else
+                    w.array(std::array<int, 0>{});
+            }
+            w.end_array();
+        }
+        w.field("bound", b.bound()).field("a_bound", b.bound_a).field("b_bound", b.bound_b);
+        write_spline(w, "curve", b.curve);
+        write_spline(w, "a", b.at_a);
+        write_spline(w, "b", b.at_b);
+        w.end_object();
+    });
+    curves_.objects.push_back({text("intersection ", branches_.size()), b.curve});
+    plain_ += text(where, own ? text(", faces ", own->faces[0], " and ", own->faces[1]) : "", ": ",
+                   b.closed ? "closed" : "open", " branch, ", b.curve.basis().size(),
+                   " control points, within ", b.bound(), " of both\n");
+}
+
+void SurfaceMeetings::add_node(const SurfaceNode& n, const std::array<std::size_t, 2>& objects,
+                               const std::string& where, const std::array<int, 2>* faces) {
+    const std::optional<std::array<int, 2>> own = faces ? std::optional(*faces) : std::nullopt;
+    nodes_.push_back([=](json::Writer& w) {
+        w.new_line(1).begin_object().key("objects").array(objects);
+        if (own) w.key("faces").array(*own);
+        w.field("kind", name_of(n.kind));
+        w.key("a").array(n.at_a).key("b").array(n.at_b).key("point").array(n.point.c);
+        w.field("gap", n.gap).field("arms", n.arms).field("cells", n.cells.size());
+        write_sides(w, "a_box", n.box_a);
+        write_sides(w, "b_box", n.box_b);
+        w.end_object();
+    });
+    plain_ += text(where, own ? text(", faces ", (*own)[0], " and ", (*own)[1]) : "", ": ", name_of(n.kind),
+                   " at ", n.point[0], ", ", n.point[1], ", ", n.point[2], ", ", n.arms,
+                   " branches end there, gap at most ", n.gap, "\n");
+}
 
 void SurfaceMeetings::add(const SurfaceIntersection& found, const std::array<std::size_t, 2>& objects,
                           const std::string& where) {
     const int before = int(nodes_.size());
-    for (const SurfaceBranch& b : found.branches) {
-        auto ends = b.ends;  // nodes of the whole answer
-        for (int& end : ends)
-            if (end >= 0) end += before;
-        branches_.push_back([=](json::Writer& w) {
-            w.new_line(1).begin_object().key("objects").array(objects).field("closed", b.closed);
-            w.key("ends").array(ends);
-            w.field("bound", b.bound()).field("a_bound", b.bound_a).field("b_bound", b.bound_b);
-            write_spline(w, "curve", b.curve);
-            write_spline(w, "a", b.at_a);
-            write_spline(w, "b", b.at_b);
-            w.end_object();
-        });
-        curves_.objects.push_back({text("intersection ", branches_.size()), b.curve});
-        plain_ += text(where, ": ", b.closed ? "closed" : "open", " branch, ", b.curve.basis().size(),
-                       " control points, within ", b.bound(), " of both\n");
-    }
-    for (const SurfaceNode& n : found.nodes) {
-        nodes_.push_back([=](json::Writer& w) {
-            w.new_line(1).begin_object().key("objects").array(objects).field("kind", name_of(n.kind));
-            w.key("a").array(n.at_a).key("b").array(n.at_b).key("point").array(n.point.c);
-            w.field("gap", n.gap).field("arms", n.arms).field("cells", n.cells.size());
-            write_sides(w, "a_box", n.box_a);
-            write_sides(w, "b_box", n.box_b);
-            w.end_object();
-        });
-        plain_ += text(where, ": ", name_of(n.kind), " at ", n.point[0], ", ", n.point[1], ", ", n.point[2],
-                       ", ", n.arms, " branches end there, gap at most ", n.gap, "\n");
-    }
+    for (const SurfaceBranch& b : found.branches)
+        add_branch(b, moved(b.ends, before), objects, where, nullptr);
+    for (const SurfaceNode& n : found.nodes) add_node(n, objects, where, nullptr);
+}
+
+void SurfaceMeetings::add(const ModelIntersection& found, const std::array<std::size_t, 2>& objects,
+                          const std::string& where) {
+    const int before = int(nodes_.size());
+    for (const FaceBranch& b : found.branches) add_branch(b, moved(b.ends, before), objects, where, &b);
+    for (const FaceNode& n : found.nodes) add_node(n, objects, where, &n.faces);
 }
 
 void SurfaceMeetings::write(json::Writer& w) const {

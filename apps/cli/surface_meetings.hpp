@@ -2,13 +2,15 @@
 #pragma once
 #include "input.hpp"
 
-#include <freiform/intersect/surface_surface.hpp>
+#include <freiform/model/intersect.hpp>
 
 namespace freiform::cli {
 
 class SurfaceMeetings {
 public:
     void add(const SurfaceIntersection& found, const std::array<std::size_t, 2>& objects,
+             const std::string& where);
+    void add(const ModelIntersection& found, const std::array<std::size_t, 2>& objects,
              const std::string& where);
     // The members "curves" and "nodes" of the answer, and what is shown instead.
     void write(json::Writer& w) const;
@@ -17,6 +19,11 @@ public:
 
 private:
     using Row = std::function<void(json::Writer&)>;
+    void add_branch(const SurfaceBranch& b, std::array<int, 2> ends,
+                    const std::array<std::size_t, 2>& objects, const std::string& where,
+                    const FaceBranch* of_faces);
+    void add_node(const SurfaceNode& n, const std::array<std::size_t, 2>& objects, const std::string& where,
+                  const std::array<int, 2>* faces);
     std::vector<Row> branches_, nodes_;
     Document curves_;
     std::string plain_;

@@ -9,27 +9,45 @@ namespace {
 // which take most of the time, are as good over two parts as over one.
 constexpr int kDeepestHalf = 20, kMostHalves = 400, kFirstHalf = 2;
 
-const BSplineBasis& basis_of_sheet(const SurfaceGeometry& g, int axis) {
-    if (const auto* s = std::get_if<Surface<Vec<3>>>(&g)) return s->basis(axis);
-    return std::get<Surface<Hom<3>>>(g).basis(axis);
+// What the surface is along an axis where it is a spline there.
+const BSplineBasis* basis_along(const SurfaceGeometry& g, int axis) {
+    const auto of_curve = [](const CurveGeometry<3>& c) -> const BSplineBasis* {
+        if (const auto* s = std::get_if<Curve<Vec<3>>>(&c)) return &s->basis();
+        if (const auto* s = std::get_if<Curve<Hom<3>>>(&c)) return &s->basis();
+        return nullptr;
+    };
+    if (const auto* s = std::get_if<Surface<Vec<3>>>(&g)) return &s->basis(axis);
+    if (const auto* s = std::get_if<Surface<Hom<3>>>(&g)) return &s->basis(axis);
+    if (const auto* s = std::get_if<Extrusion>(&g)) return axis == 0 ? of_curve(s->profile) : nullptr;
+    if (const auto* s = std::get_if<Revolution>(&g)) return axis == 1 ? of_curve(s->profile) : nullptr;
+    return nullptr;
+}
+std::vector<double> lines_of_jumps(const SurfaceGeometry& g, int axis) {
+    std::vector<double> out;
+    const BSplineBasis* basis = basis_along(g, axis);
+    if (!basis) return out;
+    const auto breaks = basis->breaks();
+    for (std::size_t i = 1; i + 1 < breaks.size(); ++i)
+        if (basis->multiplicity(breaks[i]) >= basis->degree() - 1) out.push_back(breaks[i]);
+    return out;
 }
 
 }  // namespace
 
 BranchProof::BranchProof(const SurfaceGeometry& geometry, const Sheet& sheet)
-    : query_(geometry), sheet_(sheet) {
-    for (int k = 0; k < 2; ++k) {
-        const BSplineBasis& basis = basis_of_sheet(geometry, k);
-        const auto& breaks = sheet.breaks(k);
-        for (std::size_t i = 1; i + 1 < breaks.size(); ++i)
-            if (basis.multiplicity(breaks[i]) >= basis.degree() - 1)
-                stops_[std::size_t(k)].push_back(breaks[i]);
-    }
+    : query_(geometry), sheet_(&sheet), domain_(sheet.domain()), error_(sheet.inner_error()) {
+    for (int k = 0; k < 2; ++k) stops_[std::size_t(k)] = lines_of_jumps(geometry, k);
+}
+
+BranchProof::BranchProof(const SurfaceGeometry& geometry, const std::array<Interval, 2>& domain)
+    : query_(geometry), domain_(domain), error_(value_error_bound(geometry, domain)) {
+    for (int k = 0; k < 2; ++k) stops_[std::size_t(k)] = lines_of_jumps(geometry, k);
 }
 
 BranchProof::Sample BranchProof::sample(const Vec<3>& x, const Vec<2>& u) const {
-    return {x - sheet_.at(u[0], u[1]).point,
-            1.8 * (sheet_.inner_error() + 64 * kUnitRoundoff * std::max(max_abs(x), sheet_.scale()))};
+    const Vec<3> p = sheet_ ? sheet_->at(u[0], u[1]).point : jet<0>(query_.geometry(), u.c).value();
+    const double scale = std::max(max_abs(x), sheet_ ? sheet_->scale() : max_abs(p));
+    return {x - p, 1.8 * (error_ + 64 * kUnitRoundoff * scale)};
 }
 
 std::optional<double> BranchProof::operator()(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q,
@@ -50,7 +68,7 @@ bool BranchProof::prove(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q, co
     if (std::max({a.size(), m.size(), b.size()}) > tolerance_) return false;
     std::optional<Bending> own;
     if (depth >= kFirstHalf) {
-        const auto path = speeds_of(q, sheet_.domain());
+        const auto path = speeds_of(q, domain_);
         if (!path) return false;
         if (!over) over = &own.emplace(bending(path->box));
         const double here = bound_over(c, *path, {&a, &m, &b}, *over);

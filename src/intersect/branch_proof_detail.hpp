@@ -17,15 +17,15 @@ namespace freiform::detail {
 class BranchProof {
 public:
     BranchProof(const SurfaceGeometry& geometry, const Sheet& sheet);
+    // Of a surface that is not, or not all, what a sheet is made of.
+    BranchProof(const SurfaceGeometry& geometry, const std::array<Interval, 2>& domain);
 
     // The bound; nothing: it is not up to the tolerance.
     std::optional<double> operator()(const CubicArc<Vec<3>>& c, const CubicArc<Vec<2>>& q,
                                      double tolerance) const;
     // At one place, rounding included.
     double off(const Vec<3>& x, const Vec<2>& u) const { return sample(x, u).size(); }
-    bool contains(const Vec<2>& u) const {
-        return sheet_.domain()[0].contains(u[0]) && sheet_.domain()[1].contains(u[1]);
-    }
+    bool contains(const Vec<2>& u) const { return domain_[0].contains(u[0]) && domain_[1].contains(u[1]); }
     // Lines of parameters over which second derivatives jump.
     const std::vector<double>& stops(int axis) const { return stops_[std::size_t(axis)]; }
 
@@ -51,7 +51,9 @@ private:
                       const std::array<const Sample*, 3>& at, const Bending& over) const;
 
     DerivativeQuery<2, 3> query_;
-    const Sheet& sheet_;
+    const Sheet* sheet_ = nullptr;
+    std::array<Interval, 2> domain_{};
+    double error_ = 0;  // of each coordinate of a value
     std::array<std::vector<double>, 2> stops_;
     mutable double tolerance_ = 0, most_ = 0;
     mutable int parts_ = 0;

@@ -93,18 +93,31 @@ Tracer::Step Tracer::follow(const TracePoint& start, int direction, std::vector<
     return Step::lost;
 }
 
+// The last point in the period of a place beside it. It may be on a seam, with the parameter of the other
+// side: where two seams are at one place, a step goes over one of them only. Then a point is added.
+Place4 Tracer::in_period_of(const Place4& place, std::vector<TracePoint>& way, int chart) const {
+    Place4 x = way.back().x;
+    for (std::size_t k = 0; k < 4; ++k)
+        if (charts_.is_cyclic(k)) {
+            const double period = charts_.domain(k).length(), d = x[k] - place[k];
+            x[k] -= d > 0.6 * period ? period : d < -0.6 * period ? -period : 0;
+        }
+    if (x == way.back().x) return x;
+    way.back().seam = true;
+    TracePoint other{x, chart, false};
+    for (std::size_t k = 0; k < 4; ++k) other.x[k] = clamped(x[k], charts_.domain(k));
+    way.push_back(other);
+    return x;
+}
+
 // To the next point, along the arc of the chart.
 Tracer::Step Tracer::step(TracePoint& from, int direction, std::vector<TracePoint>& way) {
     Chart& c = charts_.charts()[std::size_t(from.chart)];
     const std::size_t f = c.free;
     const double w = c.width(f), sense = direction * c.forward;
-    // The place in the period of the chart.
-    Place4 x = from.x;
-    for (std::size_t k = 0; k < 4; ++k)
-        if (charts_.is_cyclic(k)) {
-            const double period = charts_.domain(k).length(), d = x[k] - c.core[k].middle();
-            x[k] -= d > 0.6 * period ? period : d < -0.6 * period ? -period : 0;
-        }
+    Place4 middle;
+    for (std::size_t k = 0; k < 4; ++k) middle[k] = c.core[k].middle();
+    const Place4 x = in_period_of(middle, way, from.chart);
     const double goal = sense > 0 ? c.core[f].hi + kBeyond * w : c.core[f].lo - kBeyond * w;
     double by = std::clamp(goal - x[f], -0.98 * Sheet::kMargin * w / std::max(c.slope, 0.7),
                            0.98 * Sheet::kMargin * w / std::max(c.slope, 0.7));
@@ -203,7 +216,10 @@ Tracer::Step Tracer::arrive(std::vector<TracePoint>& way, int direction) {
             if (ahead < 0) break;
             way.pop_back();
         }
-        way.push_back(way[0]);
+        const TracePoint start = way[0];
+        way.back().seam = false;
+        in_period_of(start.x, way, way.back().chart);
+        way.push_back(start);
         return Step::closed;
     }
     if (next < 0) {

@@ -32,6 +32,7 @@ private:
     Step step(TracePoint& from, int direction, std::vector<TracePoint>& way);
     Step arrive(std::vector<TracePoint>& way, int direction);
     bool leave(TracePoint& to) const;
+    Place4 in_period_of(const Place4& place, std::vector<TracePoint>& way, int chart) const;
     std::optional<Trace> from(int chart);
     Step follow(const TracePoint& start, int direction, std::vector<TracePoint>& way, int& end);
 

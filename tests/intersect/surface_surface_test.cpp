@@ -150,6 +150,16 @@ TEST(SurfaceSurface, spheres_meet_in_a_circle_over_seams) {
     EXPECT_NEAR(length_of(found), kTau * std::sqrt(1 - x * x), 1e-4);
 }
 
+// Both circles cross both seams at the same place.
+TEST(SurfaceSurface, seams_at_one_place_are_both_stepped_over) {
+    const auto found = met(ball({{0, 0, 0}}, 1.25), tube({{0, 0, 0}}, {{0, 0, 1}}, 1, 3), 1e-6);
+    ASSERT_EQ(found.branches.size(), 2u);
+    for (const SurfaceBranch& b : found.branches) {
+        EXPECT_TRUE(b.closed);
+        EXPECT_NEAR(length_of(b), kTau, 1e-4);
+    }
+}
+
 TEST(SurfaceSurface, a_loop_a_thousandth_wide_is_found) {
     const auto bowl = quadratic([](double x, double y) {
         return 0.5 * ((x - 0.31) * (x - 0.31) + (y - 0.17) * (y - 0.17) - 2.5e-7);

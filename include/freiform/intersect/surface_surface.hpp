@@ -1,7 +1,7 @@
 // Where two surfaces meet: every branch, none missed, as splines.
 #pragma once
 #include <freiform/intersect/contact.hpp>
-#include <freiform/spline/patch.hpp>
+#include <freiform/spline/geometry.hpp>
 
 #include <string_view>
 #include <vector>
@@ -70,5 +70,25 @@ template <class P, class Q>
 requires(Space<P>::kDim == 3 &&
          Space<Q>::kDim == 3) Result<SurfaceIntersection> intersect(const Surface<P>& a, const Surface<Q>& b,
                                                                     const SurfaceIntersectOptions& options);
+
+// A box of the parameters of any surface that models are made of: angles at most one turn.
+struct SurfacePart {
+    SurfaceGeometry surface;
+    std::array<Interval, 2> on{};
+};
+struct PartIntersection : SurfaceIntersection {
+    // Analytic surfaces are searched as rational splines: bounds of how far these are from the surfaces, so
+    // that where they are proven to be apart, the surfaces may meet if they are nearer than this.
+    std::array<double, 2> search_bound{};
+};
+
+// The same for surfaces of models, in their own parameters; bounds of branches are those of the surfaces
+// themselves. Refuses (unsupported) offsets and what is made from hyperbolas and parabolas; (invalid) boxes
+// that are not bounded, and tolerances that are not positive.
+Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
+                                   const SurfaceIntersectOptions& options);
+
+// Contains the part. Refuses what `intersect` refuses of it.
+Result<Box<3>> box_of_part(const SurfacePart& part);
 
 }  // namespace freiform

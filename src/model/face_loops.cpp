@@ -1,0 +1,173 @@
+// Clipping by the loops of a face.
+//
+// Method. The curve is cut where it meets the curves of the loops (curve_curve.hpp: proven roots, overlaps
+// within the tolerance). Between two cuts it meets no loop, so that its middle decides, exactly. Cuts that
+// are nearer to each other than rounding moves them are one: where a curve leaves through a corner, two
+// curves of the loop have it. u and v are multiplied by powers of two, so that lengths in the plane are about
+// those in space, and the tolerance means something.
+//
+// Accuracy. That a middle is in or out is exact for the curve's value there as it is computed.
+#include "face_loops_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/intersect/curve_curve.hpp>
+#include <freiform/make/conic.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kOneCut = 0x1p-36;  // of the domain of the curve
+
+// The part of a coedge's curve as a spline, in the direction of the loop.
+Result<CurveGeometry<2>> loop_spline(const Coedge& coedge, Interval on) {
+    const auto turned = [&](const auto& curve) -> CurveGeometry<2> {
+        return coedge.reversed ? reverse(curve, 0) : curve;
+    };
+    if (const auto* line = std::get_if<Line<2>>(&coedge.curve)) {
+        const auto basis = BSplineBasis::bezier(1, on);
+        if (!basis) return std::unexpected(basis.error());
+        auto made =
+            Curve<Vec<2>>::make({*basis}, Net<1, Vec<2>>({2}, {line->origin + on.lo * line->direction,
+                                                               line->origin + on.hi * line->direction}));
+        if (!made) return std::unexpected(made.error());
+        return turned(*made);
+    }
+    if (const auto* conic = std::get_if<Conic<2>>(&coedge.curve)) {
+        const auto arc = conic_arc(*conic, on);
+        if (!arc) return std::unexpected(arc.error());
+        return turned(arc->curve);
+    }
+    const auto part = [&](const auto& spline) -> Result<CurveGeometry<2>> {
+        if (spline.domain()[0] == on) return turned(spline);
+        const auto cut = restrict_to(spline, 0, on);
+        if (!cut) return std::unexpected(cut.error());
+        return turned(*cut);
+    };
+    if (const auto* spline = std::get_if<Curve<Vec<2>>>(&coedge.curve)) return part(*spline);
+    return part(std::get<Curve<Hom<2>>>(coedge.curve));
+}
+
+Curve<Hom<2>> weighted_curve(const CurveGeometry<2>& spline) {
+    if (const auto* c = std::get_if<Curve<Vec<2>>>(&spline)) return to_rational(*c);
+    return std::get<Curve<Hom<2>>>(spline);
+}
+Curve<Hom<2>> in_units(const Curve<Hom<2>>& curve, const Vec<2>& unit) {
+    Net<1, Hom<2>> net = curve.net();
+    for (Hom<2>& h : net.flat())
+        for (int k = 0; k < 2; ++k) h[k] *= unit[k];
+    return Curve<Hom<2>>::trusted(curve.bases(), std::move(net));
+}
+Box<2> box_of_net(const Curve<Hom<2>>& curve) {
+    Box<2> box;
+    for (const Vec<2>& p : points(curve)) box.add(p);
+    return box;
+}
+Vec<2> end_of(const CurveGeometry<2>& spline, bool last) {
+    const Curve<Hom<2>> c = weighted_curve(spline);
+    const Interval on = c.domain()[0];
+    return c(last ? on.hi : on.lo);
+}
+bool are_boxes_apart(const Box<2>& a, const Box<2>& b, double by) {
+    for (int k = 0; k < 2; ++k)
+        if (a.lo[k] > b.hi[k] + by || b.lo[k] > a.hi[k] + by) return true;
+    return false;
+}
+
+}  // namespace
+
+Result<void> FaceLoops::add(const CurveGeometry<2>& curve, ClippedPart::End place) {
+    const Curve<Hom<2>> own = in_units(weighted_curve(curve), unit_);
+    trims_.push_back({own, box_of_net(own), place});
+    return {};
+}
+
+Result<FaceLoops> FaceLoops::make(const Face& face, const std::vector<Edge>& edges, const Vec<2>& stretch) {
+    FaceLoops out;
+    for (int k = 0; k < 2; ++k)
+        out.unit_[k] =
+            stretch[k] > 0 && std::isfinite(stretch[k]) ? std::scalbn(1.0, std::ilogb(stretch[k])) : 1;
+    std::vector<std::vector<CurveGeometry<2>>> loops;
+    double gap = 0;
+    for (std::size_t l = 0; l < face.loops.size(); ++l) {
+        std::vector<CurveGeometry<2>> loop;
+        const auto& coedges = face.loops[l].coedges;
+        for (std::size_t c = 0; c < coedges.size(); ++c) {
+            auto spline = loop_spline(coedges[c], edges[std::size_t(coedges[c].edge)].range);
+            if (!spline) return refuse_within(text("loops[", l, "][", c, "]"), spline.error());
+            if (auto ok = out.add(*spline, {int(l), int(c)}); !ok) return std::unexpected(ok.error());
+            loop.push_back(std::move(*spline));
+        }
+        // Joints that are open are closed by segments, as the inside test does.
+        for (std::size_t c = 0; c < loop.size(); ++c) {
+            const Vec<2> from = end_of(loop[c], true), to = end_of(loop[(c + 1) % loop.size()], false);
+            if (from == to) continue;
+            gap = std::max(gap, norm(to - from));
+            out.trims_.push_back(
+                {in_units(to_rational(Curve<Vec<2>>::trusted({*BSplineBasis::bezier(1, {0, 1})},
+                                                             Net<1, Vec<2>>({2}, {from, to}))),
+                          out.unit_),
+                 {},
+                 {int(l), -1}});
+            out.trims_.back().box = box_of_net(out.trims_.back().curve);
+        }
+        loops.push_back(std::move(loop));
+    }
+    if (loops.empty()) return out;
+    auto query = InsideQuery::make(loops, 2 * gap);
+    if (!query) return std::unexpected(query.error());
+    out.query_ = std::move(*query);
+    return out;
+}
+
+Result<std::vector<ClippedPart>> FaceLoops::clip(const Curve<Vec<2>>& curve, double tolerance) const {
+    const Interval on = curve.domain()[0];
+    if (!query_) return std::vector{ClippedPart{on, {}, false}};
+    struct Cut {
+        double t;
+        std::optional<ClippedPart::End> at;
+    };
+    std::vector<Cut> cuts{{on.lo, {}}, {on.hi, {}}};
+    std::vector<Interval> along;
+    const Curve<Hom<2>> own = in_units(to_rational(curve), unit_);
+    const Box<2> box = box_of_net(own);
+    for (const Trim& trim : trims_) {
+        if (are_boxes_apart(box, trim.box, 4 * tolerance)) continue;
+        const auto found = intersect(own, trim.curve, IntersectOptions{.accuracy = tolerance});
+        if (!found) return std::unexpected(found.error());
+        if (!found->undecided.empty())
+            return refuse(RefusalKind::limit, "loops", "are crossed in more places than work is allowed for");
+        for (const auto& c : found->contacts) cuts.push_back({c.at[0], trim.place});
+        for (const Overlap& o : found->overlaps) {
+            along.push_back(o.a);
+            cuts.push_back({o.a.lo, trim.place}), cuts.push_back({o.a.hi, trim.place});
+        }
+    }
+    std::ranges::sort(cuts, {}, &Cut::t);
+    std::vector<Cut> kept;
+    for (const Cut& c : cuts) {
+        if (kept.empty() || c.t - kept.back().t > kOneCut * on.length())
+            kept.push_back(c);
+        else if (!kept.back().at)
+            kept.back().at = c.at;
+    }
+    if (kept.size() > 1 && on.hi - kept.back().t <= kOneCut * on.length()) kept.back().t = on.hi;
+    std::vector<ClippedPart> out;
+    for (std::size_t i = 0; i + 1 < kept.size(); ++i) {
+        const double middle = Interval{kept[i].t, kept[i + 1].t}.middle();
+        const bool runs = std::ranges::any_of(along, [&](const Interval& a) { return a.contains(middle); });
+        if (!runs && !is_inside(curve(middle))) continue;
+        if (!out.empty() && out.back().on.hi == kept[i].t) {
+            out.back().on.hi = kept[i + 1].t, out.back().ends[1] = kept[i + 1].at;
+            out.back().along = out.back().along || runs;
+        } else {
+            out.push_back({{kept[i].t, kept[i + 1].t}, {kept[i].at, kept[i + 1].at}, runs});
+        }
+    }
+    return out;
+}
+
+}  // namespace freiform

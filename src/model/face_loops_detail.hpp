@@ -1,0 +1,45 @@
+// The loops of a face as splines in its parameter plane, to clip curves of the plane by.
+#pragma once
+#include <freiform/model/model.hpp>
+#include <freiform/trim/inside.hpp>
+
+#include <optional>
+
+namespace freiform {
+
+// A part of a curve in the parameter plane, [on.lo, on.hi], which is in the face.
+struct ClippedPart {
+    Interval on;
+    // Of the ends: where on the loops, or none: the curve itself ends.
+    struct End {
+        int loop = -1, coedge = -1;
+    };
+    std::array<std::optional<End>, 2> ends{};
+    bool along = false;  // some of it is within the tolerance of a loop
+};
+
+class FaceLoops {
+public:
+    // `stretch`: lengths in space for lengths of u and v, at most. Refuses what has no spline.
+    static Result<FaceLoops> make(const Face& face, const std::vector<Edge>& edges, const Vec<2>& stretch);
+
+    // The parts of a curve that are in the face or within the tolerance (a length in space, by `stretch`) of
+    // its loops, in order.
+    Result<std::vector<ClippedPart>> clip(const Curve<Vec<2>>& curve, double tolerance) const;
+    // Neither inside nor on a loop, proven by samples of none: exactly.
+    bool is_inside(const Vec<2>& uv) const { return !query_ || query_->at(uv).place != Place::outside; }
+    bool is_empty() const { return trims_.empty(); }
+
+private:
+    struct Trim {
+        Curve<Hom<2>> curve;  // in lengths in space, roughly
+        Box<2> box;
+        ClippedPart::End place;
+    };
+    Result<void> add(const CurveGeometry<2>& curve, ClippedPart::End place);
+    Vec<2> unit_{};  // powers of two
+    std::vector<Trim> trims_;
+    std::optional<InsideQuery> query_;
+};
+
+}  // namespace freiform

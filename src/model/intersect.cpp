@@ -1,0 +1,278 @@
+// Intersections of models.
+//
+// Idea. Each face lies on a part of its surface, a little larger than its loops, so that the borders of the
+// part play no role; two parts are intersected as surfaces (surface_surface.hpp), and branches are clipped by
+// the loops of both faces (face_loops.cpp).
+//
+// Method. Faces are paired by boxes of their parts. Where both clips keep a stretch of a branch it stays; a
+// closed branch that is cut somewhere else than at its seam is joined there again. Nodes stay unless all
+// their cells are outside of a face: no loop meets the cell, and its middle is outside.
+//
+// Cost. A search for each pair of faces whose boxes overlap.
+//
+// Why not faces as they are, with their loops carried into splines? Loops in angles have no such spline.
+#include "face_loops_detail.hpp"
+#include "face_region_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/model/intersect.hpp>
+#include <freiform/spline/bezier.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kBeyondLoops = 1.0 / 16;  // of the size of a face, that its part is larger
+constexpr std::size_t kChordsOfLoops = 256;
+// Chords leave the loops by some, so that a turn looks longer than it is.
+constexpr double kTurnSlack = 0x1p-10;
+
+struct PreparedFace {
+    SurfacePart part;
+    FaceLoops loops;
+    FaceRegion region;
+    Box<3> box;
+};
+
+// What a parameter of an analytic surface is.
+enum class AxisKind { straight, angle, latitude, given };
+
+AxisKind kind_of_profile(const CurveGeometry<3>& c) {
+    return std::holds_alternative<Line<3>>(c)    ? AxisKind::straight
+           : std::holds_alternative<Conic<3>>(c) ? AxisKind::angle
+                                                 : AxisKind::given;
+}
+std::array<AxisKind, 2> axes_of(const SurfaceGeometry& s) {
+    if (const auto* e = std::get_if<Extrusion>(&s)) return {kind_of_profile(e->profile), AxisKind::straight};
+    if (const auto* r = std::get_if<Revolution>(&s)) {
+        AxisKind across = kind_of_profile(r->profile);
+        // Beyond a pole the surface comes back over itself.
+        if (across == AxisKind::angle && r->kind != SurfaceKind::torus) across = AxisKind::latitude;
+        return {AxisKind::angle, across};
+    }
+    return {AxisKind::given, AxisKind::given};
+}
+
+// What the part covers of one parameter: the loops, and some more where there is more.
+Result<Interval> window(const Interval& loops, AxisKind kind, const Interval& domain) {
+    const double more = kBeyondLoops * loops.length();
+    switch (kind) {
+        case AxisKind::given:
+            return domain;
+        case AxisKind::straight:
+            return Interval{loops.lo - more, loops.hi + more};
+        case AxisKind::latitude:
+            if (constexpr double kPole = std::numbers::pi / 2;
+                loops.lo >= -kPole * (1 + kTurnSlack) && loops.hi <= kPole * (1 + kTurnSlack))
+                return Interval{std::max(loops.lo - more, -kPole), std::min(loops.hi + more, kPole)};
+            return loops;
+        case AxisKind::angle:
+            break;
+    }
+    if (loops.length() > kTwoPi * (1 + kTurnSlack))
+        return refuse(RefusalKind::unsupported, "loops", "go round the surface more than once");
+    if (loops.length() + 2 * more < kTwoPi) return Interval{loops.lo - more, loops.hi + more};
+    // The seam is where the loops have it, or in the middle of what is left.
+    const double lo = loops.middle() - kTwoPi / 2;
+    return Interval{lo, lo + kTwoPi};
+}
+
+Result<PreparedFace> prepared(const Model& model, const Face& face) {
+    const double any = std::numeric_limits<double>::infinity();
+    const auto rough = FaceRegion::make(face, model.edges, {{any, any}}, 1);
+    if (!rough) return std::unexpected(rough.error());
+    const Vec<2> size{{rough->box().side(0).length(), rough->box().side(1).length()}};
+    auto region = FaceRegion::make(face, model.edges, 0x1p-12 * size, kChordsOfLoops);
+    if (!region) return std::unexpected(region.error());
+    const auto kinds = axes_of(face.surface);
+    const auto whole = domain(face.surface);
+    PreparedFace out{{face.surface, {}}, {}, std::move(*region), {}};
+    for (int k = 0; k < 2; ++k) {
+        const auto side = window(out.region.box().side(k), kinds[std::size_t(k)], whole[std::size_t(k)]);
+        if (!side) return std::unexpected(side.error());
+        out.part.on[std::size_t(k)] = *side;
+    }
+    const DerivativeQuery<2, 3> surface(face.surface);
+    const auto d = surface(out.part.on, 1);
+    auto loops = FaceLoops::make(face, model.edges, {{d(1, 0), d(0, 1)}});
+    if (!loops) return std::unexpected(loops.error());
+    out.loops = std::move(*loops);
+    auto box = box_of_part(out.part);
+    if (!box) return std::unexpected(box.error());
+    out.box = *box;
+    return out;
+}
+
+// A cubic spline as its Bezier pieces, a part of it, and two after each other.
+template <int D>
+Curve<Vec<D>> part_of_curve(const Curve<Vec<D>>& c, Interval on) {
+    if (c.domain()[0] == on) return c;
+    auto part = restrict_to(c, 0, on);
+    return part ? std::move(*part) : c;
+}
+template <int D>
+Curve<Vec<D>> joined_curves(const Curve<Vec<D>>& a, const Curve<Vec<D>>& b, double shift) {
+    std::vector<double> knots(a.basis().knots().begin(), a.basis().knots().end() - 1);
+    std::vector<Vec<D>> net(a.net().flat().begin(), a.net().flat().end());
+    const auto other = b.net().flat();
+    const bool jump = !(other[0] == net.back());
+    if (jump) knots.push_back(knots.back());
+    net.insert(net.end(), other.begin() + (jump ? 0 : 1), other.end());
+    const auto more = b.basis().knots();
+    for (std::size_t i = 4; i < more.size(); ++i) knots.push_back(more[i] + shift);
+    const int n = int(net.size());
+    return Curve<Vec<D>>::trusted({*BSplineBasis::make(3, std::move(knots))},
+                                  Net<1, Vec<D>>({n}, std::move(net)));
+}
+
+class ModelMeeting {
+public:
+    ModelMeeting(const Model& a, const Model& b, const SurfaceIntersectOptions& options)
+        : models_{&a, &b}, options_(options) {}
+
+    Result<ModelIntersection> all() {
+        if (!(options_.tolerance > 0) || !std::isfinite(options_.tolerance))
+            return refuse(RefusalKind::invalid, "tolerance",
+                          text(options_.tolerance, " is not a length > 0"));
+        std::array<std::vector<std::optional<PreparedFace>>, 2> faces;
+        for (std::size_t s = 0; s < 2; ++s)
+            for (std::size_t f = 0; f < models_[s]->faces.size(); ++f) {
+                auto one = prepared(*models_[s], models_[s]->faces[f]);
+                if (!one)
+                    out_.open.push_back({{s == 0 ? int(f) : -1, s == 1 ? int(f) : -1}, {}, one.error()});
+                faces[s].push_back(one ? std::optional(std::move(*one)) : std::nullopt);
+            }
+        for (std::size_t i = 0; i < faces[0].size(); ++i)
+            for (std::size_t j = 0; j < faces[1].size(); ++j)
+                if (faces[0][i] && faces[1][j] && !are_apart(faces[0][i]->box, faces[1][j]->box)) {
+                    faces_ = {int(i), int(j)};
+                    meet({&*faces[0][i], &*faces[1][j]});
+                }
+        return std::move(out_);
+    }
+
+private:
+    static bool are_apart(const Box<3>& a, const Box<3>& b) {
+        for (int k = 0; k < 3; ++k)
+            if (a.lo[k] > b.hi[k] || b.lo[k] > a.hi[k]) return true;
+        return false;
+    }
+    void leave_open(const Refusal& reason) { out_.open.push_back({faces_, {}, reason}); }
+
+    void meet(const std::array<const PreparedFace*, 2>& face) {
+        auto found = intersect(face[0]->part, face[1]->part, options_);
+        if (!found) return leave_open(found.error());
+        out_.search_bound = std::max(out_.search_bound, found->search_bound[0] + found->search_bound[1]);
+        std::vector<int> node(found->nodes.size(), -1);
+        for (std::size_t i = 0; i < node.size(); ++i) {
+            if (!may_touch(face, found->nodes[i].cells)) continue;
+            node[i] = int(out_.nodes.size());
+            out_.nodes.push_back({found->nodes[i], faces_});
+        }
+        for (const SurfaceBranch& b : found->branches) {
+            std::array<std::vector<ClippedPart>, 2> parts;
+            bool known = true;
+            for (std::size_t s = 0; s < 2 && known; ++s) {
+                auto clipped = face[s]->loops.clip(s == 0 ? b.at_a : b.at_b, options_.tolerance);
+                if (!clipped) leave_open(clipped.error());
+                known = clipped.has_value();
+                if (known) parts[s] = std::move(*clipped);
+            }
+            if (known) take(b, parts, node);
+        }
+        std::erase_if(found->undecided, [&](const auto& box) { return !may_touch(face, {box}); });
+        if (!found->undecided.empty()) out_.open.push_back({faces_, found->undecided, {}});
+    }
+    // Of some box, is a part in both faces, as far as is known?
+    static bool may_touch(const std::array<const PreparedFace*, 2>& face,
+                          const std::vector<std::array<Interval, 4>>& boxes) {
+        const auto may_hold = [](const PreparedFace& f, const Box<2>& box) {
+            for (std::size_t i = 0; i < f.region.size(); ++i)
+                if (f.region.meets(box, i)) return true;
+            return f.loops.is_empty() || f.region.is_inside(0.5 * (box.lo + box.hi));
+        };
+        return std::ranges::any_of(boxes, [&](const std::array<Interval, 4>& b) {
+            return may_hold(*face[0], {{{b[0].lo, b[1].lo}}, {{b[0].hi, b[1].hi}}}) &&
+                   may_hold(*face[1], {{{b[2].lo, b[3].lo}}, {{b[2].hi, b[3].hi}}});
+        });
+    }
+
+    struct Stretch {
+        Interval on;
+        std::array<int, 2> ends{kAtBorder, kAtBorder};
+        std::array<TrimPlace, 2> trims{};
+        std::array<bool, 2> along{};
+    };
+    void take(const SurfaceBranch& b, const std::array<std::vector<ClippedPart>, 2>& parts,
+              const std::vector<int>& node) {
+        const Interval all = b.curve.domain()[0];
+        std::vector<Stretch> kept;
+        for (const ClippedPart& p : parts[0])
+            for (const ClippedPart& q : parts[1]) {
+                const Interval on{std::max(p.on.lo, q.on.lo), std::min(p.on.hi, q.on.hi)};
+                if (!(on.lo < on.hi)) continue;
+                Stretch s{on, {}, {}, {p.along, q.along}};
+                for (std::size_t e = 0; e < 2; ++e) {
+                    const bool of_p = (e == 0 ? p.on.lo == on.lo : p.on.hi == on.hi) && p.ends[e];
+                    const bool of_q = (e == 0 ? q.on.lo == on.lo : q.on.hi == on.hi) && q.ends[e];
+                    s.ends[e] = b.ends[e];
+                    if (s.ends[e] >= 0) s.ends[e] = node[std::size_t(s.ends[e])];  // outside: a border, too
+                    if (of_p || of_q) {
+                        s.ends[e] = kAtTrim;
+                        s.trims[e] = place(of_p ? 0 : 1, of_p ? *p.ends[e] : *q.ends[e]);
+                    }
+                }
+                kept.push_back(s);
+            }
+        const bool round =
+            b.closed && kept.size() > 1 && kept.front().on.lo == all.lo && kept.back().on.hi == all.hi;
+        const bool whole = b.closed && kept.size() == 1 && kept[0].on == all;
+        for (std::size_t i = round ? 1 : 0; i < kept.size(); ++i) {
+            const Stretch& s = kept[i];
+            FaceBranch f{part_of_branch(b, s.on), faces_, s.trims, s.along};
+            f.ends = s.ends, f.closed = whole;
+            if (whole) f.ends = b.ends;
+            if (round && i + 1 == kept.size()) {
+                const Stretch& rest = kept.front();
+                const SurfaceBranch more = part_of_branch(b, rest.on);
+                const double shift = all.length();
+                f.curve = joined_curves(f.curve, more.curve, shift);
+                f.at_a = joined_curves(f.at_a, more.at_a, shift);
+                f.at_b = joined_curves(f.at_b, more.at_b, shift);
+                f.ends[1] = rest.ends[1], f.trims[1] = rest.trims[1];
+                for (std::size_t k = 0; k < 2; ++k) f.along_trim[k] = f.along_trim[k] || rest.along[k];
+            }
+            out_.branches.push_back(std::move(f));
+        }
+    }
+    TrimPlace place(int side, const ClippedPart::End& at) const {
+        const Model& m = *models_[std::size_t(side)];
+        const Face& f = m.faces[std::size_t(faces_[std::size_t(side)])];
+        const int edge =
+            at.coedge < 0 ? -1 : f.loops[std::size_t(at.loop)].coedges[std::size_t(at.coedge)].edge;
+        return {side, at.loop, at.coedge, edge};
+    }
+    static SurfaceBranch part_of_branch(const SurfaceBranch& b, Interval on) {
+        SurfaceBranch out = b;
+        out.curve = part_of_curve(b.curve, on);
+        out.at_a = part_of_curve(b.at_a, on), out.at_b = part_of_curve(b.at_b, on);
+        return out;
+    }
+
+    std::array<const Model*, 2> models_;
+    SurfaceIntersectOptions options_;
+    std::array<int, 2> faces_{};
+    ModelIntersection out_;
+};
+
+}  // namespace
+
+Result<ModelIntersection> intersect(const Model& a, const Model& b, const SurfaceIntersectOptions& options) {
+    return ModelMeeting(a, b, options).all();
+}
+
+}  // namespace freiform

@@ -1,0 +1,138 @@
+
+#include "random.hpp"
+#include "refusal.hpp"
+#include "solids.hpp"
+
+#include <freiform/model/intersect.hpp>
+#include <freiform/model/rescale.hpp>
+
+#include <gtest/gtest.h>
+
+namespace freiform::test {
+namespace {
+
+double length_of(const Curve<Vec<3>>& c) {
+    const Interval on = c.domain()[0];
+    double sum = 0;
+    for (int i = 0; i < 2000; ++i)
+        sum += norm(c(on.lo + on.length() * (i + 1) / 2000) - c(on.lo + on.length() * i / 2000));
+    return sum;
+}
+double length_of(const ModelIntersection& m) {
+    double sum = 0;
+    for (const FaceBranch& b : m.branches) sum += length_of(b.curve);
+    return sum;
+}
+
+// Every branch is near both surfaces at its parameters, as its bounds say.
+ModelIntersection faces_met(const Model& a, const Model& b, double tolerance) {
+    const auto found = must(intersect(a, b, SurfaceIntersectOptions{.tolerance = tolerance}));
+    EXPECT_TRUE(found.open.empty());
+    EXPECT_LT(found.search_bound, 1e-2 * tolerance);
+    for (const FaceBranch& f : found.branches) {
+        EXPECT_LE(f.bound(), tolerance);
+        const Interval on = f.curve.domain()[0];
+        EXPECT_EQ(f.at_a.domain()[0], on);
+        EXPECT_EQ(f.at_b.domain()[0], on);
+        const SurfaceGeometry &s = a.faces[std::size_t(f.faces[0])].surface,
+                              &t = b.faces[std::size_t(f.faces[1])].surface;
+        for (int i = 0; i <= 100; ++i) {
+            const double x = i == 100 ? on.hi : on.lo + on.length() * i / 100;
+            const Vec<3> p = f.curve(x);
+            const double slack = 1e-14 * max_abs(p);
+            EXPECT_LE(norm(p - jet<0>(s, f.at_a(x).c).value()), f.bound_a + slack);
+            EXPECT_LE(norm(p - jet<0>(t, f.at_b(x).c).value()), f.bound_b + slack);
+        }
+    }
+    return found;
+}
+
+// The plane z = height over [-2, 2]^2, with a round hole, or without.
+Model plate(double height, std::optional<Vec<2>> hole, double radius) {
+    const auto basis = must(BSplineBasis::bezier(1, {-2, 2}));
+    const auto flat = must(Surface<Vec<3>>::make(
+        {basis, basis},
+        Net<2, Vec<3>>({2, 2},
+                       {{{-2, -2, height}}, {{-2, 2, height}}, {{2, -2, height}}, {{2, 2, height}}})));
+    std::vector<std::vector<CurveGeometry<2>>> loops(1);
+    const Vec<2> corner[] = {{{-2, -2}}, {{2, -2}}, {{2, 2}}, {{-2, 2}}};
+    for (int i = 0; i < 4; ++i)
+        loops[0].push_back(must(Curve<Vec<2>>::make({must(BSplineBasis::bezier(1, {0, 1}))},
+                                                    Net<1, Vec<2>>({2}, {corner[i], corner[(i + 1) % 4]}))));
+    if (hole) loops.push_back({Conic<2>{ConicKind::ellipse, *hole, {{radius, 0}}, {{0, radius}}}});
+    ModelBuilder builder;
+    EXPECT_TRUE(builder.add_trimmed(flat, loops));
+    return must(std::move(builder).finish());
+}
+
+TEST(ModelIntersect, a_ball_and_a_tube_meet_in_circles_over_their_seams) {
+    const auto found = faces_met(sphere({{0, 0, 1}}, 1.25), frustum(1, 1, 2), 1e-7);
+    ASSERT_EQ(found.branches.size(), 4u);  // two with the wall, one with each disc
+    for (const FaceBranch& b : found.branches) EXPECT_TRUE(b.closed);
+    EXPECT_TRUE(found.nodes.empty());
+    EXPECT_NEAR(length_of(found), 7 * kPi, 1e-4);
+}
+
+TEST(ModelIntersect, a_hole_cuts_a_third_of_a_circle) {
+    const Model tube = frustum(1, 1, 2), plane = plate(1, Vec<2>{{1, 0}}, 1);
+    for (const bool swapped : {false, true}) {
+        const auto found = swapped ? faces_met(plane, tube, 1e-7) : faces_met(tube, plane, 1e-7);
+        ASSERT_EQ(found.branches.size(), 1u);
+        const FaceBranch& b = found.branches[0];
+        EXPECT_FALSE(b.closed);
+        EXPECT_NEAR(length_of(b.curve), kPi * 4 / 3, 1e-5);
+        for (std::size_t e = 0; e < 2; ++e) {
+            EXPECT_EQ(b.ends[e], kAtTrim);
+            EXPECT_EQ(b.trims[e].side, swapped ? 0 : 1);
+            EXPECT_EQ(b.trims[e].loop, 1);
+            const Vec<3> p = b.curve(e == 0 ? b.curve.domain()[0].lo : b.curve.domain()[0].hi);
+            EXPECT_NEAR(p[0], 0.5, 1e-6);
+            EXPECT_NEAR(std::abs(p[1]), std::sqrt(0.75), 1e-6);
+        }
+    }
+}
+
+TEST(ModelIntersect, what_is_in_the_hole_does_not_meet) {
+    const auto found = faces_met(frustum(1, 1, 2), plate(1, Vec<2>{{0, 0}}, 1.5), 1e-6);
+    EXPECT_TRUE(found.branches.empty());
+    EXPECT_TRUE(found.nodes.empty());
+}
+
+TEST(ModelIntersect, an_apex_is_met_on_the_side_where_the_face_is) {
+    // z = 1 - r: the cone of height 1 meets the cylinder of radius 1/2 in one circle, and has no other half.
+    const auto found = faces_met(frustum(1, 0, 1), frustum(0.5, 0.5, 3), 1e-7);
+    double at_wall = 0;
+    for (const FaceBranch& b : found.branches)
+        if (b.faces == std::array{0, 0}) at_wall += length_of(b.curve);
+    EXPECT_NEAR(at_wall, kPi, 1e-5);
+}
+
+TEST(ModelIntersect, powers_of_two_scale_the_answer) {
+    const Model tube = frustum(1, 1, 2), plane = plate(1, Vec<2>{{1, 0}}, 1);
+    const auto one = faces_met(tube, plane, 0x1p-20);
+    for (const int exponent : {200, -200}) {
+        const double factor = std::scalbn(1.0, exponent);
+        const auto scaled = must(intersect(must(rescaled(tube, exponent)), must(rescaled(plane, exponent)),
+                                           {.tolerance = factor * 0x1p-20}));
+        ASSERT_EQ(scaled.branches.size(), one.branches.size());
+        for (std::size_t i = 0; i < one.branches.size(); ++i) {
+            EXPECT_NEAR(length_of(scaled.branches[i].curve) / factor, length_of(one.branches[i].curve), 1e-9);
+            EXPECT_EQ(scaled.branches[i].ends, one.branches[i].ends);
+        }
+    }
+}
+
+TEST(ModelIntersect, refuses_tolerances_that_are_no_lengths_and_leaves_offsets_open) {
+    const Model ball = sphere({}, 1);
+    for (const double t : {0.0, -1.0, std::nan("")})
+        expect_refusal(intersect(ball, ball, {.tolerance = t}), RefusalKind::invalid, "tolerance");
+    Model offset = ball;
+    offset.faces[0].surface = OffsetSurface{std::make_shared<SurfaceGeometry>(offset.faces[0].surface), 0.5};
+    const auto found = must(intersect(ball, offset, {.tolerance = 1e-6}));
+    ASSERT_EQ(found.open.size(), 1u);
+    EXPECT_EQ(found.open[0].reason->kind, RefusalKind::unsupported);
+    EXPECT_EQ(found.open[0].faces, (std::array{-1, 0}));
+}
+
+}  // namespace
+}  // namespace freiform::test
