@@ -1,6 +1,8 @@
 // The search for charts; charts_detail.hpp is the essay.
 #include "charts_detail.hpp"
 
+#include <set>
+
 namespace freiform::detail {
 
 namespace {
@@ -9,7 +11,14 @@ constexpr std::size_t kMostToRefine = 60'000;
 
 }  // namespace
 
-Charts::Charts(Sheet& a, Sheet& b) : sheets_{&a, &b} {
+Charts::Charts(Sheet& a, Sheet& b, std::span<const SameMap> same) : sheets_{&a, &b}, maps_(same) {
+    for (const SameMap& m : same) {
+        regions_.push_back({m.region_of_spline(0), m.region_of_spline(1)});
+        for (std::size_t side = 0; side < 2; ++side)
+            for (std::size_t k = 0; k < 2; ++k)
+                for (const double at : {regions_.back()[side][k].lo, regions_.back()[side][k].hi})
+                    sheets_[side]->cut_at(k, at);
+    }
     for (std::size_t k = 0; k < 4; ++k) {
         const Interval on = domain(k);
         slack_[k] = 0x1p-42 * std::max(on.length(), std::max(std::abs(on.lo), std::abs(on.hi)));
@@ -21,6 +30,7 @@ void Charts::search(double nearness, double finest, int max_pairs) {
     nodes_.assign(1, Node{});
     open_.assign(1, 0);
     look_at_all();
+    std::ranges::sort(explained_cells_, {}, [](const auto& e) { return e.first; });
     struct Batch {
         std::vector<int> nodes;
         double nearness;
@@ -29,7 +39,17 @@ void Charts::search(double nearness, double finest, int max_pairs) {
     const auto divide = [&](std::vector<int> nodes) {
         for (auto& group : neighbours(std::move(nodes))) batches.push_back({std::move(group), nearness_});
     };
-    for (const auto& group : neighbours(std::move(same_))) finish(group, true);
+    // What is beside a place where they are the same, at its corners, belongs to it.
+    const std::size_t same = same_.size();
+    if (same > 0) same_.insert(same_.end(), given_up_.begin(), given_up_.end());
+    const std::set<int> known(same_.begin(), same_.begin() + std::ptrdiff_t(same));
+    if (same > 0) given_up_.clear();
+    for (auto& group : neighbours(std::move(same_)))
+        if (std::ranges::any_of(group, [&](int n) { return known.contains(n); }))
+            finish(group, true);
+        else
+            given_up_.insert(given_up_.end(), group.begin(), group.end());
+    same_.clear();
     divide(std::move(given_up_));
     while (!batches.empty()) {
         const Batch batch = std::move(batches.back());
@@ -43,13 +63,17 @@ void Charts::search(double nearness, double finest, int max_pairs) {
         nearness_ = batch.nearness * 0x1p-4;
         for (const int n : batch.nodes) split(n);
         look_at_all();
+        std::ranges::sort(explained_cells_, {}, [](const auto& e) { return e.first; });
         // About a point there are always as many; along a curve four times as many, for nothing.
         if (left_.size() > left || 2 * given_up_.size() > 5 * batch.nodes.size() + 2000) {
             for (const int n : batch.nodes) nodes_[std::size_t(n)].left = -1;
             charts_.resize(charts);
             left_.resize(left);
+            same_.clear();
             finish(batch.nodes, false);
         } else {
+            for (const auto& group : neighbours(std::move(same_))) finish(group, true);
+            same_.clear();
             divide(std::move(given_up_));
         }
     }
@@ -71,8 +95,13 @@ void Charts::finish(const std::vector<int>& nodes, bool same) {
     Cluster c;
     c.same = same;
     for (const int n : nodes) {
-        nodes_[std::size_t(n)].cluster = int(clusters_.size());
-        c.cores.push_back(core(nodes_[std::size_t(n)].parts));
+        Node& node = nodes_[std::size_t(n)];
+        node.cluster = int(clusters_.size());
+        const auto own =
+            std::ranges::lower_bound(explained_cells_, n, {}, [](const auto& e) { return e.first; });
+        const bool is_explained = own != explained_cells_.end() && own->first == n;
+        c.cores.push_back(is_explained ? own->second : core(node.parts));
+        if (node.map >= 0 && std::ranges::find(c.maps, node.map) == c.maps.end()) c.maps.push_back(node.map);
     }
     clusters_.push_back(std::move(c));
 }
@@ -179,10 +208,87 @@ bool Charts::are_apart_by_slabs(PartPair p, bool& near) const {
     return false;
 }
 
+// B is one-to-one over a part and `with`, which is in its surroundings: parameters there whose points are so
+// near to each other are so near. |y - z| <= |Y| |B(y) - B(z)| / (1 - q), as for charts.
+std::optional<std::array<double, 2>> Charts::slack_where_one_to_one(std::size_t side, int part,
+                                                                    const std::array<Interval, 2>& with,
+                                                                    double gap) {
+    const SheetPart& p = (*sheets_[side])[part];
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double reach = Sheet::kMargin * p.on[k].length();
+        if (with[k].lo < p.on[k].lo - reach || with[k].hi > p.on[k].hi + reach) return std::nullopt;
+    }
+    const std::array<double, 2> width{p.on[0].length(), p.on[1].length()};
+    const Sheet::Slopes& s = sheets_[side]->slopes(part, true);
+    const Vec<3> u = width[0] * s[0].middle(), v = width[1] * s[1].middle();
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), det = uu * vv - uv * uv;
+    if (!(det > 0)) return std::nullopt;
+    const std::array<Vec<3>, 2> y{(1 / det) * (vv * u - uv * v), (1 / det) * (uu * v - uv * u)};
+    std::array<double, 2> slack{};
+    double q = 0;
+    for (std::size_t r = 0; r < 2; ++r) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 2; ++k)
+            for (int c = 0; c < 3; ++c) sum += std::abs(y[r][c]) * width[k] * s[k].radius()[c];
+        q = std::max(q, 1.0001 * sum + 0x1p-40);
+    }
+    if (!(q < 0.8)) return std::nullopt;
+    // The maximum of both in lengths of the part.
+    const double most = 1.01 * gap * std::max(norm(y[0]), norm(y[1])) / (1 - q);
+    for (std::size_t k = 0; k < 2; ++k) slack[k] = most * width[k];
+    return slack;
+}
+
+// Do the two come together in this pair only where a map says so? `nothing`: nowhere. Let p be a part of A
+// over R, and B one-to-one over q and M(p). If A(x) = B(y), |B(y) - B(Mx)| <= gap, so y is next to M x.
+bool Charts::explained(int node, bool& nothing) {
+    const PartPair p = nodes_[std::size_t(node)].parts;
+    for (std::size_t i = 0; i < maps_.size(); ++i)
+        for (std::size_t side = 0; side < 2; ++side) {
+            const int own = side == 0 ? p.a : p.b, other = side == 0 ? p.b : p.a;
+            const std::array<Interval, 2> on = (*sheets_[side])[own].on;
+            bool inside = true;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Interval r = regions_[i][side][k];
+                const double more = 4 * slack_[2 * side + k];
+                inside = inside && r.lo - more <= on[k].lo && on[k].hi <= r.hi + more;
+            }
+            if (!inside) continue;
+            const auto moved = side == 0 ? maps_[i].forth(on) : maps_[i].back(on);
+            const double gap = maps_[i].gap + sheets_[0]->inner_error() + sheets_[1]->inner_error();
+            const auto slack = slack_where_one_to_one(1 - side, other, moved, 2 * gap);
+            if (!slack) continue;
+            std::array<Interval, 4> cell = core(p);
+            nothing = false;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double more = (*slack)[k] + 4 * slack_[2 * (1 - side) + k];
+                Interval& c = cell[2 * (1 - side) + k];
+                c = {std::max(c.lo, moved[k].lo - more), std::min(c.hi, moved[k].hi + more)};
+                nothing = nothing || c.lo > c.hi;
+            }
+            if (nothing) return true;
+            const auto back =
+                side == 0 ? maps_[i].back({cell[2], cell[3]}) : maps_[i].forth({cell[0], cell[1]});
+            for (std::size_t k = 0; k < 2; ++k) {
+                Interval& c = cell[2 * side + k];
+                const Interval cut{std::max(c.lo, back[k].lo), std::min(c.hi, back[k].hi)};
+                if (cut.lo <= cut.hi) c = cut;
+            }
+            nodes_[std::size_t(node)].map = int(i);
+            explained_cells_.push_back({node, cell});
+            return true;
+        }
+    return false;
+}
+
 void Charts::look(int node) {
     const PartPair p = nodes_[std::size_t(node)].parts;
     const SheetPart &a = (*sheets_[0])[p.a], &b = (*sheets_[1])[p.b];
     if (a.is_one_piece() && b.is_one_piece()) {
+        if (bool nothing = false; !maps_.empty() && explained(node, nothing)) {
+            if (!nothing) same_.push_back(node);
+            return;
+        }
         if (sheets_[0]->has_piece_of(p.a, *sheets_[1], p.b)) {
             same_.push_back(node);
             return;

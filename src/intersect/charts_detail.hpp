@@ -12,6 +12,7 @@
 // `seed`. A pair of parts for which E leaves the surface has a chart only if each border that the arc may
 // reach is crossed by it at most once: the parameter is monotone along it.
 #pragma once
+#include "same_map_detail.hpp"
 #include "sheet_detail.hpp"
 
 #include <optional>
@@ -49,12 +50,14 @@ struct ArcZero {
 // them.
 struct Cluster {
     std::vector<std::array<Interval, 4>> cores;
-    bool same = false;  // the control points of whole pieces are the same, in one of their orders
+    bool same = false;  // of whole pieces the control points are the same, or a map says so, for most of them
+    std::vector<int> maps;  // in the order of `search`
 };
 
 class Charts {
 public:
-    Charts(Sheet& a, Sheet& b);
+    // `same`: where both are the same.
+    Charts(Sheet& a, Sheet& b, std::span<const SameMap> same);
 
     // Finds all. What is no farther apart than `nearness` all over a pair of parts is halved no more; what
     // such pairs are about, if it seems to be one point, down to `finest`.
@@ -111,7 +114,12 @@ private:
     struct Node {
         PartPair parts;
         int left = -1, chart = -1, cluster = -1;
+        int map = -1;  // that explains it
     };
+    bool explained(int node, bool& nothing);
+    std::optional<std::array<double, 2>> slack_where_one_to_one(std::size_t side, int part,
+                                                                const std::array<Interval, 2>& with,
+                                                                double gap);
     void look(int node);
     void look_at_all();
     std::vector<std::vector<int>> neighbours(std::vector<int> nodes) const;
@@ -126,6 +134,9 @@ private:
     void split(int node);
 
     std::array<Sheet*, 2> sheets_;
+    std::span<const SameMap> maps_;
+    std::vector<std::array<std::array<Interval, 2>, 2>> regions_;           // of the maps, for both sheets
+    std::vector<std::pair<int, std::array<Interval, 4>>> explained_cells_;  // of nodes
     std::vector<Chart> charts_;
     std::vector<Cluster> clusters_;
     std::vector<Node> nodes_;

@@ -10,9 +10,9 @@
 // Why not the parameters of the splines? Those of the loops of faces are angles, and of loops that were
 // carried over instead nothing would be exact.
 #include "branch_proof_detail.hpp"
-#include "part_spline_detail.hpp"
+#include "surface_surface_detail.hpp"
 
-#include <freiform/intersect/surface_surface.hpp>
+#include <freiform/core/text.hpp>
 
 namespace freiform {
 
@@ -165,9 +165,13 @@ Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
     const std::array<const PartSpline*, 2> parts{&*spline_a, &*spline_b};
     SurfaceIntersectOptions search = options;
     search.tolerance = kForSearch * options.tolerance;
-    const auto found = intersect(spline_a->surface, spline_b->surface, search);
-    if (!found) return std::unexpected(found.error());
-    PartIntersection out{*found, {spline_a->bound, spline_b->bound}};
+    if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
+        return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
+    const auto maps = same_maps(a, b, parts, search.tolerance);
+    const SurfaceGeometry shape_a = spline_a->surface, shape_b = spline_b->surface;
+    auto found = intersect_splines(spline_a->surface, spline_b->surface, shape_a, shape_b, search, maps);
+    add_overlaps(found, maps, parts, options.tolerance);
+    PartIntersection out{std::move(found.found), {spline_a->bound, spline_b->bound}};
     const BranchProof proof_a(a.surface, a.on), proof_b(b.surface, b.on);
     Carrier carry(parts, {&proof_a, &proof_b}, {&a, &b}, options.tolerance);
     for (SurfaceBranch& branch : out.branches) branch = carry(branch);

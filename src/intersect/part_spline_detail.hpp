@@ -18,8 +18,11 @@ public:
     bool is_identity() const { return arcs_ == 0; }
     double at(double s) const;
     double slope(double s) const;  // dx/ds
-    // Contains x of all s of an interval, rounding included.
+    double inverse(double x) const;
+    int arcs() const { return arcs_; }
+    // Contains x of all s of an interval, rounding included; s of all x.
     Interval over(const Interval& s) const;
+    Interval inverse_over(const Interval& x) const;
 
 private:
     struct Place {

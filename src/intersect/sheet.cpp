@@ -57,6 +57,15 @@ void halve_row(Hom<3>* left, Hom<3>* right, int n, int stride) {
         left[r * stride] = right[0];
     }
 }
+// The same at another place: three roundings for each step.
+void divide_row(Hom<3>* left, Hom<3>* right, int n, int stride, double t) {
+    for (int i = 0; i <= n; ++i) right[i * stride] = left[i * stride];
+    for (int r = 1; r <= n; ++r) {
+        for (int k = 0; k <= n - r; ++k)
+            right[k * stride] = (1 - t) * right[k * stride] + t * right[(k + 1) * stride];
+        left[r * stride] = right[0];
+    }
+}
 
 // The row over [lo, hi] of [0, 1], or beyond.
 void restrict_row(Hom<3>* p, int n, int stride, Interval on) {
@@ -239,19 +248,36 @@ bool Sheet::split(int index) {
         std::size_t k = length[1] > length[0];
         if (whole.local[k].length() <= 0x1p-40) k = 1 - k;
         if (whole.local[k].length() <= 0x1p-40) return false;
-        const double middle = whole.local[k].middle();
+        double middle = whole.local[k].middle();
+        double at = breaks_[k][std::size_t(whole.from[k])] + middle * width(k, whole.from[k]);
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            for (const double cut : cuts_[axis]) {
+                const Interval on = whole.on[axis];
+                const double beside =
+                    std::max(0x1p-20 * on.length(), 0x1p-38 * width(axis, whole.from[axis]));
+                if (!(on.lo + beside < cut && cut < on.hi - beside)) continue;
+                k = axis, at = cut;
+                middle = (cut - breaks_[k][std::size_t(whole.from[k])]) / width(k, whole.from[k]);
+            }
+        const bool is_half = middle == whole.local[k].middle();
+        const double place = (middle - whole.local[k].lo) / whole.local[k].length();
         a.local[k].hi = b.local[k].lo = middle;
-        const double at = breaks_[k][std::size_t(whole.from[k])] + middle * width(k, whole.from[k]);
         a.on[k].hi = b.on[k].lo = at;
-        a.roundings = b.roundings = whole.roundings + degree_[k];
+        a.roundings = b.roundings = whole.roundings + (is_half ? 1 : 3) * degree_[k];
         a.net = int(nets_.size()), b.net = a.net + block_;
         nets_.resize(nets_.size() + std::size_t(2 * block_));
         std::copy_n(nets_.begin() + whole.net, block_, nets_.begin() + a.net);
         Hom<3>*l = nets_.data() + a.net, *r = nets_.data() + b.net;
+        const auto divide = [&](int first, int degree, int stride) {
+            if (is_half)
+                halve_row(l + first, r + first, degree, stride);
+            else
+                divide_row(l + first, r + first, degree, stride, place);
+        };
         if (k == 0)
-            for (int s = 0; s <= m; ++s) halve_row(l + s, r + s, n, w);
+            for (int s = 0; s <= m; ++s) divide(s, n, w);
         else
-            for (int i = 0; i <= n; ++i) halve_row(l + i * w, r + i * w, m, 1);
+            for (int i = 0; i <= n; ++i) divide(i * w, m, 1);
     }
     const int left = add(a);
     add(b);

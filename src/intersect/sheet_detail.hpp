@@ -72,8 +72,9 @@ public:
     // Beyond the domain: the outermost piece goes on, or the surface over the seam.
     At at(double u, double v) const;
 
-    // False: parameters that can not be halved any more.
+    // False: parameters that can not be halved any more. Parts over which a cut runs are divided there first.
     bool split(int part);
+    void cut_at(std::size_t axis, double at) { cuts_[axis].push_back(at); }
     using Slopes = std::array<SlopeBox, 2>;
     const Slopes& slopes(int part, bool around);
 
@@ -95,6 +96,7 @@ private:
     std::array<int, 2> degree_{}, count_{};
     std::array<std::vector<double>, 2> breaks_;
     std::array<Interval, 2> domain_{};
+    std::array<std::vector<double>, 2> cuts_;
     std::array<bool, 2> cyclic_{};
     int block_ = 0;
     double scale_ = 0, unit_ = 0, inner_error_ = 0, value_error_ = 0;

@@ -25,6 +25,7 @@
 // touches it, rounding decides how many there are, and branches are lost or doubled. Charts overlap, so no
 // border matters but those of the surfaces.
 #include "branch_fit_detail.hpp"
+#include "surface_surface_detail.hpp"
 
 #include <freiform/core/text.hpp>
 
@@ -156,25 +157,52 @@ SurfaceNode node_of(const Charts& charts, const Cluster& cluster, int arms, doub
     return node;
 }
 
+// The corners of R, counter-clockwise, and those of M(R) in the same order.
+SurfaceOverlap overlap_of(const SameMap& m) {
+    SurfaceOverlap out;
+    out.gap = m.gap;
+    for (const int corner : {0, 1, 3, 2}) {
+        const std::array<bool, 2> high{(corner & 1) != 0, (corner & 2) != 0};
+        Vec<2> x, y;
+        for (std::size_t k = 0; k < 2; ++k) x[int(k)] = high[k] ? m.region[k].hi : m.region[k].lo;
+        for (std::size_t k = 0; k < 2; ++k)
+            y[int(k)] = high[m.source(k)] == (m.scale[k] > 0) ? m.image[k].hi : m.image[k].lo;
+        out.loop_a.push_back(x), out.loop_b.push_back(y);
+    }
+    return out;
+}
+
 }  // namespace
 
-template <class P, class Q>
-requires(Space<P>::kDim == 3 &&
-         Space<Q>::kDim == 3) Result<SurfaceIntersection> intersect(const Surface<P>& a, const Surface<Q>& b,
-                                                                    const SurfaceIntersectOptions& options) {
+void detail::add_overlaps(SplineIntersection& to, std::span<const SameMap> maps,
+                          const std::array<const PartSpline*, 2>& parts, double tolerance) {
+    if (maps.empty() && to.found.nodes.size() == 1)
+        if (const auto plane = plane_overlap(*parts[0], *parts[1], tolerance)) {
+            SurfaceNode& node = to.found.nodes[0];
+            node.kind = SurfaceNodeKind::overlap, node.gap = std::max(node.gap, plane->gap);
+            node.overlaps.push_back(*plane);
+        }
+    for (std::size_t i = 0; i < to.found.nodes.size(); ++i)
+        for (const int map : to.maps_of_nodes[i])
+            to.found.nodes[i].overlaps.push_back(overlap_of(maps[std::size_t(map)]));
+}
+
+detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, const Surface<Hom<3>>& b,
+                                                     const SurfaceGeometry& shape_a,
+                                                     const SurfaceGeometry& shape_b,
+                                                     const SurfaceIntersectOptions& options,
+                                                     std::span<const SameMap> maps) {
     const double tolerance = options.tolerance;
-    if (!(tolerance > 0) || !std::isfinite(tolerance))
-        return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a length > 0"));
-    Sheet sheet_a(weighted_net(a)), sheet_b(weighted_net(b));
-    Charts charts(sheet_a, sheet_b);
+    Sheet sheet_a(a), sheet_b(b);
+    Charts charts(sheet_a, sheet_b, maps);
     // Finer, rounding leaves no chart beside a place where the surfaces touch.
     const double finest =
         std::max(0x1p-36 * tolerance, 0x1p8 * (sheet_a.inner_error() + sheet_b.inner_error()));
     charts.search(tolerance, finest, options.max_pairs);
     std::vector<Trace> traces = Tracer(charts).all();
-    const SurfaceGeometry geometry_a(a), geometry_b(b);
-    const BranchProof proof_a(geometry_a, sheet_a), proof_b(geometry_b, sheet_b);
-    SurfaceIntersection out;
+    const BranchProof proof_a(shape_a, sheet_a), proof_b(shape_b, sheet_b);
+    SplineIntersection all;
+    SurfaceIntersection& out = all.found;
     std::vector<int> arms(charts.clusters().size());
     for (Trace& t : traces) {
         const std::array<int, 2> ends = t.ends;
@@ -184,10 +212,30 @@ requires(Space<P>::kDim == 3 &&
         for (const int end : ends)
             if (end >= 0) ++arms[std::size_t(end)];
     }
-    for (std::size_t i = 0; i < arms.size(); ++i)
-        out.nodes.push_back(node_of(charts, charts.clusters()[i], arms[i], tolerance));
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+        const Cluster& cluster = charts.clusters()[i];
+        out.nodes.push_back(node_of(charts, cluster, arms[i], tolerance));
+        for (const int map : cluster.maps)
+            out.nodes.back().gap = std::max(out.nodes.back().gap, maps[std::size_t(map)].gap);
+        all.maps_of_nodes.push_back(cluster.maps);
+    }
     for (const PartPair& p : charts.left()) out.undecided.push_back(charts.core(p));
-    return out;
+    return all;
+}
+
+template <class P, class Q>
+requires(Space<P>::kDim == 3 &&
+         Space<Q>::kDim == 3) Result<SurfaceIntersection> intersect(const Surface<P>& a, const Surface<Q>& b,
+                                                                    const SurfaceIntersectOptions& options) {
+    if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
+        return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
+    const SurfacePart part_a{a, a.domain()}, part_b{b, b.domain()};
+    const PartSpline spline_a{weighted_net(a)}, spline_b{weighted_net(b)};
+    const auto maps = same_maps(part_a, part_b, {&spline_a, &spline_b}, options.tolerance);
+    auto all =
+        intersect_splines(spline_a.surface, spline_b.surface, part_a.surface, part_b.surface, options, maps);
+    add_overlaps(all, maps, {&spline_a, &spline_b}, options.tolerance);
+    return std::move(all.found);
 }
 
 template Result<SurfaceIntersection> intersect(const Surface<Vec<3>>&, const Surface<Vec<3>>&,

@@ -191,24 +191,6 @@ TEST(SurfaceSurface, cylinders_of_one_radius_cross_at_two_points) {
     EXPECT_EQ(found.branches.size(), 4u);
 }
 
-TEST(SurfaceSurface, what_runs_along_is_a_node) {
-    const auto overlap = met(flat(0, 1, 0, 1), flat(0.5, 2, 0.25, 2), 1e-6);
-    EXPECT_TRUE(overlap.branches.empty());
-    ASSERT_EQ(overlap.nodes.size(), 1u);
-    EXPECT_EQ(overlap.nodes[0].kind, SurfaceNodeKind::along);
-    // Turned by a reversed and exchanged net.
-    const auto bowl = quadratic([](double x, double y) { return x * x + 2 * y * y + x * y; });
-    std::vector<Vec<3>> c(9);
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            c[std::size_t(3 * i + j)] = bowl.net().flat()[std::size_t(3 * (2 - j) + i)];
-    const auto turned = must(Surface<Vec<3>>::make(bowl.bases(), Net<2, Vec<3>>({3, 3}, c)));
-    const auto same = met(bowl, turned, 1e-6);
-    EXPECT_TRUE(same.branches.empty());
-    ASSERT_EQ(same.nodes.size(), 1u);
-    EXPECT_EQ(same.nodes[0].kind, SurfaceNodeKind::overlap);
-}
-
 TEST(SurfaceSurface, the_order_of_the_surfaces_does_not_matter) {
     std::mt19937 rng(7);
     const auto a = landscape(rng, 3, 7, 0.2), b = landscape(rng, 3, 6, 0.2);

@@ -32,10 +32,17 @@ struct SurfaceBranch {
 enum class SurfaceNodeKind {
     touch,     // the surfaces touch: nothing, one point, or a loop, all within the box
     crossing,  // branches cross, or pass each other by, within the box
-    overlap,   // they are the same over the cells, exactly: the control points of whole pieces are
+    overlap,   // they are the same over `overlaps`, or whole pieces have the same control points
     along,     // the surfaces run along each other within the tolerance: they touch along a curve, or overlap
 };
 std::string_view name_of(SurfaceNodeKind kind);
+
+// The surfaces are the same but for their parameters, over two regions: loops of corners, joined by segments,
+// counter-clockwise in A; corner i of both is one place.
+struct SurfaceOverlap {
+    std::vector<Vec<2>> loop_a, loop_b;
+    double gap = 0;  // bound: no point of either region is farther from the other one
+};
 
 // Parameters of both surfaces where they are so near to each other, and so parallel, that the tolerance does
 // not tell how they meet.
@@ -44,9 +51,11 @@ struct SurfaceNode {
     std::array<Interval, 2> box_a{}, box_b{};  // over the seam of a closed surface: all of its period
     std::array<double, 2> at_a{}, at_b{};      // where they are nearest, or parallel, as an estimate
     Vec<3> point{};                            // of the first surface there
-    double gap = 0;  // bound: how far the points of both at these parameters are from each other
-    int arms = 0;    // branches that end there
+    // bound: how far the points of both at these parameters are from each other; at least that of `overlaps`
+    double gap = 0;
+    int arms = 0;                                // branches that end there
     std::vector<std::array<Interval, 4>> cells;  // (u, v, s, t): what `box` is the hull of
+    std::vector<SurfaceOverlap> overlaps;        // of kind overlap
 };
 
 struct SurfaceIntersection {
