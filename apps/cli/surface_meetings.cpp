@@ -18,6 +18,12 @@ void write_sides(json::Writer& w, std::string_view key, const std::array<Interva
     w.end_array();
 }
 
+void write_corners(json::Writer& w, std::string_view key, const std::vector<Vec<2>>& loop) {
+    w.key(key).begin_array();
+    for (const Vec<2>& p : loop) w.array(p.c);
+    w.end_array();
+}
+
 // Nodes of the whole answer.
 std::array<int, 2> moved(std::array<int, 2> ends, int by) {
     for (int& end : ends)
@@ -27,19 +33,22 @@ std::array<int, 2> moved(std::array<int, 2> ends, int by) {
 
 }  // namespace
 
-void SurfaceMeetings::add_branch(const SurfaceBranch& b, std::array<int, 2> ends,
+void SurfaceMeetings::add_branch(const SurfaceBranch& b, int before,
                                  const std::array<std::size_t, 2>& objects, const std::string& where,
                                  const FaceBranch* of_faces) {
     struct OfFaces {
         std::array<int, 2> faces;
         std::array<TrimPlace, 2> trims;
     };
+    const std::array<int, 2> ends = moved(b.ends, before);
+    const bool tangent = b.kind == SurfaceBranchKind::tangent;
     std::optional<OfFaces> own;
     if (of_faces) own = OfFaces{of_faces->faces, of_faces->trims};
     branches_.push_back([=](json::Writer& w) {
         w.new_line(1).begin_object().key("objects").array(objects);
         if (own) w.key("faces").array(own->faces);
-        w.field("closed", b.closed).key("ends").array(ends);
+        w.field("kind", name_of(b.kind)).field("closed", b.closed).key("ends").array(ends);
+        if (tangent) w.field("gap", b.gap()).field("node", b.node < 0 ? b.node : b.node + before);
         if (own) {
             w.key("trims").begin_array();
             for (std::size_t e = 0; e < 2; ++e) {
@@ -59,8 +68,8 @@ void SurfaceMeetings::add_branch(const SurfaceBranch& b, std::array<int, 2> ends
     });
     curves_.objects.push_back({text("intersection ", branches_.size()), b.curve});
     plain_ += text(where, own ? text(", faces ", own->faces[0], " and ", own->faces[1]) : "", ": ",
-                   b.closed ? "closed" : "open", " branch, ", b.curve.basis().size(),
-                   " control points, within ", b.bound(), " of both\n");
+                   b.closed ? "closed" : "open", tangent ? " tangent branch, " : " branch, ",
+                   b.curve.basis().size(), " control points, within ", b.bound(), " of both\n");
 }
 
 void SurfaceMeetings::add_node(const SurfaceNode& n, const std::array<std::size_t, 2>& objects,
@@ -74,7 +83,14 @@ void SurfaceMeetings::add_node(const SurfaceNode& n, const std::array<std::size_
         w.field("gap", n.gap).field("arms", n.arms).field("cells", n.cells.size());
         write_sides(w, "a_box", n.box_a);
         write_sides(w, "b_box", n.box_b);
-        w.end_object();
+        w.key("overlaps").begin_array();
+        for (const SurfaceOverlap& o : n.overlaps) {
+            w.begin_object().field("gap", o.gap);
+            write_corners(w, "a", o.loop_a);
+            write_corners(w, "b", o.loop_b);
+            w.end_object();
+        }
+        w.end_array().end_object();
     });
     plain_ += text(where, own ? text(", faces ", (*own)[0], " and ", (*own)[1]) : "", ": ", name_of(n.kind),
                    " at ", n.point[0], ", ", n.point[1], ", ", n.point[2], ", ", n.arms,
@@ -84,15 +100,14 @@ void SurfaceMeetings::add_node(const SurfaceNode& n, const std::array<std::size_
 void SurfaceMeetings::add(const SurfaceIntersection& found, const std::array<std::size_t, 2>& objects,
                           const std::string& where) {
     const int before = int(nodes_.size());
-    for (const SurfaceBranch& b : found.branches)
-        add_branch(b, moved(b.ends, before), objects, where, nullptr);
+    for (const SurfaceBranch& b : found.branches) add_branch(b, before, objects, where, nullptr);
     for (const SurfaceNode& n : found.nodes) add_node(n, objects, where, nullptr);
 }
 
 void SurfaceMeetings::add(const ModelIntersection& found, const std::array<std::size_t, 2>& objects,
                           const std::string& where) {
     const int before = int(nodes_.size());
-    for (const FaceBranch& b : found.branches) add_branch(b, moved(b.ends, before), objects, where, &b);
+    for (const FaceBranch& b : found.branches) add_branch(b, before, objects, where, &b);
     for (const FaceNode& n : found.nodes) add_node(n, objects, where, &n.faces);
 }
 

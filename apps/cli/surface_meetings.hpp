@@ -19,9 +19,8 @@ public:
 
 private:
     using Row = std::function<void(json::Writer&)>;
-    void add_branch(const SurfaceBranch& b, std::array<int, 2> ends,
-                    const std::array<std::size_t, 2>& objects, const std::string& where,
-                    const FaceBranch* of_faces);
+    void add_branch(const SurfaceBranch& b, int before, const std::array<std::size_t, 2>& objects,
+                    const std::string& where, const FaceBranch* of_faces);
     void add_node(const SurfaceNode& n, const std::array<std::size_t, 2>& objects, const std::string& where,
                   const std::array<int, 2>* faces);
     std::vector<Row> branches_, nodes_;

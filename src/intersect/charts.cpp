@@ -106,7 +106,7 @@ void Charts::finish(const std::vector<int>& nodes, bool same) {
     clusters_.push_back(std::move(c));
 }
 
-// Groups of pairs that touch, over a sweep along the first parameter.
+// Groups of pairs that touch, over a sweep along one parameter.
 std::vector<std::vector<int>> Charts::neighbours(std::vector<int> nodes) const {
     std::vector<std::vector<int>> out;
     if (nodes.size() > kMostToRefine) {
@@ -115,15 +115,28 @@ std::vector<std::vector<int>> Charts::neighbours(std::vector<int> nodes) const {
     }
     std::vector<std::pair<std::array<Interval, 4>, int>> cells;
     for (const int n : nodes) cells.push_back({core(nodes_[std::size_t(n)].parts), n});
-    std::ranges::sort(cells, [](const auto& a, const auto& b) { return a.first[0].lo < b.first[0].lo; });
+    // Along the parameter that tells most of them apart: with the fewest pairs in the same of many stripes.
+    constexpr std::size_t kStripes = 1024;
+    std::size_t way = 0;
+    double fewest = kInfinity;
+    for (std::size_t k = 0; k < 4; ++k) {
+        std::array<int, kStripes> in{};
+        const Interval on = domain(k);
+        for (const auto& c : cells)
+            ++in[std::size_t(clamped((c.first[k].lo - on.lo) / on.length() * kStripes, {0, kStripes - 1}))];
+        double pairs = 0;
+        for (const int n : in) pairs += double(n) * n;
+        if (pairs < fewest) fewest = pairs, way = k;
+    }
+    std::ranges::sort(cells, [&](const auto& a, const auto& b) {
+        return std::pair(a.first[way].lo, a.second) < std::pair(b.first[way].lo, b.second);
+    });
     std::vector<std::size_t> root(cells.size());
     const auto find = [&](std::size_t i) {
         while (root[i] != i) i = root[i] = root[root[i]];
         return i;
     };
-    double widest = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        root[i] = i, widest = std::max(widest, cells[i].first[0].length());
+    for (std::size_t i = 0; i < cells.size(); ++i) root[i] = i;
     const auto link = [&](std::size_t i, std::size_t j) {
         bool touch = true;
         for (std::size_t k = 0; k < 4; ++k) {
@@ -133,13 +146,17 @@ std::vector<std::vector<int>> Charts::neighbours(std::vector<int> nodes) const {
         }
         if (touch) root[find(i)] = find(j);
     };
-    for (std::size_t i = 0; i < cells.size(); ++i)
-        for (std::size_t j = i; j-- > 0 && cells[j].first[0].lo + widest >= cells[i].first[0].lo;) link(i, j);
-    if (is_cyclic(0)) {
+    std::vector<std::size_t> active;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        std::erase_if(active, [&](std::size_t j) { return cells[j].first[way].hi < cells[i].first[way].lo; });
+        for (const std::size_t j : active) link(i, j);
+        active.push_back(i);
+    }
+    if (is_cyclic(way)) {
         std::vector<std::size_t> first, last;
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            if (cells[i].first[0].lo == domain(0).lo) first.push_back(i);
-            if (cells[i].first[0].hi == domain(0).hi) last.push_back(i);
+            if (cells[i].first[way].lo == domain(way).lo) first.push_back(i);
+            if (cells[i].first[way].hi == domain(way).hi) last.push_back(i);
         }
         for (const std::size_t i : first)
             for (const std::size_t j : last) link(i, j);

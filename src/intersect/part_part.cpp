@@ -47,6 +47,7 @@ public:
         }
         SurfaceBranch out = spline();
         out.closed = b.closed, out.ends = b.ends;
+        out.kind = b.kind, out.node = b.node;
         out.bound_a = bound_[0], out.bound_b = bound_[1];
         return out;
     }

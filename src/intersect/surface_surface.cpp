@@ -25,6 +25,7 @@
 // touches it, rounding decides how many there are, and branches are lost or doubled. Charts overlap, so no
 // border matters but those of the surfaces.
 #include "branch_fit_detail.hpp"
+#include "ridge_detail.hpp"
 #include "surface_surface_detail.hpp"
 
 #include <freiform/core/text.hpp>
@@ -39,10 +40,16 @@ std::string_view name_of(SurfaceNodeKind kind) {
             return "crossing";
         case SurfaceNodeKind::overlap:
             return "overlap";
+        case SurfaceNodeKind::tangent:
+            return "tangent";
         case SurfaceNodeKind::along:
             break;
     }
     return "along";
+}
+
+std::string_view name_of(SurfaceBranchKind kind) {
+    return kind == SurfaceBranchKind::tangent ? "tangent" : "crossing";
 }
 
 namespace {
@@ -212,12 +219,20 @@ detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, c
         for (const int end : ends)
             if (end >= 0) ++arms[std::size_t(end)];
     }
+    RidgeTracer ridges(charts, {&shape_a, &shape_b}, {&proof_a, &proof_b}, tolerance);
     for (std::size_t i = 0; i < arms.size(); ++i) {
         const Cluster& cluster = charts.clusters()[i];
         out.nodes.push_back(node_of(charts, cluster, arms[i], tolerance));
         for (const int map : cluster.maps)
             out.nodes.back().gap = std::max(out.nodes.back().gap, maps[std::size_t(map)].gap);
         all.maps_of_nodes.push_back(cluster.maps);
+        if (out.nodes.back().kind != SurfaceNodeKind::along) continue;
+        for (SurfaceBranch& ridge : ridges.all(cluster, int(i))) {
+            ridge.node = int(i);
+            for (const int end : ridge.ends) out.nodes.back().arms += end >= 0;
+            out.nodes.back().kind = SurfaceNodeKind::tangent;
+            out.branches.push_back(std::move(ridge));
+        }
     }
     for (const PartPair& p : charts.left()) out.undecided.push_back(charts.core(p));
     return all;

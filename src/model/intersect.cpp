@@ -235,6 +235,7 @@ private:
             const Stretch& s = kept[i];
             FaceBranch f{part_of_branch(b, s.on), faces_, s.trims, s.along};
             f.ends = s.ends, f.closed = whole;
+            if (b.node >= 0) f.node = node[std::size_t(b.node)];
             if (whole) f.ends = b.ends;
             if (round && i + 1 == kept.size()) {
                 const Stretch& rest = kept.front();

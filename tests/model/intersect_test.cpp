@@ -11,16 +11,16 @@
 namespace freiform::test {
 namespace {
 
-double length_of(const Curve<Vec<3>>& c) {
+double arc_length(const Curve<Vec<3>>& c) {
     const Interval on = c.domain()[0];
     double sum = 0;
     for (int i = 0; i < 2000; ++i)
         sum += norm(c(on.lo + on.length() * (i + 1) / 2000) - c(on.lo + on.length() * i / 2000));
     return sum;
 }
-double length_of(const ModelIntersection& m) {
+double arc_length(const ModelIntersection& m) {
     double sum = 0;
-    for (const FaceBranch& b : m.branches) sum += length_of(b.curve);
+    for (const FaceBranch& b : m.branches) sum += arc_length(b.curve);
     return sum;
 }
 
@@ -70,7 +70,7 @@ TEST(ModelIntersect, a_ball_and_a_tube_meet_in_circles_over_their_seams) {
     ASSERT_EQ(found.branches.size(), 4u);  // two with the wall, one with each disc
     for (const FaceBranch& b : found.branches) EXPECT_TRUE(b.closed);
     EXPECT_TRUE(found.nodes.empty());
-    EXPECT_NEAR(length_of(found), 7 * kPi, 1e-4);
+    EXPECT_NEAR(arc_length(found), 7 * kPi, 1e-4);
 }
 
 TEST(ModelIntersect, a_hole_cuts_a_third_of_a_circle) {
@@ -80,7 +80,7 @@ TEST(ModelIntersect, a_hole_cuts_a_third_of_a_circle) {
         ASSERT_EQ(found.branches.size(), 1u);
         const FaceBranch& b = found.branches[0];
         EXPECT_FALSE(b.closed);
-        EXPECT_NEAR(length_of(b.curve), kPi * 4 / 3, 1e-5);
+        EXPECT_NEAR(arc_length(b.curve), kPi * 4 / 3, 1e-5);
         for (std::size_t e = 0; e < 2; ++e) {
             EXPECT_EQ(b.ends[e], kAtTrim);
             EXPECT_EQ(b.trims[e].side, swapped ? 0 : 1);
@@ -103,7 +103,7 @@ TEST(ModelIntersect, an_apex_is_met_on_the_side_where_the_face_is) {
     const auto found = faces_met(frustum(1, 0, 1), frustum(0.5, 0.5, 3), 1e-7);
     double at_wall = 0;
     for (const FaceBranch& b : found.branches)
-        if (b.faces == std::array{0, 0}) at_wall += length_of(b.curve);
+        if (b.faces == std::array{0, 0}) at_wall += arc_length(b.curve);
     EXPECT_NEAR(at_wall, kPi, 1e-5);
 }
 
@@ -116,7 +116,8 @@ TEST(ModelIntersect, powers_of_two_scale_the_answer) {
                                            {.tolerance = factor * 0x1p-20}));
         ASSERT_EQ(scaled.branches.size(), one.branches.size());
         for (std::size_t i = 0; i < one.branches.size(); ++i) {
-            EXPECT_NEAR(length_of(scaled.branches[i].curve) / factor, length_of(one.branches[i].curve), 1e-9);
+            EXPECT_NEAR(arc_length(scaled.branches[i].curve) / factor, arc_length(one.branches[i].curve),
+                        1e-9);
             EXPECT_EQ(scaled.branches[i].ends, one.branches[i].ends);
         }
     }

@@ -17,6 +17,13 @@ struct SurfaceIntersectOptions {
 inline constexpr int kAtBorder = -1;      // of one of the surfaces
 inline constexpr int kAtUnresolved = -2;  // one of the boxes of which nothing is known
 
+enum class SurfaceBranchKind {
+    crossing,  // at an angle
+    tangent,  // the surfaces are within `gap` of each other along it, and have the same tangent plane: as far
+              // as rounding tells they touch, or meet twice next to it, or nearly meet
+};
+std::string_view name_of(SurfaceBranchKind kind);
+
 // One branch. The curves run over the same interval, [0, length] roughly: a(at_a(t)) and b(at_b(t)) are near
 // curve(t).
 struct SurfaceBranch {
@@ -26,14 +33,18 @@ struct SurfaceBranch {
     std::array<int, 2> ends{kAtBorder, kAtBorder};
     // No point curve(t) is farther from a(at_a(t)), and so from the first surface; from the second one.
     double bound_a = 0, bound_b = 0;
+    SurfaceBranchKind kind = SurfaceBranchKind::crossing;
+    int node = -1;  // in the cells of which a tangent one runs
     double bound() const { return std::max(bound_a, bound_b); }
+    double gap() const { return bound_a + bound_b; }  // bound: from a(at_a(t)) to b(at_b(t))
 };
 
 enum class SurfaceNodeKind {
     touch,     // the surfaces touch: nothing, one point, or a loop, all within the box
     crossing,  // branches cross, or pass each other by, within the box
     overlap,   // they are the same over `overlaps`, or whole pieces have the same control points
-    along,     // the surfaces run along each other within the tolerance: they touch along a curve, or overlap
+    tangent,   // they touch along tangent branches, as far as is known
+    along,     // the surfaces run along each other within the tolerance, and no more is known
 };
 std::string_view name_of(SurfaceNodeKind kind);
 
