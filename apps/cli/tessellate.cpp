@@ -18,6 +18,7 @@ struct TessellateArguments {
     std::string file, object;
     std::vector<double> tolerances;
     std::optional<double> max_edge, angle, aspect;
+    bool quads = false;
     SewArguments sew;
 };
 
@@ -98,6 +99,7 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
         if (options.max_edge) how.max_edge = *options.max_edge;
         if (options.angle) how.max_angle = *options.angle * (std::numbers::pi / 180);
         if (options.aspect) how.max_aspect = *options.aspect;
+        how.quads = options.quads;
         how.max_triangles = (long long)(context.limits.max_triangles);
         how.progress = progress;
         all.push_back(how);
@@ -141,6 +143,7 @@ void add_tessellate(CommandLine& line) {
                  "  freiform tessellate part.step --tolerance 0.05 -o part.stl --json\n"
                  "  freiform tessellate part.step --tolerance 1,0.1,0.01 -o part-%.glb\n"
                  "  freiform tessellate part.iges --sew 0.001 --angle 15 -o part.stl\n"
+                 "  freiform tessellate part.step --tolerance 0.05 --quads -o part.obj\n"
                  "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply");
     command.file(options->file);
     command.numbers(
@@ -155,6 +158,10 @@ void add_tessellate(CommandLine& line) {
     command.number(
         "--aspect", options->aspect,
         "An aim: points inside faces lie in boxes at most so much longer than wide (default: none)");
+    command.flag(
+        "--quads", options->quads,
+        "Quads along parameter lines inside faces, from edge to edge in faces that are rectangles of "
+        "parameters; .obj and .ply keep them, .stl and .glb have their halves");
     options->sew.add_to(command);
     command.object(options->object);
     command.output("The mesh: .glb, .stl, .obj or .ply");

@@ -59,6 +59,7 @@ void write_report(json::Writer& w, const TessellateReport& r) {
     w.field("triangles", t.mesh.triangles.size())
         .field("vertices", t.mesh.points.size())
         .field("faces", model.faces.size());
+    if (r.how.quads) w.field("quads", t.quads);
     w.field("open_edges", t.topology.open_edges).field("non_manifold_edges", t.topology.non_manifold_edges);
     w.field("error_bound", t.error_bound).field("boundary_gap", t.boundary_gap);
     w.field("degenerate_triangles", t.topology.degenerate_triangles);
@@ -97,6 +98,9 @@ std::string report_text(const TessellateReport& r) {
     const Model& model = r.model;
     std::string s = text(t.mesh.triangles.size(), " triangles, ", t.mesh.points.size(), " points, ",
                          model.faces.size(), " faces\n");
+    if (r.how.quads)
+        s += text("quads           ", t.quads, ", and ", t.mesh.triangles.size() - 2 * std::size_t(t.quads),
+                  " triangles that are no half of one\n");
     s += text("open edges      ", t.topology.open_edges, "\n");
     if (t.topology.non_manifold_edges > 0) s += text("non-manifold    ", t.topology.non_manifold_edges, "\n");
     if (t.topology.degenerate_triangles > 0)

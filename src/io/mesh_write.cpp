@@ -76,7 +76,7 @@ Result<std::vector<FloatPoint>> float_points(const TriangleMesh& mesh, const Pla
 
 std::vector<MeshPart> parts_of(const TriangleMesh& mesh) {
     if (!mesh.parts.empty()) return mesh.parts;
-    return {MeshPart{"", std::nullopt, 0, int(mesh.triangles.size()), -1}};
+    return {MeshPart{"", std::nullopt, 0, int(mesh.triangles.size()), -1, 0}};
 }
 
 Result<MeshFormat> mesh_format(std::string_view file_name) {

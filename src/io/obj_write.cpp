@@ -56,13 +56,11 @@ Result<std::string> to_obj(const TriangleMesh& mesh, const MeshWriteOptions& opt
         out += part.name.empty() ? text("g part_", number, "\n") : text("g ", one_word(part.name), "\n");
         if (const auto& c = part.colour)
             out += text("# colour ", c->r, " ", c->g, " ", c->b, " ", c->a, "\n");
-        for (int i = part.first; i < part.first + part.count; ++i) {
-            if (!has_three_points(mesh.points, mesh.points_of(std::size_t(i)))) continue;
-            const std::array<int, 3>& t = mesh.triangles[std::size_t(i)];
+        for_each_polygon(mesh, part, [&](std::span<const int> corners) {
             bool with_normals = true;
-            for (int v : t) with_normals &= normal[std::size_t(v)] != 0;
+            for (int v : corners) with_normals &= normal[std::size_t(v)] != 0;
             out += 'f';
-            for (int v : t) {
+            for (int v : corners) {
                 out += ' ';
                 append_text(out, mesh.vertices[std::size_t(v)].point + 1LL);
                 if (!with_normals) continue;
@@ -70,7 +68,7 @@ Result<std::string> to_obj(const TriangleMesh& mesh, const MeshWriteOptions& opt
                 append_text(out, normal[std::size_t(v)]);
             }
             out += '\n';
-        }
+        });
     }
     return out;
 }

@@ -17,7 +17,7 @@ Rgb rgb_of(const Colour& c) {
     return {byte(c.r), byte(c.g), byte(c.b)};
 }
 
-std::string header_of(const TriangleMesh& mesh, const MeshWriteOptions& options, std::size_t triangles,
+std::string header_of(const TriangleMesh& mesh, const MeshWriteOptions& options, std::size_t polygons,
                       bool coloured) {
     const auto one_line = [](std::string s) {
         std::replace_if(
@@ -30,7 +30,7 @@ std::string header_of(const TriangleMesh& mesh, const MeshWriteOptions& options,
               "\nproperty double x\nproperty double y\nproperty double z\n"
               "property float nx\nproperty float ny\nproperty float nz\n");
     if (coloured) h += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-    return h + text("element face ", triangles, "\nproperty list uchar int vertex_indices\nend_header\n");
+    return h + text("element face ", polygons, "\nproperty list uchar int vertex_indices\nend_header\n");
 }
 
 }  // namespace
@@ -38,9 +38,10 @@ std::string header_of(const TriangleMesh& mesh, const MeshWriteOptions& options,
 // The vertices of different parts are different, so that a vertex can carry the colour of its part.
 Result<std::string> to_ply(const TriangleMesh& mesh, const MeshWriteOptions& options) {
     if (auto r = validate(mesh); !r) return std::unexpected(r.error());
-    std::size_t triangles = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        triangles += has_three_points(mesh.points, mesh.points_of(t));
+    std::size_t polygons = 0, corners = 0;
+    const std::vector<MeshPart> parts = parts_of(mesh);
+    for (const MeshPart& part : parts)
+        for_each_polygon(mesh, part, [&](std::span<const int> p) { ++polygons, corners += p.size(); });
     const bool coloured =
         std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const auto& p) { return p.colour; });
     std::vector<Rgb> colours(coloured ? mesh.vertices.size() : 0, rgb_of(kUncoloured));
@@ -50,9 +51,9 @@ Result<std::string> to_ply(const TriangleMesh& mesh, const MeshWriteOptions& opt
                 for (int v : mesh.triangles[std::size_t(t)])
                     colours[std::size_t(v)] = rgb_of(part.colour.value_or(kUncoloured));
 
-    std::string bytes = header_of(mesh, options, triangles, coloured);
-    const std::size_t header = bytes.size(), vertex = 3 * 8 + 3 * 4 + (coloured ? 3 : 0), face = 1 + 3 * 4;
-    bytes.resize(header + vertex * mesh.vertices.size() + face * triangles);
+    std::string bytes = header_of(mesh, options, polygons, coloured);
+    const std::size_t header = bytes.size(), vertex = 3 * 8 + 3 * 4 + (coloured ? 3 : 0);
+    bytes.resize(header + vertex * mesh.vertices.size() + polygons + 4 * corners);
     ByteCursor out(bytes.data() + header);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         const Vec<3> n = unit(mesh.vertices[i].normal);
@@ -60,11 +61,11 @@ Result<std::string> to_ply(const TriangleMesh& mesh, const MeshWriteOptions& opt
         out.put(FloatPoint{float(n[0]), float(n[1]), float(n[2])});
         if (coloured) out.put(colours[i]);
     }
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (!has_three_points(mesh.points, mesh.points_of(t))) continue;
-        out.put(std::uint8_t(3));
-        out.put(mesh.triangles[t]);
-    }
+    for (const MeshPart& part : parts)
+        for_each_polygon(mesh, part, [&](std::span<const int> p) {
+            out.put(std::uint8_t(p.size()));
+            for (const int v : p) out.put(v);
+        });
     return bytes;
 }
 

@@ -261,6 +261,19 @@ bool CurvatureTree::meets_kink(const Box<2>& box) const {
     return false;
 }
 
+bool CurvatureTree::is_outside(const Box<2>& box) const {
+    int stack[2 * kMaxDepth + 4], size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+        const Node& n = nodes_[std::size_t(stack[--size])];
+        if (n.outside || !has_common_part(n.box, box)) continue;
+        if (n.child < 0) return false;
+        stack[size++] = n.child;
+        stack[size++] = n.child + 1;
+    }
+    return true;
+}
+
 Bending CurvatureTree::over(const Box<2>& box) const {
     Bending all;
     bool any = false;

@@ -93,6 +93,7 @@ public:
                                       const FaceDemands& demands, std::size_t max_leaves,
                                       bool knows_normals = true);
 
+    bool is_outside(const Box<2>& box) const;  // wholly, and known to be
     // Over the part of the box that is not wholly outside the polygon.
     Bending over(const Box<2>& box) const;
     // Of the whole box; nothing if some of it is not in the tree.

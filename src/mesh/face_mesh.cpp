@@ -12,7 +12,9 @@
 // too.
 #include "filler_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
+#include <freiform/mesh/grid.hpp>
 #include <freiform/mesh/triangulate.hpp>
 
 #include <algorithm>
@@ -67,7 +69,8 @@ double scale_for(double x) {
 
 // A segment between two corners that are the same point in space (a pole) belongs to this face alone, so it
 // may be cut where the leaves of the tree are.
-void cut_poles(Polygon& polygon, const FaceBoundary& boundary, const CurvatureTree& tree) {
+void cut_poles(Polygon& polygon, const FaceBoundary& boundary, std::span<const CurvatureTree::Corner> corners,
+               const Vec<2>& usual_leaf) {
     const std::vector<Triangulation::Segment> before = std::move(polygon.segments);
     polygon.segments.clear();
     for (const auto& s : before) {
@@ -80,13 +83,12 @@ void cut_poles(Polygon& polygon, const FaceBoundary& boundary, const CurvatureTr
         std::vector<std::pair<double, Vec<2>>> cuts;  // by the part of the way
         if (d[0] == 0 || d[1] == 0) {
             const int axis = d[0] == 0 ? 1 : 0;
-            for (const auto& [c, leaf] : tree.corners())
+            for (const auto& [c, leaf] : corners)
                 if (c[1 - axis] == p[1 - axis] && (c[axis] - p[axis]) * (c[axis] - q[axis]) < 0)
                     cuts.push_back({(c[axis] - p[axis]) / d[axis], c});
         } else {
-            const Vec<2> leaf = tree.mean_leaf();
-            const int n = int(
-                std::min(1000.0, std::ceil(std::max(std::abs(d[0]) / leaf[0], std::abs(d[1]) / leaf[1]))));
+            const int n = int(std::min(
+                1000.0, std::ceil(std::max(std::abs(d[0]) / usual_leaf[0], std::abs(d[1]) / usual_leaf[1]))));
             for (int k = 1; k < n; ++k) cuts.push_back({double(k) / n, p + (double(k) / n) * d});
         }
         std::sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
@@ -120,6 +122,41 @@ std::vector<BoundaryConflict> find_conflicts(const FaceBoundary& boundary) {
 
 namespace {
 
+std::optional<GridLines> grid_of(const DerivativeQuery<2, 3>& surface, const CurvatureTree& tree,
+                                 const Polygon& polygon, const FaceDemands& demands,
+                                 long long max_triangles) {
+    if (!demands.quads) return std::nullopt;
+    if (demands.lines) return *demands.lines;
+    Box<2> box;
+    for (const Vec<2>& p : polygon.points) box.add(p);
+    return grid_lines(
+        surface, box, demands, [&](const Box<2>& cell) { return tree.is_outside(cell); },
+        double(max_triangles) / 2);
+}
+
+// Row by row; without those on the edges of the grid if it is `inner`.
+std::vector<CurvatureTree::Corner> crossings_of(const GridLines& lines, bool inner) {
+    std::vector<CurvatureTree::Corner> out;
+    const std::size_t nu = lines[0].size(), nv = lines[1].size(), first = inner ? 1 : 0;
+    const auto width = [](const std::vector<double>& x, std::size_t i) {
+        const double before = i > 0 ? x[i] - x[i - 1] : kInfinity;
+        return i + 1 < x.size() ? std::min(before, x[i + 1] - x[i]) : before;
+    };
+    for (std::size_t i = first; i + first < nu; ++i)
+        for (std::size_t row = first; row + first < nv; ++row) {
+            const std::size_t k = i % 2 ? nv - 1 - row : row;
+            out.push_back({{{lines[0][i], lines[1][k]}}, {{width(lines[0], i), width(lines[1], k)}}});
+        }
+    return out;
+}
+
+Vec<2> mean_cell(const GridLines& lines) {
+    const auto mean = [](const std::vector<double>& x) {
+        return (x.back() - x.front()) / double(x.size() - 1);
+    };
+    return {{mean(lines[0]), mean(lines[1])}};
+}
+
 Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
                         const FaceDemands& demands, long long max_triangles, std::span<const Vec<2>> extra,
                         bool knows_normals) {
@@ -133,8 +170,12 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     if (!tree) return std::unexpected(tree.error());
 
     const int merged_corners = int(polygon->points.size());
-    cut_poles(*polygon, boundary, *tree);
-    const Vec<2> leaf = tree->mean_leaf();
+    const auto grid = grid_of(surface, *tree, *polygon, demands, max_triangles);
+    const std::vector<CurvatureTree::Corner> crossings =
+        grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
+    const std::span<const CurvatureTree::Corner> corners = grid ? crossings : tree->corners();
+    const Vec<2> leaf = grid ? mean_cell(*grid) : tree->mean_leaf();
+    cut_poles(*polygon, boundary, corners, leaf);
     const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
     std::vector<Vec<2>> points = polygon->points;
     for (Vec<2>& p : points) p = {{p[0] * scale[0], p[1] * scale[1]}};
@@ -143,7 +184,7 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
 
     Filler filler(*triangulation, *tree, surface, scale, demands);
     for (const Vec<2>& p : extra) triangulation->insert({{p[0] * scale[0], p[1] * scale[1]}});
-    filler.insert_corners();
+    filler.insert_corners(corners);
     // Corners that stand for the same mesh point, numbered by the first of them.
     std::vector<int> place(points.size());
     std::map<int, int> first;
@@ -152,7 +193,7 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     // Leaves and boundary say how many points to expect; many times as many mean that something does not
     // converge.
     const std::size_t limit = std::size_t(max_triangles) / 2 + points.size();
-    const std::size_t expected = points.size() + tree->corners().size() + 600;
+    const std::size_t expected = points.size() + corners.size() + 600;
     const std::size_t most =
         demands.shapes_triangles() ? limit : std::min(limit, (knows_normals ? kHope : kPatience) * expected);
     for (int round = 0; round < kSeparateRounds; ++round) {
@@ -193,6 +234,7 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
         }
         if (at[0] != at[1] && at[1] != at[2] && at[2] != at[0]) out.triangles.push_back(t);
     }
+    if (grid) out.quads = pair_halves(*grid, out.uv, out.point, out.triangles);
     return out;
 }
 

@@ -120,9 +120,9 @@ bool Filler::is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf)
     return false;
 }
 
-void Filler::insert_corners() {
+void Filler::insert_corners(std::span<const CurvatureTree::Corner> corners) {
     int hint = -1;  // the last that was inserted may be far away, when many are not
-    for (const auto& corner : tree_.corners()) {
+    for (const auto& corner : corners) {
         const Vec<2> x = scaled(corner.at);
         hint = t_.locate(x, hint).triangle;
         t_.insert(x, hint, [&](int triangle) { return is_near_boundary(triangle, x, corner.leaf); });

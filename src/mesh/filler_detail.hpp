@@ -12,7 +12,7 @@ public:
     Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, Vec<2> scale,
            const FaceDemands& demands);
 
-    void insert_corners();
+    void insert_corners(std::span<const CurvatureTree::Corner> corners);
     // False when more than `max_points` are needed.
     bool refine(std::size_t max_points);
     // Of the interpolation error of the triangle; computed once for each.

@@ -18,6 +18,15 @@ Result<void> validate_parts(const TriangleMesh& mesh) {
                           text("begins at triangle ", part.first, " and has ", part.count,
                                " of them; the part before ends at ", next));
         next += part.count;
+        if (part.quads < 0 || part.quads > part.count / 2)
+            return refuse(RefusalKind::invalid, text("parts[", i, "].quads"),
+                          text(part.quads, " quads of ", part.count, " triangles"));
+        for (std::size_t q = 0, t = std::size_t(part.first); q < std::size_t(part.quads); ++q, t += 2)
+            if (next > (long long)(mesh.triangles.size()) ||
+                mesh.triangles[t][0] != mesh.triangles[t + 1][0] ||
+                mesh.triangles[t][2] != mesh.triangles[t + 1][1])
+                return refuse(RefusalKind::invalid, text("parts[", i, "].quads"),
+                              text("triangles ", t, " and ", t + 1, " are not (a, b, c) and (a, c, d)"));
         if (!part.colour) continue;
         for (double c : {part.colour->r, part.colour->g, part.colour->b, part.colour->a})
             if (!(c >= 0 && c <= 1))

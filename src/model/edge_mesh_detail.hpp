@@ -69,15 +69,16 @@ public:
     // `tolerance`: below this errors need not be known better.
     SegmentError error(int edge, double a, double b, double tolerance, bool turns) const;
 
-private:
     struct Part {
         double a, b;
         double needs;  // chords, to keep the demands
         double bound;
     };
-    double estimate(int edge, Interval on, double tolerance) const;
-    std::vector<double> smooth_pieces(int edge, double tolerance) const;
     Part part(int edge, double a, double b, const EdgeDemands& demands) const;
+    std::vector<double> smooth_pieces(int edge, double tolerance) const;
+
+private:
+    double estimate(int edge, Interval on, double tolerance) const;
     static std::vector<double> shared_out(std::span<const Part> parts, int count);
     std::vector<Part> advanced(int edge, std::span<const Part> known, int least, const EdgeDemands& demands,
                                std::size_t most) const;

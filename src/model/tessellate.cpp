@@ -7,6 +7,7 @@
 // inner edges that two faces happen to have both (a strip between the same two corners), which would be
 // non-manifold. Accuracy: see curvature_tree.cpp for triangles and edge_mesh.cpp for what lies between
 // polygon and parameter curve. The rounding of evaluated points is added to the bound.
+#include "matched_grids_detail.hpp"
 #include "tessellator_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -46,10 +47,7 @@ Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
     parallel_for(model_.edges.size(), 4, [&](std::size_t e) {
         if (edges_->mesh(int(e)).uses.empty()) return;
-        if (auto ok = edges_->discretise(
-                int(e), {tolerance_ / kBesideBoundary, options_.max_edge, options_.max_angle},
-                std::size_t(options_.max_triangles));
-            !ok)
+        if (auto ok = edges_->discretise(int(e), edge_demands(), std::size_t(options_.max_triangles)); !ok)
             failed[e] = ok.error();
     });
     for (std::size_t e = 0; e < failed.size(); ++e) {
@@ -70,6 +68,23 @@ Result<void> Tessellator::discretise_edges() {
                 if (!model_.edges[std::size_t(e)].curve ||
                     !std::holds_alternative<Line<3>>(*model_.edges[std::size_t(e)].curve))
                     edges_->split(e, 0);
+    return {};
+}
+
+FaceDemands Tessellator::face_demands(std::size_t f) const {
+    return {tolerance_,          options_.max_edge, options_.max_angle,
+            options_.max_aspect, options_.quads,    f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr};
+}
+
+Result<void> Tessellator::match_grids() {
+    if (!options_.quads) return {};
+    auto grids = matched_grids(model_, queries_, *edges_, edge_demands(), face_demands(faces()), refusals_,
+                               double(options_.max_triangles) / 2);
+    if (!grids)
+        return refuse(RefusalKind::limit, "max_triangles",
+                      text("more than ", options_.max_triangles, " triangles are needed for quads within ",
+                           options_.tolerance));
+    grids_ = std::move(*grids);
     return {};
 }
 
@@ -164,9 +179,8 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     parallel_for(which.size(), 1, [&](std::size_t i) {
         const std::size_t f = which[i];
         if (is_refused(f) || stop) return;
-        auto mesh = mesh_face(*queries_[f], boundaries_[f].polygon,
-                              {tolerance_, options_.max_edge, options_.max_angle, options_.max_aspect},
-                              options_.max_triangles, extra_[f]);
+        auto mesh = mesh_face(*queries_[f], boundaries_[f].polygon, face_demands(f), options_.max_triangles,
+                              extra_[f]);
         if (mesh) {
             if ((total += (long long)(mesh->triangles.size())) > options_.max_triangles) stop = true;
             meshes_[f] = std::move(*mesh);
@@ -285,6 +299,7 @@ Result<Tessellation> Tessellator::run() {
     }
     edges_->forget();
     if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());
+    if (auto ok = match_grids(); !ok) return std::unexpected(ok.error());
     resolve_conflicts();
     const double meshed_edges = now();
     if (auto ok = fill_all(); !ok) return std::unexpected(ok.error());

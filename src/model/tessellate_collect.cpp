@@ -108,18 +108,19 @@ Tessellation Tessellator::collect() {
         }
         MeshPart part{face.name, face.colour, int(out.mesh.triangles.size()), 0, int(f)};
         if (!part.colour && body_colour[f]) part.colour = *body_colour[f];
-        for (auto t : m.triangles) {
+        for (std::size_t k = 0; k < m.triangles.size(); ++k) {
+            // Turned over, the second half of a quad is the first.
+            auto t = m.triangles[flip && k < 2 * std::size_t(m.quads) ? k ^ 1 : k];
             if (flip) std::swap(t[1], t[2]);
             for (int& i : t) i += base;
-            const std::size_t last = out.mesh.triangles.size();
             out.mesh.triangles.push_back(t);
-            const auto p = out.mesh.points_of(last);
-            if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) out.mesh.triangles.pop_back();
         }
+        part.quads = m.quads;
+        out.quads += m.quads;
         part.count = int(out.mesh.triangles.size()) - part.first;
         out.mesh.parts.push_back(part);
 
-        FaceReport report{int(f), part.count, m.bound, boundaries_[f].gap};
+        FaceReport report{int(f), part.count, m.quads, m.bound, boundaries_[f].gap};
         for (const Loop& l : face.loops)
             for (const Coedge& c : l.coedges)
                 report.error_bound =

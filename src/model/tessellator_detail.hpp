@@ -36,7 +36,12 @@ public:
 private:
     std::size_t faces() const { return model_.faces.size(); }
     bool is_refused(std::size_t f) const { return refusals_[f].has_value(); }
+    EdgeDemands edge_demands() const {
+        return {tolerance_ / kBesideBoundary, options_.max_edge, options_.max_angle};
+    }
+    FaceDemands face_demands(std::size_t face) const;
     Result<void> discretise_edges();
+    Result<void> match_grids();
     void number_points();
     void assemble(std::size_t face);
     void refuse_boundary(std::size_t face, const BoundaryConflict& conflict);
@@ -58,6 +63,7 @@ private:
     EdgeMesher* edges_;
     std::vector<Vec<3>> points_;  // on vertices and edges
     std::vector<BoundaryOfFace> boundaries_;
+    std::vector<std::optional<GridLines>> grids_;  // of faces that are rectangles, where quads are asked for
     std::vector<FaceMesh> meshes_;
     std::vector<std::vector<Vec<2>>> extra_;
     std::vector<std::optional<Refusal>> refusals_;

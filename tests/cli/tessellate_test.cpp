@@ -35,6 +35,20 @@ TEST_F(CliMesh, tessellate_writes_a_mesh_and_reports_what_the_contract_names) {
     }
 }
 
+TEST_F(CliMesh, tessellate_makes_quads_where_they_are_asked_for) {
+    const std::string out = file("quads.obj", "");
+    const Ran r = run({"tessellate", kTeapot, "--tolerance", "0.01", "--quads", "-o", out, "--json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json j = Json::parse(r.out);
+    EXPECT_GT(j["quads"].get<int>() * 2, j["triangles"].get<int>() * 9 / 10);
+    EXPECT_LE(j["error_bound"], 0.01);
+    const Ran check = run({"check", out, "--against", kTeapot, "--tolerance", "0.03", "--json"});
+    EXPECT_EQ(Json::parse(check.out)["open_edges"], j["open_edges"]);
+    EXPECT_EQ(Json::parse(check.out)["verdict"], "within");
+    const Ran free = run({"tessellate", kTeapot, "--tolerance", "0.01", "--json"});
+    EXPECT_FALSE(Json::parse(free.out).contains("quads"));
+}
+
 TEST_F(CliMesh, tessellate_writes_to_standard_output_and_takes_a_default_tolerance) {
     const Ran r = run({"tessellate", kTeapot, "--to", "ply", "-o", "-"});
     ASSERT_EQ(r.code, 0) << r.err;

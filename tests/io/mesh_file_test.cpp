@@ -4,6 +4,7 @@
 #include <freiform/io/file.hpp>
 #include <freiform/io/mesh_file.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -53,6 +54,42 @@ TEST(MeshFile, every_format_gives_back_the_same_corners_and_a_closed_mesh) {
             EXPECT_TRUE(is_sound(back)) << int(format);
             EXPECT_EQ(back.unit, "mm");
         }
+}
+
+int faces_of_obj(const TriangleMesh& mesh, std::size_t corners) {
+    int count = 0;
+    const std::string obj = bytes_of(mesh, MeshFormat::obj);
+    for (std::size_t at = 0; (at = obj.find("\nf ", at)) != std::string::npos; ++at) {
+        const std::string line = obj.substr(at + 1, obj.find('\n', at + 1) - at - 1);
+        count += std::size_t(std::count(line.begin(), line.end(), ' ')) == corners;
+    }
+    return count;
+}
+
+TEST(MeshFile, quads_are_kept_where_the_format_has_them_and_give_back_their_halves) {
+    TriangleMesh mesh = test::torus(40, 20);
+    mesh.parts[0].quads = 790;
+    for (MeshFormat format : kMeshFormats) {
+        const TriangleMesh back = read_back(mesh, format);
+        const bool as_float = format == MeshFormat::glb || format == MeshFormat::stl;
+        EXPECT_EQ(corners(back, false), corners(mesh, as_float)) << int(format);
+        EXPECT_TRUE(is_sound(back)) << int(format);
+    }
+    EXPECT_EQ(faces_of_obj(mesh, 4), 790);
+    EXPECT_EQ(faces_of_obj(mesh, 3), 20);
+    EXPECT_NE(bytes_of(mesh, MeshFormat::ply).find("element face 810\n"), std::string::npos);
+
+    TriangleMesh pinched = mesh;  // a half of two of the quads at this point has no area
+    pinched.points[0] = pinched.points[1];
+    EXPECT_EQ(faces_of_obj(pinched, 4), 786);
+    EXPECT_EQ(faces_of_obj(pinched, 3), 20 + 6) << "quads with one half left, and with two";
+    EXPECT_TRUE(read_back(pinched, MeshFormat::ply).triangles.size() == 1600 - 2);
+
+    std::swap(mesh.triangles[4], mesh.triangles[5]);
+    ASSERT_FALSE(validate(mesh));
+    EXPECT_EQ(validate(mesh).error().where, "parts[0].quads");
+    mesh.parts[0].quads = 801;
+    EXPECT_FALSE(validate(mesh));
 }
 
 TEST(MeshFile, normals_survive_where_the_format_has_them) {

@@ -6,6 +6,7 @@
 //     exact   | float            | names, colours (comment) | in a comment                  | | ply    |
 //     double, exact   | float            | colours                  | in a comment                  |
 //
+// OBJ and PLY have quads where the parts have them (MeshPart::quads), the others their halves.
 // Equal points are written with equal bits in every copy, so that a closed mesh stays closed. Triangles of
 // which two points are equal as written are left out; this closes no gap and opens none. Thin triangles stay.
 #pragma once

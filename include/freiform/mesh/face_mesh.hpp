@@ -33,11 +33,15 @@ struct FaceMesh {
     std::vector<int> point;  // one for each uv: as FaceBoundary::point, -1 for inner points
     std::vector<std::array<int, 3>>
         triangles;     // counter-clockwise in the parameter plane, none with two equal points
+    int quads = 0;     // the first triangles are so many pairs (a, b, c), (a, c, d), each the quad a b c d
     double bound = 0;  // of the interpolation error of all triangles
 };
 
 // Of the tolerance: where normals cannot be bounded, triangles as small as this are left as they are.
 inline constexpr double kAngleFloor = 1;
+
+// Ascending parameters for each axis: the lines of a grid.
+using GridLines = std::array<std::vector<double>, 2>;
 
 // What triangles must keep to; distances in model units.
 struct FaceDemands {
@@ -50,6 +54,11 @@ struct FaceDemands {
     double max_angle = std::numeric_limits<double>::infinity();
     // An aim: no box of points that the face is begun with is longer than this times its width in space.
     double max_aspect = std::numeric_limits<double>::infinity();
+    // Inner points are the crossings of parameter lines, so that cells away from the boundary become quads;
+    // given lines reach from end to end of a face that is a rectangle, whose boundary has a corner where each
+    // ends. None where the lines would be too many.
+    bool quads = false;
+    const GridLines* lines = nullptr;
 
     bool shapes_triangles() const {
         return std::isfinite(max_edge) || std::isfinite(max_angle) || std::isfinite(max_aspect);

@@ -25,6 +25,8 @@ struct MeshPart {
     std::optional<Colour> colour;
     int first = 0, count = 0;
     int face = -1;  // index of the face in the model it came from
+    // The first 2 * quads triangles are pairs (a, b, c), (a, c, d): what formats with quads write as a b c d.
+    int quads = 0;
 };
 
 struct TriangleMesh {
@@ -41,8 +43,8 @@ struct TriangleMesh {
     }
 };
 
-// Refuses numbers that are not finite, indices that lead outside, colours outside [0, 1] and parts that do
-// not cover the triangles one after the other. A mesh without any part is allowed.
+// Refuses numbers that are not finite, indices that lead outside, colours outside [0, 1], quads that are no
+// pairs, and parts that do not cover the triangles one after the other. A mesh without any part is allowed.
 Result<void> validate(const TriangleMesh& mesh);
 
 // Unit normal of the plane of one triangle, counter-clockwise; zero if the triangle has no area in double

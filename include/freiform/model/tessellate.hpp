@@ -18,6 +18,9 @@ struct TessellateOptions {
     // An aim, > 1: inside faces points are placed in boxes that are at most so much longer than wide, in
     // space. Points on edges stay where they are.
     double max_aspect = kInfinity;
+    // Inside faces cells of parameter lines become quads where their halves keep to all this. In faces that
+    // are a rectangle of parameters with four edges the lines reach from edge to edge and end at its points.
+    bool quads = false;
     long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
     // Called with a fraction in [0, 1], from any thread; false stops with a refusal (limit).
     std::function<bool(double)> progress = {};
@@ -31,7 +34,8 @@ struct RefusedFace {
 
 struct FaceReport {
     int face = -1;
-    int triangles = 0;
+    int triangles = 0;  // halves of quads included
+    int quads = 0;
     double error_bound = 0;
     double boundary_gap = 0;
     double angle_bound = 0;  // as Tessellation's
@@ -40,6 +44,7 @@ struct FaceReport {
 
 struct Tessellation {
     TriangleMesh mesh;  // one part per face that was not refused, in order
+    int quads = 0;      // MeshPart::quads of all; the bounds below are those of their halves
     MeshTopology topology;
     // Every point of a face that is not refused lies within error_bound + boundary_gap of the mesh, and every
     // point of the mesh within the same distance of the surface of its face, continued where the mesh leaves
