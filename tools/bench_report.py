@@ -47,6 +47,8 @@ PEER_MODELS = [
     ("screw.step", f"{OCCT_DATA}/step/screw.step"),
 ]
 # One large face that the programs make themselves (bench/common/hills_face.hpp).
+# IGES files have loose faces; these rows are of their faces joined before, by each program in its way.
+SEWN = [(f"{name}, sewn", path) for name, path in PEER_MODELS if name.endswith(".iges")]
 FACES = ["hills", "hills-with-holes"]
 OWN_MODELS = [("bracket.step", str(ROOT / "examples/bracket.step")), ("teapot.bpt", str(ROOT / "examples/teapot.bpt"))]
 
@@ -95,12 +97,16 @@ def add_times(result, more):
             result[clock][kind] += values
 
 
+def sewing(name):
+    return ["--sew"] if name.endswith(", sewn") else []
+
+
 def measure(name, path, relative, programs, rounds):
     """One row: both programs in turns, `rounds` times; what is not a time is measured in the first round."""
     ours, occt = None, None
     wants_occt = programs["occt"] and not name.endswith(".bpt")
     for i in range(rounds):
-        tail = ["--relative", repr(relative)] + (["--times-only"] if i else [])
+        tail = ["--relative", repr(relative)] + (["--times-only"] if i else []) + sewing(name)
         if wants_occt and (occt is None or "refusal" not in occt):
             result = run([programs["occt"], path] + tail)
             occt = result if i == 0 else (add_times(occt, result) or occt)
@@ -111,18 +117,18 @@ def measure(name, path, relative, programs, rounds):
     return {"model": name, "relative": relative, "freiform": ours, "occt": occt}
 
 
-def deflection_that_reaches(path, relative, diagonal, program, cache):
+def deflection_that_reaches(path, relative, diagonal, program, cache, more):
     """The largest deflection found, relative to the diagonal, with which Open CASCADE's measured deviation is at most
     `relative` of it; None if none was found. Some deflections between it and `relative` may do as well: the
     deviation is not a monotone function of the deflection."""
     size = 0 if path in FACES else pathlib.Path(path).stat().st_size
-    key = f"{path} {size} {relative:g}"
+    key = " ".join([f"{path} {size} {relative:g}"] + more)
     known = json.loads(cache.read_text()) if cache.is_file() else {}
     if key in known:
         return known[key]
 
     def reaches(deflection):
-        result = run([program, path, "--relative", repr(deflection), "--diagonal", repr(diagonal), "--repetitions", "1"])
+        result = run([program, path, "--relative", repr(deflection), "--diagonal", repr(diagonal), "--repetitions", "1"] + more)
         return good(result) and result["deviation"] <= relative * diagonal
 
     found, above = None, relative
@@ -155,11 +161,12 @@ def measure_at_same_error(row, path, programs, rounds, cache):
     if not good(row["occt"]) or not good(row["freiform"]):
         return row
     diagonal = row["occt"]["diagonal"]
-    deflection = deflection_that_reaches(path, row["relative"], diagonal, programs["occt"], cache)
+    sewn = sewing(row["model"])
+    deflection = deflection_that_reaches(path, row["relative"], diagonal, programs["occt"], cache, sewn)
     if deflection is None:
         return row
     for i in range(rounds):
-        more = ["--times-only"] if i else []
+        more = (["--times-only"] if i else []) + sewn
         result = run([programs["occt"], path, "--relative", repr(deflection), "--diagonal", repr(diagonal)] + more)
         if not good(result):
             return row
@@ -218,7 +225,7 @@ def main():
         programs["occt"] = None
         skipped.append({"model": "all", "reason": "no Open CASCADE was found to compare with"})
     rows, before = [], machine()
-    for name, source in PEER_MODELS + [(f, f) for f in FACES] + OWN_MODELS:
+    for name, source in PEER_MODELS + SEWN + [(f, f) for f in FACES] + OWN_MODELS:
         if args.only not in name:
             continue
         path = unpacked(source, folder / "bench-models")

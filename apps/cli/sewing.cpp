@@ -77,8 +77,16 @@ void write_sewing(json::Writer& w, const Sewing& s) {
         w.new_line(1).begin_object().field("face", g.face).field("name", g.face_name).field("edge", g.edge);
         w.field("gap", g.gap);  // null where there is no other open edge
         w.key("at").array(std::span<const double>(g.at.c));
+        if (g.opening >= 0) w.field("opening", g.opening);
         w.field("kind", name_of(g.reason.kind)).field("where", g.reason.where);
         w.field("message", g.reason.message).end_object();
+    }
+    w.end_array().key("openings").begin_array();
+    for (const Opening& o : s.openings) {
+        w.new_line(1).begin_object().key("edges").begin_array();
+        for (const int e : o.edges) w.value(e);
+        w.end_array().key("lo").array(std::span<const double>(o.box.lo.c));
+        w.key("hi").array(std::span<const double>(o.box.hi.c)).end_object();
     }
     w.end_array().end_object();
 }
@@ -98,11 +106,17 @@ std::string sewing_text(const Sewing& s, const std::string& unit) {
             out += text("non-manifold    edge ", e.edge, ": ", e.faces.size(), " faces\n");
     if (s.remaining.empty()) return out + "remaining gaps  none\n";
     out += text("remaining gaps  ", s.remaining.size(), "\n");
+    for (std::size_t i = 0; i < s.openings.size(); ++i) {
+        const Vec<3> size = s.openings[i].box.hi - s.openings[i].box.lo;
+        out += text("opening ", i, "       ", s.openings[i].edges.size(), " of them go round a place ",
+                    size[0], " x ", size[1], " x ", size[2], word, " large where there is no face\n");
+    }
     for (const RemainingGap& g : s.remaining) {
         out += text("  face ", g.face, g.face_name.empty() ? "" : text(" '", g.face_name, "'"), ", edge ",
                     g.edge, ": ");
         out += std::isfinite(g.gap) ? text("about ", g.gap, word, " from the others")
                                     : std::string("no other is open");
+        if (g.opening >= 0) out += text(", round opening ", g.opening);
         out += text("; ", g.reason.where, " ", g.reason.message, "\n");
     }
     return out;

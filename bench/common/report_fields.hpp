@@ -23,7 +23,7 @@ struct Arguments {
     std::string file;
     double relative = 0, diagonal = 0;
     int repetitions = 5;
-    bool times_only = false;
+    bool times_only = false, sew = false;
 };
 
 inline std::optional<Arguments> parse(int count, char** values) {
@@ -32,6 +32,8 @@ inline std::optional<Arguments> parse(int count, char** values) {
         const std::string_view v = values[i];
         if (v == "--times-only") {
             a.times_only = true;
+        } else if (v == "--sew") {
+            a.sew = true;
         } else if (v.starts_with("--") && i + 1 < count) {
             const std::optional<double> x = number(values[++i]);
             if (!x) return std::nullopt;

@@ -1,8 +1,9 @@
 // bench-tessellate-occt FILE|hills|hills-with-holes --relative R [--diagonal D] [--repetitions N]
-// [--times-only]
+// [--times-only] [--sew]
 //
 // The same as bench-tessellate with the mesher of Open CASCADE: deflection R times the diagonal, 0.5 radians,
-// one thread, faces as the file has them (no sewing). Also prints the diagonal, in millimetres.
+// one thread, faces as the file has them (joined before with --sew). Also prints the diagonal, in
+// millimetres.
 #include "hills_face.hpp"
 #include "occt_curve.hpp"
 #include "report_fields.hpp"
@@ -13,6 +14,7 @@
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
@@ -114,6 +116,17 @@ int run(const Arguments& a) {
         std::cout << "{\"refusal\": \"the file has no shape\"}" << std::endl;
         return 3;
     }
+    if (a.sew) {  // as the other program does, within the largest tolerance of the file
+        TopTools_IndexedMapOfShape edges;
+        TopExp::MapShapes(shape, TopAbs_EDGE, edges);
+        double most = 0;
+        for (int i = 1; i <= edges.Extent(); ++i)
+            most = std::max(most, BRep_Tool::Tolerance(TopoDS::Edge(edges(i))));
+        BRepBuilderAPI_Sewing sewing(most);
+        sewing.Add(shape);
+        sewing.Perform();
+        shape = sewing.SewedShape();
+    }
     BRepTools::Clean(shape);
     Bnd_Box box;
     BRepBndLib::AddOptimal(shape, box, false, false);
@@ -162,7 +175,7 @@ int main(int count, char** values) {
     if (!a) {
         std::cerr << "usage: bench-tessellate-occt FILE|hills|hills-with-holes --relative R [--diagonal D] "
                      "[--repetitions N] "
-                     "[--times-only]\n";
+                     "[--times-only] [--sew]\n";
         return 2;
     }
     try {

@@ -2,8 +2,9 @@
 //
 // Tessellates FILE with freiform within R times the diagonal, with one thread and with two, and prints one
 // line of JSON: the times of every repetition, what the library proves, and what an independent look from
-// outside finds. D is the diagonal in millimetres (in the unit of the file, where it names none); otherwise
-// that of the model's box.
+// outside finds. With --sew loose faces are joined
+// before, within the largest tolerance of the file, which is not timed. D is the diagonal in millimetres (in
+// the unit of the file, where it names none); otherwise that of the model's box.
 #include "hills_face.hpp"
 #include "report_fields.hpp"
 
@@ -11,6 +12,7 @@
 #include <freiform/io/document.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
+#include <freiform/model/sew.hpp>
 #include <freiform/model/tessellate.hpp>
 
 #include <iostream>
@@ -143,8 +145,13 @@ int run(const Arguments& a) {
     const auto face = hills_face(a.file);
     const auto document = face ? read_document(written(*face)) : read_any(a.file);
     if (!document) return fail(document.error());
-    const auto model = scene_of(*document);
+    auto model = scene_of(*document);
     if (!model) return fail(model.error());
+    if (a.sew) {
+        auto sewn = sew(*model, {.tolerance = largest_tolerance(*model)});
+        if (!sewn) return fail(sewn.error());
+        *model = std::move(sewn->model);
+    }
     const double diagonal =
         a.diagonal > 0 ? a.diagonal / millimetres(model->unit) : summary(*model).box.diagonal();
     TessellateOptions how;
@@ -186,7 +193,7 @@ int main(int count, char** values) {
     const std::optional<Arguments> a = parse(count, values);
     if (!a) {
         std::cerr << "usage: bench-tessellate FILE|hills|hills-with-holes --relative R [--diagonal D] "
-                     "[--repetitions N] [--times-only]\n";
+                     "[--repetitions N] [--times-only] [--sew]\n";
         return 2;
     }
     return run(*a);

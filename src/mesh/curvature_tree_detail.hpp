@@ -82,6 +82,12 @@ struct Shift {
 Vec<2> reach_of(const Bending& at, double e);
 Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected);
 
+// Whether kinks add less to the error of linear interpolation within the box than anybody sees: arcs written
+// with double knots, say, which are smooth but for the digits of the file. What they add is in every bound
+// all the same (CurvatureTree::kink_bound), and triangles at them are judged by all of their error
+// (bending.cpp).
+bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance);
+
 class CurvatureTree {
 public:
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut

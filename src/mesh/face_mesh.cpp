@@ -244,7 +244,9 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
                            const FaceDemands& demands, long long max_triangles,
                            std::span<const Vec<2>> extra) {
     // Judging by all of the error is dearer but asks nothing of normals, which kinks spoil.
-    const bool smooth = surface.kinks(0).empty() && surface.kinks(1).empty();
+    Box<2> box;
+    for (const Vec<2>& p : boundary.uv) box.add(p);
+    const bool smooth = kinks_are_rounding(surface, box, demands.tolerance);
     auto mesh = filled(surface, boundary, demands, max_triangles, extra, smooth);
     if (smooth && !mesh && mesh.error().kind == RefusalKind::not_converged)
         mesh = filled(surface, boundary, demands, max_triangles, extra, false);

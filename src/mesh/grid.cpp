@@ -48,7 +48,10 @@ CellError cell_error(const DerivativeQuery<2, 3>& surface, const Box<2>& cell, c
     };
     CellError out = parts(b.full, kinks);
     const double error = b.full.along(size[0], size[1]) / 8 + kinks;
-    if (const Shift shift = smooth ? shift_of(b, error, b.full, 1) : Shift{}; shift.exists) {
+    bool kinked = false;
+    for (int d = 0; d < 2; ++d)
+        for (const Kink& k : surface.kinks(d)) kinked |= cell.lo[d] <= k.at && k.at <= cell.hi[d];
+    if (const Shift shift = smooth && !kinked ? shift_of(b, error, b.full, 1) : Shift{}; shift.exists) {
         const Curvature seen = b.seen(shift.turn);
         const CellError less = parts(seen, shift.across(0, error));
         if (less.x + less.y < out.x + out.y) out = less;
@@ -71,7 +74,9 @@ CellError cell_error(const DerivativeQuery<2, 3>& surface, const Box<2>& cell, c
 
 void add_cell_needs(const DerivativeQuery<2, 3>& surface, const GridLines& lines, const FaceDemands& demands,
                     const std::function<bool(const Box<2>&)>& is_outside, StripNeeds& needs) {
-    const bool smooth = surface.kinks(0).empty() && surface.kinks(1).empty();
+    Box<2> box;
+    for (std::size_t d = 0; d < 2; ++d) box.lo[int(d)] = lines[d].front(), box.hi[int(d)] = lines[d].back();
+    const bool smooth = kinks_are_rounding(surface, box, demands.tolerance);
     for (std::size_t i = 0; i + 1 < lines[0].size(); ++i)
         for (std::size_t k = 0; k + 1 < lines[1].size(); ++k) {
             const Box<2> cell{{{lines[0][i], lines[1][k]}}, {{lines[0][i + 1], lines[1][k + 1]}}};

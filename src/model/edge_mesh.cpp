@@ -102,18 +102,8 @@ void EdgeMesher::forget() {
 // How many segments the curvature at samples asks for: tells hopeless tolerances before they take time. Only
 // an estimate; bounds over long intervals would be far too large for it.
 double EdgeMesher::estimate(int edge, Interval on, double tolerance) const {
-    constexpr int kSamples = 8;
     const Edge& e = model_.edges[std::size_t(edge)];
-    if (!e.curve || std::holds_alternative<Line<3>>(*e.curve)) return 0;
-    const double h = on.length() / kSamples;
-    double sum = 0;
-    for (int k = 0; k < kSamples; ++k) {
-        const auto j = jet<2>(*e.curve, on.lo + (k + 0.5) * h);
-        const double speed = norm(j.d[1]);
-        const Vec<3> bend = speed > 0 ? j.d[2] - (dot(j.d[2], j.d[1]) / (speed * speed)) * j.d[1] : j.d[2];
-        sum += std::sqrt(norm(bend) * h * h / 8 / tolerance);
-    }
-    return std::isfinite(sum) ? sum : 0;
+    return e.curve ? estimated_chords(*e.curve, on, tolerance) : 0;
 }
 
 // How many chords the part between a and b asks for: up to 1 if its own keeps the demands.

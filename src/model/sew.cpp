@@ -261,6 +261,7 @@ Sewing Sewer::run() {
     out_.remaining = remaining_gaps(m_, tolerance_);
     for (RemainingGap& g : out_.remaining)
         if (const auto it = why_.find(g.edge); it != why_.end()) g.reason = it->second.second;
+    out_.openings = openings_of(m_, out_.remaining);
     out_.model = std::move(m_);
     return std::move(out_);
 }

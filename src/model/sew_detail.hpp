@@ -80,4 +80,7 @@ private:
     std::vector<int> axis_;
 };
 
+// The openings that the gaps go round; each gap gets the number of its own.
+std::vector<Opening> openings_of(const Model& model, std::vector<RemainingGap>& gaps);
+
 }  // namespace freiform

@@ -115,6 +115,7 @@ std::vector<RemainingGap> remaining_gaps(const Model& model, double tolerance) {
         const Open& own = open[i];
         RemainingGap& gap = gaps[i];
         gap.edge = own.edge, gap.face = own.face, gap.at = own.at.front();
+        gap.box = own.box;
         gap.face_name = model.faces[std::size_t(own.face)].name;
         gap.reason = {RefusalKind::no_answer, text("edges[", own.edge, "]"),
                       text("no other edge with one face runs along it within ", tolerance)};

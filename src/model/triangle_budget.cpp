@@ -2,7 +2,8 @@
 // Samples cost as much as the mesh of a simple face: many are taken only where few say that it may come near
 // the limit; where they are beyond it by far, and as few others at other places too (one may lie where knots
 // are a rounding apart), that is enough. The box of a face is that of points on its parameter
-// curves, so a face with holes counts as one without.
+// curves, so a face with holes counts as one without. Each chord of the boundary
+// has a triangle, too; those of narrow faces have no others.
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
@@ -19,21 +20,43 @@ constexpr int kFewSamples = 3, kManySamples = 12;
 
 double predicted(const Model& model, const TessellateOptions& options, int samples) {
     double sum = 0;
+    std::vector<double> chords;
+    for (const Edge& e : model.edges)
+        chords.push_back(std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0));
     for (const Face& face : model.faces) {
         Box<2> box;
+        double along = 0;
         for (const Loop& l : face.loops)
-            for (const Coedge& c : l.coedges)
+            for (const Coedge& c : l.coedges) {
+                along += chords[std::size_t(c.edge)];
                 for (int k = 0; k <= 8; ++k) {
                     const Interval on = model.edges[std::size_t(c.edge)].range;
                     box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
                 }
+            }
         if (!box.is_empty())
-            sum += estimated_triangles(face.surface, box, {options.tolerance, options.max_edge}, samples);
+            sum += std::max(
+                estimated_triangles(face.surface, box, {options.tolerance, options.max_edge}, samples),
+                along + 2 * double(face.loops.size()) - 4);
     }
     return sum;
 }
 
 }  // namespace
+
+double estimated_chords(const CurveGeometry<3>& curve, Interval on, double tolerance) {
+    constexpr int kSamples = 8;
+    if (std::holds_alternative<Line<3>>(curve)) return 0;
+    const double h = on.length() / kSamples;
+    double sum = 0;
+    for (int k = 0; k < kSamples; ++k) {
+        const auto j = jet<2>(curve, on.lo + (k + 0.5) * h);
+        const double speed = norm(j.d[1]);
+        const Vec<3> bend = speed > 0 ? j.d[2] - (dot(j.d[2], j.d[1]) / (speed * speed)) * j.d[1] : j.d[2];
+        sum += std::sqrt(norm(bend) * h * h / 8 / tolerance);
+    }
+    return std::isfinite(sum) ? sum : 0;
+}
 
 double predicted_triangles(const Model& model, const TessellateOptions& options) {
     return predicted(model, options, kManySamples);

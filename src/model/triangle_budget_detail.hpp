@@ -7,6 +7,10 @@ namespace freiform {
 // An estimate above a limit by more than this factor is believed.
 inline constexpr double kFarBeyond = 4;
 
+// About how many chords the curve needs within the tolerance, from its curvature at samples; a line none. An
+// estimate.
+double estimated_chords(const CurveGeometry<3>& curve, Interval on, double tolerance);
+
 // Refuses (limit) what is beyond max_triangles by far; what is near it is counted while it is made.
 Result<void> check_budget(const Model& model, const TessellateOptions& options);
 

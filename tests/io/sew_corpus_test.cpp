@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <numeric>
 
 using namespace freiform;
 using namespace freiform::test;
@@ -15,6 +16,7 @@ namespace {
 struct Loose {
     const char* name;
     int open_before, remaining;
+    std::vector<int> rims;  // edges round each opening
 };
 
 class SewCorpus : public ::testing::TestWithParam<Loose> {
@@ -47,13 +49,20 @@ TEST_P(SewCorpus, edges_become_one_within_the_tolerance_of_the_file_and_the_rest
         EXPECT_GE(r.face, 0) << r.edge;
         EXPECT_GE(r.gap, 0) << r.edge;
     }
+    std::vector<int> rims;
+    for (const Opening& o : sewn->openings) rims.push_back(int(o.edges.size()));
+    EXPECT_EQ(rims, GetParam().rims);
+    int on_rims = 0;
+    for (const RemainingGap& r : sewn->remaining) on_rims += r.opening >= 0;
+    EXPECT_EQ(on_rims, std::accumulate(rims.begin(), rims.end(), 0));
 }
 
 // Of the wing the two halves meet in the leading edge only: its tips have no faces, and its trailing edge is
 // 0.0042 thick. The bearing is open below.
 INSTANTIATE_TEST_SUITE_P(Iges, SewCorpus,
-                         ::testing::Values(Loose{"iges/cube.iges", 24, 0}, Loose{"iges/wing128.igs", 8, 6},
-                                           Loose{"iges/bearing.iges", 925, 25}),
+                         ::testing::Values(Loose{"iges/cube.iges", 24, 0, {}},
+                                           Loose{"iges/wing128.igs", 8, 6, {6}},
+                                           Loose{"iges/bearing.iges", 925, 25, {25}}),
                          [](const auto& of) {
                              std::string name = std::filesystem::path(of.param.name).stem().string();
                              return name;

@@ -82,4 +82,43 @@ TEST(TessellateEconomy, bounds_hold_where_points_move_along_the_surface) {
     }
 }
 
+// A quarter of a torus tube: arcs of a quarter of a circle, `arcs` of them with double knots between, about
+// the z-axis at the distance 3; coordinates are rounded to multiples of `grain`.
+Surface<Hom<3>> bow(int arcs, double grain) {
+    std::vector<double> knots{0, 0, 0};
+    for (int i = 1; i < arcs; ++i) knots.insert(knots.end(), 2, double(i));
+    knots.insert(knots.end(), 3, double(arcs));
+    const auto along = *BSplineBasis::make(2, knots);
+    const double corner[5][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}}, w[3] = {1, std::sqrt(0.5), 1};
+    std::vector<Hom<3>> c;
+    for (int i = 0; i <= 2 * arcs; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double r = 3 + corner[k][0];
+            const double x = r * corner[i][0], y = r * corner[i][1], turn = 0.3;
+            Vec<3> p{{std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y,
+                      corner[k][1]}};
+            for (double& at : p.c) at = grain > 0 ? std::round(at / grain) * grain : at;
+            c.push_back(weighted(p, w[i % 2] * w[k % 2]));
+        }
+    return *Surface<Hom<3>>::make({along, *BSplineBasis::bezier(2)}, Net<2, Hom<3>>({2 * arcs + 1, 3}, c));
+}
+
+TEST(TessellateEconomy, knots_that_are_kinks_by_the_digits_of_a_file_cost_nothing) {
+    const auto triangles = [](const Surface<Hom<3>>& s, double tolerance) {
+        ModelBuilder builder;
+        EXPECT_TRUE(builder.add(s));
+        const Model m = *std::move(builder).finish();
+        const auto t = tessellate(m, {.tolerance = tolerance});
+        EXPECT_TRUE(t && t->refused.empty());
+        EXPECT_LE(t->error_bound, tolerance);
+        const double deviation = sampled_deviation(m, *t, 3);
+        EXPECT_LE(deviation, t->error_bound + t->boundary_gap);
+        EXPECT_GE(deviation, 0.3 * tolerance);
+        return double(t->mesh.triangles.size());
+    };
+    const double one = triangles(bow(1, 0), 1e-3), rounded = triangles(bow(2, 1e-7), 1e-3);
+    EXPECT_LE(rounded, 2.3 * one);
+    EXPECT_GE(triangles(bow(2, 1e-4), 1e-3), 1.25 * rounded) << "kinks that matter are still kinks";
+}
+
 }  // namespace

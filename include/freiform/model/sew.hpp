@@ -29,8 +29,16 @@ struct RemainingGap {
     // The largest distance of its places from the other edges with one face, infinite without any: measured
     // at samples, an estimate.
     double gap = 0;
-    Vec<3> at{};  // where that is
+    Vec<3> at{};       // where that is
+    Box<3> box;        // of its places, likewise
+    int opening = -1;  // of Sewing::openings, -1 where the edge is on none
     Refusal reason;
+};
+
+// Remaining edges that follow each other round a hole, each vertex joining two: there is no face.
+struct Opening {
+    std::vector<int> edges;  // in order
+    Box<3> box;              // of samples
 };
 
 struct Sewing {
@@ -44,6 +52,7 @@ struct Sewing {
     std::vector<int> flipped;  // faces that were turned over, so that neighbours agree on the outside
     std::vector<int> twisted;  // edges whose two faces can not agree (a Moebius strip)
     std::vector<RemainingGap> remaining;
+    std::vector<Opening> openings;
 };
 
 // Two edges are joined if a map from one onto the other is found with which their whole curves are proven to

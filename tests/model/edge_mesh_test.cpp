@@ -1,0 +1,147 @@
+// The passes that place the ends of chords, each by its law (edge_mesh.cpp, edge_error.cpp).
+#include "model/edge_mesh_detail.hpp"
+#include "support/random.hpp"
+#include "support/solids.hpp"
+
+#include <gtest/gtest.h>
+#include <numeric>
+
+using namespace freiform;
+using namespace freiform::test;
+
+namespace {
+
+// A face in a plane or on `surface` between a curve of its parameters and the chord back; edge 0 is the
+// curve.
+struct OneFace {
+    Model model;
+    std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> surfaces;
+    std::optional<EdgeMesher> mesher;
+
+    OneFace(const CurveGeometry<2>& curve, Interval on,
+            SurfaceGeometry surface = Extrusion{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane}) {
+        const Vec<2> a = jet<0>(curve, on.lo).value(), b = jet<0>(curve, on.hi).value();
+        const auto at = [&](const Vec<2>& p) { return jet<0>(surface, p.c).value(); };
+        model.vertices = {{at(a), 0}, {at(b), 0}};
+        auto lift = lifted(surface, curve);
+        std::optional<CurveGeometry<3>> own;
+        if (lift && lift->on_plane) own = *lift->geometry;
+        model.edges = {{own, false, on, 0, 1, 0, "curve"}, {{}, false, on, 1, 0, 0, "back"}};
+        Face f;
+        f.surface = std::move(surface);
+        f.loops = {{{{0, false, curve}, {1, false, segment(on, b, a)}}}};
+        model.faces = {f};
+        surfaces.push_back(std::make_unique<DerivativeQuery<2, 3>>(model.faces[0].surface));
+        mesher.emplace(model, surfaces);
+    }
+    // What the chords of the curve ask for, once it is cut.
+    std::vector<double> needs(double tolerance) {
+        const EdgeDemands demands{tolerance};
+        EXPECT_TRUE(mesher->discretise(0, demands, 100'000));
+        const EdgeMesh& mesh = mesher->mesh(0);
+        std::vector<double> out;
+        double bound = 0;
+        for (std::size_t i = 0; i + 1 < mesh.parameters.size(); ++i) {
+            const auto p = mesher->part(0, mesh.parameters[i], mesh.parameters[i + 1], demands);
+            EXPECT_LE(p.needs, 1) << "part " << i;
+            out.push_back(p.needs);
+            bound = std::max(bound, p.bound);
+        }
+        EXPECT_EQ(mesh.bound, bound) << "of every chord, and of no part that another stood for";
+        return out;
+    }
+};
+
+double sum_of(const std::vector<double>& x) { return std::accumulate(x.begin(), x.end(), 0.0); }
+
+CurveGeometry<2> ellipse(double a, double b) { return Conic<2>{ConicKind::ellipse, {}, {{a, 0}}, {{0, b}}}; }
+// Half of a circle as one rational cubic: slow in the middle.
+CurveGeometry<2> uneven_half_circle() {
+    return Curve<Hom<2>>::trusted(
+        {*BSplineBasis::bezier(3)},
+        Net<1, Hom<2>>(
+            {4}, {{{1, 0, 1}}, {{1.0 / 3, 2.0 / 3, 1.0 / 3}}, {{-1.0 / 3, 2.0 / 3, 1.0 / 3}}, {{-1, 0, 1}}}));
+}
+CurveGeometry<2> wave(Random& rng, int size) {
+    std::vector<Vec<2>> p;
+    for (int i = 0; i < size; ++i) p.push_back({{double(i), rng.real(-1, 1)}});
+    return Curve<Vec<2>>::trusted({*BSplineBasis::clamped_uniform(3, size)}, Net<1, Vec<2>>({size}, p));
+}
+
+TEST(EdgeMesh, the_error_is_shared_evenly) {
+    for (const auto& [curve, on] :
+         {std::pair{ellipse(4, 1), Interval{0.1, 3}}, std::pair{ellipse(1, 20), Interval{0, 6}},
+          std::pair{uneven_half_circle(), Interval{0, 1}}})
+        for (const double tolerance : {1e-2, 1e-3, 1e-5}) {
+            const auto needs = OneFace(curve, on).needs(tolerance);
+            const auto [least, most] = std::minmax_element(needs.begin(), needs.end());
+            EXPECT_GE(*least, 0.65 * *most) << tolerance;
+            EXPECT_LE(double(needs.size()), sum_of(needs) / 0.88) << tolerance;
+        }
+}
+
+TEST(EdgeMesh, hardly_more_chords_are_made_than_the_shares_ask_for) {
+    Random rng(4);
+    double asked = 0, made = 0;
+    for (int round = 0; round < 12; ++round) {
+        const int size = 12 + 4 * round;
+        const auto curve = wave(rng, size);
+        const auto needs = OneFace(curve, domain(curve)[0]).needs(0.01);
+        asked += sum_of(needs), made += double(needs.size());
+    }
+    EXPECT_LE(made, asked / 0.9);
+}
+
+// Where samples of many parts stand for the others, an uneven curve is still cut by what each part asks for.
+TEST(EdgeMesh, pilots_only_guess) {
+    for (double tolerance = 1e-3; tolerance > 1e-6; tolerance *= 0.6)  // some guesses look as if they kept it
+        EXPECT_GT(OneFace(ellipse(1, 1), {0, 3}).needs(tolerance).size(), 10u);
+    const auto needs = OneFace(ellipse(30, 1), {0, 3}).needs(1e-6);
+    ASSERT_GE(needs.size(), 1000u);
+    const auto [least, most] = std::minmax_element(needs.begin(), needs.end());
+    EXPECT_GE(*least, 0.9 * *most);
+    EXPECT_LE(double(needs.size()), sum_of(needs) / 0.95);
+}
+
+// On a cylinder whose speed round its axis is uneven: a helix is cut as by its distance from chords.
+TEST(EdgeMesh, chords_on_faces_are_judged_across) {
+    std::vector<Hom<3>> c;
+    const double x[] = {1, 1, -1, -1}, y[] = {0, 2, 2, 0}, w[] = {1, 1.0 / 3, 1.0 / 3, 1};
+    for (int i = 0; i < 4; ++i)
+        for (const double z : {0.0, 2.0}) c.push_back(weighted(Vec<3>{{x[i], y[i], z}}, w[i]));
+    const SurfaceGeometry wall = *Surface<Hom<3>>::make({*BSplineBasis::bezier(3), *BSplineBasis::bezier(1)},
+                                                        Net<2, Hom<3>>({4, 2}, c));
+    const CurveGeometry<2> slanted = Line<2>{{{0, 0}}, {{1, 0.5}}};
+    OneFace f(slanted, {0, 1}, wall);
+    double worst = 0;
+    for (double a = 0; a < 0.94; a += 0.05) {
+        const double b = a + 0.05, bound = f.mesher->error(0, a, b, 0, false).polyline;
+        const auto at = [&](double t) { return jet<0>(wall, {t, 0.5 * t}).value(); };
+        const Vec<3> chord = at(b) - at(a);
+        double most = 0;
+        for (int i = 1; i < 64; ++i) {
+            const Vec<3> d = at(a + (b - a) * i / 64) - at(a);
+            most = std::max(most, norm(d - (dot(d, chord) / dot(chord, chord)) * chord));
+        }
+        EXPECT_LE(most, bound) << a;
+        worst = std::max(worst, bound / most);
+    }
+    EXPECT_LE(worst, 1.8);
+}
+
+TEST(EdgeMesh, edges_are_cut_where_they_have_kinks_but_not_for_rounding) {
+    const auto bent = [](double by) -> CurveGeometry<2> {
+        return Curve<Vec<2>>::trusted(
+            {*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2})},
+            Net<1, Vec<2>>({5}, {{{0, 0}}, {{1, 1}}, {{2, 1.5 + by}}, {{3, 2}}, {{4, 0}}}));
+    };
+    for (const auto& [by, ends] : {std::pair{0.1, 3u}, std::pair{1e-13, 2u}}) {
+        OneFace f(bent(by), {0, 2});
+        EXPECT_EQ(f.mesher->smooth_pieces(0, 1e-3).size(), ends) << by;
+        f.needs(1e-3);
+        const auto& at = f.mesher->mesh(0).parameters;
+        EXPECT_EQ(std::count(at.begin(), at.end(), 1.0), by > 0.01 ? 1 : 0) << by;
+    }
+}
+
+}  // namespace
