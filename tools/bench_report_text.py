@@ -229,7 +229,7 @@ Other comparisons: [evaluation of many points](EVALUATION.md), with plots agains
 ## What was measured
 
 - Models: the 16 of Debian's packages occt-misc (/usr/share/opencascade/data) and gmsh-doc, as they are, without sewing
-  or healing; one free-form face of 20 x 20 control points, rational and bicubic, whole (hills) and with 25 round holes; and two
+  or healing, the IGES files once more with their faces sewn (within the largest tolerance of the file; not timed); one free-form face of 20 x 20 control points, rational and bicubic, whole (hills) and with 25 round holes; and two
   of examples/. In the IGES files, shell1 and wing faces do not share all edges (not closed in the table); hammer.brep is a
   closed shell without a solid; all others are sewn solids.
 - Tolerance: 1e-3, 1e-4 and 1e-5 of the diagonal of the model's tight box. Open CASCADE gets it as the deflection of

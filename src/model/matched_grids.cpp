@@ -7,8 +7,9 @@
 // one class, those in v from another.
 //
 // Method: parameters of an edge, from 0 to 1, are those of a side up to their direction, where the parameter
-// curve is an affine map; so a tie says "the same" or "turned round". A class in which both follow of one
-// edge (a Möbius band) has no set without further demands, and its faces none. Segments of every edge of a
+// curve is an affine map; so a tie says "the same" or "turned round". Where both
+// follow of one edge (a Möbius band) one is taken, and lines that are not symmetric end between points there:
+// such cells become triangles. Segments of every edge of a
 // class and cells of every face ask for a number of parts (edge_mesh.cpp, grid.cpp), and parts are moved and
 // halved until all are content; kinks stay where they are. If after that an edge is not, it keeps the points
 // that it had, and its faces have grids of their own inside.
@@ -101,7 +102,7 @@ std::vector<double> placed(const std::vector<double>& parts, double lo, double h
 class Ties {
 public:
     explicit Ties(std::size_t edges) : of_(edges) {
-        std::iota(of_.begin(), of_.end(), 0), turned_.resize(edges), torn_.resize(edges);
+        std::iota(of_.begin(), of_.end(), 0), turned_.resize(edges);
     }
     std::pair<int, bool> find(int e) const {
         bool turned = false;
@@ -112,18 +113,13 @@ public:
         const auto [x, x_turned] = find(a);
         const auto [y, y_turned] = find(b);
         const bool between = turned ^ x_turned ^ y_turned;
-        if (x == y) {
-            if (between) torn_[std::size_t(x)] = 1;
-            return;
-        }
+        if (x == y) return;
         of_[std::size_t(y)] = x, turned_[std::size_t(y)] = between;
-        torn_[std::size_t(x)] |= torn_[std::size_t(y)];
     }
-    bool is_torn(int first) const { return torn_[std::size_t(first)]; }
 
 private:
     std::vector<int> of_;
-    std::vector<char> turned_, torn_;
+    std::vector<char> turned_;
 };
 
 struct EdgeClass {
@@ -210,10 +206,6 @@ void GridMatcher::gather(std::span<const std::optional<Refusal>> refused) {
             rectangles_.push_back(*r);
             for (const auto& [a, b] : r->sides) ties_.tie(a.edge, b.edge, a.turned != b.turned);
         }
-    std::erase_if(rectangles_, [&](const Rectangle& r) {
-        return ties_.is_torn(ties_.find(r.sides[0][0].edge).first) ||
-               ties_.is_torn(ties_.find(r.sides[1][0].edge).first);
-    });
     for (const Rectangle& r : rectangles_)
         for (std::size_t d = 0; d < 2; ++d) {
             const auto [c, turned] = along(r, d);

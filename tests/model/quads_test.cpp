@@ -155,7 +155,7 @@ Model band(bool twisted) {
     return *make_model(std::move(m));
 }
 
-TEST(Quads, go_round_bands_and_stop_at_a_twist) {
+TEST(Quads, go_round_bands_twisted_or_not) {
     const auto plain = expect_quads(band(false), 0.001, "band", false);
     EXPECT_EQ(loose(plain), 0);
     const auto twisted = tessellate(band(true), {.tolerance = 0.001, .quads = true});
@@ -163,7 +163,31 @@ TEST(Quads, go_round_bands_and_stop_at_a_twist) {
     EXPECT_TRUE(twisted->refused.empty());
     EXPECT_LE(twisted->error_bound, 0.001);
     EXPECT_EQ(twisted->topology.non_manifold_edges, 0);
-    EXPECT_GT(twisted->quads, 0) << "inside";
+    EXPECT_GT(twisted->quads, 2 * loose(*twisted)) << "all but one row";
+}
+
+// All edges run round the face, so opposite ones run against each other; the surface bends at one corner
+// only.
+TEST(Quads, end_at_edges_that_run_either_way) {
+    Model m;
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 7; ++i)
+        for (int k = 0; k < 7; ++k) c.push_back({{i / 6.0, k / 6.0, i + k > 9 ? 0.2 * (i + k - 9) : 0.0}});
+    const SurfaceGeometry bent = *Surface<Vec<3>>::make({*BSplineBasis::bezier(6), *BSplineBasis::bezier(6)},
+                                                        Net<2, Vec<3>>({7, 7}, c));
+    const Vec<2> corner[] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}, {{0, 0}}};
+    Face f;
+    f.surface = bent;
+    f.loops.emplace_back();
+    for (int k = 0; k < 4; ++k) {
+        m.vertices.push_back({jet<0>(bent, corner[k].c).value(), 0});
+        m.edges.push_back({{}, false, {0, 1}, k, (k + 1) % 4, 0, ""});
+        f.loops[0].coedges.push_back({k, false, segment({0, 1}, corner[k], corner[k + 1])});
+    }
+    m.faces = {f};
+    const auto t = expect_quads(*make_model(std::move(m)), 2e-3, "corner", false);
+    EXPECT_GT(t.quads, 30);
+    EXPECT_EQ(loose(t), 0);
 }
 
 TEST(Quads, are_turned_over_with_their_face) {
