@@ -11,7 +11,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ORDER = [["core"], ["poly", "kernel"], ["basis"], ["spline"], ["make", "path", "query"],
-         ["intersect", "fit", "animate", "colour"], ["trim", "region"], ["mesh"], ["model"], ["shape"], ["io", "gpu"],
+         ["intersect", "fit", "animate", "colour"], ["trim", "region"], ["mesh"], ["model"], ["shape"],
+         ["io", "gpu", "font"],
          ["paint"], ["apps", "bindings"]]
 RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
 
@@ -24,6 +25,9 @@ THIRD_PARTY = [
     (r"(oneapi/)?tbb/.*", ["src/core"]),
     (r"(epoxy|EGL|GL)/.*|png\.h", ["src/gpu"]),
     (r"cairo.*\.h", ["src/paint"]),
+    (r"ft2build\.h|freetype/.*", ["src/font/freetype.cpp", "tests/font"]),
+    (r"hb.*\.h", ["src/font/harfbuzz.cpp"]),
+    (r"fontconfig/.*", ["src/font/fontconfig.cpp"]),
     (r"iostream", ["apps", "bench"]),
 ]
 

@@ -8,7 +8,8 @@ library="libtbb-dev nlohmann-json3-dev libpugixml-dev libcli11-dev"
 occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
-test="libgtest-dev librapidcheck-dev libboost-dev"
+font="libfreetype-dev libharfbuzz-dev libfontconfig-dev"
+test="libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
@@ -16,10 +17,10 @@ bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenc
 
 purpose=${1:-demo}
 case $purpose in
-    demo) packages="$build $library $occt $gl $paint" ;;
-    test) packages="$build $library $occt $gl $paint $test" ;;
-    bench) packages="$build $library $occt $gl $paint $bench" ;;
-    ci) packages="$build $library $occt $gl $paint $test $ci" ;;
+    demo) packages="$build $library $occt $gl $paint $font" ;;
+    test) packages="$build $library $occt $gl $paint $font $test" ;;
+    bench) packages="$build $library $occt $gl $paint $font $bench" ;;
+    ci) packages="$build $library $occt $gl $paint $font $test $ci" ;;
     wasm) packages="$build $wasm" ;;
     *)
         echo "usage: tools/setup.sh [demo|test|bench|ci|wasm]" >&2
@@ -33,7 +34,7 @@ what_for() {
         cmake) echo "configures the build (3.25 or newer)" ;;
         ninja-build) echo "runs the build" ;;
         ccache) echo "makes the second build quick" ;;
-        pkg-config) echo "finds epoxy, EGL and cairo" ;;
+        pkg-config) echo "finds epoxy, EGL, cairo and FreeType" ;;
         libtbb-dev) echo "threads" ;;
         libpugixml-dev) echo "reads XML, for SVG" ;;
         nlohmann-json3-dev) echo "reads and writes JSON and glTF" ;;
@@ -44,6 +45,8 @@ what_for() {
         libpng-dev) echo "writes pictures" ;;
         libcairo2-dev) echo "drawings as PDF and PNG" ;;
         fonts-dejavu-core) echo "the letters of drawings" ;;
+        libfreetype-dev | libharfbuzz-dev | libfontconfig-dev) echo "outlines of letters, for text" ;;
+        fonts-cantarell) echo "a font with cubics, to test on" ;;
         libgtest-dev | librapidcheck-dev) echo "the tests" ;;
         libboost-dev) echo "exact arithmetic to test against" ;;
         python3) echo "the checks of the source, the report of the benchmarks" ;;

@@ -163,6 +163,8 @@ void add_loft(CommandLine& line);
 void add_coons(CommandLine& line);
 void add_quadric(CommandLine& line);
 void add_gallery(CommandLine& line);
+void add_text(CommandLine& line);
+void add_font(CommandLine& line);
 
 // Of `wrong_usage`; nothing else is thrown.
 class WrongUsage : public std::runtime_error {

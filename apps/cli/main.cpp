@@ -45,6 +45,8 @@ void add_commands(CommandLine& line) {
     add_coons(line);
     add_quadric(line);
     add_gallery(line);
+    add_text(line);
+    add_font(line);
 }
 
 std::string version(bool verbose) {
@@ -71,6 +73,9 @@ std::string version(bool verbose) {
 #endif
 #if defined(FREIFORM_HAS_CAIRO)
     s += " cairo";
+#endif
+#if defined(FREIFORM_HAS_FONT)
+    s += " font";
 #endif
     return s + "\n";
 }

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <map>
+#include <span>
 
 namespace freiform {
 
@@ -126,7 +127,13 @@ void add_group(std::string& s, const DrawnGroup& g, Ids& ids) {
     s += ">\n";
     if (!g.name.empty()) s += text("<title>", xml(g.name), "</title>\n");
     std::string_view part;
-    for (const DrawnPath& path : g.paths) {
+    if (g.area) {
+        s += text("<path stroke=\"none\" fill=\"", colour, "\" d=\"");
+        for (const DrawnPath& path : g.paths) s += data_of(path);
+        s += "\"/>\n";
+    }
+    for (const DrawnPath& path :
+         g.area ? std::span<const DrawnPath>() : std::span<const DrawnPath>(g.paths)) {
         if (path.part != part) {
             if (!part.empty()) s += "</g>\n";
             part = path.part;

@@ -33,7 +33,6 @@ void ink(cairo_t* c, const Colour& colour, double opacity = 1) {
 
 // PDF and cairo have no quadratic curves: c1 = q0 + 2/3 (q1 - q0), c2 = q2 + 2/3 (q1 - q2).
 void trace(cairo_t* c, const DrawnPath& path) {
-    cairo_new_path(c);
     cairo_move_to(c, path.start[0], path.start[1]);
     Vec<2> from = path.start;
     for (const DrawnSegment& s : path.segments) {
@@ -51,6 +50,7 @@ void trace(cairo_t* c, const DrawnPath& path) {
 }
 
 void draw_path(cairo_t* c, const DrawnGroup& g, const DrawnPath& path) {
+    cairo_new_path(c);
     trace(c, path);
     if (path.solid) {
         ink(c, g.colour);
@@ -63,6 +63,14 @@ void draw_path(cairo_t* c, const DrawnGroup& g, const DrawnPath& path) {
     }
     ink(c, g.colour);
     if (g.width > 0) cairo_stroke(c);
+}
+
+void draw_area(cairo_t* c, const DrawnGroup& g) {
+    cairo_new_path(c);
+    for (const DrawnPath& path : g.paths) trace(c, path);
+    ink(c, g.colour);
+    cairo_set_fill_rule(c, CAIRO_FILL_RULE_WINDING);
+    cairo_fill(c);
 }
 
 void draw_disc(cairo_t* c, const DrawnGroup& g, const DrawnDisc& d) {
@@ -125,7 +133,10 @@ void draw_group(cairo_t* c, const DrawnGroup& g) {
     cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
     cairo_set_line_cap(c, g.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
     cairo_set_dash(c, g.dashes.data(), int(g.dashes.size()), 0);
-    for (const DrawnPath& path : g.paths) draw_path(c, g, path);
+    if (g.area)
+        draw_area(c, g);
+    else
+        for (const DrawnPath& path : g.paths) draw_path(c, g, path);
     for (const DrawnDisc& disc : g.discs) draw_disc(c, g, disc);
     cairo_set_dash(c, nullptr, 0, 0);
     for (const DrawnLabel& label : g.labels) draw_label(c, g, label);

@@ -88,6 +88,9 @@ struct DrawnGroup {
     bool arrows = false;             // at the ends of the paths; `arrange` makes the heads
     DrawnText legend{};              // what `arrange` says of the group in the legend; empty: nothing
     std::string layer{};             // groups of one layer are neighbours
+    // The paths are one area by the winding rule (not 0), filled with the colour and without lines around it:
+    // letters, whose inner paths are holes.
+    bool area = false;
 };
 
 // In pixels, the origin at the upper left corner, y down.
