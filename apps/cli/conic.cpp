@@ -228,7 +228,7 @@ void add_conic(CommandLine& line) {
     command.numbers("--circle", options->circle, "Centre and radius").shown_as("X,Y,R");
     command.numbers("--angles", options->angles, "Of the circle: from, to, in degrees").shown_as("A,B");
     command.numbers("--box", options->box, "Only the parts inside this box").shown_as("X0,Y0,X1,Y1");
-    command.output("Where the arcs go, as rational splines (.json, .bpt)");
+    command.output("Where the arcs go, as rational splines (.json, .bpt, .step, .obj)");
     command.action(options, run_conic);
 }
 

@@ -6,6 +6,8 @@
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
+#include <freiform/io/obj_freeform.hpp>
+#include <freiform/io/step.hpp>
 #include <freiform/io/svg.hpp>
 #include <freiform/trim/loops.hpp>
 
@@ -87,6 +89,8 @@ Result<std::string> written(const Document& document, std::string_view format,
                             const ConvertArguments& options, Report& report) {
     if (format == "json") return write_document(document);
     if (format == "bpt") return write_bpt(document);
+    if (format == "step" || format == "stp") return write_step(document);
+    if (format == "obj") return write_obj_freeform(document);
     double size = 0;
     for (const Object& o : document.objects) size = std::max(size, control_box(o.shape).diagonal);
     const auto picture =
@@ -100,9 +104,10 @@ Result<void> run_convert(const Context& context, const ConvertArguments& options
     if (options.reduce && !(*options.reduce >= 0))
         wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
-    if (format != "json" && format != "bpt" && format != "svg")
-        wrong_usage(text("convert writes .json, .bpt and .svg, not \"", format, "\"",
-                         format == "stl" || format == "obj" || format == "ply" || format == "glb"
+    static constexpr std::string_view kFormats[] = {"json", "bpt", "svg", "step", "stp", "obj"};
+    if (std::ranges::find(kFormats, format) == std::end(kFormats))
+        wrong_usage(text("convert writes .json, .bpt, .svg, .step and (free-form) .obj, not \"", format, "\"",
+                         format == "stl" || format == "ply" || format == "glb"
                              ? "; freiform tessellate writes triangles"
                              : ""));
     const auto input = read_input(context, options.file, options.object);
@@ -158,6 +163,7 @@ void add_convert(CommandLine& line) {
         "  freiform convert curve.json --elevate 1 --insert-knots 0.25,0.5 -o finer.json\n"
         "  freiform convert surface.json --to-bezier -o patches.bpt\n"
         "  freiform convert drawing.svg -o drawing.json\n"
+        "  freiform convert teapot.bpt -o teapot.step\n"
         "  freiform convert surface.json --split 0.5 --axis v -o halves.json\n"
         "Changes are made in this order: --insert-knots, --elevate, --reduce, --split, "
         "--reverse, --to-bezier.\n"
@@ -167,7 +173,7 @@ void add_convert(CommandLine& line) {
         "opposite\n"
         "edge: --axis u, v or w.");
     command.file(options->file);
-    command.output("The file to write: .json, .bpt or .svg");
+    command.output("The file to write: .json, .bpt, .svg, .step or .obj (free-form, no triangles)");
     command.object(options->object);
     command.flag("--to-bezier", options->to_bezier,
                  "Cut splines into their Bezier pieces, an object for each");

@@ -59,7 +59,7 @@ void add_extrude(CommandLine& line) {
     command.word("FILE", options->file, "Curves; - is standard input").required();
     command.numbers("--by", options->by, "How far and whereto").shown_as("X,Y,Z").required();
     command.object(options->object);
-    command.output("Where the surfaces go (.json, .bpt)");
+    command.output("Where the surfaces go (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, extruded);
 }
@@ -70,7 +70,7 @@ void add_ruled(CommandLine& line) {
         line.add("ruled", "The surface of straight lines between points of two curves with one parameter",
                  "  freiform ruled two-curves.json -o surface.json");
     command.word("FILE", options->file, "Two curves; - is standard input").required();
-    command.output("Where the surface goes (.json, .bpt)");
+    command.output("Where the surface goes (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, ruled_between);
 }

@@ -125,7 +125,7 @@ void add_loft(CommandLine& line) {
         .one_of({"natural", "not-a-knot"});
     command.flag("--closed", options->closed, "The last section is followed by the first");
     command.object(options->object);
-    command.output("Where the surface goes (.json, .bpt)");
+    command.output("Where the surface goes (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, lofted);
 }
@@ -151,7 +151,7 @@ void add_coons(CommandLine& line) {
                    "By what tangents and derivatives may differ at corners (--bicubic, default 0)");
     command.number("--twist-tolerance", options->twist_tolerance,
                    "By what twists may differ at corners (--bicubic, default 0)");
-    command.output("Where the surface goes (.json, .bpt)");
+    command.output("Where the surface goes (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, patched);
 }

@@ -3,6 +3,8 @@
 #include <freiform/core/scan.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
+#include <freiform/io/obj_freeform.hpp>
+#include <freiform/io/step.hpp>
 
 #include <algorithm>
 
@@ -35,8 +37,8 @@ std::string spline_format(const Context& context, const std::string& command) {
         format = ending && context.output != "-" ? context.output.substr(dot + 1) : "json";
     }
     for (char& c : format) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
-    if (format != "json" && format != "bpt")
-        wrong_usage(text(command, " writes .json and .bpt, not \"", format, "\""));
+    if (format != "json" && format != "bpt" && format != "step" && format != "obj")
+        wrong_usage(text(command, " writes .json, .bpt, .step and (free-form) .obj, not \"", format, "\""));
     return format;
 }
 
@@ -62,7 +64,10 @@ std::vector<std::vector<double>> parse_vectors(const std::string& option, std::s
 
 Result<void> emit_spline(const Context& context, const std::string& format, Document document,
                          const std::string& text_report, const std::string& json_report) {
-    const auto bytes = format == "json" ? Result<std::string>(write_document(document)) : write_bpt(document);
+    const auto bytes = format == "json"   ? Result<std::string>(write_document(document))
+                       : format == "step" ? write_step(document)
+                       : format == "obj"  ? write_obj_freeform(document)
+                                          : write_bpt(document);
     if (!bytes) return std::unexpected(bytes.error());
     if (auto ok = emit(context, *bytes); !ok) return ok;
     if (context.output.empty() || context.output == "-") return {};

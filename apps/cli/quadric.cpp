@@ -117,7 +117,7 @@ void add_quadric(CommandLine& line) {
     command.numbers("--origin", options->origin, "The centre, or where the axis begins").shown_as("X,Y,Z");
     command.numbers("--axis", options->axis, "Direction of the axis (default 0,0,1)").shown_as("X,Y,Z");
     command.numbers("--toward", options->toward, "Where the turn begins").shown_as("X,Y,Z");
-    command.output("Where the surfaces go (.json, .bpt)");
+    command.output("Where the surfaces go (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, run_quadric);
 }

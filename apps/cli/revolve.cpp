@@ -129,7 +129,7 @@ void add_revolve(CommandLine& line) {
     command.flag("--closed", options->closed,
                  "Write a full turn on closed knots instead of open ones whose ends coincide");
     command.object(options->object);
-    command.output("Where the surfaces go (.json, .bpt)");
+    command.output("Where the surfaces go (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, run_revolve);
 }

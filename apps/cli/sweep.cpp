@@ -101,7 +101,7 @@ void add_sweep(CommandLine& line) {
         .shown_as("X,Y,Z");
     command.flag("--translate", options->translate, "Move profiles without turning them: exact");
     command.object(options->object);
-    command.output("Where the surfaces go (.json, .bpt)");
+    command.output("Where the surfaces go (.json, .bpt, .step, .obj)");
     command.limits();
     command.action(options, run_sweep);
 }

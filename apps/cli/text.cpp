@@ -138,7 +138,7 @@ Result<void> run_text(const Context& context, const TextArguments& options) {
         solid = solid_output(context, "text", options.tolerance);
     else if (format != "svg" && format != "json" && format != "pdf" && format != "png")
         wrong_usage(text("text writes .svg, .json, .pdf and .png, not \"", format,
-                         "\"; solids (--extrude, --revolve) go to .json, .glb, .stl, .obj and .ply"));
+                         "\"; solids (--extrude, --revolve) go to .json, .step, .glb, .stl, .obj and .ply"));
     const auto letters = letters_of(context, options);
     if (!letters) return std::unexpected(letters.error());
     json::Writer w;
@@ -208,7 +208,8 @@ void add_text(CommandLine& line) {
     command.number("--angle", options->angle, "Degrees of the revolution (default 360)");
     command.number("--tolerance", options->tolerance,
                    "The largest distance of triangles from the solids (default: a thousandth of their box)");
-    command.output("The file to write: .svg, .json, .pdf, .png; of solids .json, .glb, .stl, .obj, .ply");
+    command.output(
+        "The file to write: .svg, .json, .pdf, .png; of solids .json, .step, .glb, .stl, .obj, .ply");
     command.limits();
     command.triangle_limit();
     command.action(options, run_text);

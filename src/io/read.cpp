@@ -2,6 +2,7 @@
 #include <freiform/io/document.hpp>
 #include <freiform/io/exchange.hpp>
 #include <freiform/io/file.hpp>
+#include <freiform/io/obj_freeform.hpp>
 #include <freiform/io/quake3.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/svg.hpp>
@@ -15,12 +16,14 @@ namespace freiform {
 
 namespace {
 
-constexpr std::string_view kKnown = ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .svg, .bsp, .map";
+constexpr std::string_view kKnown =
+    ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
 
 }  // namespace
 
 std::string_view name_of(FileFormat format) {
-    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep", "bsp", "map", "svg"};
+    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep",
+                                                  "bsp",  "map", "svg",  "obj"};
     return kNames[int(format)];
 }
 
@@ -38,6 +41,7 @@ std::optional<FileFormat> format_of_name(std::string_view name) {
     if (ending == "bsp") return FileFormat::quake3_bsp;
     if (ending == "map") return FileFormat::quake3_map;
     if (ending == "svg") return FileFormat::svg;
+    if (ending == "obj") return FileFormat::obj;
     return std::nullopt;
 }
 
@@ -132,6 +136,7 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
                          : *format == FileFormat::svg        ? read_svg_document(*bytes)
+                         : *format == FileFormat::obj        ? read_obj_freeform(*bytes)
                                                              : read_bpt(*bytes));
 }
 

@@ -9,13 +9,14 @@ mkdir -p "$corpus"
 flags=(-std=c++23 -DFF_CHECKED=1 -ffp-contract=off -Iinclude -Isrc)
 checks=(-O1 -g -fsanitize=address,undefined -fsanitize=fuzzer-no-link)
 libraries=()
+longest=1024
 case $name in
     triangulate)
         sources=(src/mesh/triangulate*.cpp src/mesh/insertion_order.cpp src/poly/predicates*.cpp src/poly/integer.cpp
             src/core/text.cpp src/core/result.cpp) ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
-        case $name in svg) own=path ;; region) own="path query intersect region" ;; *) own=$name ;; esac
+        case $name in svg | font) own=path ;; region) own="path query intersect region" ;; *) own=$name ;; esac
         for layer in core poly basis spline $own; do
             printf '#include "%s"\n' "$PWD"/src/"$layer"/*.cpp >"build-fuzz/unity/$layer.cpp"
             sources+=("build-fuzz/unity/$layer.cpp")
@@ -24,6 +25,12 @@ case $name in
             printf '#include "%s"\n' "$PWD"/src/io/svg*.cpp >build-fuzz/unity/svg.cpp
             sources+=(build-fuzz/unity/svg.cpp)
             libraries=(-lpugixml)
+        elif [ "$name" = font ]; then
+            sources+=(src/font/freetype.cpp src/font/harfbuzz.cpp)
+            # shellcheck disable=SC2207  # lists of flags
+            flags+=($(pkg-config --cflags freetype2 harfbuzz)) libraries=($(pkg-config --libs freetype2 harfbuzz))
+            longest=65536
+            cp -n /usr/share/fonts/opentype/cantarell/*.otf "$corpus" 2>/dev/null || true
         fi ;;
 esac
 compile() {
@@ -39,4 +46,4 @@ mkdir -p "build-fuzz/$name-objects"
 for source in "${sources[@]}" "tests/fuzz/${name}_fuzzer.cpp"; do compile "$source"; done
 export ASAN_OPTIONS=detect_container_overflow=0  # vectors that layers without checks have grown
 "${CXX:-clang++-22}" -fsanitize=fuzzer,address,undefined build-fuzz/"$name"-objects/*.o "${libraries[@]}" -o "build-fuzz/$name"
-"build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len=1024 "$corpus"
+"build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len="$longest" -rss_limit_mb=600 "$corpus"

@@ -93,3 +93,32 @@ TEST(PaintOver, leaves_pixels_that_the_drawing_does_not_touch) {
     d.width = 5;
     EXPECT_EQ(paint_over(picture, d).error().where, "size");
 }
+
+// Two squares, one turned the other way round inside the other: a frame. Of a solid path the inside is
+// filled.
+TEST(Png, areas_have_holes) {
+    const auto square = [](double lo, double hi, bool back) {
+        DrawnPath p{{{lo, lo}}, {}, true};
+        for (const Vec<2> to : {back ? Vec<2>{{lo, hi}} : Vec<2>{{hi, lo}}, Vec<2>{{hi, hi}},
+                                back ? Vec<2>{{hi, lo}} : Vec<2>{{lo, hi}}})
+            p.segments.push_back({1, {to}});
+        return p;
+    };
+    Drawing d;
+    d.width = d.height = 30;
+    DrawnGroup g{"", "glyph", {0, 0, 0, 1}, 0, {}, {}, {}};
+    g.area = true;
+    g.paths = {square(3, 27, false), square(9, 21, true)};
+    d.groups = {g};
+    const auto grey_at = [&](std::size_t x, std::size_t y) {
+        Image picture{30, 30, std::vector<unsigned char>(2700, 255)};
+        EXPECT_TRUE(paint_over(picture, d));
+        return int(picture.rgb[3 * (30 * y + x)]);
+    };
+    EXPECT_EQ(grey_at(6, 15), 0);
+    EXPECT_EQ(grey_at(15, 15), 255);
+    EXPECT_EQ(grey_at(1, 15), 255);
+    d.groups[0].paths[1] = square(9, 21, false);  // the same way round: not a hole
+    EXPECT_EQ(grey_at(15, 15), 0);
+    EXPECT_NE(to_svg(d).find("ZM9 9"), std::string::npos) << to_svg(d);
+}

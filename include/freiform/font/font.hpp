@@ -26,7 +26,7 @@ struct AxisValue {
 
 struct FontOptions {
     int face = 0;                                      // of a collection (.ttc)
-    std::vector<AxisValue> axes;                       // others have their usual values
+    std::vector<AxisValue> axes = {};                  // others have their usual values
     std::size_t memory_bytes = std::size_t(64) << 20;  // besides the bytes of the font
 };
 

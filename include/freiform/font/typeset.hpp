@@ -6,8 +6,8 @@ namespace freiform {
 
 struct TypesetOptions {
     double size = 1;  // of an em, in model units, > 0
-    std::vector<std::string>
-        features;                  // as CSS and HarfBuzz write them: "-liga", "ss01", "kern=0", "aalt[3:5]=2"
+    std::vector<std::string> features =
+        {};                        // as CSS and HarfBuzz write them: "-liga", "ss01", "kern=0", "aalt[3:5]=2"
     std::string language = "und";  // BCP 47: "sr", "tr"; never that of the machine
 };
 

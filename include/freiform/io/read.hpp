@@ -9,7 +9,7 @@
 
 namespace freiform {
 
-enum class FileFormat { json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg };
+enum class FileFormat { json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj };
 std::string_view name_of(FileFormat format);
 
 // By the ending of a file name; case does not matter.
@@ -24,8 +24,8 @@ struct ReadOptions {
     std::uint64_t max_memory = 0;  // bytes, 0: none; likewise
 };
 
-// "-" is standard input. Every refusal begins with the file name: "teapot.bpt: line 7". A STEP, IGES or BREP
-// file becomes a document with one model.
+// Of OBJ the free-form objects. "-" is standard input. Every refusal begins with the file name: "teapot.bpt:
+// line 7". A STEP, IGES or BREP file becomes a document with one model.
 Result<Document> read_any(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace freiform

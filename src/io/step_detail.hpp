@@ -1,0 +1,217 @@
+// Entities of STEP files, and the geometry among them.
+#pragma once
+#include "written_point.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/core/result.hpp>
+#include <freiform/spline/geometry.hpp>
+
+#include <string>
+#include <vector>
+
+namespace freiform::detail {
+
+// A real number of the standard has a point.
+inline std::string real(double x) {
+    std::string s = text(x + 0.0);
+    const std::size_t e = s.find('e');
+    std::string mantissa = s.substr(0, e);
+    if (mantissa.find('.') == std::string::npos) mantissa += '.';
+    return e == std::string::npos ? mantissa : mantissa + "E" + s.substr(e + 1);
+}
+
+// Names: apostrophes doubled, what is not printable ASCII left out.
+inline std::string quoted(std::string_view s) {
+    std::string out = "'";
+    for (const char c : s) {
+        if (c == '\'' || c == '\\') out += c;
+        if (c >= ' ' && c <= '~') out += c;
+    }
+    return out + "'";
+}
+
+template <class List, class F>
+std::string listed_as(const List& list, F&& f) {
+    std::string s = "(";
+    for (const auto& x : list) {
+        if (s.size() > 1) s += ',';
+        s += f(x);
+    }
+    return s + ")";
+}
+
+class Entities {
+public:
+    int add(std::string_view body) {
+        out += text("#", ++count_, "=", body, ";\n");
+        return count_;
+    }
+    static std::string ref(int id) { return text("#", id); }
+    static std::string refs(const std::vector<int>& ids) { return listed_as(ids, ref); }
+
+    std::string out;
+
+private:
+    int count_ = 0;
+};
+
+class StepGeometry {
+public:
+    explicit StepGeometry(Entities& entities) : e_(entities) {}
+
+    int point(const Vec<3>& p) { return e_.add(text("CARTESIAN_POINT('',", triple(p), ")")); }
+
+    Result<int> curve(const CurveGeometry<3>& c) {
+        return std::visit([&](const auto& x) { return one(x); }, c);
+    }
+
+    Result<int> surface(const SurfaceGeometry& s) {
+        return std::visit([&](const auto& x) { return one(x); }, s);
+    }
+
+    template <class P>
+    Result<int> one(const Curve<P>& given) {
+        const auto c = given.basis().is_closed() ? restrict_to(given, 0, given.basis().domain())
+                                                 : Result<Curve<P>>(given);
+        if (!c) return std::unexpected(c.error());
+        const auto k = knots(c->basis());
+        if (!k) return std::unexpected(k.error());
+        const int degree = c->basis().degree();
+        const std::string points = Entities::refs(points_of(c->net().flat()));
+        if constexpr (!Space<P>::kRational)
+            return e_.add(text("B_SPLINE_CURVE_WITH_KNOTS('',", degree, ",", points,
+                               ",.UNSPECIFIED.,.F.,.F.,", *k, ",.UNSPECIFIED.)"));
+        else
+            return e_.add(
+                text("(BOUNDED_CURVE()B_SPLINE_CURVE(", degree, ",", points,
+                     ",.UNSPECIFIED.,.F.,.F.)B_SPLINE_CURVE_WITH_KNOTS(", *k,
+                     ",.UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE(",
+                     weights_of(c->net().flat()), ")REPRESENTATION_ITEM(''))"));
+    }
+
+private:
+    static std::string triple(const Vec<3>& p) { return listed_as(p.c, real); }
+    int direction(const Vec<3>& d) { return e_.add(text("DIRECTION('',", triple(d), ")")); }
+    int vector(const Vec<3>& v) {
+        const int d = direction(v);
+        return e_.add(text("VECTOR('',#", d, ",", real(norm(v)), ")"));
+    }
+    int placement(const Vec<3>& at, const Vec<3>& z, const Vec<3>& x) {
+        const int p = point(at), axis = direction(z), toward = direction(x);
+        return e_.add(text("AXIS2_PLACEMENT_3D('',#", p, ",#", axis, ",#", toward, ")"));
+    }
+
+    template <class Coefficients>
+    std::vector<int> points_of(const Coefficients& list) {
+        std::vector<int> ids;
+        for (const auto& p : list) ids.push_back(point(written_point(p)));
+        return ids;
+    }
+    template <class Coefficients>
+    static std::string weights_of(const Coefficients& list) {
+        return listed_as(list, [](const auto& p) { return real(p.weight()); });
+    }
+
+    // Multiplicities and knots.
+    static Result<std::array<std::string, 2>> knot_lists(const BSplineBasis& basis) {
+        std::vector<double> values;
+        std::vector<int> counts;
+        for (const double t : basis.knots()) {
+            if (values.empty() || t != values.back()) values.push_back(t), counts.push_back(0);
+            ++counts.back();
+        }
+        for (std::size_t i = 1; i + 1 < counts.size(); ++i)
+            if (counts[i] > basis.degree())
+                return refuse(RefusalKind::unsupported, text("knot ", values[i]),
+                              "the curve or surface jumps here; STEP has connected ones");
+        return std::array{listed_as(counts, [](int n) { return text(n); }), listed_as(values, real)};
+    }
+    static Result<std::string> knots(const BSplineBasis& basis) {
+        const auto k = knot_lists(basis);
+        if (!k) return std::unexpected(k.error());
+        return (*k)[0] + "," + (*k)[1];
+    }
+
+    Result<int> one(const Line<3>& l) {
+        const int p = point(l.origin), v = vector(l.direction);
+        return e_.add(text("LINE('',#", p, ",#", v, ")"));
+    }
+
+    Result<int> one(const Conic<3>& c) {
+        Vec<3> x = c.x, y = c.y;
+        if (c.kind != ConicKind::ellipse && dot(x, y) != 0)
+            return refuse(RefusalKind::unsupported, "",
+                          "a hyperbola or parabola that is not given by its axes");
+        if (c.kind == ConicKind::parabola) {
+            const int at = placement(c.centre, cross(x, y), x);
+            return e_.add(text("PARABOLA('',#", at, ",", real(dot(y, y) / (4 * norm(x))), ")"));
+        }
+        if (const double skew = dot(x, y); std::abs(skew) > 4 * kUnitRoundoff * norm(x) * norm(y)) {
+            const double turn = std::atan2(2 * skew, dot(x, x) - dot(y, y)) / 2;
+            const Vec<3> along = std::cos(turn) * x + std::sin(turn) * y;
+            y = std::cos(turn) * y - std::sin(turn) * x, x = along;
+        }
+        if (c.kind == ConicKind::ellipse && norm(x) < norm(y)) std::swap(x, y), y = -1.0 * y;
+        const int at = placement(c.centre, cross(x, y), x);
+        if (c.kind == ConicKind::hyperbola)
+            return e_.add(text("HYPERBOLA('',#", at, ",", real(norm(x)), ",", real(norm(y)), ")"));
+        if (norm(x) - norm(y) <= 8 * kUnitRoundoff * norm(x))
+            return e_.add(text("CIRCLE('',#", at, ",", real(norm(x)), ")"));
+        return e_.add(text("ELLIPSE('',#", at, ",", real(norm(x)), ",", real(norm(y)), ")"));
+    }
+
+    Result<int> one(const Extrusion& s) {
+        if (const auto* l = std::get_if<Line<3>>(&s.profile)) {
+            const int at = placement(l->origin, cross(l->direction, s.direction), l->direction);
+            return e_.add(text("PLANE('',#", at, ")"));
+        }
+        const auto profile = curve(s.profile);
+        if (!profile) return profile;
+        const int v = vector(s.direction);
+        return e_.add(text("SURFACE_OF_LINEAR_EXTRUSION('',#", *profile, ",#", v, ")"));
+    }
+
+    Result<int> one(const Revolution& s) {
+        const auto profile = curve(s.profile);
+        if (!profile) return profile;
+        const int p = point(s.origin), d = direction(s.axis);
+        const int axis = e_.add(text("AXIS1_PLACEMENT('',#", p, ",#", d, ")"));
+        return e_.add(text("SURFACE_OF_REVOLUTION('',#", *profile, ",#", axis, ")"));
+    }
+
+    Result<int> one(const OffsetSurface& s) {
+        const auto base = surface(*s.base);
+        if (!base) return base;
+        return e_.add(text("OFFSET_SURFACE('',#", *base, ",", real(s.distance), ",.F.)"));
+    }
+
+    template <class P>
+    Result<int> one(const Surface<P>& s) {
+        const auto u = knot_lists(s.basis(0)), v = knot_lists(s.basis(1));
+        if (!u) return std::unexpected(u.error());
+        if (!v) return std::unexpected(v.error());
+        const std::string degrees = text(s.basis(0).degree(), ",", s.basis(1).degree(), ",");
+        const std::string all = text((*u)[0], ",", (*v)[0], ",", (*u)[1], ",", (*v)[1], ",.UNSPECIFIED.");
+        const auto flat = s.net().flat();
+        const auto columns = std::size_t(s.net().extent()[1]);
+        std::string points = "(", weights = "(";
+        for (std::size_t i = 0; i < flat.size(); i += columns) {
+            const auto row = flat.subspan(i, columns);
+            points += (i > 0 ? "," : "") + Entities::refs(points_of(row));
+            if constexpr (Space<P>::kRational) weights += (i > 0 ? "," : "") + weights_of(row);
+        }
+        points += ")", weights += ")";
+        if constexpr (!Space<P>::kRational)
+            return e_.add(text("B_SPLINE_SURFACE_WITH_KNOTS('',", degrees, points,
+                               ",.UNSPECIFIED.,.F.,.F.,.F.,", all, ")"));
+        else
+            return e_.add(text("(BOUNDED_SURFACE()B_SPLINE_SURFACE(", degrees, points,
+                               ",.UNSPECIFIED.,.F.,.F.,.F.)B_SPLINE_SURFACE_WITH_KNOTS(", all,
+                               ")GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(", weights,
+                               ")REPRESENTATION_ITEM('')SURFACE())"));
+    }
+
+    Entities& e_;
+};
+
+}  // namespace freiform::detail

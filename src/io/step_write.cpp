@@ -1,0 +1,286 @@
+// Idea. A STEP file is a list of numbered entities that name each other. Everything that is shared is written
+// once: vertices and edges of a model by their index, so that what was watertight stays so.
+//
+//     PRODUCT -> .. -> SHAPE_REPRESENTATION -> MANIFOLD_SOLID_BREP -> CLOSED_SHELL -> ADVANCED_FACE ->
+//     FACE_BOUND
+//     -> EDGE_LOOP -> ORIENTED_EDGE -> EDGE_CURVE -> VERTEX_POINT, LINE, B_SPLINE_CURVE_WITH_KNOTS, ..
+//
+// Orientation. Our loops run counter-clockwise in the parameters of the surface; those of the standard about
+// the normal of the face. So the bounds of a reversed face are reversed, too. Degenerate edges (poles) have
+// no entity.
+//
+// Parametrisation. Extrusions and revolutions have the parameters that the standard gives them, up to scale;
+// edges are trimmed by their vertices. So conics may be turned to their principal axes.
+//
+// References: ISO 10303-21 (the text), -42 (geometry and topology), -214 (products).
+// Why not the writer of Open CASCADE: it rounds numbers to 15 digits, which moves control points, and takes a
+// process of its own.
+#include "step_detail.hpp"
+
+#include <freiform/io/bpt.hpp>
+#include <freiform/io/mesh_file.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/io/step.hpp>
+#include <freiform/spline/in_space.hpp>
+
+namespace freiform {
+
+namespace {
+
+using detail::Entities;
+using detail::quoted;
+using detail::real;
+using detail::StepGeometry;
+
+// The parameter curve on a flat surface with linear parameters, as a curve in space.
+std::optional<CurveGeometry<3>> lifted(const CurveGeometry<2>& curve, const SurfaceGeometry& s) {
+    const auto* plane = std::get_if<Extrusion>(&s);
+    const auto* spline = std::get_if<Surface<Vec<3>>>(&s);
+    bool linear = plane && std::holds_alternative<Line<3>>(plane->profile);
+    if (spline && spline->net().flat().size() == 4 && spline->basis(0).degree() == 1 &&
+        spline->basis(1).degree() == 1) {
+        const auto p = spline->net().flat();
+        linear = p[3] - p[1] == p[2] - p[0];
+    }
+    if (!linear) return std::nullopt;
+    return std::visit(
+        [&](const auto& c) -> std::optional<CurveGeometry<3>> {
+            if constexpr (requires { c.net(); }) {
+                const auto at = [&](const Vec<2>& uv) { return jet<0>(s, uv.c).value(); };
+                auto net = in_space(c).net();
+                for (std::size_t i = 0; i < c.net().flat().size(); ++i) {
+                    const auto& q = c.net().flat()[i];
+                    if constexpr (requires { q.weight(); })
+                        net.flat()[i] = weighted(at(project(q)), q.weight());
+                    else
+                        net.flat()[i] = at(q);
+                }
+                return decltype(in_space(c))::trusted(c.bases(), std::move(net));
+            }
+            return std::nullopt;
+        },
+        curve);
+}
+
+class StepModel {
+public:
+    StepModel(Entities& entities, const Model& model)
+        : e_(entities),
+          geometry_(entities),
+          m_(model),
+          vertices_(model.vertices.size()),
+          edges_(model.edges.size()) {}
+
+    // The solids, and all other shells.
+    Result<void> write() {
+        std::vector<int> faces;
+        for (std::size_t f = 0; f < m_.faces.size(); ++f) {
+            const auto id = face(m_.faces[f]);
+            if (!id) return refuse_within(text("faces[", f, "]"), id.error());
+            faces.push_back(*id);
+        }
+        for (const Body& b : m_.bodies) {
+            std::vector<int> shells;
+            for (const int s : b.shells) {
+                const Shell& shell = m_.shells[std::size_t(s)];
+                std::vector<int> used;
+                for (const FaceUse& u : shell.faces) used.push_back(faces[std::size_t(u.face)]);
+                shells.push_back(
+                    e_.add(text(b.solid ? "CLOSED_SHELL(''," : "OPEN_SHELL('',", Entities::refs(used), ")")));
+            }
+            add_body(b, shells);
+        }
+        return {};
+    }
+
+    std::vector<int> solids, sheets;
+
+private:
+    void add_body(const Body& b, const std::vector<int>& shells) {
+        if (shells.empty()) return;
+        if (!b.solid) {
+            sheets.push_back(
+                e_.add(text("SHELL_BASED_SURFACE_MODEL(", quoted(b.name), ",", Entities::refs(shells), ")")));
+        } else if (shells.size() == 1) {
+            solids.push_back(e_.add(text("MANIFOLD_SOLID_BREP(", quoted(b.name), ",#", shells[0], ")")));
+        } else {
+            std::vector<int> voids;
+            for (std::size_t i = 1; i < shells.size(); ++i)
+                voids.push_back(e_.add(text("ORIENTED_CLOSED_SHELL('',*,#", shells[i], ",.T.)")));
+            solids.push_back(e_.add(
+                text("BREP_WITH_VOIDS(", quoted(b.name), ",#", shells[0], ",", Entities::refs(voids), ")")));
+        }
+    }
+
+    int vertex(int v) {
+        int& id = vertices_[std::size_t(v)];
+        if (id == 0) {
+            const int p = geometry_.point(m_.vertices[std::size_t(v)].point);
+            id = e_.add(text("VERTEX_POINT('',#", p, ")"));
+        }
+        return id;
+    }
+
+    Result<int> edge(const Coedge& c, const SurfaceGeometry& surface) {
+        int& id = edges_[std::size_t(c.edge)];
+        if (id != 0) return id;
+        const Edge& e = m_.edges[std::size_t(c.edge)];
+        const auto shape = e.curve ? e.curve : lifted(c.curve, surface);
+        if (!shape)
+            return refuse(RefusalKind::unsupported, text("edges[", c.edge, "]"),
+                          "has no curve in space, only parameters of a surface that is not flat");
+        const auto curve = geometry_.curve(*shape);
+        if (!curve) return refuse_within(text("edges[", c.edge, "]"), curve.error());
+        const int from = vertex(e.start), to = vertex(e.end);
+        return id = e_.add(text("EDGE_CURVE(", quoted(e.name), ",#", from, ",#", to, ",#", *curve, ",.T.)"));
+    }
+
+    Result<int> face(const Face& f) {
+        if (f.loops.empty()) return refuse(RefusalKind::unsupported, "loops", "a face without boundary");
+        const auto surface = geometry_.surface(f.surface);
+        if (!surface) return surface;
+        std::vector<int> bounds;
+        for (const Loop& l : f.loops) {
+            std::vector<int> around;
+            int pole = -1;
+            for (const Coedge& c : l.coedges) {
+                const Edge& e = m_.edges[std::size_t(c.edge)];
+                if (e.degenerate) {
+                    pole = e.start;
+                    continue;
+                }
+                const auto id = edge(c, f.surface);
+                if (!id) return id;
+                around.push_back(e_.add(text("ORIENTED_EDGE('',*,*,#", *id, c.reversed ? ",.F.)" : ",.T.)")));
+            }
+            const int loop = around.empty() ? e_.add(text("VERTEX_LOOP('',#", vertex(pole), ")"))
+                                            : e_.add(text("EDGE_LOOP('',", Entities::refs(around), ")"));
+            bounds.push_back(e_.add(text(f.loops.size() == 1 ? "FACE_OUTER_BOUND('',#" : "FACE_BOUND('',#",
+                                         loop, f.reversed ? ",.F.)" : ",.T.)")));
+        }
+        return e_.add(text("ADVANCED_FACE(", quoted(f.name), ",", Entities::refs(bounds), ",#", *surface,
+                           f.reversed ? ",.F.)" : ",.T.)"));
+    }
+
+    Entities& e_;
+    StepGeometry geometry_;
+    const Model& m_;
+    std::vector<int> vertices_, edges_;  // their entities, 0 until they are written
+};
+
+// What every file says once.
+class Product {
+public:
+    Product(Entities& entities, std::string_view unit) : e_(entities) {
+        application_ = e_.add("APPLICATION_CONTEXT('automotive design')");
+        e_.add(text("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#",
+                    application_, ")"));
+        const int length = length_unit(unit);
+        const int angle = e_.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
+        const int solid = e_.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
+        const int accuracy = e_.add(text("UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),#", length,
+                                         ",'distance_accuracy_value','')"));
+        context_ = e_.add(text("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#",
+                               accuracy, "))GLOBAL_UNIT_ASSIGNED_CONTEXT((#", length, ",#", angle, ",#",
+                               solid, "))REPRESENTATION_CONTEXT('',''))"));
+    }
+
+    void add(std::string_view representation, std::string_view name, const std::vector<int>& items) {
+        if (items.empty()) return;
+        const int shape = e_.add(text(representation, "('',", Entities::refs(items), ",#", context_, ")"));
+        const int of_product = e_.add(text("PRODUCT_CONTEXT('',#", application_, ",'mechanical')"));
+        const int product =
+            e_.add(text("PRODUCT(", quoted(name), ",", quoted(name), ",'',(#", of_product, "))"));
+        e_.add(text("PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#", product, "))"));
+        const int of_definition =
+            e_.add(text("PRODUCT_DEFINITION_CONTEXT('part definition',#", application_, ",'design')"));
+        const int formation = e_.add(text("PRODUCT_DEFINITION_FORMATION('','',#", product, ")"));
+        const int definition =
+            e_.add(text("PRODUCT_DEFINITION('design','',#", formation, ",#", of_definition, ")"));
+        const int of_shape = e_.add(text("PRODUCT_DEFINITION_SHAPE('','',#", definition, ")"));
+        e_.add(text("SHAPE_DEFINITION_REPRESENTATION(#", of_shape, ",#", shape, ")"));
+    }
+
+private:
+    int length_unit(std::string_view unit) {
+        const std::string_view prefix = unit == "m" ? "$" : unit == "cm" ? ".CENTI." : ".MILLI.";
+        const int si = e_.add(text("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(", prefix, ",.METRE.))"));
+        const auto metres = metres_per(unit);
+        if (!metres || unit == "m" || unit == "cm" || unit == "mm") return si;
+        const int of =
+            e_.add(text("LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(", real(*metres * 1000), "),#", si, ")"));
+        const int exponents = e_.add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");
+        std::string name(unit);
+        for (char& c : name) c = c >= 'a' && c <= 'z' ? char(c - 32) : c;
+        return e_.add(text("(CONVERSION_BASED_UNIT(", quoted(name), ",#", of, ")LENGTH_UNIT()NAMED_UNIT(#",
+                           exponents, "))"));
+    }
+
+    Entities& e_;
+    int application_ = 0, context_ = 0;
+};
+
+}  // namespace
+
+Result<std::string> write_step(const Document& document) {
+    Entities entities;
+    StepGeometry geometry(entities);
+    std::vector<std::size_t> with_faces;
+    std::vector<int> curves;
+    for (std::size_t i = 0; i < document.objects.size(); ++i) {
+        const Object& o = document.objects[i];
+        const auto done = std::visit(
+            [&](const auto& s) -> Result<void> {
+                using S = std::remove_cvref_t<decltype(s)>;
+                if constexpr (std::same_as<S, Model> || std::same_as<S, TrimmedSurface>) {
+                    with_faces.push_back(i);
+                    return {};
+                } else if constexpr (S::Point::kCoords == 2 || S::Point::kCoords == 3) {
+                    if constexpr (TensorPatch<S>) {
+                        if constexpr (S::kParams == 1) {
+                            const auto id = geometry.one(in_space(s));
+                            if (!id) return std::unexpected(id.error());
+                            curves.push_back(*id);
+                            return {};
+                        } else if constexpr (S::kParams == 2) {
+                            with_faces.push_back(i);
+                            return {};
+                        }
+                    }
+                }
+                return refuse(
+                    RefusalKind::unsupported, "",
+                    text("is a ", type_name(o.shape),
+                         "; STEP files hold curves and surfaces of two or three coordinates, and models"));
+            },
+            o.shape);
+        if (!done) return refuse_within(object_label(document, i), done.error());
+    }
+    if (with_faces.empty() && curves.empty())
+        return refuse(RefusalKind::no_answer, "objects", "there is nothing to write");
+    std::string unit = document.unit;
+    std::vector<int> solids, sheets;
+    if (!with_faces.empty()) {
+        const auto model = scene_of(document, with_faces);
+        if (!model) return std::unexpected(model.error());
+        if (unit.empty()) unit = model->unit;
+        StepModel writer(entities, *model);
+        if (auto ok = writer.write(); !ok) return std::unexpected(ok.error());
+        solids = writer.solids, sheets = writer.sheets;
+    }
+    const std::string_view name = document.objects[0].name;
+    Product product(entities, unit);
+    product.add("ADVANCED_BREP_SHAPE_REPRESENTATION", name, solids);
+    product.add("MANIFOLD_SURFACE_SHAPE_REPRESENTATION", name, sheets);
+    if (!curves.empty()) {
+        const int set = entities.add(text("GEOMETRIC_CURVE_SET('',", Entities::refs(curves), ")"));
+        product.add("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION", name, {set});
+    }
+    return text(
+        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME(", quoted(name),
+        ",'',(''),(''),'freiform','freiform','');\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 "
+        "}'));\nENDSEC;\nDATA;\n",
+        entities.out, "ENDSEC;\nEND-ISO-10303-21;\n");
+}
+
+}  // namespace freiform

@@ -1,0 +1,116 @@
+#include <freiform/io/document.hpp>
+#include <freiform/io/obj_freeform.hpp>
+
+#include <support/random.hpp>
+#include <support/refusal.hpp>
+
+namespace freiform::test {
+namespace {
+
+TEST(ObjFreeform, comes_back_to_the_bit) {
+    const Document document = must(read_document(R"({"freiform": 1, "objects": [
+        {"name": "a_curve", "type": "curve", "degree": 2, "knots": [0,0,0,0.3,1,1,1], "points": [[0.1,1,0],[1,2.2,3],[3,1,1],[4,0,1]]},
+        {"name": "arc", "type": "curve", "degree": 2, "points": [[0,0,1],[1,0.3,1],[1,1,1.7]], "weights": [1,0.6,1]},
+        {"name": "sheet", "type": "surface", "degrees": [2, 1], "knots": [[0,0,0,0.3,1,1,1],[0,0,2,2]],
+         "points": [[[0.1,0,0.7],[0,1.1,0]],[[1e-3,0.2,1],[1,1,1.3]],[[2,0,0],[2,1,1e5]],[[3,0.1,0],[3,1,1]]]},
+        {"name": "cut", "type": "trimmed", "surface": {"type": "surface", "degrees": [1, 2],
+           "points": [[[0,0,0],[0,1,0.1],[0,2,0]],[[1,0,0],[1,1,0.7],[1,2,0]]], "weights": [[1,0.7,1],[1,0.3,1]]},
+         "loops": [[{"degree": 1, "knots": [0,0,1,2,3,3], "points": [[0.1,0.1],[0.9,0.1],[0.5,0.9],[0.1,0.1]]}],
+                   [{"degree": 2, "points": [[0.4,0.3],[0.5,0.2],[0.6,0.3]], "weights": [1,0.5,1]},
+                    {"degree": 1, "points": [[0.6,0.3],[0.4,0.3]]}]]}]})"));
+    const std::string obj = must(write_obj_freeform(document));
+    const Document back = must(read_obj_freeform(obj));
+    EXPECT_TRUE(back.left_out.empty());
+    ASSERT_EQ(back.objects.size(), 4u);
+    Document same = document;  // the points as they were given are not in the file
+    for (Object& o : same.objects) o.given_points.clear();
+    EXPECT_EQ(write_document(back), write_document(same));
+    EXPECT_EQ(must(write_obj_freeform(back)), obj);
+}
+
+TEST(ObjFreeform, closed_curves_are_cut_at_their_seam) {
+    const Curve<Vec<3>> closed =
+        Curve<Vec<3>>::trusted({must(BSplineBasis::periodic(2, std::vector<double>{0, 1, 2, 3}))},
+                               Net<1, Vec<3>>({3}, {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}}));
+    const Document back = must(read_obj_freeform(must(write_obj_freeform({"", {{"c", closed}}}))));
+    const auto& open = std::get<Curve<Vec<3>>>(back.objects[0].shape);
+    EXPECT_FALSE(open.basis().is_closed());
+    for (const double t : {0.0, 0.7, 1.9, 2.5}) EXPECT_LT(norm(open(t) - closed(t)), 1e-15);
+}
+
+// As the specification writes them: Bezier pieces with their breaks, indices from the end, lines that go on.
+TEST(ObjFreeform, reads_bezier_pieces_parts_and_relative_indices) {
+    const Document d =
+        must(read_obj_freeform("cstype bezier\ndeg 2\r\nv 0 0 0\nv 1 1 0\nv 2 0 0 \\\n\nv 3 -1 0\nv 4 0 0\n"
+                               "g two pieces\ncurv 0 2 -5 -4 -3 \\\n-2 -1\nparm u 0 1 2\nend\n"
+                               "curv 0.5 1.5 1 2 3 4 5\nparm u 0 1 2\nend\nf 1 2 3\nf 1 2 4\n"));
+    ASSERT_EQ(d.objects.size(), 2u);
+    EXPECT_EQ(d.objects[0].name, "two pieces");
+    const auto& c = std::get<Curve<Vec<3>>>(d.objects[0].shape);
+    EXPECT_EQ(c(0.5), (Vec<3>{{1, 0.5, 0}}));
+    EXPECT_EQ(c(1.5), (Vec<3>{{3, -0.5, 0}}));
+    const auto& part = std::get<Curve<Vec<3>>>(d.objects[1].shape);
+    EXPECT_EQ(part.basis().domain(), (Interval{0.5, 1.5}));
+    EXPECT_EQ(part(1.5), c(1.5));
+    ASSERT_EQ(d.left_out.size(), 1u);
+    EXPECT_EQ(d.left_out[0].where, "line 17");
+    // Of a surface the first parameter runs fastest.
+    const Document s = must(
+        read_obj_freeform("cstype bspline\ndeg 1 1\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 5\nv 1 1 5\nv 2 1 5\n"
+                          "surf 0 2 0 1 1 2 3 4 5 6\nparm u 0 0 1 2 2\nparm v 0 0 1 1\nend\n"));
+    EXPECT_EQ(std::get<Surface<Vec<3>>>(s.objects[0].shape)(2.0, 1.0), (Vec<3>{{2, 1, 5}}));
+    EXPECT_EQ(std::get<Surface<Vec<3>>>(s.objects[0].shape)(1.0, 0.0), (Vec<3>{{1, 0, 0}}));
+}
+
+TEST(ObjFreeform, refuses_with_the_line) {
+    const std::string head = "cstype rat bspline\ndeg 1\nv 0 0 0\nv 1 0 0 2\n";
+    const auto refused = [&](const std::string& rest, RefusalKind kind, std::string_view where,
+                             std::string_view what) {
+        expect_refusal(read_obj_freeform(head + rest), kind, where, what);
+    };
+    refused("", RefusalKind::no_answer, "", "no curves");
+    refused("curv 0 1 1 2\nparm u 0 0 1 1\n", RefusalKind::unreadable, "line 6", "end");
+    refused("curv 0 1 1 3\n", RefusalKind::unreadable, "line 5", "no index");
+    refused("curv 1 0 1 2\n", RefusalKind::unreadable, "line 5", "from 1 to 0");
+    refused("curv 0 1 1 2\nparm u 0 0 1\nend\n", RefusalKind::unreadable, "line 7", "need 4");
+    refused("curv 0 1 1 2\nparm u 0 0 1 x\nend\n", RefusalKind::unreadable, "line 6", "number");
+    refused("curv 0 1 1 2\nparm u 0 1 0 1\nend\n", RefusalKind::invalid, "line 7", "decrease");
+    refused("v 0 0 0 -1\ncurv 0 1 1 3\nparm u 0 0 1 1\nend\n", RefusalKind::unsupported, "line 8", "weight");
+    refused("cstype cardinal\n", RefusalKind::unsupported, "line 5", "cardinal");
+    refused("deg 0\n", RefusalKind::unreadable, "line 5", "degree");
+    refused("parm u 0 1\n", RefusalKind::unreadable, "line 5", "belongs");
+    refused("trim 0 1 1\n", RefusalKind::unreadable, "line 5", "belong");
+    refused("end\n", RefusalKind::unreadable, "line 5", "nothing");
+    expect_refusal(
+        read_obj_freeform(
+            "deg 1 1\nv 0 0 0\ncstype bspline\nsurf 0 1 0 1 1 1 1\nparm u 0 0 1 1\nparm v 0 0 1 1\nend\n"),
+        RefusalKind::unreadable, "line 7", "no grid");
+    const Conic<2> round{ConicKind::ellipse, {{0.5, 0.5}}, {{0.2, 0}}, {{0, 0.2}}};
+    const auto linear = must(BSplineBasis::bezier(1));
+    const Surface<Vec<3>> square = must(Surface<Vec<3>>::make(
+        {linear, linear}, Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}})));
+    expect_refusal(write_obj_freeform({"", {{"", must(TrimmedSurface::make(square, {{round}}))}}}),
+                   RefusalKind::unsupported, "objects[0].loops[0][0]", "ellipses");
+}
+
+TEST(ObjFreeform, any_bytes_are_read_or_refused) {
+    const std::string good =
+        "cstype rat bspline\ndeg 1 1\nv 0 0 0\nv 1 0 0 2\nv 1 1 1\nv 2 2 2\nvp 0 0\nvp 1 1\ndeg 1\n"
+        "curv2 1 2\nparm u 0 0 1 1\nend\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nparm u 0 0 1 1\nparm v 0 0 1 "
+        "1\nend\n";
+    ASSERT_TRUE(read_obj_freeform(good));
+    Random random(3);
+    int read = 0;
+    for (int round = 0; round < 3000; ++round) {
+        std::string bytes = good;
+        for (int k = random.integer(1, 4); k > 0; --k)
+            bytes[std::size_t(random.integer(0, int(good.size()) - 1))] =
+                " \n0123456789-.\\uvpe"[random.integer(0, 18)];
+        read += read_obj_freeform(bytes).has_value();
+    }
+    EXPECT_GT(read, 100);
+    EXPECT_LT(read, 2900);
+}
+
+}  // namespace
+}  // namespace freiform::test

@@ -1,0 +1,138 @@
+#include <freiform/io/document.hpp>
+#include <freiform/io/read.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/io/step.hpp>
+#include <freiform/model/swept_solid.hpp>
+#include <freiform/model/tessellate.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <support/random.hpp>
+#include <support/refusal.hpp>
+#include <support/solids.hpp>
+#include <unistd.h>
+
+namespace freiform::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Step : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!fs::exists(FREIFORM_OCCT_BINARY)) GTEST_SKIP() << FREIFORM_OCCT_BINARY << " is not built";
+        ::setenv("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY, 1);
+    }
+    // What Open CASCADE understands.
+    static Model read_again(const Document& document) {
+        const std::string name =
+            (fs::temp_directory_path() / text("freiform-", ::getpid(), ".step")).string();
+        std::ofstream(name, std::ios::binary) << must(write_step(document));
+        Document back = must(read_any(name));
+        fs::remove(name);
+        EXPECT_TRUE(back.left_out.empty());
+        Model model = std::get<Model>(std::move(back.objects.at(0).shape));
+        EXPECT_TRUE(model.refused.empty()) << model.refused[0].message;
+        return model;
+    }
+    static double volume(const Model& model, double tolerance) {
+        const auto t = must(tessellate(model, {.tolerance = tolerance}));
+        EXPECT_EQ(t.topology.open_edges, 0);
+        EXPECT_TRUE(t.refused.empty());
+        return signed_volume(t.mesh);
+    }
+};
+
+RegionLoops ring_region() { return loops_of({{ellipse({{5, 5}}, 2, 2), ellipse({{5.25, 5}}, 1, 0.5)}}); }
+
+TEST_F(Step, control_points_knots_and_weights_come_back_exactly) {
+    const Document document = must(read_document(R"({"freiform": 1, "unit": "mm", "objects": [
+        {"type": "surface", "degrees": [2, 1], "knots": [[0,0,0,0.3,1,1,1],[0,0,1,1]],
+         "points": [[[0.1,0,0.7],[0,1.1,0]],[[1e-3,0.2,1],[1,1,1.3]],[[2,0,0],[2,1,1e5]],[[3,0.1,0],[3,1,1]]]},
+        {"type": "surface", "degrees": [1, 2], "knots": [[0,0,1,1],[0,0,0,1,1,1]],
+         "points": [[[10,0,0],[10,1,0.1],[10,2,0]],[[11,0,0],[11,1,0.7],[11,2,0]]],
+         "weights": [[1,0.7071067811865476,1],[1,0.3,1]]}]})"));
+    const Model model = read_again(document);
+    ASSERT_EQ(model.faces.size(), 2u);
+    const auto& plain = std::get<Surface<Vec<3>>>(document.objects[0].shape);
+    const auto& rational = std::get<Surface<Hom<3>>>(document.objects[1].shape);
+    int found = 0;
+    for (const Face& f : model.faces) {
+        if (const auto* s = std::get_if<Surface<Vec<3>>>(&f.surface)) {
+            EXPECT_EQ(s->net(), plain.net());
+            EXPECT_TRUE(std::ranges::equal(s->basis(0).knots(), plain.basis(0).knots()));
+            ++found;
+        }
+        if (const auto* s = std::get_if<Surface<Hom<3>>>(&f.surface)) {
+            EXPECT_EQ(s->net(), rational.net());
+            ++found;
+        }
+    }
+    EXPECT_EQ(found, 2);
+}
+
+TEST_F(Step, curves_come_back_exactly) {
+    const Document document = must(read_document(R"({"freiform": 1, "unit": "mm", "objects": [
+        {"type": "curve", "degree": 2, "knots": [0,0,0,0.25,1,1,1], "points": [[0.1,1],[1,2.2],[3,1],[4,0]]},
+        {"type": "curve", "degree": 2, "points": [[0,0,1],[1,0.3,1],[1,1,1.7]], "weights": [1,0.6,1]}]})"));
+    const Model model = read_again(document);
+    ASSERT_EQ(model.edges.size(), 2u);
+    const auto& plain = std::get<Curve<Vec<2>>>(document.objects[0].shape);
+    EXPECT_EQ(std::get<Curve<Vec<3>>>(*model.edges[0].curve).net(), in_space(plain).net());
+    EXPECT_EQ(std::get<Curve<Hom<3>>>(*model.edges[1].curve).net(),
+              std::get<Curve<Hom<3>>>(document.objects[1].shape).net());
+}
+
+TEST_F(Step, solids_keep_their_volume) {
+    for (const Vec<3> by : {Vec<3>{{0, 0, 2}}, Vec<3>{{1, 0.5, -2}}}) {
+        const Model solid = must(prism(ring_region(), by));
+        const Model back = read_again({"mm", {{"plate", solid}}});
+        EXPECT_EQ(back.faces.size(), solid.faces.size());
+        EXPECT_EQ(summary(back).solids, 1);
+        EXPECT_EQ(summary(back).open_edges, 0);
+        EXPECT_NEAR(volume(back, 2e-2), 2 * kPi * (4 - 0.5), 0.5);
+    }
+    for (const double angle : {1.5, 2 * kPi})
+        for (const double side : {1.0, -1.0}) {
+            const Model solid =
+                must(solid_of_revolution(ring_region(), {{{0, 0, 0}}, {{0, side, 0}}}, angle));
+            const Model back = read_again({"mm", {{"ring", solid}}});
+            EXPECT_EQ(summary(back).solids, 1);
+            EXPECT_EQ(back.shells.size(), solid.shells.size()) << "a void is a shell of its own";
+            EXPECT_NEAR(volume(back, 1e-1), angle * (5 * kPi * 4 - 5.25 * kPi * 0.5), 0.03 * angle * 55)
+                << angle;
+        }
+    EXPECT_NEAR(volume(read_again({"mm", {{"", torus(3, 1)}}}), 5e-2), 2 * kPi * kPi * 3, 2);
+    EXPECT_NEAR(volume(read_again({"mm", {{"", sphere({{1, 2, 3}}, 1)}}}), 1e-2), 4.0 / 3 * kPi, 0.1);
+}
+
+TEST_F(Step, units_are_written) {
+    const Model cube = must(prism(loops_of({{ellipse({{0, 0}}, 1, 1)}}), {{0, 0, 1}}));
+    for (const char* unit : {"mm", "cm", "m", "inch"}) {
+        const Model back = read_again({unit, {{"", cube}}});
+        EXPECT_EQ(back.unit, unit);
+        EXPECT_NEAR(summary(back).box.hi[2], summary(cube).box.hi[2], 1e-6) << unit;
+    }
+}
+
+TEST(StepText, is_refused_where_it_cannot_say_it) {
+    expect_refusal(write_step({}), RefusalKind::no_answer, "objects");
+    const Document volume = must(read_document(
+        R"({"type": "volume", "degrees": [1,1,1], "points": [[[[0,0,0],[0,0,1]],[[0,1,0],[0,1,1]]],[[[1,0,0],[1,0,1]],[[1,1,0],[1,1,1]]]]})"));
+    expect_refusal(write_step(volume), RefusalKind::unsupported, "objects[0]", "is a volume");
+    // Trimmed flat surfaces have boundaries in space, others none that is exact.
+    const auto trimmed = [](double height) {
+        return must(read_document(text(
+            R"({"type": "trimmed", "surface": {"type": "surface", "points": [[[0,0,0],[0,2,0]],[[2,0,0],[2,2,)",
+            height,
+            R"(]]]}, "loops": [[{"degree": 1, "knots": [0,0,1,2,3,3], "points": [[0.1,0.1],[0.9,0.1],[0.5,0.9],[0.1,0.1]]}]]})")));
+    };
+    EXPECT_TRUE(write_step(trimmed(0)));
+    const auto bent = write_step(trimmed(1));
+    ASSERT_FALSE(bent);
+    EXPECT_EQ(bent.error().kind, RefusalKind::unsupported);
+    EXPECT_NE(bent.error().message.find("no curve in space"), std::string::npos) << bent.error().message;
+}
+
+}  // namespace
+}  // namespace freiform::test

@@ -1,0 +1,148 @@
+#include "random.hpp"
+#include "refusal.hpp"
+#include "solids.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/model/swept_solid.hpp>
+
+namespace freiform::test {
+namespace {
+
+Subpath square_loop(Vec<2> lo, double side) {
+    const Vec<2> p[4] = {lo, lo + Vec<2>{{side, 0}}, lo + Vec<2>{{side, side}}, lo + Vec<2>{{0, side}}};
+    Subpath s{p[0], {}, true};
+    for (std::size_t i = 0; i < 4; ++i) s.segments.push_back({1, {p[i], p[(i + 1) % 4]}, 1});
+    return s;
+}
+
+// A square of side 4 with a hole of side 2 and an island of side 1 in the hole, and a circle of radius 1
+// beside them; the directions of the loops are any.
+RegionLoops four_loops() {
+    return loops_of({{square_loop({{0, 0}}, 4), square_loop({{1, 1}}, 2), square_loop({{1.5, 1.5}}, 1),
+                      ellipse({{6, 2}}, 1, 1)}});
+}
+constexpr double kAreaOfFour = 16 - 4 + 1 + kPi;
+
+Tessellation closed_mesh(const Result<Model>& model, double tolerance) {
+    EXPECT_TRUE(model) << model.error().where << ": " << model.error().message;
+    if (!model) return {};
+    EXPECT_EQ(summary(*model).open_edges, 0);
+    auto t = tessellate(*model, {.tolerance = tolerance});
+    EXPECT_TRUE(t) << t.error().message;
+    if (!t) return {};
+    EXPECT_TRUE(t->refused.empty());
+    EXPECT_EQ(t->topology.open_edges, 0);
+    EXPECT_EQ(t->topology.non_manifold_edges, 0);
+    EXPECT_LT(t->error_bound, tolerance);
+    return *std::move(t);
+}
+
+TEST(Prism, has_the_volume_of_its_region_times_its_height) {
+    for (const Vec<3> by : {Vec<3>{{0, 0, 3}}, Vec<3>{{0, 0, -3}}, Vec<3>{{2, -1, 3}}, Vec<3>{{1, 1, -3}}}) {
+        const auto model = prism(four_loops(), by);
+        const Tessellation t = closed_mesh(model, 1e-4);
+        EXPECT_NEAR(signed_volume(t.mesh), 3 * kAreaOfFour, 1e-2) << by[2];
+        ASSERT_TRUE(model);
+        EXPECT_EQ(model->bodies.size(), 3u);  // the island and the circle are apart
+        for (const Body& b : model->bodies) EXPECT_TRUE(b.solid);
+        EXPECT_EQ(model->faces.size(), 4 + 4 + 4 + 4 + 6u);
+    }
+}
+
+TEST(Prism, edges_keep_the_points_of_the_region_to_the_bit) {
+    Path path{{square_loop({{0.1, 0.2}}, 0.3)}};
+    path.subpaths[0].segments[0] = {
+        3, {path.subpaths[0].start, {{0.2, 0.1}}, {{0.25, 0.15}}, {{0.4, 0.2}}}, 1};
+    const auto model = prism(loops_of(path), {{0, 0, 1}});
+    ASSERT_TRUE(model);
+    int found = 0;
+    for (const Edge& e : model->edges)
+        if (const auto* c = e.curve ? std::get_if<Curve<Vec<3>>>(&*e.curve) : nullptr)
+            found += c->net().flat()[1] == Vec<3>{{0.2, 0.1, 0}};
+    EXPECT_EQ(found, 1);
+    EXPECT_LT(closed_mesh(model, 1e-3).boundary_gap, 1e-15);
+}
+
+TEST(Prism, of_a_single_closed_spline_has_a_seam) {
+    const Curve<Vec<2>> drop = Curve<Vec<2>>::trusted(
+        {*BSplineBasis::bezier(3)}, Net<1, Vec<2>>({4}, {{{0, 0}}, {{3, 1}}, {{-1, 3}}, {{0, 0}}}));
+    const Tessellation t = closed_mesh(prism({{drop}}, {{0, 0, 2}}), 1e-4);
+    EXPECT_GT(signed_volume(t.mesh), 0.1);
+}
+
+// Pappus: the area times the way of its centroid.
+TEST(SolidOfRevolution, has_the_volume_that_pappus_says) {
+    const RegionLoops region = four_loops();
+    const double moment = 16 * 2 - 4 * 2 + 1 * 2 + kPi * 6;  // about x = 0
+    for (const double angle : {2 * kPi, 1.0})
+        for (const double x : {-1.0, 9.0})  // axes on both sides
+            for (const double up : {3.0, -0.5}) {
+                const auto model = solid_of_revolution(region, {{{x, 7, 0}}, {{0, up, 0}}}, angle);
+                const Tessellation t = closed_mesh(model, 3e-2);
+                const double expected = angle * std::abs(moment - x * kAreaOfFour);
+                EXPECT_NEAR(signed_volume(t.mesh), expected, 2e-2 * expected)
+                    << angle << ' ' << x << ' ' << up;
+                ASSERT_TRUE(model);
+                EXPECT_EQ(model->bodies.size(), 3u);
+                EXPECT_EQ(model->shells.size(), angle > 6 ? 4u : 3u) << "the hole of a full turn is a void";
+            }
+    // About an axis that is oblique in the plane.
+    const Axis oblique{{{-4, -4, 0}}, {{1, -1, 0}}};
+    const double distance = (2 + 4 + 2 + 4) / std::sqrt(2.0);
+    const Tessellation t =
+        closed_mesh(solid_of_revolution(loops_of({{square_loop({{0, 0}}, 4)}}), oblique, 2 * kPi), 3e-2);
+    EXPECT_NEAR(signed_volume(t.mesh), 16 * 2 * kPi * distance, 6);
+}
+
+TEST(SweptSolid, open_subpaths_are_closed_and_dots_left_out) {
+    const Subpath dot{{{5, 5}}, {}, true}, still{{{6, 6}}, {{1, {{{{6, 6}}, {{6, 6}}}}, 1}}, true};
+    Path path{{square_loop({{0, 0}}, 1), dot, still}};
+    path.subpaths[0].segments.pop_back();
+    path.subpaths[0].closed = false;
+    const RegionLoops loops = loops_of(path);
+    ASSERT_EQ(loops.size(), 1u);
+    EXPECT_EQ(loops[0].size(), 4u);
+    EXPECT_NEAR(signed_volume(closed_mesh(prism(loops, {{0, 0, 1}}), 1e-3).mesh), 1, 1e-14);
+}
+
+TEST(SweptSolid, scales_exactly_with_powers_of_two) {
+    const auto volumes = [](double scale) {
+        const Path path = transformed({{square_loop({{0, 0}}, 4), ellipse({{2, 2}}, 1, 1)}},
+                                      {{{{scale, 0}, {0, scale}}}, {}});
+        const Axis axis{{{-scale / 8, 0, 0}}, {{0, 1, 0}}};
+        const auto volume = [&](const Result<Model>& model) {
+            return signed_volume(must(tessellate(must(model), {.tolerance = 0.0625 * scale})).mesh);
+        };
+        return std::array{volume(prism(loops_of(path), {{0, 0, scale}})),
+                          volume(solid_of_revolution(loops_of(path), axis, 1))};
+    };
+    const auto one = volumes(1), small = volumes(0x1p-60);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(small[i], one[i] * 0x1p-180);
+}
+
+TEST(SweptSolid, refuses_what_sweeps_no_solid) {
+    const RegionLoops region = four_loops();
+    expect_refusal(prism(region, {{1, 1, 0}}), RefusalKind::invalid, "by");
+    expect_refusal(prism(region, {{0, 0, kInfinity}}), RefusalKind::invalid, "by");
+    expect_refusal(prism({}, {{0, 0, 1}}), RefusalKind::no_answer, "loops");
+    const auto crossing =
+        prism(loops_of({{square_loop({{0, 0}}, 2), square_loop({{1, 1}}, 2)}}), {{0, 0, 1}});
+    ASSERT_FALSE(crossing);
+    EXPECT_TRUE(crossing.error().where.starts_with("loops[0]")) << crossing.error().where;
+    EXPECT_NE(crossing.error().message.find("crosses"), std::string::npos);
+    const CurveGeometry<2> round = Conic<2>{ConicKind::ellipse, {}, {{1, 0}}, {{0, 1}}};
+    expect_refusal(prism({{round}}, {{0, 0, 1}}), RefusalKind::unsupported, "loops[0][0]");
+    expect_refusal(solid_of_revolution(region, {{{2, 0, 0}}, {{0, 1, 0}}}, 1), RefusalKind::unsupported,
+                   "axis", "reaches");
+    expect_refusal(solid_of_revolution(region, {{{0, 0, 0}}, {{0, 1, 0}}}, 1), RefusalKind::unsupported,
+                   "axis");
+    expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 1, 1}}}, 1), RefusalKind::invalid, "axis");
+    expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 0, 0}}}, 1), RefusalKind::invalid, "axis");
+    expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 1, 0}}}, 7), RefusalKind::invalid,
+                   "angle");
+    expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 1, 0}}}, 0), RefusalKind::invalid,
+                   "angle");
+}
+
+}  // namespace
+}  // namespace freiform::test
