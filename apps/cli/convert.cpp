@@ -6,6 +6,7 @@
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
+#include <freiform/io/iges.hpp>
 #include <freiform/io/obj_freeform.hpp>
 #include <freiform/io/step.hpp>
 #include <freiform/io/svg.hpp>
@@ -90,6 +91,7 @@ Result<std::string> written(const Document& document, std::string_view format,
     if (format == "json") return write_document(document);
     if (format == "bpt") return write_bpt(document);
     if (format == "step" || format == "stp") return write_step(document);
+    if (format == "iges" || format == "igs") return write_iges(document);
     if (format == "obj") return write_obj_freeform(document);
     double size = 0;
     for (const Object& o : document.objects) size = std::max(size, control_box(o.shape).diagonal);
@@ -104,12 +106,13 @@ Result<void> run_convert(const Context& context, const ConvertArguments& options
     if (options.reduce && !(*options.reduce >= 0))
         wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
-    static constexpr std::string_view kFormats[] = {"json", "bpt", "svg", "step", "stp", "obj"};
+    static constexpr std::string_view kFormats[] = {"json", "bpt",  "svg", "step",
+                                                    "stp",  "iges", "igs", "obj"};
     if (std::ranges::find(kFormats, format) == std::end(kFormats))
-        wrong_usage(text("convert writes .json, .bpt, .svg, .step and (free-form) .obj, not \"", format, "\"",
-                         format == "stl" || format == "ply" || format == "glb"
-                             ? "; freiform tessellate writes triangles"
-                             : ""));
+        wrong_usage(text(
+            "convert writes .json, .bpt, .svg, .step, .iges and (free-form) .obj, not \"", format, "\"",
+            format == "stl" || format == "ply" || format == "glb" ? "; freiform tessellate writes triangles"
+                                                                  : ""));
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     Report report;
@@ -173,7 +176,7 @@ void add_convert(CommandLine& line) {
         "opposite\n"
         "edge: --axis u, v or w.");
     command.file(options->file);
-    command.output("The file to write: .json, .bpt, .svg, .step or .obj (free-form, no triangles)");
+    command.output("The file to write: .json, .bpt, .svg, .step, .iges or .obj (free-form, no triangles)");
     command.object(options->object);
     command.flag("--to-bezier", options->to_bezier,
                  "Cut splines into their Bezier pieces, an object for each");

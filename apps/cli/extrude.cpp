@@ -1,5 +1,6 @@
 // extrude, ruled: surfaces of straight lines.
 #include "point_commands.hpp"
+#include "regions.hpp"
 #include "surface_commands.hpp"
 
 #include <freiform/make/sweep.hpp>
@@ -11,10 +12,18 @@ namespace {
 struct Extrusion {
     std::string file, object;
     std::vector<double> by;
+    bool solid = false;
+    std::optional<double> tolerance;
 };
 
 Result<void> extruded(const Context& context, const Extrusion& options) {
     const Vec<3> by = parse_vector("--by", options.by);
+    if (options.solid) {
+        const SolidOutput output = solid_output(context, "extrude --solid", options.tolerance);
+        const auto region = read_region(context, options.file, options.object);
+        if (!region) return std::unexpected(region.error());
+        return emit_swept(context, output, options.file, region->unit, prism(region->loops, by));
+    }
     const std::string format = spline_format(context, "extrude");
     const auto curves = read_space_curves(context, options.file, options.object, "extruded");
     if (!curves) return std::unexpected(curves.error());
@@ -54,12 +63,19 @@ Result<void> ruled_between(const Context& context, const Ruling& options) {
 
 void add_extrude(CommandLine& line) {
     const auto options = std::make_shared<Extrusion>();
-    const Command command = line.add("extrude", "Surfaces that curves sweep along a vector, exact",
-                                     "  freiform extrude outline.json --by 0,0,3 -o wall.json");
+    const Command command =
+        line.add("extrude", "Surfaces that curves sweep along a vector, exact; solids of regions",
+                 "  freiform extrude outline.json --by 0,0,3 -o wall.json\n"
+                 "  freiform extrude drawing.svg --by 0,0,3 --solid --tolerance 0.01 -o part.stl\n"
+                 "With --solid closed plane curves bound a region, and those inside others are holes.");
     command.word("FILE", options->file, "Curves; - is standard input").required();
     command.numbers("--by", options->by, "How far and whereto").shown_as("X,Y,Z").required();
     command.object(options->object);
-    command.output("Where the surfaces go (.json, .bpt, .step, .obj)");
+    command.flag("--solid", options->solid, "The solid that the region inside of the curves sweeps");
+    command.number("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
+    command.output(
+        "Where the surfaces go (.json, .bpt, .step, .obj); solids: .json, .step, .glb, .stl, .obj, .ply");
+    command.triangle_limit();
     command.limits();
     command.action(options, extruded);
 }

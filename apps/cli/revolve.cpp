@@ -1,6 +1,7 @@
 // revolve: surfaces of revolution of the curves of a file.
 #include "input.hpp"
 #include "point_commands.hpp"
+#include "regions.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/make/revolve.hpp>
@@ -15,8 +16,8 @@ namespace {
 struct RevolveArguments {
     std::string file, object;
     std::vector<double> axis;
-    std::optional<double> angle, polynomial;
-    bool closed = false;
+    std::optional<double> angle, polynomial, tolerance;
+    bool closed = false, solid = false;
 
     Seam seam() const { return closed ? Seam::closed : Seam::open; }
 };
@@ -82,6 +83,15 @@ std::string revolve_text(const RevolveAnswer& a) {
 Result<void> run_revolve(const Context& context, const RevolveArguments& options) {
     if (options.axis.size() != 6)
         wrong_usage("--axis needs six numbers: a point and a direction, px,py,pz,dx,dy,dz");
+    if (options.solid) {
+        const SolidOutput output = solid_output(context, "revolve --solid", options.tolerance);
+        const auto region = read_region(context, options.file, options.object);
+        if (!region) return std::unexpected(region.error());
+        const auto& a = options.axis;
+        return emit_swept(context, output, options.file, region->unit,
+                          solid_of_revolution(region->loops, {{{a[0], a[1], a[2]}}, {{a[3], a[4], a[5]}}},
+                                              options.angle.value_or(360) / 180 * std::numbers::pi));
+    }
     const std::string format = spline_format(context, "revolve");
     const auto document = read_any(options.file, context.read_options());
     if (!document) return std::unexpected(document.error());
@@ -129,7 +139,11 @@ void add_revolve(CommandLine& line) {
     command.flag("--closed", options->closed,
                  "Write a full turn on closed knots instead of open ones whose ends coincide");
     command.object(options->object);
-    command.output("Where the surfaces go (.json, .bpt, .step, .obj)");
+    command.flag("--solid", options->solid, "The solid that the region inside of closed plane curves sweeps");
+    command.number("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
+    command.output(
+        "Where the surfaces go (.json, .bpt, .step, .obj); solids: .json, .step, .glb, .stl, .obj, .ply");
+    command.triangle_limit();
     command.limits();
     command.action(options, run_revolve);
 }

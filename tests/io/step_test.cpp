@@ -1,4 +1,5 @@
 #include <freiform/io/document.hpp>
+#include <freiform/io/iges.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
@@ -24,10 +25,10 @@ protected:
         ::setenv("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY, 1);
     }
     // What Open CASCADE understands.
-    static Model read_again(const Document& document) {
+    static Model read_again(const Document& document, bool iges = false) {
         const std::string name =
-            (fs::temp_directory_path() / text("freiform-", ::getpid(), ".step")).string();
-        std::ofstream(name, std::ios::binary) << must(write_step(document));
+            (fs::temp_directory_path() / text("freiform-", ::getpid(), iges ? ".iges" : ".step")).string();
+        std::ofstream(name, std::ios::binary) << must(iges ? write_iges(document) : write_step(document));
         Document back = must(read_any(name));
         fs::remove(name);
         EXPECT_TRUE(back.left_out.empty());
@@ -52,35 +53,39 @@ TEST_F(Step, control_points_knots_and_weights_come_back_exactly) {
         {"type": "surface", "degrees": [1, 2], "knots": [[0,0,1,1],[0,0,0,1,1,1]],
          "points": [[[10,0,0],[10,1,0.1],[10,2,0]],[[11,0,0],[11,1,0.7],[11,2,0]]],
          "weights": [[1,0.7071067811865476,1],[1,0.3,1]]}]})"));
-    const Model model = read_again(document);
-    ASSERT_EQ(model.faces.size(), 2u);
-    const auto& plain = std::get<Surface<Vec<3>>>(document.objects[0].shape);
-    const auto& rational = std::get<Surface<Hom<3>>>(document.objects[1].shape);
-    int found = 0;
-    for (const Face& f : model.faces) {
-        if (const auto* s = std::get_if<Surface<Vec<3>>>(&f.surface)) {
-            EXPECT_EQ(s->net(), plain.net());
-            EXPECT_TRUE(std::ranges::equal(s->basis(0).knots(), plain.basis(0).knots()));
-            ++found;
+    for (const bool iges : {false, true}) {
+        const Model model = read_again(document, iges);
+        ASSERT_EQ(model.faces.size(), 2u);
+        const auto& plain = std::get<Surface<Vec<3>>>(document.objects[0].shape);
+        const auto& rational = std::get<Surface<Hom<3>>>(document.objects[1].shape);
+        int found = 0;
+        for (const Face& f : model.faces) {
+            if (const auto* s = std::get_if<Surface<Vec<3>>>(&f.surface)) {
+                EXPECT_EQ(s->net(), plain.net());
+                EXPECT_TRUE(std::ranges::equal(s->basis(0).knots(), plain.basis(0).knots()));
+                ++found;
+            }
+            if (const auto* s = std::get_if<Surface<Hom<3>>>(&f.surface)) {
+                EXPECT_EQ(s->net(), rational.net());
+                ++found;
+            }
         }
-        if (const auto* s = std::get_if<Surface<Hom<3>>>(&f.surface)) {
-            EXPECT_EQ(s->net(), rational.net());
-            ++found;
-        }
+        EXPECT_EQ(found, 2);
     }
-    EXPECT_EQ(found, 2);
 }
 
 TEST_F(Step, curves_come_back_exactly) {
     const Document document = must(read_document(R"({"freiform": 1, "unit": "mm", "objects": [
         {"type": "curve", "degree": 2, "knots": [0,0,0,0.25,1,1,1], "points": [[0.1,1],[1,2.2],[3,1],[4,0]]},
         {"type": "curve", "degree": 2, "points": [[0,0,1],[1,0.3,1],[1,1,1.7]], "weights": [1,0.6,1]}]})"));
-    const Model model = read_again(document);
-    ASSERT_EQ(model.edges.size(), 2u);
-    const auto& plain = std::get<Curve<Vec<2>>>(document.objects[0].shape);
-    EXPECT_EQ(std::get<Curve<Vec<3>>>(*model.edges[0].curve).net(), in_space(plain).net());
-    EXPECT_EQ(std::get<Curve<Hom<3>>>(*model.edges[1].curve).net(),
-              std::get<Curve<Hom<3>>>(document.objects[1].shape).net());
+    for (const bool iges : {false, true}) {
+        const Model model = read_again(document, iges);
+        ASSERT_EQ(model.edges.size(), 2u);
+        const auto& plain = std::get<Curve<Vec<2>>>(document.objects[0].shape);
+        EXPECT_EQ(std::get<Curve<Vec<3>>>(*model.edges[0].curve).net(), in_space(plain).net());
+        EXPECT_EQ(std::get<Curve<Hom<3>>>(*model.edges[1].curve).net(),
+                  std::get<Curve<Hom<3>>>(document.objects[1].shape).net());
+    }
 }
 
 TEST_F(Step, solids_keep_their_volume) {
@@ -113,6 +118,12 @@ TEST_F(Step, units_are_written) {
         EXPECT_EQ(back.unit, unit);
         EXPECT_NEAR(summary(back).box.hi[2], summary(cube).box.hi[2], 1e-6) << unit;
     }
+}
+
+TEST(IgesText, is_refused_where_it_cannot_say_it) {
+    expect_refusal(write_iges({}), RefusalKind::no_answer, "objects");
+    expect_refusal(write_iges({"", {{"m", torus(3, 1)}}}), RefusalKind::unsupported, "objects[0] \"m\"",
+                   "is a model");
 }
 
 TEST(StepText, is_refused_where_it_cannot_say_it) {

@@ -1,0 +1,61 @@
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using SolidProgram = Program;
+using SolidJson = nlohmann::json;
+
+const std::string kRegion = R"({"freiform": 1, "unit": "mm", "objects": [
+    {"name": "outer", "type": "curve", "degree": 1, "knots": [0,0,1,2,3,4,4], "points": [[1,0],[5,0],[5,4],[1,4],[1,0]]},
+    {"name": "hole", "type": "curve", "degree": 1, "knots": [0,0,1,2,3,3], "points": [[2,1],[4,1],[3,3],[2,1]]},
+    {"name": "open", "type": "curve", "degree": 1, "points": [[0,0],[1,1]]}]})";
+
+TEST_F(SolidProgram, of_closed_curves_are_extruded_and_revolved) {
+    file("region.json", kRegion);
+    const std::string both = file("both.json", [] {
+        auto d = SolidJson::parse(kRegion);
+        d["objects"].erase(2);
+        return d.dump();
+    }());
+    const Ran prism = run({"extrude", both, "--by", "0,0,2", "--solid", "-o", "a.json", "--json"});
+    ASSERT_EQ(prism.code, 0) << prism.err;
+    EXPECT_EQ(SolidJson::parse(prism.out)["faces"], 4 + 3 + 2);
+    const Ran mesh =
+        run({"extrude", both, "--by", "0,0,2", "--solid", "--tolerance", "0.1", "-o", "a.stl", "--json"});
+    ASSERT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_EQ(SolidJson::parse(mesh.out)["open_edges"], 0);
+    EXPECT_EQ(SolidJson::parse(mesh.out)["solids"], 1);
+    const Ran ring = run({"revolve", both, "--axis", "0,0,0,0,1,0", "--solid", "-o", "ring.json", "--json"});
+    ASSERT_EQ(ring.code, 0) << ring.err;
+    const auto info = SolidJson::parse(run({"info", "ring.json", "--json"}).out)["objects"][0];
+    EXPECT_EQ(info["shells"], 2) << info;
+    EXPECT_EQ(info["solids"], 1);
+    EXPECT_EQ(run({"revolve", both, "--axis", "3,0,0,0,1,0", "--solid"}).code, 3) << "through the region";
+    const Ran open = run({"extrude", path("region.json"), "--by", "0,0,2", "--solid"});
+    EXPECT_EQ(open.code, 1);
+    EXPECT_NE(open.err.find("no closed plane curve"), open.err.npos) << open.err;
+    EXPECT_EQ(run({"extrude", both, "--by", "0,0,2", "--solid", "-o", "a.png"}).code, 2);
+    // A drawing is a region, too: the plate of the badge.
+    const std::string badge = std::string(FREIFORM_SOURCE_DIR) + "/examples/badge.svg";
+    EXPECT_EQ(
+        run({"extrude", badge, "--object", "plate", "--by", "0,0,2", "--solid", "-o", "plate.glb"}).code, 0);
+}
+
+TEST_F(SolidProgram, are_written_for_other_programs) {
+    ASSERT_EQ(run({"convert", kTeapot, "-o", "teapot.obj"}).code, 0);
+    ASSERT_EQ(run({"convert", "teapot.obj", "-o", "back.bpt"}).code, 0);
+    ASSERT_EQ(run({"convert", kTeapot, "-o", "plain.bpt"}).code, 0);
+    EXPECT_EQ(content(path("back.bpt")), content(path("plain.bpt")));
+    ASSERT_EQ(run({"convert", kTeapot, "-o", "teapot.step"}).code, 0);
+    EXPECT_TRUE(content(path("teapot.step")).starts_with("ISO-10303-21;"));
+    const Ran info = run({"info", "teapot.step", "--json"});
+    if (info.code == 0) EXPECT_EQ(SolidJson::parse(info.out)["objects"][0]["faces"], 32);
+    EXPECT_EQ(run({"convert", kTeapot, "-o", "teapot.xyz"}).code, 2);
+    EXPECT_EQ(run({"info", "-"}, "ISO").code, 3);
+}
+
+}  // namespace
+}  // namespace freiform::test
