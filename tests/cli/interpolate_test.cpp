@@ -110,7 +110,7 @@ TEST_F(Interpolate, refuses_with_the_line) {
     expect({"--ends", "catmul-rom"}, kPoints, 2, "did you mean \"catmull-rom\"");
     expect({"--degree", "0"}, kPoints, 2, "from 1 to 25");
     expect({"--ends", "akima", "--degree", "5"}, kPoints, 2, "degree 3");
-    expect({"-o", path("c.stl")}, kPoints, 2, "writes .json and .bpt");
+    expect({"-o", path("c.stl")}, kPoints, 2, "writes .json, .bpt, .step");
     expect({"--at", "0,1,1,2"}, kPoints, 3, "at[2]");
     EXPECT_EQ(run({"interpolate", path("missing.csv")}).code, 5);
 }
