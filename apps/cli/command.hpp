@@ -154,6 +154,7 @@ void add_path(CommandLine& line);
 void add_length(CommandLine& line);
 void add_fit(CommandLine& line);
 void add_ease(CommandLine& line);
+void add_gradient(CommandLine& line);
 void add_animate(CommandLine& line);
 void add_revolve(CommandLine& line);
 void add_extrude(CommandLine& line);

@@ -36,6 +36,7 @@ void add_commands(CommandLine& line) {
     add_length(line);
     add_fit(line);
     add_ease(line);
+    add_gradient(line);
     add_animate(line);
     add_revolve(line);
     add_extrude(line);

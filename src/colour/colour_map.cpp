@@ -10,6 +10,8 @@
 //
 // References. [Ottosson 2020] for the space. Why not CIELAB: its blue turns violet where only lightness
 // changes, and this map begins in blue.
+#include "colour_detail.hpp"
+
 #include <freiform/colour/colour_map.hpp>
 
 #include <algorithm>
@@ -21,21 +23,7 @@ namespace freiform {
 
 namespace {
 
-double linear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
-double encoded(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055; }
-
 double distance(const Oklab& p, const Oklab& q) { return std::hypot(p.L - q.L, p.a - q.a, p.b - q.b); }
-
-// Components of linear light; outside [0, 1] where sRGB does not have the colour.
-std::array<double, 3> linear_light(const Oklab& c) {
-    const auto cube = [](double x) { return x * x * x; };
-    const double l = cube(c.L + 0.3963377774 * c.a + 0.2158037573 * c.b);
-    const double m = cube(c.L - 0.1055613458 * c.a - 0.0638541728 * c.b);
-    const double s = cube(c.L - 0.0894841775 * c.a - 1.2914855480 * c.b);
-    return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
-            -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
-            -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
-}
 
 struct Corner {
     double L, chroma, hue;  // degrees
@@ -45,7 +33,7 @@ Oklab at(const Corner& c) {
     const double h = c.hue * std::numbers::pi / 180;
     const auto with = [&](double chroma) { return Oklab{c.L, chroma * std::cos(h), chroma * std::sin(h)}; };
     const auto has = [&](double chroma) {
-        return std::ranges::all_of(linear_light(with(chroma)), [](double x) { return x >= 0 && x <= 1; });
+        return std::ranges::all_of(detail::light_of(with(chroma)), [](double x) { return x >= 0 && x <= 1; });
     };
     if (has(c.chroma)) return with(c.chroma);
     double lo = 0, hi = c.chroma;
@@ -87,7 +75,7 @@ std::vector<Oklab> evenly(const std::vector<Oklab>& p, int n) {
 }  // namespace
 
 Oklab to_oklab(const Colour& c) {
-    const double r = linear(c.r), g = linear(c.g), b = linear(c.b);
+    const double r = detail::linear_light(c.r), g = detail::linear_light(c.g), b = detail::linear_light(c.b);
     const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
     const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
     const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
@@ -114,8 +102,10 @@ ColourMap::ColourMap(MapKind kind) {
         points.insert(points.end(), red.begin() + 1, red.end());
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto light = linear_light(points[i]);
-        const auto component = [&](std::size_t c) { return encoded(std::clamp(light[c], 0.0, 1.0)); };
+        const auto light = detail::light_of(points[i]);
+        const auto component = [&](std::size_t c) {
+            return detail::encoded_light(std::clamp(light[c], 0.0, 1.0));
+        };
         colours_[i] = {component(0), component(1), component(2), 1};
     }
 }

@@ -2,13 +2,12 @@
 //
 // Why cairo and not a rasteriser and a writer of PDF of our own: words need typefaces, hinting and their
 // embedding, which are most of the work of a page, and cairo is everywhere.
+#include "cairo_detail.hpp"
+
 #include <freiform/paint/paint.hpp>
 
-#include <cairo-pdf.h>
-#include <cairo.h>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 
 namespace freiform {
 
@@ -18,14 +17,9 @@ constexpr double kPoint = 0.75;  // 1/72 inch in pixels of 1/96 inch, inverted
 constexpr const char* kFamily = "DejaVu Serif";
 constexpr long long kMostPixels = 1LL << 26;
 
-using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-using Pen = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
-
-// Bytes from cairo. What it calls is C: nothing may be thrown through it.
-cairo_status_t take(void* to, const unsigned char* bytes, unsigned n) noexcept {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), n);
-    return CAIRO_STATUS_SUCCESS;
-}
+using detail::Pen;
+using detail::Sheet;
+using detail::take;
 
 void ink(cairo_t* c, const Colour& colour, double opacity = 1) {
     cairo_set_source_rgba(c, colour.r, colour.g, colour.b, opacity);
@@ -161,7 +155,7 @@ Result<void> paint(cairo_surface_t* surface, const Drawing& d, double scale, boo
 
 Result<std::string> to_pdf(const Drawing& d) {
     std::string bytes;
-    const Surface surface(
+    const Sheet surface(
         cairo_pdf_surface_create_for_stream(take, &bytes, kPoint * d.width, kPoint * d.height),
         &cairo_surface_destroy);
     cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);
@@ -181,8 +175,8 @@ Result<std::string> to_png(const Drawing& d) {
     if (pixels > kMostPixels)
         return refuse(RefusalKind::limit, "size",
                       text(d.width, " x ", d.height, " are ", pixels, " pixels, at most ", kMostPixels));
-    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, d.width, d.height),
-                          &cairo_surface_destroy);
+    const Sheet surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, d.width, d.height),
+                        &cairo_surface_destroy);
     if (auto ok = paint(surface.get(), d, 1); !ok) return std::unexpected(ok.error());
     std::string bytes;
     const cairo_status_t status = cairo_surface_write_to_png_stream(surface.get(), take, &bytes);
@@ -196,8 +190,8 @@ Result<void> paint_over(Image& picture, const Drawing& d) {
         return refuse(RefusalKind::invalid, "size",
                       text("a drawing of ", d.width, " x ", d.height, " over a picture of ", picture.width,
                            " x ", picture.height));
-    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, d.width, d.height),
-                          &cairo_surface_destroy);
+    const Sheet surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, d.width, d.height),
+                        &cairo_surface_destroy);
     if (const cairo_status_t status = cairo_surface_status(surface.get()); status != CAIRO_STATUS_SUCCESS)
         return refuse(RefusalKind::limit, "cairo", cairo_status_to_string(status));
     unsigned char* const bytes = cairo_image_surface_get_data(surface.get());

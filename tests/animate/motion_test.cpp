@@ -195,6 +195,13 @@ TEST(Trajectory, least_turning_goes_round_corners) {
         EXPECT_LE(norm(rotated(s.facing, {{0, 0, 1}}) - z[i]), 1e-9);
         EXPECT_LE(s.facing_bound, 1e-9);
     }
+    // The smallest turn is not the projection: what is across the corner stays, what is along it turns.
+    const auto bend = *Curve<Vec<3>>::make({*BSplineBasis::make(1, {0, 0, 1, 2, 2})},
+                                           Net<1, Vec<3>>({3}, {{{0, 0, 0}}, {{1, 0, 0}}, {{1.6, 0.8, 0}}}));
+    const auto turned =
+        *Trajectory::make(bend, *Motion::uniform(2, 2), {1e-9, Facing::least_turning, {{0, 1, 1}}});
+    EXPECT_LE(norm(rotated(turned.at(1.5)->facing, {{0, 0, 1}}) - std::sqrt(0.5) * Vec<3>{{-0.8, 0.6, 1}}),
+              1e-9);
 }
 
 TEST(Trajectory, refuses_by_name) {
