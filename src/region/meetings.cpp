@@ -10,6 +10,8 @@
 // has all its control points before p, that of b behind p, by more than the rounding of halving. Then a and b
 // meet at p alone.
 //
+// Pairs whose boxes overlap are mostly apart all the same: a line along one of the chords says so.
+//
 // Loops of cubics. The classification of cubics [Loop Blinn 2005]: with the determinants of three homogeneous
 // control points a1 = |b0 b3 b2|, a2 = |b1 b0 b3|, a3 = |b2 b1 b0| and
 //     d1 = a1 - 2 a2 + 3 a3,   d2 = 3 a3 - a2,   d3 = 3 a3,   q = 4 d1 d3 - 3 d2^2
@@ -94,6 +96,26 @@ bool meet_at_joint_only(const RegionArc& a, int ea, const RegionArc& b, int eb, 
 DoubleDouble rounded(const Exact& x) {
     const double hi = x.rounded();
     return {hi, (x - Exact(hi)).rounded()};
+}
+
+// Is there a line along one of the chords that has all control points of one arc on one side, and all of the
+// other on the other side?
+bool are_apart(const PathSegment& s, const PathSegment& t, double noise) {
+    for (const PathSegment* along : {&s, &t}) {
+        const Vec<2> chord = along->back() - along->front(), normal{{-chord[1], chord[0]}};
+        const auto range = [&](const PathSegment& x) {
+            Interval on{kInfinity, -kInfinity};
+            for (int i = 0; i <= x.degree; ++i) {
+                const double at = dot(normal, x.points[std::size_t(i)] - along->front());
+                on = {std::min(on.lo, at), std::max(on.hi, at)};
+            }
+            return on;
+        };
+        const Interval a = range(s), b = range(t);
+        const double slack = noise * (std::abs(chord[0]) + std::abs(chord[1]));
+        if (a.hi + slack < b.lo || b.hi + slack < a.lo) return true;
+    }
+    return false;
 }
 
 // The parameters of the double point of a cubic, the smaller one first; may lie outside of [0, 1].
@@ -182,7 +204,7 @@ private:
     Result<Pairs> pairs_to_ask() {
         Pairs out;
         std::vector<std::size_t> order;
-        std::size_t count = 0;
+        std::size_t looked = 0;
         for (std::size_t s = 0; s < strips_.size(); ++s) {
             const auto items = strips_.items(s);
             order.assign(items.begin(), items.end());
@@ -194,18 +216,19 @@ private:
                     if (!a.side(1).overlaps(b.side(1)) ||
                         std::max(strips_.of(a.lo[1]), strips_.of(b.lo[1])) != s)
                         continue;
-                    if (++count > max_pairs_)
-                        return refuse(
-                            RefusalKind::limit, "max_pairs",
-                            text("more than ", max_pairs_, " pairs of segments overlap in their boxes"));
-                    const Pair pair{std::min(order[k], order[l]), std::max(order[k], order[l])};
-                    if (is_settled(pair)) continue;
-                    (arcs_[pair[0]].is_rational() || arcs_[pair[1]].is_rational() ? out.rational : out.plain)
-                        .push_back(pair);
+                    consider({std::min(order[k], order[l]), std::max(order[k], order[l])}, out);
+                    if (++looked > 100 * max_pairs_ || out.plain.size() + out.rational.size() > max_pairs_)
+                        return refuse(RefusalKind::limit, "max_pairs",
+                                      text("more than ", max_pairs_, " pairs of segments may meet"));
                 }
         }
         std::ranges::sort(out.plain), std::ranges::sort(out.rational);
         return out;
+    }
+    void consider(const Pair& pair, Pairs& out) {
+        const RegionArc &a = arcs_[pair[0]], &b = arcs_[pair[1]];
+        if (are_apart(a.s, b.s, 0x1p-47 * scale_) || is_settled(pair)) return;
+        (a.is_rational() || b.is_rational() ? out.rational : out.plain).push_back(pair);
     }
 
     // Equal segments, and neighbours that meet at one common end and nowhere else.

@@ -181,10 +181,17 @@ private:
         for (const std::size_t i : a_.strips.items(a_.strips.of(p[1]))) {
             const RegionArc& arc = a_.arcs[i];
             if (p[1] < arc.box.lo[1] || p[1] > arc.box.hi[1]) continue;
+            int& sum = quarters[std::size_t(arc.operand)];
+            if (arc.box.lo[0] > p[0] || arc.box.hi[0] < p[0]) {  // beside it only the ends count
+                const auto side = [&](double y) { return int(y > p[1]) - int(y < p[1]); };
+                const int up = side(arc.s.back()[1]) - side(arc.s.front()[1]);
+                sum += arc.box.lo[0] > p[0] ? up : -up;
+                continue;
+            }
             const ArcIndex index =
                 arc_index(arc.coordinates(arc.x), arc.coordinates(arc.y), arc.weights(), p);
             if (index.through) return {};
-            quarters[std::size_t(arc.operand)] += index.quarters;
+            sum += index.quarters;
         }
         return {{quarters[0] / 4, quarters[1] / 4}};
     }

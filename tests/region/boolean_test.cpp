@@ -185,7 +185,7 @@ TEST(Combine, refuses_what_it_cannot_answer) {
     expect_refusal(region_of({square}, {.tolerance = 1e-15}), RefusalKind::ill_conditioned, "tolerance",
                    "rounding");
     expect_refusal(
-        combine({square}, {square}, RegionOperation::union_of, {.tolerance = 1e-9, .max_pairs = 3}),
+        combine({square}, {square}, RegionOperation::union_of, {.tolerance = 1e-9, .max_pairs = 0}),
         RefusalKind::limit, "max_pairs");
     Path heavy = path_from("M 0 0 Q 1 1 2 0 Z");
     heavy.subpaths[0].segments[0].weight = -1;
