@@ -104,7 +104,9 @@ private:
             const Vec<2> middle = on_edge(e, 0.5);
             order.push_back({-std::max(norm(middle - on_edge(e, 0)), norm(middle - on_edge(e, 1))), l});
         }
-        std::ranges::stable_sort(order, {}, [](const auto& o) { return o.first; });
+        std::sort(order.begin(), order.end(), [](const auto& x, const auto& y) {
+            return std::pair(x.first, x.second.edge) < std::pair(y.first, y.second.edge);
+        });
         for (std::size_t k = 0; k < std::min<std::size_t>(order.size(), 8); ++k) {
             const Link& l = order[k].second;
             for (const double t : {0.5, 0.625, 0.375, 0.75, 0.25, 0.875, 0.125, 0.9375, 0.0625})

@@ -138,7 +138,9 @@ private:
         std::vector<std::pair<double, Vec<2>>> at{{h_, p + h_ * n}, {0.0, p}, {-h_, p - h_ * n}};
         for (const auto& c : centres)
             if (c) at.push_back({std::clamp(freiform::dot(*c - p, n), -h_, h_), *c});
-        std::ranges::stable_sort(at, {}, [](const auto& x) { return -x.first; });
+        std::sort(at.begin(), at.end(), [](const auto& x, const auto& y) {
+            return std::pair(-x.first, x.second.c) < std::pair(-y.first, y.second.c);
+        });
         Frame f;
         for (const auto& [height, q] : at) f.points.push_back(q);
         // What lies as far out as the ends is inside of them.
