@@ -133,7 +133,7 @@ private:
         for (std::size_t k = 0; k < m.places.size(); ++k) out_.places.push_back(m.places.point(int(k)));
         for (const SharedStretch& s : m.shared) {
             out_.moved = std::max(out_.moved, s.gap);
-            if (s.gap > options_.tolerance)
+            if (2 * s.gap + kSmallest * out_.scale > options_.tolerance)
                 return refuse(RefusalKind::ill_conditioned, place_text(out_.arcs[s.i]),
                               text("runs along ", place_text(out_.arcs[s.j]), " at most ", s.gap,
                                    " away; the tolerance is ", options_.tolerance));
