@@ -21,6 +21,8 @@
 // subtractions is within the 2^k e above, of which twice as much is added.
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include "room_detail.hpp"
+
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -62,6 +64,16 @@ struct Differences {
     double weight_middle = 0;
 };
 
+// Calls f(coefficient) for each, row by row.
+template <std::size_t N, class P, class F>
+void each_entry(const NetView<N, const P>& net, F&& f) {
+    const int rows = N == 1 ? 1 : net.extent[0], columns = net.extent[N - 1];
+    for (int r = 0; r < rows; ++r) {
+        const P* p = net.data + r * net.stride[0];
+        for (int k = 0; k < columns; ++k, p += net.stride[N - 1]) f(*p);
+    }
+}
+
 // All differences up to order `top`, each from the one before: one subtraction for each number. Curves are
 // blocks of one column.
 template <std::size_t N, class P>
@@ -73,14 +85,11 @@ public:
     DifferenceTable(const NetView<N, const P>& net, const PointOf<P>& c0, int top)
         : rows_(net.extent[0]), columns_(N == 1 ? 1 : net.extent[N - 1]) {
         const std::size_t count = std::size_t(rows_) * std::size_t(columns_);
-        std::vector<Entry> more;
-        std::array<Entry, 2 * kFew> few;
-        if (count > kFew) more.resize(2 * count);
-        Entry* const down = count > kFew ? more.data() : few.data();
+        Room<Entry, 128> room;
+        Entry* const down = room.of(2 * count);
         Entry* const work = down + count;
         Entry* to = down;
-        each_index(net.extent, [&](const Index<N>& at) {
-            const P& p = net(at);
+        each_entry(net, [&](const P& p) {
             const double w = Space<P>::weight(p);
             for (int i = 0; i < D; ++i) (*to)[std::size_t(i)] = p[i] - w * c0[i];
             if constexpr (kRational) (*to)[D] = w;
@@ -101,7 +110,6 @@ public:
     const Differences<D>& operator[](std::size_t slot) const { return found_[slot]; }
 
 private:
-    static constexpr std::size_t kFew = 64;
     using Entry = std::array<double, std::size_t(D + (kRational ? 1 : 0))>;
 
     static void subtract(Entry* e, int n, int step) {
@@ -111,20 +119,30 @@ private:
     Differences<D> seen(const Entry* e, int rows, int columns) const {
         Differences<D> out;
         double most = 0;
-        for (int r = 0; r < rows; ++r)
+        Entry middle{};
+        for (int r = 0; r < rows; ++r) {
+            Entry row{};
             for (int k = 0; k < columns; ++k) {
                 const Entry& x = e[r * columns_ + k];
                 double square = 0;
                 for (std::size_t c = 0; c < std::size_t(D); ++c) square += x[c] * x[c];
                 most = most < square ? square : most;
                 if constexpr (kRational) {
-                    const double share = kAtHalf[std::size_t(rows - 1)][std::size_t(r)] *
-                                         kAtHalf[std::size_t(columns - 1)][std::size_t(k)];
-                    out.weight_most = std::max(out.weight_most, std::abs(x[D]));
-                    out.weight_middle += share * x[D];
-                    for (int c = 0; c < D; ++c) out.middle[c] += share * x[std::size_t(c)];
+                    const double w = std::abs(x[D]);
+                    out.weight_most = out.weight_most < w ? w : out.weight_most;
+                    const double share = kAtHalf[std::size_t(columns - 1)][std::size_t(k)];
+                    for (std::size_t c = 0; c < x.size(); ++c) row[c] += share * x[c];
                 }
             }
+            if constexpr (kRational) {
+                const double share = kAtHalf[std::size_t(rows - 1)][std::size_t(r)];
+                for (std::size_t c = 0; c < row.size(); ++c) middle[c] += share * row[c];
+            }
+        }
+        if constexpr (kRational) {
+            for (int c = 0; c < D; ++c) out.middle[c] = middle[std::size_t(c)];
+            out.weight_middle = middle[D];
+        }
         out.most = std::sqrt(most) * (1 + 8 * kUnitRoundoff);
         return out;
     }
@@ -144,7 +162,10 @@ std::array<double, jet_size(2, kBoundOrder)> ruled_differences(const NetView<2, 
     constexpr int D = Space<P>::kDim;
     std::array<double, jet_size(2, kBoundOrder)> found{};
     const int rows = net.extent[0], columns = net.extent[1];
-    std::vector<Vec<D>> across(std::size_t(rows) * std::size_t(columns)), e;
+    const std::size_t count = std::size_t(rows) * std::size_t(columns);
+    Room<Vec<D>, 128> room;
+    Vec<D>* const across = room.of(2 * count);
+    Vec<D>* const e = across + count;
     const auto weight = [&](int r) { return Space<P>::weight(net({r, 0})); };
     const auto at = [&](int r, int c) { return std::size_t(r * columns + c); };
     for (int r = 0; r < rows; ++r)
@@ -154,9 +175,8 @@ std::array<double, jet_size(2, kBoundOrder)> ruled_differences(const NetView<2, 
         for (int r = 0; r < rows; ++r)
             for (int c = 0; c < columns - j; ++c) across[at(r, c)] = across[at(r, c + 1)] - across[at(r, c)];
         const Vec<D> c0 = (1 / weight(rows / 2)) * across[at(rows / 2, (columns - j) / 2)];
-        e = across;
         for (int r = 0; r < rows; ++r)
-            for (int c = 0; c < columns - j; ++c) e[at(r, c)] = e[at(r, c)] - weight(r) * c0;
+            for (int c = 0; c < columns - j; ++c) e[at(r, c)] = across[at(r, c)] - weight(r) * c0;
         for (int i = 0; i + j <= top && i < rows; ++i) {
             double& most = found[slot_of<2>(i, j)];
             for (int r = 0; r < rows - i; ++r)
@@ -175,11 +195,15 @@ template <class P>
 std::array<bool, 2> weights_change(const NetView<2, const P>& net) {
     std::array<bool, 2> out{};
     const double part = 8 * (net.extent[0] + net.extent[1]) * kUnitRoundoff;
-    each_index(net.extent, [&](const Index<2>& at) {
-        const double w = Space<P>::weight(net(at)), alike = part * w;
-        out[0] = out[0] || std::abs(w - Space<P>::weight(net({0, at[1]}))) > alike;
-        out[1] = out[1] || std::abs(w - Space<P>::weight(net({at[0], 0}))) > alike;
-    });
+    const auto weight = [&](int r, int c) {
+        return Space<P>::weight(net.data[r * net.stride[0] + c * net.stride[1]]);
+    };
+    for (int r = 0; r < net.extent[0]; ++r)
+        for (int c = 0; c < net.extent[1]; ++c) {
+            const double w = weight(r, c), alike = part * w;
+            out[0] |= std::abs(w - weight(0, c)) > alike;
+            out[1] |= std::abs(w - weight(r, 0)) > alike;
+        }
     return out;
 }
 
@@ -213,19 +237,31 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
         centre[d] = net.extent[d] / 2;
     }
     const PointOf<P> c0 = project(net(centre));
-    double radius = 0;
-    each_index(net.extent, [&](const Index<N>& at) {
-        const P& p = net(at);
+    double farthest = 0, square = 0;  // from c0: of the numerator, of the points themselves
+    each_entry(net, [&](const P& p) {
         const double w = Space<P>::weight(p);
-        weight_min = std::min(weight_min, w);
-        weight_max = std::max(weight_max, w);
-        Vec<D> shifted;
+        weight_min = w < weight_min ? w : weight_min;
+        weight_max = w > weight_max ? w : weight_max;
+        double sum = 0;
         for (int i = 0; i < D; ++i) {
-            shifted[i] = p[i] - w * c0[i];
-            largest = std::max(largest, std::abs(p[i]));
+            const double shifted = p[i] - w * c0[i], a = std::abs(p[i]);
+            sum += shifted * shifted;
+            largest = a > largest ? a : largest;
         }
-        radius = std::max(radius, norm(shifted) / w);
+        farthest = sum > farthest ? sum : farthest;
+        const double part = kRational ? sum / (w * w) : sum;
+        square = part > square ? part : square;
     });
+    double radius = std::sqrt(square) * (1 + 8 * kUnitRoundoff);
+    if (!(farthest > 1e-280 && farthest < 1e280 && weight_min > 1e-140 && weight_max < 1e140)) {
+        radius = 0;  // squares are too small or too large
+        each_entry(net, [&](const P& p) {
+            const double w = Space<P>::weight(p);
+            Vec<D> shifted;
+            for (int i = 0; i < D; ++i) shifted[i] = p[i] - w * c0[i];
+            radius = std::max(radius, norm(shifted) / w);
+        });
+    }
     const double slip = steps * kUnitRoundoff * largest,
                  weight_slip = Space<P>::kRational ? steps * kUnitRoundoff * weight_max : 0;
     radius += 2 * slip / weight_min;
@@ -270,6 +306,8 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                         out.d[slot_of<N>(i - k, j - l)];
         return most;
     };
+    const double divisor = weight_min * (1 - 16 * steps * kUnitRoundoff);
+    double invert = 1;  // of the weight in the middle
     for (int sum = kRational ? 0 : 1; sum <= top; ++sum)
         for (int j = 0; j <= std::min(sum, across); ++j) {
             const int i = sum - j;
@@ -290,8 +328,9 @@ DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std:
                         middle[slot] -= (choose * weight_middle[part]) * middle[rest];
                     }
                 if (ruled && i > 0 && j > 0) most = std::min(most, by_rulings(i, j, factor, rounding));
-                most /= weight_min * (1 - 16 * steps * kUnitRoundoff);
-                middle[slot] *= 1 / weight_middle[0];
+                most /= divisor;
+                if (sum == 0) invert = 1 / weight_middle[0];
+                middle[slot] *= invert;
             }
             if (sum > 0) out.d[slot] = most * (1 + 64 * kUnitRoundoff);
         }

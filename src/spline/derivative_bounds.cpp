@@ -9,6 +9,7 @@
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
 #include "kinks_detail.hpp"
+#include "room_detail.hpp"
 #include "swept_bounds_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -23,7 +24,39 @@ namespace {
 
 constexpr double kSmallestBlock = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
-// Calls f(net, widths) for the pieces of a spline that meet the box, each restricted to its part of it.
+// de Casteljau on points of n numbers, one after the other: their part on [0, t], or on [t, 1].
+void keep_left_of(double* b, int size, int n, double t) {
+    for (int r = 1; r < size; ++r)
+        for (int i = size - 1; i >= r; --i) {
+            double *const to = b + std::ptrdiff_t(i) * n, *const from = to - n;
+            for (int c = 0; c < n; ++c) to[c] = (1 - t) * from[c] + t * to[c];
+        }
+}
+void keep_right_of(double* b, int size, int n, double t) {
+    for (int r = 1; r < size; ++r)
+        for (int i = 0; i < size - r; ++i) {
+            double *const to = b + std::ptrdiff_t(i) * n, *const from = to + n;
+            for (int c = 0; c < n; ++c) to[c] = (1 - t) * to[c] + t * from[c];
+        }
+}
+
+// Restricts a block without gaps along one axis of the piece's own interval `on` to `part`.
+template <std::size_t N, class P>
+void restrict_block(const NetView<N, P>& block, std::size_t axis, Interval on, Interval part) {
+    const int size = block.extent[axis], n = int(block.stride[axis]) * P::kCoords,
+              blocks = int(count_of(block.extent)) / (size * int(block.stride[axis]));
+    for (int k = 0; k < blocks; ++k) {
+        double* const first = block.data->c.data() + std::ptrdiff_t(k) * size * n;
+        const auto restrict_rows = [&](int numbers) {  // as a constant, where it can be one
+            if (part.hi < on.hi) keep_left_of(first, size, numbers, (part.hi - on.lo) / on.length());
+            if (part.lo > on.lo) keep_right_of(first, size, numbers, (part.lo - on.lo) / (part.hi - on.lo));
+        };
+        n == P::kCoords ? restrict_rows(P::kCoords) : restrict_rows(n);
+    }
+}
+
+// Calls f(net, widths) for the pieces of a spline that meet the box, each restricted to its part of it. The
+// nets have no gaps.
 template <std::size_t N, class P, class F>
 void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box, F&& f) {
     Index<N> from{}, count{};
@@ -37,19 +70,22 @@ void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& 
         from[d] = first;
         count[d] = last - first + 1;
     }
-    std::vector<P> block;
+    Room<P> room;
     each_index(count, [&](const Index<N>& k) {
         Index<N> piece{};
         for (std::size_t d = 0; d < N; ++d) piece[d] = from[d] + k[d];
         const NetView<N, const P> whole = pieces.net(piece);
-        block.resize(std::size_t(count_of(whole.extent)));
-        NetView<N, P> own{block.data(), whole.extent, {}};
+        NetView<N, P> own{room.of(std::size_t(count_of(whole.extent))), whole.extent, {}};
         std::ptrdiff_t stride = 1;
         for (std::size_t d = N; d-- > 0;) {
             own.stride[d] = stride;
             stride *= whole.extent[d];
         }
-        each_index(whole.extent, [&](const Index<N>& at) { own(at) = whole(at); });
+        P* to = own.data;
+        each_fibre(int(N) - 1, whole.extent, [&](const Index<N>& at) {
+            const auto row = whole.fibre(int(N) - 1, at);
+            for (int i = 0; i < row.size; ++i) *to++ = row[i];
+        });
         std::array<double, N> width{};
         const auto on = pieces.box(piece);
         for (std::size_t d = 0; d < N; ++d) {
@@ -64,10 +100,7 @@ void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& 
                 hi = std::min(on[d].hi, hi + lack);
             }
             if (lo <= on[d].lo && hi >= on[d].hi) continue;
-            each_fibre(int(d), whole.extent, [&](const Index<N>& at) {
-                if (hi < on[d].hi) keep_left(own.fibre(int(d), at), (hi - on[d].lo) / width[d]);
-                if (lo > on[d].lo) keep_right(own.fibre(int(d), at), (lo - on[d].lo) / (hi - on[d].lo));
-            });
+            restrict_block(own, d, on[d], {lo, hi});
             width[d] = hi - lo;
         }
         f(NetView<N, const P>(own), width);
@@ -113,17 +146,17 @@ typename DerivativeQuery<N, D>::Both bounds_along(const BezierPieces<N, P>& piec
                                                   bool with_all) {
     using Q = std::conditional_t<Space<P>::kRational, Hom<1>, Vec<1>>;
     typename DerivativeQuery<N, D>::Both out;
-    std::vector<Q> one;
+    Room<Q> room;
     each_part(pieces, box, [&](const NetView<N, const P>& net, const std::array<double, N>& width) {
         if (with_all) out.all.include(derivative_bounds<N, P>(net, width, order));
-        one.clear();
+        const std::size_t size = std::size_t(count_of(net.extent));
+        Q* const one = room.of(size);
         double largest = 0;
-        each_index(net.extent, [&](const Index<N>& at) {
-            one.push_back(coordinate_along(net(at), n));
-            for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(net(at)[i]));
-        });
-        out.along.include(
-            derivative_bounds<N, Q>({one.data(), net.extent, net.stride}, width, order, 2 * largest));
+        for (std::size_t k = 0; k < size; ++k) {
+            one[k] = coordinate_along(net.data[k], n);
+            for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(net.data[k][i]));
+        }
+        out.along.include(derivative_bounds<N, Q>({one, net.extent, net.stride}, width, order, 2 * largest));
     });
     return out;
 }

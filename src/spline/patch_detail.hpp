@@ -29,6 +29,7 @@
 // References: [Higham 2002, ch. 3] for the counting of roundings.
 #pragma once
 #include "coefficients_detail.hpp"
+#include "partials_detail.hpp"
 #include "prepared_detail.hpp"
 
 #include <freiform/spline/bezier.hpp>
@@ -181,8 +182,7 @@ void Patch<N, P, B>::partials(const Param<N>& u, int order, std::span<Point> out
     for (std::size_t d = 0; d < N; ++d) {
         const double x = bases_[d].wrap(component<N>(u, d));
         const int s = bases_[d].span(x);
-        for (int k = 0; k <= order; ++k)
-            weights_in_span(bases_[d], s, x, k, w + d * per_axis + std::size_t(k) * (kMaxDegree + 1));
+        detail::weights_up_to(bases_[d], s, x, order, kMaxDegree + 1, w + d * per_axis);
         first[d] = (s - bases_[d].degree()) % bases_[d].size();
         count[d] = bases_[d].degree() + 1;
         extent[d] = order + 1;
@@ -195,15 +195,23 @@ void Patch<N, P, B>::partials(const Param<N>& u, int order, std::span<Point> out
         heap_h.resize(size);
         h = heap_h.data();
     }
-    each_index(extent, [&](const Index<N>& a) {
-        int sum = 0;
-        for (int x : a) sum += x;
-        if (sum > order) return;
-        std::array<const double*, N> row{};
-        for (std::size_t d = 0; d < N; ++d) row[d] = w + d * per_axis + std::size_t(a[d]) * (kMaxDegree + 1);
-        Index<N> at{};
-        h[jet_slot(a)] = detail::contract(net_.view(), row, first, count, at, 0);
-    });
+    std::array<const double*, N> row{};
+    for (std::size_t d = 0; d < N; ++d) row[d] = w + d * per_axis;
+    if constexpr (N <= 2) {
+        detail::contract_all<N, P>(net_.view(), row, kMaxDegree + 1, first, count, order, h);
+    } else {
+        each_index(extent, [&](const Index<N>& a) {
+            int sum = 0;
+            for (int x : a) sum += x;
+            if (sum > order) return;
+            std::array<const double*, N> of = row;
+            for (std::size_t d = 0; d < N; ++d) of[d] += a[d] * (kMaxDegree + 1);
+            Index<N> at{};
+            h[jet_slot(a)] = detail::contract(net_.view(), of, first, count, at, 0);
+        });
+    }
+    if constexpr (N <= 2 && Space<P>::kRational)
+        if (order <= kStackOrder) return detail::project_low<N, P>(order, h, out);
     project_jet<N, P>(order, std::span<const P>(h, size), out);
 }
 

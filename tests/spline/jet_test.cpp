@@ -171,5 +171,61 @@ TEST(Jet, partials_are_limits_of_differences_of_partials_of_one_order_less) {
     expect_differences<3, Hom<3>>(16);
 }
 
+// The slow twin: every order by itself.
+template <std::size_t N, class P>
+std::vector<PointOf<P>> order_by_order(const Patch<N, P>& s, const Param<N>& u, int order) {
+    const auto orders = jet_orders<N>(order);
+    std::vector<P> h(orders.size());
+    for (std::size_t slot = 0; slot < orders.size(); ++slot) {
+        std::array<std::array<double, kMaxDegree + 1>, 2> w{};
+        Index<2> first{}, count{1, 1};
+        w[1][0] = 1;
+        for (std::size_t d = 0; d < N; ++d) {
+            first[d] = weights(s.basis(int(d)), component<N>(u, d), orders[slot][d], w[d].data());
+            count[d] = s.basis(int(d)).degree() + 1;
+        }
+        for (int i = 0; i < count[0]; ++i) {
+            P inner{};
+            for (int k = 0; k < count[1]; ++k) {
+                Index<N> at{};
+                at[0] = (first[0] + i) % s.basis(0).size();
+                if constexpr (N == 2) at[1] = (first[1] + k) % s.basis(1).size();
+                if constexpr (N == 1)
+                    inner = s.net().view()(at);
+                else
+                    inner += w[1][std::size_t(k)] * s.net().view()(at);
+            }
+            h[slot] += w[0][std::size_t(i)] * inner;
+        }
+    }
+    std::vector<PointOf<P>> out(orders.size());
+    project_jet<N, P>(order, h, out);
+    return out;
+}
+
+template <std::size_t N, class P>
+void expect_twins(Random& random) {
+    for (int round = 0; round < 60; ++round) {
+        const Ends ends = random.chance(0.3) ? Ends::closed : Ends::clamped;
+        const auto s = test::random_patch<N, P>(random, 6, {.ends = ends});
+        Param<N> u{};
+        const auto on = s.domain();
+        if constexpr (N == 1)
+            u = random.real(on[0].lo, on[0].hi);
+        else
+            for (std::size_t d = 0; d < N; ++d) u[d] = random.real(on[d].lo, on[d].hi);
+        for (int order = 0; order <= 4; ++order)
+            EXPECT_EQ(s.derivatives(u, order), order_by_order(s, u, order)) << order;
+    }
+}
+
+TEST(Jet, what_orders_share_is_done_once_and_changes_no_bit) {
+    Random random(11);
+    expect_twins<1, Vec<2>>(random);
+    expect_twins<1, Hom<3>>(random);
+    expect_twins<2, Vec<3>>(random);
+    expect_twins<2, Hom<3>>(random);
+}
+
 }  // namespace
 }  // namespace freiform

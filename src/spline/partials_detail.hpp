@@ -1,0 +1,87 @@
+// Partial derivatives of curves and surfaces at one place.
+#pragma once
+#include <freiform/basis/blossom.hpp>
+#include <freiform/spline/jet.hpp>
+
+#include <algorithm>
+#include <span>
+
+namespace freiform::detail {
+
+// Derivatives of low orders are asked for one place at a time, over and over: they are found with what they
+// share done once, bit for bit as weights_in_span, `contract` and project_jet say.
+
+// The weights of all orders up to `order`, those of order r at w + r * stride.
+template <Basis B>
+void weights_up_to(const B& basis, int span, double u, int order, std::ptrdiff_t stride, double* w) {
+    const int p = basis.degree();
+    double b[kMaxDegree + 1];
+    b[0] = 1;
+    for (int r = p + 1; r <= order; ++r) std::fill_n(w + r * stride, p + 1, 0.0);
+    for (int k = 0; k <= p; ++k) {
+        if (k > 0) blossom_step(basis, span, k, u, b);
+        if (p - k > order) continue;
+        double* const row = w + (p - k) * stride;
+        std::copy_n(b, k + 1, row);
+        for (int m = k + 1; m <= p; ++m) {
+            derivative_step(basis, span, m, row);
+            for (int i = 0; i <= m; ++i) row[i] *= m;
+        }
+    }
+}
+
+// All sums up to total order `order`, in graded order. Those along the last axis serve all orders along the
+// first. `w`: the weights of each order along each axis, `stride` apart.
+template <std::size_t N, class P>
+requires(N <= 2) void contract_all(const NetView<N, const P>& net, const std::array<const double*, N>& w,
+                                   std::ptrdiff_t stride, const Index<N>& first, const Index<N>& count,
+                                   int order, P* out) {
+    constexpr std::size_t last = N - 1;
+    const auto sum_along = [&](const P* row, int a) {
+        const double* const weight = w[last] + a * stride;
+        P sum{};
+        int i = first[last];
+        for (int k = 0; k < count[last]; ++k) {
+            const P& p = row[i * net.stride[last]];
+            for (int c = 0; c < P::kCoords; ++c) sum[c] += weight[k] * p[c];
+            if (++i == net.extent[last]) i = 0;  // closed bases wrap; the others end here
+        }
+        return sum;
+    };
+    if constexpr (N == 1) {
+        for (int a = 0; a <= order; ++a) out[a] = sum_along(net.data, a);
+    } else {
+        std::fill_n(out, std::size_t((order + 1) * (order + 2) / 2), P{});
+        int i = first[0];
+        for (int k = 0; k < count[0]; ++k) {
+            for (int b = 0; b <= order; ++b) {
+                const P inner = sum_along(net.data + i * net.stride[0], b);
+                for (int a = 0; a + b <= order; ++a) {
+                    P& sum = out[(a + b) * (a + b + 1) / 2 + b];
+                    const double weight = w[0][a * stride + k];
+                    for (int c = 0; c < P::kCoords; ++c) sum[c] += weight * inner[c];
+                }
+            }
+            if (++i == net.extent[0]) i = 0;
+        }
+    }
+}
+
+// project_jet up to order 3.
+template <std::size_t N, class P>
+requires(N <= 2 && Space<P>::kRational) void project_low(int order, const P* h, std::span<PointOf<P>> out) {
+    constexpr double kChoose[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+    const auto slot = [](int i, int j) { return std::size_t(N == 1 ? i : (i + j) * (i + j + 1) / 2 + j); };
+    for (int total = 0; total <= order; ++total)
+        for (int j = 0; j <= (N == 1 ? 0 : total); ++j) {
+            const int i = total - j;
+            PointOf<P> v;
+            for (int c = 0; c < v.kCoords; ++c) v[c] = h[slot(i, j)][c];
+            for (int k = 0; k <= i; ++k)
+                for (int l = k == 0 ? 1 : 0; l <= j; ++l)
+                    v -= (kChoose[i][k] * kChoose[j][l] * h[slot(k, l)].weight()) * out[slot(i - k, j - l)];
+            for (int c = 0; c < v.kCoords; ++c) out[slot(i, j)][c] = v[c] / h[0].weight();
+        }
+}
+
+}  // namespace freiform::detail
