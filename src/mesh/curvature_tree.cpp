@@ -15,12 +15,15 @@
 // Kinks: where f_u jumps by at most J across u = u0, f has the part J (u - u0)_+ more (in the limit of
 // smoothings of f); its interpolant on a triangle from u0 - a to u0 + b is off by at most J a b / (a + b).
 // Applied to all of S, this bounds more than the distance; bending.cpp applies it to what is seen along
-// normals. The tree halves boxes: parts of a third or a fifth, which would fit uniform curvature better, cost
-// more points where boxes of different sizes meet (a fifth more triangles on the models of bench/REPORT.md).
-// References: [Waldron 1998] (min-containment radius), [Filip Magedson Markot 1986] (second derivatives).
-// Why not sampling: a bump between the samples is missed, see the adversarial bump in the tests.
+// normals. Bounds over a box hold over its parts: the halves of a box that is not fine mostly are by its own
+// bounds, unless normals turn much within it, and need none of their own. The tree halves boxes: parts of a
+// third or a fifth, which would fit uniform curvature better, cost more points where boxes of different sizes
+// meet (a fifth more triangles on the models of bench/REPORT.md). References: [Waldron 1998] (min-containment
+// radius), [Filip Magedson Markot 1986] (second derivatives). Why not sampling: a bump between the samples is
+// missed, see the adversarial bump in the tests.
 #include "curvature_tree_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/mesh/segment_box.hpp>
 
@@ -36,6 +39,7 @@ namespace freiform {
 namespace {
 
 constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
+constexpr double kLittleTilt = 0.125;
 
 // More than a part of the edge.
 bool has_common_part(const Box<2>& a, const Box<2>& b) {
@@ -142,14 +146,16 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     for (const Vec<2>& p : polygon) root.add(p);
     struct Item {
         int node, depth;
-        Curvature outer;
+        BoxBending outer;  // of the smallest box around it of which bounds have been found
         std::vector<std::array<int, 2>> near;
         bool inside = false;  // wholly
     };
     std::vector<Item> stack;
-    tree.nodes_.push_back({root, {}});
-    constexpr double kAny = std::numeric_limits<double>::infinity();
-    stack.push_back({0, 0, {kAny, kAny, kAny}, {segments.begin(), segments.end()}, false});
+    tree.nodes_.push_back({root, {}, 0});
+    BoxBending any;
+    any.full = {kInfinity, kInfinity, kInfinity};
+    any.first[0] = any.first[1] = kInfinity;
+    stack.push_back({0, 0, any, {segments.begin(), segments.end()}});
     std::size_t leaves = 1;
     while (!stack.empty()) {
         const Item item = std::move(stack.back());
@@ -163,38 +169,44 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             continue;
         }
         Node& node = tree.nodes_[std::size_t(item.node)];
+        double length[2];
+        // What is known of the box decides; whether it is fine, and whether it stays whole.
+        const auto is_leaf = [&](const BoxBending& known, bool& fine) {
+            node.bending = known;
+            const double error = known.full.along(size[0], size[1]) / 8 + tree.kink_bound(box);
+            for (int d = 0; d < 2; ++d) length[d] = known.first[d] * size[d];
+            const double longer = std::max(length[0], length[1]), shorter = std::min(length[0], length[1]);
+            const bool round = longer <= demands.max_aspect * shorter || longer <= tolerance;
+            fine = tree.accept(node, error, tolerance);
+            return fine && longer <= demands.max_edge && round;
+        };
+        bool fine = false;
+        // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
+        if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(item.outer, fine)) continue;
         // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but
         // the last boxes, they need not be found.
         const auto middle = jet<2>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
         Curvature matters = seen_at(middle, knows_normals);
-        double length[2] = {norm(middle(1, 0)) * size[0], norm(middle(0, 1)) * size[1]};
+        for (int d = 0; d < 2; ++d) length[d] = norm(middle.d[std::size_t(d + 1)]) * size[d];
         std::optional<Cut> cut;
         if (matters.along(size[0], size[1]) / 8 > tolerance && item.depth < kMaxDepth)
             cut = tree.cut(box, longer_side(matters, size, length));
-        Curvature outer = item.outer;
+        BoxBending outer = item.outer;
         if (!cut) {
-            const BoxBending bending =
-                bending_of(surface, box, knows_normals, {{middle.d[0], middle.d[1], middle.d[2]}});
-            node.bending = bending;
+            const Curvature before = outer.full;
+            outer = bending_of(surface, box, knows_normals, {{middle.d[0], middle.d[1], middle.d[2]}});
             // What holds for the whole holds for a part: of very small boxes rounding would make the bound
             // larger.
-            Curvature& c = node.bending.full;
-            c.restrict_to(item.outer);
-            outer = c;
-            const double error = c.along(size[0], size[1]) / 8 + tree.kink_bound(box);
-            for (int d = 0; d < 2; ++d) length[d] = bending.first[d] * size[d];
-            const double longer = std::max(length[0], length[1]), shorter = std::min(length[0], length[1]);
-            const bool round = longer <= demands.max_aspect * shorter || longer <= tolerance;
-            const bool short_enough = longer <= demands.max_edge && round;
-            const bool fine = tree.accept(node, error, tolerance);
-            if ((fine && short_enough) || !(size[0] > 0) || !(size[1] > 0)) continue;
+            outer.full.restrict_to(before);
+            if (is_leaf(outer, fine) || !(size[0] > 0) || !(size[1] > 0)) continue;
+            const double error = outer.full.along(size[0], size[1]);
             if (item.depth == kMaxDepth) {
                 if (!std::isfinite(error))
                     return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
                                   "the surface has no bounded curvature here");
                 continue;
             }
-            matters = node.bending.least > 0 ? node.bending.seen(0) : c;
+            matters = outer.least > 0 ? outer.seen(0) : outer.full;
             const int axis = fine || !std::isfinite(error) ? int(length[0] < length[1])
                                                            : longer_side(matters, size, length);
             cut = tree.cut(box, axis);
@@ -218,8 +230,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         }
         Box<2> low = box, high = box;
         low.hi[axis] = high.lo[axis] = at;
-        tree.nodes_.push_back({low, {}});
-        tree.nodes_.push_back({high, {}});
+        tree.nodes_.push_back({low, {}, item.node});
+        tree.nodes_.push_back({high, {}, item.node});
     }
     bool all_flat = true;                               // enough to do without normals
     for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
@@ -228,8 +240,10 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             n.bending = a.outside ? b.bending : a.bending;
             if (!a.outside && !b.outside) n.bending.include(b.bending);
             n.outside = a.outside && b.outside;
+            n.whole = a.whole && b.whole;
         } else if (!n.outside) {
             all_flat = all_flat && n.flat;
+            n.whole = true;
         }
     if (all_flat) tree.knows_normals_ = false;
     tree.find_corners();
@@ -282,11 +296,29 @@ bool CurvatureTree::is_outside(const Box<2>& box) const {
     return true;
 }
 
-Bending CurvatureTree::over(const Box<2>& box) const {
+int CurvatureTree::place_of(const Box<2>& box, int near) const {
+    const auto holds = [&](int n) {
+        const Box<2>& b = nodes_[std::size_t(n)].box;
+        return b.contains(box.lo) && b.contains(box.hi);
+    };
+    while (near != 0 && !holds(near)) near = nodes_[std::size_t(near)].parent;
+    for (int child; (child = nodes_[std::size_t(near)].child) >= 0;) {
+        if (!holds(child) && !holds(++child)) break;
+        near = child;
+    }
+    return near;
+}
+
+const Curvature* CurvatureTree::all_in(int place, const Box<2>& box) const {
+    const Node& n = nodes_[std::size_t(place)];
+    return n.whole && n.box.contains(box.lo) && n.box.contains(box.hi) ? &n.bending.full : nullptr;
+}
+
+Bending CurvatureTree::over(const Box<2>& box, int place) const {
     Bending all;
     bool any = false;
     int stack[2 * kMaxDepth + 4], size = 0;
-    stack[size++] = 0;
+    stack[size++] = place;
     while (size > 0) {
         const Node& n = nodes_[std::size_t(stack[--size])];
         if (n.outside || !has_common_part(n.box, box)) continue;
@@ -302,11 +334,11 @@ Bending CurvatureTree::over(const Box<2>& box) const {
     return all;
 }
 
-std::optional<Curvature> CurvatureTree::all_over(const Box<2>& box) const {
+std::optional<Curvature> CurvatureTree::all_over(const Box<2>& box, int place) const {
     if (!nodes_[0].box.contains(box.lo) || !nodes_[0].box.contains(box.hi)) return std::nullopt;
     Curvature all;
     int stack[2 * kMaxDepth + 4], size = 0;
-    stack[size++] = 0;
+    stack[size++] = place;
     while (size > 0) {
         const Node& n = nodes_[std::size_t(stack[--size])];
         if (!has_common_part(n.box, box)) continue;

@@ -100,10 +100,15 @@ public:
                                       bool knows_normals = true);
 
     bool is_outside(const Box<2>& box) const;  // wholly, and known to be
-    // Over the part of the box that is not wholly outside the polygon.
-    Bending over(const Box<2>& box) const;
+    // Where the tree holds the box: the smallest part of it that contains the box, or all of it. Boxes near
+    // the one that was asked for before are found from there, others from 0.
+    int place_of(const Box<2>& box, int near = 0) const;
+    // Of all of the part of the tree at `place`; nothing if the box is not in it, or some of it is not known.
+    const Curvature* all_in(int place, const Box<2>& box) const;
+    // Over the part of the box that is not wholly outside the polygon. `place`: of the box.
+    Bending over(const Box<2>& box, int place) const;
     // Of the whole box; nothing if some of it is not in the tree.
-    std::optional<Curvature> all_over(const Box<2>& box) const;
+    std::optional<Curvature> all_over(const Box<2>& box, int place) const;
     // Whether shifts are not wanted, or save nothing.
     bool is_all_plain() const { return !knows_normals_; }
     bool meets_kink(const Box<2>& box) const;  // its edge included
@@ -124,9 +129,11 @@ private:
     struct Node {
         Box<2> box;
         Bending bending;
+        int parent = 0;
         int child = -1;  // the first of two neighbours in nodes_; -1: a leaf
         bool outside = false;
-        bool flat = false;  // fine without a shift
+        bool whole = false;  // nothing of it is outside
+        bool flat = false;   // fine without a shift
     };
     struct Cut {
         int axis;

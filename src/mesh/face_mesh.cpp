@@ -7,10 +7,11 @@
 // inner points are added, so that the neighbours across the boundary never notice. Metric: Delaunay in the
 // plane where a mean leaf is a square, since leaves have about equal error in both directions and the
 // Delaunay triangulation has the smallest largest min-containment circle. The scales are powers of two, so
-// nothing is rounded. Cost: one bound per created triangle, O(log leaves). Accuracy: `bound` is the largest
-// over all triangles, collapsed ones (at poles) included, because the surface there has to be near something
-// too.
+// nothing is rounded. Cost: one bound per created triangle, from leaves near those of the triangle before.
+// Accuracy: `bound` is the largest over all triangles, collapsed ones (at poles) included, because the
+// surface there has to be near something too.
 #include "filler_detail.hpp"
+#include "simple_polygons_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
@@ -108,6 +109,7 @@ void cut_poles(Polygon& polygon, const FaceBoundary& boundary, std::span<const C
 std::vector<BoundaryConflict> find_conflicts(const FaceBoundary& boundary) {
     auto polygon = merged(boundary);
     if (!polygon) return {polygon.error()};
+    if (are_simple_polygons(polygon->points, polygon->segments)) return {};
     auto t = Triangulation::attempt(polygon->points, polygon->segments);
     if (t) return {};
     std::vector<BoundaryConflict> all;

@@ -15,7 +15,6 @@ constexpr double kPole = 1.0 / 64;
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
-constexpr double kLittle = 1.0 / 256;           // of the error: what a shift may add without a closer look
 constexpr double kMargin = 0.125;               // of the box of the face: what is looked at beyond it
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
@@ -171,21 +170,25 @@ Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::ar
             reflected = 3;
             if (reach[d] > limits_[std::size_t(d)].length()) return k;
         }
-    // What holds everywhere serves where it is enough.
+    // True if it is enough to know that `near` bounds second derivatives around.
+    const auto is_enough = [&](const Curvature& near) {
+        const Shift shift = shift_of(at, e, near, reflected);
+        if (!shift.exists) return false;
+        k.shifted = true;
+        const Curvature seen = at.seen(shift.turn);
+        const double bound = plain > 0
+                                 ? shift.way(e)
+                                 : std::min(e, shift.across(linear_interpolation_bound(seen, a, b, c), e));
+        if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : seen;
+        return k.bound <= demands_.tolerance;
+    };
+    // What holds everywhere first, then what holds in the part of the tree that has all of it.
     const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
-    Shift shift;
-    if (whole_.contains(inside.lo) && whole_.contains(inside.hi))
-        shift = shift_of(at, e, whole_bends_, reflected);
-    if (!(shift.exists && shift.q <= kLittle)) {
-        const auto near = tree_.all_over(around);
-        shift = shift_of(at, e, near ? *near : over_clamped(inside), reflected);
-    }
-    if (!shift.exists) return k;
-    k.shifted = true;
-    k.curvature = at.seen(shift.turn);
-    const double across = shift.across(linear_interpolation_bound(k.curvature, a, b, c), e);
-    k.bound = plain > 0 ? shift.way(e) : std::min(e, across);
-    if (plain > 0) k.curvature = at.full;
+    if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_)) return k;
+    const int place = tree_.place_of(around, place_);
+    if (const Curvature* all = tree_.all_in(place, around); all && is_enough(*all)) return k;
+    const auto near = tree_.all_over(around, place);
+    is_enough(near ? *near : over_clamped(inside));
     return k;
 }
 
@@ -201,7 +204,8 @@ const Filler::Known& Filler::known(int triangle) {
     Box<2> box;
     for (const Vec<2>& p : corner) box.add(p);
     const int plain = is_plain(v[0]) + is_plain(v[1]) + is_plain(v[2]);
-    const Bending over = tree_.over(box);
+    place_ = tree_.place_of(box, place_);
+    const Bending over = tree_.over(box, place_);
     Known k = judged(over, box, corner, plain);
     if (!(k.bound <= demands_.tolerance)) {
         Bending own = bending_of(surface_, box, plain < 3);

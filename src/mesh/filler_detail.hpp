@@ -61,6 +61,7 @@ private:
     const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
+    int place_ = 0;  // in the tree, of the triangle that was last judged
     std::size_t most_for_angles_ = 0;
     std::array<Interval, 2> limits_;
     Box<2> whole_;                   // somewhat more than the face, within the limits
