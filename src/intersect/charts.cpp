@@ -7,7 +7,7 @@ namespace freiform::detail {
 
 namespace {
 
-constexpr std::size_t kMostToRefine = 60'000;
+constexpr std::size_t kMostToRefine = 60'000, kMostBeforeCoarse = 4'000;
 
 }  // namespace
 
@@ -25,11 +25,18 @@ Charts::Charts(Sheet& a, Sheet& b, std::span<const SameMap> same) : sheets_{&a, 
     }
 }
 
-void Charts::search(double nearness, double finest, int max_pairs) {
+void Charts::search(double nearness, double finest, int max_pairs, double coarse, const IsKnown& is_known) {
     max_pairs_ = max_pairs, nearness_ = nearness;
     nodes_.assign(1, Node{});
     open_.assign(1, 0);
-    look_at_all();
+    look_at_all(coarse > nearness ? kMostBeforeCoarse : std::numeric_limits<std::size_t>::max());
+    if (!open_.empty()) {
+        charts_.clear(), given_up_.clear(), same_.clear(), explained_cells_.clear(), left_.clear();
+        nearness_ = coarse;
+        nodes_.assign(1, Node{});
+        open_.assign(1, 0);
+        look_at_all(std::numeric_limits<std::size_t>::max());
+    }
     std::ranges::sort(explained_cells_, {}, [](const auto& e) { return e.first; });
     struct Batch {
         std::vector<int> nodes;
@@ -54,18 +61,22 @@ void Charts::search(double nearness, double finest, int max_pairs) {
     while (!batches.empty()) {
         const Batch batch = std::move(batches.back());
         batches.pop_back();
-        if (batch.nearness <= finest || batch.nodes.size() > kMostToRefine) {
+        const bool is_coarse = batch.nearness > nearness;
+        const bool is_settled = is_coarse && batch.nodes.size() <= kMostToRefine &&
+                                is_known(cluster_of(batch.nodes, false), int(clusters_.size()));
+        if (is_settled || batch.nearness <= finest || (!is_coarse && batch.nodes.size() > kMostToRefine)) {
             finish(batch.nodes, false);
             continue;
         }
         const std::size_t charts = charts_.size(), left = left_.size();
         given_up_.clear();
         nearness_ = batch.nearness * 0x1p-4;
+        if (is_coarse) nearness_ = std::max(nearness_, nearness);
         for (const int n : batch.nodes) split(n);
-        look_at_all();
+        look_at_all(std::numeric_limits<std::size_t>::max());
         std::ranges::sort(explained_cells_, {}, [](const auto& e) { return e.first; });
         // About a point there are always as many; along a curve four times as many, for nothing.
-        if (left_.size() > left || 2 * given_up_.size() > 5 * batch.nodes.size() + 2000) {
+        if (!is_coarse && (left_.size() > left || 2 * given_up_.size() > 5 * batch.nodes.size() + 2000)) {
             for (const int n : batch.nodes) nodes_[std::size_t(n)].left = -1;
             charts_.resize(charts);
             left_.resize(left);
@@ -79,8 +90,8 @@ void Charts::search(double nearness, double finest, int max_pairs) {
     }
 }
 
-void Charts::look_at_all() {
-    while (!open_.empty()) {
+void Charts::look_at_all(std::size_t most_given_up) {
+    while (!open_.empty() && given_up_.size() <= most_given_up) {
         const int node = open_.back();
         open_.pop_back();
         if (++looked_at_ <= max_pairs_) {
@@ -91,19 +102,23 @@ void Charts::look_at_all() {
     }
 }
 
-void Charts::finish(const std::vector<int>& nodes, bool same) {
+Cluster Charts::cluster_of(const std::vector<int>& nodes, bool same) const {
     Cluster c;
     c.same = same;
     for (const int n : nodes) {
-        Node& node = nodes_[std::size_t(n)];
-        node.cluster = int(clusters_.size());
+        const Node& node = nodes_[std::size_t(n)];
         const auto own =
             std::ranges::lower_bound(explained_cells_, n, {}, [](const auto& e) { return e.first; });
         const bool is_explained = own != explained_cells_.end() && own->first == n;
         c.cores.push_back(is_explained ? own->second : core(node.parts));
         if (node.map >= 0 && std::ranges::find(c.maps, node.map) == c.maps.end()) c.maps.push_back(node.map);
     }
-    clusters_.push_back(std::move(c));
+    return c;
+}
+
+void Charts::finish(const std::vector<int>& nodes, bool same) {
+    for (const int n : nodes) nodes_[std::size_t(n)].cluster = int(clusters_.size());
+    clusters_.push_back(cluster_of(nodes, same));
 }
 
 // Groups of pairs that touch, over a sweep along one parameter.

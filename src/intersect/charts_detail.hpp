@@ -15,6 +15,7 @@
 #include "same_map_detail.hpp"
 #include "sheet_detail.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace freiform::detail {
@@ -61,7 +62,11 @@ public:
 
     // Finds all. What is no farther apart than `nearness` all over a pair of parts is halved no more; what
     // such pairs are about, if it seems to be one point, down to `finest`.
-    void search(double nearness, double finest, int max_pairs);
+    // Where that would be very many pairs, the search is for a coarser nearness, `coarse`, first: what is
+    // then near is given to `is_known` as the cluster with this number, and looked at no more where that is
+    // true.
+    using IsKnown = std::function<bool(const Cluster&, int number)>;
+    void search(double nearness, double finest, int max_pairs, double coarse, const IsKnown& is_known);
 
     const Sheet& sheet(std::size_t i) const { return *sheets_[i]; }
     std::vector<Chart>& charts() { return charts_; }
@@ -121,7 +126,8 @@ private:
                                                                 const std::array<Interval, 2>& with,
                                                                 double gap);
     void look(int node);
-    void look_at_all();
+    void look_at_all(std::size_t most_given_up);
+    Cluster cluster_of(const std::vector<int>& nodes, bool same) const;
     std::vector<std::vector<int>> neighbours(std::vector<int> nodes) const;
     void finish(const std::vector<int>& nodes, bool same);
     bool has_core_at(PartPair p, const Place4& x) const;

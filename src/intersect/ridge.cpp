@@ -291,6 +291,28 @@ std::vector<SurfaceBranch> RidgeTracer::all(const Cluster& cluster, int node) {
     return out;
 }
 
+bool RidgeTracer::are_all_of(const Cluster& cluster, const std::vector<SurfaceBranch>& branches) const {
+    constexpr int kSamplesOfRidge = 512;
+    std::vector<Vec<3>> on;
+    double spacing = 0;
+    for (const SurfaceBranch& b : branches) {
+        const Interval t = b.curve.domain()[0];
+        for (const int end : b.ends)
+            if (end != kAtBorder) return false;
+        for (int i = 0; i <= kSamplesOfRidge; ++i)
+            on.push_back(b.curve(t.lo + t.length() * i / kSamplesOfRidge));
+        spacing = std::max(spacing, 1.25 * t.length() / kSamplesOfRidge);
+    }
+    const auto place = [&](double u, double v) { return charts_.sheet(0).at(u, v).point; };
+    double widest = 0;
+    for (const auto& c : cluster.cores)
+        widest = std::max(widest, norm(place(c[0].hi, c[1].hi) - place(c[0].lo, c[1].lo)));
+    return !on.empty() && std::ranges::all_of(cluster.cores, [&](const std::array<Interval, 4>& c) {
+        const Vec<3> p = place(c[0].middle(), c[1].middle());
+        return std::ranges::any_of(on, [&](const Vec<3>& q) { return norm(q - p) <= 4 * widest + spacing; });
+    });
+}
+
 SurfaceBranch RidgeTracer::branch(const Run& back, const Run& forth) const {
     std::vector<Piece> pieces;
     for (std::size_t i = back.pieces.size(); i-- > 0;) {

@@ -34,6 +34,8 @@ public:
 
     // Every one in the cells of a cluster; `node`: what they end at inside.
     std::vector<SurfaceBranch> all(const Cluster& cluster, int node);
+    // Do these go round or to borders, and is every cell beside one of them?
+    bool are_all_of(const Cluster& cluster, const std::vector<SurfaceBranch>& branches) const;
 
 private:
     struct Valley {

@@ -30,6 +30,8 @@
 
 #include <freiform/core/text.hpp>
 
+#include <map>
+
 namespace freiform {
 
 std::string_view name_of(SurfaceNodeKind kind) {
@@ -55,6 +57,11 @@ std::string_view name_of(SurfaceBranchKind kind) {
 namespace {
 
 using namespace detail;
+
+// Of the extent of the smaller surface: how near they are in the strips about curves along which they touch,
+// where the tolerance would ask for very many parts.
+constexpr double kCoarse = 0x1p-15;
+constexpr std::size_t kMostUndecided = 64;
 
 Surface<Hom<3>> weighted_net(const Surface<Vec<3>>& s) { return to_rational(s); }
 const Surface<Hom<3>>& weighted_net(const Surface<Hom<3>>& s) { return s; }
@@ -205,9 +212,17 @@ detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, c
     // Finer, rounding leaves no chart beside a place where the surfaces touch.
     const double finest =
         std::max(0x1p-36 * tolerance, 0x1p8 * (sheet_a.inner_error() + sheet_b.inner_error()));
-    charts.search(tolerance, finest, options.max_pairs);
-    std::vector<Trace> traces = Tracer(charts).all();
     const BranchProof proof_a(shape_a, sheet_a), proof_b(shape_b, sheet_b);
+    RidgeTracer ridges(charts, {&shape_a, &shape_b}, {&proof_a, &proof_b}, tolerance);
+    std::map<int, std::vector<SurfaceBranch>> touching;  // of clusters that are known
+    const double coarse = kCoarse * std::min(sheet_a[0].extent(), sheet_b[0].extent());
+    charts.search(tolerance, finest, options.max_pairs, coarse, [&](const Cluster& c, int number) {
+        auto found = ridges.all(c, number);
+        if (!ridges.are_all_of(c, found)) return false;
+        touching[number] = std::move(found);
+        return true;
+    });
+    std::vector<Trace> traces = Tracer(charts).all();
     SplineIntersection all;
     SurfaceIntersection& out = all.found;
     std::vector<int> arms(charts.clusters().size());
@@ -219,7 +234,6 @@ detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, c
         for (const int end : ends)
             if (end >= 0) ++arms[std::size_t(end)];
     }
-    RidgeTracer ridges(charts, {&shape_a, &shape_b}, {&proof_a, &proof_b}, tolerance);
     for (std::size_t i = 0; i < arms.size(); ++i) {
         const Cluster& cluster = charts.clusters()[i];
         out.nodes.push_back(node_of(charts, cluster, arms[i], tolerance));
@@ -227,7 +241,9 @@ detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, c
             out.nodes.back().gap = std::max(out.nodes.back().gap, maps[std::size_t(map)].gap);
         all.maps_of_nodes.push_back(cluster.maps);
         if (out.nodes.back().kind != SurfaceNodeKind::along) continue;
-        for (SurfaceBranch& ridge : ridges.all(cluster, int(i))) {
+        const auto known = touching.find(int(i));
+        for (SurfaceBranch& ridge :
+             known == touching.end() ? ridges.all(cluster, int(i)) : std::move(known->second)) {
             ridge.node = int(i);
             for (const int end : ridge.ends) out.nodes.back().arms += end >= 0;
             out.nodes.back().kind = SurfaceNodeKind::tangent;
@@ -235,6 +251,12 @@ detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, c
         }
     }
     for (const PartPair& p : charts.left()) out.undecided.push_back(charts.core(p));
+    if (out.undecided.size() > kMostUndecided) {  // a heap tells no more than its hull
+        std::array<Interval, 4> box = out.undecided[0];
+        for (const auto& other : out.undecided)
+            for (std::size_t k = 0; k < 4; ++k) box[k] = hull(box[k], other[k]);
+        out.undecided.assign(1, box);
+    }
     return all;
 }
 

@@ -72,7 +72,7 @@ struct SurfaceNode {
 struct SurfaceIntersection {
     std::vector<SurfaceBranch> branches;
     std::vector<SurfaceNode> nodes;
-    // Parameters of both of which nothing is known: the budget ended.
+    // Parameters of both of which nothing is known: the budget ended. Many boxes are one around all.
     std::vector<std::array<Interval, 4>> undecided;
 };
 
