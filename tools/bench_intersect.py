@@ -39,6 +39,16 @@ Ten pairs of hills each; the tolerance is 1e-6. The time is that of the branches
 | ten pairs of | | time per pair | branches of | length of |
 |---|---|---:|---:|---:|
 {surfaces}
+
+## Nasty pairs
+
+Pairs that touch, overlap, nearly do so, or are singular where they meet; the tolerance is 1e-6 of coordinates of about 1, the budget the
+default one. The longest call of {nasty_count}: {nasty_longest}. "along": near each other and parallel, and no more is known; "undecided": the
+budget ended; more than 64 boxes that are left are shown as one around all.
+
+| pair | time | branches | tangent ones | points | overlaps | along | undecided |
+|---|---:|---:|---:|---:|---:|---:|---:|
+{nasty}
 """
 
 
@@ -80,13 +90,28 @@ def surface_table(best):
     return "\n".join(rows)
 
 
+def nasty(best):
+    """name -> numbers of the pairs that touch, overlap, ..."""
+    return {task.split(":")[1]: n for task, n in best["bench-surface_pairs"].items() if task.startswith("nasty:") and n}
+
+
+def nasty_table(pairs):
+    keys = ("crossing", "tangent", "points", "overlaps", "along", "undecided")
+    return "\n".join(f"| {name.replace('_', ' ')} | {duration(n['seconds'])} | " + " | ".join(f"{n[k]:.0f}" for k in keys) + " |"
+                     for name, n in pairs.items())
+
+
 def main():
     options = parse(argparse.ArgumentParser(description=__doc__.splitlines()[0]), "bench-intersect")
     top = head("bench_intersect.py")
     curves = measure(options.programs, dict.fromkeys(p for _, p, _ in METHODS))
     surfaces = measure(options.programs, [p for _, p in SURFACE_METHODS])
+    hard = nasty(surfaces)
+    longest = max(hard, key=lambda name: hard[name]["seconds"])
     write(options, "INTERSECT.md",
-          PAGE.format(head=top, rounds=ROUNDS, rows=table(curves), surfaces=surface_table(surfaces)))
+          PAGE.format(head=top, rounds=ROUNDS, rows=table(curves), surfaces=surface_table(surfaces), nasty=nasty_table(hard),
+                      nasty_count=len(hard),
+                      nasty_longest=f"{duration(hard[longest]['seconds'])} ({longest.replace('_', ' ')})"))
 
 
 if __name__ == "__main__":

@@ -2,6 +2,8 @@
 #include <freiform/core/parallel.hpp>
 #include <freiform/intersect/surface_surface.hpp>
 
+#include <chrono>
+#include <nasty_pairs.hpp>
 #include <surface_pairs.hpp>
 
 namespace {
@@ -49,10 +51,34 @@ bool measure(const bench::SurfacePairTask& task) {
     return ok;
 }
 
+// One call each, at 1e-6: how long it takes, and what it says.
+void measure_nasty() {
+    const auto hills = surface_of<Hom<3>>(bench::hills_over(10, 8300, false, 0, 1));
+    for (const bench::NastyPair& pair : bench::nasty_pairs(hills)) {
+        const auto begin = std::chrono::steady_clock::now();
+        const auto found = intersect(pair.a, pair.b, SurfaceIntersectOptions{.tolerance = 1e-6});
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+        if (!found) {
+            std::printf("nasty:%s failed\n", pair.name.c_str());
+            continue;
+        }
+        int tangent = 0, overlaps = 0, open = int(found->undecided.size()), along = 0, points = 0;
+        for (const SurfaceBranch& b : found->branches) tangent += b.kind == SurfaceBranchKind::tangent;
+        for (const SurfaceNode& n : found->nodes) {
+            overlaps += n.kind == SurfaceNodeKind::overlap, along += n.kind == SurfaceNodeKind::along;
+            points += n.kind == SurfaceNodeKind::touch || n.kind == SurfaceNodeKind::crossing;
+        }
+        std::printf("nasty:%s %.9g crossing=%d tangent=%d points=%d overlaps=%d along=%d undecided=%d\n",
+                    pair.name.c_str(), took.count(), int(found->branches.size()) - tangent, tangent, points,
+                    overlaps, along, open);
+    }
+}
+
 }  // namespace
 
 int main() {
     set_max_threads(1);
     for (const auto& task : bench::kSurfacePairTasks)
         if (!(task.rational ? measure<Hom<3>>(task) : measure<Vec<3>>(task))) return 1;
+    measure_nasty();
 }

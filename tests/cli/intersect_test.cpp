@@ -85,6 +85,34 @@ TEST_F(IntersectCommand, lines_meet_the_teapot) {
     }
 }
 
+// The triangle over [1/4, 3/4] of the plane z = 0, and an upright plane through x = 1/2: from the base to the
+// tip.
+TEST_F(IntersectCommand, trimmed_faces_are_cut_off_at_their_loops) {
+    const std::string face =
+        file("face.json", R"({"type": "trimmed", "surface": {"type": "surface", "degrees": [1, 1],
+        "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]},
+        "loops": [[{"degree": 1, "points": [[0.25,0.25],[0.75,0.25]]}, {"degree": 1, "points": [[0.75,0.25],[0.5,0.75]]},
+                   {"degree": 1, "points": [[0.5,0.75],[0.25,0.25]]}]]})");
+    const std::string wall = file("wall.json", R"({"type": "surface", "degrees": [1, 1],
+        "points": [[[0.5,-1,-1],[0.5,-1,1]],[[0.5,2,-1],[0.5,2,1]]]})");
+    for (const bool swapped : {false, true}) {
+        const Ran r = swapped ? run({"intersect", wall, face, "--tolerance", "1e-6", "--json"})
+                              : run({"intersect", face, wall, "--tolerance", "1e-6", "--json"});
+        ASSERT_EQ(r.code, 0) << r.out << r.err;
+        const auto all = nlohmann::json::parse(r.out);
+        ASSERT_EQ(all["curves"].size(), 1u) << r.out;
+        const auto& c = all["curves"][0];
+        EXPECT_EQ(c["kind"], "crossing");
+        EXPECT_EQ(c["faces"], (std::vector<int>{0, 0}));
+        EXPECT_EQ(c["ends"], (std::vector<int>{-3, -3}));
+        for (const auto& trim : c["trims"]) EXPECT_EQ(trim[0], swapped ? 1 : 0);
+        const auto& points = c["curve"]["points"];
+        const double y0 = points.front()[1], y1 = points.back()[1];
+        EXPECT_NEAR(std::min(y0, y1), 0.25, 1e-9);
+        EXPECT_NEAR(std::max(y0, y1), 0.75, 1e-9);
+    }
+}
+
 TEST_F(IntersectCommand, says_what_is_not_answered) {
     const std::string a = file("a.json", kArches);
     const std::string bowl = file("bowl.json", kBowl);
