@@ -80,9 +80,11 @@ struct SurfaceIntersection {
 // not meet, and that is proven, rounding included.
 //
 // Branches are found by proof, small closed ones like others, and none twice. Where the surfaces touch within
-// the tolerance, at a point or along a curve, or overlap, there is a node instead, and branches end there;
-// they go on over the seam of a closed surface (also of one that is closed because its first and last control
-// points are the same), and end at the border of one of them.
+// the tolerance at a point, or overlap, there is a node instead, and branches end there. Where they touch
+// along a curve, that is a tangent branch, in a node whose cells are up to 2^-7 of the smaller surface wide,
+// or the root of the tolerance; what else there is in these cells is not known. Branches go on over the seam
+// of a closed surface (also of one that is closed because its first and last control points are the same),
+// and end at the border of one of them.
 //
 // Refuses tolerances that are not positive.
 //   const auto found = intersect(a, b, SurfaceIntersectOptions{.tolerance = 1e-6});
