@@ -1,10 +1,11 @@
-// bench-tessellate FILE|hills|hills-with-holes --relative R [--diagonal D] [--repetitions N] [--times-only]
+// bench-tessellate FILE|hills|hills-with-holes --relative R [--diagonal D] [--repetitions N]
+// [--times-only] [--sew]
 //
 // Tessellates FILE with freiform within R times the diagonal, with one thread and with two, and prints one
 // line of JSON: the times of every repetition, what the library proves, and what an independent look from
-// outside finds. With --sew loose faces are joined
-// before, within the largest tolerance of the file, which is not timed. D is the diagonal in millimetres (in
-// the unit of the file, where it names none); otherwise that of the model's box.
+// outside finds. With --sew loose faces are joined before, within the largest tolerance of the file; that is
+// not timed. D is the diagonal in millimetres (in the unit of the file, where it names none); otherwise that
+// of the model's box.
 #include "hills_face.hpp"
 #include "report_fields.hpp"
 

@@ -8,8 +8,8 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <gtest/gtest.h>
 #include <support/sanitizer.hpp>
 
@@ -23,7 +23,7 @@ constexpr double kAtOnce = 0.05;
 #else
 constexpr double kAtOnce = kAddressSanitizer ? 2 : 0.25;
 #endif
-constexpr double kPredictedWithin = 24;  // a factor, either way
+constexpr double kPredictedWithin = 32;  // a factor, either way
 
 std::vector<std::filesystem::path> models_to_try() {
     if (const char* said = std::getenv("FREIFORM_CORPUS_MODELS"); said && std::string_view(said) == "all") {
@@ -60,10 +60,9 @@ TEST(BudgetCorpus, hopeless_tolerances_are_refused_at_once_with_a_number_of_the_
         }
         const double diagonal = summary(*model).box.diagonal();
         const TessellateOptions hopeless{.tolerance = 1e-9 * diagonal, .max_triangles = 1000};
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock();  // of the processor: others may be at work
         const auto t = tessellate(*model, hopeless);
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
         if (t) {  // planes between straight edges
             EXPECT_LE(t->mesh.triangles.size(), 1000u) << name;
             EXPECT_LE(t->error_bound, hopeless.tolerance) << name;
