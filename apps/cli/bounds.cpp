@@ -1,4 +1,5 @@
 // bounds: tight boxes of objects, each with the distance that it may be too large by.
+#include "hull_bounds.hpp"
 #include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
@@ -143,7 +144,8 @@ private:
 
 struct BoundsArguments {
     std::string file, object;
-    std::optional<double> accuracy;
+    std::optional<double> accuracy, hull;
+    bool oriented = false;
 };
 
 void add_to(BoundsAnswer& all, const BoundsAnswer& a, bool first) {
@@ -178,10 +180,13 @@ std::string box_text(const BoundsAnswer& a) {
     return s + text(", each side within ", a.bound);
 }
 
-Result<void> run_bounds(const Context& context, const BoundsArguments& options) {
+Result<void> run_bounds(Context& context, const BoundsArguments& options) {
     if (options.accuracy && !(*options.accuracy >= 0)) wrong_usage("--accuracy needs a length >= 0");
+    if (options.hull && !(*options.hull > 0)) wrong_usage("--hull needs a length > 0");
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
+    if (options.oriented || options.hull)
+        return answer_hulls(context, *input, {options.oriented, options.hull, options.accuracy});
     const Document& document = *input->document;
 
     json::Writer w;
@@ -222,12 +227,19 @@ void add_bounds(CommandLine& line) {
         "bounds", "Tight boxes: they contain the object, and the object comes within `bound` of every side",
         "  freiform bounds curve.json\n"
         "  freiform bounds teapot.bpt --accuracy 1e-6 --json\n"
-        "  freiform bounds part.step");
+        "  freiform bounds part.step --oriented\n"
+        "  freiform bounds teapot.bpt --hull 0.01 -o hull.stl");
     command.file(options->file);
     command.number(
         "--accuracy", options->accuracy,
         "How far a side may be from the object, in the unit of the file (curves: 1e-12 of the diagonal, "
         "else 1e-7). The answer says what was reached");
+    command.flag("--oriented", options->oriented,
+                 "Instead: a small box in any orientation, as axes and the ranges along them");
+    command.number(
+        "--hull", options->hull,
+        "Instead: the convex hull of each curve, surface or volume, at most this much too large; -o with "
+        "a name that ends in .stl, .obj, .ply or .glb writes a mesh");
     command.object(options->object);
     command.answer_file();
     command.limits();

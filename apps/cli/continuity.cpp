@@ -1,4 +1,6 @@
-// continuity: how smooth curves and surfaces are at their knots, and how smoothly neighbours join.
+// continuity: how smooth curves and surfaces are at their knots, and how smoothly neighbours and the faces of
+// models join.
+#include "edge_joints.hpp"
 #include "input.hpp"
 #include "joint_units.hpp"
 #include "surface_joints.hpp"
@@ -18,7 +20,7 @@ constexpr char kAxisOf[] = "uvw";
 
 struct ContinuityArguments {
     std::string file, object;
-    std::optional<double> tolerance, gap, angle;
+    std::optional<double> tolerance, gap, angle, curvature;
     std::optional<int> orders;
 };
 
@@ -27,6 +29,7 @@ struct Found {
     std::size_t object = 0;
     std::vector<KnotContinuity> knots;
     std::vector<std::vector<KnotLine>> lines;  // per axis
+    std::optional<ModelJoints> edges;          // of a model
     std::string without;                       // why nothing was looked at
 };
 
@@ -57,9 +60,9 @@ double diagonal_of_all(const Document& document, const std::vector<std::size_t>&
 }
 
 std::string without_knots(const Shape& shape) {
-    if (std::holds_alternative<Model>(shape))
-        return "is a model; continuity looks at curves, surfaces and volumes that stand alone";
-    return text("is a ", type_name(shape), ", which has no knots");
+    return text(
+        "is a ", type_name(shape),
+        ", which has no knots; continuity looks at curves, surfaces, volumes and the edges of models");
 }
 
 // The knot lines of a surface or volume along one axis.
@@ -74,9 +77,16 @@ Result<std::vector<KnotLine>> lines_along(const Shape& shape, int axis, const Co
         shape);
 }
 
-Result<Found> look_at_joint(const Shape& shape, std::size_t object, const ContinuityOptions& options) {
+Result<Found> look_at_joint(const Shape& shape, std::size_t object, const ContinuityOptions& options,
+                            const ContinuityArguments& given) {
     Found found;
     found.object = object;
+    if (const Model* model = std::get_if<Model>(&shape)) {
+        auto edges = joints_of(*model, object, given.tolerance, given.angle, given.curvature);
+        if (!edges) return std::unexpected(edges.error());
+        found.edges = *std::move(edges);
+        return found;
+    }
     if (!has_knots(shape)) {
         found.without = without_knots(shape);
         return found;
@@ -108,7 +118,7 @@ Result<ContinuityAnswer> answer_joint(const Document& document, const std::vecto
     std::vector<CurveEnds> ends;
     for (const std::size_t i : objects) {
         const Shape& shape = document.objects[i].shape;
-        auto found = look_at_joint(shape, i, a.options);
+        auto found = look_at_joint(shape, i, a.options, given);
         if (!found) return refuse_within(object_label(document, i), found.error());
         a.objects.push_back(*std::move(found));
         a.surfaces.add(shape, i, a.options);
@@ -202,7 +212,9 @@ std::string json_of(const ContinuityAnswer& a) {
         w.new_line(1).begin_object().field("object", f.object).field("name", o.name);
         w.field("type", type_name(o.shape));
         if (!f.without.empty()) w.field("skipped", f.without);
-        if (!f.lines.empty()) {
+        if (f.edges) {
+            write_joints(w, *f.edges);
+        } else if (!f.lines.empty()) {
             w.key("axes").begin_array();
             for (const auto& axis : f.lines) {
                 w.new_line(2).begin_array();
@@ -295,13 +307,18 @@ void knot_rows(Table& table, const Document& d, const Found& f) {
 
 std::string text_of_joint(const ContinuityAnswer& a) {
     const Document& d = *a.document;
-    std::string s =
-        text("tolerance ", rounded(a.options.tolerance), " ", unit_of(d),
-             a.tolerance_given ? "" : text(" (", kToleranceOfBox, " of the size of the largest object)"),
-             ", ends and edges nearer than ", rounded(a.gap), " ", unit_of(d), " are joined\n");
+    std::string s;
+    if (std::ranges::any_of(a.objects, [](const Found& f) { return !f.edges; }))
+        s = text("tolerance ", rounded(a.options.tolerance), " ", unit_of(d),
+                 a.tolerance_given ? "" : text(" (", kToleranceOfBox, " of the size of the largest object)"),
+                 ", ends and edges nearer than ", rounded(a.gap), " ", unit_of(d), " are joined\n");
     const std::vector<std::string> head{"", "C", "G", "first jump of C", "first jump of G"};
     for (const Found& f : a.objects) {
         s += text(object_label(d, f.object), ": ", type_name(d.objects[f.object].shape));
+        if (f.edges) {
+            s += text(", ", f.edges->joints.size(), " joints of faces\n", joints_text(d, *f.edges));
+            continue;
+        }
         Table table;
         table.row(head);
         knot_rows(table, d, f);
@@ -324,8 +341,10 @@ std::string text_of_joint(const ContinuityAnswer& a) {
 }
 
 Result<void> run_continuity(const Context& context, const ContinuityArguments& options) {
-    for (const auto& [name, x] :
-         {std::pair("--tolerance", options.tolerance), {"--gap", options.gap}, {"--angle", options.angle}})
+    for (const auto& [name, x] : {std::pair("--tolerance", options.tolerance),
+                                  {"--gap", options.gap},
+                                  {"--angle", options.angle},
+                                  {"--curvature", options.curvature}})
         if (x && !(*x >= 0)) wrong_usage(text(name, " needs a number >= 0, found ", *x));
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
@@ -338,17 +357,23 @@ Result<void> run_continuity(const Context& context, const ContinuityArguments& o
 
 void add_continuity(CommandLine& line) {
     const auto options = std::make_shared<ContinuityArguments>();
-    const Command command =
-        line.add("continuity", "The order of C and G that curves reach at inner knots and where they join",
-                 "  freiform continuity path.json\n"
-                 "  freiform continuity path.json --tolerance 1e-6 --json\n"
-                 "  freiform continuity surface.json          knots of surfaces: C only");
+    const Command command = line.add(
+        "continuity",
+        "The order of C and G at knots and joints of curves and surfaces, and across the edges of models",
+        "  freiform continuity path.json\n"
+        "  freiform continuity path.json --tolerance 1e-6 --json\n"
+        "  freiform continuity surface.json          knots of surfaces: C only\n"
+        "  freiform continuity part.step             faces across edges, the worst first");
     command.file(options->file);
     command.number(
         "--tolerance", options->tolerance,
         "A jump counts as none if it moves no point of a neighbouring piece by more than this distance; "
-        "0: only rounding (1e-9 of the size of the largest object)");
-    command.number("--angle", options->angle, "Degrees that tangents may differ by all the same (0)");
+        "0: only rounding (1e-9 of the size of the largest object). Of models: the gap between faces that is "
+        "allowed (1e-6 of the size, or what the file says)");
+    command.number("--angle", options->angle,
+                   "Degrees that tangents may differ by all the same (0; tangent planes of models 0.1)");
+    command.number("--curvature", options->curvature,
+                   "Of models: what curvatures may differ by for G2 (1e-2 over the size)");
     command.number(
         "--gap", options->gap,
         "Ends of curves and edges of surfaces nearer than this are a joint (1e-3 of the size of the "

@@ -1,5 +1,5 @@
 // distance: the least distance between the objects of two files, with both places and a proof.
-#include "input.hpp"
+#include "nearest_objects.hpp"
 
 #include <freiform/io/scene.hpp>
 #include <freiform/model/distance.hpp>
@@ -16,70 +16,45 @@ struct DistanceArguments {
     std::optional<int> max_pairs;
 };
 
-// What has a distance, of one number of coordinates.
-struct DistanceSet {
-    std::vector<std::size_t> index;  // in the document
-    std::vector<NearestObject> objects;
-    std::vector<std::size_t> params;
-    int coordinates = 0;
-};
-
-Result<DistanceSet> distance_set(const Input& input) {
-    DistanceSet out;
-    for (const std::size_t i : input.chosen) {
-        const bool taken = std::visit(
-            [&](const auto& s) {
-                using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (TensorPatch<S> || TriangularPatch<S>) {
-                    const int own = Space<typename S::Coefficients>::kDim;
-                    if (out.coordinates != 0 && own != out.coordinates) return false;
-                    out.coordinates = own;
-                    out.index.push_back(i);
-                    out.objects.push_back(NearestObject::of(s));
-                    if constexpr (TensorPatch<S>)
-                        out.params.push_back(S::kParams);
-                    else
-                        out.params.push_back(2);
-                    return true;
-                } else {
-                    remark_left_out(input, i);
-                    return true;
-                }
-            },
-            input.object(i).shape);
-        if (!taken)
-            return refuse(RefusalKind::no_answer, input.label(i),
-                          text("has another number of coordinates than ", input.label(out.index[0]), ", ",
-                               out.coordinates, "; --object-a and --object-b choose"));
-    }
-    if (out.objects.empty())
-        return refuse(RefusalKind::no_answer, shown(input.file),
-                      "has no curve, surface, volume or triangle to be far from");
+Result<ObjectSet> distance_set(const Input& input) {
+    ObjectSet out;
+    for (const std::size_t i : input.chosen)
+        if (auto done =
+                add_object(input, i, "others have another number; --object-a and --object-b choose", out);
+            !done)
+            return std::unexpected(done.error());
     return out;
+}
+
+// The beginning of an answer, in both forms.
+template <class Distance>
+std::string begin_answer(json::Writer& w, const Distance& d) {
+    w.begin_object().field("distance", d.distance).field("lower_bound", d.lower_bound);
+    w.field("point_error", d.point_error);
+    return text("distance ", d.distance, ", at least ", d.lower_bound, "\n");
+}
+void begin_side(json::Writer& w, std::size_t side, const Input& input, std::size_t object) {
+    w.key(side == 0 ? "a" : "b").begin_object().field("object", object);
+    w.field("name", input.object(object).name);
 }
 
 template <int D>
 Result<void> answer_distance(const Context& context, const std::array<const Input*, 2>& input,
-                             const std::array<DistanceSet, 2>& sets, const DistanceOptions& options) {
+                             const std::array<ObjectSet, 2>& sets, const DistanceOptions& options) {
     const auto a = NearestQuery::make(sets[0].objects), b = NearestQuery::make(sets[1].objects);
     if (!a) return std::unexpected(a.error());
     if (!b) return std::unexpected(b.error());
     const auto d = least_distance<D>(*a, *b, options);
     if (!d) return std::unexpected(d.error());
     json::Writer w;
-    w.begin_object().field("distance", d->distance).field("lower_bound", d->lower_bound);
-    w.field("point_error", d->point_error);
-    std::string plain = text("distance ", d->distance, ", at least ", d->lower_bound, "\n");
+    std::string plain = begin_answer(w, *d);
     for (std::size_t i = 0; i < 2; ++i) {
         const std::size_t k = d->object[i], object = sets[i].index[k];
         const std::span<const double> at(d->at[i].data(), sets[i].params[k]);
-        w.key(i == 0 ? "a" : "b").begin_object().field("object", object);
-        w.field("name", input[i]->object(object).name).key("parameters").array(at);
-        w.key("point").array(d->point[i].c).end_object();
-        std::string where, place;
-        for (const double x : at) where += text(where.empty() ? "" : ", ", x);
-        for (const double x : d->point[i].c) place += text(place.empty() ? "" : ", ", x);
-        plain += text("  ", input[i]->label(object), ": at ", where, ", point ", place, "\n");
+        begin_side(w, i, *input[i], object);
+        w.key("parameters").array(at).key("point").array(d->point[i].c).end_object();
+        plain += text("  ", input[i]->label(object), ": at ", listed_numbers(at), ", point ",
+                      listed_numbers(d->point[i].c), "\n");
     }
     w.end_object();
     return emit(context, context.json ? w.take() + "\n" : plain);
@@ -118,20 +93,14 @@ Result<void> distance_of_models(const Context& context, const std::array<const I
     const auto d = least_distance(*query[0], *query[1], options);
     if (!d) return std::unexpected(d.error());
     json::Writer w;
-    w.begin_object().field("distance", d->distance).field("lower_bound", d->lower_bound);
-    w.field("point_error", d->point_error);
-    std::string plain = text("distance ", d->distance, ", at least ", d->lower_bound, "\n");
+    std::string plain = begin_answer(w, *d);
     for (std::size_t i = 0; i < 2; ++i) {
         const ModelNearest& n = d->at[i];
         const std::size_t object = owner[i][std::size_t(n.face)];
-        w.key(i == 0 ? "a" : "b").begin_object().field("object", object);
-        w.field("name", input[i]->object(object).name).field("face", n.face);
-        w.key("parameters").array(n.uv.c);
-        if (n.edge >= 0) w.field("edge", n.edge);
-        w.key("point").array(n.point.c).end_object();
-        plain += text("  ", input[i]->label(object), ": face ", n.face, " at ", n.uv[0], ", ", n.uv[1],
-                      n.edge >= 0 ? text(", on edge ", n.edge) : "", ", point ", n.point[0], ", ", n.point[1],
-                      ", ", n.point[2], "\n");
+        begin_side(w, i, *input[i], object);
+        write_place(w, n);
+        w.end_object();
+        plain += text("  ", input[i]->label(object), ": ", place_text(n), "\n");
     }
     w.end_object();
     return emit(context, context.json ? w.take() + "\n" : plain);
@@ -151,6 +120,10 @@ Result<void> run_distance(const Context& context, const DistanceArguments& optio
     auto set_a = distance_set(*a), set_b = distance_set(*b);
     if (!set_a) return std::unexpected(set_a.error());
     if (!set_b) return std::unexpected(set_b.error());
+    for (const auto& [set, file] : {std::pair(&*set_a, options.a), {&*set_b, options.b}})
+        if (set->objects.empty())
+            return refuse(RefusalKind::no_answer, shown(file),
+                          "has no curve, surface, volume, triangle or model to be far from");
     const int n = set_a->coordinates;
     if (n != set_b->coordinates)
         return refuse(

@@ -34,6 +34,29 @@ void remark_left_out(const Input& input, std::size_t i) {
                 ", not a curve, and left out"));
 }
 
+Result<Model> model_of_trimmed(const TrimmedSurface& t) {
+    Model m;
+    Face face;
+    std::visit([&](const auto& s) { face.surface = s; }, t.surface);
+    for (const auto& curves : t.loops) {
+        Loop loop;
+        for (const auto& c : curves) {
+            Edge edge;
+            edge.range = domain(c)[0];
+            const auto uv = jet<0>(c, edge.range.lo).value();
+            edge.start = int(m.vertices.size());
+            const std::size_t next = loop.coedges.size() + 1;
+            edge.end = next == curves.size() ? edge.start - int(loop.coedges.size()) : edge.start + 1;
+            m.vertices.push_back({jet<0>(face.surface, uv.c).value(), 0});
+            loop.coedges.push_back({int(m.edges.size()), false, c});
+            m.edges.push_back(std::move(edge));
+        }
+        face.loops.push_back(std::move(loop));
+    }
+    m.faces.push_back(std::move(face));
+    return make_model(std::move(m));
+}
+
 std::span<const BSplineBasis> bases_of(const Shape& shape) {
     return std::visit(
         [](const auto& s) -> std::span<const BSplineBasis> {

@@ -36,8 +36,12 @@ bool with_curve(const Shape& shape, F&& f) {
         shape);
 }
 
+// A trimmed surface as a model of one face, whose edges have no curves of their own. A loop is a chain of
+// splines, or one ellipse.
+Result<Model> model_of_trimmed(const TrimmedSurface& t);
+
 // Calls of_curve(index, curve) for the curves among the chosen objects, and if there is an of_model, that for
-// the models; what else there is, is remarked on. Refuses if there is none "to PURPOSE".
+// the models and trimmed surfaces; what else there is, is remarked on. Refuses if there is none "to PURPOSE".
 using OfModel = std::function<Result<void>(std::size_t index, const Model& model)>;
 template <class F>
 Result<void> each_curve(const Input& input, std::string_view purpose, F&& of_curve,
@@ -50,12 +54,16 @@ Result<void> each_curve(const Input& input, std::string_view purpose, F&& of_cur
             ++curves;
         else if (const Model* model = std::get_if<Model>(&shape); model && of_model)
             ++curves, done = of_model(i, *model);
-        else
+        else if (const auto* trimmed = std::get_if<TrimmedSurface>(&shape); trimmed && of_model) {
+            const auto one = model_of_trimmed(*trimmed);
+            ++curves, done = one ? of_model(i, *one) : std::unexpected(one.error());
+        } else
             remark_left_out(input, i);
         if (!done) return input.about(i, done.error());
     }
     if (curves == 0)
-        return refuse(RefusalKind::no_answer, shown(input.file), text("there is no curve to ", purpose));
+        return refuse(RefusalKind::no_answer, shown(input.file),
+                      text("there is no ", of_model ? "curve or model" : "curve", " to ", purpose));
     return {};
 }
 

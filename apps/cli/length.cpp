@@ -1,10 +1,13 @@
-// length: the arc length of curves, and the places at given lengths along them.
+// length: the arc length of curves and of the edges of models, and the places at given lengths along curves.
 #include "input.hpp"
 
 #include <freiform/core/scan.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
+#include <freiform/model/edge_length.hpp>
 #include <freiform/query/reparametrise.hpp>
+
+#include <cmath>
 
 namespace freiform::cli {
 
@@ -74,6 +77,30 @@ public:
         if (!m.places.empty()) write(m);
         w_.end_object();
     }
+    // Of every edge that is not a pole.
+    void add(std::size_t i, const Model& model, const std::vector<Measure>& edges) {
+        ++curves_;
+        Measure sum;
+        std::string lines;
+        w_.new_line(1).begin_object().field("object", i).field("name", document_.objects[i].name);
+        w_.field("type", type_name(document_.objects[i].shape)).key("edges").begin_array();
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            const Edge& edge = model.edges[e];
+            if (edge.degenerate) continue;
+            const std::string_view kind = edge.curve ? kind_name(*edge.curve) : "on face";
+            w_.new_line(2).begin_object().field("edge", e);
+            if (!edge.name.empty()) w_.field("name", edge.name);
+            w_.field("kind", kind).field("value", edges[e].value).field("bound", edges[e].bound).end_object();
+            lines += text("  edge ", e, " (", kind, "): ", measure_text(edges[e]), "\n");
+            sum.value += edges[e].value;
+            sum.bound += edges[e].bound + 0x1p-53 * sum.value;
+        }
+        w_.end_array().field("value", sum.value).field("bound", sum.bound).end_object();
+        total_.value += sum.value;
+        total_.bound += sum.bound + 0x1p-53 * total_.value;
+        line(text(object_label(document_, i), ", all edges: "), sum);
+        text_ += lines;
+    }
     std::string json() {
         w_.end_array().field("value", total_.value).field("bound", total_.bound);
         if (!document_.unit.empty()) w_.field("unit", document_.unit);
@@ -86,9 +113,10 @@ public:
     }
 
 private:
-    void line(std::string_view label, const Measure& m) {
-        text_ += text(label, m.value, document_.unit.empty() ? "" : " ", document_.unit, " (within ", m.bound,
-                      ")\n");
+    void line(std::string_view label, const Measure& m) { text_ += text(label, measure_text(m), "\n"); }
+    std::string measure_text(const Measure& m) const {
+        return text(m.value, document_.unit.empty() ? "" : " ", document_.unit,
+                    std::isfinite(m.bound) ? text(" (within ", m.bound, ")") : " (without a bound)");
     }
     void write(const Measured& m) {
         w_.key("at").begin_array();
@@ -177,12 +205,25 @@ Result<void> run_length(const Context& context, const LengthArguments& given) {
     if (!input) return std::unexpected(input.error());
     if (options.reparametrise) return reparametrise(context, options, *input);
     Lengths lengths(*input->document);
-    const auto done = each_curve(*input, "measure", [&](std::size_t i, const auto& curve) -> Result<void> {
+    const auto of_curve = [&](std::size_t i, const auto& curve) -> Result<void> {
         const auto m = measured(curve, options);
         if (!m) return std::unexpected(m.error());
         lengths.add(i, *m);
         return {};
-    });
+    };
+    const bool places = !options.at.empty() || options.equal || options.spacing || !options.range.empty();
+    const auto of_model = [&](std::size_t i, const Model& model) -> Result<void> {
+        if (places)
+            return refuse(
+                RefusalKind::no_answer, "",
+                "is a model, which has the lengths of its edges; --at, --equal, --spacing and --range "
+                "are for curves");
+        const auto all = edge_lengths(model, options.accuracy.value_or(0));
+        if (!all) return std::unexpected(all.error());
+        lengths.add(i, model, *all);
+        return {};
+    };
+    const auto done = each_curve(*input, "measure", of_curve, of_model);
     if (!done) return done;
     return emit(context, context.json ? lengths.json() : lengths.text_for_people());
 }
@@ -191,8 +232,9 @@ Result<void> run_length(const Context& context, const LengthArguments& given) {
 
 void add_length(CommandLine& line) {
     const auto options = std::make_shared<LengthArguments>();
-    const Command command = line.add("length", "Arc length, and places at lengths along a curve",
+    const Command command = line.add("length", "Arc length of curves and edges, and places along a curve",
                                      "  freiform length curves.json\n"
+                                     "  freiform length part.step --json\n"
                                      "  freiform length curve.json --at 0.5,1,2.5\n"
                                      "  freiform length curve.json --equal 10 --json\n"
                                      "  freiform length curve.json --reparametrise 1e-6 -o even.json");

@@ -1,12 +1,11 @@
 // nearest: the point of a document's objects that is nearest to each given point, with the proof that none is
 // nearer; the farthest; all within a radius.
 #include "nearest_models.hpp"
+#include "nearest_objects.hpp"
 
 #include <freiform/io/points.hpp>
-#include <freiform/query/nearest.hpp>
 
 #include <algorithm>
-#include <map>
 
 namespace freiform::cli {
 
@@ -19,12 +18,6 @@ struct NearestArguments {
     bool farthest = false, signed_distance = false;
 };
 
-// Of the objects with one number of coordinates.
-struct Asked {
-    std::vector<std::size_t> index;  // in the document
-    std::vector<NearestObject> objects;
-};
-
 struct Answers {
     json::Writer w;
     std::string plain;
@@ -33,13 +26,10 @@ struct Answers {
 // Writes where a point of an object is: what all answers have in common.
 struct PlaceWriter {
     const Input& input;
-    const Asked& asked;
+    const ObjectSet& asked;
 
     std::size_t object(std::size_t i) const { return asked.index[i]; }
-    std::size_t params(std::size_t i) const {
-        const Shape& shape = input.object(object(i)).shape;
-        return type_name(shape) == "triangle" ? 2 : std::max<std::size_t>(bases_of(shape).size(), 1);
-    }
+    std::size_t params(std::size_t i) const { return asked.params[i]; }
     template <class Answer>
     void write(json::Writer& w, const Answer& n) const {
         w.field("object", object(n.object))
@@ -52,11 +42,9 @@ struct PlaceWriter {
     }
     template <class Answer>
     std::string plain(const Answer& n) const {
-        std::string where, place;
-        for (std::size_t d = 0; d < params(n.object); ++d) where += text(where.empty() ? "" : ", ", n.at[d]);
-        for (const double x : n.point.c) place += text(place.empty() ? "" : ", ", x);
-        return text(input.label(object(n.object)), ": at ", where, ", point ", place, ", distance ",
-                    n.distance);
+        const std::span<const double> at(n.at.data(), params(n.object));
+        return text(input.label(object(n.object)), ": at ", listed_numbers(at), ", point ",
+                    listed_numbers(n.point.c), ", distance ", n.distance);
     }
     template <int D>
     void write_regions(json::Writer& w, const NearRegions<D>& all) const {
@@ -132,9 +120,7 @@ Result<void> answer_within(const NearestQuery& query, const std::vector<Vec<D>>&
         out.w.new_line(1).begin_object().key("query").array(p.c).key("regions");
         place.write_regions<D>(out.w, *all);
         out.w.field("complete", all->complete).end_object();
-        std::string where;
-        for (const double x : p.c) where += text(where.empty() ? "" : ", ", x);
-        out.plain += text(where, ": ", all->regions.size(), " regions within ", radius,
+        out.plain += text(listed_numbers(p.c), ": ", all->regions.size(), " regions within ", radius,
                           all->complete ? "" : ", larger than need be: the work was ended", "\n",
                           place.plain_regions<D>(*all, "  "));
     }
@@ -148,9 +134,7 @@ Result<void> answer_feet(const NearestQuery& query, const std::vector<Vec<D>>& p
         const auto all = query.feet<D>(p, count);
         if (!all) return std::unexpected(all.error());
         out.w.new_line(1).begin_object().key("query").array(p.c).key("feet").begin_array();
-        std::string where;
-        for (const double x : p.c) where += text(where.empty() ? "" : ", ", x);
-        out.plain += text(where, ":\n");
+        out.plain += text(listed_numbers(p.c), ":\n");
         for (const NearFoot<D>& f : all->feet) {
             out.w.new_line(2).begin_object();
             place.write(out.w, f.foot);
@@ -170,7 +154,7 @@ Result<void> answer_feet(const NearestQuery& query, const std::vector<Vec<D>>& p
 }
 
 template <int D>
-Result<void> answer(const Input& input, const Asked& asked, const std::vector<std::vector<double>>& rows,
+Result<void> answer(const Input& input, const ObjectSet& asked, const std::vector<std::vector<double>>& rows,
                     const NearestArguments& options, Answers& out) {
     const auto query = NearestQuery::make(asked.objects);
     if (!query) return std::unexpected(query.error());
@@ -205,39 +189,25 @@ Result<void> run_nearest(const Context& context, const NearestArguments& options
                    std::holds_alternative<TrimmedSurface>(input->object(i).shape);
         }))
         return nearest_of_models(context, *input, lines->row,
-                                 {options.accuracy.value_or(0), options.signed_distance,
-                                  options.radius || options.farthest || options.count});
+                                 {options.accuracy.value_or(0), options.signed_distance, options.farthest,
+                                  options.radius, options.count});
     if (options.signed_distance)
         return refuse(RefusalKind::no_answer, shown(options.file), "has no solid model: --signed needs one");
-    std::map<int, Asked> asked;  // by the number of coordinates
+    ObjectSet a;
     for (const std::size_t i : input->chosen)
-        std::visit(
-            [&](const auto& s) {
-                using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (TensorPatch<S> || TriangularPatch<S>) {
-                    Asked& a = asked[Space<typename S::Coefficients>::kDim];
-                    a.index.push_back(i);
-                    a.objects.push_back(NearestObject::of(s));
-                } else {
-                    remark_left_out(*input, i);
-                }
-            },
-            input->object(i).shape);
-    if (asked.empty())
+        if (auto done = add_object(*input, i, "others have another number; --object chooses among them", a);
+            !done)
+            return done;
+    if (a.objects.empty())
         return refuse(RefusalKind::no_answer, shown(options.file),
-                      "has no curve, surface, volume or triangle to be near to");
-    if (asked.size() > 1)
-        return refuse(RefusalKind::no_answer, shown(options.file),
-                      text("has objects with ", asked.begin()->first, " and with ", asked.rbegin()->first,
-                           " coordinates; --object chooses among them"));
-    const int dimension = asked.begin()->first;
+                      "has no curve, surface, volume, triangle or model to be near to");
+    const int dimension = a.coordinates;
     for (std::size_t i = 0; i < lines->row.size(); ++i)
         if (lines->row[i].size() != std::size_t(dimension))
             return refuse(RefusalKind::no_answer, text("points[", i, "]"),
                           text("has ", lines->row[i].size(), " coordinates, the objects have ", dimension));
     Answers out;
     out.w.begin_object().key("results").begin_array();
-    const Asked& a = asked.begin()->second;
     const auto done = dimension == 1   ? answer<1>(*input, a, lines->row, options, out)
                       : dimension == 2 ? answer<2>(*input, a, lines->row, options, out)
                       : dimension == 3 ? answer<3>(*input, a, lines->row, options, out)

@@ -1,40 +1,16 @@
 #include "nearest_models.hpp"
 
+#include "nearest_objects.hpp"
+
 #include <freiform/model/inside.hpp>
-#include <freiform/model/nearest.hpp>
-#include <freiform/query/nearest.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace freiform::cli {
 
 namespace {
-
-// A trimmed surface as a model of one face, whose edges have no curves of their own. A loop is a chain of
-// splines, or one ellipse.
-Result<Model> model_of_trimmed(const TrimmedSurface& t) {
-    Model m;
-    Face face;
-    std::visit([&](const auto& s) { face.surface = s; }, t.surface);
-    for (const auto& curves : t.loops) {
-        Loop loop;
-        for (const auto& c : curves) {
-            Edge edge;
-            edge.range = domain(c)[0];
-            const auto uv = jet<0>(c, edge.range.lo).value();
-            edge.start = int(m.vertices.size());
-            const std::size_t next = loop.coedges.size() + 1;
-            edge.end = next == curves.size() ? edge.start - int(loop.coedges.size()) : edge.start + 1;
-            m.vertices.push_back({jet<0>(face.surface, uv.c).value(), 0});
-            loop.coedges.push_back({int(m.edges.size()), false, c});
-            m.edges.push_back(std::move(edge));
-        }
-        face.loops.push_back(std::move(loop));
-    }
-    m.faces.push_back(std::move(face));
-    return make_model(std::move(m));
-}
 
 struct FoundOnModel {
     std::size_t object = 0;
@@ -43,40 +19,8 @@ struct FoundOnModel {
     int params = 0;  // of another object, which has no faces: nearest.uv, nearest.t
 };
 
-// The curves, surfaces, volumes and triangles beside models.
-struct Beside {
-    std::vector<std::size_t> index, params;
-    std::vector<NearestObject> objects;
-};
-
-// Nothing: is a model, or trimmed.
-Result<void> add_beside(const Input& input, std::size_t i, Beside& out) {
-    return std::visit(
-        [&](const auto& s) -> Result<void> {
-            using S = std::remove_cvref_t<decltype(s)>;
-            if constexpr (TensorPatch<S> || TriangularPatch<S>) {
-                if constexpr (Space<typename S::Coefficients>::kDim == 3) {
-                    out.index.push_back(i);
-                    out.objects.push_back(NearestObject::of(s));
-                    if constexpr (TensorPatch<S>)
-                        out.params.push_back(S::kParams);
-                    else
-                        out.params.push_back(2);
-                } else {
-                    return refuse(RefusalKind::no_answer, input.label(i),
-                                  text("has ", Space<typename S::Coefficients>::kDim,
-                                       " coordinates, models are in space; --object chooses"));
-                }
-            } else if constexpr (!std::same_as<S, Model> && !std::same_as<S, TrimmedSurface>) {
-                remark_left_out(input, i);
-            }
-            return {};
-        },
-        input.object(i).shape);
-}
-
 // Where these are nearer they take the place, and the least of the lower bounds holds for all.
-Result<void> nearest_beside(const Beside& beside, const std::vector<Vec<3>>& points, double accuracy,
+Result<void> nearest_beside(const ObjectSet& beside, const std::vector<Vec<3>>& points, double accuracy,
                             std::vector<FoundOnModel>& best) {
     if (beside.objects.empty()) return {};
     const auto query = NearestQuery::make(beside.objects);
@@ -109,10 +53,8 @@ void print_beside(const Input& input, const Vec<3>& q, const FoundOnModel& f, js
     w.field("name", input.object(f.object).name).key("parameters").array(own).key("point").array(n.point.c);
     w.field("distance", n.distance).field("lower_bound", n.lower_bound).field("point_error", n.point_error);
     w.end_object();
-    std::string where;
-    for (const double t : own) where += text(where.empty() ? "" : ", ", t);
-    plain += text(input.label(f.object), ": at ", where, ", point ", n.point[0], ", ", n.point[1], ", ",
-                  n.point[2], ", distance ", n.distance, ", at least ", n.lower_bound, "\n");
+    plain += text(input.label(f.object), ": at ", listed_numbers(own), ", point ", listed_numbers(n.point.c),
+                  ", distance ", n.distance, ", at least ", n.lower_bound, "\n");
 }
 
 void print_on_model(const Input& input, const Model& model, const Vec<3>& q, const FoundOnModel& f,
@@ -124,17 +66,10 @@ void print_on_model(const Input& input, const Model& model, const Vec<3>& q, con
         .array(q.c)
         .field("object", f.object)
         .field("name", input.object(f.object).name)
-        .field("face", n.face)
-        .field("face_name", model.faces[std::size_t(n.face)].name)
-        .key("parameters")
-        .array(n.uv.c);
-    if (n.edge >= 0) w.field("edge", n.edge).field("edge_parameter", n.t);
-    if (n.vertex >= 0) w.field("vertex", n.vertex);
-    w.key("point")
-        .array(n.point.c)
-        .field("distance", n.distance)
-        .field("lower_bound", n.lower_bound)
-        .field("point_error", n.point_error);
+        .field("face_name", model.faces[std::size_t(n.face)].name);
+    write_place(w, n);
+    if (n.edge >= 0) w.field("edge_parameter", n.t);
+    w.field("distance", n.distance).field("lower_bound", n.lower_bound).field("point_error", n.point_error);
     std::string side;
     if (f.inside) {
         side = f.inside->place == Place::boundary ? "undecided"
@@ -145,21 +80,143 @@ void print_on_model(const Input& input, const Model& model, const Vec<3>& q, con
             w.field("signed_distance", f.inside->place == Place::inside ? -n.distance : n.distance);
     }
     w.end_object();
-    plain +=
-        text(input.label(f.object), ": face ", n.face, " at ", n.uv[0], ", ", n.uv[1],
-             n.edge >= 0 ? text(", on edge ", n.edge) : "", n.vertex >= 0 ? text(", vertex ", n.vertex) : "",
-             ", point ", n.point[0], ", ", n.point[1], ", ", n.point[2], ", distance ", n.distance,
-             ", at least ", n.lower_bound, side.empty() ? "" : ", ", side, "\n");
+    plain += text(input.label(f.object), ": ", place_text(n), ", distance ", n.distance, ", at least ",
+                  n.lower_bound, side.empty() ? "" : ", ", side, "\n");
+}
+
+using Queries = std::map<std::size_t, ModelNearestQuery>;  // by object
+
+// What all answers about one place of a model begin with.
+void begin_place(json::Writer& w, const Input& input, std::size_t object) {
+    w.begin_object().field("object", object).field("name", input.object(object).name);
+}
+
+Result<void> farthest_of(const Input& input, const Queries& queries, const Vec<3>& q, double accuracy,
+                         json::Writer& w, std::string& plain) {
+    ModelFarthest best;
+    std::size_t object = 0;
+    double upper = 0;
+    for (const auto& [i, query] : queries) {
+        const auto far = query.farthest(q, {.accuracy = accuracy});
+        if (!far) return std::unexpected(far.error());
+        upper = std::max(upper, far->upper_bound);
+        if (best.face < 0 || far->distance > best.distance) best = *far, object = i;
+    }
+    ModelNearest place;
+    place.face = best.face, place.uv = best.uv, place.edge = best.edge, place.point = best.point;
+    w.new_line(1).begin_object().key("query").array(q.c).field("object", object);
+    w.field("name", input.object(object).name);
+    write_place(w, place);
+    w.field("distance", best.distance).field("upper_bound", upper).field("point_error", best.point_error);
+    w.end_object();
+    plain += text(input.label(object), ": ", place_text(place), ", distance ", best.distance, ", at most ",
+                  upper, "\n");
+    return {};
+}
+
+// The nearest faces of all models: so many, or those within a radius.
+Result<void> nearest_faces_of(const Input& input, const Queries& queries, const Vec<3>& q,
+                              const ModelsAsked& asked, json::Writer& w, std::string& plain) {
+    struct Near {
+        std::size_t object;
+        ModelNearest at;
+    };
+    std::vector<Near> near;
+    double others = kInfinity;
+    for (const auto& [i, query] : queries) {
+        const auto faces =
+            query.nearest_faces(q, asked.count.value_or(std::numeric_limits<int>::max()),
+                                asked.radius.value_or(kInfinity), {.accuracy = asked.accuracy});
+        if (!faces) return std::unexpected(faces.error());
+        for (const ModelNearest& n : faces->faces) near.push_back({i, n});
+        others = std::min(others, faces->others);
+    }
+    std::ranges::sort(near, {}, [](const Near& n) { return std::tuple(n.at.distance, n.object, n.at.face); });
+    while (asked.count && near.size() > std::size_t(*asked.count)) {
+        others = std::min(others, near.back().at.lower_bound);
+        near.pop_back();
+    }
+    w.new_line(1).begin_object().key("query").array(q.c).key("faces").begin_array();
+    plain += text(listed_numbers(q.c), ": ", near.size(), " faces\n");
+    for (const Near& n : near) {
+        w.new_line(2);
+        begin_place(w, input, n.object);
+        write_place(w, n.at);
+        w.field("distance", n.at.distance).field("lower_bound", n.at.lower_bound);
+        w.field("point_error", n.at.point_error).end_object();
+        plain += text("  ", input.label(n.object), ": ", place_text(n.at), ", distance ", n.at.distance,
+                      ", at least ", n.at.lower_bound, "\n");
+    }
+    w.end_array();
+    if (std::isfinite(others)) w.field("others_lower_bound", others);
+    w.end_object();
+    plain += std::isfinite(others) ? text("  others: at least ", others, "\n")
+                                   : std::string("  there are no others\n");
+    return {};
+}
+
+// Instead of the nearest point, for every point.
+Result<void> answer_otherwise(const Context& context, const Input& input, const Queries& queries,
+                              std::span<const Vec<3>> points, const ModelsAsked& asked) {
+    json::Writer w;
+    std::string plain;
+    w.begin_object().key("results").begin_array();
+    for (const Vec<3>& q : points) {
+        const auto done = asked.farthest ? farthest_of(input, queries, q, asked.accuracy, w, plain)
+                                         : nearest_faces_of(input, queries, q, asked, w, plain);
+        if (!done) return done;
+    }
+    w.end_array().end_object();
+    return emit(context, context.json ? w.take() + "\n" : plain);
+}
+
+// Models, and trimmed surfaces as such; nothing of what else there is.
+Result<std::optional<Model>> model_of(const Shape& shape) {
+    if (const auto* own = std::get_if<Model>(&shape)) return *own;
+    const auto* trimmed = std::get_if<TrimmedSurface>(&shape);
+    if (!trimmed) return std::nullopt;
+    auto model = model_of_trimmed(*trimmed);
+    if (!model) return std::unexpected(model.error());
+    return *std::move(model);
+}
+
+// Where this model is nearer than the best so far; `first`: there is none.
+Result<void> nearest_of_model(const Context& context, const Input& input, std::size_t i,
+                              const ModelNearestQuery& query, const std::vector<Vec<3>>& points,
+                              const ModelsAsked& asked, bool first, std::vector<FoundOnModel>& best) {
+    std::vector<ModelNearest> nearest(points.size());
+    if (auto done = query.nearest(points, nearest, {.accuracy = asked.accuracy}); !done) return done;
+    std::vector<SolidInside> inside;
+    if (asked.with_sign) {
+        const double accuracy = 1e-6 * summary(query.model()).box.diagonal();
+        std::vector<Vec<3>> away;
+        for (std::size_t k = 0; k < points.size(); ++k)
+            if (nearest[k].lower_bound > accuracy) away.push_back(points[k]);
+        const auto in =
+            inside_solid(query.model(), away, accuracy, (long long)(context.limits.max_triangles));
+        if (!in) return refuse_within(input.label(i), in.error());
+        inside.assign(points.size(), {Place::boundary, 0, accuracy});
+        for (std::size_t k = 0, next = 0; k < points.size(); ++k)
+            if (nearest[k].lower_bound > accuracy) inside[k] = (*in)[next++];
+    }
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        FoundOnModel& b = best[k];
+        const double lower =
+            first ? nearest[k].lower_bound : std::min(b.nearest.lower_bound, nearest[k].lower_bound);
+        if (first || nearest[k].distance < b.nearest.distance) {
+            b.object = i;
+            b.nearest = nearest[k];
+            if (!inside.empty()) b.inside = inside[k];
+        }
+        b.nearest.lower_bound = lower;
+    }
+    return {};
 }
 
 }  // namespace
 
 Result<void> nearest_of_models(const Context& context, const Input& input,
                                const std::vector<std::vector<double>>& rows, const ModelsAsked& asked) {
-    if (asked.otherwise)
-        return refuse(
-            RefusalKind::no_answer, input.label(input.chosen[0]),
-            "--radius, --k and --farthest are answered for curves, surfaces, volumes and triangles");
     std::vector<Vec<3>> points;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (rows[i].size() != 3)
@@ -168,46 +225,30 @@ Result<void> nearest_of_models(const Context& context, const Input& input,
         points.push_back({{rows[i][0], rows[i][1], rows[i][2]}});
     }
     std::vector<FoundOnModel> best(points.size());
-    std::map<std::size_t, ModelNearestQuery> queries;
-    Beside beside;
+    Queries queries;
+    ObjectSet beside;
+    beside.coordinates = 3;
+    const bool otherwise = asked.farthest || asked.radius || asked.count;
     for (const std::size_t i : input.chosen) {
-        if (auto done = add_beside(input, i, beside); !done) return done;
-        const Shape& shape = input.object(i).shape;
-        const auto* own = std::get_if<Model>(&shape);
-        const auto* trimmed = std::get_if<TrimmedSurface>(&shape);
-        if (!own && !trimmed) continue;
-        Result<Model> model = own ? Result<Model>(*own) : model_of_trimmed(*trimmed);
+        if (auto done = add_object(input, i, "models are in space; --object chooses", beside); !done)
+            return done;
+        auto model = model_of(input.object(i).shape);
         if (!model) return std::unexpected(model.error());
-        auto query = ModelNearestQuery::make(*std::move(model));
+        if (!*model) continue;
+        auto query = ModelNearestQuery::make(*std::move(*model));
         if (!query) return refuse_within(input.label(i), query.error());
-        std::vector<ModelNearest> nearest(points.size());
-        if (auto done = query->nearest(points, nearest, {.accuracy = asked.accuracy}); !done) return done;
-        std::vector<SolidInside> inside;
-        if (asked.with_sign) {
-            const double accuracy = 1e-6 * summary(query->model()).box.diagonal();
-            std::vector<Vec<3>> away;
-            for (std::size_t k = 0; k < points.size(); ++k)
-                if (nearest[k].lower_bound > accuracy) away.push_back(points[k]);
-            const auto in =
-                inside_solid(query->model(), away, accuracy, (long long)(context.limits.max_triangles));
-            if (!in) return refuse_within(input.label(i), in.error());
-            inside.assign(points.size(), {Place::boundary, 0, accuracy});
-            for (std::size_t k = 0, next = 0; k < points.size(); ++k)
-                if (nearest[k].lower_bound > accuracy) inside[k] = (*in)[next++];
-        }
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            FoundOnModel& b = best[k];
-            const double lower = queries.empty() ? nearest[k].lower_bound
-                                                 : std::min(b.nearest.lower_bound, nearest[k].lower_bound);
-            if (queries.empty() || nearest[k].distance < b.nearest.distance) {
-                b.object = i;
-                b.nearest = nearest[k];
-                if (!inside.empty()) b.inside = inside[k];
-            }
-            b.nearest.lower_bound = lower;
-        }
+        if (!otherwise)
+            if (auto done = nearest_of_model(context, input, i, *query, points, asked, queries.empty(), best);
+                !done)
+                return done;
         queries.emplace(i, *std::move(query));
     }
+    if (otherwise && !beside.objects.empty())
+        return refuse(
+            RefusalKind::no_answer, input.label(beside.index[0]),
+            "is no model; --radius, --k and --farthest look at faces of models, or at what is none: "
+            "--object chooses");
+    if (otherwise) return answer_otherwise(context, input, queries, points, asked);
     if (auto done = nearest_beside(beside, points, asked.accuracy, best); !done) return done;
     json::Writer w;
     std::string plain;

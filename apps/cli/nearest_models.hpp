@@ -7,7 +7,10 @@ namespace freiform::cli {
 struct ModelsAsked {
     double accuracy = 0;
     bool with_sign = false;
-    bool otherwise = false;  // a radius, or the farthest point: not answered here
+    // One of them, instead of the nearest point: the farthest; the faces within a radius; so many faces.
+    bool farthest = false;
+    std::optional<double> radius;
+    std::optional<int> count;
 };
 
 // And what stands beside them; refuses objects beside them that are not in space, with the place.

@@ -22,11 +22,11 @@ namespace freiform {
 
 namespace {
 
-// The reach in the direction of a coordinate axis, or against it.
+// The reach in a direction n of length 1. `rounding`: of n . x, none along a coordinate axis.
 class Reach {
 public:
-    Reach(const detail::ModelParts& all, int axis, double sign, double accuracy, int max_parts)
-        : all_(all), axis_(axis), sign_(sign), parts_left_(max_parts) {
+    Reach(const detail::ModelParts& all, const Vec<3>& n, double rounding, double accuracy, int max_parts)
+        : all_(all), n_(n), rounding_(rounding), parts_left_(max_parts) {
         for (const FacePart& p : all.parts) parts_.push_back(p);
         for (const FaceRim& r : all.rims) rims_.push_back(r);
         for (const NearLeaf& leaf : all.leaves)
@@ -42,8 +42,8 @@ public:
         most_ = least_;
     }
 
-    double most() const { return most_; }    // upper bound
-    double least() const { return least_; }  // and a lower one
+    double most() const { return most_ + rounding_; }    // upper bound
+    double least() const { return least_ - rounding_; }  // and a lower one
 
 private:
     struct Item {
@@ -52,7 +52,7 @@ private:
         bool rim;
     };
 
-    double along(const Vec<3>& x) const { return sign_ * x[axis_]; }
+    double along(const Vec<3>& x) const { return dot(n_, x); }
     void push(const Item& item, double bound) {
         heap_.push_back(item);
         double& most = heap_.back().most;
@@ -64,7 +64,7 @@ private:
         double most = -kInfinity;
         for (const Vec<3>& x : p.corner) most = std::max(most, along(x));
         if (!p.crossing) least_ = std::max(least_, most - p.rounding);
-        push({most + p.error, face, index, false}, bound);
+        push({most + p.hull_error, face, index, false}, bound);
     }
     void push_rim(int index, double bound) {
         const FaceRim& r = rims_[std::size_t(index)];
@@ -79,9 +79,7 @@ private:
     bool open_part(const Item& item) {
         const FacePart part = parts_[std::size_t(item.index)];
         const FaceParts& face = all_.faces[std::size_t(item.face)];
-        Vec<3> n{};
-        n[axis_] = sign_;
-        if (!all_.model.faces[std::size_t(item.face)].loops.empty() && !face.may_be_level(part, n))
+        if (!all_.model.faces[std::size_t(item.face)].loops.empty() && !face.may_be_level(part, n_))
             return true;
         bool can = false;
         for (int k = 0; k < 2; ++k) {
@@ -107,8 +105,8 @@ private:
     }
 
     const detail::ModelParts& all_;
-    int axis_;
-    double sign_;
+    Vec<3> n_;
+    double rounding_;
     int parts_left_;
     double least_ = -kInfinity, most_ = kInfinity;
     std::vector<Item> heap_;
@@ -124,9 +122,35 @@ Result<TightBox<3>> tight_box(const Model& model, double accuracy, int max_parts
     if (auto done = all.prepare(); !done) return std::unexpected(done.error());
     TightBox<3> out;
     for (int axis = 0; axis < 3; ++axis) {
-        const Reach up(all, axis, 1, accuracy, max_parts), down(all, axis, -1, accuracy, max_parts);
+        Vec<3> n{};
+        n[axis] = 1;
+        const Reach up(all, n, 0, accuracy, max_parts), down(all, -1.0 * n, 0, accuracy, max_parts);
         out.box.hi[axis] = up.most();
         out.box.lo[axis] = -down.most();
+        out.slack = std::max({out.slack, up.most() - up.least(), down.most() - down.least()});
+    }
+    return out;
+}
+
+Result<OrientedBox<3>> oriented_box(const Model& model, double accuracy, int max_parts) {
+    if (auto ok = detail::check_accuracy(accuracy); !ok) return std::unexpected(ok.error());
+    detail::ModelParts all{model};
+    if (auto done = all.prepare(); !done) return std::unexpected(done.error());
+    std::vector<Vec<3>> points;
+    double scale = 0;
+    for (const FacePart& p : all.parts)
+        if (!p.crossing) points.insert(points.end(), p.corner.begin(), p.corner.end());
+    for (const FaceRim& r : all.rims) points.insert(points.end(), r.end.begin(), r.end.end());
+    for (const NearNode& n : all.nodes) scale = std::max(scale, n.box.scale());
+    OrientedBox<3> out;
+    out.axes = box_axes(hull_around(points));
+    const double rounding =
+        16 * kUnitRoundoff * scale;  // 8 of products and sums, |x| up to sqrt(3) of a coordinate
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<3>& n = out.axes[k];
+        const Reach up(all, n, rounding, accuracy, max_parts),
+            down(all, -1.0 * n, rounding, accuracy, max_parts);
+        out.range[k] = {-down.most(), up.most()};
         out.slack = std::max({out.slack, up.most() - up.least(), down.most() - down.least()});
     }
     return out;

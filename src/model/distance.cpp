@@ -91,7 +91,7 @@ private:
         p.face = face;
         p.part = int(face_parts_.size());
         face_parts_.push_back(std::move(part));
-        add(p, face_parts_.back().corner, face_parts_.back().error);
+        add(p, face_parts_.back().corner, face_parts_.back().hull_error);
     }
     void add_rim(const FaceRim& rim) {
         Place p;
@@ -124,7 +124,13 @@ private:
             can = can || (part.box.lo[k] < m && m < part.box.hi[k]);
         }
         if (!can) return false;
-        for (FacePart& half : all_.faces[std::size_t(p.face)].halves(part)) add_part(p.face, std::move(half));
+        // By turns where it is longer, which brings boxes apart, and where it bends more: near a pole only
+        // that makes the error fall with the square of the size.
+        const bool by_bend = int(part.key) % 2 == 0;
+        for (FacePart& half : all_.faces[std::size_t(p.face)].halves(part, by_bend)) {
+            half.key = part.key + 1;
+            add_part(p.face, std::move(half));
+        }
         return true;
     }
     bool split_rim(const Place& p) {

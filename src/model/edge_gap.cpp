@@ -37,6 +37,7 @@
 // Why not the Bezier form of S o p? It exists (degree 3 (3 + 3) for a cubic on a bicubic patch), but not for
 // angles, and for rational surfaces its denominator has to be multiplied out with c's.
 #include "edge_mesh_detail.hpp"
+#include "surface_seams_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/model/edge_gap.hpp>
@@ -55,56 +56,12 @@ constexpr int kMostParts = 64;                          // of a piece at a time
 constexpr int kPieceCost = 12;                          // in samples
 constexpr double kShort = 0x1p-30;  // of |t|: the middle of such a piece is not its middle
 
-// A place along one axis of the surface with less than two continuous derivatives.
-struct Seam {
-    double at = 0;
-    int smooth = 0;  // derivatives that are continuous; -1 at a tear
-};
-
-// `less`: by how much the surface is less smooth than the spline.
-void add_seams(std::vector<Seam>& seams, const BSplineBasis& basis, int less) {
-    const auto breaks = basis.breaks();
-    for (std::size_t i = 0; i < breaks.size(); ++i) {
-        const bool end = i == 0 || i + 1 == breaks.size();
-        const int smooth = end ? 0 : basis.degree() - basis.multiplicity(breaks[i]) - less;
-        if (smooth < 2) seams.push_back({breaks[i], std::max(smooth, -1)});
-    }
-}
-
-void add_seams(std::vector<Seam>& seams, const CurveGeometry<3>& profile, int less) {
-    std::visit(
-        [&](const auto& c) {
-            if constexpr (requires { c.net(); }) add_seams(seams, c.basis(), less);
-        },
-        profile);
-}
-
-std::array<std::vector<Seam>, 2> seams_of(const SurfaceGeometry& outer) {
-    const auto* offset = std::get_if<OffsetSurface>(&outer);
-    const int less = offset ? 1 : 0;
-    std::array<std::vector<Seam>, 2> seams;
-    std::visit(
-        [&](const auto& s) {
-            using S = std::remove_cvref_t<decltype(s)>;
-            if constexpr (std::same_as<S, Extrusion>) {
-                add_seams(seams[0], s.profile, less);
-            } else if constexpr (std::same_as<S, Revolution>) {
-                add_seams(seams[1], s.profile, less);
-            } else if constexpr (!std::same_as<S, OffsetSurface>) {
-                add_seams(seams[0], s.basis(0), less);
-                add_seams(seams[1], s.basis(1), less);
-            }
-        },
-        offset ? *offset->base : outer);
-    return seams;
-}
-
 // How far the interval has to be moved so that it lies between two neighbouring seams with fewer than `order`
 // - 1 continuous derivatives. Infinite if it does not fit.
-double shift_between(const std::vector<Seam>& seams, Interval limits, Interval on, int order) {
+double shift_between(const std::vector<SurfaceSeam>& seams, Interval limits, Interval on, int order) {
     const double middle = clamped(on.middle(), limits);
     Interval strip{-kInfinity, kInfinity};
-    for (const Seam& s : seams) {
+    for (const SurfaceSeam& s : seams) {
         if (s.smooth >= order - 1) continue;
         if (s.at > middle || s.at == limits.hi) {
             strip.hi = s.at;
@@ -171,7 +128,7 @@ private:
     std::array<CurveGeometry<1>, 2> component_;
     std::array<DerivativeQuery<1, 1>, 2> along_;
     DerivativeQuery<1, 3> in_space_;
-    std::array<std::vector<Seam>, 2> seams_;
+    std::array<std::vector<SurfaceSeam>, 2> seams_;
     std::array<Interval, 2> limits_;
     double value_error_ = 0, parameter_error_[2] = {0, 0};
     double found_ = 0;
@@ -271,7 +228,7 @@ Terms Prover::terms(Interval on) const {
         }
         around[i].lo -= most;
         around[i].hi += most;
-        for (const Seam& s : seams_[i]) torn = torn || (s.smooth < 0 && around[i].contains(s.at));
+        for (const SurfaceSeam& s : seams_[i]) torn = torn || (s.smooth < 0 && around[i].contains(s.at));
     }
     Terms x;
     if (torn) return x;

@@ -1,6 +1,8 @@
 // Bound: on a triangle with a right angle and legs along u and v, a surface is within Q(du, dv) / 8 of its
-// linear interpolant (curvature_tree.cpp), and kinks add what kink_bound_of says. Computed corners are off by
-// at most sqrt(3) value_error_bound, which is added.
+// linear interpolant (curvature_tree.cpp), and kinks add what kink_bound_of says. The bilinear interpolation
+// of the corners, in their hull, is nearer: it takes no part in the twist S_uv, so only d20 du^2 / 8 + d02
+// dv^2 / 8 remains, which near a pole falls with the square of the size, as the other does not. Computed
+// corners are off by at most sqrt(3) value_error_bound, which is added.
 #include "face_parts_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -45,13 +47,14 @@ std::optional<FacePart> FaceParts::part_over(const Box<2>& box, const std::vecto
     const Vec<2> size = box.hi - box.lo;
     const auto d = (*surface_)({box.side(0), box.side(1)});
     part.rounding = 2 * value_error_bound(face_->surface, {box.side(0), box.side(1)});
-    part.error =
-        (d(2, 0) * size[0] * size[0] + 2 * d(1, 1) * size[0] * size[1] + d(0, 2) * size[1] * size[1]) / 8 +
-        kink_bound_of(surface_->kinks(0), box.side(0)) + kink_bound_of(surface_->kinks(1), box.side(1)) +
-        part.rounding;
-    part.error *= 1 + 1e-14;
+    part.hull_error = (d(2, 0) * size[0] * size[0] + d(0, 2) * size[1] * size[1]) / 8 +
+                      kink_bound_of(surface_->kinks(0), box.side(0)) +
+                      kink_bound_of(surface_->kinks(1), box.side(1)) + part.rounding;
+    part.error = part.hull_error + d(1, 1) * size[0] * size[1] / 4;
+    part.error *= 1 + 1e-14, part.hull_error *= 1 + 1e-14;
     part.size = std::max(d(1, 0) * size[0], d(0, 1) * size[1]);
-    if (std::isnan(part.error)) part.error = std::numeric_limits<double>::infinity();
+    for (double* e : {&part.error, &part.hull_error})
+        if (std::isnan(*e)) *e = kInfinity;
     for (int k = 0; k < 4; ++k)
         part.corner[std::size_t(k)] = value({{k & 1 ? box.hi[0] : box.lo[0], k & 2 ? box.hi[1] : box.lo[1]}});
     return part;

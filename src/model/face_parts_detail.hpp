@@ -18,6 +18,7 @@ struct FacePart {
     Box<2> box;
     std::array<Vec<3>, 4> corner;
     double error = 0;       // bound, rounding included; may be infinite
+    double hull_error = 0;  // likewise, of how far it leaves the hull of the corners
     double rounding = 0;    // bound: of the corners
     double size = 0;        // the longest side of the box, in space: a bound
     bool crossing = false;  // the boundary may run through it; else it is wholly inside the face

@@ -6,7 +6,8 @@
 //
 // Bounds. A part is within e of two triangles. For any vector n of length 1 a triangle is at least min n . (q
 // - c) over its corners c away from q; n from the point that the triangle has nearest to q is the best, and
-// any other is right too. Boundaries: face_rim.cpp. Rounding: 64 u of the size of the numbers; values of the
+// any other is right too. It is within a smaller error of the hull of its four corners, which near poles is
+// the better bound. Boundaries: face_rim.cpp. Rounding: 64 u of the size of the numbers; values of the
 // surface carry value_error_bound.
 //
 // Cost. A tree of boxes over parts that are a fiftieth of the model or flatter, so that most faces are never
@@ -55,11 +56,15 @@ double away_from(const FacePart& part, const Vec<3>& q) {
     const double reach = 2 * part.size + part.rounding;
     double least = norm(q - part.corner[0]) - reach - kRoundings * (max_abs(q) + max_abs(part.corner[0]));
     if (!std::isfinite(reach)) least = 0;
-    if (std::isfinite(part.error)) {
-        double flat = kInfinity;
-        for (const Triangle3& t : part.triangles())
-            flat = std::min(flat, away_from(t, closest_point(t, q), q));
-        least = std::max(least, flat - part.error);
+    if (std::isfinite(part.hull_error)) {
+        double flat = kInfinity, nearest = kInfinity;
+        Vec<3> near{};
+        for (const Triangle3& t : part.triangles()) {
+            const Vec<3> x = closest_point(t, q);
+            flat = std::min(flat, away_from(t, x, q));
+            if (const double d = norm(x - q); d < nearest) nearest = d, near = x;
+        }
+        least = std::max({least, flat - part.error, away_from(part.corner, near, q) - part.hull_error});
     }
     return std::max(0.0, least);
 }
@@ -83,8 +88,11 @@ namespace {
 // The way from boxes to parts to smaller parts, for one point.
 class NearSearch {
 public:
-    NearSearch(const detail::ModelParts& all, const Vec<3>& q, const ModelNearestOptions& options)
+    // `without`: faces that take no part; the answer has no face where there is none within `limit`.
+    NearSearch(const detail::ModelParts& all, const Vec<3>& q, const ModelNearestOptions& options,
+               std::span<const char> without = {}, double limit = kInfinity)
         : q_(q),
+          without_(without),
           accuracy_(std::max(options.accuracy > 0 ? options.accuracy : 0x1p-30 * all.size,
                              8 * kRoundings * max_abs(q))),
           parts_left_(options.max_parts) {
@@ -94,7 +102,7 @@ public:
             std::ranges::pop_heap(heap_, {}, key);
             const Item item = heap_.back();
             heap_.pop_back();
-            if (item.lower >= best_.distance - accuracy_ || parts_left_ <= 0) {
+            if (item.lower >= best_.distance - accuracy_ || item.lower > limit || parts_left_ <= 0) {
                 proven_ = std::min(proven_, item.lower);
                 break;
             }
@@ -105,8 +113,9 @@ public:
             else
                 open_rim(all, item);
         }
-        for (std::size_t f = 0; best_.face < 0 && f < all.faces.size(); ++f)  // the budget was too small
-            for (const Vec<2>& uv : all.faces[f].region().points()) take(all, int(f), uv);
+        for (std::size_t f = 0; best_.face < 0 && proven_ <= limit && f < all.faces.size(); ++f)
+            for (const Vec<2>& uv : all.faces[f].region().points())  // the budget was too small
+                if (!is_left_out(int(f))) take(all, int(f), uv);
         best_.lower_bound = std::min(proven_, best_.distance);
     }
 
@@ -127,12 +136,15 @@ private:
         heap_.push_back(item);
         std::ranges::push_heap(heap_, {}, key);
     }
+    bool is_left_out(int face) const { return !without_.empty() && without_[std::size_t(face)]; }
     void push_part(int face, FacePart part, double at_least) {
+        if (is_left_out(face)) return;
         const double lower = std::max(at_least, away_from(part, q_));
         parts_.push_back(std::move(part));
         push({lower, Kind::part, int(parts_.size()) - 1, 0, face});
     }
     void push_rim(const FaceRim& rim, double at_least) {
+        if (is_left_out(rim.owner)) return;
         rims_.push_back(rim);
         push({std::max(at_least, away_from(rim, q_)), Kind::rim, int(rims_.size()) - 1, 0, rim.owner});
     }
@@ -228,6 +240,7 @@ private:
     }
 
     Vec<3> q_;
+    std::span<const char> without_;
     double accuracy_, proven_ = kInfinity;
     int parts_left_;
     long count_ = 0;
@@ -264,6 +277,23 @@ Result<ModelNearest> ModelNearestQuery::nearest(const Vec<3>& point,
     if (auto done = nearest(std::span(&point, 1), std::span(&out, 1), options); !done)
         return std::unexpected(done.error());
     return out;
+}
+
+Result<NearestFaces> ModelNearestQuery::nearest_faces(const Vec<3>& point, int count, double radius,
+                                                      const ModelNearestOptions& options) const {
+    if (auto ok = detail::check_points<3>(std::span(&point, 1), options.accuracy, options.max_parts); !ok)
+        return std::unexpected(ok.error());
+    if (count < 1) return refuse(RefusalKind::invalid, "count", text("must be positive, found ", count));
+    if (!(radius >= 0)) return refuse(RefusalKind::invalid, "radius", text(radius, " is not a distance"));
+    NearestFaces out;
+    std::vector<char> without(model().faces.size(), 0);
+    for (;;) {
+        const ModelNearest n = NearSearch(*prepared_, point, options, without, radius).best();
+        out.others = n.lower_bound;
+        if (n.face < 0 || n.lower_bound > radius || int(out.faces.size()) == count) return out;
+        without[std::size_t(n.face)] = 1;
+        out.faces.push_back(n);
+    }
 }
 
 }  // namespace freiform

@@ -3,7 +3,6 @@
 // Method. Points sorted by x, then y; lower and upper chain each keep only left turns [Andrew 1979]. The turn
 // is decided by orient2d, so the result is the hull of the given doubles.
 // Cost. n log n for sorting, at most 2 n turns.
-// Why not a hull in space? Nothing here asks for it; boxes along directions (extent_along) bound there.
 #include <freiform/poly/predicates.hpp>
 #include <freiform/query/hull.hpp>
 

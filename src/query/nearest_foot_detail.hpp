@@ -1,5 +1,6 @@
 // The foot of a point on one Bezier piece: jets of the piece about its centre, and Newton's iteration.
 #pragma once
+#include "query/cholesky_detail.hpp"
 #include "query/nearest_detail.hpp"
 
 #include <freiform/basis/bspline.hpp>
@@ -168,26 +169,7 @@ struct SeenPiece {
             x[0] /= h[0][0];
             return h[0][0] > 0;
         }
-        for (std::size_t d = 0; d < n; ++d)
-            for (std::size_t e = 0; e <= d; ++e) {
-                double v = h[d][e];
-                for (std::size_t k = 0; k < e; ++k) v -= h[d][k] * h[e][k];
-                if (d == e) {
-                    if (!(v > 1e-14 * std::abs(h[d][d]))) return false;
-                    h[d][d] = std::sqrt(v);
-                } else {
-                    h[d][e] = v / h[e][e];
-                }
-            }
-        for (std::size_t d = 0; d < n; ++d) {
-            for (std::size_t k = 0; k < d; ++k) x[d] -= h[d][k] * x[k];
-            x[d] /= h[d][d];
-        }
-        for (std::size_t d = n; d-- > 0;) {
-            for (std::size_t k = d + 1; k < n; ++k) x[d] -= h[k][d] * x[k];
-            x[d] /= h[d][d];
-        }
-        return true;
+        return solve_cholesky(h, n, x);
     }
 
     // Newton's iteration for the least distance on the box [lo, hi], parameters at their limits held there

@@ -160,7 +160,7 @@ TEST_F(NearestCommand, keeps_to_what_trimming_leaves) {
     const Ran open = run({"nearest", half, "--points", q, "--signed"});
     EXPECT_EQ(open.code, 1);
     EXPECT_NE(open.err.find("not a closed body"), std::string::npos) << open.err;
-    EXPECT_EQ(run({"nearest", half, "--points", q, "--radius", "1"}).code, 1);
+    EXPECT_EQ(run({"nearest", half, "--points", q, "--radius", "1"}).code, 0);
     const std::string curve = file("p.json", kParabola);
     EXPECT_EQ(run({"nearest", curve, "--points", path("plane.csv"), "--signed"}).code, 1);
 }

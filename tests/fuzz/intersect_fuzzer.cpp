@@ -5,35 +5,20 @@
 //
 // Checked is what the header promises: parameters in their boxes, boxes in the domains, points of both curves
 // no farther from each other than `gap`, order, counts; and that exchanging the curves exchanges the answer.
+#include "bytes.hpp"
+
 #include <freiform/intersect/curve_curve.hpp>
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
 
 using namespace freiform;
 
 namespace {
 
-void demand(bool holds) {
-    if (!holds) std::abort();
+// Small integers and eighths, so that curves touch and overlap; or any double.
+double number(Bytes& bytes, int kind) {
+    return kind % 4 != 0 ? (bytes.next() - 128) / (kind % 2 == 0 ? 1.0 : 8.0) : bytes.any();
 }
-
-// Bytes to numbers: small integers and eighths, so that curves touch and overlap; or any double.
-struct Bytes {
-    const std::uint8_t* at;
-    std::size_t left;
-    int next() { return left == 0 ? 0 : (--left, *at++); }
-    double number(int kind) {
-        if (kind % 4 != 0) return (next() - 128) / (kind % 2 == 0 ? 1.0 : 8.0);
-        std::uint64_t bits = 0;
-        for (int i = 0; i < 8; ++i) bits = bits << 8 | std::uint64_t(next());
-        double x;
-        std::memcpy(&x, &bits, 8);
-        return x;
-    }
-};
 
 template <class P>
 std::optional<Curve<P>> curve_of(Bytes& bytes, int kind) {
@@ -47,7 +32,7 @@ std::optional<Curve<P>> curve_of(Bytes& bytes, int kind) {
     std::vector<P> c;
     for (int i = 0; i < basis->size(); ++i) {
         P p;
-        for (int k = 0; k < P::kCoords; ++k) p[k] = bytes.number(kind);
+        for (int k = 0; k < P::kCoords; ++k) p[k] = number(bytes, kind);
         if constexpr (Space<P>::kRational) p[P::kCoords - 1] = 0.125 * (1 + bytes.next() % 32);
         c.push_back(p);
     }

@@ -6,35 +6,17 @@
 // Checked is what the header promises: a refusal names a conflict, or all triangles turn left, the inside
 // ones have the area of the odd-even rule along the constrained edges (each segment is there), and points
 // inserted later keep all that.
+#include "bytes.hpp"
+
 #include <freiform/mesh/triangulate.hpp>
 #include <freiform/poly/predicates.hpp>
-
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
 
 using namespace freiform;
 
 namespace {
 
-void demand(bool holds) {
-    if (!holds) std::abort();
-}
-
-// Bytes to numbers: small integers, so that points coincide and lie on lines, or any double.
-struct Bytes {
-    const std::uint8_t* at;
-    std::size_t left;
-    int next() { return left == 0 ? 0 : (--left, *at++); }
-    double number(bool any) {
-        if (!any) return next() % 16;
-        std::uint64_t bits = 0;
-        for (int i = 0; i < 8; ++i) bits = bits << 8 | std::uint64_t(next());
-        double x;
-        std::memcpy(&x, &bits, 8);
-        return x;
-    }
-};
+// Small integers, so that points coincide and lie on lines, or any double.
+double number(Bytes& bytes, bool any) { return any ? bytes.any() : bytes.next() % 16; }
 
 void check(const Triangulation& t) {
     for (int i = 0; i < t.size(); ++i) {
@@ -62,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (int l = 0; l < loops && bytes.left > 0; ++l) {
         const int first = int(points.size()), count = 1 + bytes.next() % 12;
         for (int i = 0; i < count; ++i) {
-            const double x = bytes.number(any), y = bytes.number(any);
+            const double x = number(bytes, any), y = number(bytes, any);
             points.push_back({{x, y}});
         }
         for (int i = 0; i < count; ++i) segments.push_back({first + i, first + (i + 1) % count});
@@ -79,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         demand(e.triangle >= 0 && t->is_constrained(e.triangle, e.edge));
     }
     for (int i = 0; i < 16 && bytes.left > 0; ++i) {
-        const double x = bytes.number(any), y = bytes.number(any);
+        const double x = number(bytes, any), y = number(bytes, any);
         t->insert({{x + 0.5 * (i % 2), y + 0.25 * (i % 3)}});
     }
     check(*t);

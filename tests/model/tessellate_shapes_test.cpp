@@ -151,16 +151,7 @@ TEST(TessellateShapes, boxes_without_width_have_cones_at_the_border_too) {
 }
 
 TEST(TessellateShapes, the_knots_of_rational_circles_do_not_end_cones) {
-    const double w = std::sqrt(0.5);
-    const double xy[5][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
-    std::vector<Hom<3>> c;
-    for (int i = 0; i < 5; ++i)
-        for (int k = 0; k < 2; ++k)
-            c.push_back(weighted(Vec<3>{{xy[i][0] * (1 + k), xy[i][1] * (1 + k), 10.0 * k}},
-                                 (i % 2 ? w : 1) * (1 + 2 * k)));
-    const SurfaceGeometry cone =
-        *Surface<Hom<3>>::make({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2}), *BSplineBasis::bezier(1)},
-                               Net<2, Hom<3>>({5, 2}, c));
+    const SurfaceGeometry cone = cone_of_uneven_weights();
     const DerivativeQuery<2, 3> query(cone);
     EXPECT_LT(checked_cone(query, {{{0.95, 0.4}}, {{1.05, 0.5}}}), 0.3);
     EXPECT_LT(checked_cone(query, {{{1, 0.4}}, {{1.1, 0.5}}}), 0.3);

@@ -30,26 +30,6 @@ Patch<N, P> patch_at(std::mt19937& rng, std::array<int, N> degrees, int inner, d
 }
 
 template <std::size_t N, class P>
-std::vector<PointOf<P>> samples_of(const Patch<N, P>& patch, int steps) {
-    std::vector<PointOf<P>> out;
-    Index<N> extent;
-    extent.fill(steps + 1);
-    each_index(extent, [&](const Index<N>& i) {
-        Param<N> u{};
-        for (std::size_t d = 0; d < N; ++d) {
-            const Interval on = patch.domain()[d];
-            const double x = on.lo + on.length() * i[d] / steps;
-            if constexpr (N == 1)
-                u = x;
-            else
-                u[d] = x;
-        }
-        out.push_back(patch.template jet<0>(u).value());
-    });
-    return out;
-}
-
-template <std::size_t N, class P>
 NearestQuery set_of(const Patch<N, P>& patch) {
     return must(NearestQuery::make(std::array{NearestObject::of(patch)}));
 }
@@ -147,6 +127,38 @@ TEST(LeastDistance, scales_exactly_and_says_which_objects) {
         EXPECT_EQ(s.distance, scale * one.distance);
         EXPECT_EQ(s.lower_bound, scale * one.lower_bound);
         EXPECT_EQ(s.at, one.at);
+    }
+}
+
+// Boxes and hulls of these parts are as far apart as the objects, and a small budget ends before points are
+// found that are as near: a bound that is too large by any per cent is seen.
+TEST(LeastDistance, bounds_that_are_exactly_the_distance_are_not_exceeded_before_it_is_found) {
+    const auto run = [](double angle, double gap) {
+        const auto comb = [&](double from, double to, double y) {
+            std::vector<Vec<2>> points;
+            std::vector<double> knots{0};
+            for (int i = 0; i <= 40; ++i) {
+                const double x = from + (to - from) * i / 40;
+                points.push_back(
+                    {{x * std::cos(angle) - y * std::sin(angle), x * std::sin(angle) + y * std::cos(angle)}});
+                knots.push_back(i);
+            }
+            knots.push_back(40);
+            return must(
+                Curve<Vec<2>>::make({must(BSplineBasis::make(1, knots))}, Net<1, Vec<2>>({41}, points)));
+        };
+        const auto a = set_of(comb(-30, 0, 0)), b = set_of(comb(gap + 50, gap, 0));
+        double loosest = 0;
+        for (int pairs = 1; pairs <= 60; ++pairs) {
+            const auto d = must(least_distance<2>(a, b, {.max_pairs = pairs}));
+            EXPECT_LE(d.lower_bound, gap * (1 + 1e-12)) << angle << " " << pairs;
+            if (d.lower_bound >= 0.999 * gap) loosest = std::max(loosest, d.distance);
+        }
+        return loosest / gap;  // of the points known when the bound was all there is to know
+    };
+    for (const double gap : {2.0, 0.3}) {
+        EXPECT_GE(run(0, gap), 1.01);
+        EXPECT_GE(run(0.6, gap), 1.01);
     }
 }
 

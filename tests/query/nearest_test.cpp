@@ -23,20 +23,7 @@ Vec<D> random_point(Random& random, double reach) {
 template <std::size_t N, class P>
 double sampled_distance(const Patch<N, P>& patch, const PointOf<P>& q, int steps) {
     double least = 1e300;
-    Index<N> extent;
-    extent.fill(steps + 1);
-    each_index(extent, [&](const Index<N>& i) {
-        Param<N> u{};
-        for (std::size_t d = 0; d < N; ++d) {
-            const Interval on = patch.domain()[d];
-            const double x = on.lo + on.length() * i[d] / steps;
-            if constexpr (N == 1)
-                u = x;
-            else
-                u[d] = x;
-        }
-        least = std::min(least, norm(patch.template jet<0>(u).value() - q));
-    });
+    for (const auto& x : samples_of(patch, steps)) least = std::min(least, norm(x - q));
     return least;
 }
 

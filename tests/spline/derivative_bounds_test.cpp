@@ -203,16 +203,7 @@ TEST(DerivativeBounds, jumps_of_rational_surfaces_are_bounded_and_those_of_round
     EXPECT_GT(tightest, 0.5);
 
     // A cone between two circles whose weights differ: smooth, though its homogeneous pieces are not.
-    const double w = std::sqrt(0.5);
-    const double xy[5][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
-    std::vector<Hom<3>> c;
-    for (int i = 0; i < 5; ++i)
-        for (int k = 0; k < 2; ++k)
-            c.push_back(weighted(Vec<3>{{xy[i][0] * (1 + k), xy[i][1] * (1 + k), 10.0 * k}},
-                                 (i % 2 ? w : 1) * (1 + 2 * k)));
-    const SurfaceGeometry cone =
-        *Surface<Hom<3>>::make({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2}), *BSplineBasis::bezier(1)},
-                               Net<2, Hom<3>>({5, 2}, c));
+    const SurfaceGeometry cone = cone_of_uneven_weights();
     const DerivativeQuery<2, 3> query(cone);
     ASSERT_EQ(query.kinks(0).size(), 1u);
     EXPECT_LE(query.kinks(0)[0].jump, 1e-10);

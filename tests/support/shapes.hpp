@@ -114,4 +114,39 @@ inline std::vector<NamedSurface> surfaces_of_every_kind(unsigned seed) {
     return s;
 }
 
+// Between two half circles whose weights differ: smooth, though its homogeneous pieces are not.
+inline SurfaceGeometry cone_of_uneven_weights() {
+    const double w = std::sqrt(0.5);
+    const double xy[5][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}};
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < 5; ++i)
+        for (int k = 0; k < 2; ++k)
+            c.push_back(weighted(Vec<3>{{xy[i][0] * (1 + k), xy[i][1] * (1 + k), 10.0 * k}},
+                                 (i % 2 ? w : 1) * (1 + 2 * k)));
+    return *Surface<Hom<3>>::make(
+        {*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2}), *BSplineBasis::bezier(1)},
+        Net<2, Hom<3>>({5, 2}, c));
+}
+
+// Points at equal steps of the parameters.
+template <std::size_t N, class P>
+std::vector<PointOf<P>> samples_of(const Patch<N, P>& patch, int steps) {
+    std::vector<PointOf<P>> out;
+    Index<N> extent;
+    extent.fill(steps + 1);
+    each_index(extent, [&](const Index<N>& i) {
+        Param<N> u{};
+        for (std::size_t d = 0; d < N; ++d) {
+            const Interval on = patch.domain()[d];
+            const double x = on.lo + on.length() * i[d] / steps;
+            if constexpr (N == 1)
+                u = x;
+            else
+                u[d] = x;
+        }
+        out.push_back(patch.template jet<0>(u).value());
+    });
+    return out;
+}
+
 }  // namespace freiform::test

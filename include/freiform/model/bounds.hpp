@@ -2,6 +2,7 @@
 #pragma once
 #include <freiform/model/model.hpp>
 #include <freiform/query/bounds.hpp>
+#include <freiform/query/oriented_box.hpp>
 
 namespace freiform {
 
@@ -10,5 +11,9 @@ namespace freiform {
 // negative or NaN, models without faces, and faces without bounds of their derivatives or of their boundary.
 //   const auto b = tight_box(model, 1e-6);   // b->box.lo, b->slack
 Result<TightBox<3>> tight_box(const Model& model, double accuracy, int max_parts = 20000);
+
+// Likewise in an orientation in which it is small (oriented_box.hpp): that of the ends of parts of boundaries
+// and of places on the faces.
+Result<OrientedBox<3>> oriented_box(const Model& model, double accuracy, int max_parts = 20000);
 
 }  // namespace freiform

@@ -1,5 +1,6 @@
 // The point of a solid model that is nearest to a given one, with a lower bound that proves it.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/model/model.hpp>
 
 #include <memory>
@@ -30,6 +31,23 @@ struct ModelNearestOptions {
     int max_parts = 20000;
 };
 
+struct ModelFarthest {
+    int face = -1, edge = -1;  // edge: where the place is on the boundary
+    Vec<2> uv{};
+    Vec<3> point{};
+    double distance = 0;     // to `point`
+    double point_error = 0;  // bound: how far `point` may be from the face
+    // bound: no point of any face is farther. The largest distance lies in [distance - point_error,
+    // upper_bound].
+    double upper_bound = 0;
+};
+
+struct NearestFaces {
+    // The nearest point of each; `lower_bound` is for all faces but those before it.
+    std::vector<ModelNearest> faces;
+    double others = 0;  // bound: all other faces are at least so far; infinite: there are none
+};
+
 namespace detail {
 struct ModelParts;
 }
@@ -51,6 +69,13 @@ public:
     Result<void> nearest(std::span<const Vec<3>> points, std::span<ModelNearest> out,
                          const ModelNearestOptions& options = {}) const;
     Result<ModelNearest> nearest(const Vec<3>& point, const ModelNearestOptions& options = {}) const;
+
+    // The `count` nearest faces, of those that are within `radius`; one that may be within it is among them.
+    // Nearest first, as far as bounds tell. Refuses besides a count below 1 and a radius that is negative.
+    Result<NearestFaces> nearest_faces(const Vec<3>& point, int count, double radius = kInfinity,
+                                       const ModelNearestOptions& options = {}) const;
+    // `accuracy`: how far upper_bound may stay above `distance`. The same refusals.
+    Result<ModelFarthest> farthest(const Vec<3>& point, const ModelNearestOptions& options = {}) const;
 
     const Model& model() const;
     const detail::ModelParts& parts() const { return *prepared_; }

@@ -1,4 +1,4 @@
-// Signs that are never wrong: decisions about points of the plane, exact for all finite doubles.
+// Signs that are never wrong: decisions about points, exact for all finite doubles.
 //
 // Subnormal and huge coordinates, also mixed, are no exception: orient2d({0, 0}, {1e300, 1e-300}, {1e300, 0})
 // is -1. If a coordinate is not finite, the answer is 0 (or false). Cost: about 3 ns (orient2d) and 10 ns
@@ -16,6 +16,10 @@ int orient2d(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c);
 // circle; -1 if it is outside. For clockwise a, b, c the sign is reversed. For a, b, c on one line, it is
 // that of the determinant of (x, y, x^2 + y^2, 1).
 int in_circle(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d);
+
+// +1 if d is below the plane through a, b, c, which turn counter-clockwise seen from above; -1 if above, 0 if
+// all four are in one plane. About 10 ns, and some microseconds where rounding could matter.
+int orient3d(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c, const Vec<3>& d);
 
 // Is p on the segment ab, and neither a nor b?
 bool is_between(const Vec<2>& a, const Vec<2>& b, const Vec<2>& p);

@@ -1,6 +1,6 @@
 // Arc length to a proven bound, its inverse, and points at equal distance along a curve.
 #pragma once
-#include <freiform/spline/patch.hpp>
+#include <freiform/spline/geometry.hpp>
 
 #include <memory>
 #include <vector>
@@ -59,5 +59,9 @@ template <class P>
 Measure length(const Curve<P>& curve, double accuracy);
 template <class P>
 Result<Measure> length(const Curve<P>& curve, Interval on, double accuracy);
+
+// Of a curve as models have it: a line, a conic or a spline. Refuses, as "on", what is not an interval inside
+// the domain, or not finite, and ranges of parabolas and hyperbolas whose points are beyond doubles.
+Result<Measure> length(const CurveGeometry<3>& curve, Interval on, double accuracy);
 
 }  // namespace freiform

@@ -1,0 +1,111 @@
+// Questions about a solid model: lengths and joints of edges, nearest faces, the farthest point, oriented
+// boxes.
+#include "run.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+
+// A unit square in a larger plane, as a trimmed surface: a model of one face.
+constexpr const char* kSquare = R"({"type": "trimmed", "surface": {"degrees": [1, 1],
+    "points": [[[0,0,0],[0,4,0]],[[4,0,0],[4,4,0]]]},
+    "loops": [[{"degree": 1, "knots": [0,0,1,2,3,4,4], "points": [[0.25,0.25],[0.5,0.25],[0.5,0.5],[0.25,0.5],[0.25,0.25]]}]]})";
+
+class ModelQuestions : public Program {
+protected:
+    const std::string bracket_ = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";
+    Json answer(std::vector<std::string> arguments) {
+        arguments.push_back("--json");
+        const Ran r = run(arguments);
+        EXPECT_EQ(r.code, 0) << r.out << r.err;
+        return r.code == 0 ? Json::parse(r.out) : Json();
+    }
+    bool has_occt() {
+        const Ran r = run({"info", bracket_, "--json"});
+        return r.code == 0 || r.out.find("unavailable") == std::string::npos;
+    }
+};
+
+TEST_F(ModelQuestions, a_trimmed_square_has_edges_a_nearest_face_a_farthest_corner_and_a_box) {
+    const std::string square = file("square.json", kSquare), at = file("p.csv", "1.5,1.5,2\n");
+    const Json length = answer({"length", square});
+    EXPECT_NEAR(length["value"].get<double>(), 4, 1e-12);
+    EXPECT_LE(length["bound"].get<double>(), 1e-11);
+    EXPECT_EQ(length["objects"][0]["edges"].size(), 1u);
+    const Json near = answer({"nearest", square, "--points", at, "--k", "3"})["results"][0];
+    ASSERT_EQ(near["faces"].size(), 1u);
+    EXPECT_EQ(near["faces"][0]["distance"], 2.0);
+    EXPECT_FALSE(near.contains("others_lower_bound"));
+    EXPECT_EQ(answer({"nearest", square, "--points", at, "--radius", "1"})["results"][0]["faces"].size(), 0u);
+    EXPECT_EQ(answer({"nearest", square, "--points", at, "--radius", "2.5"})["results"][0]["faces"].size(),
+              1u);
+    const Json far =
+        answer({"nearest", square, "--points", at, "--farthest", "--accuracy", "1e-6"})["results"][0];
+    EXPECT_NEAR(far["distance"].get<double>(), std::sqrt(4.5), 1e-6);
+    EXPECT_GE(far["upper_bound"].get<double>(), std::sqrt(4.5));
+    const Json box = answer({"bounds", square, "--oriented"})["objects"][0]["oriented_box"];
+    EXPECT_NEAR(box["volume"].get<double>(), 0, 1e-9);
+    EXPECT_EQ(box["axes"].size(), 3u);
+}
+
+TEST_F(ModelQuestions, what_they_do_not_answer_says_what_is_accepted) {
+    const std::string square = file("square.json", kSquare);
+    const Ran places = run({"length", square, "--equal", "3"});
+    EXPECT_EQ(places.code, 1);
+    EXPECT_NE(places.err.find("--range are for curves"), std::string::npos) << places.err;
+    const Ran hull = run({"bounds", square, "--hull", "0.1"});
+    EXPECT_EQ(hull.code, 1);
+    EXPECT_NE(hull.err.find("--hull for those but the last two"), std::string::npos) << hull.err;
+    EXPECT_EQ(run({"bounds", square, "--hull", "0"}).code, 2);
+    EXPECT_EQ(run({"continuity", square, "--curvature", "-1"}).code, 2);
+    const Ran continuity = run({"continuity", square});
+    EXPECT_EQ(continuity.code, 1);
+    EXPECT_NE(continuity.err.find("the edges of models"), std::string::npos) << continuity.err;
+}
+
+TEST_F(ModelQuestions, joints_of_a_part_are_bounded_and_sorted) {
+    if (!has_occt()) GTEST_SKIP() << "built without Open CASCADE";
+    const Json object = answer({"continuity", bracket_})["objects"][0];
+    const Json edges = object["edges"];
+    ASSERT_GT(edges.size(), 30u);
+    int last = -2, smooth = 0;
+    std::size_t bounded = 0;
+    for (const Json& e : edges) {
+        EXPECT_GE(e["g_at_most"].get<int>(), last);
+        last = e["g_at_most"];
+        EXPECT_LE(e["g_order"].get<int>(), last);
+        for (const char* what : {"gap", "angle"})
+            if (const Json& found = e[what]; !found["bound"].is_null()) {  // null: there is none
+                EXPECT_LE(found["size"].get<double>(), found["bound"].get<double>());
+                ++bounded;
+            }
+        smooth += last > 0;
+    }
+    EXPECT_GT(bounded, edges.size());
+    EXPECT_EQ(object["edges_at_most"]["G1"].get<int>() + object["edges_at_most"]["G2"].get<int>(), smooth);
+    const Json length = answer({"length", bracket_});
+    EXPECT_LE(length["bound"].get<double>(), 1e-6);
+    const Ran plain = run({"continuity", bracket_});
+    EXPECT_NE(plain.out.find("worst first\n  edge "), std::string::npos) << plain.out;
+}
+
+TEST_F(ModelQuestions, hulls_come_as_numbers_and_as_a_mesh) {
+    const std::string curve = file("c.json", R"({"type": "curve", "points": [[0,0],[1,2],[3,2],[4,0]]})");
+    const Json hull = answer({"bounds", curve, "--hull", "1e-3", "--oriented"})["objects"][0];
+    EXPECT_LE(hull["hull"]["bound"].get<double>(), 1e-3);
+    EXPECT_GE(hull["hull"]["points"].size(), 8u);
+    EXPECT_NEAR(hull["oriented_box"]["volume"].get<double>(), 6, 1e-6);
+    const std::string surface =
+        file("s.json", R"({"type": "surface", "points": [[[0,0,0],[0,1,1]],[[1,0,1],[1,1,0]]]})");
+    const Ran mesh = run({"bounds", surface, "--hull", "0.01", "-o", path("hull.obj")});
+    EXPECT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_NE(mesh.out.find("4 triangles"), std::string::npos) << mesh.out;
+    EXPECT_NE(content(path("hull.obj")).find("\nf "), std::string::npos);
+    EXPECT_EQ(run({"bounds", curve, "--hull", "0.01", "-o", path("hull.stl")}).code, 1);
+}
+
+}  // namespace
+}  // namespace freiform::test
