@@ -19,8 +19,8 @@
 //
 // Seams. Where the box reaches over a line along which the surface is not C^2, or over the end of its domain,
 // that parameter is held in the middle of the part: n with u held differs by at most
-// h/2 u_1 (S_20 S_01 + S_10 S_11) / m, nothing for an edge along the seam. Across a kink (not C^1) there is
-// no bound.
+// h/2 u_1 (S_20 S_01 + S_10 S_11) / m, nothing for an edge along the seam. Across a kink N jumps by at most J S_01,
+// J the jump of S_u, and n by twice that over m: nothing at the knots of pieces that are C^1 but for rounding.
 //
 // Poles: where |N| is not certainly above 0 on a part that is 2^-10 of the edge, the part is left out, and
 // the joint is called singular.
@@ -112,6 +112,7 @@ public:
         const double off = value_error_bound(coedge_->curve, {on});
         std::array<Interval, 2> box;
         std::array<bool, 2> held{};
+        std::array<double, 2> jump{};  // of S_u, S_v: a knot where the surface is only nearly C^1
         for (std::size_t k = 0; k < 2; ++k) {
             const double reach = h / 2 * p[k](1) + off;
             box[k] = {middle[int(k)] - reach, middle[int(k)] + reach};
@@ -123,7 +124,7 @@ public:
             box[k] = {clamped(box[k].lo, ends), clamped(box[k].hi, ends)};
             for (const SurfaceSeam& s : face_->seams[k]) held[k] = held[k] || box[k].contains(s.at);
             for (const Kink& kink : face_->query.kinks(int(k)))
-                if (box[k].contains(kink.at)) return kNone;
+                if (box[k].contains(kink.at)) held[k] = true, jump[k] += kink.jump;
         }
         const auto s = face_->query(box, 3);
         const double twist_u = zero_times(s(2, 0), s(0, 1)) + zero_times(s(1, 0), s(1, 1));
@@ -136,10 +137,12 @@ public:
                 64 * kUnitRoundoff * (k == 0 ? s(1, 0) : s(0, 1)) +
                 8 * face_->degree[k] * face_->query.value_error(box) / face_->query.thinnest_piece(int(k));
         const double slip = rounding[0] * s(0, 1) + s(1, 0) * rounding[1];
-        const double m = norm(cross(j(1, 0), j(0, 1))) / kNormalSlack - across - slip;
-        if (!(m > 0)) return {kInfinity, kInfinity, kInfinity, true};
+        const double leap = zero_times(jump[0], s(0, 1)) + zero_times(jump[1], s(1, 0));
+        const double m = norm(cross(j(1, 0), j(0, 1))) / kNormalSlack - across - slip - leap;
+        if (!(m > 0)) return {kInfinity, kInfinity, kInfinity, leap == 0};
         NormalBounds out;
         out.rounding = (2 * slip + off * (twist_u + twist_v)) / m + 16 * kUnitRoundoff;
+        out.held = 2 * leap / m;
         if (held[0]) out.held += h / 2 * zero_times(twist_u, p[0](1)) / m, p[0] = {};
         if (held[1]) out.held += h / 2 * zero_times(twist_v, p[1](1)) / m, p[1] = {};
         const double u = p[0](1), v = p[1](1), uu = p[0](2), vv = p[1](2);

@@ -84,7 +84,7 @@ TEST_F(ModelQuestions, joints_of_a_part_are_bounded_and_sorted) {
             }
         smooth += last > 0;
     }
-    EXPECT_GT(bounded, edges.size());
+    EXPECT_EQ(bounded, 2 * edges.size());
     EXPECT_EQ(object["edges_at_most"]["G1"].get<int>() + object["edges_at_most"]["G2"].get<int>(), smooth);
     const Json length = answer({"length", bracket_});
     EXPECT_LE(length["bound"].get<double>(), 1e-6);

@@ -2,6 +2,7 @@
 #include <freiform/model/distance.hpp>
 
 #include <gtest/gtest.h>
+#include <support/random.hpp>
 #include <support/refusal.hpp>
 #include <support/solids.hpp>
 

@@ -1,4 +1,5 @@
 // Hulls and boxes of objects: contain them, and are nearly as small as can be.
+#include <freiform/core/constants.hpp>
 #include <freiform/poly/predicates.hpp>
 #include <freiform/query/oriented_box.hpp>
 

@@ -24,7 +24,7 @@ struct EdgeContinuity {
     double gap = 0, gap_bound = 0;
     // Likewise the angle between the normals, radians, and the parameter of the edge where it was found.
     // Where both faces are of one shell the outward normals are meant, so that pi is a fold; else the planes,
-    // up to pi/2. Infinite bound: faces without bounds (offsets), kinks of a surface along the edge.
+    // up to pi/2. Infinite bound: faces without bounds (offsets), sharp kinks of a surface along the edge.
     double angle = 0, angle_bound = 0, at = 0;
     bool directed = true;
     // An estimate: the largest difference at places looked at of the normal curvatures orthogonal to the
