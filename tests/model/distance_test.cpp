@@ -51,10 +51,10 @@ TEST(ModelDistance, sees_edges_and_meetings) {
 TEST(ModelDistance, of_facing_poles_is_known_as_well_as_elsewhere) {
     const auto a = must(ModelNearestQuery::make(sphere({}, 1))),
                b = must(ModelNearestQuery::make(sphere({{0, 0, 5}}, 2)));
-    const auto d = must(least_distance(a, b, {.accuracy = 1e-3, .max_pairs = 40000}));
+    const auto d = must(least_distance(a, b, {.accuracy = 1e-4, .max_pairs = 20000}));
     EXPECT_NEAR(d.distance, 2, 1e-3);
     EXPECT_LE(d.lower_bound, 2);
-    EXPECT_GE(d.lower_bound, 2 - 1.1e-3);
+    EXPECT_GE(d.lower_bound, 2 - 5e-4);
 }
 
 TEST(ModelDistance, a_spent_budget_leaves_a_bound_that_holds_and_nonsense_is_refused) {
