@@ -19,8 +19,9 @@
 //
 // Seams. Where the box reaches over a line along which the surface is not C^2, or over the end of its domain,
 // that parameter is held in the middle of the part: n with u held differs by at most
-// h/2 u_1 (S_20 S_01 + S_10 S_11) / m, nothing for an edge along the seam. Across a kink N jumps by at most J S_01,
-// J the jump of S_u, and n by twice that over m: nothing at the knots of pieces that are C^1 but for rounding.
+// h/2 u_1 (S_20 S_01 + S_10 S_11) / m, nothing for an edge along the seam. Across a kink N jumps by at most J
+// S_01, J the jump of S_u, and n by twice that over m: nothing at the knots of pieces that are C^1 but for
+// rounding.
 //
 // Poles: where |N| is not certainly above 0 on a part that is 2^-10 of the edge, the part is left out, and
 // the joint is called singular.
