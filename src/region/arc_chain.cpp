@@ -45,7 +45,7 @@ namespace freiform::detail {
 
 namespace {
 
-constexpr int kDeepest = 40;
+constexpr int kMostHalvings = 40;
 constexpr std::size_t kMaxPieces = 100'000;
 
 using Bern = std::vector<double>;
@@ -199,7 +199,7 @@ private:
             if (take(part)) continue;
             const Box<2> box = box_of(part.s);
             const double size = norm(box.hi - box.lo);
-            if (size < 0x1p-10 * tolerance_ || part.depth == kDeepest || size < 0x1p-40 * scale) {
+            if (size < 0x1p-10 * tolerance_ || part.depth == kMostHalvings || size < 0x1p-40 * scale) {
                 if (size > tolerance_ / 4)
                     return refuse(RefusalKind::ill_conditioned, "tolerance",
                                   text(tolerance_, " is below what rounding leaves near (", part.s.front()[0],

@@ -4,7 +4,7 @@
 namespace freiform::cli::gallery {
 
 std::span<const Entry> entries() {
-    static constexpr std::array<Entry, 31> kEntries{{
+    static constexpr std::array<Entry, 33> kEntries{{
         {"R01", "Three descriptions",
          "An explicit curve is the graph of a function, an implicit one the zeros of a function of the "
          "plane, a parametric "
@@ -157,6 +157,16 @@ std::span<const Entry> entries() {
          "Reflections show how surfaces meet: stripes that break have an edge below them, stripes with kinks "
          "a jump of curvature. The first rows of the neighbour decide.",
          "--isolines 5 --control", surface_joints},
+        {"R32", "Regions and strokes",
+         "What is inside of one outline, of both or of exactly one is bounded by parts of their segments, "
+         "and nothing is "
+         "made of lines. A stroke is a region, too.",
+         "--control", regions},
+        {"R35", "Gradients",
+         "Colours are points, so splines mix them; what lies between depends on the space. A surface with a "
+         "colour at "
+         "every control point is a gradient in two directions.",
+         "", gradients},
         {"R36", "Key frames and motions",
          "Between keys a value steps, runs on a line or on a cubic; an easing says how the time is spent. "
          "Along a "

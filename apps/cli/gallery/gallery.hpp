@@ -58,6 +58,9 @@ Figure trimming(const Document&);
 // surfaces.cpp
 Figure rational_surfaces(const Document&);
 Figure triangles(const Document&);
+// illustration.cpp
+Figure regions(const Document&);
+Figure gradients(const Document&);
 // motions.cpp
 Figure motions(const Document&);
 
