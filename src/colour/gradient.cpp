@@ -6,6 +6,10 @@
 //
 // Accuracy. That of the published matrices, 10 digits [Ottosson 2020]; colours come back within 1e-6.
 //
+// Why are components cut off, and not chroma taken away, where sRGB does not have a colour? The edge of sRGB
+// is hollow in places (at blue, between green and cyan): with less chroma, a path that leaves it jumps; cut
+// off, it bends.
+//
 // Why is opacity not multiplied in? The stops of CSS are premultiplied; a spline of premultiplied colours
 // would pass other colours than its stops where opacity falls to 0. Between opaque colours both are the same.
 #include "colour_detail.hpp"
@@ -35,10 +39,6 @@ Vec<3> coordinates(const Colour& c, ColourSpace space) {
     return {{lab.L, std::hypot(lab.a, lab.b), std::atan2(lab.b, lab.a)}};
 }
 
-// Less chroma until cutting components off is hardly seen: cutting alone turns hues, and chroma alone jumps
-// where the edge of sRGB is hollow (at blue). As CSS Color 4 does it.
-constexpr double kJustSeen = 0.02;
-
 Colour colour_at(const Vec<3>& x, double opacity, ColourSpace space) {
     const double a = std::clamp(opacity, 0.0, 1.0);
     const auto component = [](double y) { return std::clamp(y, 0.0, 1.0); };
@@ -52,19 +52,7 @@ Colour colour_at(const Vec<3>& x, double opacity, ColourSpace space) {
     const bool polar = space == ColourSpace::oklch;
     const double lightness = std::clamp(x[0], 0.0, 1.0);
     const Vec<2> ab = polar ? Vec<2>{{x[1] * std::cos(x[2]), x[1] * std::sin(x[2])}} : Vec<2>{{x[1], x[2]}};
-    const auto at = [&](double share) { return Oklab{lightness, share * ab[0], share * ab[1]}; };
-    const auto has = [&](double share) {
-        return std::ranges::all_of(detail::light_of(at(share)), [](double y) { return y >= 0 && y <= 1; });
-    };
-    const auto cut = [&](double share) { return shown(detail::light_of(at(share))); };
-    const auto off = [&](double share) {
-        const Oklab p = to_oklab(cut(share)), q = at(share);
-        return std::hypot(p.L - q.L, p.a - q.a, p.b - q.b);
-    };
-    if (has(1) || off(1) <= kJustSeen) return cut(1);
-    double lo = 0, hi = 1;
-    for (int i = 0; i < 40; ++i) (off(lo / 2 + hi / 2) <= kJustSeen ? lo : hi) = lo / 2 + hi / 2;
-    return cut(lo);
+    return shown(detail::light_of({lightness, ab[0], ab[1]}));
 }
 
 namespace {

@@ -66,7 +66,7 @@ namespace {
 void quad(Plot& plot, const std::array<Vec<2>, 4>& p, const Colour& colour, double width) {
     DrawnGroup group{"", "cells", colour, width, {}, {}, {}};
     group.fill = 1;
-    group.paths.push_back({p[0], {{1, {p[1]}}, {1, {p[2]}}, {1, {p[3]}}}, true, width == 0, {}});
+    group.paths.push_back({p[0], {{1, {p[1]}}, {1, {p[2]}}, {1, {p[3]}}}, true, false, {}});
     plot.panel.groups.push_back(std::move(group));
 }
 
@@ -77,9 +77,9 @@ Plot strip(ColourSpace space) {
     const auto g = sure(Gradient::make(stops, {space, GradientOptions::Way::smooth}));
     constexpr int kParts = 128;
     for (int i = 0; i < kParts; ++i) {
-        const double a = 4.0 * i / kParts, b = std::min(4.0, a + 4.5 / kParts);  // a little over the next one
+        const double a = 4.0 * i / kParts, b = std::min(4.0, a + 4.0 / kParts);
         quad(plot, std::array<Vec<2>, 4>{{{{a, 0}}, {{b, 0}}, {{b, 0.5}}, {{a, 0.5}}}}, g((i + 0.5) / kParts),
-             0);
+             0.7);
     }
     return plot;
 }

@@ -15,8 +15,8 @@ enum class ColourSpace { srgb, linear, oklab, oklch };
 std::string_view name_of(ColourSpace space);
 
 // Three coordinates of a colour, of oklch the hue in (-pi, pi]; and the colour with such coordinates. What
-// sRGB does not have is brought into it: of oklab and oklch by taking chroma away until it is, else by
-// components.
+// sRGB does not have loses what is outside of it in each component of light: that may change its hue a
+// little.
 Vec<3> coordinates(const Colour& c, ColourSpace space);
 Colour colour_at(const Vec<3>& coordinates, double opacity, ColourSpace space);
 
