@@ -65,12 +65,6 @@ bool is_silent(std::string_view element) {
     return std::ranges::find(kSilent, element) != std::end(kSilent);
 }
 
-// Where and how large something is, which style sheets may say too.
-bool is_geometry(std::string_view property) {
-    static constexpr std::string_view kGeometry[] = {"transform", "d",  "x", "y",     "cx",    "cy",
-                                                     "rx",        "ry", "r", "width", "height"};
-    return std::ranges::find(kGeometry, property) != std::end(kGeometry);
-}
 // What is shown of it may be less than its outline.
 constexpr const char* kCuts[] = {"clip-path", "mask"};
 

@@ -43,6 +43,8 @@ Path polygon(const std::vector<double>& v, bool closed);
 
 using Declarations = std::vector<std::pair<std::string, std::string>>;  // property, value
 Declarations declarations(std::string_view s);
+bool is_geometry(
+    std::string_view property);  // where and how large something is, which style sheets may say too
 
 // Rules of style sheets: for a type, a class or an id.
 class StyleSheet {

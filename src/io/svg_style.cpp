@@ -184,6 +184,12 @@ Affinity<2> fitted(const ViewBox& box, double width, double height, std::string_
     return {{{{sx, 0}, {0, sy}}}, {{x - sx * box.x, y - sy * box.y}}};
 }
 
+bool is_geometry(std::string_view property) {
+    static constexpr std::string_view kGeometry[] = {"transform", "d",  "x", "y",     "cx",    "cy",
+                                                     "rx",        "ry", "r", "width", "height"};
+    return std::ranges::find(kGeometry, property) != std::end(kGeometry);
+}
+
 Declarations declarations(std::string_view s) {
     Declarations out;
     while (!s.empty()) {

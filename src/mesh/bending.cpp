@@ -155,4 +155,12 @@ double Shift::way(double e) const {
     return (e + q * e / (8 * p * p)) * (1 + 1e-14);
 }
 
+bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance) {
+    constexpr double kLittle = 0x1p-8;  // of the tolerance
+    for (int d = 0; d < 2; ++d)
+        for (const Kink& k : surface.kinks(d))
+            if (!(k.jump * (box.hi - box.lo)[d] <= kLittle * tolerance)) return false;
+    return true;
+}
+
 }  // namespace freiform

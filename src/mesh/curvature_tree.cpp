@@ -124,14 +124,6 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
     return grow * best;
 }
 
-bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance) {
-    constexpr double kLittle = 0x1p-8;  // of the tolerance
-    for (int d = 0; d < 2; ++d)
-        for (const Kink& k : surface.kinks(d))
-            if (!(k.jump * (box.hi - box.lo)[d] <= kLittle * tolerance)) return false;
-    return true;
-}
-
 Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                                           std::span<const Vec<2>> polygon,
                                           std::span<const std::array<int, 2>> segments,
