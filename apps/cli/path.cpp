@@ -1,10 +1,11 @@
 // path: what plane paths fill and what strokes cover, as paths: union, intersection, difference, exclusion,
-// stroke, offset.
+// stroke, offset, simplify.
 #include "input.hpp"
 
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/svg.hpp>
+#include <freiform/path/simplify.hpp>
 #include <freiform/region/stroke.hpp>
 
 #include <algorithm>
@@ -22,8 +23,12 @@ struct PathArguments {
     std::vector<double> dashes;
 };
 
-constexpr std::string_view kPathOperations[] = {"union",     "intersection", "difference",
-                                                "exclusion", "stroke",       "offset"};
+constexpr std::string_view kPathOperations[] = {"union",  "intersection", "difference", "exclusion",
+                                                "stroke", "offset",       "simplify"};
+// Those that change each shape by itself.
+bool changes_each(std::string_view operation) {
+    return operation == "stroke" || operation == "offset" || operation == "simplify";
+}
 constexpr std::string_view kCapNames[] = {"butt", "round", "square"},
                            kJoinNames[] = {"miter", "miter-clip", "round", "bevel"};
 
@@ -134,6 +139,15 @@ Result<Shapes> each_changed(const Shapes& in, const PathArguments& options, cons
     out.picture.shapes.clear();
     for (const SvgShape& s : in.picture.shapes) {
         SvgShape made = s;
+        if (options.operation == "simplify") {
+            auto done = simplified(s.path, {.tolerance = region.tolerance});
+            if (!done) return refuse_within(s.id.empty() ? s.element : s.id, done.error());
+            made.path = std::move(done->path), made.element = "path";
+            out.area += signed_area(made.path).value;
+            out.bound = std::max(out.bound, in.bound + done->bound);
+            out.picture.shapes.push_back(std::move(made));
+            continue;
+        }
         made.stroke = "none", made.element = "path";
         const bool stroke = options.operation == "stroke";
         if (stroke && s.stroke == "none" && !options.width) {
@@ -171,9 +185,10 @@ std::string path_report(const Context& context, const PathArguments& options, co
 void check_usage(const PathArguments& o) {
     if (std::ranges::find(kPathOperations, o.operation) == std::end(kPathOperations))
         wrong_usage(
-            text("path is followed by union, intersection, difference, exclusion, stroke or offset, found \"",
+            text("path is followed by union, intersection, difference, exclusion, stroke, offset or "
+                 "simplify, found \"",
                  o.operation, "\""));
-    const bool each = o.operation == "stroke" || o.operation == "offset";
+    const bool each = changes_each(o.operation);
     if (o.files.empty() || o.files.size() > (each ? 1u : 2u))
         wrong_usage(text("path ", o.operation, " takes ", each ? "one file" : "one or two files"));
     if (o.files.size() == 2 && !o.objects.empty()) wrong_usage("--objects chooses shapes of one file");
@@ -223,7 +238,7 @@ Result<void> run_path(const Context& context, const PathArguments& options) {
         }
         files.push_back(*std::move(read));
     }
-    const bool each = options.operation == "stroke" || options.operation == "offset";
+    const bool each = changes_each(options.operation);
     const double tolerance = options.tolerance.value_or((each ? 1e-4 : 1e-9) * box.diagonal());
     const RegionOptions region{.tolerance = tolerance};
     auto changed = each ? each_changed(files[0], options, region) : one_shape(files, options, region);
@@ -245,17 +260,20 @@ Result<void> run_path(const Context& context, const PathArguments& options) {
 void add_path(CommandLine& line) {
     const auto options = std::make_shared<PathArguments>();
     const Command command = line.add(
-        "path", "Regions that paths fill: union, intersection, difference, exclusion, stroke, offset",
+        "path",
+        "Regions that paths fill: union, intersection, difference, exclusion, stroke, offset; simplify",
         "  freiform path union drawing.svg -o one.svg\n"
         "  freiform path difference plate.svg holes.svg -o drilled.svg\n"
         "  freiform path intersection drawing.svg --objects plate eye -o both.svg\n"
         "  freiform path stroke drawing.svg -o outlines.svg\n"
         "  freiform path offset part.svg --distance -0.2 --tolerance 1e-3 -o smaller.svg\n"
+        "  freiform path simplify traced.svg --tolerance 0.1 -o few.svg\n"
         "Of one file the shapes are combined one after the other, of two what each of them fills. stroke "
         "and\n"
-        "offset change each shape.");
+        "offset change each shape, simplify replaces its segments by fewer cubics.");
     command
-        .word("OPERATION", options->operation, "union, intersection, difference, exclusion, stroke, offset")
+        .word("OPERATION", options->operation,
+              "union, intersection, difference, exclusion, stroke, offset, simplify")
         .required();
     command.words("FILE", options->files, "One or two drawings (.svg), or documents with plane curves")
         .required();
@@ -263,7 +281,7 @@ void add_path(CommandLine& line) {
         .shown_as("ID ...");
     command.number(
         "--tolerance", options->tolerance,
-        "What the result may be off; 1e-9 of the size of the drawing, of strokes and offsets 1e-4");
+        "What the result may be off; 1e-9 of the size of the drawing, otherwise than of regions 1e-4");
     command.word("--fill-rule", options->rule, "Instead of what the drawing says")
         .one_of({"nonzero", "evenodd"});
     command.number("--distance", options->distance, "offset: larger by this, or smaller if it is negative");

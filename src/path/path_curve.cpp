@@ -82,27 +82,6 @@ std::array<Vec<2>, 4> hermite_cubic(const Homogeneous& p) {
     return {a, a + (1.0 / 3) * slope(0, 1), b + (1.0 / 3) * slope(p.size() - 1, p.size() - 2), b};
 }
 
-// A bound of the distance at equal parameters.
-double distance_bound(const Homogeneous& p, const std::array<Vec<2>, 4>& q) {
-    const int n = int(p.size()) - 1;
-    double least = std::numeric_limits<double>::infinity(), heaviest = 0, reach = 0, most = 0;
-    for (const Hom<2>& h : p) {
-        least = std::min(least, h.weight()), heaviest = std::max(heaviest, h.weight());
-        reach = std::max(reach, std::max(std::abs(h[0]), std::abs(h[1])));
-    }
-    for (const Vec<2>& c : q) reach = std::max(reach, heaviest * max_abs(c));
-    for (int k = 0; k <= n + 3; ++k) {
-        Vec<2> c{};
-        for (int i = std::max(0, k - 3); i <= std::min(k, n); ++i) {
-            const double part = binomial(n, i) * binomial(3, k - i) / binomial(n + 3, k);
-            const Hom<2>& h = p[std::size_t(i)];
-            c = c + part * (Vec<2>{{h[0], h[1]}} - h.weight() * q[std::size_t(k - i)]);
-        }
-        most = std::max(most, norm(c));
-    }
-    return (most + 8 * (n + 8) * kUnitRoundoff * 2 * reach) / least * (1 + 1e-12);
-}
-
 // The pieces of one Bezier piece, in order, onto `out`; what stands against it where that cannot be.
 std::optional<Refusal> approximate(Homogeneous piece, double tolerance, SubpathOfCurve& out) {
     constexpr std::size_t kDeepest = 60;  // halvings
@@ -111,7 +90,7 @@ std::optional<Refusal> approximate(Homogeneous piece, double tolerance, SubpathO
         Homogeneous p = std::move(stack.back());
         stack.pop_back();
         const auto q = hermite_cubic(p);
-        const double bound = distance_bound(p, q);
+        const double bound = detail::distance_bound(p, q);
         if (bound <= tolerance) {
             out.subpath.segments.push_back({3, q, 1});
             out.bound = std::max(out.bound, bound);
@@ -133,6 +112,26 @@ std::optional<Refusal> approximate(Homogeneous piece, double tolerance, SubpathO
 }
 
 }  // namespace
+
+double detail::distance_bound(const Homogeneous& p, const std::array<Vec<2>, 4>& q) {
+    const int n = int(p.size()) - 1;
+    double least = std::numeric_limits<double>::infinity(), heaviest = 0, reach = 0, most = 0;
+    for (const Hom<2>& h : p) {
+        least = std::min(least, h.weight()), heaviest = std::max(heaviest, h.weight());
+        reach = std::max(reach, std::max(std::abs(h[0]), std::abs(h[1])));
+    }
+    for (const Vec<2>& c : q) reach = std::max(reach, heaviest * max_abs(c));
+    for (int k = 0; k <= n + 3; ++k) {
+        Vec<2> c{};
+        for (int i = std::max(0, k - 3); i <= std::min(k, n); ++i) {
+            const double part = binomial(n, i) * binomial(3, k - i) / binomial(n + 3, k);
+            const Hom<2>& h = p[std::size_t(i)];
+            c = c + part * (Vec<2>{{h[0], h[1]}} - h.weight() * q[std::size_t(k - i)]);
+        }
+        most = std::max(most, norm(c));
+    }
+    return (most + 8 * (n + 8) * kUnitRoundoff * 2 * reach) / least * (1 + 1e-12);
+}
 
 std::vector<PathSegment> detail::cubics_of(const PathSegment& segment, double tolerance) {
     const Vec<2> origin = segment.front();  // what counts for rounding is the size of the segment

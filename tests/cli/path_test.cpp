@@ -3,6 +3,7 @@
 #include <freiform/io/svg.hpp>
 #include <freiform/region/boolean.hpp>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -99,6 +100,22 @@ TEST_F(PathCommand, says_what_is_wrong) {
     const Ran r = command({"union", f, "--tolerance", "1e-17", "--json"});
     EXPECT_EQ(r.code, 1);
     EXPECT_EQ(nlohmann::json::parse(r.out)["error"]["kind"], "ill_conditioned");
+}
+
+TEST_F(PathCommand, simplifies_each_shape) {
+    std::string d = "M 2 0";
+    for (int i = 1; i <= 400; ++i)
+        d += " L " + std::to_string(2 * std::cos(i * 6.283185307179586 / 400)) + " " +
+             std::to_string(2 * std::sin(i * 6.283185307179586 / 400));
+    file("traced.svg", "<svg><path id='ring' fill='none' stroke='red' d='" + d + "'/></svg>");
+    const Ran ran =
+        run({"path", "simplify", "traced.svg", "--tolerance", "0.001", "-o", "few.svg", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto said = nlohmann::json::parse(ran.out);
+    EXPECT_LE(said["segments"].get<int>(), 8);
+    EXPECT_LE(said["error_bound"].get<double>(), 0.001);
+    EXPECT_NEAR(said["area"].get<double>(), -4 * 3.14159265358979, 0.01);  // y is turned up
+    EXPECT_NE(content(path("few.svg")).find("stroke=\"red\""), std::string::npos);
 }
 
 }  // namespace

@@ -241,7 +241,7 @@ TEST(GltfAnimation, damaged_files_are_read_or_refused) {
     for (int round = 0; round < 3000; ++round) {
         std::string bad = good;
         for (int k = 0; k < 1 + round % 4; ++k)
-            bad[std::size_t(random.real(0, double(bad.size())))] = char(random.real(0, 256));
+            bad[std::size_t(random.real(0, double(bad.size())))] = char(int(random.real(0, 256)));
         if (round % 7 == 0) bad.resize(std::size_t(random.real(0, double(bad.size()))));
         const auto read = read_gltf_animations(bad);
         refused += !read;
