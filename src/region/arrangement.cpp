@@ -63,22 +63,16 @@ void carry_over(std::span<const RegionArc> arcs, Meetings& m) {
 class Arranger {
 public:
     Arranger(std::vector<RegionArc> arcs, const Nearness& near, const RegionOptions& options)
-        : out_{std::move(arcs), Strips(std::span<const Box<2>>()), {}, {}, {}, 0, 0},
-          near_(near),
-          options_(options) {}
+        : out_{std::move(arcs), ArcTree(), {}, {}, {}, 0, 0}, near_(near), options_(options) {}
 
     Result<Arrangement> run() && {
-        std::vector<Box<2>> boxes;
-        for (const RegionArc& a : out_.arcs) {
-            boxes.push_back(a.box);
-            out_.scale = std::max(out_.scale, a.box.scale());
-        }
+        for (const RegionArc& a : out_.arcs) out_.scale = std::max(out_.scale, a.box.scale());
         if (!(options_.tolerance > 4 * kSmallest * out_.scale))
             return refuse(RefusalKind::ill_conditioned, "tolerance",
                           text(options_.tolerance, " is below the rounding of coordinates up to ", out_.scale,
                                "; it must be above ", 4 * kSmallest * out_.scale));
-        out_.strips = Strips(boxes);
-        auto m = meetings_of(out_.arcs, out_.strips, near_.accuracy, options_.max_pairs);
+        out_.tree = ArcTree(out_.arcs);
+        auto m = meetings_of(out_.arcs, out_.tree, near_.accuracy, options_.max_pairs);
         if (!m) return std::unexpected(m.error());
         carry_over(out_.arcs, *m);
         for (std::size_t i = 0; i < out_.arcs.size(); ++i) unite_cuts(i, *m);

@@ -21,7 +21,7 @@ struct RegionEdge {
 
 struct Arrangement {
     std::vector<RegionArc> arcs;
-    Strips strips;
+    ArcTree tree;
     std::vector<RegionEdge> edges;
     std::vector<Vec<2>> places;
     std::vector<std::vector<std::size_t>> members;  // of each bundle, at the index of its first edge

@@ -22,8 +22,8 @@
 // what is within an eighth of the tolerance along each other, or smaller than a part of it, is called the
 // same.
 //
-// Cost. n segments with k crossings: n log n for boxes in strips, about 1 us for each pair that crosses, two
-// winding numbers for each chain of edges.
+// Cost. n segments with k crossings: n log n for the hierarchy of runs, about 1 us for each pair that
+// crosses, two winding numbers for each chain of edges.
 //
 // References. [Bentley Ottmann 1979], [Vatti 1992] for polygons.
 //

@@ -24,7 +24,6 @@
 // covers that, and the parameters of double points. What rounding leaves between places is united by the
 // caller (arrangement.cpp).
 //
-// References. [Preparata Shamos 1985] for the sweep along one axis.
 #include "meetings_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -160,8 +159,8 @@ Vec<2> crossing_of_lines(const PathSegment& s, const PathSegment& t) {
 
 class Finder {
 public:
-    Finder(std::span<const RegionArc> arcs, const Strips& strips, double accuracy, std::size_t max_pairs)
-        : arcs_(arcs), strips_(strips), accuracy_(accuracy), max_pairs_(max_pairs) {
+    Finder(std::span<const RegionArc> arcs, const ArcTree& tree, double accuracy, std::size_t max_pairs)
+        : arcs_(arcs), tree_(tree), accuracy_(accuracy), max_pairs_(max_pairs) {
         for (const RegionArc& a : arcs) scale_ = std::max(scale_, a.box.scale());
     }
     Result<Meetings> run() && {
@@ -200,28 +199,17 @@ private:
         for (const double t : *at) out_.cuts[i].push_back({padded(t), place});
     }
 
-    // Sorted by x in each strip; a pair counts in the first strip that both are in.
     Result<Pairs> pairs_to_ask() {
         Pairs out;
-        std::vector<std::size_t> order;
         std::size_t looked = 0;
-        for (std::size_t s = 0; s < strips_.size(); ++s) {
-            const auto items = strips_.items(s);
-            order.assign(items.begin(), items.end());
-            std::ranges::sort(order, {}, [&](std::size_t i) { return arcs_[i].box.lo[0]; });
-            for (std::size_t k = 0; k < order.size(); ++k)
-                for (std::size_t l = k + 1; l < order.size(); ++l) {
-                    const Box<2>&a = arcs_[order[k]].box, &b = arcs_[order[l]].box;
-                    if (b.lo[0] > a.hi[0]) break;
-                    if (!a.side(1).overlaps(b.side(1)) ||
-                        std::max(strips_.of(a.lo[1]), strips_.of(b.lo[1])) != s)
-                        continue;
-                    consider({std::min(order[k], order[l]), std::max(order[k], order[l])}, out);
-                    if (++looked > 100 * max_pairs_ || out.plain.size() + out.rational.size() > max_pairs_)
-                        return refuse(RefusalKind::limit, "max_pairs",
-                                      text("more than ", max_pairs_, " pairs of segments may meet"));
-                }
-        }
+        const auto look = [&](std::size_t i, std::size_t j) {
+            consider({std::min(i, j), std::max(i, j)}, out);
+            return out.plain.size() + out.rational.size() <= max_pairs_;
+        };
+        const auto step = [&] { return looked++ <= 100 * max_pairs_; };
+        if (!tree_.each_pair(look, step))
+            return refuse(RefusalKind::limit, "max_pairs",
+                          text("more than ", max_pairs_, " pairs of segments may meet"));
         std::ranges::sort(out.plain), std::ranges::sort(out.rational);
         return out;
     }
@@ -298,7 +286,7 @@ private:
     }
 
     std::span<const RegionArc> arcs_;
-    const Strips& strips_;
+    const ArcTree& tree_;
     double accuracy_;
     std::size_t max_pairs_;
     double scale_ = 0;
@@ -307,9 +295,9 @@ private:
 
 }  // namespace
 
-Result<Meetings> meetings_of(std::span<const RegionArc> arcs, const Strips& strips, double accuracy,
+Result<Meetings> meetings_of(std::span<const RegionArc> arcs, const ArcTree& tree, double accuracy,
                              std::size_t max_pairs) {
-    return Finder(arcs, strips, accuracy, max_pairs).run();
+    return Finder(arcs, tree, accuracy, max_pairs).run();
 }
 
 }  // namespace freiform::detail

@@ -1,7 +1,6 @@
 // Where arcs meet: as intervals of their parameters, with what belongs to one place united.
 #pragma once
-#include "arcs_detail.hpp"
-#include "strips_detail.hpp"
+#include "arc_tree_detail.hpp"
 
 #include <vector>
 
@@ -63,7 +62,7 @@ struct Meetings {
 
 // Between the cuts an arc meets no other arc and not itself, but for what it shares. `accuracy`: arcs that
 // run along each other no farther apart may be called shared.
-Result<Meetings> meetings_of(std::span<const RegionArc> arcs, const Strips& strips, double accuracy,
+Result<Meetings> meetings_of(std::span<const RegionArc> arcs, const ArcTree& tree, double accuracy,
                              std::size_t max_pairs);
 
 std::string place_text(const RegionArc& arc);  // "b.subpaths[0].segments[2]"

@@ -14,7 +14,7 @@
 // other side of the same edge, and it had no jump. So one edge of a chain answers for all; the longest is
 // asked first.
 //
-// Cost. A pair of winding numbers for each chain, each a look at the arcs in one strip.
+// Cost. A pair of winding numbers for each chain, each a walk down the hierarchy of runs (arc_tree.cpp).
 //
 // Why not walk around the places, and sort what meets there by angle? Edges that touch need derivatives of
 // any order, and what was drawn together has no angles.
@@ -22,7 +22,6 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
-#include <freiform/poly/arc_index.hpp>
 
 #include <cmath>
 #include <optional>
@@ -149,14 +148,14 @@ private:
 
     // Does pq meet nothing but this bundle, and are p and q apart from it?
     bool is_clear(std::size_t index, const Vec<2>& p, const Vec<2>& q) const {
-        const double slack = kTouchError * a_.scale;
+        const double slack = kTouchError * a_.scale, reach = std::max(slack, 2 * a_.edges[index].gap);
         Box<2> box;
         box.add(p), box.add(q);
         const auto& members = a_.members[index];
         const auto crosses = [&](std::size_t i) {
             const RegionArc& arc = a_.arcs[i];
-            if (arc.box.lo[0] > box.hi[0] + slack || arc.box.hi[0] < box.lo[0] - slack ||
-                arc.box.lo[1] > box.hi[1] + slack || arc.box.hi[1] < box.lo[1] - slack)
+            if (arc.box.lo[0] > box.hi[0] + reach || arc.box.hi[0] < box.lo[0] - reach ||
+                arc.box.lo[1] > box.hi[1] + reach || arc.box.hi[1] < box.lo[1] - reach)
                 return false;
             double from = 0;  // of the arc, what is not the bundle's; members are in order
             for (const std::size_t m : members) {
@@ -171,31 +170,14 @@ private:
             }
             return may_touch(arc, {from, 1}, p, q, slack);
         };
-        for (std::size_t s = a_.strips.of(box.lo[1] - slack); s <= a_.strips.of(box.hi[1] + slack); ++s)
-            for (const std::size_t i : a_.strips.items(s))
-                if (crosses(i)) return false;
-        return true;
+        return a_.tree.each_near(p, q, reach, [&](std::size_t i) { return !crosses(i); });
     }
 
     // Of both operands; nothing on an arc.
     std::optional<std::array<int, 2>> windings(const Vec<2>& p) const {
-        std::array<int, 2> quarters{};
-        for (const std::size_t i : a_.strips.items(a_.strips.of(p[1]))) {
-            const RegionArc& arc = a_.arcs[i];
-            if (p[1] < arc.box.lo[1] || p[1] > arc.box.hi[1]) continue;
-            int& sum = quarters[std::size_t(arc.operand)];
-            if (arc.box.lo[0] > p[0] || arc.box.hi[0] < p[0]) {  // beside it only the ends count
-                const auto side = [&](double y) { return int(y > p[1]) - int(y < p[1]); };
-                const int up = side(arc.s.back()[1]) - side(arc.s.front()[1]);
-                sum += arc.box.lo[0] > p[0] ? up : -up;
-                continue;
-            }
-            const ArcIndex index =
-                arc_index(arc.coordinates(arc.x), arc.coordinates(arc.y), arc.weights(), p);
-            if (index.through) return {};
-            sum += index.quarters;
-        }
-        return {{quarters[0] / 4, quarters[1] / 4}};
+        const auto quarters = a_.tree.quarters(a_.arcs, p);
+        if (!quarters) return {};
+        return {{(*quarters)[0] / 4, (*quarters)[1] / 4}};
     }
 
     const Arrangement& a_;

@@ -26,8 +26,8 @@ struct RegionOptions {
     // A distance, positive. What is smaller may be drawn together to a point: places where arcs meet, touch,
     // or come so near to each other that rounding does not tell.
     double tolerance = 0;
-    // A backstop: pairs of segments that simple tests do not tell apart; 100 times as many whose boxes
-    // overlap.
+    // A backstop: pairs of segments that simple tests do not tell apart; 100 times as many pairs of boxes, of
+    // segments or of runs of them, are looked at.
     std::size_t max_pairs = 5'000'000;
 };
 
