@@ -14,13 +14,14 @@
 // by kPartError, and what was left out lies around a place in a disc of radius `moved`. A point in that disc
 // is at most 2 moved away from an arc. So with bound = 2 moved + 2 kPartError * scale the loops wind around
 // every point that is farther than the bound from all segments as often as the exact ones: once or not.
-//   First only what rounding does not tell is called the same. If that is ill-conditioned, because paths run
-// along each other nearer than numbers tell (a copy that was turned and turned back), control points are
-// rounded to a grid of a sixteenth of the tolerance, so that most of what is nearly the same is the same.
-// That moves control points by 0.71 of the grid, and the weight by at most grid / scale, which moves the arc
-// by at most 2.83 grid: |dC / dw| <= 2 t (1 - t) |P1 - C| / W with W >= 1/2. Together below 4 grid. Last,
-// what is within an eighth of the tolerance along each other, or smaller than a part of it, is called the
-// same.
+//   First only what rounding does not tell is called the same. If that is ill-conditioned, parts of arcs that
+// are smaller than 2^-10 of the tolerance are drawn together: lenses between arcs that are
+// tangent but for the last bits. If that does not help, because paths run along each other nearer than
+// numbers tell (a copy that was turned and turned back), control points are rounded to a grid of a sixteenth
+// of the tolerance, so that most of what is nearly the same is the same. That moves control points by 0.71 of
+// the grid, and the weight by at most grid / scale, which moves the arc by at most 2.83 grid: |dC / dw| <= 2
+// t (1 - t) |P1 - C| / W with W >= 1/2. Together below 4 grid. Last, what is within an eighth of the
+// tolerance along each other, or smaller than a part of it, is called the same.
 //
 // Cost. n segments with k crossings: n log n for the hierarchy of runs, about 1 us for each pair that
 // crosses, two winding numbers for each chain of edges.
@@ -88,6 +89,7 @@ Result<Region> made(std::vector<RegionArc> arcs, const InResult& in, const Regio
     auto out = attempt(arcs, in, {}, options);
     if (out || out.error().kind != RefusalKind::ill_conditioned || out.error().where == "tolerance")
         return out;
+    if (auto again = attempt(arcs, in, {0x1p-10 * options.tolerance, 0}, options)) return again;
     const double grid = std::exp2(std::floor(std::log2(options.tolerance / 16)));
     std::vector<RegionArc> coarse;
     double scale = 0;
