@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace freiform::test {
@@ -46,6 +47,18 @@ TEST_F(TextProgram, is_written_as_curves_and_pictures) {
     const Ran missing = run({"text", "\xf3\xb0\x80\x80", "--font", "DejaVu Sans", "-o", "b.svg"});
     EXPECT_EQ(missing.code, 0);
     EXPECT_NE(missing.err.find("no glyph for U+F0000"), missing.err.npos) << missing.err;
+}
+
+TEST_F(TextProgram, with_contours_that_overlap_becomes_one_solid_for_each_letter) {
+    const std::string inter = "/usr/share/fonts/truetype/inter-vf/Inter.var.ttf";
+    if (!std::filesystem::exists(inter))
+        GTEST_SKIP() << "no " << inter << " (tools/setup.sh test installs it)";
+    const Ran sign = run({"text", "A#R", "--font", inter, "--size", "20", "--extrude", "3", "--tolerance",
+                          "0.02", "-o", "sign.stl", "--json"});
+    ASSERT_EQ(sign.code, 0) << sign.err;
+    const auto report = TextJson::parse(sign.out);
+    EXPECT_EQ(report["open_edges"], 0);
+    EXPECT_LT(report["outline_bound"].get<double>(), 20e-6);
 }
 
 TEST_F(TextProgram, becomes_watertight_solids) {
