@@ -50,6 +50,10 @@ struct NearestBlocks {
         std::array<int, kMostParams> degree{};  // 0 along axes where lo == hi
         int count = 1;                          // of coefficients
         double roundings = 0;                   // of halving, in units of u M
+        // Of a part whose F was made anew (nearest_local_detail.hpp), else 0 and that of the piece: M, more
+        // error of F, and bounds of W on all of the part that this is, or is a face of.
+        double magnitude = 0, offset = 0, lightest = 0, heaviest = 0;
+        bool anew = false;  // and that not for a larger part
     };
     std::vector<Head> heads{};
 
@@ -116,6 +120,7 @@ struct NearestBlocks {
             }
         Head& h = heads.back();
         h.roundings += double(degree);
+        h.anew = false;
         Head other = h;
         h.hi[axis] = other.lo[axis] = h.lo[axis] + (h.hi[axis] - h.lo[axis]) / 2;
         heads.push_back(other);
@@ -138,6 +143,7 @@ struct NearestBlocks {
             for (std::size_t i = 0; i < s.inner; ++i)
                 f[o * s.inner + i] = f[(o * s.size + (high ? s.size - 1 : 0)) * s.inner + i];
         h.degree[axis] = 0;
+        h.anew = false;
         h.count = int(s.outer * s.inner);
         (high ? h.lo : h.hi)[axis] = high ? h.hi[axis] : h.lo[axis];
     }
@@ -177,7 +183,10 @@ struct NearestBlocks {
         // Of both forms, and their difference.
         rounding = 2 * 1.01 * (terms + double(piece->control_points()) + 3);
     }
-    double error_of(const Head& h) const { return (rounding + 2 * h.roundings) * kUnitRoundoff * magnitude; }
+    double error_of(const Head& h) const {
+        const double size = h.magnitude > 0 ? h.magnitude : magnitude;
+        return (rounding + 2 * h.roundings) * kUnitRoundoff * size + h.offset;
+    }
     NearestForm top_form() {
         return {piece->params, heads.back().degree, heads.back().count, block(heads.size() - 1)};
     }
@@ -229,11 +238,7 @@ NearestFound NearestTree::found_at(int piece, const Parameters& at, const double
     if (scale > 0)
         for (std::size_t k = 0; k < std::size_t(D); ++k) sum += (off[k] / scale) * (off[k] / scale);
     out.distance = 2 * (scale * std::sqrt(sum));
-    // The point: 3 p + 3 roundings along each axis in N and in W, the quotient, the sum with the centre.
-    double steps = 4;
-    for (int d = 0; d < p.params; ++d) steps += 3 * p.degree[std::size_t(d)] + 3;
-    out.point_error =
-        multiplied(slip_ + std::sqrt(double(D)) * 1.03 * (2 * steps + 2) * kUnitRoundoff * largest_ * 2);
+    out.point_error = multiplied(slip_ + evaluation_error(p));
     return out;
 }
 

@@ -1,6 +1,7 @@
 // The search for nearest points on numbers alone: no templates on the number of parameters, coordinates, or
 // weights. See nearest_search.cpp for the method.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/core/interval.hpp>
 #include <freiform/core/result.hpp>
 
@@ -135,6 +136,13 @@ private:
     // By 2^exponent_: powers of two, which a product does not round, where they are doubles.
     double divided(double x) const { return moderate_ ? x * down_ : std::scalbn(x, -exponent_); }
     double multiplied(double x) const { return moderate_ ? x * up_ : std::scalbn(x, exponent_); }
+    // A bound, for points of a piece: 3 p + 3 roundings along each axis in N and in W, the quotient, the sum
+    // with the centre.
+    double evaluation_error(const Piece& p) const {
+        double steps = 4;
+        for (int d = 0; d < p.params; ++d) steps += 3 * p.degree[std::size_t(d)] + 3;
+        return std::sqrt(double(coords_)) * 1.03 * (2 * steps + 2) * kUnitRoundoff * largest_ * 2;
+    }
     void build(int begin, int end, std::vector<Node>& boxes);
 
     int coords_ = 1, exponent_ = 0;

@@ -13,12 +13,18 @@
 //     part; then F >= F(t) + grad F(t) . (s - t) for all s of it, with t the foot that Newton's iteration
 //     found: at a foot the gradient vanishes, or points out of the part; or
 //   - so near to the foot that rounding is all that is left: what the coefficients prove is then taken as the
-//     lower bound.
+//     lower bound. Where that is more than points are rounded, F is made anew from the coefficients of the
+//     part (nearest_local_detail.hpp), whose rounding is as small as the part: near folds, for points close
+//     to the object, and where weights are uneven.
 // Every part that ends is added to the proof with what it proved: the answer's lower bound is the least of
 // them, whatever ended the search. Where a nearer point is found, T changes, and the piece at hand begins
 // anew: what was proven of F holds for one T. Points from which a whole arc or patch is equally far (centres)
 // make F constant, which the first test decides at once. Most parts beside that of the foot are monotone, so
 // that what is left there are curves and corners.
+// A point nearer than rounding of points ends the search with the lower bound 0. Parts with uneven weights
+// are not left for a face, where F would say little of F / W^2 beside it. A descent that ends on a side of
+// its part goes on over the piece: at a fold, where the Jacobian is singular, it would be walked part by
+// part.
 //
 // Notation: u = 2^-53, q' = q - c, m_d = 2 p_d the degrees of F.
 //
@@ -31,6 +37,7 @@
 // object: slip_ (nearest_tree.cpp); from q to q' + c: u |q'| in each coordinate. References: convexity by
 // control nets [Farin 2002, ch. 17]; the pruning is [Johnson Cohen 1998]'s with F in place of boxes.
 #include "query/nearest_blocks_detail.hpp"
+#include "query/nearest_local_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -45,6 +52,9 @@ using Tree = NearestTree;
 using Parameters = Tree::Parameters;
 using Coords = Tree::Coords;
 
+constexpr double kUneven = 0x1p10;     // weights
+constexpr double kLevelGap = 0x1p-30;  // of a square: not worth another look
+
 template <int D>
 struct NearestSearch : NearestBlocks<D> {
     using Base = NearestBlocks<D>;
@@ -53,6 +63,7 @@ struct NearestSearch : NearestBlocks<D> {
         Base::push_whole, Base::q, Base::scratch, Base::seen, Base::tree;
     double accuracy;
     int parts_left;
+    double noise = 0;  // bound: of the error of points of the piece at hand
 
     // The best so far: squared distance, piece and parameters in it.
     double best = std::numeric_limits<double>::infinity();
@@ -66,10 +77,24 @@ struct NearestSearch : NearestBlocks<D> {
         return best - accuracy * (accuracy < r ? 2 * r - accuracy : r);
     }
 
+    // Nearer than rounding of points can tell: there is nothing left to prove but that distances are not
+    // negative.
+    bool touches() const { return best <= noise * noise / 4; }
+
     // Newton's iteration; whether there is a point clearly nearer than sqrt(t).
     bool descend(const Parameters& lo, const Parameters& hi, Parameters& at, double t) {
-        const double s = seen.descend(lo, hi, at);
-        if (s < best) best = s, best_piece = index, best_at = at;
+        double s = seen.descend(lo, hi, at);
+        if (s < best) {
+            // On a side of the part the way down leads on: along folds it would be walked part by part.
+            bool inside = true;
+            Parameters least{}, most{}, on = at;
+            for (std::size_t d = 0; d < std::size_t(piece->params); ++d) {
+                inside = inside && (at[d] > lo[d] || lo[d] == 0) && (at[d] < hi[d] || hi[d] == 1);
+                most[d] = 1;
+            }
+            best = s, best_piece = index, best_at = at;
+            if (!inside && (s = seen.descend(least, most, on)) < best) best = s, best_at = on;
+        }
         return best < t * (1 - 1e-14);
     }
 
@@ -98,15 +123,38 @@ struct NearestSearch : NearestBlocks<D> {
 
     void search_piece(int i) {
         Base::look_at(i);
+        noise = tree.evaluation_error(*piece);
         if (best == std::numeric_limits<double>::infinity()) descend_from_control_point();
-        for (int again = 0; again < 64; ++again)  // as often as a nearer point is found
-            if (search_with(threshold(), again == 63)) break;
+        // As often as a nearer point is found.
+        while (!touches() && !search_with(threshold(), parts_left <= 0)) --parts_left;
+        if (touches()) proven = std::min(proven, 0.0);
+    }
+
+    // What a face proves is worth little where the part is much lighter than the face.
+    bool is_even(const Head& h) const {
+        const bool own = h.lightest > 0;
+        return (own ? h.heaviest : piece->heaviest) <= kUneven * (own ? h.lightest : piece->lightest);
+    }
+
+    // F on the part at the top, with the rounding of that part alone.
+    void make_anew(double t) {
+        Head& h = heads.back();
+        const LocalForm local = local_form<D>(seen, h.lo, h.hi, h.degree, t, block(heads.size() - 1));
+        h.magnitude = local.magnitude, h.offset = local.offset;
+        // What is proven on a face is for the part that it stands for, with the weights there.
+        bool face = false;
+        for (std::size_t d = 0; d < std::size_t(piece->params); ++d)
+            face = face || h.degree[d] != piece->degree[d];
+        if (!face) h.lightest = std::max(local.lightest, piece->lightest), h.heaviest = local.heaviest;
+        h.roundings = 0;
+        h.anew = true;
     }
 
     // Whether all of the piece was decided for F of this t; `last`: then it is, for better or worse.
     bool search_with(double t, bool last) {
-        const double squared_weight = piece->lightest * piece->lightest;
         push_whole(t);
+        // Of squares: what rounding of points and of their distance leaves anyway.
+        const double gap = std::sqrt(t) * (std::sqrt(t) * kLevelGap + 2 * noise);
         bool first = true;
         while (!heads.empty()) {
             const Head h = heads.back();
@@ -126,6 +174,8 @@ struct NearestSearch : NearestBlocks<D> {
                 const Parameters at = form.place(least.at, h.lo, h.hi);
                 if (seen.square_at(at) < best && from_least()) return false;
             }
+            const double lightest = h.lightest > 0 ? h.lightest : piece->lightest;
+            const double squared_weight = lightest * lightest;
             // What this part has proven even if nothing more is done: F0 / W^2 >= T + F / W^2.
             const double lowest = least.value - eps;
             const auto prove = [&](double low) {
@@ -133,11 +183,16 @@ struct NearestSearch : NearestBlocks<D> {
                 heads.pop_back();
             };
             const double room = 32 * (1 + Base::largest_degree()) * eps;
-            if (lowest > -room || parts_left <= 0) {
+            const bool rounded = lowest > -room, even = is_even(h);
+            if (parts_left <= 0 || (rounded && -lowest <= squared_weight * gap)) {
                 prove(lowest);
                 continue;
             }
             --parts_left;
+            if (!h.anew && (rounded || !even)) {
+                make_anew(t);
+                continue;
+            }
             // A corner inside the sphere: there is a nearer point.
             if (const auto corner = form.inner_corner(eps)) {
                 Parameters at{};
@@ -151,7 +206,7 @@ struct NearestSearch : NearestBlocks<D> {
             for (std::size_t d = 0; d < std::size_t(piece->params) && !monotone; ++d) {
                 if (h.degree[d] == 0) continue;
                 const Interval slope = form.slope(int(d));
-                if (slope.lo > 4 * eps || slope.hi < -4 * eps) {
+                if ((slope.lo > 4 * eps || slope.hi < -4 * eps) && even) {
                     keep_face(d, slope.hi < 0);
                     monotone = true;
                 }
@@ -174,8 +229,12 @@ struct NearestSearch : NearestBlocks<D> {
                     if (descend(h.lo, h.hi, at, t) && !last) return false;
                     low = form.below_tangent(in_block(at, h), eps);
                 }
-                if (low > -room) {
+                if (low > -room && -low <= squared_weight * gap) {
                     prove(low);
+                    continue;
+                }
+                if (low > -room && !h.anew) {
+                    make_anew(t);
                     continue;
                 }
             }

@@ -1,6 +1,5 @@
-// Nearest points of many random and nasty objects: no sample of the object is nearer than the bound, ever;
-// and hardly any nearer than the point: where rounding hides which of many points is the nearest (folds of
-// surfaces, weights that differ by a million) the bound is 0 or far below, which says so.
+// Nearest points of many random and nasty objects: no sample of the object is nearer than the bound, and none
+// nearer than the point, by more than both are rounded.
 // FREIFORM_NEAREST=100000 asks that many random questions and 1,000 nasty ones.
 #include <freiform/core/constants.hpp>
 #include <freiform/query/nearest.hpp>
@@ -26,13 +25,12 @@ double separation(const Vec<D>& a, const Vec<D>& b) {  // without under- or over
     return scale > 0 ? scale * norm((1 / scale) * d) : 0;
 }
 
-// `count` points within `reach`, some of them on the object. Returns how many samples beat the answer.
+// `count` points within `reach`, some of them on the object.
 template <std::size_t N, class P>
-int ask(const Patch<N, P>& patch, Random& random, double reach, int count) {
+void ask(const Patch<N, P>& patch, Random& random, double reach, int count) {
     constexpr int D = Space<P>::kDim;
     const auto query = must(NearestQuery::make(std::array{NearestObject::of(patch)}));
     const auto samples = samples_of(patch, N == 1 ? 300 : 24);
-    int beaten = 0;
     for (int k = 0; k < count; ++k) {
         Vec<D> q;
         for (int d = 0; d < D; ++d) q[d] = random.real(-reach, reach);
@@ -41,31 +39,27 @@ int ask(const Patch<N, P>& patch, Random& random, double reach, int count) {
         double least = kInfinity;
         for (const auto& x : samples) least = std::min(least, separation<D>(x, q));
         const double rounding = 1e-14 * least + 2 * patch.value_error_bound();
-        beaten += n.distance - n.point_error > least + rounding;
+        EXPECT_LE(n.distance - n.point_error, least + rounding);
         EXPECT_LE(n.lower_bound, least + rounding);
         EXPECT_LE(n.lower_bound, n.distance);
     }
-    return beaten;
 }
 
-TEST(NearestRandom, nothing_is_nearer_than_the_bound_and_hardly_anything_than_the_answer) {
+TEST(NearestRandom, nothing_is_nearer_than_the_bound_or_the_answer) {
     Random random(20261122);
     std::mt19937 rng(77);
     constexpr int kEach = 10;
     const int count = questions(400, 0);
-    int beaten = 0;
     for (int asked = 0, i = 0; asked < count; asked += kEach, ++i) {
         const int p = 1 + i % 5, q = 1 + i % 3, inner = i % 4;
-        if (i % 6 == 0) beaten += ask(random_patch<1, Vec<2>>(rng, {p}, inner), random, 2, kEach);
-        if (i % 6 == 1) beaten += ask(random_patch<1, Hom<3>>(rng, {p}, inner), random, 2, kEach);
-        if (i % 6 == 2) beaten += ask(random_patch<2, Vec<3>>(rng, {p, q}, inner), random, 2, kEach);
-        if (i % 6 == 3) beaten += ask(random_patch<2, Hom<3>>(rng, {q, p}, inner), random, 2, kEach);
-        if (i % 6 == 4) beaten += ask(random_patch<1, Vec<3>>(rng, {p}, inner), random, 20, kEach);
-        if (i % 6 == 5) beaten += ask(random_patch<2, Vec<2>>(rng, {q, q}, 0), random, 1, kEach);
+        if (i % 6 == 0) ask(random_patch<1, Vec<2>>(rng, {p}, inner), random, 2, kEach);
+        if (i % 6 == 1) ask(random_patch<1, Hom<3>>(rng, {p}, inner), random, 2, kEach);
+        if (i % 6 == 2) ask(random_patch<2, Vec<3>>(rng, {p, q}, inner), random, 2, kEach);
+        if (i % 6 == 3) ask(random_patch<2, Hom<3>>(rng, {q, p}, inner), random, 2, kEach);
+        if (i % 6 == 4) ask(random_patch<1, Vec<3>>(rng, {p}, inner), random, 20, kEach);
+        if (i % 6 == 5) ask(random_patch<2, Vec<2>>(rng, {q, q}, 0), random, 1, kEach);
         if (HasFailure()) FAIL() << "object " << i;
     }
-    EXPECT_LE(beaten, count / 1000);
-    RecordProperty("beaten", beaten);
 }
 
 // Random, each point and its weight changed by f(index, point, weight).
@@ -88,36 +82,33 @@ TEST(NearestRandom, nasty_objects_are_answered_too) {
     std::mt19937 rng(78);
     constexpr int kEach = 4;
     const int count = questions(64, 1000);
-    int beaten = 0;
     for (int asked = 0, i = 0; asked < count; asked += 2 * kEach, ++i) {
         const int p = 2 + i % 4, kind = i % 8;
-        beaten += ask(spoilt<1>(rng, {p}, i % 3,
-                                [&](std::size_t k, Vec<3>& x, double& w) {
-                                    if (kind == 0) x = {};
-                                    if (kind == 1 && k % 2) x = {{1, 0, 0}};
-                                    if (kind == 2) w = k % 2 ? 1e8 : 1e-8;
-                                    if (kind == 3) x = 1e-150 * x;
-                                    if (kind == 4) x[0] += 1e9;
-                                    if (kind == 5) x[1] = x[2] = 0;
-                                    if (kind == 6) w = k % 2 ? 1e-6 : 1, x[2] = 0;
-                                    if (kind == 7) x = std::round(2 * x[0]) * Vec<3>{{1, 1, 1}};
-                                }),
-                      random, kind == 3 ? 1e-150 : 2, kEach);
+        ask(spoilt<1>(rng, {p}, i % 3,
+                      [&](std::size_t k, Vec<3>& x, double& w) {
+                          if (kind == 0) x = {};
+                          if (kind == 1 && k % 2) x = {{1, 0, 0}};
+                          if (kind == 2) w = k % 2 ? 1e8 : 1e-8;
+                          if (kind == 3) x = 1e-150 * x;
+                          if (kind == 4) x[0] += 1e9;
+                          if (kind == 5) x[1] = x[2] = 0;
+                          if (kind == 6) w = k % 2 ? 1e-6 : 1, x[2] = 0;
+                          if (kind == 7) x = std::round(2 * x[0]) * Vec<3>{{1, 1, 1}};
+                      }),
+            random, kind == 3 ? 1e-150 : 2, kEach);
         const int other = i % 6;
-        beaten += ask(spoilt<2>(rng, {p, 2}, 0,
-                                [&](std::size_t k, Vec<3>& x, double& w) {
-                                    if (other == 0 && k < 3) x = {};
-                                    if (other == 1) x[2] = 0;
-                                    if (other == 2) w = k % 2 ? 1e5 : 1e-5;
-                                    if (other == 3) x = x[0] * Vec<3>{{1, 2, 3}};
-                                    if (other == 4) x = {{1, 1, 1}};
-                                    if (other == 5) x = 1e200 * x;
-                                }),
-                      random, other == 5 ? 1e200 : 2, kEach);
+        ask(spoilt<2>(rng, {p, 2}, 0,
+                      [&](std::size_t k, Vec<3>& x, double& w) {
+                          if (other == 0 && k < 3) x = {};
+                          if (other == 1) x[2] = 0;
+                          if (other == 2) w = k % 2 ? 1e5 : 1e-5;
+                          if (other == 3) x = x[0] * Vec<3>{{1, 2, 3}};
+                          if (other == 4) x = {{1, 1, 1}};
+                          if (other == 5) x = 1e200 * x;
+                      }),
+            random, other == 5 ? 1e200 : 2, kEach);
         if (HasFailure()) FAIL() << "object " << i;
     }
-    EXPECT_LE(beaten, count / 20);
-    RecordProperty("beaten", beaten);
 }
 
 }  // namespace

@@ -188,6 +188,36 @@ TEST(Nearest, points_far_beyond_the_objects_and_tiny_objects_have_honest_bounds)
     EXPECT_NEAR(n.lower_bound, 5, 1e-13);
 }
 
+// A strip folded along u = 1/2, and points on the crease, beside it, and above the image.
+TEST(Nearest, points_at_a_fold_are_found_and_the_bound_is_as_good_as_points_are) {
+    const std::vector<Vec<3>> net{{{0.25, 0, 0}},  {{0.25, 1, 0}}, {{-0.25, 0, 0}},
+                                  {{-0.25, 1, 0}}, {{0.25, 0, 0}}, {{0.25, 1, 0}}};  // ((u - 1/2)^2, v, 0)
+    const auto fold = must(Surface<Vec<3>>::make({*BSplineBasis::bezier(2), *BSplineBasis::bezier(1)},
+                                                 Net<2, Vec<3>>({3, 2}, net)));
+    const auto query = must(NearestQuery::make(std::array{NearestObject::of(fold)}));
+    for (const double beside : {0.0, 1e-15, 1e-12, 1e-8, 1e-5, 0.01})
+        for (const double above : {0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-3}) {
+            const auto n = must(query.nearest<3>(Vec<3>{{beside, 0.3, above}}));
+            EXPECT_NEAR(n.distance, above, n.point_error) << beside;
+            EXPECT_NEAR(n.lower_bound, above, 8 * n.point_error) << beside << " " << above;
+        }
+}
+
+// Weights of 1e-5 and 1e5 in turns: near a corner all happens in 1e-10 of the parameters, and
+// between the corners in curved valleys.
+TEST(Nearest, uneven_weights_leave_a_bound_that_is_as_good_as_points_are) {
+    Random random(31);
+    std::vector<Hom<3>> net;
+    for (int i = 0; i < 9; ++i) net.push_back(weighted(random_point<3>(random, 1), i % 2 ? 1e5 : 1e-5));
+    const auto b = *BSplineBasis::bezier(2);
+    const auto patch = must(Surface<Hom<3>>::make({b, b}, Net<2, Hom<3>>({3, 3}, net)));
+    const auto query = must(NearestQuery::make(std::array{NearestObject::of(patch)}));
+    for (int k = 0; k < 20; ++k) {
+        const auto n = must(query.nearest<3>(random_point<3>(random, 2), {.max_parts = 100000}));
+        EXPECT_NEAR(n.lower_bound, n.distance, 1e-9 * n.distance + 8 * n.point_error);
+    }
+}
+
 TEST(Nearest, a_backstop_leaves_a_lower_bound_that_holds) {
     std::mt19937 rng(21);
     Random random(22);

@@ -2,6 +2,7 @@
 #pragma once
 #include <freiform/spline/geometry.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -138,7 +139,7 @@ std::vector<PointOf<P>> samples_of(const Patch<N, P>& patch, int steps) {
         Param<N> u{};
         for (std::size_t d = 0; d < N; ++d) {
             const Interval on = patch.domain()[d];
-            const double x = on.lo + on.length() * i[d] / steps;
+            const double x = std::min(on.hi, on.lo + on.length() * i[d] / steps);  // not beyond by rounding
             if constexpr (N == 1)
                 u = x;
             else

@@ -75,8 +75,9 @@ struct NearestFeet {
 struct NearestOptions {
     // A distance: how far lower_bound may stay below `distance`. With 0 the search goes on until rounding
     // ends it; what remains is what the answer says, distance + point_error - lower_bound. An estimate of
-    // that, from measurements: 1e-11 of the object's size and less for points off the object, up to 1e-8 of a
-    // piece's size for points on it, where the square of the distance is lost in rounding.
+    // that, from measurements: 1e-11 of the object's size and less,
+    // with uneven weights 5e-10 of the distance. Points nearer than `point_error` have the
+    // lower bound 0.
     double accuracy = 0;
     // A backstop: parts of pieces that are looked at for one answer. Reached, `lower_bound` is what was
     // proven until then. Ordinary points need a few dozen; points with a continuum of feet in no direction of
