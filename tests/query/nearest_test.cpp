@@ -1,7 +1,9 @@
 // Nearest points against many samples of the objects, their proofs, and what is known of circles, spheres and
 // planes.
 #include "query/nearest_form_detail.hpp"
+#include "query/nearest_local_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/query/nearest.hpp>
 
@@ -245,6 +247,41 @@ TEST(NearestForm, is_convex_only_with_its_mixed_derivative) {
             for (double u = 0; u <= 1; u += 0.125)
                 for (double v = 0; v <= 1; v += 0.125) EXPECT_GE(u * u + v * v - c * u * v, low);
             EXPECT_GE(low, -1);
+        }
+    }
+}
+
+// At the ends and in the middle of a part: F there in more digits than doubles have.
+TEST(NearestForm, made_anew_on_a_part_is_right_to_the_error_that_it_says) {
+    Random random(41);
+    for (int trial = 0; trial < 2000; ++trial) {
+        detail::NearestTree::Piece piece;
+        piece.degree = {1 + trial % 5, 0, 0};
+        std::vector<double> net;
+        for (std::size_t i = 0; i < piece.control_points(); ++i) {
+            const double w = std::exp2(random.real(-20, 0));
+            net.insert(net.end(), {w * random.real(-1, 1), w * random.real(-1, 1), w});
+        }
+        detail::SeenPiece<2> seen{&piece, net.data(), {}};
+        const double lo = random.real(0, 1), hi = lo + (1 - lo) * std::exp2(random.real(-45, 0));
+        const auto at = seen.jet({lo, 0, 0}).value;  // close by: F is far below the size of the piece
+        for (std::size_t k = 0; k < 2; ++k) seen.local[k] = at[k] + random.real(-1, 1) * 1e-9;
+        const double t = trial % 2 ? 1e-18 : 0;
+        std::vector<double> f(std::size_t(2 * piece.degree[0] + 1));
+        const auto local = detail::local_form<2>(seen, {lo, 0, 0}, {hi, 0, 0}, piece.degree, t, f.data());
+        for (const double x : {0.0, 0.5, 1.0}) {
+            std::vector<long double> b(net.begin(), net.end()), g(f.begin(), f.end());
+            const long double u = (1 - x) * lo + x * static_cast<long double>(hi);
+            for (std::size_t left = g.size() - 1; left > 0; --left)
+                for (std::size_t i = 0; i < left; ++i) g[i] = (1 - x) * g[i] + x * g[i + 1];
+            for (std::size_t left = b.size() - 3; left > 0; left -= 3)
+                for (std::size_t i = 0; i < left; ++i) b[i] = (1 - u) * b[i] + u * b[i + 3];
+            long double exact = -static_cast<long double>(t) * b[2] * b[2];
+            for (std::size_t k = 0; k < 2; ++k)
+                exact += (b[k] - seen.local[k] * b[2]) * (b[k] - seen.local[k] * b[2]);
+            EXPECT_LE(std::abs(double(g[0] - exact)), local.offset + 40 * kUnitRoundoff * local.magnitude);
+            EXPECT_LE(local.lightest, double(b[2]));
+            EXPECT_GE(local.heaviest, double(b[2]));
         }
     }
 }
