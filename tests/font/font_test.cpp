@@ -219,7 +219,7 @@ TEST(Font, damaged_fonts_are_read_or_refused) {
 
 // Glyph k is 250 times glyph k - 1; glyph 0 is empty. All of it would be 250^12 components.
 TEST(Font, components_of_components_end_at_a_limit) {
-    const auto font = Font::parse(font_of_components(12, 250));
+    const auto font = Font::parse(font_of_components(12, 250), {.memory_bytes = std::size_t(2) << 20});
     ASSERT_TRUE(font) << font.error().message;
     EXPECT_TRUE(font->glyph(1));
     expect_refusal(font->glyph(12), RefusalKind::limit, "glyphs[12]");

@@ -166,7 +166,7 @@ std::span<const Entry> entries() {
          "Colours are points, so splines mix them; what lies between depends on the space. A surface with a "
          "colour at "
          "every control point is a gradient in two directions.",
-         "", gradients},
+         "--control --isolines 3", gradients},
         {"R36", "Key frames and motions",
          "Between keys a value steps, runs on a line or on a cubic; an easing says how the time is spent. "
          "Along a "
