@@ -1,5 +1,6 @@
 #include "random.hpp"
 #include "refusal.hpp"
+#include "square_ring.hpp"
 
 #include <freiform/colour/mesh_gradient.hpp>
 #include <freiform/make/coons.hpp>
@@ -16,18 +17,7 @@ using test::Random;
 const std::array<Colour, 4> kCorners = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}}};
 
 std::array<Vec<2>, 12> ring(Random& random) {
-    std::array<Vec<2>, 12> p = {{{{0, 0}},
-                                 {{0, 1}},
-                                 {{0, 2}},
-                                 {{0, 3}},
-                                 {{1, 3}},
-                                 {{2, 3}},
-                                 {{3, 3}},
-                                 {{3, 2}},
-                                 {{3, 1}},
-                                 {{3, 0}},
-                                 {{2, 0}},
-                                 {{1, 0}}}};
+    auto p = test::square_ring();
     for (Vec<2>& x : p) x += Vec<2>{{random.real(-0.3, 0.3), random.real(-0.3, 0.3)}};
     return p;
 }
@@ -139,18 +129,7 @@ TEST(MeshGradient, pictures_have_no_cracks) {
 }
 
 TEST(MeshGradient, pictures_show_the_colours_at_their_places) {
-    std::array<Vec<2>, 12> square = {{{{0, 0}},
-                                      {{0, 1}},
-                                      {{0, 2}},
-                                      {{0, 3}},
-                                      {{1, 3}},
-                                      {{2, 3}},
-                                      {{3, 3}},
-                                      {{3, 2}},
-                                      {{3, 1}},
-                                      {{3, 0}},
-                                      {{2, 0}},
-                                      {{1, 0}}}};
+    const auto square = test::square_ring();
     for (const ColourSpace space : {ColourSpace::srgb, ColourSpace::linear, ColourSpace::oklab}) {
         const auto g = *MeshGradient::coons(square, kCorners, space);
         const auto image = *picture_of(std::array{g}, g.box(), 90);

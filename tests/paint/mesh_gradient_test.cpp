@@ -1,3 +1,5 @@
+#include "square_ring.hpp"
+
 #include <freiform/paint/mesh_gradient.hpp>
 
 #include <gtest/gtest.h>
@@ -6,18 +8,7 @@ namespace freiform {
 namespace {
 
 TEST(PaintMeshGradient, is_a_shading_of_patches_in_pdf_and_a_picture_in_png) {
-    const std::array<Vec<2>, 12> square = {{{{0, 0}},
-                                            {{0, 1}},
-                                            {{0, 2}},
-                                            {{0, 3}},
-                                            {{1, 3}},
-                                            {{2, 3}},
-                                            {{3, 3}},
-                                            {{3, 2}},
-                                            {{3, 1}},
-                                            {{3, 0}},
-                                            {{2, 0}},
-                                            {{1, 0}}}};
+    const auto square = test::square_ring();
     const std::array<Colour, 4> corners = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}}};
     const auto g = *MeshGradient::coons(square, corners);
     const auto pdf = to_pdf(*g.pieces(1), g.box(), 300);
