@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/bench_report.py [--build DIR] [--rounds N] [--only TEXT]: compares tessellation with Open CASCADE.
+"""tools/bench_report.py [--build DIR] [--rounds N] [--only TEXT] [--tolerances T,T]: compares tessellation with Open CASCADE.
 
 Runs bench-tessellate and bench-tessellate-occt (bench/CMakeLists.txt) in turns over the models below, each run a
 process of its own with a time limit, and writes bench/results/DATE-COMMIT.json and, from it, bench/REPORT.md. With
@@ -214,6 +214,8 @@ def main():
     options.add_argument("--build", default="build", help="the build folder (default: build)")
     options.add_argument("--rounds", type=int, default=2)
     options.add_argument("--only", default="")
+    options.add_argument("--tolerances", type=lambda s: [float(t) for t in s.split(",")], default=TOLERANCES,
+                         help="parts of the diagonal (default: 1e-3,1e-4,1e-5)")
     args = options.parse_args()
     folder = pathlib.Path(args.build)
     folder = folder if folder.is_absolute() else ROOT / folder
@@ -232,7 +234,7 @@ def main():
         if path is None:
             skipped.append({"model": name, "reason": f"{source} is not there"})
             continue
-        for relative in TOLERANCES:
+        for relative in args.tolerances:
             row = measure(name, path, relative, programs, args.rounds)
             rows.append(measure_at_same_error(row, path, programs, args.rounds, folder / "bench-deflections.json"))
             print(table_row(rows[-1]), file=sys.stderr, flush=True)

@@ -205,6 +205,11 @@ make_interp_spline, and RectBivariateSpline three times. Points: bench/tasks/int
 """
 
 
+def tolerances(rows):
+    """'0.001 and 0.0001'"""
+    return " and ".join(f"{t:g}" for t in sorted({r["relative"] for r in rows}, reverse=True))
+
+
 def report(data):
     rows, where = data["rows"], data["machine"]
     angles = []
@@ -232,7 +237,7 @@ Other comparisons: [evaluation of many points](EVALUATION.md), with plots agains
   or healing, the IGES files once more with their faces sewn (within the largest tolerance of the file; not timed); one free-form face of 20 x 20 control points, rational and bicubic, whole (hills) and with 25 round holes; and two
   of examples/. In the IGES files, shell1 and wing faces do not share all edges (not closed in the table); hammer.brep is a
   closed shell without a solid; all others are sewn solids.
-- Tolerance: 1e-3, 1e-4 and 1e-5 of the diagonal of the model's tight box. Open CASCADE gets it as the deflection of
+- Tolerance: {tolerances(data['rows'])} of the diagonal of the model's tight box. Open CASCADE gets it as the deflection of
   BRepMesh_IncrementalMesh, with an angle of 0.5 radians; freiform has no angular limit. That costs Open CASCADE
   triangles where the tolerance is coarse.
 - Time: the mesher alone, without reading, on one thread; the median, in processor time, of up to five repetitions in each of
