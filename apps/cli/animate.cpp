@@ -136,6 +136,8 @@ template <class P>
 Result<void> animate_curve(const Context& context, const AnimateArguments& o, const Curve<P>& curve,
                            const std::string& name) {
     const Measure rough = length(curve, 0);
+    if (!(rough.value > 0))
+        return refuse(RefusalKind::no_answer, "", "the curve has no length to move along");
     const double accuracy = o.accuracy.value_or(1e-9 * rough.value);
     auto motion = motion_of(o, rough.value, accuracy);
     if (!motion) return std::unexpected(motion.error());
@@ -218,6 +220,7 @@ Result<void> sample_gltf(const Context& context, const AnimateArguments& o) {
 }
 
 Result<void> run_animate(const Context& context, const AnimateArguments& o) {
+    if (o.rate && !(*o.rate > 0 && std::isfinite(*o.rate))) wrong_usage("--rate needs a positive number");
     const bool limited = o.speed || o.acceleration || o.jerk;
     if (o.file.ends_with(".glb") || o.file.ends_with(".gltf")) {
         if (limited || o.duration || !o.speeds.empty())
@@ -227,7 +230,6 @@ Result<void> run_animate(const Context& context, const AnimateArguments& o) {
     if (int(limited) + int(o.duration.has_value()) + int(!o.speeds.empty()) != 1)
         wrong_usage("one of --duration, --speeds, or limits (--speed, --acceleration, --jerk) is expected");
     if (!o.up.empty() && o.up.size() != 3) wrong_usage("--up needs three numbers: X,Y,Z");
-    if (o.rate && !(*o.rate > 0 && std::isfinite(*o.rate))) wrong_usage("--rate needs a positive number");
     const std::string format = output_ending(context);
     if (format != "csv" && format != "glb" && format != "svg" && format != "html")
         wrong_usage(text("animate writes .csv, .glb, .svg and .html, not \"", format, "\""));

@@ -13,7 +13,8 @@
 // As
 //     1 / v - p = (1 - p v) / v,
 // the integral of p is off by at most max |1 - p v| / min v, both bounded by coefficients (rounding included,
-// by core/bounded.hpp). Pieces are halved until all that together, times the largest speed, is within the
+// by core/bounded.hpp). Where cutting has rounded coefficients of v by at most e, 1 / v is off by e / (min v
+// (min v - e)) more. Pieces are halved until all that together, times the largest speed, is within the
 // accuracy. The inverse is found by Newton's method within a bracket, and what is left of t is counted too.
 //
 // Why not integrate s' = v(s) as a differential equation? Its errors grow on the way; those of the integral
@@ -33,6 +34,7 @@ struct Motion::SpeedTable {
         double from = 0, width = 0;
         std::array<double, 4> slowness{};  // p, in Bernstein form
         std::vector<double> speed;         // v, likewise
+        double rounding = 0;               // of its coefficients, by cutting
     };
     std::vector<Piece> pieces;
     double bound = 0;  // of every time, rounding apart
@@ -131,7 +133,7 @@ Result<Motion> Motion::limited(double length, const MotionLimits& limits) {
     double v = top;
     if (std::isinf(v) || v * ramp(v) > length) {
         v = std::isinf(a) ? 0 : 2 * length / (full + std::sqrt(full * full + 4 * length * per_a));
-        if (std::isinf(a) || v < a * full) v = std::cbrt(length * (length / (4 * per_jerk)));
+        if (std::isinf(a) || v < a * full) v = std::cbrt(length) * std::cbrt(length / (4 * per_jerk));
     }
     const double tj = jerk_time(v), steady = std::max(0.0, ramp(v) - 2 * tj),
                  most = per_jerk == 0 ? a : tj / per_jerk, jerk = per_jerk == 0 ? 0 : j,
@@ -144,6 +146,9 @@ Result<Motion> Motion::limited(double length, const MotionLimits& limits) {
     m.add(tj, v, 0, -jerk);
     m.add(steady, v - early, -most, 0);
     m.add(tj, early, -most, jerk);
+    if (!is_positive(m.duration()) || !is_positive(v))
+        return refuse(RefusalKind::limit, "length",
+                      text("with ", length, " and these limits times leave the range of double"));
     return m;
 }
 
@@ -159,12 +164,17 @@ Result<Motion> Motion::with_speed(const Curve<Vec<1>>& v, double accuracy) {
     auto table = std::make_shared<SpeedTable>();
     std::vector<SpeedTable::Piece> todo;
     for (int i = pieces.extent()[0] - 1; i >= 0; --i) {
-        SpeedTable::Piece p{pieces.box({i})[0].lo, pieces.box({i})[0].length(), {}, {}};
+        SpeedTable::Piece p{pieces.box({i})[0].lo, pieces.box({i})[0].length(), {}, {}, 0};
         const auto net = pieces.net({i});
         for (int k = 0; k <= pieces.degree(0); ++k) p.speed.push_back(net({k})[0]);
         for (const double c : p.speed) table->fastest = std::max(table->fastest, c);
         todo.push_back(std::move(p));
     }
+    double largest = 0;
+    for (const Vec<1>& c : v.net().flat()) largest = std::max(largest, std::abs(c[0]));
+    const int degree = v.basis().degree();
+    for (auto& p : todo) p.rounding = 1.01 * refinement_error(degree) * largest;
+    table->fastest += 1.01 * refinement_error(degree) * largest;
     Motion m;
     m.length_ = on.hi;
     while (!todo.empty()) {
@@ -173,11 +183,13 @@ Result<Motion> Motion::with_speed(const Curve<Vec<1>>& v, double accuracy) {
         const double least = *std::ranges::min_element(p.speed);
         const double d = double(p.speed.size() - 1), v0 = p.speed.front(), v1 = p.speed.back();
         double off = kInfinity;
-        if (least > 0) {
+        if (least > 2 * p.rounding) {
             const double third0 = d > 0 ? -d * (p.speed[1] - v0) / (v0 * v0) / 3 : 0,
                          third1 = d > 0 ? -d * (v1 - p.speed[p.speed.size() - 2]) / (v1 * v1) / 3 : 0;
             p.slowness = {1 / v0, 1 / v0 + third0, 1 / v1 - third1, 1 / v1};
-            off = p.width * defect_of_slowness(p.slowness, p.speed) / least * (1 + 0x1p-48);
+            const double defect = defect_of_slowness(p.slowness, p.speed);
+            if (defect <= 0.25)  // so that p is about 1 / v, and time never runs backwards
+                off = p.width * (defect + p.rounding / (least - p.rounding)) / least * (1 + 0x1p-48);
         }
         if (off * table->fastest <= accuracy / 2 * (p.width / on.hi)) {
             table->bound += off;
@@ -195,6 +207,8 @@ Result<Motion> Motion::with_speed(const Curve<Vec<1>>& v, double accuracy) {
         if (table->pieces.size() + todo.size() >= kMostPieces)
             return refuse(RefusalKind::limit, "accuracy",
                           text("within ", accuracy, " it takes more than ", kMostPieces, " pieces"));
+        p.rounding += split_error(degree) *
+                      std::abs(*std::ranges::max_element(p.speed, {}, [](double c) { return std::abs(c); }));
         SpeedTable::Piece right = p;
         const int n = int(p.speed.size());
         keep_left(Fibre<double>{p.speed.data(), n, 1}, 0.5);
@@ -236,17 +250,21 @@ Motion::State Motion::by_speed(double time) const {
         for (std::size_t k = 0; k + 1 < n; ++k) d.push_back(double(n - 1) * (p.speed[k + 1] - p.speed[k]));
         out.acceleration = bernstein_value(std::move(d), x) / p.width * out.speed;
     }
-    // Sums of times carry one rounding a piece, integrals a dozen.
-    const double rounding = kUnitRoundoff * (double(times_.size()) + 64) * duration();
-    out.bound = (speeds_->bound + std::abs(left) * p.width + rounding) * speeds_->fastest * (1 + 0x1p-40);
+    out.bound = time_bound(std::abs(left) * p.width) * speeds_->fastest;
     return out;
+}
+
+// Of a time that was met up to `left`. Sums of times carry one rounding a piece, integrals a dozen.
+double Motion::time_bound(double left) const {
+    const double rounding = kUnitRoundoff * (double(times_.size()) + 64) * duration();
+    return (speeds_->bound + left + rounding) * (1 + 0x1p-40);
 }
 
 Motion::State Motion::at(double time) const {
     if (std::isnan(time)) return {time, time, time, kInfinity};
     const double bound = 0x1p-44 * length_;
     if (time < 0) return {0, 0, 0, 0};
-    if (time > duration()) return {length_, 0, 0, speeds_ ? speeds_->bound * speeds_->fastest : bound};
+    if (time > duration()) return {length_, 0, 0, speeds_ ? time_bound(0) * speeds_->fastest : bound};
     if (speeds_) return by_speed(time);
     const std::size_t i = phase(time);
     const auto& [from, c] = phases_[i];

@@ -4,6 +4,9 @@
 // errors add up along the way. A frame that does not turn about the curve is that of make/frame_sweep.hpp:
 // the surface swept by the segment from (0, 0) to (size, 0) is c(v) + u size r(v), and its bound over size is
 // that of r. The size is that of the curve, so that rounding takes as little as it can.
+// Sweeps want a direction that does not jump: the curve is cut at knots that would let it, and r goes on
+// there as the smallest turn from one tangent to the other takes it. A part keeps what it begins with, so
+// bounds of parts add up.
 #include <freiform/animate/motion.hpp>
 #include <freiform/make/frame_sweep.hpp>
 
@@ -65,7 +68,8 @@ Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
     if (!(std::abs(length.value - motion.length()) <= 1e-3 * length.value))
         return refuse(RefusalKind::invalid, "motion",
                       text("it is ", motion.length(), " long, the curve ", length.value));
-    double size = length.value, bound = 0;
+    const double size = length.value;
+    double bound = 0;
     if (options.facing == Facing::least_turning) {
         const auto segment =
             Curve<Vec<2>>::make({*BSplineBasis::bezier(1)}, Net<1, Vec<2>>({2}, {{{0, 0}}, {{size, 0}}}));

@@ -8,6 +8,7 @@
 //
 // References: the PDF specification, shadings of types 6 and 7.
 #include <freiform/colour/mesh_gradient.hpp>
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ Vec<4> coefficient(const Colour& c, ColourSpace space) {
 void unwind(std::vector<Vec<4>>& net, int columns) {
     for (std::size_t i = 1; i < net.size(); ++i) {
         const double before = net[i % std::size_t(columns) ? i - 1 : i - std::size_t(columns)][2];
-        net[i][2] = before + std::remainder(net[i][2] - before, 2 * 3.14159265358979323846);
+        net[i][2] = before + std::remainder(net[i][2] - before, kTwoPi);
     }
 }
 

@@ -153,6 +153,10 @@ private:
             if (!data) return std::unexpected(data.error());
             held = *std::move(data);
         }
+        bytes_ += held->size();
+        if (bytes_ > kMostBytes)
+            return refuse(RefusalKind::limit, where,
+                          text("all buffers have more than ", kMostBytes >> 20, " MiB"));
         return std::string_view(*held);
     }
 
@@ -301,7 +305,7 @@ private:
     const std::filesystem::path& folder_;
     std::array<std::vector<json::Value>, 4> arrays_;
     std::vector<std::optional<std::string>> buffers_;
-    std::size_t read_ = 0;
+    std::size_t read_ = 0, bytes_ = 0;
 };
 
 }  // namespace

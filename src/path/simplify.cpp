@@ -251,7 +251,7 @@ private:
     }
     std::optional<double> proven(HomogeneousPiece p, const Cubic& c, double from, double to,
                                  int deeper) const {
-        const double bound = detail::distance_bound(p, part_of_cubic(c, from, to)) + rounding(c);
+        const double bound = detail::distance_bound(p, part_of_cubic(c, from, to)) + rounding(c, p);
         if (bound <= options_.tolerance) return bound;
         if (deeper == 0) return std::nullopt;
         HomogeneousPiece left = p;
@@ -265,11 +265,14 @@ private:
         const auto high = proven(std::move(p), c, at, to, deeper - 1);
         return high ? std::optional(std::max(*low, *high)) : std::nullopt;
     }
-    // Of parts of the cubic and of halves of the segment: at most kDeepest + 2 times three steps of averages.
-    static double rounding(const Cubic& c) {
+    // Of parts of the cubic and of halves of the segment: kDeepest + 2 cuts at 9 u each and their parameters,
+    // in two coordinates, over weights that are at least 1/2 once a segment was cut: less than 300 u of the
+    // largest number.
+    static double rounding(const Cubic& c, const HomogeneousPiece& p) {
         double size = 0;
-        for (const Vec<2>& p : c) size = std::max(size, max_abs(p));
-        return 128 * kUnitRoundoff * size;
+        for (const Vec<2>& x : c) size = std::max(size, max_abs(x));
+        for (const Hom<2>& h : p) size = std::max({size, std::abs(h[0]), std::abs(h[1])});
+        return 512 * kUnitRoundoff * size;
     }
 
     SimplifyOptions options_;

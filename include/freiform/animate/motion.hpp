@@ -10,7 +10,8 @@
 
 namespace freiform {
 
-// Of the motion along the way, each > 0; without the last one the acceleration may jump.
+// Of the motion along the way, each > 0; infinite ones do not count. Without the last one the acceleration
+// may jump, without the last two the speed.
 struct MotionLimits {
     double speed = 1, acceleration = std::numeric_limits<double>::infinity(),
            jerk = std::numeric_limits<double>::infinity();
@@ -21,7 +22,7 @@ class Motion {
 public:
     struct State {
         double distance = 0, speed = 0, acceleration = 0;
-        double bound = 0;  // of the distance
+        double bound = 0;  // of the distance; speed and acceleration carry their rounding
     };
 
     // At constant speed. Refuses lengths and durations that are not positive.
@@ -51,6 +52,7 @@ private:
     void add(double duration, double speed, double acceleration, double jerk);
     State by_speed(double time) const;
     std::size_t phase(double time) const;
+    double time_bound(double left) const;
 
     double length_ = 0;
     std::vector<double> times_{0};
@@ -90,7 +92,8 @@ public:
     // P: Vec<2>, Hom<2> (at z = 0), Vec<3>, Hom<3>. The distances of the motion are measured on the curve, at
     // whose end it stays should its length be less. Refuses (invalid) motions whose length differs from that
     // of the curve by more than a thousandth, and accuracies that are not positive; with least_turning what
-    // make/frame_sweep.hpp refuses of rails.
+    // make/frame_sweep.hpp refuses of rails, but for corners: there the body turns at once, as little as it
+    // can.
     template <class P>
     static Result<Trajectory> make(const Curve<P>& curve, const Motion& motion,
                                    const TrajectoryOptions& options);
