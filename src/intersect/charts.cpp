@@ -7,13 +7,15 @@ namespace freiform::detail {
 
 namespace {
 
+constexpr double kPartsOfSphere = 1.0 / 8;
 constexpr std::size_t kMostToRefine = 60'000, kMostBeforeCoarse = 4'000;
 
 }  // namespace
 
-Charts::Charts(Sheet& a, Sheet& b, std::span<const SameMap> same) : sheets_{&a, &b}, maps_(same) {
-    for (const SameMap& m : same) {
-        regions_.push_back({m.region_of_spline(0), m.region_of_spline(1)});
+Charts::Charts(Sheet& a, Sheet& b, const Sameness& same) : sheets_{&a, &b}, maps_(same.maps) {
+    if (same.one_sphere) same_from_ = kPartsOfSphere * std::min(a[0].extent(), b[0].extent());
+    for (const SameMap& m : same.maps) {
+        regions_.push_back(m.on);
         for (std::size_t side = 0; side < 2; ++side)
             for (std::size_t k = 0; k < 2; ++k)
                 for (const double at : {regions_.back()[side][k].lo, regions_.back()[side][k].hi})
@@ -327,6 +329,13 @@ void Charts::look(int node) {
         }
         bool near = false;
         if (are_apart_by_slabs(p, near)) return;
+        if (same_from_ > 0) {
+            if (std::max(a.extent(), b.extent()) <= same_from_)
+                same_.push_back(node);
+            else
+                split(node);
+            return;
+        }
         const Answer answer = settle(p);
         if (answer == Answer::chart) nodes_[std::size_t(node)].chart = int(charts_.size()) - 1;
         if (answer != Answer::open) return;

@@ -58,7 +58,7 @@ struct Cluster {
 class Charts {
 public:
     // `same`: where both are the same.
-    Charts(Sheet& a, Sheet& b, std::span<const SameMap> same);
+    Charts(Sheet& a, Sheet& b, const Sameness& same);
 
     // Finds all. What is no farther apart than `nearness` all over a pair of parts is halved no more; what
     // such pairs are about, if it seems to be one point, down to `finest`.
@@ -141,6 +141,7 @@ private:
 
     std::array<Sheet*, 2> sheets_;
     std::span<const SameMap> maps_;
+    double same_from_ = 0;  // extent of parts of one sphere that are looked at no more; 0: there is none
     std::vector<std::array<std::array<Interval, 2>, 2>> regions_;           // of the maps, for both sheets
     std::vector<std::pair<int, std::array<Interval, 4>>> explained_cells_;  // of nodes
     std::vector<Chart> charts_;

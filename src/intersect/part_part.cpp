@@ -168,10 +168,10 @@ Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
     search.tolerance = kForSearch * options.tolerance;
     if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
-    const auto maps = same_maps(a, b, parts, search.tolerance);
+    const auto same = sameness(parts, search.tolerance);
     const SurfaceGeometry shape_a = spline_a->surface, shape_b = spline_b->surface;
-    auto found = intersect_splines(spline_a->surface, spline_b->surface, shape_a, shape_b, search, maps);
-    add_overlaps(found, maps, parts, options.tolerance);
+    auto found = intersect_splines(spline_a->surface, spline_b->surface, shape_a, shape_b, search, same);
+    add_overlaps(found, same.maps, parts, options.tolerance);
     PartIntersection out{std::move(found.found), {spline_a->bound, spline_b->bound}};
     const BranchProof proof_a(a.surface, a.on), proof_b(b.surface, b.on);
     Carrier carry(parts, {&proof_a, &proof_b}, {&a, &b}, options.tolerance);

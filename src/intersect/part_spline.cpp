@@ -34,21 +34,6 @@ double ParameterArcs::slope(double s) const {
     return 4 * k_ * arcs_ / (1 + k_ * k_ * v * v);
 }
 
-double ParameterArcs::inverse(double x) const {
-    if (is_identity()) return x;
-    const double turn = (x - on_.lo) / on_.length() * arcs_;
-    const int arc = std::clamp(int(turn), 0, arcs_ - 1);
-    const double v = std::tan((x - on_.lo - on_.length() * ((arc + 0.5) / arcs_)) / 2) / k_;
-    return (arc + 0.5 + 0.5 * std::clamp(v, -3.0, 3.0)) / arcs_;
-}
-
-Interval ParameterArcs::inverse_over(const Interval& x) const {
-    if (is_identity()) return x;
-    const double slack =
-        64 * kUnitRoundoff * std::max({std::abs(on_.lo), std::abs(on_.hi), on_.length()}) / on_.length();
-    return {inverse(x.lo) - slack, inverse(x.hi) + slack};
-}
-
 Interval ParameterArcs::over(const Interval& s) const {
     if (is_identity()) return s;
     const double slack = 32 * kUnitRoundoff * std::max({std::abs(on_.lo), std::abs(on_.hi), on_.length()});

@@ -18,11 +18,8 @@ public:
     bool is_identity() const { return arcs_ == 0; }
     double at(double s) const;
     double slope(double s) const;  // dx/ds
-    double inverse(double x) const;
-    int arcs() const { return arcs_; }
-    // Contains x of all s of an interval, rounding included; s of all x.
+    // Contains x of all s of an interval, rounding included.
     Interval over(const Interval& s) const;
-    Interval inverse_over(const Interval& x) const;
 
 private:
     struct Place {

@@ -171,17 +171,19 @@ SurfaceNode node_of(const Charts& charts, const Cluster& cluster, int arms, doub
     return node;
 }
 
-// The corners of R, counter-clockwise, and those of M(R) in the same order.
-SurfaceOverlap overlap_of(const SameMap& m) {
+// The corners of R, counter-clockwise, and those of M(R) in the same order, in the parameters of the parts.
+SurfaceOverlap overlap_of(const SameMap& m, const std::array<const PartSpline*, 2>& parts) {
     SurfaceOverlap out;
     out.gap = m.gap;
+    const auto place = [&](std::size_t side, std::size_t k, bool high) {
+        const Interval& on = m.on[side][k];
+        return parts[side]->map[k].at(high ? on.hi : on.lo);
+    };
     for (const int corner : {0, 1, 3, 2}) {
         const std::array<bool, 2> high{(corner & 1) != 0, (corner & 2) != 0};
-        Vec<2> x, y;
-        for (std::size_t k = 0; k < 2; ++k) x[int(k)] = high[k] ? m.region[k].hi : m.region[k].lo;
-        for (std::size_t k = 0; k < 2; ++k)
-            y[int(k)] = high[m.source(k)] == (m.scale[k] > 0) ? m.image[k].hi : m.image[k].lo;
-        out.loop_a.push_back(x), out.loop_b.push_back(y);
+        out.loop_a.push_back({{place(0, 0, high[0]), place(0, 1, high[1])}});
+        const auto in_b = [&](std::size_t k) { return place(1, k, high[m.source(k)] == (m.scale[k] > 0)); };
+        out.loop_b.push_back({{in_b(0), in_b(1)}});
     }
     return out;
 }
@@ -198,17 +200,17 @@ void detail::add_overlaps(SplineIntersection& to, std::span<const SameMap> maps,
         }
     for (std::size_t i = 0; i < to.found.nodes.size(); ++i)
         for (const int map : to.maps_of_nodes[i])
-            to.found.nodes[i].overlaps.push_back(overlap_of(maps[std::size_t(map)]));
+            to.found.nodes[i].overlaps.push_back(overlap_of(maps[std::size_t(map)], parts));
 }
 
 detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, const Surface<Hom<3>>& b,
                                                      const SurfaceGeometry& shape_a,
                                                      const SurfaceGeometry& shape_b,
                                                      const SurfaceIntersectOptions& options,
-                                                     std::span<const SameMap> maps) {
+                                                     const Sameness& same) {
     const double tolerance = options.tolerance;
     Sheet sheet_a(a), sheet_b(b);
-    Charts charts(sheet_a, sheet_b, maps);
+    Charts charts(sheet_a, sheet_b, same);
     // Finer, rounding leaves no chart beside a place where the surfaces touch.
     const double finest =
         std::max(0x1p-36 * tolerance, 0x1p8 * (sheet_a.inner_error() + sheet_b.inner_error()));
@@ -238,7 +240,7 @@ detail::SplineIntersection detail::intersect_splines(const Surface<Hom<3>>& a, c
         const Cluster& cluster = charts.clusters()[i];
         out.nodes.push_back(node_of(charts, cluster, arms[i], tolerance));
         for (const int map : cluster.maps)
-            out.nodes.back().gap = std::max(out.nodes.back().gap, maps[std::size_t(map)].gap);
+            out.nodes.back().gap = std::max(out.nodes.back().gap, same.maps[std::size_t(map)].gap);
         all.maps_of_nodes.push_back(cluster.maps);
         if (out.nodes.back().kind != SurfaceNodeKind::along) continue;
         const auto known = touching.find(int(i));
@@ -268,10 +270,10 @@ requires(Space<P>::kDim == 3 &&
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
     const SurfacePart part_a{a, a.domain()}, part_b{b, b.domain()};
     const PartSpline spline_a{weighted_net(a)}, spline_b{weighted_net(b)};
-    const auto maps = same_maps(part_a, part_b, {&spline_a, &spline_b}, options.tolerance);
+    const auto same = sameness({&spline_a, &spline_b}, options.tolerance);
     auto all =
-        intersect_splines(spline_a.surface, spline_b.surface, part_a.surface, part_b.surface, options, maps);
-    add_overlaps(all, maps, {&spline_a, &spline_b}, options.tolerance);
+        intersect_splines(spline_a.surface, spline_b.surface, part_a.surface, part_b.surface, options, same);
+    add_overlaps(all, same.maps, {&spline_a, &spline_b}, options.tolerance);
     return std::move(all.found);
 }
 

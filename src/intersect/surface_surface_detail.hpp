@@ -12,7 +12,7 @@ struct SplineIntersection {
 };
 SplineIntersection intersect_splines(const Surface<Hom<3>>& a, const Surface<Hom<3>>& b,
                                      const SurfaceGeometry& shape_a, const SurfaceGeometry& shape_b,
-                                     const SurfaceIntersectOptions& options, std::span<const SameMap> maps);
+                                     const SurfaceIntersectOptions& options, const Sameness& same);
 // R and M(R) of the maps of each node; without maps, that of two planes.
 void add_overlaps(SplineIntersection& to, std::span<const SameMap> maps,
                   const std::array<const PartSpline*, 2>& parts, double tolerance);

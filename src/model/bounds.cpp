@@ -26,9 +26,7 @@ namespace {
 class Reach {
 public:
     Reach(const detail::ModelParts& all, const Vec<3>& n, double rounding, double accuracy, int max_parts)
-        : all_(all), n_(n), rounding_(rounding), parts_left_(max_parts) {
-        for (const FacePart& p : all.parts) parts_.push_back(p);
-        for (const FaceRim& r : all.rims) rims_.push_back(r);
+        : all_(all), n_(n), rounding_(rounding), parts_left_(max_parts), opened_(all) {
         for (const NearLeaf& leaf : all.leaves)
             leaf.part >= 0 ? push_part(leaf.face, leaf.part, kInfinity) : push_rim(leaf.rim, kInfinity);
         while (!heap_.empty()) {
@@ -60,14 +58,14 @@ private:
         std::ranges::push_heap(heap_, {}, &Item::most);
     }
     void push_part(int face, int index, double bound) {
-        const FacePart& p = parts_[std::size_t(index)];
+        const FacePart& p = opened_.part(index);
         double most = -kInfinity;
         for (const Vec<3>& x : p.corner) most = std::max(most, along(x));
         if (!p.crossing) least_ = std::max(least_, most - p.rounding);
         push({most + p.hull_error, face, index, false}, bound);
     }
     void push_rim(int index, double bound) {
-        const FaceRim& r = rims_[std::size_t(index)];
+        const FaceRim& r = opened_.rim(index);
         for (int k = 0; k < 2; ++k) {
             const Vec<2>& uv = r.uv[std::size_t(k)];
             const double off = 2 * value_error_bound(all_.model.faces[std::size_t(r.owner)].surface,
@@ -77,31 +75,15 @@ private:
         push({std::max(along(r.end[0]), along(r.end[1])) + r.error, r.owner, index, true}, bound);
     }
     bool open_part(const Item& item) {
-        const FacePart part = parts_[std::size_t(item.index)];
         const FaceParts& face = all_.faces[std::size_t(item.face)];
-        if (!all_.model.faces[std::size_t(item.face)].loops.empty() && !face.may_be_level(part, n_))
+        if (!all_.model.faces[std::size_t(item.face)].loops.empty() &&
+            !face.may_be_level(opened_.part(item.index), n_))
             return true;
-        bool can = false;
-        for (int k = 0; k < 2; ++k) {
-            const double m = part.box.side(k).middle();
-            can = can || (part.box.lo[k] < m && m < part.box.hi[k]);
-        }
-        if (!can) return false;
-        for (FacePart& half : face.halves(part, true)) {
-            parts_.push_back(std::move(half));
-            push_part(item.face, int(parts_.size()) - 1, item.most);
-        }
-        return true;
+        return opened_.halve_part(item.face, item.index,
+                                  [&](int half) { push_part(item.face, half, item.most); });
     }
     bool open_rim(const Item& item) {
-        const FaceRim rim = rims_[std::size_t(item.index)];
-        const double middle = rim.on.middle();
-        if (!rim.coedge || !(rim.on.lo < middle && middle < rim.on.hi)) return false;
-        for (const Interval half : {Interval{rim.on.lo, middle}, Interval{middle, rim.on.hi}}) {
-            rims_.push_back(all_.rim_over(rim.owner, rim.coedge, rim.curve, half));
-            push_rim(int(rims_.size()) - 1, item.most);
-        }
-        return true;
+        return opened_.halve_rim(item.index, [&](int half) { push_rim(half, item.most); });
     }
 
     const detail::ModelParts& all_;
@@ -110,8 +92,7 @@ private:
     int parts_left_;
     double least_ = -kInfinity, most_ = kInfinity;
     std::vector<Item> heap_;
-    std::vector<FacePart> parts_;
-    std::vector<FaceRim> rims_;
+    OpenedParts opened_;
 };
 
 }  // namespace

@@ -22,6 +22,11 @@ public:
     std::size_t size() const { return segments_.size(); }
     // Does the box meet chord i or what its curve may reach? Conservative.
     bool meets(const Box<2>& box, std::size_t i) const;
+    std::array<Vec<2>, 2> chord(std::size_t i) const {
+        return {points_[std::size_t(segments_[i][0])], points_[std::size_t(segments_[i][1])]};
+    }
+    // Bound: how far the curve leaves chord i, in u and in v.
+    const Vec<2>& sag(std::size_t i) const { return sags_[i]; }
     // Odd-even rule. REQUIRES a point in a box that meets nothing.
     bool is_inside(const Vec<2>& x) const;
     // Points of the face's boundary.

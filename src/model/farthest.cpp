@@ -26,7 +26,7 @@ namespace {
 class FarSearch {
 public:
     FarSearch(const detail::ModelParts& all, const Vec<3>& q, const ModelNearestOptions& options)
-        : all_(all), q_(q), parts_(all.parts), rims_(all.rims), parts_left_(options.max_parts) {
+        : all_(all), q_(q), opened_(all), parts_left_(options.max_parts) {
         double scale = max_abs(q);
         for (const NearNode& n : all.nodes) scale = std::max(scale, n.box.scale());
         rounding_ = 64 * kUnitRoundoff * scale;
@@ -61,7 +61,7 @@ private:
         std::ranges::push_heap(heap_, {}, &Item::most);
     }
     void push_part(int face, int index, double bound) {
-        const FacePart& p = parts_[std::size_t(index)];
+        const FacePart& p = opened_.part(index);
         double most = 0;
         for (const Vec<3>& x : p.corner) most = std::max(most, norm(x - q_));
         const Vec<2> middle = 0.5 * (p.box.lo + p.box.hi);
@@ -69,7 +69,7 @@ private:
         push(face, index, false, most + p.hull_error, bound);
     }
     void push_rim(int index, double bound) {
-        const FaceRim& r = rims_[std::size_t(index)];
+        const FaceRim& r = opened_.rim(index);
         for (const Vec<2>& uv : r.uv) take(r.owner, r.coedge ? r.coedge->edge : -1, uv);
         push(r.owner, index, true, std::max(norm(r.end[0] - q_), norm(r.end[1] - q_)) + r.error, bound);
     }
@@ -83,31 +83,15 @@ private:
         best_ = {face, edge, uv, x, d, error, 0};
     }
     bool open_part(const Item& item) {
-        const FacePart part = parts_[std::size_t(item.index)];
         const FaceParts& face = all_.faces[std::size_t(item.face)];
-        if (!all_.model.faces[std::size_t(item.face)].loops.empty() && !face.may_have_foot(part, q_))
+        if (!all_.model.faces[std::size_t(item.face)].loops.empty() &&
+            !face.may_have_foot(opened_.part(item.index), q_))
             return true;
-        bool can = false;
-        for (int k = 0; k < 2; ++k) {
-            const double m = part.box.side(k).middle();
-            can = can || (part.box.lo[k] < m && m < part.box.hi[k]);
-        }
-        if (!can) return false;
-        for (FacePart& half : face.halves(part, true)) {
-            parts_.push_back(std::move(half));
-            push_part(item.face, int(parts_.size()) - 1, item.most);
-        }
-        return true;
+        return opened_.halve_part(item.face, item.index,
+                                  [&](int half) { push_part(item.face, half, item.most); });
     }
     bool open_rim(const Item& item) {
-        const FaceRim rim = rims_[std::size_t(item.index)];
-        const double middle = rim.on.middle();
-        if (!rim.coedge || !(rim.on.lo < middle && middle < rim.on.hi)) return false;
-        for (const Interval half : {Interval{rim.on.lo, middle}, Interval{middle, rim.on.hi}}) {
-            rims_.push_back(all_.rim_over(rim.owner, rim.coedge, rim.curve, half));
-            push_rim(int(rims_.size()) - 1, item.most);
-        }
-        return true;
+        return opened_.halve_rim(item.index, [&](int half) { push_rim(half, item.most); });
     }
 
     const detail::ModelParts& all_;
@@ -115,8 +99,7 @@ private:
     double rounding_ = 0;
     ModelFarthest best_;
     std::vector<Item> heap_;
-    std::vector<FacePart> parts_;
-    std::vector<FaceRim> rims_;
+    OpenedParts opened_;
     int parts_left_;
 };
 

@@ -105,11 +105,11 @@ void detail::ModelParts::build() {
     }
 }
 
-Result<void> detail::ModelParts::prepare() {
+Result<void> detail::ModelParts::prepare(double sag) {
     if (model.faces.empty()) return refuse(RefusalKind::invalid, "model", "has no faces");
     size = summary(model).box.diagonal();
     for (std::size_t f = 0; f < model.faces.size(); ++f) {
-        auto made = FaceParts::make(model.faces[f], model.edges, kRegionSag * size);
+        auto made = FaceParts::make(model.faces[f], model.edges, std::min(sag, kRegionSag * size));
         if (!made) return refuse_within(text("faces[", f, "]"), made.error());
         faces.push_back(std::move(*made));
     }

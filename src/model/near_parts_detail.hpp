@@ -33,7 +33,8 @@ struct detail::ModelParts {
     std::vector<NearLeaf> leaves;
     std::vector<NearNode> nodes;
 
-    Result<void> prepare();
+    // Boundaries of faces are known within `sag`, or better (a length).
+    Result<void> prepare(double sag = kInfinity);
     void add_parts(int face);
     void add_rims(int face);
     FaceRim rim_over(int face, const Coedge* coedge, const DerivativeQuery<1, 2>* curve, Interval on) const {
@@ -43,6 +44,48 @@ struct detail::ModelParts {
         return rim;
     }
     void build();
+};
+
+// Parts of faces and boundaries for a search that halves some of them: first those that are prepared.
+class OpenedParts {
+public:
+    explicit OpenedParts(const detail::ModelParts& all) : all_(all), parts_(all.parts), rims_(all.rims) {}
+
+    const FacePart& part(int i) const { return parts_[std::size_t(i)]; }
+    const FaceRim& rim(int i) const { return rims_[std::size_t(i)]; }
+    // f(i) for the halves that are not outside of the face. False: there are none, since parameters can not
+    // be halved any more, or the rim is a jump.
+    template <class F>
+    bool halve_part(int face, int index, F&& f) {
+        const Box<2> box = part(index).box;
+        bool can = false;
+        for (int k = 0; k < 2; ++k) {
+            const double m = box.side(k).middle();
+            can = can || (box.lo[k] < m && m < box.hi[k]);
+        }
+        if (!can) return false;
+        for (FacePart& half : all_.faces[std::size_t(face)].halves(FacePart(part(index)), true)) {
+            parts_.push_back(std::move(half));
+            f(int(parts_.size()) - 1);
+        }
+        return true;
+    }
+    template <class F>
+    bool halve_rim(int index, F&& f) {
+        const FaceRim whole = rim(index);
+        const double middle = whole.on.middle();
+        if (!whole.coedge || !(whole.on.lo < middle && middle < whole.on.hi)) return false;
+        for (const Interval half : {Interval{whole.on.lo, middle}, Interval{middle, whole.on.hi}}) {
+            rims_.push_back(all_.rim_over(whole.owner, whole.coedge, whole.curve, half));
+            f(int(rims_.size()) - 1);
+        }
+        return true;
+    }
+
+private:
+    const detail::ModelParts& all_;
+    std::vector<FacePart> parts_;
+    std::vector<FaceRim> rims_;
 };
 
 }  // namespace freiform

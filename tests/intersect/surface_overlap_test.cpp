@@ -3,6 +3,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/intersect/surface_surface.hpp>
+#include <freiform/make/quadric.hpp>
 
 #include <gtest/gtest.h>
 
@@ -122,6 +123,75 @@ TEST(SurfaceOverlaps, a_cylinder_with_its_seam_elsewhere_has_a_rectangle_on_both
                 1e-13);
     }
     EXPECT_NEAR(area, kTwoPi * 1, 1e-12);
+}
+
+// Rational splines whose parameters are no angles: turned about the axis, upside down, a part, and with the
+// parameters of each piece moved by a projective map.
+TEST(SurfaceOverlaps, rational_splines_with_their_seams_elsewhere_share_a_rectangle_on_every_side) {
+    const Vec<3> o{}, z{{0, 0, 1}};
+    const auto frame = [&](const Vec<3>& axis, const Vec<3>& toward) {
+        return must(frame_about(o, axis, toward));
+    };
+    const auto at_z = frame(z, {{1, 0, 0}}), turned = frame(z, {{3, 1, 0}}),
+               over = frame(-1.0 * z, {{1, 5, 0}});
+    const auto even = must(cylinder(at_z, 1, {-2, 2})).surface;
+    auto net = even.net();  // (1, c, 1) -> (1, 2 c, 4) from piece to piece
+    for (int i = 0; i < net.extent()[0]; ++i)
+        for (std::size_t j = 0; j < 2; ++j)
+            for (int k = 0; k < 4; ++k) net.flat()[2 * std::size_t(i) + j][k] *= std::scalbn(1.0, i);
+    const auto uneven = must(Surface<Hom<3>>::make(even.bases(), net));
+    const struct {
+        Surface<Hom<3>> a, b;
+        std::size_t rectangles;
+        double share;  // of the parameters of A
+    } cases[] = {
+        {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(turned, 1, {-1, 3})).surface, 2, 0.75},
+        {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(over, 1, {-1, 3})).surface, 2, 0.75},
+        {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(turned, 1, {-2, 2}, {0, 1})).surface, 1, 0},
+        {uneven, must(cylinder(turned, 1, {-1, 3})).surface, 2, 0.75},
+        {must(cone(at_z, 2, 1, {0, 1})).surface, must(cone(turned, 2, 1, {0, 1})).surface, 2, 1},
+        {must(sphere(at_z, 1)).surface, must(sphere(turned, 1)).surface, 2, 1},
+        {must(torus(at_z, 3, 1)).surface, must(torus(over, 3, 1)).surface, 2, 1},
+    };
+    for (const auto& c : cases) {
+        const auto found = must(intersect(c.a, c.b, SurfaceIntersectOptions{.tolerance = 1e-5}));
+        EXPECT_TRUE(found.branches.empty());
+        EXPECT_TRUE(found.undecided.empty());
+        ASSERT_EQ(found.nodes.size(), 1u);
+        EXPECT_EQ(found.nodes[0].kind, SurfaceNodeKind::overlap);
+        ASSERT_EQ(found.nodes[0].overlaps.size(), c.rectangles);
+        double area = 0;
+        for (const SurfaceOverlap& p : found.nodes[0].overlaps) {
+            EXPECT_LT(p.gap, 1e-11);
+            area += area_of(p.loop_a);
+            for (std::size_t i = 0; i < 4; ++i)
+                EXPECT_LT(norm(c.a(Param<2>(p.loop_a[i].c)) - c.b(Param<2>(p.loop_b[i].c))), 1e-14);
+            // Within, where all the cells are.
+            const Vec<3> x = c.a(Param<2>((0.5 * (p.loop_a[0] + p.loop_a[2])).c));
+            EXPECT_TRUE(std::ranges::any_of(found.nodes[0].cells, [&](const auto& cell) {
+                return norm(c.b(Param<2>{cell[2].middle(), cell[3].middle()}) - x) < 1;
+            }));
+        }
+        const auto on = c.a.domain();
+        if (c.share > 0) EXPECT_NEAR(area, c.share * on[0].length() * on[1].length(), 1e-11);
+    }
+}
+
+// No map takes the lines of latitude of one to those of the other.
+TEST(SurfaceOverlaps, spheres_with_other_poles_overlap_and_those_of_another_size_do_not) {
+    const auto ball = [](const Vec<3>& axis, double r) {
+        return must(sphere(must(frame_about({{1, 2, 3}}, axis)), r)).surface;
+    };
+    const auto a = ball({{0, 0, 1}}, 1);
+    const auto found = must(intersect(a, ball({{1, 2, 3}}, 1), SurfaceIntersectOptions{.tolerance = 1e-6}));
+    EXPECT_TRUE(found.branches.empty());
+    EXPECT_TRUE(found.undecided.empty());
+    ASSERT_EQ(found.nodes.size(), 1u);
+    EXPECT_EQ(found.nodes[0].kind, SurfaceNodeKind::overlap);
+    EXPECT_LE(found.nodes[0].gap, 1e-6);
+    const auto apart =
+        must(intersect(a, ball({{1, 2, 3}}, 1 + 1e-4), SurfaceIntersectOptions{.tolerance = 1e-6}));
+    for (const SurfaceNode& n : apart.nodes) EXPECT_NE(n.kind, SurfaceNodeKind::overlap);
 }
 
 TEST(SurfaceOverlaps, powers_of_two_scale_them) {
