@@ -1,5 +1,7 @@
 // Tight boxes of solids against those that are known, and against many points of their faces.
+#include <freiform/core/constants.hpp>
 #include <freiform/model/bounds.hpp>
+#include <freiform/model/rescale.hpp>
 
 #include <gtest/gtest.h>
 #include <support/refusal.hpp>
@@ -51,6 +53,85 @@ TEST(ModelBounds, a_spent_budget_is_said_and_nonsense_is_refused) {
     EXPECT_LE(b.box.hi[0] - b.slack, 4);
     expect_refusal(tight_box(m, -1), RefusalKind::invalid, "accuracy");
     expect_refusal(tight_box(Model{}, 1), RefusalKind::invalid, "model");
+}
+
+// Volume by the divergence theorem.
+double volume_of(const ConvexHull<3>& hull) {
+    double sum = 0;
+    for (const auto& f : hull.facets)
+        sum += dot(hull.points[std::size_t(f[0])],
+                   cross(hull.points[std::size_t(f[1])], hull.points[std::size_t(f[2])])) /
+               6;
+    return sum;
+}
+// How far x is outside.
+double outside(const ConvexHull<3>& hull, const Vec<3>& x) {
+    double most = -kInfinity;
+    for (const auto& f : hull.facets) {
+        const Vec<3>& a = hull.points[std::size_t(f[0])];
+        const Vec<3> n = cross(hull.points[std::size_t(f[1])] - a, hull.points[std::size_t(f[2])] - a);
+        most = std::max(most, dot(unit(n), x - a));
+    }
+    return most;
+}
+
+TEST(ModelHull, of_solids_contains_them_and_is_hardly_larger) {
+    const double tolerance = 0.02;
+    struct Known {
+        Model model;
+        double volume, area;  // of the convex hull
+    };
+    for (const Known& k :
+         {Known{sphere({}, 1), 4 * kPi / 3, 4 * kPi},
+          {torus(3, 1), kPi * 9 * 2 + 3 * kPi * kPi + 4 * kPi / 3, 2 * 9 * kPi + 6 * kPi * kPi + 4 * kPi},
+          {frustum(1, 0.5, 2), 7 * kPi / 6, 1.25 * kPi + 1.5 * kPi * std::sqrt(4.25)}}) {
+        const auto hull = must(convex_hull(k.model, tolerance));
+        EXPECT_LE(hull.slack, tolerance);
+        // Within `slack` of the hull of the solid: no more volume than that of the layer around.
+        EXPECT_GE(volume_of(hull), k.volume);
+        EXPECT_LE(volume_of(hull), k.volume + 1.2 * hull.slack * k.area);
+        for (const Face& f : k.model.faces)
+            for (const Loop& l : f.loops)
+                for (const Coedge& c : l.coedges)
+                    for (int i = 0; i <= 20; ++i) {
+                        const Interval on = k.model.edges[std::size_t(c.edge)].range;
+                        const double t = clamped(on.lo + on.length() * i / 20, on);
+                        const Vec<2> uv = jet<0>(c.curve, t).value();
+                        EXPECT_LE(outside(hull, jet<0>(f.surface, uv.c).value()), 1e-14);
+                    }
+    }
+}
+
+// The upper half of a ball is a surface that goes on below; a face with a lens cut out is as large as before.
+TEST(ModelHull, ends_where_faces_are_trimmed) {
+    Model m = sphere({}, 1);
+    const double top = 0.4;  // the latitude of the rim
+    for (Coedge& c : m.faces[0].loops[0].coedges) {
+        const auto cut = [&](Vec<2> p) { return Vec<2>{{p[0], std::min(p[1], top)}}; };
+        const Interval on = m.edges[std::size_t(c.edge)].range;
+        c.curve = segment(on, cut(jet<0>(c.curve, on.lo).value()), cut(jet<0>(c.curve, on.hi).value()));
+    }
+    const auto hull = must(convex_hull(m, 0.01));
+    double highest = -1;
+    for (const Vec<3>& p : hull.points) highest = std::max(highest, p[2]);
+    EXPECT_GE(highest, std::sin(top));
+    EXPECT_LE(highest, std::sin(top) + hull.slack);
+    EXPECT_LE(hull.slack, 0.01);
+    expect_refusal(convex_hull(m, -1), RefusalKind::invalid, "tolerance");
+    expect_refusal(convex_hull(m, 1, 0), RefusalKind::invalid, "max_parts");
+    const auto coarse = must(convex_hull(m, 1e-9, 40));
+    EXPECT_GT(coarse.slack, 1e-4);
+    EXPECT_LE(outside(hull, {{0, 0, -1}}), 1e-14);
+    EXPECT_LE(outside(coarse, {{0, 0, -1}}), 1e-14);
+}
+
+TEST(ModelHull, powers_of_two_scale_it) {
+    const Model one = frustum(1, 0.5, 2);
+    const auto hull = must(convex_hull(one, 0.125)), small = must(convex_hull(must(rescaled(one, -100)), 0x1p-103));
+    ASSERT_EQ(hull.points.size(), small.points.size());
+    EXPECT_EQ(hull.facets, small.facets);
+    for (std::size_t i = 0; i < hull.points.size(); ++i) EXPECT_EQ(0x1p-100 * hull.points[i], small.points[i]);
+    EXPECT_EQ(small.slack, 0x1p-100 * hull.slack);
 }
 
 }  // namespace
