@@ -238,7 +238,7 @@ void add_bounds(CommandLine& line) {
                  "Instead: a small box in any orientation, as axes and the ranges along them");
     command.number(
         "--hull", options->hull,
-        "Instead: the convex hull of each curve, surface or volume, at most this much too large; -o with "
+        "Instead: the convex hull of each object, at most this much too large; -o with "
         "a name that ends in .stl, .obj, .ply or .glb writes a mesh");
     command.object(options->object);
     command.answer_file();

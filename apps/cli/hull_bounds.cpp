@@ -13,9 +13,8 @@ namespace {
 
 constexpr double kAccuracyOfSize = 1e-7;
 constexpr std::string_view kAccepted =
-    "--oriented is for curves, surfaces, volumes and triangles in the plane or in space, trimmed surfaces "
-    "and "
-    "models; --hull for those but the last two";
+    "--oriented and --hull are for curves, surfaces, volumes and triangles in the plane or in space, trimmed "
+    "surfaces and models";
 
 template <std::size_t N>
 void write_numbers(json::Writer& w, std::string_view key, const std::vector<std::array<double, N>>& rows) {
@@ -38,7 +37,7 @@ public:
         plain_ += text(object_label(*input_.document, i), ":\n");
         const auto* own = std::get_if<Model>(&shape);
         const auto* trimmed = std::get_if<TrimmedSurface>(&shape);
-        const auto done = own ? add_model(*own) : trimmed ? add_trimmed(*trimmed) : add_patch(i);
+        const auto done = own ? add_model(*own, i) : trimmed ? add_trimmed(*trimmed, i) : add_patch(i);
         w_.end_object();
         return done;
     }
@@ -54,17 +53,23 @@ private:
         return refuse(RefusalKind::no_answer, "", std::string(kAccepted));
     }
 
-    Result<void> add_trimmed(const TrimmedSurface& t) {
+    Result<void> add_trimmed(const TrimmedSurface& t, std::size_t i) {
         const auto model = model_of_trimmed(t);
         if (!model) return std::unexpected(model.error());
-        return add_model(*model);
+        return add_model(*model, i);
     }
-    Result<void> add_model(const Model& model) {
-        if (asked_.hull) return not_taken();
-        const auto box =
-            oriented_box(model, asked_.accuracy.value_or(kAccuracyOfSize * summary(model).box.diagonal()));
-        if (!box) return std::unexpected(box.error());
-        write_box(*box);
+    Result<void> add_model(const Model& model, std::size_t i) {
+        if (asked_.oriented) {
+            const double size = summary(model).box.diagonal();
+            const auto box = oriented_box(model, asked_.accuracy.value_or(kAccuracyOfSize * size));
+            if (!box) return std::unexpected(box.error());
+            write_box(*box);
+        }
+        if (asked_.hull) {
+            const auto hull = convex_hull(model, *asked_.hull);
+            if (!hull) return std::unexpected(hull.error());
+            write_hull(*hull, i);
+        }
         return {};
     }
     Result<void> add_patch(std::size_t i) {
@@ -86,17 +91,21 @@ private:
         if (!asked_.hull) return {};
         const auto hull = convex_hull<D>(query, *asked_.hull);
         if (!hull) return std::unexpected(hull.error());
+        write_hull(*hull, i);
+        return {};
+    }
+    template <int D>
+    void write_hull(const ConvexHull<D>& hull, std::size_t i) {
         w_.key("hull").begin_object();
         std::vector<std::array<double, D>> points;
-        for (const Vec<D>& p : hull->points) points.push_back(p.c);
+        for (const Vec<D>& p : hull.points) points.push_back(p.c);
         write_numbers(w_, "points", points);
         w_.key("facets").begin_array();
-        for (const auto& f : hull->facets) w_.array(f);
-        w_.end_array().field("bound", hull->slack).end_object();
-        plain_ += text("  hull: ", hull->points.size(), " points, ", hull->facets.size(),
-                       D == 2 ? " sides" : " triangles", ", at most ", hull->slack, " too large\n");
-        if constexpr (D == 3) add_mesh(*hull, input_.object(i).name);
-        return {};
+        for (const auto& f : hull.facets) w_.array(f);
+        w_.end_array().field("bound", hull.slack).end_object();
+        plain_ += text("  hull: ", hull.points.size(), " points, ", hull.facets.size(),
+                       D == 2 ? " sides" : " triangles", ", at most ", hull.slack, " too large\n");
+        if constexpr (D == 3) add_mesh(hull, input_.object(i).name);
     }
     void add_mesh(const ConvexHull<3>& hull, const std::string& name) {
         const int first = int(mesh_.points.size());

@@ -1,8 +1,9 @@
 // Convex hulls of models.
 //
-// Idea. A part of a face is near to the hull of some of its points, and the hull of all parts comes near to
-// that of the model as parts are halved (query/hull_search.hpp): only those that own a corner which is too
-// far away.
+// Idea. The model is near to the hull H of points on it: the corners of parts of its faces. A part that leaves
+// its corners by no more than H is deep there is inside of H, and stays so, since H only grows; other ones are
+// halved until they leave their corners by no more than a fraction of the tolerance. H made larger by that
+// contains all.
 //
 // Notation. d_uu, d_uv, d_vv, d_u, d_v: bounds of derivatives over a box with the sides U and V.
 //
@@ -15,11 +16,8 @@
 // which moves points by so much times d_u and d_v. These corners are as near to the face, so the hull of the
 // model is that near to them, too.
 //
-// Parts that leave their points by more than rounding are within octahedra around these: one with the half
-// diagonal r contains a ball of radius r / sqrt(3). Their corners are r away, so the parts that own one are
-// halved.
-//
-// Cost. About 1 / tolerance parts of curved faces, n log n for each round.
+// Cost. About 1 / tolerance parts of curved faces, and each round the product of those that are open with
+// the facets of H.
 //
 // Why not the mesh of tessellate(), made larger by its bound? It has as many points inside of the hull as on
 // it, and its tolerance is that of every face, not only of those that are outermost.
@@ -35,8 +33,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kPlain = 0x1p-44;              // of the size: parts that leave their points by no more
-constexpr double kOfBall = 1.7320508075688774;  // sqrt(3), rounded up
+constexpr double kOfTolerance = 1.0 / 8;  // that parts may leave their points by, at first
+constexpr int kMostShares = 8;            // halvings of that, where H is thin and grows by more
 
 // The segment within the box, as its ends; nothing where it is outside.
 std::optional<std::array<Vec<2>, 2>> clipped(const std::array<Vec<2>, 2>& s, const Box<2>& box) {
@@ -54,91 +52,109 @@ std::optional<std::array<Vec<2>, 2>> clipped(const std::array<Vec<2>, 2>& s, con
     return std::array{s[0] + lo * d, s[0] + hi * d};
 }
 
-// What hull_search.hpp asks of a tree of parts. The first part is all of the model.
-class ModelSide {
+class ModelHull {
 public:
-    ModelSide(const detail::ModelParts& all, double plain) : all_(all), opened_(all), plain_(plain) {
-        detail::PairPart<3> root;
-        root.box = all.nodes[0].box;
-        places_.push_back({});
-        parts_.push_back(root);
+    explicit ModelHull(const detail::ModelParts& all) : all_(all), opened_(all) {
+        for (const NearLeaf& leaf : all.leaves) {
+            size_ = std::max(size_, leaf.box.scale());
+            if (leaf.part >= 0) add(leaf.face, leaf.part);
+        }
+        grid_ = size_ > 0 ? std::scalbn(1.0, std::ilogb(size_) - 45) : 1;  // as in hull_search.hpp
     }
 
-    const std::vector<detail::PairPart<3>>& parts() const { return parts_; }
-    std::span<const Vec<3>> hull(int i) const {
-        return {points_.data() + place(i).first, std::size_t(place(i).count)};
-    }
-    bool is_box(int i) const { return i == 0; }
-    double apart(int i, int) const { return place(i).apart; }
-    bool split(int i) {
-        if (parts_[std::size_t(i)].first >= 0) return true;
-        const int first = int(parts_.size());
-        if (i == 0) {
-            for (const NearLeaf& leaf : all_.leaves)
-                if (leaf.part >= 0) add(leaf.face, leaf.part);
-        } else {
-            const Place own = place(i);
-            if (!opened_.halve_part(own.face, own.part, [&](int half) { add(own.face, half); })) return false;
+    ConvexHull<3> within(double tolerance, int max_parts) {
+        double share = std::max(kOfTolerance * tolerance, 4 * grid_);
+        for (int shares = 0;;) {
+            const detail::PointHull<3> hull = hull_of_points();
+            drop_hidden(hull);
+            if (int(leaves_.size()) < max_parts && halve_above(share)) continue;
+            double most = 0;
+            for (const Leaf& leaf : leaves_) most = std::max(most, leaf.leaves_by);
+            const double off = most + off_model_ + grid_;
+            ConvexHull<3> out = detail::grown<3>(points_, hull, off);
+            out.slack = (out.slack + off_model_ + grid_) * (1 + 0x1p-40);
+            if (out.slack <= tolerance || ++shares > kMostShares || int(leaves_.size()) >= max_parts ||
+                !(most > 8 * grid_))
+                return out;
+            share = std::max(most / 2, 4 * grid_);
         }
-        parts_[std::size_t(i)].first = first;
-        parts_[std::size_t(i)].end = int(parts_.size());
-        return true;
     }
 
 private:
-    struct Place {
+    struct Leaf {
         int face = -1, part = -1;
-        std::size_t first = 0;
-        int count = 0;
-        double apart = 0;  // bound: of the points from the face
+        std::vector<Vec<3>> corners;
+        double leaves_by = 0;  // bound: how far the part is from the hull of its corners
     };
-    const Place& place(int i) const { return places_[std::size_t(i)]; }
 
     void add(int face, int index) {
         const FacePart& part = opened_.part(index);
         const FaceParts& f = all_.faces[std::size_t(face)];
-        Place own{face, index, points_.size(), 0, part.rounding};
-        double e = part.hull_error;
-        std::vector<Vec<3>> points(part.corner.begin(), part.corner.end());
+        Leaf own{face, index, {part.corner.begin(), part.corner.end()}, part.hull_error};
+        double off = part.rounding;
         if (part.crossing) {
             const auto bent = f.surface()({part.box.side(0), part.box.side(1)});
             const Vec<2> size = part.box.hi - part.box.lo;
             Vec<2> sag{};
-            points.clear();
-            for (const Vec<2>& uv : corners_of(f, part, sag)) points.push_back(f.value(uv));
-            own.apart += bent(1, 0) * sag[0] + bent(0, 1) * sag[1];
-            e = (bent(2, 0) * size[0] * size[0] + 2 * bent(1, 1) * size[0] * size[1] +
-                 bent(0, 2) * size[1] * size[1]) /
-                    8 +
-                kink_bound_of(f.surface().kinks(0), part.box.side(0)) +
-                kink_bound_of(f.surface().kinks(1), part.box.side(1)) + own.apart;
+            own.corners.clear();
+            for (const Vec<2>& uv : corners_of(f, part, sag)) own.corners.push_back(f.value(uv));
+            off += bent(1, 0) * sag[0] + bent(0, 1) * sag[1];
+            own.leaves_by = (bent(2, 0) * size[0] * size[0] + 2 * bent(1, 1) * size[0] * size[1] +
+                             bent(0, 2) * size[1] * size[1]) /
+                                8 +
+                            kink_bound_of(f.surface().kinks(0), part.box.side(0)) +
+                            kink_bound_of(f.surface().kinks(1), part.box.side(1)) + off;
         }
-        // Half of the ways across from the nearest point; second derivatives may have no bounds.
-        if (!(e <= part.size)) e = part.size + own.apart;
-        e *= 1 + 0x1p-40;
-        if (points.empty()) return;
-        detail::PairPart<3> out;
-        if (e <= plain_) {
-            out.slack = e;
-            for (const Vec<3>& p : points) take(p, own, out);
-        } else {
-            const double reach = kOfBall * e;
-            for (const Vec<3>& p : points)
-                for (int k = 0; k < 6; ++k) {
-                    Vec<3> q = p;
-                    q[k / 2] += k % 2 ? reach : -reach;
-                    take(q, own, out);
-                }
-            own.apart += reach;
-            out.slack = 4 * kUnitRoundoff * out.box.scale();
-        }
-        places_.push_back(own);
-        parts_.push_back(out);
+        // Second derivatives may have no bounds: no point of the box is farther from a corner than both sides.
+        if (!(own.leaves_by <= 2 * part.size)) own.leaves_by = 2 * part.size + off;
+        own.leaves_by *= 1 + 0x1p-40;
+        if (own.corners.empty()) return;
+        off_model_ = std::max(off_model_, off);
+        points_.insert(points_.end(), own.corners.begin(), own.corners.end());
+        leaves_.push_back(std::move(own));
     }
-    void take(const Vec<3>& p, Place& own, detail::PairPart<3>& part) {
-        points_.push_back(p);
-        part.box.add(p);
-        ++own.count;
+    // Of the points, each once, on the grid.
+    detail::PointHull<3> hull_of_points() {
+        for (Vec<3>& p : points_)
+            for (int k = 0; k < 3; ++k) p[k] = std::nearbyint(p[k] / grid_) * grid_;
+        std::ranges::sort(points_, {}, &Vec<3>::c);
+        points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+        return detail::PointHull<3>(points_);
+    }
+    void drop_hidden(const detail::PointHull<3>& hull) {
+        if (hull.facets.empty()) return;
+        struct Facet {
+            Vec<3> n;
+            double at;
+        };
+        std::vector<Facet> facets;
+        for (const auto& f : hull.facets) {
+            const Vec<3>& a = points_[std::size_t(f[0])];
+            const Vec<3> n = unit(cross(points_[std::size_t(f[1])] - a, points_[std::size_t(f[2])] - a));
+            facets.push_back({n, std::min({dot(n, a), dot(n, points_[std::size_t(f[1])]),
+                                           dot(n, points_[std::size_t(f[2])])})});
+        }
+        const double rounding = 2 * grid_ + 32 * kUnitRoundoff * size_;
+        std::erase_if(leaves_, [&](const Leaf& leaf) {
+            const double depth = leaf.leaves_by + rounding;
+            return std::ranges::all_of(facets, [&](const Facet& f) {
+                return std::ranges::all_of(leaf.corners,
+                                           [&](const Vec<3>& x) { return dot(f.n, x) <= f.at - depth; });
+            });
+        });
+    }
+    bool halve_above(double share) {
+        std::vector<Leaf> whole;
+        std::swap(whole, leaves_);
+        bool any = false;
+        for (Leaf& leaf : whole) {
+            const bool done = leaf.leaves_by > share && opened_.halve_part(leaf.face, leaf.part, [&](int half) {
+                add(leaf.face, half);
+            });
+            any = any || done;
+            if (!done) leaves_.push_back(std::move(leaf));
+        }
+        return any;
     }
     // Of what the boundary leaves of a box; `sag`: by how much they are off it at most.
     static std::vector<Vec<2>> corners_of(const FaceParts& f, const FacePart& part, Vec<2>& sag) {
@@ -168,9 +184,9 @@ private:
 
     const detail::ModelParts& all_;
     OpenedParts opened_;
-    double plain_;
-    std::vector<detail::PairPart<3>> parts_;
-    std::vector<Place> places_;
+    double size_ = 0, grid_ = 0;
+    double off_model_ = 0;  // bound: of the points, from the model
+    std::vector<Leaf> leaves_;
     std::vector<Vec<3>> points_;
 };
 
@@ -183,14 +199,10 @@ Result<ConvexHull<3>> convex_hull(const Model& model, double tolerance, int max_
     detail::ModelParts all{model};
     if (auto done = all.prepare(tolerance > 0 ? tolerance / 16 : kInfinity); !done)
         return std::unexpected(done.error());
-    double size = 0;
     for (const NearLeaf& leaf : all.leaves)
         if (!std::isfinite(leaf.box.scale()))
             return refuse(RefusalKind::ill_conditioned, text("faces[", leaf.face, "]"), "has no box");
-        else
-            size = std::max(size, leaf.box.scale());
-    ModelSide side(all, kPlain * size);
-    return detail::hull_of_parts<3>(side, tolerance / 2, 32 * kUnitRoundoff * size, max_parts);
+    return ModelHull(all).within(tolerance, max_parts);
 }
 
 }  // namespace freiform
