@@ -236,10 +236,9 @@ void add_bounds(CommandLine& line) {
         "else 1e-7). The answer says what was reached");
     command.flag("--oriented", options->oriented,
                  "Instead: a small box in any orientation, as axes and the ranges along them");
-    command.number(
-        "--hull", options->hull,
-        "Instead: the convex hull of each object, at most this much too large; -o with "
-        "a name that ends in .stl, .obj, .ply or .glb writes a mesh");
+    command.number("--hull", options->hull,
+                   "Instead: the convex hull of each object, at most this much too large; -o with "
+                   "a name that ends in .stl, .obj, .ply or .glb writes a mesh");
     command.object(options->object);
     command.answer_file();
     command.limits();

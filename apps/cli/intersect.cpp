@@ -1,4 +1,5 @@
 // intersect: where the curves and surfaces of two files meet.
+#include "model_contacts.hpp"
 #include "surface_meetings.hpp"
 
 #include <freiform/intersect/curve_curve.hpp>
@@ -13,7 +14,7 @@ namespace freiform::cli {
 namespace {
 
 struct IntersectArguments {
-    std::string a, b, object_a, object_b, curves;
+    std::string a, b, object_a, object_b, curves, rays, lines;
     std::optional<double> tolerance;
 };
 
@@ -38,21 +39,31 @@ public:
             return meet_models(a, b);
         return std::visit([&](const auto& x, const auto& y) { return meet_shapes(x, y); }, a.shape, b.shape);
     }
-    const std::vector<std::string>& undecided() const { return undecided_; }
+    Result<void> meet_lines(std::span<const StraightLine> lines) {
+        return cli::meet_lines(a_, lines, tolerance_, on_models_);
+    }
+    std::vector<std::string> undecided() const {
+        std::vector<std::string> all = undecided_;
+        all.insert(all.end(), on_models_.undecided().begin(), on_models_.undecided().end());
+        return all;
+    }
     std::string json() const {
         json::Writer w;
         w.begin_object();
-        for (const auto& [key, rows] :
-             {std::pair("points", &points_), {"overlaps", &overlaps_}, {"possible", &possible_}}) {
+        const std::vector<Row> none;
+        for (const auto& [key, rows, more] : {std::tuple("points", &points_, &on_models_.points()),
+                                              {"overlaps", &overlaps_, &none},
+                                              {"possible", &possible_, &on_models_.possible()}}) {
             w.key(key).begin_array();
             for (const auto& row : *rows) row(w);
+            for (const auto& row : *more) row(w);
             w.end_array();
         }
         surfaces_.write(w);
         return w.end_object().take() + "\n";
     }
     std::string plain() const {
-        const std::string all = plain_ + surfaces_.plain();
+        const std::string all = plain_ + on_models_.plain() + surfaces_.plain();
         return all.empty() ? "no intersection\n" : all;
     }
     Document curves() const {
@@ -71,15 +82,29 @@ private:
         else
             return meet_splines(x, y);
     }
+    // The curve of space of an operand, if it is one.
+    static std::optional<Curve<Hom<3>>> curve_of(const Operand& shape) {
+        if (const auto* c = std::get_if<Curve<Vec<3>>>(&shape)) return to_rational(*c);
+        if (const auto* c = std::get_if<Curve<Hom<3>>>(&shape)) return *c;
+        return std::nullopt;
+    }
     // A surface is a model of one face.
     Result<void> meet_models(const Chosen& a, const Chosen& b) {
+        const auto on_a = curve_of(a.shape), on_b = curve_of(b.shape);
+        if (on_a || on_b) {
+            const Model& model = std::get<Model>((on_a ? b : a).shape);
+            const auto found = IntersectModel(model).intersect(on_a ? *on_a : *on_b, options());
+            if (!found) return refuse_within(where(), found.error());
+            on_models_.add(*found, at_, {}, !on_a, tolerance_, where());
+            return {};
+        }
         const auto model_of = [](const Input& input, const Chosen& c) -> Result<Model> {
             if (const auto* m = std::get_if<Model>(&c.shape)) return *m;
             if (std::holds_alternative<Surface<Vec<3>>>(c.shape) ||
                 std::holds_alternative<Surface<Hom<3>>>(c.shape))
                 return scene_of(*input.document, std::span(&c.index, 1));
             return refuse(RefusalKind::unsupported, input.label(c.index),
-                          "is a curve: models meet models and surfaces");
+                          "is a curve of the plane: models meet curves of space, surfaces and models");
         };
         const auto x = model_of(a_, a), y = model_of(b_, b);
         if (!x) return std::unexpected(x.error());
@@ -217,6 +242,7 @@ private:
     std::vector<Row> points_, possible_, overlaps_;
     std::string plain_;
     SurfaceMeetings surfaces_;
+    ModelContactRows on_models_;
     std::vector<std::string> undecided_;
 };
 
@@ -245,21 +271,37 @@ Result<std::vector<Chosen>> operands(const Input& input) {
     return out;
 }
 
+Result<void> run_pairs(const Input& a, const Input& b, Meeting& meeting) {
+    const auto in_a = operands(a), in_b = operands(b);
+    if (!in_a) return std::unexpected(in_a.error());
+    if (!in_b) return std::unexpected(in_b.error());
+    for (const Chosen& x : *in_a)
+        for (const Chosen& y : *in_b)
+            if (auto done = meeting.meet(x, y); !done) return done;
+    return {};
+}
+
+Result<void> run_lines(const Context& context, const IntersectArguments& options, Meeting& meeting) {
+    const bool rays = !options.rays.empty();
+    const auto lines = read_lines(context, rays ? options.rays : options.lines, rays);
+    if (!lines) return std::unexpected(lines.error());
+    return meeting.meet_lines(*lines);
+}
+
 Result<void> run_intersect(const Context& context, const IntersectArguments& options) {
     if (!(options.tolerance.value_or(0) >= 0))
         wrong_usage("--tolerance needs a distance that is not negative");
     const auto a = read_input(context, options.a, options.object_a);
     if (!a) return std::unexpected(a.error());
-    const auto b = read_input(context, options.b, options.object_b);
+    const bool by_lines = !options.rays.empty() || !options.lines.empty();
+    if (options.b.empty() != by_lines || (!options.rays.empty() && !options.lines.empty()))
+        wrong_usage("one of B, --rays and --lines is needed");
+    const auto b = by_lines ? a : read_input(context, options.b, options.object_b);
     if (!b) return std::unexpected(b.error());
-    const auto in_a = operands(*a), in_b = operands(*b);
-    if (!in_a) return std::unexpected(in_a.error());
-    if (!in_b) return std::unexpected(in_b.error());
     Meeting meeting(*a, *b, options.tolerance);
-    for (const Chosen& x : *in_a)
-        for (const Chosen& y : *in_b)
-            if (auto done = meeting.meet(x, y); !done) return done;
-    if (const auto& open = meeting.undecided(); !open.empty()) {
+    if (auto done = by_lines ? run_lines(context, options, meeting) : run_pairs(*a, *b, meeting); !done)
+        return done;
+    if (const auto open = meeting.undecided(); !open.empty()) {
         std::string boxes;
         for (std::size_t i = 0; i < std::min<std::size_t>(open.size(), 8); ++i)
             boxes += text(i ? "; " : "", open[i]);
@@ -285,11 +327,19 @@ void add_intersect(CommandLine& line) {
                  "  freiform intersect rays.json teapot.bpt --tolerance 1e-9 --json\n"
                  "  freiform intersect hull.json deck.json --tolerance 1e-4 --curves seam.json\n"
                  "  freiform intersect housing.step pipe.step --tolerance 1e-4 --curves cut.json\n"
+                 "  freiform intersect wire.json part.step --json\n"
+                 "  freiform intersect part.step --rays rays.csv --json\n"
                  "Outside of what is listed there is no intersection. \"possible\": within rounding they may "
                  "meet, or pass "
                  "by at most \"gap\" apart.");
     command.word("A", options->a, "The first file; - is standard input").required();
-    command.word("B", options->b, "The second file").required();
+    command.word("B", options->b, "The second file");
+    command
+        .word("--rays", options->rays,
+              "Instead of B: rays, one for each line of numbers px,py,pz,dx,dy,dz; its points are p + t d, t "
+              ">= 0")
+        .shown_as("FILE.csv");
+    command.word("--lines", options->lines, "Likewise for all t").shown_as("FILE.csv");
     command.number(
         "--tolerance", options->tolerance,
         "Curves at most this far apart over an interval overlap; possible points with such a gap count as "

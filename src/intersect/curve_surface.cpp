@@ -138,16 +138,6 @@ private:
     Answer answer_;
 };
 
-Result<void> check_line(const StraightLine& line, std::size_t i) {
-    const std::string where = text("lines[", i, "]");
-    if (!is_finite(line.point) || !is_finite(line.direction))
-        return refuse(RefusalKind::nonfinite, where, "has a number that is not finite");
-    if (max_abs(line.direction) == 0) return refuse(RefusalKind::invalid, where, "has no direction");
-    if (!(line.on.lo < line.on.hi))
-        return refuse(RefusalKind::invalid, where, text("runs over [", line.on.lo, ", ", line.on.hi, "]"));
-    return {};
-}
-
 // The parameters at which a line may be in a box, and an eighth of its size more: a line cut to a flat
 // surface would be a point, whose direction is all rounding.
 Interval inside(const StraightLine& line, const Box<3>& box) {
@@ -166,6 +156,16 @@ Interval inside(const StraightLine& line, const Box<3>& box) {
 }
 
 }  // namespace
+
+Result<void> check_line(const StraightLine& line, std::size_t i) {
+    const std::string where = text("lines[", i, "]");
+    if (!is_finite(line.point) || !is_finite(line.direction))
+        return refuse(RefusalKind::nonfinite, where, "has a number that is not finite");
+    if (max_abs(line.direction) == 0) return refuse(RefusalKind::invalid, where, "has no direction");
+    if (!(line.on.lo < line.on.hi))
+        return refuse(RefusalKind::invalid, where, text("runs over [", line.on.lo, ", ", line.on.hi, "]"));
+    return {};
+}
 
 template <class P>
 requires(Space<P>::kDim == 3) Result<Intersections<3, 3>> intersect(const Curve<P>& curve,

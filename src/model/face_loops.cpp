@@ -12,6 +12,7 @@
 #include <freiform/core/constants.hpp>
 #include <freiform/intersect/curve_curve.hpp>
 #include <freiform/make/conic.hpp>
+#include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +72,38 @@ Vec<2> end_of(const CurveGeometry<2>& spline, bool last) {
     const Interval on = c.domain()[0];
     return c(last ? on.hi : on.lo);
 }
+// May the curve run through the box? Its pieces are halved until their control points are beside of it, or
+// they are as small as roundings.
+bool may_pass(const Curve<Hom<2>>& curve, const Box<2>& own, const Box<2>& box) {
+    const double more = 0x1p-44 * std::max(own.scale(), box.scale());
+    const auto is_beside = [&](const Box<2>& of) {
+        for (int k = 0; k < 2; ++k)
+            if (of.lo[k] > box.hi[k] + more || box.lo[k] > of.hi[k] + more) return true;
+        return false;
+    };
+    if (is_beside(own)) return false;
+    const BezierPieces<1, Hom<2>> pieces(curve);
+    std::vector<std::vector<Hom<2>>> open;
+    for (int i = 0; i < pieces.extent()[0]; ++i) {
+        const auto net = pieces.net({i});
+        open.emplace_back();
+        for (int k = 0; k < net.extent[0]; ++k) open.back().push_back(net({k}));
+    }
+    while (!open.empty()) {
+        const std::vector<Hom<2>> part = std::move(open.back());
+        open.pop_back();
+        Box<2> of;
+        for (const Hom<2>& h : part) of.add(Space<Hom<2>>::project(h));
+        if (is_beside(of)) continue;
+        if (max_abs(of.hi - of.lo) <= more || open.size() > 200) return true;
+        std::vector<Hom<2>> left(part), right(part);
+        const int n = int(part.size());
+        keep_left(Fibre<Hom<2>>{left.data(), n, 1}, 0.5);
+        keep_right(Fibre<Hom<2>>{right.data(), n, 1}, 0.5);
+        open.push_back(std::move(left)), open.push_back(std::move(right));
+    }
+    return false;
+}
 bool are_boxes_apart(const Box<2>& a, const Box<2>& b, double by) {
     for (int k = 0; k < 2; ++k)
         if (a.lo[k] > b.hi[k] + by || b.lo[k] > a.hi[k] + by) return true;
@@ -121,6 +154,15 @@ Result<FaceLoops> FaceLoops::make(const Face& face, const std::vector<Edge>& edg
     if (!query) return std::unexpected(query.error());
     out.query_ = std::move(*query);
     return out;
+}
+
+FaceLoops::Where FaceLoops::place(const Box<2>& box) const {
+    if (!query_) return {Place::inside, {}};
+    const Vec<2> lo{{box.lo[0] * unit_[0], box.lo[1] * unit_[1]}},
+        hi{{box.hi[0] * unit_[0], box.hi[1] * unit_[1]}};
+    for (const Trim& trim : trims_)
+        if (may_pass(trim.curve, trim.box, {lo, hi})) return {Place::boundary, trim.place};
+    return {is_inside(0.5 * (box.lo + box.hi)) ? Place::inside : Place::outside, {}};
 }
 
 Result<std::vector<ClippedPart>> FaceLoops::clip(const Curve<Vec<2>>& curve, double tolerance) const {

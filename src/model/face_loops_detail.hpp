@@ -28,6 +28,13 @@ public:
     Result<std::vector<ClippedPart>> clip(const Curve<Vec<2>>& curve, double tolerance) const;
     // Neither inside nor on a loop, proven by samples of none: exactly.
     bool is_inside(const Vec<2>& uv) const { return !query_ || query_->at(uv).place != Place::outside; }
+    // Where a box of parameters is: inside or outside as a whole, proven (for the loops as splines, rounding
+    // included); or the boundary may run through it, then of that of which curve.
+    struct Where {
+        Place place = Place::boundary;
+        ClippedPart::End on{};
+    };
+    Where place(const Box<2>& box) const;
     bool is_empty() const { return trims_.empty(); }
 
 private:

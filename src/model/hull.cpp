@@ -1,9 +1,9 @@
 // Convex hulls of models.
 //
-// Idea. The model is near to the hull H of points on it: the corners of parts of its faces. A part that leaves
-// its corners by no more than H is deep there is inside of H, and stays so, since H only grows; other ones are
-// halved until they leave their corners by no more than a fraction of the tolerance. H made larger by that
-// contains all.
+// Idea. The model is near to the hull H of points on it: the corners of parts of its faces. A part that
+// leaves its corners by no more than H is deep there is inside of H, and stays so, since H only grows; other
+// ones are halved until they leave their corners by no more than a fraction of the tolerance. H made larger
+// by that contains all.
 //
 // Notation. d_uu, d_uv, d_vv, d_u, d_v: bounds of derivatives over a box with the sides U and V.
 //
@@ -105,7 +105,8 @@ private:
                             kink_bound_of(f.surface().kinks(0), part.box.side(0)) +
                             kink_bound_of(f.surface().kinks(1), part.box.side(1)) + off;
         }
-        // Second derivatives may have no bounds: no point of the box is farther from a corner than both sides.
+        // Second derivatives may have no bounds: no point of the box is farther from a corner than both
+        // sides.
         if (!(own.leaves_by <= 2 * part.size)) own.leaves_by = 2 * part.size + off;
         own.leaves_by *= 1 + 0x1p-40;
         if (own.corners.empty()) return;
@@ -148,9 +149,9 @@ private:
         std::swap(whole, leaves_);
         bool any = false;
         for (Leaf& leaf : whole) {
-            const bool done = leaf.leaves_by > share && opened_.halve_part(leaf.face, leaf.part, [&](int half) {
-                add(leaf.face, half);
-            });
+            const bool done =
+                leaf.leaves_by > share &&
+                opened_.halve_part(leaf.face, leaf.part, [&](int half) { add(leaf.face, half); });
             any = any || done;
             if (!done) leaves_.push_back(std::move(leaf));
         }

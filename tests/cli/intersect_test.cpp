@@ -113,6 +113,46 @@ TEST_F(IntersectCommand, trimmed_faces_are_cut_off_at_their_loops) {
     }
 }
 
+// The triangle of above; rays through it, beside it, through its base, and away from it.
+TEST_F(IntersectCommand, curves_lines_and_rays_meet_faces) {
+    const std::string face =
+        file("face.json", R"({"type": "trimmed", "surface": {"type": "surface", "degrees": [1, 1],
+        "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]},
+        "loops": [[{"degree": 1, "points": [[0.25,0.25],[0.75,0.25]]}, {"degree": 1, "points": [[0.75,0.25],[0.5,0.75]]},
+                   {"degree": 1, "points": [[0.5,0.75],[0.25,0.25]]}]]})");
+    const std::string rays =
+        file("rays.csv",
+             "px,py,pz,dx,dy,dz\n0.5,0.5,2,0,0,-1\n0.1,0.5,2,0,0,-1\n0.5,0.25,2,0,0,-1\n0.5,0.5,2,0,0,1\n");
+    const auto all = nlohmann::json::parse(run({"intersect", face, "--rays", rays, "--json"}).out);
+    ASSERT_EQ(all["points"].size(), 2u) << all;
+    const auto &first = all["points"][0], &edge = all["points"][1];
+    EXPECT_EQ(first["ray"], 0);
+    EXPECT_EQ(first["face"], 0);
+    EXPECT_EQ(first["kind"], "crossing");
+    EXPECT_EQ(first["proven"], true);
+    EXPECT_NEAR(first["b"][0].get<double>(), 2, 1e-15);
+    EXPECT_NEAR(first["a"][1].get<double>(), 0.5, 1e-15);
+    EXPECT_EQ(edge["ray"], 2);
+    EXPECT_EQ(edge["kind"], "end");
+    EXPECT_TRUE(edge.contains("edge"));
+    const auto lines = nlohmann::json::parse(run({"intersect", face, "--lines", rays, "--json"}).out);
+    EXPECT_EQ(lines["points"].size(), 3u);
+    const std::string wire = file("wire.json", R"({"type": "curve", "points": [[0.5,0.4,-1],[0.5,0.4,1]]})");
+    for (const bool swapped : {false, true}) {
+        const auto met = nlohmann::json::parse(swapped ? run({"intersect", face, wire, "--json"}).out
+                                                       : run({"intersect", wire, face, "--json"}).out);
+        ASSERT_EQ(met["points"].size(), 1u) << met;
+        EXPECT_NEAR(met["points"][0][swapped ? "b" : "a"][0].get<double>(), 0.5, 1e-15);
+        EXPECT_EQ(met["points"][0]["face"], 0);
+    }
+    const Ran bad = run({"intersect", face, "--rays", file("bad.csv", "1,2,3,0,0\n")});
+    EXPECT_EQ(bad.code, 3);
+    EXPECT_NE(bad.err.find("line 1"), std::string::npos) << bad.err;
+    EXPECT_EQ(run({"intersect", face, "--rays", file("none.csv", "1,2,3,0,0,0\n")}).code, 3);
+    EXPECT_EQ(run({"intersect", wire, "--rays", rays}).code, 1);
+    EXPECT_EQ(run({"intersect", face, face, "--rays", rays}).code, 2);
+}
+
 TEST_F(IntersectCommand, says_what_is_not_answered) {
     const std::string a = file("a.json", kArches);
     const std::string bowl = file("bowl.json", kBowl);

@@ -127,10 +127,12 @@ TEST(ModelHull, ends_where_faces_are_trimmed) {
 
 TEST(ModelHull, powers_of_two_scale_it) {
     const Model one = frustum(1, 0.5, 2);
-    const auto hull = must(convex_hull(one, 0.125)), small = must(convex_hull(must(rescaled(one, -100)), 0x1p-103));
+    const auto hull = must(convex_hull(one, 0.125)),
+               small = must(convex_hull(must(rescaled(one, -100)), 0x1p-103));
     ASSERT_EQ(hull.points.size(), small.points.size());
     EXPECT_EQ(hull.facets, small.facets);
-    for (std::size_t i = 0; i < hull.points.size(); ++i) EXPECT_EQ(0x1p-100 * hull.points[i], small.points[i]);
+    for (std::size_t i = 0; i < hull.points.size(); ++i)
+        EXPECT_EQ(0x1p-100 * hull.points[i], small.points[i]);
     EXPECT_EQ(small.slack, 0x1p-100 * hull.slack);
 }
 

@@ -31,6 +31,9 @@ struct StraightLine {
     Interval on{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 
+// Refuses lines that are not finite, whose direction is zero, and intervals without length, as lines[i].
+Result<void> check_line(const StraightLine& line, std::size_t i);
+
 // A surface ready to be met by many lines, rays (on.lo = 0) and segments: point + t direction, t in `on`.
 template <class P>
 class IntersectSurface {
