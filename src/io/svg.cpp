@@ -32,39 +32,6 @@ std::string_view local_name(std::string_view name) {
     return name.substr(0, colon) == "svg" ? name.substr(colon + 1) : std::string_view();
 }
 
-// What is there to be referred to, or says nothing about geometry.
-bool is_silent(std::string_view element) {
-    static constexpr std::string_view kSilent[] = {"",
-                                                   "defs",
-                                                   "symbol",
-                                                   "clipPath",
-                                                   "mask",
-                                                   "marker",
-                                                   "pattern",
-                                                   "linearGradient",
-                                                   "radialGradient",
-                                                   "meshgradient",
-                                                   "hatch",
-                                                   "filter",
-                                                   "title",
-                                                   "desc",
-                                                   "style",
-                                                   "script",
-                                                   "metadata",
-                                                   "view",
-                                                   "cursor",
-                                                   "animate",
-                                                   "animateTransform",
-                                                   "animateMotion",
-                                                   "set",
-                                                   "solidColor",
-                                                   "color-profile",
-                                                   "font",
-                                                   "font-face",
-                                                   "glyph"};
-    return std::ranges::find(kSilent, element) != std::end(kSilent);
-}
-
 // What is shown of it may be less than its outline.
 constexpr const char* kCuts[] = {"clip-path", "mask"};
 
@@ -293,48 +260,11 @@ private:
     }
 
     void shape(pugi::xml_node node, std::string_view name, const SvgState& state) {
-        const auto given = [&](const char* attribute, Along along) -> std::optional<double> {
-            const std::string_view s = node.attribute(attribute).value();
-            if (s.empty() || s == "auto") return std::nullopt;
-            const auto x = length(s, state.metrics, along);
-            if (!x)
-                leave_out(RefusalKind::invalid, node,
-                          text(attribute, ": \"", s.substr(0, 40), "\" is no length"));
-            return x;
-        };
-        const auto number = [&](const char* attribute, Along along) {
-            return given(attribute, along).value_or(0);
-        };
-        Path path;
-        if (name == "path") {
-            PathData data = parse_path_data(node.attribute("d").value());
-            if (data.stopped)
-                leave_out(RefusalKind::unreadable, node,
-                          text("d, ", data.stopped->where, ": ", data.stopped->message,
-                               "; what comes before is shown"));
-            path = std::move(data.path);
-        } else if (name == "rect") {
-            path = rectangle({{number("x", Along::x), number("y", Along::y)}},
-                             {{number("width", Along::x), number("height", Along::y)}}, given("rx", Along::x),
-                             given("ry", Along::y));
-        } else if (name == "circle" || name == "ellipse") {
-            auto rx = given(name == "circle" ? "r" : "rx", name == "circle" ? Along::both : Along::x),
-                 ry = name == "circle" ? rx : given("ry", Along::y);
-            if (!rx || *rx < 0) rx = ry;
-            if (!ry || *ry < 0) ry = rx;
-            if (rx && ry && *rx > 0 && *ry > 0)
-                path.subpaths.push_back(
-                    ellipse({{number("cx", Along::x), number("cy", Along::y)}}, *rx, *ry));
-        } else if (name == "line") {
-            const Vec<2> a{{number("x1", Along::x), number("y1", Along::y)}},
-                b{{number("x2", Along::x), number("y2", Along::y)}};
-            path.subpaths.push_back({a, {{1, {a, b}, 1}}, false});
-        } else if (name == "polyline" || name == "polygon") {
-            path = polygon(number_list(node.attribute("points").value()), name == "polygon");
-        } else {
-            return leave_out(RefusalKind::unsupported, node, "is no element that has a meaning here");
-        }
-        add(node, name, path, state);
+        const auto path = outline(
+            name,
+            [&](const char* attribute) -> std::string_view { return node.attribute(attribute).value(); },
+            state.metrics, [&](RefusalKind kind, std::string why) { leave_out(kind, node, std::move(why)); });
+        if (path) add(node, name, *path, state);
     }
 
     void add(pugi::xml_node node, std::string_view name, const Path& path, const SvgState& state) {

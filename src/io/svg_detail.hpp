@@ -3,6 +3,7 @@
 #include <freiform/core/result.hpp>
 #include <freiform/io/svg.hpp>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,10 +37,15 @@ std::optional<ViewBox> view_box(std::string_view s);
 // From the coordinates of the view box to a viewport of this size at the origin.
 Affinity<2> fitted(const ViewBox& box, double width, double height, std::string_view aspect);
 
-// A rectangle, its corners rounded by quarters of ellipses; none if a side is not positive.
-Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx, std::optional<double> ry);
-// Lines through pairs of numbers, an odd last one apart.
-Path polygon(const std::vector<double>& v, bool closed);
+// Elements that are there to be referred to, or say nothing about geometry.
+bool is_silent(std::string_view element);
+
+// The outline of a path or a basic shape whose attributes have these texts (empty where they are absent);
+// nothing if the element is neither. What has no meaning is reported.
+std::optional<Path> outline(std::string_view element,
+                            const std::function<std::string_view(const char*)>& attribute,
+                            const Metrics& metrics,
+                            const std::function<void(RefusalKind, std::string)>& report);
 
 using Declarations = std::vector<std::pair<std::string, std::string>>;  // property, value
 Declarations declarations(std::string_view s);

@@ -1,11 +1,16 @@
-// The basic shapes of SVG as paths.
+// The elements of SVG that have an outline, as paths.
 #include "svg_detail.hpp"
+
+#include <freiform/core/text.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace freiform::svg {
 
+namespace {
+
+// Its corners rounded by quarters of ellipses; none if a side is not positive.
 Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx, std::optional<double> ry) {
     if (!(size[0] > 0) || !(size[1] > 0)) return {};
     if (rx && *rx < 0) rx.reset();
@@ -32,6 +37,7 @@ Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx, s
     return {{std::move(s)}};
 }
 
+// Lines through pairs of numbers, an odd last one apart.
 Path polygon(const std::vector<double>& v, bool closed) {
     if (v.size() < 4) return {};
     Subpath s{{{v[0], v[1]}}, {}, closed};
@@ -40,6 +46,59 @@ Path polygon(const std::vector<double>& v, bool closed) {
     const Vec<2> last = s.segments.back().back();
     if (closed && !(last == s.start)) s.segments.push_back({1, {last, s.start}, 1});
     return {{std::move(s)}};
+}
+
+}  // namespace
+
+bool is_silent(std::string_view element) {
+    static constexpr std::string_view kSilent =
+        " defs symbol clipPath mask marker pattern linearGradient radialGradient meshgradient hatch filter "
+        "title "
+        "desc style script metadata view cursor animate animateTransform animateMotion set solidColor "
+        "color-profile font font-face glyph ";
+    return element.empty() || kSilent.find(text(" ", element, " ")) != kSilent.npos;
+}
+
+std::optional<Path> outline(std::string_view element,
+                            const std::function<std::string_view(const char*)>& attribute,
+                            const Metrics& metrics,
+                            const std::function<void(RefusalKind, std::string)>& report) {
+    const auto given = [&](const char* name, Along along) -> std::optional<double> {
+        const std::string_view s = attribute(name);
+        if (s.empty() || s == "auto") return std::nullopt;
+        const auto x = length(s, metrics, along);
+        if (!x) report(RefusalKind::invalid, text(name, ": \"", s.substr(0, 40), "\" is no length"));
+        return x;
+    };
+    const auto x = [&](const char* name) { return given(name, Along::x).value_or(0); };
+    const auto y = [&](const char* name) { return given(name, Along::y).value_or(0); };
+    if (element == "path") {
+        PathData data = parse_path_data(attribute("d"));
+        if (data.stopped)
+            report(RefusalKind::unreadable, text("d, ", data.stopped->where, ": ", data.stopped->message,
+                                                 "; what comes before is shown"));
+        return std::move(data.path);
+    }
+    if (element == "rect")
+        return rectangle({{x("x"), y("y")}}, {{x("width"), y("height")}}, given("rx", Along::x),
+                         given("ry", Along::y));
+    if (element == "circle" || element == "ellipse") {
+        const bool round = element == "circle";
+        auto rx = given(round ? "r" : "rx", round ? Along::both : Along::x),
+             ry = round ? rx : given("ry", Along::y);
+        if (!rx || *rx < 0) rx = ry;
+        if (!ry || *ry < 0) ry = rx;
+        if (!(rx.value_or(0) > 0) || !(ry.value_or(0) > 0)) return Path();
+        return Path{{ellipse({{x("cx"), y("cy")}}, *rx, *ry)}};
+    }
+    if (element == "line") {
+        const Vec<2> a{{x("x1"), y("y1")}}, b{{x("x2"), y("y2")}};
+        return Path{{{a, {{1, {a, b}, 1}}, false}}};
+    }
+    if (element == "polyline" || element == "polygon")
+        return polygon(number_list(attribute("points")), element == "polygon");
+    report(RefusalKind::unsupported, "is no element that has a meaning here");
+    return std::nullopt;
 }
 
 }  // namespace freiform::svg

@@ -22,6 +22,8 @@
 // that the arc is passed once. The parts of the curve for both arcs meet at a parameter where the curve
 // passes the joint J; what it is beside J along the tangent, e, moves ends of the pen by at most (1 + h / R)
 // e more.
+// Where control points coincide with an end the curve stands still there, D has a zero of that order and is
+// divided by it: g and the last polynomial are linear in D, so that only its direction counts.
 //   Rounding: all terms are sums of at most 30 products of coordinates relative to a, up to S, rounded a few
 // times: 2^-46 of S (1 + |k| S) for f, of S^2 for D; numbers are rounded to 2^-53 of the coordinates before
 // that.
@@ -78,6 +80,38 @@ double largest(const Bern& a) {
     return m;
 }
 
+// Of how many control points each end of a segment has on it besides its own.
+using Still = std::array<int, 2>;
+
+Still still_of(const PathSegment& s) {
+    Still still{};
+    while (still[0] < s.degree && s.points[std::size_t(still[0]) + 1] == s.front()) ++still[0];
+    while (still[1] < s.degree && s.points[std::size_t(s.degree - 1 - still[1])] == s.back()) ++still[1];
+    return still;
+}
+
+// A part that stands still at its ends as said, which rounding would take from it.
+PathSegment part_still(const PathSegment& s, double from, double to, const Still& still) {
+    PathSegment part = part_of(s, from, to);
+    for (int i = 1; i <= still[0]; ++i) part.points[std::size_t(i)] = part.front();
+    for (int i = 1; i <= still[1]; ++i) part.points[std::size_t(part.degree - i)] = part.back();
+    return part;
+}
+
+// Divided by t^still[0] (1 - t)^still[1]: b(n, i + 1) = n / (i + 1) t b(n - 1, i).
+Bern divided(Bern a, const Still& still) {
+    for (const bool at_end : {false, true}) {
+        for (int k = 0; k < still[at_end]; ++k) {
+            if (at_end) std::ranges::reverse(a);
+            const double n = double(a.size() - 1);
+            a.erase(a.begin());
+            for (std::size_t i = 0; i < a.size(); ++i) a[i] *= n / double(i + 1);
+            if (at_end) std::ranges::reverse(a);
+        }
+    }
+    return a;
+}
+
 // The arc from a to b that leaves a in the direction ta.
 ArcPiece arc_from(const Vec<2>& a, const Vec<2>& ta, const Vec<2>& b, const Vec<2>& tb) {
     ArcPiece piece{a, b, ta, tb, 0, {}};
@@ -90,7 +124,7 @@ ArcPiece arc_from(const Vec<2>& a, const Vec<2>& ta, const Vec<2>& b, const Vec<
 }
 
 // What the pen along the segment and that along the piece differ by; nothing where there is no bound.
-std::optional<double> difference(const PathSegment& s, const ArcPiece& piece, double h) {
+std::optional<double> difference(const PathSegment& s, const ArcPiece& piece, double h, const Still& still) {
     const auto net = homogeneous(s);
     const Vec<2> n = piece.normal_a();
     const double k = piece.curvature;
@@ -103,12 +137,13 @@ std::optional<double> difference(const PathSegment& s, const ArcPiece& piece, do
         size = std::max({size, std::abs(x.back()), std::abs(y.back())});
         scale = std::max({scale, std::abs(p[0]), std::abs(p[1]), max_abs(piece.a)});
     }
-    const Bern wx = slope(w), dx = plus(times(slope(x), w), times(x, wx), -1),
-               dy = plus(times(slope(y), w), times(y, wx), -1);
+    const Bern wx = slope(w), dx = divided(plus(times(slope(x), w), times(x, wx), -1), still),
+               dy = divided(plus(times(slope(y), w), times(y, wx), -1), still);
     const Vec<2> along = unit(s.back() - s.front());
     double speed = kInfinity;
     for (std::size_t i = 0; i < dx.size(); ++i) speed = std::min(speed, along[0] * dx[i] + along[1] * dy[i]);
-    const double noise = 0x1p-46 * size + 0x1p-49 * scale;  // of a coordinate, and of D
+    // Of a coordinate, and of D, which dividing makes up to 5 4 3 times as large.
+    const double noise = (0x1p-46 * size + 0x1p-49 * scale) * (still == Still{} ? 1 : 64);
     if (!(speed > noise)) return {};
     const auto normal = [&](const Bern& u, const Bern& v) { return plus(mul(u, n[0]), v, n[1]); };
     const Bern f = plus(mul(plus(times(x, x), times(y, y)), k), times(w, normal(x, y)), -2),
@@ -186,20 +221,24 @@ private:
         PathSegment s;
         Vec<2> begin, end;
         int depth;
+        Still still;
+        bool after_cusp = false;
     };
     Result<void> approximate(const PathSegment& whole, const Vec<2>& begin, const Vec<2>& end) {
         const double scale = box_of(whole).scale();
-        std::vector<Part> stack{{whole, begin, end, 0}};
+        std::vector<Part> stack{{whole, begin, end, 0, still_of(whole)}};
         while (!stack.empty()) {
             const Part part = stack.back();
             stack.pop_back();
+            if (part.after_cusp) joint_ = PieceJoint::round;
             if (out_.pieces.size() > kMaxPieces)
                 return refuse(RefusalKind::limit, "tolerance",
                               text("more than ", kMaxPieces, " arcs for a tolerance of ", tolerance_));
             if (take(part)) continue;
             const Box<2> box = box_of(part.s);
             const double size = norm(box.hi - box.lo);
-            if (size < 0x1p-10 * tolerance_ || part.depth == kMostHalvings || size < 0x1p-40 * scale) {
+            if (size < 0x1p-10 * tolerance_ && turn(part, size)) continue;
+            if (size < 0x1p-20 * tolerance_ || part.depth == kMostHalvings || size < 0x1p-40 * scale) {
                 if (size > tolerance_ / 4)
                     return refuse(RefusalKind::ill_conditioned, "tolerance",
                                   text(tolerance_, " is below what rounding leaves near (", part.s.front()[0],
@@ -207,33 +246,58 @@ private:
                 turn_round(part, size);
                 continue;
             }
-            const PathSegment left = part_of(part.s, 0, 0.5);
-            PathSegment right = part_of(part.s, 0.5, 1);
+            const Still before{part.still[0], 0}, after{0, part.still[1]};
+            const PathSegment left = part_still(part.s, 0, 0.5, before);
+            PathSegment right = part_still(part.s, 0.5, 1, after);
             right.points[0] = left.back();
             const Vec<2> middle = unit(tangent_of(part.s, 0.5));
-            if (max_abs(middle) == 0) {  // a cusp, exactly here
-                stack.push_back({right, unit(end_tangent(right, false)), part.end, part.depth + 1});
-                stack.push_back({left, part.begin, unit(end_tangent(left, true)), part.depth + 1});
-                continue;
-            }
-            stack.push_back({right, middle, part.end, part.depth + 1});
-            stack.push_back({left, part.begin, middle, part.depth + 1});
+            const bool cusp = max_abs(middle) == 0;  // exactly here
+            stack.push_back({right, cusp ? unit(end_tangent(right, false)) : middle, part.end, part.depth + 1,
+                             cusp ? still_of(right) : after, cusp});
+            stack.push_back({left, part.begin, cusp ? unit(end_tangent(left, true)) : middle, part.depth + 1,
+                             cusp ? still_of(left) : before, part.after_cusp});
         }
         return {};
     }
 
-    // A part about a cusp, smaller than the tolerance: the pen turns round on the spot.
+    // A part that is smaller than the tolerance, with a sharp bend: the pen turns on the spot.
+    bool turn(const Part& part, double size) {
+        const double slack = std::min(0.1, tolerance_ / (8 * h_));
+        const Vec<2> middle = 0.5 * (part.s.front() + part.s.back());
+        if (!turns_between(part, slack) || middle == part.s.front() || middle == part.s.back()) return false;
+        out_.bound = std::max(out_.bound, 2 * size + 1.01 * h_ * slack);
+        add({part.s.front(), middle, part.begin, part.begin, 0, {}});
+        joint_ = PieceJoint::turn;
+        add({middle, part.s.back(), part.end, part.end, 0, {}});
+        return true;
+    }
+
+    // About a cusp, round.
     void turn_round(const Part& part, double size) {
         const Vec<2> d = part.s.back() - part.s.front();
         out_.bound = std::max(out_.bound, 2 * size);
-        if (max_abs(d) == 0) {
-            joint_ = PieceJoint::round;
-            return;
-        }
-        const Vec<2> along = unit(d);
         joint_ = PieceJoint::round;
+        if (max_abs(d) == 0) return;
+        const Vec<2> along = unit(d);
         add({part.s.front(), part.s.back(), along, along, 0, {}});
         joint_ = PieceJoint::round;
+    }
+
+    // Are all directions of the part between those of its ends, by less than a right angle, up to an angle of
+    // sine `slack`? They are if all sides of the control polygon are, whose hull has those of a polynomial
+    // curve.
+    static bool turns_between(const Part& part, double slack) {
+        if (part.s.weight != 1 || !(dot(part.begin, part.end) > 0)) return false;
+        const double sign = cross(part.begin, part.end) < 0 ? -1 : 1,
+                     noise = 0x1p-48 * box_of(part.s).scale();
+        for (int i = 0; i < part.s.degree; ++i) {
+            const Vec<2> side = part.s.points[std::size_t(i) + 1] - part.s.points[std::size_t(i)];
+            const double least = -slack * norm(side) - noise;
+            if (sign * cross(part.begin, side) < least || sign * cross(side, part.end) < least ||
+                dot(part.begin, side) < least)
+                return false;
+        }
+        return true;
     }
 
     bool take(const Part& part) {
@@ -252,8 +316,9 @@ private:
         const double at = on.middle();
         const ArcPiece first = arc_from(p, part.begin, joint, direction),
                        second = arc_from(joint, direction, q, part.end);
-        const auto a = difference(part_of(part.s, 0, at), first, h_),
-                   b = difference(part_of(part.s, at, 1), second, h_);
+        const Still before{part.still[0], 0}, after{0, part.still[1]};
+        const auto a = difference(part_still(part.s, 0, at, before), first, h_, before),
+                   b = difference(part_still(part.s, at, 1, after), second, h_, after);
         if (!a || !b) return false;
         const double beside = std::abs(dot(point_of(part.s, at) - joint, direction)),
                      tight = std::max(std::abs(first.curvature), std::abs(second.curvature));

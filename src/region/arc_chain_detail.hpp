@@ -20,6 +20,7 @@ struct ArcPiece {
 enum class PieceJoint {
     smooth,  // with the same tangent
     round,   // a cusp inside of a segment
+    turn,    // a sharp bend inside of a segment, by less than a right angle
     corner,  // between segments
 };
 

@@ -107,8 +107,11 @@ public:
             begin[k] = frame(y.a, y.normal_a(), {centre(y)});
             if (joined && chain.before[k] == PieceJoint::round)
                 disc(end[i]);
+            else if (joined && chain.before[k] == PieceJoint::turn)
+                join(end[i], x.tb, begin[k], y.ta, LineJoin::round),
+                    join(end[i], x.tb, begin[k], y.ta, LineJoin::round, true);
             else if (joined)
-                join(end[i], x.tb, begin[k], y.ta);
+                join(end[i], x.tb, begin[k], y.ta, style_.join);
         }
         if (!chain.closed)
             cap(begin[0], -chain.pieces[0].ta, true), cap(end[n - 1], chain.pieces[n - 1].tb, false);
@@ -203,23 +206,26 @@ private:
         std::move(loop).close_into(path_);
     }
 
-    // On the outside of the corner, between the pens before and after it.
-    void join(const Frame& f, const Vec<2>& in, const Frame& g, const Vec<2>& out) {
+    // On the outside of the corner, between the pens before and after it; or on the inside.
+    void join(const Frame& f, const Vec<2>& in, const Frame& g, const Vec<2>& out, LineJoin how,
+              bool inside = false) {
         const bool left = cross(in, out) > 0 || (cross(in, out) == 0 && freiform::dot(in, out) < 0);
         if (cross(in, out) == 0 && freiform::dot(in, out) > 0) return;
         const Frame &first = left ? f : g, &last = left ? g : f;
-        const auto edge = [&](const Frame& x) { return left ? x.points.size() - 1 : std::size_t(0); };
+        const auto edge = [&](const Frame& x) {
+            return left != inside ? x.points.size() - 1 : std::size_t(0);
+        };
         const Vec<2>&p = f.points[f.p], &a = first.points[edge(first)], &b = last.points[edge(last)];
         LoopBuilder loop(p);
         loop.along(first, first.p, edge(first));
         const Vec<2> middle = unit((a - p) + (b - p));
         const double half = freiform::dot(middle, a - p) / h_;  // the cosine of half the turn
-        const bool miter = style_.join == LineJoin::miter || style_.join == LineJoin::miter_clip;
-        if (style_.join == LineJoin::round) {
+        const bool miter = how == LineJoin::miter || how == LineJoin::miter_clip;
+        if (how == LineJoin::round) {
             loop.arc_to(b, h_, true);
         } else if (miter && half * style_.miter_limit >= 1) {
             loop.line_to(p + (h_ / half) * middle);
-        } else if (style_.join == LineJoin::miter_clip && style_.miter_limit > half && half > 0) {
+        } else if (how == LineJoin::miter_clip && style_.miter_limit > half && half > 0) {
             const Vec<2> tip = p + (h_ / half) * middle;
             const double s = (style_.miter_limit - half) / (1 / half - half);
             loop.line_to(a + s * (tip - a)), loop.line_to(b + s * (tip - b));

@@ -149,6 +149,80 @@ TEST(Stroked, dashes_cover_what_the_pattern_says) {
               1e-8);
 }
 
+// Of a cubic whose handles may be without length: lines of the pen, near each other at the ends of the curve.
+struct PenLines {
+    std::vector<std::array<Vec<2>, 2>> lines;
+    double step = 0;  // ends of neighbours are this near
+
+    PenLines(const PathSegment& s, double half_width) {
+        std::vector<double> at;
+        for (int i = 1; i < 2000; ++i) {
+            const double small = std::exp2(-0.02 * i);
+            at.insert(at.end(), {i / 2000.0, small, 1 - small});
+        }
+        std::ranges::sort(at);
+        for (const double t : at) {
+            if (t >= 1) break;
+            const auto& p = s.points;
+            const double a = (1 - t) * (1 - t), b = 2 * t * (1 - t), c = t * t;
+            const Vec<2> d = unit(a * (p[1] - p[0]) + b * (p[2] - p[1]) + c * (p[3] - p[2])),
+                         x = (1 - t) * (a * p[0] + b * 1.5 * p[1]) + t * (b * 1.5 * p[2] + c * p[3]),
+                         n{{-d[1], d[0]}};
+            lines.push_back({x + half_width * n, x - half_width * n});
+            if (lines.size() > 1)
+                for (std::size_t k = 0; k < 2; ++k)
+                    step = std::max(step, norm(lines.back()[k] - lines[lines.size() - 2][k]));
+        }
+    }
+    double distance(const Vec<2>& q) const {
+        double least = HUGE_VAL;
+        for (const auto& [a, b] : lines) {
+            const Vec<2> e = b - a;
+            const double t = std::clamp(dot(q - a, e) / dot(e, e), 0.0, 1.0);
+            least = std::min(least, norm(q - a - t * e));
+        }
+        return least;
+    }
+};
+
+TEST(Stroked, curves_that_stand_still_at_an_end_are_covered_as_the_pen_does_and_no_more) {
+    Random random(3);
+    for (const char* data : {
+             "M 1 1 C 1 1 3 1 4 3",            // no handle at the start
+             "M 1 1 C 2 1 4 3 4 3",            // nor at the end
+             "M 1 1 C 1 1 1 1 4 3",            // a line that stands still at its start, twice,
+             "M 1 1 C 1 1 4 3 4 3",            // and at both ends
+             "M 1 1 C 1.0001 1.0001 3 1 4 3",  // handles with hardly any length
+             "M 1 1 C 1.0000001 1 2 2.5 4 3",  //
+             "M 1 1 C 1.000000001 1.000000001 3 1 4 3",
+         })
+        for (const double width : {0.3, 1.4}) {
+            const Path path = path_from(data);
+            const Region r = must(stroked(path, {.width = width, .dashes = {}}, kUsual));
+            EXPECT_LE(r.bound, kUsual.tolerance) << data;
+            const InsideQuery in = inside_query(r.path);
+            const PathDistance outline(r.path);
+            const PenLines pen(path.subpaths[0].segments[0], width / 2);
+            const double slack = r.bound + pen.step + 2e-5;
+            EXPECT_LT(slack, 0.02) << data;
+            for (int i = 0; i < 100; ++i) {
+                const Vec<2> p{{random.real(-0.5, 5), random.real(-0.5, 5)}};
+                if (pen.distance(p) > slack)
+                    EXPECT_EQ(in.at(p).winding, 0) << data << ' ' << p[0] << ' ' << p[1];
+                const auto& line = pen.lines[std::size_t(random.integer(0, int(pen.lines.size()) - 1))];
+                const double t = random.real(0, 1);
+                const Vec<2> q = (1 - t) * line[0] + t * line[1];
+                if (outline.at(q) > slack)
+                    EXPECT_EQ(in.at(q).winding, 1) << data << ' ' << q[0] << ' ' << q[1];
+            }
+            // Behind the start there is nothing.
+            const Vec<2> back =
+                path.subpaths[0].start - 0.1 * unit(path.subpaths[0].segments[0].points[2] - Vec<2>{{1, 1}});
+            if (path.subpaths[0].segments[0].points[1] == path.subpaths[0].start)
+                EXPECT_EQ(in.at(back).winding, 0) << data;
+        }
+}
+
 TEST(Grown, squares_and_discs_have_the_areas_of_the_textbook) {
     const Path square{{rectangle(0, 0, 2, 2)}}, disc{{ellipse({{0, 0}}, 1, 1)}};
     const RegionOptions fine{.tolerance = 1e-6};
