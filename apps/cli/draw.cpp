@@ -22,7 +22,7 @@ struct DrawArguments {
     std::string colour;  // of shaded pictures
     std::vector<double> range;
     std::optional<int> normals;
-    bool edges = false, zebra = false, isophotes = false, perspective = false;
+    bool edges = false, zebra = false, isophotes = false, perspective = false, gpu = false;
 };
 
 // Of options that belong to the other kind of picture the first one that was given.
@@ -56,6 +56,7 @@ void refuse_other_kind(const DrawArguments& o, bool shaded) {
                            {!o.colour.empty(), true, "--colour"},
                            {!o.range.empty(), true, "--range"},
                            {o.perspective, true, "--perspective"},
+                           {o.gpu, true, "--gpu"},
                            {o.tolerance.has_value(), true, "--tolerance"}}) {
         if (!g.is || g.of_shaded == shaded) continue;
         wrong_usage(text(g.name, shaded ? " is for drawings: .svg, .pdf, or .png of curves without surfaces"
@@ -67,6 +68,10 @@ bool has_faces(const Shape& shape) {
     return std::holds_alternative<TrimmedSurface>(shape) || std::holds_alternative<Model>(shape) ||
            std::holds_alternative<Surface<Vec<2>>>(shape) || std::holds_alternative<Surface<Hom<2>>>(shape) ||
            std::holds_alternative<Surface<Vec<3>>>(shape) || std::holds_alternative<Surface<Hom<3>>>(shape);
+}
+
+bool is_triangle(const Shape& shape) {
+    return std::holds_alternative<Triangle<Vec<3>>>(shape) || std::holds_alternative<Triangle<Hom<3>>>(shape);
 }
 
 DrawingOptions drawing_options(const DrawArguments& o, const std::optional<View>& view) {
@@ -101,7 +106,7 @@ ShadedOptions shaded_options(const DrawArguments& o, const std::optional<View>& 
     how.colour = o.colour, how.range = o.range, how.tolerance = o.tolerance;
     how.width = o.width, how.height = o.height, how.isolines = o.isolines, how.normals = o.normals;
     how.control = o.control, how.edges = o.edges, how.zebra = o.zebra, how.isophotes = o.isophotes;
-    how.perspective = o.perspective;
+    how.perspective = o.perspective, how.gpu = o.gpu;
     how.view = view.value_or(how.view);
     return how;
 }
@@ -128,7 +133,8 @@ Result<ShadedPicture> picture(const Context& context, const DrawArguments& optio
     const Document& document = *input->document;
     const bool lines = options.lines || options.hidden || options.wireframe;
     const bool faces = format == "png" && !lines && std::ranges::any_of(input->chosen, [&](std::size_t i) {
-                           return has_faces(document.objects[i].shape);
+                           const Shape& shape = document.objects[i].shape;
+                           return has_faces(shape) || (options.gpu && is_triangle(shape));
                        });
     refuse_other_kind(options, faces);
     if (faces) return shaded(document, input->chosen, context.limits, shaded_options(options, view));
@@ -195,6 +201,7 @@ void add_draw(CommandLine& line) {
                  "  freiform draw curves.json -o curve.svg --object closed --comb --basis\n"
                  "  freiform draw teapot.bpt -o teapot.png\n"
                  "  freiform draw part.step -o part.png --view 30,20 --zebra\n"
+                 "  freiform draw part.step -o part.png --gpu\n"
                  "  freiform draw part.step -o part.svg --hidden\n"
                  "  freiform draw teapot.bpt -o curvature.png --colour mean --isolines 5\n"
                  "  freiform draw part.glb -o part.png --edges");
@@ -226,6 +233,9 @@ void add_draw(CommandLine& line) {
     command.count("--normals", options->normals, 1, 200,
                   "Normals of every face, this many in each direction");
     command.flag("--perspective", options->perspective, "Perspective instead of a parallel view");
+    command.flag("--gpu", options->gpu,
+                 "Surfaces by shaders, without a mesh, as fine as the picture needs; where that cannot be, as a "
+                 "mesh, and the reason is said");
     command.object(options->object);
     command.limits();
     command.triangle_limit();

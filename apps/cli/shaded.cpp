@@ -3,7 +3,7 @@
 #include "words.hpp"
 
 #if FREIFORM_HAS_GL
-#include <freiform/gpu/render.hpp>
+#include <freiform/gpu/surfaces.hpp>
 #include <freiform/io/colour_bar.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/mesh/refine.hpp>
@@ -177,6 +177,63 @@ std::string report_of(const Painted& p, const Field& f, const Subject& s) {
     return w.take() + "\n";
 }
 
+// The reason why shaders cannot draw it, in words of the command line.
+std::string_view needs_mesh(const ShadedOptions& o) {
+    if (o.edges) return "--edges are those of a mesh";
+    if (o.tolerance) return "--tolerance is that of a mesh";
+    if (!o.colour.empty()) return "--colour takes numbers at the vertices of a mesh";
+    if (o.isolines || o.normals || o.control) return "isolines, normals and control nets are drawn over a mesh";
+    return {};
+}
+
+// Triangles as they are, everything else as faces of a model.
+struct DirectScene {
+    Model model;
+    std::vector<TriangularFace> triangles;
+};
+Result<DirectScene> direct_scene(const Document& document, std::span<const std::size_t> objects) {
+    DirectScene out;
+    std::vector<std::size_t> others;
+    for (const std::size_t i : objects) {
+        const Shape& shape = document.objects[i].shape;
+        if (const auto* t = std::get_if<Triangle<Hom<3>>>(&shape)) {
+            out.triangles.push_back({*t, {}});
+        } else if (const auto* p = std::get_if<Triangle<Vec<3>>>(&shape)) {
+            std::vector<Hom<3>> net;
+            for (const Vec<3>& x : p->coefficients()) net.push_back(weighted(x, 1.0));
+            out.triangles.push_back({SimplexPatch<2, Hom<3>>::trusted(p->degree(), std::move(net)), {}});
+        } else {
+            others.push_back(i);
+        }
+    }
+    if (others.empty()) return out;
+    auto model = scene_of(document, others);
+    if (!model && !(model.error().kind == RefusalKind::no_answer && !out.triangles.empty()))
+        return std::unexpected(model.error());
+    if (model) out.model = std::move(*model);
+    return out;
+}
+
+Result<Image> drawn_directly(const Document& document, std::span<const std::size_t> objects,
+                             const ShadedOptions& o) {
+    if (const auto reason = needs_mesh(o); !reason.empty())
+        return refuse(RefusalKind::unsupported, "--gpu", std::string(reason));
+    const auto scene = direct_scene(document, objects);
+    if (!scene) return std::unexpected(scene.error());
+    Box<3> box = summary(scene->model).box;
+    for (const TriangularFace& t : scene->triangles)
+        for (const Hom<3>& h : t.patch.coefficients()) box.add(project(h));
+    if (!(box.diagonal() > 0)) return refuse(RefusalKind::no_answer, "model", "it has no extent");
+    auto buffers = surface_buffers(scene->model, scene->triangles, {.edge_tolerance = box.diagonal() * kMirrorTolerance});
+    if (!buffers) return std::unexpected(buffers.error());
+    auto renderer = SurfaceRenderer::make(std::move(*buffers));
+    if (!renderer) return std::unexpected(renderer.error());
+    auto image = renderer->draw(render_options(o));
+    if (image)
+        for (const Refusal& r : scene->model.refused) remark(text(r.where, " is missing: ", r.message));
+    return image;
+}
+
 Result<std::string> png_of(const TriangleMesh& mesh, RenderOptions how, const ColourBar* bar) {
     if (bar && how.width >= 2 * kColourBarRoom) how.room = kColourBarRoom;
     auto image = render(mesh, how);
@@ -213,6 +270,15 @@ Result<ShadedPicture> shaded(const TriangleMesh& mesh, const ShadedOptions& o) {
 
 Result<ShadedPicture> shaded(const Document& document, std::span<const std::size_t> objects,
                              const Limits& limits, const ShadedOptions& o) {
+    if (o.gpu) {
+        const auto image = drawn_directly(document, objects, o);
+        if (image) {
+            auto png = to_png(*image);
+            if (!png) return std::unexpected(png.error());
+            return ShadedPicture{std::move(*png), "{}\n"};
+        }
+        remark(text("drawn as a mesh: ", image.error().where, ": ", image.error().message));
+    }
     const auto s = subject_of(document, objects, limits, o);
     if (!s) return std::unexpected(s.error());
     RenderOptions how = render_options(o);

@@ -13,6 +13,7 @@ struct ShadedOptions {
     std::vector<double> range;  // of the colours; empty: found
     std::optional<double> tolerance;
     std::optional<int> width, height, isolines, normals;
+    bool gpu = false;  // surfaces are drawn by shaders, without a mesh, where that can be
     bool control = false, edges = false, zebra = false, isophotes = false, perspective = false;
     View view{};
 };

@@ -129,7 +129,7 @@ void add_lines(GpuScene& scene, const TriangleMesh& mesh, const std::vector<Vec<
     }
 }
 
-void set_camera(GpuScene& scene, const RenderOptions& options) {
+void set_camera(GpuScene& scene, std::span<const std::array<float, 3>> shown, const RenderOptions& options) {
     const Axes axes = axes_of(options.view);
     const std::array<Vec<3>, 3> rows{axes.right, axes.up, axes.eye};
     const double k = options.perspective ? kInverseDistance : 0;
@@ -139,9 +139,7 @@ void set_camera(GpuScene& scene, const RenderOptions& options) {
         const double z = dot(axes.eye, p), w = 1 - k * z;
         if (w > kNearest) box.add(Vec<3>{{dot(axes.right, p) / w, dot(axes.up, p) / w, z}});
     };
-    for (const SceneVertex& v : scene.vertices) add(v.position);
-    for (const auto& lines : scene.lines)
-        for (const SceneLine& line : lines) add(line.from), add(line.to);
+    for (const auto& p : shown) add(p);
     if (box.is_empty()) box.add(Vec<3>{{0, 0, 0}});
     const double share = options.room / options.width;  // taken away at the right
     const double usable =
@@ -167,6 +165,27 @@ void set_camera(GpuScene& scene, const RenderOptions& options) {
         sx, 0, 0, 0, 0, sy, 0, 0, k * (cx * sx - shift), k * cy * sy, a, -k, shift - cx * sx, -cy * sy, b, 1};
     std::transform(m.begin(), m.end(), scene.projection.begin(), [](double x) { return float(x); });
     scene.inverse_distance = float(k);
+    scene.pixels = float(scale);
+}
+
+// All that is drawn, or the frame that is asked for.
+std::vector<std::array<float, 3>> shown_points(const GpuScene& scene, const Centring& centred,
+                                               const RenderOptions& options) {
+    std::vector<std::array<float, 3>> out;
+    for (const Vec<3>& p : options.frame) out.push_back(to_floats(centred(p)));
+    if (!out.empty()) return out;
+    for (const SceneVertex& v : scene.vertices) out.push_back(v.position);
+    for (const auto& lines : scene.lines)
+        for (const SceneLine& line : lines) out.push_back(line.from), out.push_back(line.to);
+    return out;
+}
+
+void add_user_lines(GpuScene& scene, const Centring& centred, const RenderOptions& options) {
+    for (const RenderLines& lines : options.lines) {
+        scene.lines.emplace_back();
+        for (const auto& [from, to] : lines.segments)
+            scene.lines.back().push_back({to_floats(centred(from)), to_floats(centred(to))});
+    }
 }
 
 }  // namespace
@@ -176,14 +195,21 @@ GpuScene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
     const Centring centred = centring_of(mesh);
     std::vector<Vec<3>> points;
     for (const Vec<3>& p : mesh.points) points.push_back(centred(p));
-    for (const RenderLines& lines : options.lines) {
-        scene.lines.emplace_back();
-        for (const auto& [from, to] : lines.segments)
-            scene.lines.back().push_back({to_floats(centred(from)), to_floats(centred(to))});
-    }
+    add_user_lines(scene, centred, options);
     add_triangles(scene, mesh, points, options);
     add_lines(scene, mesh, points, options);
-    set_camera(scene, options);
+    set_camera(scene, shown_points(scene, centred, options), options);
+    return scene;
+}
+
+GpuScene make_scene(const SurfaceBuffers& surfaces, const RenderOptions& options) {
+    GpuScene scene;
+    const Centring centred{surfaces.middle, surfaces.size};
+    add_user_lines(scene, centred, options);
+    auto shown = shown_points(scene, centred, options);
+    if (options.frame.empty())
+        for (const Vec<3>& p : surfaces.extent) shown.push_back(to_floats(centred(p)));
+    set_camera(scene, shown, options);
     return scene;
 }
 

@@ -1,6 +1,6 @@
 // A mesh and a view as the graphics card wants them: floats about the middle of the model, a matrix, lines.
 #pragma once
-#include <freiform/gpu/render.hpp>
+#include <freiform/gpu/surfaces.hpp>
 
 #include <array>
 #include <cstdint>
@@ -27,9 +27,12 @@ struct GpuScene {
     std::array<float, 9> rotation{};            // to right, up, towards the eye; by columns
     std::array<float, 16> projection{};         // of rotated positions, by columns
     float inverse_distance = 0;                 // of the eye from the origin; 0 without perspective
+    float pixels = 0;                           // of the picture, of a unit of the scene at the origin
 };
 
 // REQUIRES a mesh that `validate` accepts.
 GpuScene make_scene(const TriangleMesh& mesh, const RenderOptions& options);
+// Camera and lines of the options.
+GpuScene make_scene(const SurfaceBuffers& surfaces, const RenderOptions& options);
 
 }  // namespace freiform

@@ -1,0 +1,26 @@
+// Compiled with `TRIANGLES` for triangular pieces.
+#ifdef TRIANGLES
+layout(triangles, equal_spacing, ccw) in;
+#else
+layout(quads, equal_spacing, ccw) in;
+#endif
+patch in int piece_index;
+patch in vec4 cell;
+uniform mat3 rotation;
+uniform mat4 projection;
+out vec3 place, direction;
+out vec2 at;
+flat out int piece_number;
+void main() {
+#ifdef TRIANGLES
+    at = gl_TessCoord.yz;
+#else
+    at = (cell.xy + gl_TessCoord.xy) / cell.zw;
+#endif
+    piece_number = piece_index;
+    vec3 position, normal;
+    evaluate(piece_of(piece_index), at, position, normal);
+    place = rotation * position;
+    direction = rotation * normal;
+    gl_Position = projection * vec4(place, 1.0);
+}

@@ -1,0 +1,6 @@
+in vec3 place, direction, albedo;
+out vec4 colour;
+void main() {
+    vec3 paint = decoded(albedo);
+    colour = vec4(shaded(place, direction, view_from(place), paint, vec4(paint, 1.0)), 1.0);
+}

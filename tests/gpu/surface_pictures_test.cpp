@@ -1,0 +1,218 @@
+#include "support/corpus.hpp"
+#include "support/random.hpp"
+#include "support/solids.hpp"
+
+#include <freiform/gpu/surfaces.hpp>
+#include <freiform/io/read.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/trim/inside.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace freiform {
+namespace {
+
+// Two faces at an angle, a hole in one of them: what is between them is seen from both sides.
+Model cut_roof() {
+    ModelBuilder builder;
+    const auto basis = *BSplineBasis::bezier(1);
+    const auto flat = [&](const std::array<Vec<3>, 4>& p) {
+        return *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({2, 2}, {p[0], p[1], p[2], p[3]}));
+    };
+    const CurveGeometry<2> hole = Conic<2>{ConicKind::ellipse, {{0.55, 0.45}}, {{0.3, 0.1}}, {{-0.1, 0.25}}};
+    const auto side = [&](Vec<2> a, Vec<2> b) -> CurveGeometry<2> {
+        return Curve<Vec<2>>::trusted({basis}, Net<1, Vec<2>>({2}, {a, b}));
+    };
+    const std::vector<std::vector<CurveGeometry<2>>> loops{
+        {side({{0, 0}}, {{1, 0}}), side({{1, 0}}, {{1, 1}}), side({{1, 1}}, {{0, 1}}), side({{0, 1}}, {{0, 0}})}, {hole}};
+    EXPECT_TRUE(builder.add_trimmed(flat({{{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}}), loops));
+    EXPECT_TRUE(builder.add(flat({{{{1, 0, 0}}, {{1, 1, 0}}, {{1.5, 0, 0.8}}, {{1.5, 1, 0.8}}}})));
+    return *std::move(builder).finish();
+}
+
+class SurfacePictures : public testing::TestWithParam<SurfacePipeline> {
+protected:
+    void SetUp() override {
+        options_.width = 200, options_.height = 150;
+        options_.outlines = false;
+        options_.top = options_.bottom = {1, 0, 1, 1};
+        options_.colour = {0.6, 0.6, 0.6, 1};
+        const auto probe = picture(test::sphere(Vec<3>{}, 1.0));
+        if (!probe && probe.error().kind == RefusalKind::unavailable) GTEST_SKIP() << probe.error().message;
+        ASSERT_TRUE(probe) << probe.error().message;
+    }
+    Result<Image> picture(Model model) {
+        for (Face& f : model.faces) f.colour.reset();
+        auto b = surface_buffers(model, {.edge_tolerance = summary(model).box.diagonal() / 16000, .colour = options_.colour});
+        if (!b) return std::unexpected(b.error());
+        extent_ = b->extent;
+        options_.frame = extent_;
+        auto renderer = SurfaceRenderer::make(std::move(*b), GetParam());
+        if (!renderer) return std::unexpected(renderer.error());
+        return renderer->draw(options_);
+    }
+    Image mesh_picture(Model model) {
+        for (Face& f : model.faces) f.colour.reset();
+        TessellateOptions how;
+        how.tolerance = summary(model).box.diagonal() / 10000;
+        const auto t = test::must(tessellate(model, how));
+        EXPECT_TRUE(t.refused.empty());
+        return test::must(render(t.mesh, options_));
+    }
+    // How much of the background, magenta, is in a pixel; surfaces are grey.
+    static int background(const Image& image, int x, int y) {
+        const unsigned char* p = image.pixel(x, y);
+        return (p[0] + p[2]) / 2 - p[1];
+    }
+    struct Compared {
+        int cracked = 0, different = 0, surface = 0;
+    };
+    // Cracked: background where the mesh has none around. Different: darker or lighter than everything around in the
+    // other picture, by more than `by`.
+    static Compared compared(const Image& gpu, const Image& mesh, int by) {
+        Compared out;
+        const auto is_beyond = [&](const Image& a, const Image& b, int x, int y) {
+            for (int c = 0; c < 3; ++c) {
+                int least = 255, most = 0;
+                for (int i = -1; i <= 1; ++i)
+                    for (int j = -1; j <= 1; ++j) {
+                        least = std::min(least, int(b.pixel(x + i, y + j)[c]));
+                        most = std::max(most, int(b.pixel(x + i, y + j)[c]));
+                    }
+                if (a.pixel(x, y)[c] < least - by || a.pixel(x, y)[c] > most + by) return true;
+            }
+            return false;
+        };
+        for (int y = 1; y + 1 < gpu.height; ++y)
+            for (int x = 1; x + 1 < gpu.width; ++x) {
+                int around = 0;
+                for (int i = -1; i <= 1; ++i)
+                    for (int j = -1; j <= 1; ++j) around = std::max(around, background(mesh, x + i, y + j));
+                out.surface += around < 3;
+                out.cracked += around < 3 && background(gpu, x, y) > 6;
+                out.different += is_beyond(gpu, mesh, x, y) || is_beyond(mesh, gpu, x, y);
+            }
+        return out;
+    }
+    void expect_same(const Model& model, const std::string& name, std::initializer_list<const char*> views, int by = 16) {
+        for (const char* view : views) {
+            options_.view = *parse_view(view);
+            const auto gpu = picture(model);
+            ASSERT_TRUE(gpu) << name << ": " << gpu.error().where << ": " << gpu.error().message;
+            const Image mesh = mesh_picture(model);
+            const Compared c = compared(*gpu, mesh, by);
+            EXPECT_EQ(c.cracked, 0) << name << " " << view;
+            EXPECT_LE(c.different, c.surface / 2000) << name << " " << view;
+            EXPECT_GT(c.surface, 200) << name << " " << view;
+            if (const char* folder = std::getenv("FREIFORM_PICTURES")) {
+                std::ofstream(std::string(folder) + "/" + name + "_" + view + "_gpu.png") << *to_png(*gpu);
+                std::ofstream(std::string(folder) + "/" + name + "_" + view + "_mesh.png") << *to_png(mesh);
+            }
+        }
+    }
+
+    RenderOptions options_;
+    std::vector<Vec<3>> extent_;
+};
+
+TEST_P(SurfacePictures, show_what_the_mesh_shows) {
+    expect_same(test::sphere(Vec<3>{{5, 0, 0}}, 2.0), "sphere", {"iso", "top"});
+    expect_same(test::torus(2.0, 0.7), "torus", {"40,25"});
+    expect_same(test::frustum(1, 0, 2), "cone", {"iso", "front"});
+    expect_same(test::frustum(1, 0.6, 1), "frustum", {"20,50"});
+    expect_same(cut_roof(), "roof", {"iso", "100,20"});
+    options_.perspective = true;
+    expect_same(test::frustum(1, 0.6, 1), "frustum_perspective", {"20,50"});
+}
+
+TEST_P(SurfacePictures, show_the_teapot_without_cracks) {
+    const auto document = test::must(read_any(std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt"));
+    expect_same(test::must(scene_of(document)), "teapot", {"iso", "60,-20"});
+}
+
+// FREIFORM_MODELS=1, for it takes minutes: models of the corpus from several views.
+TEST_P(SurfacePictures, show_models_of_the_corpus_without_cracks) {
+    setenv("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY, 0);
+    if (!std::getenv("FREIFORM_MODELS")) GTEST_SKIP() << "FREIFORM_MODELS=1 compares pictures of ten models";
+    options_.width = 400, options_.height = 300;
+    for (const char* name : {"step/linkrods.step", "step/screw.step", "step/as1-oc-214.stp", "step/trj4_k1_geo-tc-214.stp",
+                             "step/conical-surface.step", "step/bug28414_bug_toroidal_surface.stp", "step/red_cube_blue_cylinder.step",
+                             "brep/CrankArm.brep", "brep/Ball.brep", "iges/bearing.iges", "bpt/teaset_teaspoon.bpt"}) {
+        FF_CORPUS_OR_SKIP(path, name);
+        const auto document = read_any(path.string());
+        if (!document) GTEST_SKIP() << document.error().message;
+        const auto model = scene_of(*document);
+        ASSERT_TRUE(model) << name;
+        expect_same(*model, path.stem().string(), {"iso", "200,35", "top"});
+    }
+}
+
+// The picture of a trimmed square from above against the exact region: wherever a pixel is more than half a pixel
+// inside or outside, it is so in the picture, and the areas agree by less than half a pixel along the boundary.
+TEST_P(SurfacePictures, trim_within_half_a_pixel) {
+    test::Random random(7);
+    for (int round = 0; round < 3; ++round) {
+        ModelBuilder builder;
+        const auto basis = *BSplineBasis::bezier(1);
+        const auto ring = *BSplineBasis::periodic(3, [] {
+            std::vector<double> b;
+            for (int i = 0; i <= 9; ++i) b.push_back(i);
+            return b;
+        }());
+        std::vector<Vec<2>> net;
+        for (int i = 0; i < 9; ++i) {
+            const double r = random.real(0.15, 0.48), a = 2 * test::kPi * i / 9;
+            net.push_back({{0.5 + r * std::cos(a), 0.5 + r * std::sin(a)}});
+        }
+        std::vector<std::vector<CurveGeometry<2>>> loops{{Curve<Vec<2>>::trusted({ring}, Net<1, Vec<2>>({9}, net))},
+                                                         {Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.07, 0.02}}, {{-0.01, 0.05}}}}};
+        const auto square = *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
+        ASSERT_TRUE(builder.add_trimmed(square, loops));
+        options_.view = *parse_view("top");
+        options_.supersampling = 1;
+        const auto drawn = picture(*std::move(builder).finish());
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        const auto query = test::must(InsideQuery::make(loops, 1e-12));
+        // The frame fills the picture but for the margin, in one direction or the other.
+        Box<3> box;
+        for (const Vec<3>& p : extent_) box.add(p);
+        const double margin = 2 * options_.margin * options_.height;
+        const double scale = std::min((options_.width - margin) / (box.hi[0] - box.lo[0]), (options_.height - margin) / (box.hi[1] - box.lo[1]));
+        const auto plane_at = [&](double x, double y) {
+            return Vec<2>{{(x - options_.width / 2.0) / scale + (box.lo[0] + box.hi[0]) / 2,
+                           (options_.height / 2.0 - y) / scale + (box.lo[1] + box.hi[1]) / 2}};
+        };
+        const int full = background(*drawn, 0, 0);
+        double covered = 0, exact = 0;
+        int boundary = 0;
+        for (int y = 0; y < options_.height; ++y)
+            for (int x = 0; x < options_.width; ++x) {
+                const double drawn_share = 1 - double(background(*drawn, x, y)) / full;
+                covered += drawn_share;
+                constexpr int kGrid = 6;
+                int in = 0, around = 0;
+                for (int i = 0; i < kGrid; ++i)
+                    for (int j = 0; j < kGrid; ++j)
+                        in += query.at(plane_at(x + (i + 0.5) / kGrid, y + (j + 0.5) / kGrid)).place != Place::outside;
+                exact += double(in) / (kGrid * kGrid);
+                // The pixel grown by half a pixel.
+                for (int i = 0; i <= kGrid; ++i)
+                    for (int j = 0; j <= kGrid; ++j)
+                        around += query.at(plane_at(x - 0.5 + 2.0 * i / kGrid, y - 0.5 + 2.0 * j / kGrid)).place != Place::outside;
+                boundary += in > 0 && in < kGrid * kGrid;
+                if (around == 0) EXPECT_LT(drawn_share, 0.02) << x << " " << y;
+                if (around == (kGrid + 1) * (kGrid + 1)) EXPECT_GT(drawn_share, 0.9) << x << " " << y;
+            }
+        EXPECT_GT(boundary, 300);
+        EXPECT_LT(std::abs(covered - exact), 0.5 * boundary);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Pipelines, SurfacePictures, testing::Values(SurfacePipeline::tessellation, SurfacePipeline::grid),
+                         [](const auto& made) { return made.param == SurfacePipeline::grid ? "grid" : "tessellation"; });
+
+}  // namespace
+}  // namespace freiform
