@@ -1,0 +1,28 @@
+// STEP files (ISO 10303-21, editions 1 to 3; AP203, AP214, AP242) as models.
+#pragma once
+#include <freiform/model/model.hpp>
+
+#include <cstddef>
+#include <string_view>
+
+namespace freiform {
+
+struct StepReadOptions {
+    std::size_t memory_bytes = std::size_t(4) << 30;  // that the model may take; an estimate is kept below it
+};
+
+// The model in the file; coordinates in the unit of the file, which Model::unit names: that of the first
+// representation with shapes, to which those in other units are scaled. Elementary curves and surfaces stay
+// such. Assemblies are flattened, one body for each solid or shell in each place.
+//
+// Every parameter curve is made here, from the edge and the surface: in closed form on planes and along
+// isoparametric lines, else as a spline that follows the edge, which Model::approximations lists with the
+// bound of its distance. Edges::tolerance is the uncertainty that the file states, or that bound if it is
+// larger. Seams and poles that the file leaves out are added. What is not in the model stands in
+// Model::refused, with the number of the instance.
+//
+// Refuses: unreadable (with the byte) what is no such file or ends too early, no_answer where nothing in it
+// has a shape, limit. Whatever the bytes are, the answer comes, in time proportional to their number.
+Result<Model> read_step(std::string_view bytes, const StepReadOptions& options = {});
+
+}  // namespace freiform

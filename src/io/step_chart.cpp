@@ -1,0 +1,352 @@
+// Idea. What a boundary needs to know of a surface is little: periods, poles, and the parameters of points.
+// For elementary surfaces all of it has a closed form. For others a grid of points, made once, gives a guess
+// that Newton's method improves.
+//
+// Method. Newton's method for the nearest point: with J = (S_u, S_v) and r = target - S the step solves
+// J^T J d = J^T r, which converges fast as r is small at the solution. At the end of a spline a step that
+// would leave it goes along the end instead.
+#include "step_chart.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace freiform::step {
+
+namespace {
+
+constexpr double kSingular = 1e-10;
+constexpr int kMostSamples = 40;  // of a grid, along each axis
+
+// The part of a vector across a unit vector.
+Vec<3> across(const Vec<3>& d, const Vec<3>& axis) { return d - dot(d, axis) * axis; }
+
+// Solves J^T J d = J^T r. False where the directions of the parameters are all but parallel.
+bool solve(const Vec<3>& su, const Vec<3>& sv, const Vec<3>& r, Vec<2>& d) {
+    const double a = dot(su, su), b = dot(su, sv), c = dot(sv, sv), det = a * c - b * b;
+    if (!(det > kSingular * a * c)) return false;
+    const double p = dot(su, r), q = dot(sv, r);
+    d = {{(c * p - b * q) / det, (a * q - b * p) / det}};
+    return true;
+}
+
+// Where the radial coordinate C + A cos v + B sin v of an ellipse in the plane of the axis vanishes.
+struct AxisCrossing {
+    bool any = false;
+    double middle = 0, half = 0;  // positive between middle - half and middle + half
+};
+AxisCrossing crossing(const Revolution& s, const Conic<3>& c, double close) {
+    const Vec<3> out = across(c.centre - s.origin, s.axis), x = across(c.x, s.axis), y = across(c.y, s.axis);
+    Vec<3> e = norm(x) >= norm(y) ? x : y;
+    if (norm(out) > norm(e)) e = out;
+    e = unit(e);
+    if (norm(out - dot(out, e) * e) + norm(x - dot(x, e) * e) + norm(y - dot(y, e) * e) > close) return {};
+    const double a = dot(x, e), b = dot(y, e), k = dot(out, e), h = std::hypot(a, b);
+    if (std::abs(k) > h + close) return {};
+    return {true, std::atan2(b, a), std::acos(std::clamp(-k / h, -1.0, 1.0))};
+}
+
+std::vector<double> samples_of(const SurfaceGeometry& s, int axis, const Interval& on) {
+    std::vector<double> places;
+    std::visit(
+        [&](const auto& g) {
+            if constexpr (requires { g.net(); })
+                places = g.basis(axis).breaks();
+            else if constexpr (requires { g.profile; })
+                std::visit(
+                    [&](const auto& c) {
+                        if constexpr (requires { c.net(); }) places = c.basis().breaks();
+                    },
+                    g.profile);
+        },
+        s);
+    const bool of_profile = std::holds_alternative<Extrusion>(s) ? axis == 0 : axis == 1;
+    const bool is_patch =
+        std::holds_alternative<Surface<Vec<3>>>(s) || std::holds_alternative<Surface<Hom<3>>>(s);
+    if (places.empty() || (!is_patch && !of_profile)) places = {on.lo, on.hi};
+    const int spans = int(places.size()) - 1, each = std::max(1, (kMostSamples + spans - 1) / spans);
+    std::vector<double> out;
+    const int stride = std::max(1, spans / kMostSamples);
+    for (int i = 0; i < spans; i += stride)
+        for (int k = 0; k < std::min(each, 12); ++k)
+            out.push_back(places[std::size_t(i)] +
+                          (places[std::size_t(i) + 1] - places[std::size_t(i)]) * k / std::min(each, 12));
+    out.push_back(places.back());
+    return out;
+}
+
+}  // namespace
+
+Chart::Chart(const SurfaceGeometry& surface, double close) : s_(&surface) {
+    const SurfaceGeometry* s = s_;
+    if (const auto* o = std::get_if<OffsetSurface>(s)) s = o->base.get();
+    whole_ = domain(*s);
+    if (const auto* e = std::get_if<Extrusion>(s)) {
+        profile_traits(e->profile, 0, close);
+    } else if (const auto* r = std::get_if<Revolution>(s)) {
+        period_[0] = kTwoPi;
+        profile_traits(r->profile, 1, close);
+        poles_of(*r, close);
+    } else {
+        spline_ = {true, true};
+        poles_of_sides(close);
+    }
+    if (s != s_)  // the offset of a pole need not be one
+        std::erase_if(poles_, [&](const Pole& p) {
+            Vec<2> a{{whole_[0].lo, whole_[1].lo}}, b{{whole_[0].middle(), whole_[1].middle()}};
+            a[p.axis] = b[p.axis] = p.at;
+            return !(norm(point(a) - point(b)) <= close);
+        });
+}
+
+void Chart::profile_traits(const CurveGeometry<3>& profile, int axis, double close) {
+    const auto k = std::size_t(axis);
+    if (const auto* c = std::get_if<Conic<3>>(&profile)) {
+        period_[k] = c->kind == ConicKind::ellipse ? kTwoPi : 0;
+    } else if (!std::holds_alternative<Line<3>>(profile)) {
+        spline_[k] = true;
+        const Interval on = whole_[k];
+        if (norm(jet<0>(profile, on.lo).value() - jet<0>(profile, on.hi).value()) <= close)
+            period_[k] = on.length();
+    }
+}
+
+void Chart::poles_of(const Revolution& s, double close) {
+    const auto add = [&](double v) {
+        const Vec<3> p = jet<0>(s.profile, v).value();
+        if (norm(across(p - s.origin, s.axis)) <= close)
+            poles_.push_back({1, v, s.origin + dot(p - s.origin, s.axis) * s.axis});
+    };
+    if (const auto* l = std::get_if<Line<3>>(&s.profile)) {
+        const Vec<3> d = across(l->direction, s.axis), o = across(l->origin - s.origin, s.axis);
+        if (dot(d, d) > 0) add(-dot(o, d) / dot(d, d));
+    } else if (const auto* c = std::get_if<Conic<3>>(&s.profile)) {
+        if (c->kind != ConicKind::ellipse) return;
+        const AxisCrossing at = crossing(s, *c, close);
+        if (!at.any) return;
+        whole_[1] = {at.middle - at.half, at.middle + at.half};
+        add(whole_[1].lo);
+        add(whole_[1].hi);
+    } else {
+        add(whole_[1].lo);
+        add(whole_[1].hi);
+    }
+}
+
+// Splines: opposite sides that agree, sides that are one point.
+void Chart::poles_of_sides(double close) {
+    std::visit(
+        [&](const auto& s) {
+            if constexpr (requires { s.net(); }) {
+                for (int axis = 0; axis < 2; ++axis) {
+                    const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
+                    const auto a = points(lo), b = points(hi);
+                    double apart = 0;
+                    for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, norm(a[i] - b[i]));
+                    if (apart <= close && weights(lo) == weights(hi))
+                        period_[std::size_t(axis)] = s.basis(axis).domain().length();
+                    for (const auto* side : {&a, &b}) {
+                        double size = 0;
+                        for (const Vec<3>& p : *side) size = std::max(size, norm(p - side->front()));
+                        const Interval on = s.basis(axis).domain();
+                        if (size <= close)
+                            poles_.push_back({axis, side == &a ? on.lo : on.hi, side->front()});
+                    }
+                }
+            }
+        },
+        std::holds_alternative<OffsetSurface>(*s_) ? *std::get<OffsetSurface>(*s_).base : *s_);
+}
+
+Vec<2> Chart::wrapped(Vec<2> uv) const {
+    for (int k = 0; k < 2; ++k) {
+        const auto i = std::size_t(k);
+        if (!spline_[i] || whole_[i].contains(uv[k])) continue;
+        if (period_[i] > 0 && std::isfinite(uv[k]))
+            uv[k] -= std::floor((uv[k] - whole_[i].lo) / period_[i]) * period_[i];
+        uv[k] = clamped(uv[k], whole_[i]);
+    }
+    return uv;
+}
+
+Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess) const {
+    Foot best;
+    best.at = guess;
+    best.distance = kInfinity;
+    Vec<2> at = guess;
+    for (int i = 0; i < 12; ++i) {
+        const auto j = jet<1>(*s_, wrapped(at).c);
+        const Vec<3> r = target - j.d[0];
+        const double distance = norm(r);
+        if (!std::isfinite(distance)) break;
+        Vec<2> slope{}, step{};
+        const bool regular = solve(j.d[1], j.d[2], motion, slope) && solve(j.d[1], j.d[2], r, step);
+        const bool settled = !(distance < 0.99 * best.distance);
+        if (distance < best.distance) best = {at, slope, distance, regular};
+        if (!regular || (settled && i > 1)) break;
+        if (distance == 0) break;
+        Vec<2> next = at + step;
+        for (int k = 0; k < 2; ++k) {
+            const auto axis = std::size_t(k);
+            if (!spline_[axis] || period_[axis] > 0) continue;
+            const Interval& on = whole_[axis];
+            if (on.contains(next[k])) continue;
+            if ((at[k] == on.lo && step[k] < 0) || (at[k] == on.hi && step[k] > 0)) {
+                const Vec<3>& along = j.d[std::size_t(2 - k)];  // go along the end
+                next[1 - k] = at[1 - k] + dot(along, r) / dot(along, along);
+            }
+            next[k] = clamped(next[k], on);
+        }
+        for (int k = 0; k < 2; ++k)
+            if (spline_[std::size_t(k)] && period_[std::size_t(k)] == 0)
+                next[k] = clamped(next[k], whole_[std::size_t(k)]);
+        at = next;
+    }
+    return best;
+}
+
+std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
+    const SurfaceGeometry* s = s_;
+    if (const auto* o = std::get_if<OffsetSurface>(s)) s = o->base.get();
+    if (const auto* e = std::get_if<Extrusion>(s)) {
+        const auto* l = std::get_if<Line<3>>(&e->profile);
+        const auto* c = std::get_if<Conic<3>>(&e->profile);
+        if (!l && !(c && c->kind == ConicKind::ellipse)) return std::nullopt;
+        // p - origin = a X + b Y + v D
+        const Vec<3> x = l ? l->direction : c->x, y = l ? cross(l->direction, e->direction) : c->y,
+                     d = e->direction;
+        const Vec<3> r = p - (l ? l->origin : c->centre), n = cross(x, y);
+        const double det = dot(n, d);
+        if (det == 0) return std::nullopt;
+        const double a = dot(cross(y, d), r) / det, b = dot(cross(d, x), r) / det, v = dot(n, r) / det;
+        return Vec<2>{{l ? a : std::atan2(b, a), v}};
+    }
+    const auto* r = std::get_if<Revolution>(s);
+    if (!r) return std::nullopt;
+    const auto* l = std::get_if<Line<3>>(&r->profile);
+    const auto* c = std::get_if<Conic<3>>(&r->profile);
+    if (!l && !(c && c->kind == ConicKind::ellipse)) return std::nullopt;
+    // Both half-planes of the axis through p, turned back to the profile.
+    const Vec<3> q = p - r->origin;
+    const Vec<3> seen = across(q, r->axis),
+                 at_profile = across((l ? l->origin : c->centre) - r->origin, r->axis);
+    Vec<3> e = at_profile;
+    for (const Vec<3>& d : {l ? l->direction : c->x, c ? c->y : Vec<3>{}})
+        if (const Vec<3> f = across(d, r->axis); norm(f) > 1e3 * norm(e) || norm(e) == 0) e = f;
+    if (norm(e) == 0) return std::nullopt;
+    e = unit(e);
+    const Vec<3> side = cross(r->axis, e);
+    Vec<2> best{};
+    double least = kInfinity;
+    for (const double sign : {1.0, -1.0}) {
+        const double u = std::atan2(sign * dot(seen, side), sign * dot(seen, e));
+        const Vec<3> x = r->origin + dot(q, r->axis) * r->axis + (sign * norm(seen)) * e;
+        double v = 0;
+        if (l) {
+            v = dot(x - l->origin, l->direction) / dot(l->direction, l->direction);
+        } else {
+            const Vec<3> d = x - c->centre;
+            v = std::atan2(dot(d, c->y) / dot(c->y, c->y), dot(d, c->x) / dot(c->x, c->x));
+        }
+        const Vec<2> at{{u, v}};
+        const double distance = norm(jet<0>(*s, at.c).value() - p);
+        // The first one wins but for a good reason.
+        if (distance < least * (least < kInfinity ? 1 - 1e-6 : 1)) least = distance, best = at;
+    }
+    return best;
+}
+
+void Chart::make_grid() const {
+    std::array<Interval, 2> on = whole_;
+    for (std::size_t k = 0; k < 2; ++k)
+        if (!std::isfinite(on[k].length())) on[k] = {-8, 8};
+    const auto us = samples_of(*s_, 0, on[0]), vs = samples_of(*s_, 1, on[1]);
+    grid_.reserve(us.size() * vs.size());
+    for (const double u : us)
+        for (const double v : vs) grid_.push_back({{{u, v}}, jet<0>(*s_, {u, v}).value()});
+}
+
+Vec<2> Chart::locate(const Vec<3>& p) const {
+    if (const auto at = closed_form(p)) return *at;
+    if (grid_.empty()) make_grid();
+    const auto* e = std::get_if<Extrusion>(s_);
+    // The best few samples that are not beside each other.
+    std::array<std::pair<double, Vec<2>>, 4> best;
+    best.fill({kInfinity, Vec<2>{}});
+    for (const Sample& s : grid_) {
+        Vec<2> at = s.at;
+        double d = norm(s.point - p);
+        if (e) {  // along the direction of an extrusion the nearest point has a closed form
+            if (at[1] != grid_.front().at[1]) continue;
+            const Vec<3> r = p - s.point;
+            const double v = dot(r, e->direction) / dot(e->direction, e->direction);
+            d = norm(r - v * e->direction);
+            at[1] += v;
+        }
+        if (!(d < best.back().first)) continue;
+        best.back() = {d, at};
+        for (std::size_t k = best.size() - 1; k > 0 && best[k].first < best[k - 1].first; --k)
+            std::swap(best[k], best[k - 1]);
+    }
+    Foot nearest;
+    nearest.distance = kInfinity;
+    for (const auto& [d, at] : best) {
+        if (!(d < kInfinity)) continue;
+        const Foot f = foot(p, {}, at);
+        if (f.distance < nearest.distance) nearest = f;
+        if (nearest.distance <= 1e-12 * (norm(p) + 1e-300)) break;
+    }
+    return nearest.at;
+}
+
+std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
+    if (const auto* e = std::get_if<Extrusion>(s_)) {
+        if (axis == 0) return Line<3>{jet<0>(e->profile, wrapped({{at, 0}})[0]).value(), e->direction};
+        return std::visit(
+            [&](const auto& c) -> std::optional<CurveGeometry<3>> {
+                using C = std::remove_cvref_t<decltype(c)>;
+                const Vec<3> by = at * e->direction;
+                if constexpr (std::same_as<C, Line<3>>)
+                    return Line<3>{c.origin + by, c.direction};
+                else if constexpr (std::same_as<C, Conic<3>>)
+                    return Conic<3>{c.kind, c.centre + by, c.x, c.y};
+                else
+                    return std::nullopt;
+            },
+            e->profile);
+    }
+    if (const auto* r = std::get_if<Revolution>(s_)) {
+        const auto turn = [&](const Vec<3>& d) {
+            const Vec<3> along = dot(d, r->axis) * r->axis, out = d - along;
+            return along + std::cos(at) * out + std::sin(at) * cross(r->axis, out);
+        };
+        if (axis == 1) {
+            const Vec<3> p = jet<0>(r->profile, wrapped({{0, at}})[1]).value(), d = p - r->origin;
+            const Vec<3> along = dot(d, r->axis) * r->axis;
+            return Conic<3>{ConicKind::ellipse, r->origin + along, d - along, cross(r->axis, d - along)};
+        }
+        return std::visit(
+            [&](const auto& c) -> std::optional<CurveGeometry<3>> {
+                using C = std::remove_cvref_t<decltype(c)>;
+                if constexpr (std::same_as<C, Line<3>>)
+                    return Line<3>{r->origin + turn(c.origin - r->origin), turn(c.direction)};
+                else if constexpr (std::same_as<C, Conic<3>>)
+                    return Conic<3>{c.kind, r->origin + turn(c.centre - r->origin), turn(c.x), turn(c.y)};
+                else
+                    return std::nullopt;
+            },
+            r->profile);
+    }
+    return std::visit(
+        [&](const auto& s) -> std::optional<CurveGeometry<3>> {
+            if constexpr (requires { s.net(); })
+                return freiform::iso(s, axis, wrapped({{at, at}})[axis]);
+            else
+                return std::nullopt;
+        },
+        *s_);
+}
+
+}  // namespace freiform::step

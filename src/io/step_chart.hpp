@@ -1,0 +1,67 @@
+// A surface as the boundaries of faces see it: which parameters are periodic, where it shrinks to a point,
+// and which parameters a point of it has.
+#pragma once
+#include <freiform/spline/geometry.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace freiform::step {
+
+// All points with parameter `axis` equal to `at` are one.
+struct Pole {
+    int axis = 1;
+    double at = 0;
+    Vec<3> point{};
+};
+
+struct Foot {
+    Vec<2> at{}, slope{};  // the parameters, and their derivative by that of the curve
+    double distance = 0;   // of the point of the surface there
+    bool regular = false;  // false: at a pole or a fold, where `slope` means nothing
+};
+
+class Chart {
+public:
+    // `close`: points nearer than this are one.
+    Chart(const SurfaceGeometry& surface, double close);
+
+    const SurfaceGeometry& surface() const { return *s_; }
+    // 0: not periodic. Of splines that close, the length of their domain.
+    double period(int axis) const { return period_[std::size_t(axis)]; }
+    const std::vector<Pole>& poles() const { return poles_; }
+    // The parameters that cover the surface once; infinite where it does not end.
+    const std::array<Interval, 2>& whole() const { return whole_; }
+    // Whether parameter `axis` is that of a spline, which has to be unwound where a face crosses its ends.
+    bool is_spline(int axis) const { return spline_[std::size_t(axis)]; }
+
+    // Parameters outside of a spline moved into it.
+    Vec<2> wrapped(Vec<2> uv) const;
+    Vec<3> point(const Vec<2>& uv) const { return jet<0>(*s_, wrapped(uv).c).value(); }
+    // Newton's method towards the nearest point, from a guess; `target`: a point and how it moves.
+    Foot foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess) const;
+    // Parameters of the nearest point, or of one that is nearly so.
+    Vec<2> locate(const Vec<3>& p) const;
+    // The curve in space where parameter `axis` is `at`, as a function of the other one; nothing for offsets.
+    std::optional<CurveGeometry<3>> iso(int axis, double at) const;
+
+private:
+    void profile_traits(const CurveGeometry<3>& profile, int axis, double close);
+    void poles_of(const Revolution& s, double close);
+    void poles_of_sides(double close);
+    std::optional<Vec<2>> closed_form(const Vec<3>& p) const;
+    void make_grid() const;
+
+    const SurfaceGeometry* s_;
+    std::array<double, 2> period_{};
+    std::array<Interval, 2> whole_{};
+    std::array<bool, 2> spline_{};
+    std::vector<Pole> poles_;
+    struct Sample {
+        Vec<2> at;
+        Vec<3> point;
+    };
+    mutable std::vector<Sample> grid_;
+};
+
+}  // namespace freiform::step

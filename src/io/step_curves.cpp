@@ -1,0 +1,413 @@
+// Curves. The standard fixes their parametrisation, which is kept: of lines point + t vector, of conics
+//
+//     circle, ellipse   C + a cos t X + b sin t Y        hyperbola  C + a cosh t X + b sinh t Y
+//     parabola          C + f (t^2 X + 2 t Y)
+//
+// and of splines by their knots, which subtypes without knots imply. Wrappings (trimmed curves, curves on
+// surfaces, replicas) are taken off one by one, in a loop and not on the stack.
+//
+// Directions. A frame is made of unit vectors, from an axis and a direction that need not be orthogonal; one
+// that is already of length 1 and orthogonal within rounding is taken as it stands, so that what was written
+// with full precision comes back with the same bits.
+//
+// References: ISO 10303-42:2014, 4.4 (placements, curves).
+#include "step_geometry.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace freiform::step {
+
+namespace {
+
+constexpr int kMostWrappings = 100;
+
+// Unit length, but not touched if it already has it.
+Vec<3> normalised(const Vec<3>& d) { return norm(d) == 1 ? d : unit(d); }
+
+// Some vector across z, as the standard chooses it.
+Vec<3> first_axis(const Vec<3>& z) {
+    const Vec<3> d = std::abs(z[0]) == 1 && z[1] == 0 && z[2] == 0 ? Vec<3>{{0, 1, 0}} : Vec<3>{{1, 0, 0}};
+    return unit(d - dot(d, z) * z);
+}
+
+Placement frame(const Vec<3>& o, const Vec<3>& z, std::optional<Vec<3>> toward) {
+    Placement p;
+    p.o = o, p.z = z;
+    p.x = first_axis(z);
+    if (toward) {
+        const double skew = dot(*toward, z);
+        if (const Vec<3> x = *toward - skew * z; norm(x) > 1e-9)
+            p.x = std::abs(skew) <= 4 * kUnitRoundoff ? *toward : unit(x);
+    }
+    p.y = cross(p.z, p.x);
+    return p;
+}
+
+// The knots that subtypes imply. Empty: none is of this type.
+std::vector<double> implied_knots(const File& f, std::uint32_t i, std::string_view kind, int degree,
+                                  int size) {
+    const bool curve = kind == "CURVE";
+    const auto has = [&](Type c, Type s) { return f.is(i, curve ? c : s); };
+    std::vector<double> t;
+    if (has(Type::BEZIER_CURVE, Type::BEZIER_SURFACE)) {
+        if ((size - 1) % degree != 0) return t;
+        const int pieces = (size - 1) / degree;
+        t.push_back(0);
+        for (int k = 0; k <= pieces; ++k) t.insert(t.end(), std::size_t(degree), k);
+        t.push_back(pieces);
+    } else if (has(Type::QUASI_UNIFORM_CURVE, Type::QUASI_UNIFORM_SURFACE)) {
+        t.assign(std::size_t(degree), 0);
+        for (int k = 0; k <= size - degree; ++k) t.push_back(k);
+        t.insert(t.end(), std::size_t(degree), size - degree);
+    } else if (has(Type::UNIFORM_CURVE, Type::UNIFORM_SURFACE)) {
+        for (int k = 0; k <= size + degree; ++k) t.push_back(k - degree);
+    }
+    return t;
+}
+
+}  // namespace
+
+// Knots with their multiplicities written out. `what`: "CURVE" or "SURFACE", whose subtypes imply knots.
+Result<BSplineBasis> knots_of(const File& f, std::uint32_t i, const Fields* with_knots, int multiplicities,
+                              int knots, std::string_view what, int degree, int size) {
+    if (degree < 1 || degree > kMaxDegree)
+        return refuse(degree > kMaxDegree ? RefusalKind::unsupported : RefusalKind::invalid, f.label(i),
+                      text("has the degree ", degree, "; 1 to ", kMaxDegree, " are read"));
+    std::vector<double> t;
+    if (with_knots != nullptr) {
+        const auto m = with_knots->integers(multiplicities, "multiplicities");
+        if (!m) return std::unexpected(m.error());
+        const auto k = with_knots->numbers(knots, "knots");
+        if (!k) return std::unexpected(k.error());
+        if (m->size() != k->size())
+            return with_knots->refused(text("has ", m->size(), " multiplicities for ", k->size(), " knots"),
+                                       RefusalKind::invalid);
+        for (std::size_t j = 0; j < k->size(); ++j) {
+            if ((*m)[j] < 1 || (*m)[j] > degree + 1)
+                return with_knots->refused(
+                    text("has a knot of multiplicity ", (*m)[j], " with degree ", degree),
+                    RefusalKind::invalid);
+            t.insert(t.end(), std::size_t((*m)[j]), (*k)[j]);
+        }
+    } else {
+        t = implied_knots(f, i, what, degree, size);
+        if (t.empty())
+            return refuse(RefusalKind::invalid, f.label(i),
+                          "is a spline that neither has knots nor implies them");
+    }
+    auto basis = BSplineBasis::make(degree, std::move(t));
+    if (!basis)
+        return refuse(basis.error().kind, f.label(i), text(basis.error().where, ": ", basis.error().message));
+    if (basis->size() != size)
+        return refuse(RefusalKind::invalid, f.label(i),
+                      text("has ", size, " control points; its knots ask for ", basis->size()));
+    return basis;
+}
+
+Result<Vec<3>> GeometryReader::triple(const Fields& f, int i, std::string_view what) const {
+    const auto c = f.numbers(i, what);
+    if (!c) return std::unexpected(c.error());
+    if (c->empty() || c->size() > 3) return f.refused(text("has ", c->size(), " coordinates"));
+    Vec<3> p{};
+    for (std::size_t k = 0; k < c->size(); ++k) p[int(k)] = (*c)[k];
+    return p;
+}
+
+Result<Vec<3>> GeometryReader::point(std::uint32_t i) const {
+    const auto f = Fields::of(f_, i, Type::CARTESIAN_POINT, 1);
+    if (!f) return std::unexpected(f.error());
+    return triple(*f, f->size() - 1, "coordinates");  // a part of a complex instance has no name
+}
+
+Result<Vec<3>> GeometryReader::direction(std::uint32_t i) const {
+    const auto f = Fields::of(f_, i, Type::DIRECTION, 2);
+    if (!f) return std::unexpected(f.error());
+    const auto d = triple(*f, 1, "ratios");
+    if (!d) return d;
+    if (max_abs(*d) == 0) return f->refused("is a direction of length 0", RefusalKind::invalid);
+    return normalised(*d);
+}
+
+Result<Vec<3>> GeometryReader::vector(std::uint32_t i) const {
+    const auto f = Fields::of(f_, i, Type::VECTOR, 3);
+    if (!f) return std::unexpected(f.error());
+    const auto at = f->reference(1, "orientation");
+    if (!at) return std::unexpected(at.error());
+    const auto length = f->number(2, "magnitude");
+    if (!length) return std::unexpected(length.error());
+    const auto ratios = Fields::of(f_, *at, Type::DIRECTION, 2);
+    if (!ratios) return std::unexpected(ratios.error());
+    const auto d = triple(*ratios, 1, "ratios");
+    if (!d) return d;
+    if (max_abs(*d) == 0) return ratios->refused("is a direction of length 0", RefusalKind::invalid);
+    if (!(*length > 0)) return f->refused(text("has the magnitude ", *length), RefusalKind::invalid);
+    return norm(*d) == *length ? *d : *length * unit(*d);
+}
+
+Result<Placement> GeometryReader::placement(std::uint32_t i) const {
+    const bool full = f_.is(i, Type::AXIS2_PLACEMENT_3D), single = f_.is(i, Type::AXIS1_PLACEMENT);
+    const auto f = Fields::of(f_, i, single ? Type::AXIS1_PLACEMENT : Type::AXIS2_PLACEMENT_3D, 2);
+    if (!f) return std::unexpected(f.error());
+    const auto at = f->reference(1, "location");
+    if (!at) return std::unexpected(at.error());
+    const auto o = point(*at);
+    if (!o) return std::unexpected(o.error());
+    Vec<3> z{{0, 0, 1}};
+    std::optional<Vec<3>> x;
+    for (int k = 2; k <= (full ? 3 : 2); ++k) {
+        if (f->is_omitted(k)) continue;
+        const auto d = f->reference(k, k == 2 ? "axis" : "reference direction");
+        if (!d) return std::unexpected(d.error());
+        const auto v = direction(*d);
+        if (!v) return std::unexpected(v.error());
+        if (k == 2)
+            z = *v;
+        else
+            x = *v;
+    }
+    return frame(*o, z, x);
+}
+
+Result<GeometryReader::Operator> GeometryReader::transformation(std::uint32_t i) const {
+    const std::uint32_t list = f_.part(i, Type::CARTESIAN_TRANSFORMATION_OPERATOR_3D);
+    if (list == kMissing) {
+        const auto p = placement(i);
+        if (!p) return std::unexpected(p.error());
+        return Operator{*p, 1};
+    }
+    // name (twice: of the item and of the transformation), axis1, axis2, origin, scale, axis3
+    const Fields f(f_, i, list);
+    int k = 0;
+    while (k < f.size() && f.is(k, TokenKind::string)) ++k;
+    std::array<std::optional<Vec<3>>, 3> axis;
+    const auto read = [&](int field, int which) -> Result<void> {
+        if (f.is_omitted(field)) return {};
+        const auto d = f.reference(field, "axis");
+        if (!d) return std::unexpected(d.error());
+        const auto v = direction(*d);
+        if (!v) return std::unexpected(v.error());
+        axis[std::size_t(which)] = *v;
+        return {};
+    };
+    for (const auto& [field, which] : {std::pair(k, 0), std::pair(k + 1, 1), std::pair(k + 4, 2)})
+        if (auto ok = read(field, which); !ok) return std::unexpected(ok.error());
+    const auto at = f.reference(k + 2, "origin");
+    if (!at) return std::unexpected(at.error());
+    const auto o = point(*at);
+    if (!o) return std::unexpected(o.error());
+    Operator made;
+    if (!f.is_omitted(k + 3)) {
+        const auto s = f.number(k + 3, "scale");
+        if (!s) return std::unexpected(s.error());
+        if (!(*s > 0)) return f.refused(text("has the scale ", *s), RefusalKind::invalid);
+        made.scale = *s;
+    }
+    made.to = frame(*o, axis[2].value_or(Vec<3>{{0, 0, 1}}), axis[0]);
+    if (axis[1] && dot(*axis[1], made.to.y) < 0) made.to.y = -made.to.y;
+    return made;
+}
+
+Result<CurveGeometry<3>> GeometryReader::conic(std::uint32_t i, Type type) const {
+    const bool one = type == Type::CIRCLE || type == Type::PARABOLA;
+    const auto f = Fields::of(f_, i, type, one ? 3 : 4);
+    if (!f) return std::unexpected(f.error());
+    const auto at = f->reference(1, "position");
+    if (!at) return std::unexpected(at.error());
+    const auto p = placement(*at);
+    if (!p) return std::unexpected(p.error());
+    const auto a = f->number(2, one ? "radius" : "first semi-axis");
+    if (!a) return std::unexpected(a.error());
+    const auto b = one ? a : f->number(3, "second semi-axis");
+    if (!b) return std::unexpected(b.error());
+    if (!(*a > 0) || !(*b > 0))
+        return f->refused(text("has the radius ", std::min(*a, *b)), RefusalKind::invalid);
+    if (type == Type::PARABOLA) return Conic<3>{ConicKind::parabola, p->o, *a * p->x, 2 * *a * p->y};
+    return Conic<3>{type == Type::HYPERBOLA ? ConicKind::hyperbola : ConicKind::ellipse, p->o, *a * p->x,
+                    *b * p->y};
+}
+
+Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) const {
+    constexpr Type kNamed[] = {Type::B_SPLINE_CURVE_WITH_KNOTS, Type::BEZIER_CURVE, Type::UNIFORM_CURVE,
+                               Type::QUASI_UNIFORM_CURVE, Type::B_SPLINE_CURVE};
+    const bool complex = f_.type(i) == Type::unknown;
+    std::uint32_t main = complex ? f_.part(i, Type::B_SPLINE_CURVE) : kMissing;
+    for (const Type t : kNamed)
+        if (main == kMissing && !complex) main = f_.part(i, t);
+    if (main == kMissing)
+        return refuse(RefusalKind::unreadable, f_.label(i), "is a spline without control points");
+    const Fields f(f_, i, main);
+    const int first = complex ? 0 : 1;
+    const auto degree = f.integer(first, "degree");
+    if (!degree) return std::unexpected(degree.error());
+    const auto ids = f.references(first + 1, "control points");
+    if (!ids) return std::unexpected(ids.error());
+    const std::uint32_t list = f_.part(i, Type::B_SPLINE_CURVE_WITH_KNOTS);
+    const std::optional<Fields> with =
+        list == kMissing ? std::nullopt : std::optional<Fields>(Fields(f_, i, list));
+    const int k = complex ? 0 : 6;
+    auto basis = knots_of(f_, i, with ? &*with : nullptr, k, k + 1, "CURVE", *degree, int(ids->size()));
+    if (!basis) return std::unexpected(basis.error());
+    std::vector<Vec<3>> points;
+    points.reserve(ids->size());
+    for (const std::uint32_t id : *ids) {
+        const auto p = point(id);
+        if (!p) return std::unexpected(p.error());
+        points.push_back(*p);
+    }
+    const int size = int(points.size());
+    const auto within = [&](Refusal r) {
+        return refuse(r.kind, f_.label(i), text(r.where, ": ", r.message));
+    };
+    if (const std::uint32_t rational = f_.part(i, Type::RATIONAL_B_SPLINE_CURVE); rational != kMissing) {
+        const Fields g(f_, i, rational);
+        const auto w = g.numbers(g.size() - 1, "weights");
+        if (!w) return std::unexpected(w.error());
+        auto net = make_rational<3>(points, *w);
+        if (!net) return within(net.error());
+        auto made = Curve<Hom<3>>::make({std::move(*basis)}, Net<1, Hom<3>>({size}, std::move(*net)));
+        if (!made) return within(made.error());
+        return CurveGeometry<3>(std::move(*made));
+    }
+    auto made = Curve<Vec<3>>::make({std::move(*basis)}, Net<1, Vec<3>>({size}, std::move(points)));
+    if (!made) return within(made.error());
+    return CurveGeometry<3>(std::move(*made));
+}
+
+Result<BoundedCurve> GeometryReader::basic_curve(std::uint32_t i) {
+    for (const Type t : {Type::CIRCLE, Type::ELLIPSE, Type::HYPERBOLA, Type::PARABOLA})
+        if (f_.is(i, t)) {
+            auto c = conic(i, t);
+            if (!c) return std::unexpected(c.error());
+            return BoundedCurve{std::move(*c), false, std::nullopt};
+        }
+    if (f_.is(i, Type::LINE)) {
+        const auto f = Fields::of(f_, i, Type::LINE, 3);
+        if (!f) return std::unexpected(f.error());
+        const auto at = f->reference(1, "point"), along = f->reference(2, "vector");
+        if (!at || !along) return std::unexpected(at ? along.error() : at.error());
+        const auto o = point(*at);
+        if (!o) return std::unexpected(o.error());
+        const auto d = vector(*along);
+        if (!d) return std::unexpected(d.error());
+        return BoundedCurve{Line<3>{*o, *d}, false, std::nullopt};
+    }
+    if (f_.is(i, Type::POLYLINE)) {
+        const auto f = Fields::of(f_, i, Type::POLYLINE, 2);
+        if (!f) return std::unexpected(f.error());
+        const auto ids = f->references(1, "points");
+        if (!ids) return std::unexpected(ids.error());
+        if (ids->size() < 2) return f->refused("has fewer than two points", RefusalKind::invalid);
+        std::vector<Vec<3>> points;
+        for (const std::uint32_t id : *ids) {
+            const auto p = point(id);
+            if (!p) return std::unexpected(p.error());
+            points.push_back(*p);
+        }
+        const int size = int(points.size());
+        auto basis = BSplineBasis::clamped_uniform(1, size);
+        if (!basis) return std::unexpected(basis.error());
+        auto made = Curve<Vec<3>>::make({std::move(*basis)}, Net<1, Vec<3>>({size}, std::move(points)));
+        if (!made) return refuse(made.error().kind, f_.label(i), made.error().message);
+        return BoundedCurve{std::move(*made), false, std::nullopt};
+    }
+    for (const Type t : {Type::B_SPLINE_CURVE, Type::B_SPLINE_CURVE_WITH_KNOTS, Type::BEZIER_CURVE,
+                         Type::UNIFORM_CURVE, Type::QUASI_UNIFORM_CURVE})
+        if (f_.is(i, t)) {
+            auto c = spline_curve(i);
+            if (!c) return std::unexpected(c.error());
+            return BoundedCurve{std::move(*c), false, std::nullopt};
+        }
+    return refuse(RefusalKind::unsupported, f_.label(i),
+                  text("is a curve that has no exact counterpart here (byte ", f_.instances[i].at, ")"));
+}
+
+// The part that TRIMMED_CURVE leaves of its basis curve.
+Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis) const {
+    const auto f = Fields::of(f_, i, Type::TRIMMED_CURVE, 5);
+    if (!f) return std::unexpected(f.error());
+    const bool conic = std::holds_alternative<Conic<3>>(basis.curve);
+    const bool ellipse = conic && std::get<Conic<3>>(basis.curve).kind == ConicKind::ellipse;
+    const bool prefers_points = f->enumeration(5) == "CARTESIAN";
+    std::array<double, 2> t{};
+    for (int end = 0; end < 2; ++end) {
+        if (!f->is(2 + end, TokenKind::list)) return f->expected(2 + end, "trim", "a list");
+        std::optional<double> parameter, projected;
+        std::optional<Refusal> bad;
+        each_item(f_, f->list(2 + end), [&](std::uint32_t k) {
+            const Token& token = f_.tokens[k];
+            if (token.kind == TokenKind::keyword) {
+                const auto x = f->numbers_at(k + 1, "trim");
+                if (!x)
+                    bad = x.error();
+                else if (!x->empty())
+                    parameter = x->front() * (conic && ellipse ? angle : 1.0);
+            } else if (token.kind == TokenKind::reference && token.at != kMissing) {
+                if (const auto p = point(token.at)) {
+                    double distance = 0;
+                    projected = parameter_of(basis.curve, *p, distance);
+                }
+            }
+        });
+        if (bad) return std::unexpected(*bad);
+        if (!parameter && !projected) return f->refused("has a trim that is neither a point nor a parameter");
+        t[std::size_t(end)] = parameter && !(prefers_points && projected) ? *parameter : *projected;
+    }
+    const bool backward = !f->flag(4);
+    double lo = backward ? t[1] : t[0], hi = backward ? t[0] : t[1];
+    if (ellipse) {
+        while (hi <= lo && std::abs(lo) < 1e6) hi += kTwoPi;
+    }
+    basis.reversed = basis.reversed != backward;
+    if (lo < hi) basis.range = Interval{lo, hi};
+    return basis;
+}
+
+Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
+    if (const auto known = curves_.find(i); known != curves_.end()) return known->second;
+    std::vector<std::uint32_t> wrappings;
+    std::uint32_t at = i;
+    for (;;) {
+        if (wrappings.size() > kMostWrappings)
+            return refuse(RefusalKind::invalid, f_.label(i), "is a curve that refers to itself, or too deep");
+        int field = -1;
+        for (const Type t : {Type::TRIMMED_CURVE, Type::SURFACE_CURVE, Type::SEAM_CURVE,
+                             Type::INTERSECTION_CURVE, Type::CURVE_REPLICA})
+            if (f_.is(at, t) && field < 0) {
+                const Fields f(f_, at, f_.part(at, t));
+                field = f_.type(at) == Type::unknown ? 0 : 1;
+                const auto next = f.reference(field, "curve");
+                if (!next) return std::unexpected(next.error());
+                wrappings.push_back(at);
+                at = *next;
+            }
+        if (field < 0) break;
+    }
+    auto c = basic_curve(at);
+    for (; c && !wrappings.empty(); wrappings.pop_back()) {
+        const std::uint32_t w = wrappings.back();
+        if (f_.is(w, Type::TRIMMED_CURVE)) {
+            c = trimmed(w, std::move(*c));
+        } else if (f_.is(w, Type::CURVE_REPLICA)) {
+            const auto f = Fields::of(f_, w, Type::CURVE_REPLICA, 3);
+            if (!f) return std::unexpected(f.error());
+            const auto by = f->reference(2, "transformation");
+            if (!by) return std::unexpected(by.error());
+            const auto to = transformation(*by);
+            if (!to) return std::unexpected(to.error());
+            Motion m = motion_to(to->to);
+            m.scale = to->scale;
+            c->curve = moved(c->curve, m);
+        }
+    }
+    if (c) {
+        if (auto ok = check(c->curve); !ok) return refuse(ok.error().kind, f_.label(i), ok.error().message);
+        curves_.emplace(i, *c);
+    }
+    return c;
+}
+
+}  // namespace freiform::step

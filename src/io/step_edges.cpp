@@ -1,0 +1,178 @@
+// Vertices and edges. An edge of the model runs along its curve with growing parameter; an EDGE_CURVE that
+// runs against its curve becomes an edge that its uses run through backwards.
+//
+// The parameters of the ends. The file gives the end points and the curve; the parameters are those of the
+// nearest points of the curve: the ends of a spline, if they are as near as the file promises.
+#include "step_shape.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+int ShapeReader::vertex_at(std::uint32_t point, const Vec<3>& p) {
+    const auto [at, fresh] = points_.emplace(point, int(out_.model.vertices.size()));
+    if (fresh) out_.model.vertices.push_back({p, 0});
+    return at->second;
+}
+
+Result<int> ShapeReader::vertex(std::uint32_t i) {
+    if (const auto known = vertices_.find(i); known != vertices_.end()) return known->second;
+    const auto f = Fields::of(f_, i, Type::VERTEX_POINT, 1);
+    if (!f) return std::unexpected(f.error());
+    const auto at = f->reference(f->size() - 1, "point");
+    if (!at) return std::unexpected(at.error());
+    const auto p = geometry_.point(*at);
+    if (!p) return std::unexpected(p.error());
+    const int v = int(out_.model.vertices.size());
+    out_.model.vertices.push_back({*p, 0});
+    vertices_.emplace(i, v);
+    return v;
+}
+
+// Between vertices of a POLY_LOOP.
+Result<ShapeReader::EdgeMade> ShapeReader::straight_edge(int from, int to) {
+    const bool flipped = from > to;
+    if (flipped) std::swap(from, to);
+    const auto key = (std::uint64_t(std::uint32_t(from)) << 32) | std::uint32_t(to);
+    const auto known = straight_.find(key);
+    if (known != straight_.end()) return EdgeMade{known->second.edge, flipped, known->second.empty};
+    const Vec<3> a = out_.model.vertices[std::size_t(from)].point,
+                 b = out_.model.vertices[std::size_t(to)].point;
+    EdgeMade made;
+    const double length = norm(b - a);
+    made.empty = !(length > 0);
+    if (!made.empty) {
+        Edge e;
+        e.curve = Line<3>{a, (1 / length) * (b - a)};
+        e.range = {0, length};
+        e.start = from, e.end = to, e.tolerance = tolerance_;
+        made.edge = int(out_.model.edges.size());
+        out_.model.edges.push_back(std::move(e));
+    }
+    straight_.emplace(key, made);
+    made.flipped = flipped;
+    return made;
+}
+
+Result<ShapeReader::EdgeMade> ShapeReader::edge(std::uint32_t i) {
+    if (const auto known = edges_.find(i); known != edges_.end()) return known->second;
+    auto made = make_edge(i);
+    if (made) edges_.emplace(i, *made);
+    return made;
+}
+
+Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
+    const auto f = Fields::of(f_, i, Type::EDGE_CURVE, 5);
+    if (!f) return std::unexpected(f.error());
+    std::array<int, 2> end{};
+    for (int k = 0; k < 2; ++k) {
+        const auto at = f->reference(1 + k, "vertex");
+        if (!at) return std::unexpected(at.error());
+        const auto v = vertex(*at);
+        if (!v) return std::unexpected(v.error());
+        end[std::size_t(k)] = *v;
+    }
+    const auto at = f->reference(3, "curve");
+    if (!at) return std::unexpected(at.error());
+    const auto c = geometry_.curve(*at);
+    if (!c) return std::unexpected(c.error());
+    EdgeMade made;
+    made.flipped = f->flag(4) == c->reversed;
+    if (made.flipped) std::swap(end[0], end[1]);
+    const Vec<3> a = out_.model.vertices[std::size_t(end[0])].point,
+                 b = out_.model.vertices[std::size_t(end[1])].point;
+    const Interval whole = domain(c->curve)[0];
+    const auto* conic = std::get_if<Conic<3>>(&c->curve);
+    const bool periodic = conic != nullptr && conic->kind == ConicKind::ellipse,
+               line = std::holds_alternative<Line<3>>(c->curve);
+    const bool spline = conic == nullptr && !line;
+    double off_a = 0, off_b = 0, lo = 0, hi = 0;
+    const auto at_end = [&](double t, const Vec<3>& p) { return norm(jet<0>(c->curve, t).value() - p); };
+    if (spline && at_end(whole.lo, a) <= tolerance_ && at_end(whole.hi, b) <= tolerance_) {
+        lo = whole.lo, hi = whole.hi;
+        off_a = at_end(lo, a), off_b = at_end(hi, b);
+    } else {
+        lo = parameter_of(c->curve, a, off_a), hi = parameter_of(c->curve, b, off_b);
+        if (spline) {
+            const bool closes =
+                norm(jet<0>(c->curve, whole.lo).value() - jet<0>(c->curve, whole.hi).value()) <= tolerance_;
+            // Where it closes, its ends are one point.
+            if (closes && at_end(whole.lo, a) <= tolerance_) lo = whole.lo;
+            if (closes && at_end(whole.hi, b) <= tolerance_) hi = whole.hi;
+            if (closes && !(lo < hi)) {
+                // Over the end of the curve: one spline from there on.
+                SurfaceGeometry sheet = Extrusion{c->curve, {{1, 0, 0}}};
+                const Chart chart(sheet, tolerance_);
+                Box<2> on;
+                on.add(Vec<2>{{lo, 0}});
+                hi += whole.length();
+                on.add(Vec<2>{{hi, 0}});
+                if (chart.period(0) > 0) {
+                    Edge e;
+                    const SurfaceGeometry longer = unwound(sheet, chart, on);
+                    e.curve = std::get<Extrusion>(longer).profile;
+                    e.range = {lo, hi};
+                    e.start = end[0], e.end = end[1], e.tolerance = std::max({tolerance_, off_a, off_b});
+                    if (domain(*e.curve)[0].contains(hi)) {
+                        e.name = f->string(0);
+                        made.edge = int(out_.model.edges.size());
+                        out_.model.edges.push_back(std::move(e));
+                        return made;
+                    }
+                }
+            }
+        }
+        if (periodic) {
+            lo -= std::floor(lo / kTwoPi + 1e-12) * kTwoPi;
+            if (std::abs(lo) < 1e-15) lo = 0;
+            hi = lo + (hi - lo) - std::floor((hi - lo) / kTwoPi) * kTwoPi;
+            const double radius = std::max(norm(conic->x), norm(conic->y));
+            if (end[0] == end[1] || hi - lo <= 1e-12 || (hi - lo) * radius <= 1e-3 * tolerance_)
+                hi = lo + kTwoPi;
+        }
+    }
+    if (!(lo < hi) || (!periodic && end[0] == end[1] &&
+                       norm(jet<0>(c->curve, lo + (hi - lo) / 2).value() - a) <= tolerance_)) {
+        if (norm(a - b) <= tolerance_) {
+            made.empty = true;
+            return made;
+        }
+        // A spline that is given backwards, or a sense that is wrong.
+        if (lo > hi && !periodic && f_.is(*at, Type::TRIMMED_CURVE) == false && lo - hi > 0) {
+            std::swap(lo, hi);
+            std::swap(end[0], end[1]);
+            made.flipped = !made.flipped;
+            report(int(out_.model.edges.size()),
+                   text(f_.label(i),
+                        " runs against its curve, though it says that it does not; it is taken as it runs"),
+                   0.0, 0);
+        } else {
+            return f->refused(text("runs over the empty range [", lo, ", ", hi, "] of its curve"),
+                              RefusalKind::invalid);
+        }
+    }
+    Edge e;
+    e.curve = c->curve;
+    e.range = {lo, hi};
+    e.start = end[0], e.end = end[1];
+    e.tolerance = tolerance_;
+    e.name = f->string(0);
+    if (e.name == "NONE") e.name.clear();
+    if (const double off = std::max(off_a, off_b); off > tolerance_) {
+        report(int(out_.model.edges.size()),
+               text(f_.label(i), " ends ", off, " from its vertex; the file says at most ", tolerance_),
+               std::nullopt, off);
+        for (const int v : end) {
+            Vertex& x = out_.model.vertices[std::size_t(v)];
+            x.tolerance = std::max(x.tolerance, off);
+        }
+    }
+    made.edge = int(out_.model.edges.size());
+    out_.model.edges.push_back(std::move(e));
+    return made;
+}
+
+}  // namespace freiform::step

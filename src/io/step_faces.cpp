@@ -1,0 +1,287 @@
+// Faces. A face is taken on its surface as it stands: its loops run counter-clockwise in the parameters, and
+// the flag `reversed` turns its normal. So the edges of a face whose normal is against that of its surface
+// are run through the other way.
+#include "step_shape.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/model/edge_gap.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+namespace {
+
+// Relative to the size of the face: parameter curves follow their edges as well as this; those that are
+// further off than kHopeless describe another face.
+constexpr double kFollows = 1e-9, kHopeless = 0.25;
+// Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
+// believed, of what the file promises.
+constexpr double kMargin = 1.5;
+
+}  // namespace
+
+Result<ShapeReader::SurfaceMade*> ShapeReader::surface(std::uint32_t i) {
+    if (const auto known = surfaces_.find(i); known != surfaces_.end()) return known->second.get();
+    auto s = geometry_.surface(i);
+    if (!s) return std::unexpected(s.error());
+    auto made = std::make_unique<SurfaceMade>();
+    made->surface = std::move(*s);
+    made->chart = std::make_unique<Chart>(made->surface, tolerance_);
+    SurfaceMade* at = made.get();
+    surfaces_.emplace(i, std::move(made));
+    return at;
+}
+
+Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size) {
+    const Edge& e = out_.model.edges[std::size_t(made.edge)];
+    auto t = trace(chart, *e.curve, e.range, kFollows * size);
+    if (!t) return std::unexpected(t.error());
+    if (size > 0 && !(t->gap < kHopeless * size))
+        return refuse(RefusalKind::ill_conditioned, "edge",
+                      text("lies ", t->gap, " beside the surface; the face has a size of ", size));
+    Use u = make_use({made.edge, forward == made.flipped, std::move(t->curve)}, e);
+    u.gap = t->gap;
+    u.fitted = t->fitted;
+    return u;
+}
+
+Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
+                                    LoopBuilder& loops) {
+    const bool outer = f_.is(i, Type::FACE_OUTER_BOUND);
+    const auto f = Fields::of(f_, i, outer ? Type::FACE_OUTER_BOUND : Type::FACE_BOUND, 3);
+    if (!f) return std::unexpected(f.error());
+    if (!f->flag(2)) forward = !forward;
+    const auto at = f->reference(1, "loop");
+    if (!at) return std::unexpected(at.error());
+    std::vector<Use> uses;
+    const auto append = [&](const EdgeMade& made, bool along, std::uint32_t of) -> Result<void> {
+        if (made.empty) return {};
+        auto u = use_of(made, along, chart, size);
+        if (!u) return refuse(u.error().kind, f_.label(of), text(u.error().where, ": ", u.error().message));
+        uses.push_back(std::move(*u));
+        return {};
+    };
+    if (f_.is(*at, Type::VERTEX_LOOP)) {
+        const auto g = Fields::of(f_, *at, Type::VERTEX_LOOP, 2);
+        const auto v = g ? g->reference(1, "vertex") : Result<std::uint32_t>(std::unexpected(g.error()));
+        if (!v) return std::unexpected(v.error());
+        const auto made = vertex(*v);
+        if (!made) return std::unexpected(made.error());
+        loops.add_vertex(*made);
+        return {};
+    }
+    if (f_.is(*at, Type::POLY_LOOP)) {
+        const auto g = Fields::of(f_, *at, Type::POLY_LOOP, 2);
+        const auto ids =
+            g ? g->references(1, "points") : Result<std::vector<std::uint32_t>>(std::unexpected(g.error()));
+        if (!ids) return std::unexpected(ids.error());
+        std::vector<int> corners;
+        for (const std::uint32_t id : *ids) {
+            const auto p = geometry_.point(id);
+            if (!p) return std::unexpected(p.error());
+            corners.push_back(vertex_at(id, *p));
+        }
+        if (corners.size() < 3) return g->refused("has fewer than three points", RefusalKind::invalid);
+        if (!forward) std::reverse(corners.begin(), corners.end());
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const auto made = straight_edge(corners[k], corners[(k + 1) % corners.size()]);
+            if (auto ok = append(*made, true, *at); !ok) return ok;
+        }
+    } else {
+        const auto g = Fields::of(f_, *at, Type::EDGE_LOOP, 2);
+        if (!g) return std::unexpected(g.error());
+        auto ids = g->references(1, "edges");
+        if (!ids) return std::unexpected(ids.error());
+        if (!forward) std::reverse(ids->begin(), ids->end());
+        for (const std::uint32_t id : *ids) {
+            const auto o = Fields::of(f_, id, Type::ORIENTED_EDGE, 5);
+            if (!o) return std::unexpected(o.error());
+            const auto of = o->reference(3, "edge");
+            if (!of) return std::unexpected(of.error());
+            const auto made = edge(*of);
+            if (!made) return std::unexpected(made.error());
+            if (auto ok = append(*made, o->flag(4) == forward, *of); !ok) return ok;
+        }
+    }
+    if (uses.empty()) return {};
+    for (std::size_t k = 0; k < uses.size(); ++k) {
+        const Use &a = uses[k], &b = uses[(k + 1) % uses.size()];
+        if (a.to == b.from) continue;
+        const double apart = norm(out_.model.vertices[std::size_t(a.to)].point -
+                                  out_.model.vertices[std::size_t(b.from)].point);
+        if (apart > std::max(tolerance_, 1e-6 * size))
+            return refuse(
+                RefusalKind::invalid, f_.label(*at),
+                text("is not closed: its edge ", k + 1, " ends ", apart, " from where the next one begins"));
+    }
+    loops.add(std::move(uses));
+    return {};
+}
+
+// The loops of the face, its surface over all of them, and what its parameter curves miss.
+Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i,
+                                     double size) {
+    auto made = loops.finish();
+    if (!made) return std::unexpected(made.error());
+    Box<2> box;
+    bool prove = false;
+    for (const auto& uses : *made)
+        for (const Use& u : uses) {
+            const Edge& e = out_.model.edges[std::size_t(u.coedge.edge)];
+            for (int k = 0; k <= 4; ++k)
+                box.add(jet<0>(u.coedge.curve, e.range.lo + e.range.length() * k / 4).value());
+            prove = prove || u.fitted || kMargin * u.gap > e.tolerance;
+        }
+    face.surface = unwound(chart.surface(), chart, box);
+    std::optional<DerivativeQuery<2, 3>> query;
+    if (prove) query.emplace(face.surface);
+    if (!loops.note.empty()) report(-1, text(f_.label(i), ": ", loops.note), 0.0, 0);
+    for (auto& uses : *made) {
+        Loop loop;
+        for (Use& u : uses) {
+            Edge& e = out_.model.edges[std::size_t(u.coedge.edge)];
+            const bool beyond = kMargin * u.gap > e.tolerance;
+            if ((u.fitted || beyond) && e.curve) {
+                EdgeGapOptions options;
+                options.target = u.fitted ? std::max(kFollows * size, e.tolerance / 8) : e.tolerance;
+                options.factor = 2;
+                options.max_samples = 4000;
+                const EdgeGap gap = edge_gap(*query, u.coedge.curve, *e.curve, e.range, options);
+                const double found = std::max(u.gap, gap.found);
+                const bool proven = std::isfinite(gap.bound);
+                const double distance = proven ? gap.bound : kMargin * found;
+                std::string what;
+                if (u.fitted)
+                    what = text("its parameter curve on ", f_.label(i), " is a spline that follows it");
+                if (distance > e.tolerance)
+                    what += text(what.empty() ? "" : ", and ", "it lies up to ", found, " beside ",
+                                 f_.label(i), "; the file says at most ", tolerance_);
+                if (!what.empty())
+                    report(u.coedge.edge, std::move(what),
+                           proven ? std::optional<double>(gap.bound) : std::nullopt, distance);
+                e.tolerance = std::max(e.tolerance, distance);
+            }
+            loop.coedges.push_back(std::move(u.coedge));
+        }
+        face.loops.push_back(std::move(loop));
+    }
+    return face;
+}
+
+// The extent of the edges of a face, from points on them.
+Result<double> ShapeReader::size_of(std::uint32_t, const Fields& f) {
+    Box<3> box;
+    const auto bounds = f.references(1, "bounds");
+    if (!bounds) return std::unexpected(bounds.error());
+    for (const std::uint32_t b : *bounds) {
+        const bool outer = f_.is(b, Type::FACE_OUTER_BOUND);
+        const auto g = Fields::of(f_, b, outer ? Type::FACE_OUTER_BOUND : Type::FACE_BOUND, 3);
+        if (!g) return std::unexpected(g.error());
+        const auto at = g->reference(1, "loop");
+        if (!at) return std::unexpected(at.error());
+        if (f_.is(*at, Type::POLY_LOOP)) {
+            const auto ids = Fields(f_, *at, f_.part(*at, Type::POLY_LOOP)).references(1, "points");
+            if (!ids) return std::unexpected(ids.error());
+            for (const std::uint32_t id : *ids)
+                if (const auto p = geometry_.point(id)) box.add(*p);
+            continue;
+        }
+        if (!f_.is(*at, Type::EDGE_LOOP)) continue;
+        const auto ids = Fields(f_, *at, f_.part(*at, Type::EDGE_LOOP)).references(1, "edges");
+        if (!ids) return std::unexpected(ids.error());
+        for (const std::uint32_t id : *ids) {
+            const auto o = Fields::of(f_, id, Type::ORIENTED_EDGE, 5);
+            if (!o) return std::unexpected(o.error());
+            const auto of = o->reference(3, "edge");
+            if (!of) return std::unexpected(of.error());
+            const auto made = edge(*of);
+            if (!made) return std::unexpected(made.error());
+            if (made->empty) continue;
+            const Edge& e = out_.model.edges[std::size_t(made->edge)];
+            const int n = std::holds_alternative<Line<3>>(*e.curve) ? 1 : 6;
+            for (int k = 0; k <= n; ++k)
+                box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * k / n).value());
+        }
+    }
+    return box.diagonal();
+}
+
+Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
+    const auto f = Fields::of(f_, i, type, 4);
+    if (!f) return std::unexpected(f.error());
+    const auto on = f->reference(2, "surface");
+    if (!on) return std::unexpected(on.error());
+    const auto bounds = f->references(1, "bounds");
+    if (!bounds) return std::unexpected(bounds.error());
+    const auto s = surface(*on);
+    if (!s) return std::unexpected(s.error());
+    const Chart& chart = *(*s)->chart;
+    const bool same = f->flag(3);
+    const auto size = size_of(i, *f);
+    if (!size) return std::unexpected(size.error());
+    LoopBuilder loops(chart, out_.model, tolerance_);
+    for (const std::uint32_t b : *bounds)
+        if (auto ok = add_bound(b, same, chart, *size, loops); !ok) return std::unexpected(ok.error());
+    Face face;
+    face.reversed = !same;
+    face.tolerance = tolerance_;
+    return close_face(std::move(face), loops, chart, i, *size);
+}
+
+// A surface that stands for a face: RECTANGULAR_TRIMMED_SURFACE, CURVE_BOUNDED_SURFACE, or any that ends.
+Result<Face> ShapeReader::bare_face(std::uint32_t i) {
+    const auto s = surface(i);
+    if (!s) return std::unexpected(s.error());
+    const Chart& chart = *(*s)->chart;
+    LoopBuilder loops(chart, out_.model, tolerance_);
+    std::array<Interval, 2> on = chart.whole();
+    if (f_.is(i, Type::CURVE_BOUNDED_SURFACE))
+        return refuse(RefusalKind::unsupported, f_.label(i), "is bounded by curves, which are not read yet");
+    if (f_.is(i, Type::RECTANGULAR_TRIMMED_SURFACE)) {
+        const auto f = Fields::of(f_, i, Type::RECTANGULAR_TRIMMED_SURFACE, 6);
+        if (!f) return std::unexpected(f.error());
+        std::array<double, 4> t{};
+        for (int k = 0; k < 4; ++k) {
+            const auto x = f->number(2 + k, "trim");
+            if (!x) return std::unexpected(x.error());
+            const bool turns = chart.period(k / 2) > 0 && !chart.is_spline(k / 2);
+            t[std::size_t(k)] = *x * (turns ? geometry_.angle : 1);
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            on[k] = {std::min(t[2 * k], t[2 * k + 1]), std::max(t[2 * k], t[2 * k + 1])};
+            if (!(on[k].lo < on[k].hi)) return f->refused("is trimmed to nothing", RefusalKind::invalid);
+        }
+    }
+    if (!std::isfinite(on[0].length()) || !std::isfinite(on[1].length()))
+        return refuse(RefusalKind::unsupported, f_.label(i),
+                      "is a surface without end, and bounded by nothing");
+    loops.add_rectangle(on);
+    Face face;
+    face.tolerance = tolerance_;
+    return close_face(std::move(face), loops, chart, i, 0);
+}
+
+int ShapeReader::face(std::uint32_t i) {
+    if (const auto known = faces_.find(i); known != faces_.end()) return known->second;
+    Type type = Type::unknown;
+    for (const Type t : {Type::ADVANCED_FACE, Type::FACE_SURFACE})
+        if (f_.is(i, t)) type = t;
+    auto made = type != Type::unknown ? make_face(i, type) : bare_face(i);
+    int at = -1;
+    if (!made) {
+        refuse_item(i, made.error());
+    } else {
+        const Fields f(f_, i, f_.instances[i].first + 1);
+        made->name = f.string(0);
+        if (made->name == "NONE") made->name.clear();
+        made->colour = colour_of(i);
+        at = int(out_.model.faces.size());
+        out_.model.faces.push_back(std::move(*made));
+    }
+    faces_.emplace(i, at);
+    return at;
+}
+
+}  // namespace freiform::step

@@ -1,0 +1,83 @@
+// Curves and surfaces of STEP files as ours: the same map. Elementary ones stay what they are.
+#pragma once
+#include "step_fields.hpp"
+
+#include <freiform/spline/geometry.hpp>
+
+#include <unordered_map>
+
+namespace freiform::step {
+
+// A right-handed frame of unit vectors.
+struct Placement {
+    Vec<3> o{}, x{{1, 0, 0}}, y{{0, 1, 0}}, z{{0, 0, 1}};
+};
+
+// A curve with what its bounded forms say: the part of it that is meant, if they do, and its sense.
+struct BoundedCurve {
+    CurveGeometry<3> curve;
+    bool reversed = false;          // the entity runs against `curve`
+    std::optional<Interval> range;  // of the parameters of `curve`; none: all of it
+};
+
+// Geometry by instance, converted once. Lengths are in the unit of the file, angles times `angle` are
+// radians.
+class GeometryReader {
+public:
+    explicit GeometryReader(const File& file) : f_(file) {}
+    double angle = 1;
+
+    Result<Vec<3>> point(std::uint32_t i) const;
+    Result<Vec<3>> direction(std::uint32_t i) const;  // of length 1
+    Result<Placement> placement(std::uint32_t i) const;
+    // What CARTESIAN_TRANSFORMATION_OPERATOR_3D does: scale times a frame, which may be left-handed.
+    struct Operator {
+        Placement to;
+        double scale = 1;
+    };
+    Result<Operator> transformation(std::uint32_t i) const;
+
+    Result<BoundedCurve> curve(std::uint32_t i);
+    Result<SurfaceGeometry> surface(std::uint32_t i);
+
+private:
+    Result<Vec<3>> triple(const Fields& f, int i, std::string_view what) const;
+    Result<Vec<3>> vector(std::uint32_t i) const;
+    Result<BoundedCurve> basic_curve(std::uint32_t i);
+    Result<CurveGeometry<3>> spline_curve(std::uint32_t i) const;
+    Result<CurveGeometry<3>> conic(std::uint32_t i, Type type) const;
+    Result<BoundedCurve> trimmed(std::uint32_t i, BoundedCurve basis) const;
+    Result<SurfaceGeometry> basic_surface(std::uint32_t i);
+    Result<SurfaceGeometry> elementary(std::uint32_t i, Type type, double offset) const;
+    Result<SurfaceGeometry> spline_surface(std::uint32_t i) const;
+    Result<CurveGeometry<3>> profile(std::uint32_t i);
+
+    const File& f_;
+    std::unordered_map<std::uint32_t, BoundedCurve> curves_;
+};
+
+// The parameter of the point of the curve that is nearest to `p`, among some tries; `distance` to it.
+double parameter_of(const CurveGeometry<3>& curve, const Vec<3>& p, double& distance);
+
+// The curve that runs backwards, and where the parameter t of the curve is on it.
+CurveGeometry<3> reversed(const CurveGeometry<3>& curve);
+
+// x -> scale (linear x) + offset, with `linear` orthonormal; a mirror if `mirrored`.
+struct Motion {
+    Placement to;  // images of the axes and of the origin
+    double scale = 1;
+    bool mirrored = false;
+    bool is_identity() const;
+    Vec<3> turned(const Vec<3>& d) const { return d[0] * to.x + d[1] * to.y + d[2] * to.z; }
+    Vec<3> direction(const Vec<3>& d) const { return scale * turned(d); }
+    Vec<3> point(const Vec<3>& p) const { return to.o + direction(p); }
+};
+Motion operator*(const Motion& a, const Motion& b);  // first b, then a
+// From coordinates in the frame to space, and back.
+Motion motion_to(const Placement& frame);
+Motion motion_from(const Placement& frame);
+
+CurveGeometry<3> moved(const CurveGeometry<3>& curve, const Motion& by);
+SurfaceGeometry moved(const SurfaceGeometry& surface, const Motion& by);
+
+}  // namespace freiform::step

@@ -1,0 +1,526 @@
+// Idea. The loops of a file bound a face on the surface; in its parameters they need not be closed. Each edge
+// is moved by periods until it begins where the one before it ends. Where a loop passes through a pole, an
+// edge of no length runs along the pole, to the left as seen from the face. A loop that ends whole periods
+// from where it began winds around the surface: two of them, or one and a pole, are joined by a seam, an edge
+// that is used twice. A closed surface on which all loops are holes gets its natural boundary.
+//
+//         v = v1   <---------------            A winds to the right: the face lies above it;
+//              |         B         |           B winds to the left: the face lies below.
+//         seam |       face        | seam
+//              |         A         |           At a pole above, B is an edge of no length.
+//         v = v0   --------------->
+//
+// Why not seams where the parameters begin, as other readers make them: they cut edges in two that the file
+// knows as one, and cross holes.
+#include "step_loops.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+namespace {
+
+constexpr double kNearPole = 1e-6;  // of a parameter, of its period or domain
+constexpr int kOutline = 12;        // points of an edge
+
+double scale_of(const Chart& chart, int axis) {
+    if (chart.period(axis) > 0) return chart.period(axis);
+    const double length = chart.whole()[std::size_t(axis)].length();
+    return std::isfinite(length) ? length : 1;
+}
+
+bool inside(const Vec<2>& p, const std::vector<Vec<2>>& outline) {
+    bool in = false;
+    for (std::size_t i = 0, k = outline.size() - 1; i < outline.size(); k = i++) {
+        const Vec<2>&a = outline[i], &b = outline[k];
+        if ((a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1]))
+            in = !in;
+    }
+    return in;
+}
+
+}  // namespace
+
+Use make_use(Coedge coedge, const Edge& edge) {
+    Use u;
+    u.from = edge.start, u.to = edge.end;
+    u.start = jet<0>(coedge.curve, edge.range.lo).value();
+    u.end = jet<0>(coedge.curve, edge.range.hi).value();
+    if (coedge.reversed) std::swap(u.from, u.to), std::swap(u.start, u.end);
+    u.coedge = std::move(coedge);
+    return u;
+}
+
+Use LoopBuilder::degenerate(int vertex, const Vec<2>& from, const Vec<2>& to) {
+    Edge e;
+    e.degenerate = true;
+    e.start = e.end = vertex;
+    e.tolerance = close_;
+    const int i = int(model_.edges.size());
+    model_.edges.push_back(e);
+    return make_use({i, false, Line<2>{from, to - from}}, e);
+}
+
+const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b) const {
+    for (const Pole& p : chart_.poles()) {
+        const double near = kNearPole * scale_of(chart_, p.axis);
+        const double turn = chart_.period(p.axis);
+        const auto off = [&](double x) {
+            const double d = x - p.at;
+            return std::abs(turn > 0 ? d - std::round(d / turn) * turn : d);
+        };
+        if (off(a[p.axis]) <= near && off(b[p.axis]) <= near) return &p;
+    }
+    return nullptr;
+}
+
+// Puts `next` behind what is done, with an edge along the pole between them if there is one. Closing: `next`
+// is the first one, and stays where it is.
+void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing) {
+    const Pole* pole = pole_at(last.end, next.start);
+    if (pole == nullptr) return;
+    const int o = 1 - pole->axis;
+    const double turn = chart_.period(o);
+    Vec<2> to = next.start;
+    to[pole->axis] = last.end[pole->axis];
+    if (turn > 0 && !closing) {
+        // The side of the pole that the face is on says which way to go.
+        const Edge& e = model_.edges[std::size_t(last.coedge.edge)];
+        const double inner = jet<0>(last.coedge.curve, e.range.middle()).value()[pole->axis];
+        const bool above = inner < last.end[pole->axis];
+        const double sign = (pole->axis == 1) == above ? -1 : 1;
+        double by = std::remainder(next.start[o] - last.end[o], turn);
+        if (std::abs(by) <= kNearPole * turn)
+            by = sign * turn;
+        else if (by * sign < 0)
+            by += sign * turn;
+        to[o] = last.end[o] + by;
+        const double move = std::round((to[o] - next.start[o]) / turn) * turn;
+        Vec<2> shift{};
+        shift[o] = move;
+        next.coedge.curve = shifted(next.coedge.curve, shift);
+        next.start += shift, next.end += shift;
+        to[o] = next.start[o];
+    }
+    if (std::abs(to[o] - last.end[o]) <= 1e-9 * scale_of(chart_, o)) return;
+    done.push_back(degenerate(last.to, last.end, to));
+}
+
+// Moved by periods to where the one before it ends.
+void LoopBuilder::attach(std::vector<Use>& done, Use next) const {
+    Vec<2> by{};
+    if (!done.empty())
+        for (int k = 0; k < 2; ++k)
+            if (const double turn = chart_.period(k); turn > 0)
+                by[k] = std::round((done.back().end[k] - next.start[k]) / turn) * turn;
+    if (by[0] != 0 || by[1] != 0) {
+        next.coedge.curve = shifted(next.coedge.curve, by);
+        next.start += by, next.end += by;
+    }
+    done.push_back(std::move(next));
+}
+
+void LoopBuilder::add(std::vector<Use> uses) {
+    Chain c;
+    for (Use& u : uses) {
+        if (!c.uses.empty()) {
+            const Use last = c.uses.back();
+            pole_between(c.uses, last, u, false);
+        }
+        attach(c.uses, std::move(u));
+    }
+    Use first = c.uses.front();
+    const Use last = c.uses.back();
+    const auto winding_of = [&] {
+        for (int k = 0; k < 2; ++k)
+            c.winding[std::size_t(k)] =
+                chart_.period(k) > 0
+                    ? int(std::clamp(std::round((c.uses.back().end[k] - first.start[k]) / chart_.period(k)),
+                                     -9.0, 9.0))
+                    : 0;
+    };
+    pole_between(c.uses, last, first, true);
+    winding_of();
+    // A full turn about a pole that the loop only touches.
+    for (int k = 0; k < 2; ++k)
+        for (std::size_t i = 0; i < c.uses.size() && c.winding[std::size_t(k)] != 0; ++i) {
+            const double turn = chart_.period(k), by = c.uses[i].end[k] - c.uses[i].start[k];
+            if (!model_.edges[std::size_t(c.uses[i].coedge.edge)].degenerate) continue;
+            if (std::abs(std::abs(by) - turn) > kNearPole * turn || by * c.winding[std::size_t(k)] < 0)
+                continue;
+            c.uses.erase(c.uses.begin() + std::ptrdiff_t(i));
+            std::vector<Use> again;
+            for (Use& u : c.uses) attach(again, std::move(u));
+            c.uses = std::move(again);
+            first = c.uses.front();
+            winding_of();
+        }
+    measure(c);
+    chains_.push_back(std::move(c));
+}
+
+void LoopBuilder::measure(Chain& c) const {
+    c.outline.clear();
+    for (const Use& u : c.uses) {
+        const Interval on = model_.edges[std::size_t(u.coedge.edge)].range;
+        const bool straight = std::holds_alternative<Line<2>>(u.coedge.curve);
+        const int n = straight ? 1 : kOutline;
+        for (int i = 0; i < n; ++i) {
+            const double x = double(u.coedge.reversed ? n - i : i) / n;
+            c.outline.push_back(jet<0>(u.coedge.curve, on.lo + x * on.length()).value());
+        }
+    }
+    c.area = 0;
+    for (std::size_t i = 0; i < c.outline.size(); ++i)
+        c.area +=
+            cross(c.outline[i] - c.outline[0], c.outline[(i + 1) % c.outline.size()] - c.outline[0]) / 2;
+}
+
+void LoopBuilder::move(Chain& c, const Vec<2>& by) const {
+    if (by[0] == 0 && by[1] == 0) return;
+    for (Use& u : c.uses) {
+        u.coedge.curve = shifted(u.coedge.curve, by);
+        u.start += by, u.end += by;
+    }
+    for (Vec<2>& p : c.outline) p += by;
+}
+
+// The chain from another of its edges on.
+void LoopBuilder::turn_to(Chain& c, std::size_t first) const {
+    std::rotate(c.uses.begin(), c.uses.begin() + std::ptrdiff_t(first), c.uses.end());
+    std::vector<Use> again;
+    for (Use& u : c.uses) attach(again, std::move(u));
+    c.uses = std::move(again);
+    measure(c);
+}
+
+void LoopBuilder::turn_around(Chain& c) const {
+    std::reverse(c.uses.begin(), c.uses.end());
+    for (Use& u : c.uses) {
+        u.coedge.reversed = !u.coedge.reversed;
+        std::swap(u.from, u.to);
+        std::swap(u.start, u.end);
+    }
+    for (int& w : c.winding) w = -w;
+    measure(c);
+}
+
+// The two uses of a new edge from a to b: there, and back one period beside it.
+std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Vec<2>& b,
+                                     const Vec<2>& period) {
+    Edge e;
+    e.start = from, e.end = to, e.tolerance = close_;
+    Line<2> line{a, b - a};
+    const int axis = period[0] != 0 ? 0 : 1;
+    if (std::abs(a[axis] - b[axis]) <= 1e-12 * std::abs(period[axis]) && a[1 - axis] < b[1 - axis])
+        if (auto c = chart_.iso(axis, a[axis])) {
+            e.curve = std::move(*c);
+            e.range = {a[1 - axis], b[1 - axis]};
+            line = {};
+            line.origin[axis] = a[axis];
+            line.direction[1 - axis] = 1;
+            if (const auto* s = std::get_if<Curve<Vec<3>>>(&*e.curve);
+                s != nullptr || std::holds_alternative<Curve<Hom<3>>>(*e.curve)) {
+                const Interval on = domain(*e.curve)[0];
+                if (e.range.lo < on.lo || e.range.hi > on.hi) e.curve.reset();
+            }
+        }
+    if (!e.curve) line = {a, b - a}, e.range = {0, 1};
+    const int i = int(model_.edges.size());
+    model_.edges.push_back(e);
+    return {make_use({i, false, line}, e),
+            make_use({i, true, Line<2>{line.origin - period, line.direction}}, e)};
+}
+
+// One chain from a to b along the seam; `a` winds so that the face is on the side of b.
+void LoopBuilder::join(Chain& a, Chain b, int axis) {
+    const double turn = chart_.period(axis);
+    const auto k = std::size_t(axis);
+    const double forward = axis == 0 ? a.winding[k] : -a.winding[k];
+    // The pair of corners with the shortest way along the axis, and no hole in it.
+    std::size_t best_i = 0, best_j = 0;
+    double best = kInfinity;
+    for (std::size_t i = 0; i < a.uses.size() && i < 64; ++i)
+        for (std::size_t j = 0; j < b.uses.size() && j < 64; ++j) {
+            const double way = std::remainder(a.uses[i].start[axis] - b.uses[j].start[axis], turn);
+            double cost = std::abs(way);
+            for (const Chain& c : chains_) {
+                if (c.winding[0] != 0 || c.winding[1] != 0 || c.outline.empty()) continue;
+                Box<2> box;
+                for (const Vec<2>& p : c.outline) box.add(p);
+                const double lo = std::remainder(box.lo[axis] - a.uses[i].start[axis], turn);
+                if (lo + (box.hi[axis] - box.lo[axis]) > 0 && lo < 0) cost += turn;
+                if (lo + (box.hi[axis] - box.lo[axis]) > turn) cost += turn;
+            }
+            if (cost < best) best = cost, best_i = i, best_j = j;
+        }
+    turn_to(a, best_i);
+    turn_to(b, best_j);
+    Vec<2> period{};
+    period[axis] = a.uses.back().end[axis] - a.uses.front().start[axis];
+    Vec<2> by{};
+    by[axis] = std::round((a.uses.back().end[axis] - b.uses.front().start[axis]) / turn) * turn;
+    if (const double other = chart_.period(1 - axis); other > 0) {
+        const double ahead = forward * (b.uses.front().start[1 - axis] - a.uses.back().end[1 - axis]);
+        by[1 - axis] = -forward * std::floor((ahead - 1e-9 * other) / other) * other;
+    }
+    move(b, by);
+    auto uses =
+        seam(a.uses.front().from, b.uses.front().from, a.uses.back().end, b.uses.front().start, period);
+    a.uses.push_back(std::move(uses[0]));
+    for (Use& u : b.uses) a.uses.push_back(std::move(u));
+    a.uses.push_back(std::move(uses[1]));
+    a.winding = {0, 0};
+    measure(a);
+}
+
+void LoopBuilder::join_pole(Chain& c, const Pole& pole) {
+    const int axis = 1 - pole.axis;
+    Vec<2> period{};
+    period[axis] = c.uses.back().end[axis] - c.uses.front().start[axis];
+    Vec<2> at = c.uses.back().end;
+    double level = pole.at;
+    if (const double turn = chart_.period(pole.axis); turn > 0)
+        level += std::round((at[pole.axis] - level) / turn) * turn;
+    at[pole.axis] = level;
+    const int tip = vertex_near(pole.point), from = c.uses.front().from;
+    const Vec<2> end = c.uses.back().end;
+    std::array<Use, 2> uses;
+    if (end[pole.axis] < level) {
+        uses = seam(from, tip, end, at, period);
+    } else {  // the edge runs up to the loop
+        uses = seam(tip, from, at, end, period);
+        for (Use& u : uses) {
+            u.coedge.reversed = !u.coedge.reversed;
+            std::swap(u.from, u.to);
+            std::swap(u.start, u.end);
+        }
+    }
+    c.uses.push_back(std::move(uses[0]));
+    c.uses.push_back(degenerate(tip, at, at - period));
+    c.uses.push_back(std::move(uses[1]));
+    c.winding = {0, 0};
+    measure(c);
+}
+
+int LoopBuilder::vertex_near(const Vec<3>& p) {
+    if (vertex_ >= 0 && norm(model_.vertices[std::size_t(vertex_)].point - p) <= 4 * close_) return vertex_;
+    model_.vertices.push_back({p, close_});
+    return int(model_.vertices.size()) - 1;
+}
+
+// Pairs of chains that wind around along the axis.
+Result<void> LoopBuilder::join_winding(int axis) {
+    const auto k = std::size_t(axis);
+    const double across_turn = chart_.period(1 - axis);
+    for (std::size_t guard = chains_.size(); guard-- > 0;) {
+        const auto winds = [&](const Chain& c) { return c.winding[k] != 0; };
+        const auto forward = [&](const Chain& c) { return axis == 0 ? c.winding[k] : -c.winding[k]; };
+        const auto level = [&](const Chain& c) { return c.uses.front().start[1 - axis]; };
+        // One with the face ahead of it, and the next one from there.
+        auto a = std::find_if(chains_.begin(), chains_.end(),
+                              [&](const Chain& c) { return winds(c) && forward(c) > 0; });
+        if (a == chains_.end()) a = std::find_if(chains_.begin(), chains_.end(), winds);
+        if (a == chains_.end()) return {};
+        if (std::abs(a->winding[k]) > 1)
+            return refuse(RefusalKind::invalid, "loop",
+                          text("winds ", a->winding[k], " times around the surface"));
+        const double sign = forward(*a);
+        auto best = chains_.end();
+        double least = kInfinity;
+        for (auto b = chains_.begin(); b != chains_.end(); ++b) {
+            if (b == a || !winds(*b)) continue;
+            double ahead = sign * (level(*b) - level(*a));
+            if (across_turn > 0) ahead -= std::floor(ahead / across_turn) * across_turn;
+            // Against its orientation only if there is no other.
+            const double cost =
+                (ahead > 0 ? ahead : 1e6 + std::abs(ahead)) + (forward(*b) * sign < 0 ? 0 : 1e12);
+            if (cost < least) least = cost, best = b;
+        }
+        if (best != chains_.end()) {
+            if (forward(*best) * sign > 0) {
+                note = "two of its loops run the same way around the surface; one is taken the other way";
+                if (sign * (level(*best) - level(*a)) > 0 || across_turn > 0)
+                    turn_around(*best);
+                else
+                    turn_around(*a);
+            } else if (across_turn == 0 && sign * (level(*best) - level(*a)) < 0) {
+                note = "its loops run the wrong way around the surface; they are taken the other way";
+                turn_around(*best);
+                turn_around(*a);
+            }
+            Chain b = std::move(*best);
+            Chain first = std::move(*a);
+            if (a > best) std::swap(a, best);
+            chains_.erase(best);
+            chains_.erase(a);
+            join(first, std::move(b), axis);
+            chains_.push_back(std::move(first));
+            continue;
+        }
+        const Pole* end = nullptr;
+        double nearest = kInfinity;
+        for (const Pole& p : chart_.poles()) {
+            if (p.axis != 1 - axis) continue;
+            double ahead = sign * (p.at - level(*a));
+            if (across_turn > 0 && ahead < 0) ahead += across_turn;
+            if (ahead > 0 && ahead < nearest) nearest = ahead, end = &p;
+        }
+        if (end == nullptr)
+            for (const Pole& p : chart_.poles())
+                if (p.axis == 1 - axis && chart_.poles().size() == 1) {
+                    end = &p;
+                    note = "its loop runs the wrong way around the surface; it is taken the other way";
+                    turn_around(*a);
+                }
+        if (end == nullptr)
+            return refuse(RefusalKind::invalid, "loop",
+                          "winds around the surface, and nothing bounds the face on its other side");
+        join_pole(*a, *end);
+    }
+    return {};
+}
+
+bool LoopBuilder::is_closed_surface() const {
+    for (int k = 0; k < 2; ++k) {
+        const bool poles = std::count_if(chart_.poles().begin(), chart_.poles().end(),
+                                         [&](const Pole& p) { return p.axis == k; }) >= 2;
+        if (!(chart_.period(k) > 0) && !poles) return false;
+    }
+    return true;
+}
+
+void LoopBuilder::add_rectangle(const std::array<Interval, 2>& on) {
+    const std::array<Vec<2>, 4> corner{
+        {{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].lo}}, {{on[0].hi, on[1].hi}}, {{on[0].lo, on[1].hi}}}};
+    std::array<int, 4> vertex{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec<3> p = chart_.point(corner[i]);
+        vertex[i] = -1;
+        for (std::size_t j = 0; j < i; ++j)
+            if (norm(model_.vertices[std::size_t(vertex[j])].point - p) <= close_) vertex[i] = vertex[j];
+        if (vertex[i] < 0) vertex[i] = vertex_near(p);
+    }
+    const auto closed = [&](int k) {
+        return chart_.period(k) > 0 &&
+               std::abs(on[std::size_t(k)].length() - chart_.period(k)) <= 1e-9 * chart_.period(k);
+    };
+    std::array<int, 4> made{-1, -1, -1, -1};
+    Chain c;
+    for (std::size_t i = 0; i < 4; ++i) {  // below, right, above, left
+        const Vec<2> a = corner[i], b = corner[(i + 1) % 4];
+        const int axis = i % 2 == 0 ? 1 : 0;  // the parameter that stays
+        if (pole_at(a, b) != nullptr && pole_at(a, b)->axis == axis) {
+            c.uses.push_back(degenerate(vertex[i], a, b));
+            continue;
+        }
+        const bool backward = i >= 2;
+        Line<2> line;
+        line.origin[axis] = a[axis];
+        line.direction[1 - axis] = 1;
+        if (backward && closed(axis) && made[i - 2] >= 0) {
+            c.uses.push_back(make_use({made[i - 2], true, line}, model_.edges[std::size_t(made[i - 2])]));
+            continue;
+        }
+        Edge e;
+        e.start = vertex[backward ? (i + 1) % 4 : i], e.end = vertex[backward ? i : (i + 1) % 4];
+        e.range = on[std::size_t(1 - axis)];
+        e.curve = chart_.iso(axis, a[axis]);
+        e.tolerance = close_;
+        made[i] = int(model_.edges.size());
+        model_.edges.push_back(e);
+        c.uses.push_back(make_use({made[i], backward, line}, e));
+    }
+    measure(c);
+    chains_.push_back(std::move(c));
+}
+
+// Holes to the picture of the parameters in which they lie inside the others.
+void LoopBuilder::place_holes() {
+    std::size_t outer = chains_.size();
+    for (std::size_t i = 0; i < chains_.size(); ++i)
+        if (outer == chains_.size() || chains_[i].area > chains_[outer].area) outer = i;
+    if (outer == chains_.size() || !(chains_[outer].area > 0)) return;
+    for (std::size_t i = 0; i < chains_.size(); ++i) {
+        if (i == outer || chains_[i].outline.empty()) continue;
+        Chain& c = chains_[i];
+        bool done = false;
+        for (int n = 0; n < 25 && !done; ++n) {
+            constexpr int kOrder[] = {0, 1, -1, 2, -2};
+            const Vec<2> by{{kOrder[n % 5] * chart_.period(0), kOrder[n / 5] * chart_.period(1)}};
+            Vec<2> middle{};
+            std::size_t in = 0;
+            for (const Vec<2>& p : c.outline) in += inside(p + by, chains_[outer].outline) ? 1 : 0;
+            done = 2 * in > c.outline.size();
+            if (done) move(c, by);
+            (void)middle;
+        }
+    }
+}
+
+// All loops together to parameters near the domain.
+void LoopBuilder::into_domain() {
+    Box<2> box;
+    for (const Chain& c : chains_)
+        for (const Vec<2>& p : c.outline) box.add(p);
+    if (box.is_empty()) return;
+    Vec<2> by{};
+    for (int k = 0; k < 2; ++k)
+        if (const double turn = chart_.period(k); turn > 0) {
+            const bool sphere = chart_.whole()[std::size_t(k)].length() < turn || !chart_.poles().empty();
+            const double lo = sphere && k == 1      ? chart_.whole()[1].lo
+                              : chart_.is_spline(k) ? chart_.whole()[std::size_t(k)].lo
+                                                    : 0;
+            by[k] = -std::floor((box.lo[k] - lo) / turn + 1e-9) * turn;
+        }
+    for (Chain& c : chains_) move(c, by);
+}
+
+Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
+    for (const Chain& c : chains_)
+        if (c.winding[0] != 0 && c.winding[1] != 0)
+            return refuse(RefusalKind::unsupported, "loop", "winds around the surface in both directions");
+    for (int axis = 0; axis < 2; ++axis)
+        if (auto ok = join_winding(axis); !ok) return std::unexpected(ok.error());
+    const bool only_holes =
+        std::all_of(chains_.begin(), chains_.end(), [](const Chain& c) { return c.area < 0; });
+    if (only_holes && (is_closed_surface() || chains_.empty())) {
+        std::array<Interval, 2> on = chart_.whole();
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (!std::isfinite(on[k].length()))
+                return refuse(RefusalKind::unsupported, "face", "has no boundary, and its surface has none");
+            if (chart_.is_spline(int(k)) || !(chart_.period(int(k)) > 0) ||
+                on[k].length() < chart_.period(int(k)) - 1e-9)
+                continue;
+            // Away from the holes.
+            double begin = on[k].lo;
+            for (int i = 0; i < 16; ++i) {
+                const double x = on[k].lo + on[k].length() * i / 16;
+                const bool free = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
+                    double lo = kInfinity, hi = -kInfinity;
+                    for (const Vec<2>& p : c.outline)
+                        lo = std::min(lo, p[int(k)]), hi = std::max(hi, p[int(k)]);
+                    const double turn = chart_.period(int(k));
+                    const double from = lo - x - std::floor((lo - x) / turn) * turn;
+                    return from > 0 && from + (hi - lo) < turn;
+                });
+                if (free) {
+                    begin = x;
+                    break;
+                }
+            }
+            on[k] = {begin, begin + chart_.period(int(k))};
+        }
+        add_rectangle(on);
+    }
+    place_holes();
+    into_domain();
+    std::vector<std::vector<Use>> out;
+    for (Chain& c : chains_) out.push_back(std::move(c.uses));
+    return out;
+}
+
+}  // namespace freiform::step

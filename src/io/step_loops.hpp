@@ -1,0 +1,66 @@
+// The boundary of a face in the parameters of its surface: loops of the file made into closed chains.
+#pragma once
+#include "step_trace.hpp"
+
+#include <freiform/model/model.hpp>
+
+namespace freiform::step {
+
+// An edge as a loop runs through it.
+struct Use {
+    Coedge coedge;
+    int from = -1, to = -1;  // vertices, in the direction of the loop
+    Vec<2> start{}, end{};   // likewise
+    double gap = 0;
+    bool fitted = false;
+};
+Use make_use(Coedge coedge, const Edge& edge);
+
+class LoopBuilder {
+public:
+    // New edges and vertices (seams, poles) go into the model. `close`: points nearer than this are one.
+    LoopBuilder(const Chart& chart, Model& model, double close)
+        : chart_(chart), model_(model), close_(close) {}
+
+    void add(std::vector<Use> uses);
+    void add_vertex(int vertex) { vertex_ = vertex; }
+    // The part of the surface with these parameters, all around.
+    void add_rectangle(const std::array<Interval, 2>& on);
+    // All loops, one inside the other in one picture of the parameters. Empty refusal text of `note` unless
+    // something in the file had to be understood against its letter.
+    Result<std::vector<std::vector<Use>>> finish();
+    std::string note;
+
+private:
+    struct Chain {
+        std::vector<Use> uses;
+        std::array<int, 2> winding{};  // in periods
+        double area = 0;
+        std::vector<Vec<2>> outline;
+    };
+
+    void attach(std::vector<Use>& done, Use next) const;
+    void pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing);
+    const Pole* pole_at(const Vec<2>& a, const Vec<2>& b) const;
+    Use degenerate(int vertex, const Vec<2>& from, const Vec<2>& to);
+    void measure(Chain& c) const;
+    void move(Chain& c, const Vec<2>& by) const;
+    void turn_to(Chain& c, std::size_t first) const;
+    void turn_around(Chain& c) const;
+    Result<void> join_winding(int axis);
+    void join(Chain& a, Chain b, int axis);
+    void join_pole(Chain& c, const Pole& pole);
+    std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);
+    bool is_closed_surface() const;
+    void place_holes();
+    void into_domain();
+    int vertex_near(const Vec<3>& p);
+
+    const Chart& chart_;
+    Model& model_;
+    double close_;
+    int vertex_ = -1;
+    std::vector<Chain> chains_;
+};
+
+}  // namespace freiform::step

@@ -1,0 +1,237 @@
+// Items of a representation: solids, shells, faces, sets of curves and surfaces.
+#include "step_shape.hpp"
+
+#include <algorithm>
+
+namespace freiform::step {
+
+void ShapeReader::refuse_item(std::uint32_t item, Refusal why) {
+    const std::string label = f_.label(item);
+    const bool same = why.where == label;
+    out_.model.refused.push_back(
+        {why.kind, label, same || why.where.empty() ? why.message : text(why.where, ": ", why.message)});
+}
+
+void ShapeReader::report(int edge, std::string what, std::optional<double> bound, double estimate) {
+    out_.model.approximations.push_back({"", std::move(what), bound, bound ? 0 : estimate});
+    out_.approximated.push_back(edge);
+}
+
+std::optional<Colour> ShapeReader::colour_of(std::uint32_t i) const {
+    const auto at = styles_.colours.find(i);
+    return at == styles_.colours.end() ? std::nullopt : std::optional<Colour>(at->second);
+}
+
+// The faces of a shell, through ORIENTED_ shells and faces.
+Result<void> ShapeReader::shell_faces(std::uint32_t i, bool forward, Shell& out, int depth) {
+    if (depth > 20) return refuse(RefusalKind::invalid, f_.label(i), "is a shell of itself, or too deep");
+    for (const Type t : {Type::ORIENTED_CLOSED_SHELL, Type::ORIENTED_OPEN_SHELL})
+        if (f_.is(i, t)) {
+            const auto f = Fields::of(f_, i, t, 4);
+            if (!f) return std::unexpected(f.error());
+            const auto at = f->reference(2, "shell");
+            if (!at) return std::unexpected(at.error());
+            return shell_faces(*at, f->flag(3) == forward, out, depth + 1);
+        }
+    Type type = Type::unknown;
+    for (const Type t : {Type::CLOSED_SHELL, Type::OPEN_SHELL, Type::CONNECTED_FACE_SET})
+        if (f_.is(i, t)) type = t;
+    const auto f = Fields::of(f_, i, type, 1);
+    if (!f) return std::unexpected(f.error());
+    const auto ids = f->references(f->size() - 1, "faces");
+    if (!ids) return std::unexpected(ids.error());
+    for (std::uint32_t id : *ids) {
+        bool same = forward;
+        if (f_.is(id, Type::ORIENTED_FACE)) {
+            const auto o = Fields::of(f_, id, Type::ORIENTED_FACE, 4);
+            if (!o) return std::unexpected(o.error());
+            const auto at = o->reference(2, "face");
+            if (!at) return std::unexpected(at.error());
+            if (!o->flag(3)) same = !same;
+            id = *at;
+        }
+        if (const int made = face(id); made >= 0) out.faces.push_back({made, !same});
+    }
+    return {};
+}
+
+Result<int> ShapeReader::shell(std::uint32_t i, bool closed) {
+    Shell made;
+    made.closed = closed;
+    if (auto ok = shell_faces(i, true, made, 0); !ok) return std::unexpected(ok.error());
+    if (made.faces.empty()) return -1;
+    out_.model.shells.push_back(std::move(made));
+    return int(out_.model.shells.size()) - 1;
+}
+
+void ShapeReader::body_of(std::uint32_t item, std::vector<int> shells, bool solid) {
+    if (shells.empty()) return;
+    Body b;
+    b.shells = std::move(shells);
+    b.solid = solid;
+    b.name = Fields(f_, item, f_.instances[item].first + 1).string(0);
+    if (b.name == "NONE") b.name.clear();
+    b.colour = colour_of(item);
+    out_.model.bodies.push_back(std::move(b));
+}
+
+void ShapeReader::solid(std::uint32_t item) {
+    const Fields f(f_, item, f_.instances[item].first + 1);
+    std::vector<std::uint32_t> list;
+    const auto outer = f.reference(1, "outer shell");
+    if (!outer) return refuse_item(item, outer.error());
+    list.push_back(*outer);
+    if (f_.is(item, Type::BREP_WITH_VOIDS)) {
+        const auto voids = f.references(2, "voids");
+        if (!voids) return refuse_item(item, voids.error());
+        list.insert(list.end(), voids->begin(), voids->end());
+    }
+    std::vector<int> shells;
+    for (const std::uint32_t i : list) {
+        const auto made = shell(i, true);
+        if (!made)
+            refuse_item(item, made.error());
+        else if (*made >= 0)
+            shells.push_back(*made);
+    }
+    body_of(item, std::move(shells), true);
+}
+
+void ShapeReader::sheet(std::uint32_t item, std::uint32_t of, bool closed) {
+    const auto made = shell(of, closed);
+    if (!made) return refuse_item(item, made.error());
+    if (*made >= 0) body_of(item, {*made}, false);
+}
+
+void ShapeReader::free_curve(std::uint32_t item) {
+    if (f_.is(item, Type::EDGE_CURVE)) {
+        if (const auto made = edge(item); !made) refuse_item(item, made.error());
+        return;
+    }
+    const auto c = geometry_.curve(item);
+    if (!c) return refuse_item(item, c.error());
+    const Interval on = c->range.value_or(domain(c->curve)[0]);
+    if (!std::isfinite(on.length()) || !(on.lo < on.hi))
+        return refuse_item(item, {RefusalKind::unsupported, f_.label(item), "is a curve without end"});
+    Edge e;
+    e.curve = c->curve;
+    e.range = on;
+    e.tolerance = tolerance_;
+    const Vec<3> a = jet<0>(*e.curve, on.lo).value(), b = jet<0>(*e.curve, on.hi).value();
+    e.start = int(out_.model.vertices.size());
+    out_.model.vertices.push_back({a, 0});
+    e.end = e.start;
+    if (norm(a - b) > tolerance_) {
+        e.end = int(out_.model.vertices.size());
+        out_.model.vertices.push_back({b, 0});
+    }
+    out_.model.edges.push_back(std::move(e));
+}
+
+// The curves and surfaces of sets, wires and edge models, with a stack of our own.
+void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
+    std::vector<std::uint32_t> todo{first};
+    std::size_t budget = f_.tokens.size();
+    while (!todo.empty()) {
+        const std::uint32_t i = todo.back();
+        todo.pop_back();
+        if (budget-- == 0) return refuse_item(item, {RefusalKind::invalid, "", "contains itself"});
+        const auto descend = [&](int field) {
+            const Fields f(f_, i, f_.instances[i].first + 1);
+            if (const auto ids = f.references(field, "items"))
+                todo.insert(todo.end(), ids->rbegin(), ids->rend());
+            else
+                refuse_item(i, ids.error());
+        };
+        const auto is_any = [&](std::initializer_list<Type> types) {
+            return std::any_of(types.begin(), types.end(), [&](Type t) { return f_.is(i, t); });
+        };
+        if (is_any({Type::GEOMETRIC_SET, Type::GEOMETRIC_CURVE_SET, Type::EDGE_BASED_WIREFRAME_MODEL,
+                    Type::SHELL_BASED_WIREFRAME_MODEL, Type::CONNECTED_EDGE_SET, Type::WIRE_SHELL,
+                    Type::EDGE_LOOP, Type::COMPOSITE_CURVE})) {
+            descend(1);
+        } else if (is_any({Type::ORIENTED_EDGE, Type::COMPOSITE_CURVE_SEGMENT})) {
+            const bool segment = f_.is(i, Type::COMPOSITE_CURVE_SEGMENT);
+            const Fields f(f_, i, f_.instances[i].first + 1);
+            const auto at = f.reference(segment ? 2 : 3, "curve");
+            if (at)
+                todo.push_back(*at);
+            else
+                refuse_item(i, at.error());
+        } else if (is_any({Type::CARTESIAN_POINT, Type::VERTEX_SHELL, Type::VERTEX_POINT, Type::VERTEX_LOOP,
+                           Type::AXIS2_PLACEMENT_3D, Type::AXIS1_PLACEMENT})) {
+            continue;
+        } else if (is_any({Type::PLANE, Type::CYLINDRICAL_SURFACE, Type::CONICAL_SURFACE,
+                           Type::SPHERICAL_SURFACE, Type::TOROIDAL_SURFACE, Type::DEGENERATE_TOROIDAL_SURFACE,
+                           Type::B_SPLINE_SURFACE, Type::B_SPLINE_SURFACE_WITH_KNOTS, Type::BEZIER_SURFACE,
+                           Type::UNIFORM_SURFACE, Type::QUASI_UNIFORM_SURFACE,
+                           Type::SURFACE_OF_LINEAR_EXTRUSION, Type::SURFACE_OF_REVOLUTION,
+                           Type::OFFSET_SURFACE, Type::RECTANGULAR_TRIMMED_SURFACE,
+                           Type::CURVE_BOUNDED_SURFACE, Type::SURFACE_REPLICA})) {
+            if (const int made = face(i); made >= 0) out_.loose.push_back(made);
+        } else {
+            free_curve(i);
+        }
+    }
+}
+
+void ShapeReader::add(std::uint32_t item) {
+    const Fields f(f_, item, f_.instances[item].first + 1);
+    const auto is = [&](Type t) { return f_.is(item, t); };
+    if (is(Type::MANIFOLD_SOLID_BREP) || is(Type::BREP_WITH_VOIDS) || is(Type::FACETED_BREP)) {
+        solid(item);
+    } else if (is(Type::SHELL_BASED_SURFACE_MODEL) || is(Type::FACE_BASED_SURFACE_MODEL)) {
+        const auto ids = f.references(1, "shells");
+        if (!ids) return refuse_item(item, ids.error());
+        for (const std::uint32_t i : *ids)
+            sheet(item, i, is(Type::SHELL_BASED_SURFACE_MODEL) && f_.is(i, Type::CLOSED_SHELL));
+    } else if (is(Type::OPEN_SHELL) || is(Type::CLOSED_SHELL) || is(Type::CONNECTED_FACE_SET)) {
+        sheet(item, item, is(Type::CLOSED_SHELL));
+    } else if (is(Type::ADVANCED_FACE) || is(Type::FACE_SURFACE)) {
+        if (const int made = face(item); made >= 0) out_.loose.push_back(made);
+    } else if (is(Type::GEOMETRIC_SET) || is(Type::GEOMETRIC_CURVE_SET) ||
+               is(Type::EDGE_BASED_WIREFRAME_MODEL) || is(Type::SHELL_BASED_WIREFRAME_MODEL)) {
+        set_items(item, item);
+    } else {
+        const std::string_view name = f_.text_of(f_.tokens[f_.instances[item].first]);
+        for (const std::string_view shape :
+             {"SOLID", "BREP", "SHELL", "TESSELLATED", "TRIANGULATED", "CSG", "BLOCK", "RIGHT_", "BOOLEAN",
+              "SPHERE", "TORUS", "HALF_SPACE", "FACE"})
+            if (name.find(shape) != std::string_view::npos) {
+                refuse_item(item, {RefusalKind::unsupported, "", "is an item of a type that is not read"});
+                return;
+            }
+    }
+}
+
+// Loose faces make a body; edges and vertices that only refused faces had are left out.
+Part ShapeReader::finish() {
+    Model& m = out_.model;
+    if (!out_.loose.empty()) {
+        Shell s;
+        for (const int i : out_.loose) s.faces.push_back({i, false});
+        m.shells.push_back(std::move(s));
+        Body b;
+        b.shells = {int(m.shells.size()) - 1};
+        m.bodies.push_back(std::move(b));
+    }
+    for (Shell& s : m.shells)
+        for (FaceUse& u : s.faces) u.reversed = u.reversed != false;
+    out_.bytes = 0;
+    const auto numbers = [](const auto& g) {
+        if constexpr (requires { g.net(); })
+            return g.net().flat().size() * sizeof(g.net().flat()[0]) + 200;
+        else
+            return std::size_t(0);
+    };
+    for (const Edge& e : m.edges) out_.bytes += sizeof(Edge) + (e.curve ? std::visit(numbers, *e.curve) : 0);
+    for (const Face& f : m.faces) {
+        out_.bytes += sizeof(Face) + std::visit(numbers, f.surface);
+        for (const Loop& l : f.loops)
+            for (const Coedge& c : l.coedges) out_.bytes += sizeof(Coedge) + std::visit(numbers, c.curve);
+    }
+    out_.bytes += m.vertices.size() * sizeof(Vertex);
+    return std::move(out_);
+}
+
+}  // namespace freiform::step

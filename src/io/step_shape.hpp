@@ -1,0 +1,90 @@
+// The shapes of one representation as a model of its own.
+#pragma once
+#include "step_geometry.hpp"
+#include "step_loops.hpp"
+
+#include <freiform/model/model.hpp>
+
+#include <functional>
+#include <memory>
+#include <unordered_map>
+
+namespace freiform::step {
+
+// What a file says about names and colours of its items.
+struct Styles {
+    std::unordered_map<std::uint32_t, Colour> colours;
+};
+
+struct Part {
+    Model model;                           // lengths in the unit of its context
+    std::vector<int> approximated;         // the edge that each approximation is about; -1: none
+    std::vector<CurveGeometry<3>> curves;  // that bound no face
+    std::size_t bytes = 0;                 // an estimate of the memory that it takes
+    std::vector<int> loose;                // faces of no shell
+};
+
+class ShapeReader {
+public:
+    // `tolerance`: the uncertainty of lengths that the context states.
+    ShapeReader(const File& file, const Styles& styles, double angle, double tolerance)
+        : f_(file), styles_(styles), geometry_(file), tolerance_(tolerance) {
+        geometry_.angle = angle;
+    }
+    // An item of a representation. Items that are no shapes are passed over.
+    void add(std::uint32_t item);
+    Part finish();
+
+    GeometryReader& geometry() { return geometry_; }
+
+private:
+    struct EdgeMade {
+        int edge = -1;
+        bool flipped = false;  // the edge of the model runs from the second vertex to the first
+        bool empty = false;    // no longer than the tolerance: left out of loops
+    };
+    struct SurfaceMade {
+        SurfaceGeometry surface;
+        std::unique_ptr<Chart> chart;
+    };
+
+    void solid(std::uint32_t item);
+    void sheet(std::uint32_t item, std::uint32_t shell, bool solid);
+    void set_items(std::uint32_t item, std::uint32_t list_field);
+    void free_curve(std::uint32_t item);
+    Result<int> shell(std::uint32_t i, bool closed);
+    Result<void> shell_faces(std::uint32_t i, bool forward, Shell& out, int depth);
+    void body_of(std::uint32_t item, std::vector<int> shells, bool solid);
+    int face(std::uint32_t i);
+    Result<Face> make_face(std::uint32_t i, Type type);
+    Result<Face> bare_face(std::uint32_t i);
+    Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
+                           LoopBuilder& loops);
+    Result<Face> close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i, double size);
+    Result<SurfaceMade*> surface(std::uint32_t i);
+    Result<EdgeMade> edge(std::uint32_t i);
+    Result<EdgeMade> make_edge(std::uint32_t i);
+    Result<EdgeMade> straight_edge(int from, int to);
+    Result<int> vertex(std::uint32_t i);
+    int vertex_at(std::uint32_t point, const Vec<3>& p);
+    Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size);
+    Result<double> size_of(std::uint32_t face, const Fields& f);
+    void refuse_item(std::uint32_t item, Refusal why);
+    void report(int edge, std::string what, std::optional<double> bound, double estimate);
+    std::optional<Colour> colour_of(std::uint32_t i) const;
+
+    const File& f_;
+    const Styles& styles_;
+    GeometryReader geometry_;
+    double tolerance_;
+    Part out_;
+    std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
+    std::unordered_map<std::uint32_t, EdgeMade> edges_;
+    std::unordered_map<std::uint64_t, EdgeMade> straight_;
+    std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
+};
+
+// The surface with a spline that closes continued by whole turns, so that `on` is inside its domain.
+SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on);
+
+}  // namespace freiform::step

@@ -1,0 +1,41 @@
+// Representations of a file, how they contain each other, and the units that each is in.
+#pragma once
+#include "step_shape.hpp"
+
+namespace freiform::step {
+
+struct Context {
+    double length = 1;  // millimetres
+    std::string unit = "mm";
+    double angle = 1;         // radians
+    double tolerance = 1e-7;  // in its own unit of length
+};
+
+// One representation, or several that relations say are the same.
+struct Node {
+    std::vector<std::uint32_t> items;
+    Context context;
+    std::string name;      // of the product
+    bool product = false;  // some product has it as its shape
+    struct Child {
+        std::uint32_t node = 0;
+        Motion at;
+        std::optional<Colour> colour;
+    };
+    std::vector<Child> children;
+    std::vector<std::pair<std::uint32_t, Motion>> replicas;  // items in another place
+    bool has_parent = false;
+};
+
+struct Structure {
+    std::vector<Node> nodes;
+    Styles styles;
+    std::vector<Refusal> refused;
+};
+Structure structure_of(const File& file);
+
+// Of a representation context.
+Context context_of(const File& file, std::uint32_t context);
+Styles styles_of(const File& file);
+
+}  // namespace freiform::step

@@ -1,0 +1,224 @@
+// Surfaces. Elementary ones are a placement and radii, which our extrusions and revolutions express with the
+// same parameters:
+//
+//     plane    O + u X + v Y                                  extrusion of a line
+//     cylinder O + R (cos u X + sin u Y) + v Z                extrusion of a circle
+//     cone     O + (R + v sin a)(cos u X + sin u Y) + v cos a Z             revolution of a line
+//     sphere   O + R cos v (cos u X + sin u Y) + R sin v Z                  revolution of a circle
+//     torus    O + (R + r cos v)(cos u X + sin u Y) + r sin v Z             revolution of a circle
+//
+// but for the parameter v of the cone, which is a length along it instead of one along its axis. Offsets of
+// elementary surfaces along their normal are such again, as long as no radius vanishes.
+//
+// References: ISO 10303-42:2014, 4.5 (surfaces).
+#include "step_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace freiform::step {
+
+Result<BSplineBasis> knots_of(const File& f, std::uint32_t i, const Fields* with_knots, int multiplicities,
+                              int knots, std::string_view what, int degree, int size);
+
+Result<SurfaceGeometry> GeometryReader::elementary(std::uint32_t i, Type type, double offset) const {
+    const auto f = Fields::of(f_, i, type, 2);
+    if (!f) return std::unexpected(f.error());
+    const auto at = f->reference(1, "position");
+    if (!at) return std::unexpected(at.error());
+    const auto p = placement(*at);
+    if (!p) return std::unexpected(p.error());
+    const auto radius = type == Type::PLANE ? Result<double>(0) : f->number(2, "radius");
+    if (!radius) return std::unexpected(radius.error());
+    const auto bad = [&](double r) { return f->refused(text("has the radius ", r), RefusalKind::invalid); };
+    switch (type) {
+        case Type::PLANE:
+            return Extrusion{Line<3>{p->o + offset * p->z, p->x}, p->y, SurfaceKind::plane};
+        case Type::CYLINDRICAL_SURFACE: {
+            const double r = *radius + offset;
+            if (!(r > 0)) return bad(r);
+            return Extrusion{Conic<3>{ConicKind::ellipse, p->o, r * p->x, r * p->y}, p->z,
+                             SurfaceKind::cylinder};
+        }
+        case Type::CONICAL_SURFACE: {
+            const auto a = f->number(3, "semi-angle");
+            if (!a) return std::unexpected(a.error());
+            const double s = std::sin(*a * angle), c = std::cos(*a * angle);
+            if (!(*radius >= 0) || !(c > 1e-9) || !(std::abs(s) > 1e-12))
+                return f->refused(text("has the radius ", *radius, " and the semi-angle ", *a),
+                                  RefusalKind::invalid);
+            return Revolution{Line<3>{p->o + *radius * p->x, s * p->x + c * p->z}, p->o, p->z,
+                              SurfaceKind::cone};
+        }
+        case Type::SPHERICAL_SURFACE: {
+            const double r = *radius + offset;
+            if (!(r > 0)) return bad(r);
+            return Revolution{Conic<3>{ConicKind::ellipse, p->o, r * p->x, r * p->z}, p->o, p->z,
+                              SurfaceKind::sphere};
+        }
+        default:
+            break;
+    }
+    const auto minor = f->number(3, "minor radius");
+    if (!minor) return std::unexpected(minor.error());
+    const double r = *minor + offset;
+    if (!(r > 0) || !(*radius != 0)) return bad(!(r > 0) ? r : *radius);
+    return Revolution{Conic<3>{ConicKind::ellipse, p->o + *radius * p->x, r * p->x, r * p->z}, p->o, p->z,
+                      SurfaceKind::torus};
+}
+
+Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) const {
+    constexpr Type kNamed[] = {Type::B_SPLINE_SURFACE_WITH_KNOTS, Type::BEZIER_SURFACE, Type::UNIFORM_SURFACE,
+                               Type::QUASI_UNIFORM_SURFACE, Type::B_SPLINE_SURFACE};
+    const bool complex = f_.type(i) == Type::unknown;
+    std::uint32_t main = complex ? f_.part(i, Type::B_SPLINE_SURFACE) : kMissing;
+    for (const Type t : kNamed)
+        if (main == kMissing && !complex) main = f_.part(i, t);
+    if (main == kMissing)
+        return refuse(RefusalKind::unreadable, f_.label(i), "is a spline without control points");
+    const Fields f(f_, i, main);
+    const int first = complex ? 0 : 1;
+    const auto p = f.integer(first, "degree along u"), q = f.integer(first + 1, "degree along v");
+    if (!p || !q) return std::unexpected(p ? q.error() : p.error());
+    const auto rows = f.rows(first + 2, "control points");
+    if (!rows) return std::unexpected(rows.error());
+    std::vector<Vec<3>> points;
+    std::size_t columns = 0;
+    for (std::size_t r = 0; r < rows->size(); ++r) {
+        const auto ids = f.references_at((*rows)[r], "control points");
+        if (!ids) return std::unexpected(ids.error());
+        if (r > 0 && ids->size() != columns)
+            return f.refused(text("has rows of ", columns, " and of ", ids->size(), " control points"),
+                             RefusalKind::invalid);
+        columns = ids->size();
+        for (const std::uint32_t id : *ids) {
+            const auto x = point(id);
+            if (!x) return std::unexpected(x.error());
+            points.push_back(*x);
+        }
+    }
+    const std::uint32_t list = f_.part(i, Type::B_SPLINE_SURFACE_WITH_KNOTS);
+    const std::optional<Fields> with =
+        list == kMissing ? std::nullopt : std::optional<Fields>(Fields(f_, i, list));
+    const int k = complex ? 0 : 8, nu = int(rows->size()), nv = int(columns);
+    auto u = knots_of(f_, i, with ? &*with : nullptr, k, k + 2, "SURFACE", *p, nu);
+    if (!u) return std::unexpected(u.error());
+    auto v = knots_of(f_, i, with ? &*with : nullptr, k + 1, k + 3, "SURFACE", *q, nv);
+    if (!v) return std::unexpected(v.error());
+    const auto within = [&](Refusal r) {
+        return refuse(r.kind, f_.label(i), text(r.where, ": ", r.message));
+    };
+    if (const std::uint32_t rational = f_.part(i, Type::RATIONAL_B_SPLINE_SURFACE); rational != kMissing) {
+        const Fields g(f_, i, rational);
+        const auto lists = g.rows(g.size() - 1, "weights");
+        if (!lists) return std::unexpected(lists.error());
+        std::vector<double> w;
+        for (const std::uint32_t row : *lists) {
+            const auto more = g.numbers_at(row, "weights");
+            if (!more) return std::unexpected(more.error());
+            w.insert(w.end(), more->begin(), more->end());
+        }
+        auto net = make_rational<3>(points, w);
+        if (!net) return within(net.error());
+        auto made =
+            Surface<Hom<3>>::make({std::move(*u), std::move(*v)}, Net<2, Hom<3>>({nu, nv}, std::move(*net)));
+        if (!made) return within(made.error());
+        return SurfaceGeometry(std::move(*made));
+    }
+    auto made =
+        Surface<Vec<3>>::make({std::move(*u), std::move(*v)}, Net<2, Vec<3>>({nu, nv}, std::move(points)));
+    if (!made) return within(made.error());
+    return SurfaceGeometry(std::move(*made));
+}
+
+Result<CurveGeometry<3>> GeometryReader::profile(std::uint32_t i) {
+    auto c = curve(i);
+    if (!c) return std::unexpected(c.error());
+    return c->reversed ? reversed(c->curve) : std::move(c->curve);
+}
+
+Result<SurfaceGeometry> GeometryReader::basic_surface(std::uint32_t i) {
+    for (const Type t : {Type::PLANE, Type::CYLINDRICAL_SURFACE, Type::CONICAL_SURFACE,
+                         Type::SPHERICAL_SURFACE, Type::TOROIDAL_SURFACE, Type::DEGENERATE_TOROIDAL_SURFACE})
+        if (f_.is(i, t)) return elementary(i, t, 0);
+    for (const Type t : {Type::B_SPLINE_SURFACE, Type::B_SPLINE_SURFACE_WITH_KNOTS, Type::BEZIER_SURFACE,
+                         Type::UNIFORM_SURFACE, Type::QUASI_UNIFORM_SURFACE})
+        if (f_.is(i, t)) return spline_surface(i);
+    if (f_.is(i, Type::SURFACE_OF_LINEAR_EXTRUSION)) {
+        const auto f = Fields::of(f_, i, Type::SURFACE_OF_LINEAR_EXTRUSION, 3);
+        if (!f) return std::unexpected(f.error());
+        const auto swept = f->reference(1, "curve"), along = f->reference(2, "direction");
+        if (!swept || !along) return std::unexpected(swept ? along.error() : swept.error());
+        auto c = profile(*swept);
+        if (!c) return std::unexpected(c.error());
+        const auto d = vector(*along);
+        if (!d) return std::unexpected(d.error());
+        const bool flat = std::holds_alternative<Line<3>>(*c);
+        return Extrusion{std::move(*c), *d, flat ? SurfaceKind::plane : SurfaceKind::general};
+    }
+    if (f_.is(i, Type::SURFACE_OF_REVOLUTION)) {
+        const auto f = Fields::of(f_, i, Type::SURFACE_OF_REVOLUTION, 3);
+        if (!f) return std::unexpected(f.error());
+        const auto swept = f->reference(1, "curve"), about = f->reference(2, "axis");
+        if (!swept || !about) return std::unexpected(swept ? about.error() : swept.error());
+        auto c = profile(*swept);
+        if (!c) return std::unexpected(c.error());
+        const auto axis = placement(*about);
+        if (!axis) return std::unexpected(axis.error());
+        return Revolution{std::move(*c), axis->o, axis->z, SurfaceKind::general};
+    }
+    return refuse(RefusalKind::unsupported, f_.label(i),
+                  text("is a surface that has no exact counterpart here (byte ", f_.instances[i].at, ")"));
+}
+
+// Offsets, trimmings and replicas are taken off one by one.
+Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
+    double offset = 0;
+    std::optional<Motion> by;
+    std::uint32_t at = i;
+    for (int depth = 0;; ++depth) {
+        if (depth > 100)
+            return refuse(RefusalKind::invalid, f_.label(i),
+                          "is a surface that refers to itself, or too deep");
+        Type wrapping = Type::unknown;
+        for (const Type t : {Type::OFFSET_SURFACE, Type::RECTANGULAR_TRIMMED_SURFACE,
+                             Type::CURVE_BOUNDED_SURFACE, Type::SURFACE_REPLICA})
+            if (f_.is(at, t)) wrapping = t;
+        if (wrapping == Type::unknown) break;
+        const auto f = Fields::of(f_, at, wrapping, 3);
+        if (!f) return std::unexpected(f.error());
+        if (wrapping == Type::OFFSET_SURFACE) {
+            const auto d = f->number(2, "distance");
+            if (!d) return std::unexpected(d.error());
+            offset += *d * (by ? by->scale : 1.0);
+        } else if (wrapping == Type::SURFACE_REPLICA) {
+            const auto m = f->reference(2, "transformation");
+            if (!m) return std::unexpected(m.error());
+            const auto to = transformation(*m);
+            if (!to) return std::unexpected(to.error());
+            Motion next = motion_to(to->to);
+            next.scale = to->scale;
+            by = by ? *by * next : next;
+        }
+        const auto basis = f->reference(1, "surface");
+        if (!basis) return std::unexpected(basis.error());
+        at = *basis;
+    }
+    auto made = [&]() -> Result<SurfaceGeometry> {
+        if (offset != 0 && !by)
+            for (const Type t :
+                 {Type::PLANE, Type::CYLINDRICAL_SURFACE, Type::SPHERICAL_SURFACE, Type::TOROIDAL_SURFACE})
+                if (f_.is(at, t))
+                    if (auto simple = elementary(at, t, offset)) return simple;
+        auto base = basic_surface(at);
+        if (base && by) base = moved(*base, *by);
+        if (!base || offset == 0) return base;
+        return OffsetSurface{std::make_shared<const SurfaceGeometry>(std::move(*base)), offset};
+    }();
+    if (made)
+        if (auto ok = check(*made); !ok) return refuse(ok.error().kind, f_.label(i), ok.error().message);
+    return made;
+}
+
+}  // namespace freiform::step

@@ -1,0 +1,365 @@
+// Idea. On a plane the parameter curve is the edge in other coordinates. On every other surface the first
+// guess is a straight line in the parameters: lines and circles on elementary surfaces are such, and
+// isoparametric curves of splines. It is what the edge says at its middle, place and slope; if points on both
+// sides of it agree, it is the answer. Else a cubic spline follows the edge: at each of its knots it has the
+// parameters of the nearest point of the surface and their derivative, so that its error is of fourth order,
+// and pieces are halved until their inner points agree.
+//
+// The middle, because the ends of an edge may be at a pole, where one parameter means nothing; there both
+// curves are continued from inside.
+#include "step_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+namespace {
+
+constexpr int kMostPieces = 600;  // backstop
+constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
+
+struct TraceNode {
+    double t = 0;
+    Vec<2> at{}, before{}, after{};  // the slopes on both sides: the edge may have a corner here
+};
+
+class Tracer {
+public:
+    Tracer(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy)
+        : chart_(chart), c_(c), on_(on), accuracy_(accuracy) {}
+
+    Result<Trace> run() {
+        if (auto flat = on_plane()) return *flat;
+        const double middle = on_.lo + 0.46875 * on_.length();
+        const auto j = jet<1>(c_, middle);
+        const Foot start = chart_.foot(j.d[0], j.d[1], chart_.locate(j.d[0]));
+        if (!start.regular)
+            return refuse(RefusalKind::ill_conditioned, "parameter curve",
+                          "runs through a pole or a fold of the surface");
+        if (auto straight = line(start, middle)) return *straight;
+        return spline(start, middle);
+    }
+
+private:
+    double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }
+
+    // bound of the gap, in exact arithmetic: the distance from a plane is convex, so that of the control
+    // points bounds that of a spline.
+    std::optional<Trace> on_plane() const {
+        const auto* s = std::get_if<Extrusion>(&chart_.surface());
+        const auto* l = s != nullptr ? std::get_if<Line<3>>(&s->profile) : nullptr;
+        if (l == nullptr) return std::nullopt;
+        const Vec<3> x = l->direction, y = s->direction, n = unit(cross(x, y));
+        const bool square = std::abs(dot(x, y)) <= 1e-15 * norm(x) * norm(y);
+        const Vec<3> gu = square ? (1 / dot(x, x)) * x : (1 / dot(x, cross(y, n))) * cross(y, n);
+        const Vec<3> gv = square ? (1 / dot(y, y)) * y : (1 / dot(y, cross(n, x))) * cross(n, x);
+        const auto direction = [&](const Vec<3>& d) { return Vec<2>{{dot(d, gu), dot(d, gv)}}; };
+        const auto point = [&](const Vec<3>& p) { return direction(p - l->origin); };
+        const auto height = [&](const Vec<3>& p) { return std::abs(dot(p - l->origin, n)); };
+        Trace out;
+        std::visit(
+            [&](const auto& g) {
+                using G = std::remove_cvref_t<decltype(g)>;
+                if constexpr (std::same_as<G, Line<3>>) {
+                    out.curve = Line<2>{point(g.origin), direction(g.direction)};
+                    out.gap =
+                        std::max(height(jet<0>(c_, on_.lo).value()), height(jet<0>(c_, on_.hi).value()));
+                } else if constexpr (std::same_as<G, Conic<3>>) {
+                    out.curve = Conic<2>{g.kind, point(g.centre), direction(g.x), direction(g.y)};
+                    if (g.kind == ConicKind::ellipse)
+                        out.gap = height(g.centre) + std::hypot(dot(g.x, n), dot(g.y, n));
+                    else
+                        for (int i = 0; i <= 8; ++i)
+                            out.gap =
+                                std::max(out.gap, height(jet<0>(c_, on_.lo + on_.length() * i / 8).value()));
+                } else if constexpr (std::same_as<G, Curve<Vec<3>>>) {
+                    Net<1, Vec<2>> net(g.net().extent());
+                    for (std::size_t i = 0; i < net.flat().size(); ++i)
+                        net.flat()[i] = point(g.net().flat()[i]);
+                    out.curve = Curve<Vec<2>>::trusted(g.bases(), std::move(net));
+                    for (const auto& p : g.net().flat()) out.gap = std::max(out.gap, height(p));
+                } else {
+                    Net<1, Hom<2>> net(g.net().extent());
+                    for (std::size_t i = 0; i < net.flat().size(); ++i) {
+                        const Hom<3>& h = g.net().flat()[i];
+                        net.flat()[i] = weighted(point(project(h)), h.weight());
+                        out.gap = std::max(out.gap, height(project(h)));
+                    }
+                    out.curve = Curve<Hom<2>>::trusted(g.bases(), std::move(net));
+                }
+            },
+            c_);
+        return out;
+    }
+
+    // An end of the straight line: where the edge itself says it, rather than continued from the middle.
+    Vec<2> end(double t, const Vec<2>& guess) const {
+        const auto j = jet<1>(c_, t);
+        const Foot f = chart_.foot(j.d[0], j.d[1], guess);
+        return f.regular && near(f.at, guess) ? f.at : guess;
+    }
+    // Not a period further, and not elsewhere on the surface.
+    bool near(const Vec<2>& a, const Vec<2>& b) const {
+        for (int k = 0; k < 2; ++k)
+            if (chart_.period(k) > 0 && std::abs(a[k] - b[k]) > 0.05 * chart_.period(k)) return false;
+        return true;
+    }
+
+    std::optional<Trace> line(const Foot& start, double middle) const {
+        const auto guess = [&](double t) { return start.at + (t - middle) * start.slope; };
+        Vec<2> a = end(on_.lo, guess(on_.lo)), b = end(on_.hi, guess(on_.hi));
+        for (const Pole& p : chart_.poles())  // meridians end exactly there
+            for (Vec<2>* x : {&a, &b})
+                if (std::abs((*x)[p.axis] - p.at) <=
+                    1e-9 * (std::abs(p.at) + std::abs(a[p.axis] - b[p.axis])))
+                    (*x)[p.axis] = p.at;
+        // Isoparametric lines exactly so.
+        const auto j = jet<1>(chart_.surface(), chart_.wrapped(start.at).c);
+        for (int k = 0; k < 2; ++k)
+            if (std::abs(a[k] - b[k]) * norm(j.d[std::size_t(k) + 1]) <= 1e-3 * accuracy_)
+                a[k] = b[k] = start.at[k];
+        snap(a, b);
+        const Vec<2> d = (1 / on_.length()) * (b - a);
+        Trace out;
+        out.curve = Line<2>{a - on_.lo * d, d};
+        for (const double x : kPlacesOfLine)
+            if (!holds(jet<0>(out.curve, on_.lo + x * on_.length()).value(), on_.lo + x * on_.length(),
+                       out.gap))
+                return std::nullopt;
+        // Splines have more places to look at.
+        const int more = spans();
+        for (int i = 0; i < more; ++i) {
+            const double t = on_.lo + on_.length() * (i + 0.5) / more;
+            if (!holds(jet<0>(out.curve, t).value(), t, out.gap)) return std::nullopt;
+        }
+        return out;
+    }
+    // Along the end of a spline exactly so.
+    void snap(Vec<2>& a, Vec<2>& b) const {
+        for (int k = 0; k < 2; ++k) {
+            if (!chart_.is_spline(k)) continue;
+            const Interval on = chart_.whole()[std::size_t(k)];
+            for (const double x : {on.lo, on.hi})
+                if (a[k] == b[k] && std::abs(a[k] - x) <= 1e-9 * on.length()) a[k] = b[k] = x;
+        }
+    }
+    int spans() const {
+        return std::visit(
+            [](const auto& g) {
+                if constexpr (requires { g.net(); })
+                    return std::min(2 * int(g.net().flat().size()), 400);
+                else
+                    return 0;
+            },
+            c_);
+    }
+    // Whether uv is as near to the edge as the surface is, or almost.
+    bool holds(const Vec<2>& uv, double t, double& worst) const {
+        const double gap = gap_at(uv, t);
+        if (!std::isfinite(gap)) return false;
+        if (gap > accuracy_) {
+            const auto j = jet<1>(c_, t);
+            if (gap > 1.1 * chart_.foot(j.d[0], j.d[1], uv).distance + accuracy_) return false;
+        }
+        worst = std::max(worst, gap);
+        return true;
+    }
+
+    // Where pieces begin: at the knots of the edge, and often enough.
+    std::vector<double> places() const {
+        std::vector<double> all;
+        for (int i = 0; i <= 6; ++i) all.push_back(i == 6 ? on_.hi : on_.lo + on_.length() * i / 6);
+        std::visit(
+            [&](const auto& g) {
+                if constexpr (requires { g.net(); }) {
+                    const auto breaks = g.basis().breaks();
+                    const std::size_t stride = 1 + breaks.size() / 200;
+                    for (std::size_t i = 0; i < breaks.size(); i += stride)
+                        if (on_.lo < breaks[i] && breaks[i] < on_.hi) all.push_back(breaks[i]);
+                }
+            },
+            c_);
+        std::sort(all.begin(), all.end());
+        std::vector<double> out;
+        for (const double t : all)
+            if (out.empty() || t - out.back() > 1e-6 * on_.length()) out.push_back(t);
+        if (out.size() > 1) out.back() = on_.hi;
+        return out;
+    }
+
+    // From a known node to the next place. False where the surface has no tangent plane there.
+    bool node(double t, const TraceNode& from, TraceNode& out) const {
+        const double h = t - from.t;
+        const Vec<2> guess = from.at + h * (h > 0 ? from.after : from.before);
+        const auto j = jet<1>(c_, t);
+        Foot f = chart_.foot(j.d[0], j.d[1], guess);
+        out.t = t;
+        if (f.regular && near(f.at, guess)) {
+            out.at = f.at;
+            out.before = out.after = f.slope;
+            if (has_corner(t)) {
+                const double back = std::nextafter(t, on_.lo);
+                const auto left = jet<1>(c_, back);
+                if (const Foot g = chart_.foot(left.d[0], left.d[1], f.at); g.regular) out.before = g.slope;
+            }
+            return true;
+        }
+        if (t != on_.lo && t != on_.hi) return false;
+        // At a pole: continued from a place just inside.
+        const double inside = t + (t == on_.lo ? 1 : -1) * 1e-4 * on_.length();
+        const auto k = jet<1>(c_, inside);
+        const Foot g =
+            chart_.foot(k.d[0], k.d[1], from.at + (inside - from.t) * (h > 0 ? from.after : from.before));
+        if (!g.regular) return false;
+        out.at = g.at + (t - inside) * g.slope;
+        for (const Pole& p : chart_.poles())
+            if (norm(p.point - j.d[0]) <= norm(chart_.point(out.at) - j.d[0]) + accuracy_)
+                out.at[p.axis] = p.at;
+        out.before = out.after = g.slope;
+        return true;
+    }
+    bool has_corner(double t) const {
+        return std::visit(
+            [&](const auto& g) {
+                if constexpr (requires { g.net(); })
+                    return on_.lo < t && t < on_.hi && g.basis().multiplicity(t) >= g.basis().degree();
+                else
+                    return false;
+            },
+            c_);
+    }
+
+    static Vec<2> hermite(const TraceNode& a, const TraceNode& b, double t) {
+        const double h = b.t - a.t, x = (t - a.t) / h, y = 1 - x;
+        return (y * y * (1 + 2 * x)) * a.at + (x * x * (1 + 2 * y)) * b.at + (h * x * y * y) * a.after +
+               (-h * x * x * y) * b.before;
+    }
+
+    Result<Trace> spline(const Foot& start, double middle) const {
+        const auto lost = [] {
+            return refuse(
+                RefusalKind::not_converged, "parameter curve",
+                "cannot be followed on the surface: it runs through a pole or a fold, or far beside it");
+        };
+        TraceNode first;
+        first.t = middle;
+        first.at = start.at;
+        first.before = first.after = start.slope;
+        std::vector<TraceNode> left, right{first};
+        for (const double t : places()) {
+            if (t < middle) continue;
+            TraceNode n;
+            if (!advance(right.back(), t, n)) return lost();
+            if (t > middle) right.push_back(n);
+        }
+        left.push_back(first);
+        const auto all = places();
+        for (auto t = all.rbegin(); t != all.rend(); ++t) {
+            if (*t >= middle) continue;
+            TraceNode n;
+            if (!advance(left.back(), *t, n)) return lost();
+            left.push_back(n);
+        }
+        // `todo` from the end to the beginning.
+        std::vector<TraceNode> todo(right.rbegin(), right.rend()), done;
+        todo.insert(todo.end(), left.begin() + 1, left.end());
+        done.push_back(todo.back());
+        todo.pop_back();
+        Trace out;
+        out.fitted = true;
+        while (!todo.empty()) {
+            const TraceNode a = done.back(), b = todo.back();
+            bool good = true;
+            for (const double x : {0.21, 0.5, 0.79}) {
+                const double t = a.t + x * (b.t - a.t);
+                if (good) good = holds(hermite(a, b, t), t, out.gap);
+            }
+            if (!good && done.size() + todo.size() <= std::size_t(kMostPieces) &&
+                b.t - a.t > 1e-7 * on_.length()) {
+                TraceNode m;
+                if (!node(a.t + (b.t - a.t) / 2, a, m)) return lost();
+                todo.push_back(m);
+                continue;
+            }
+            if (!good) {  // the best that there is; the gap says how good
+                for (const double x : {0.21, 0.5, 0.79})
+                    out.gap = std::max(out.gap,
+                                       gap_at(hermite(a, b, a.t + x * (b.t - a.t)), a.t + x * (b.t - a.t)));
+                if (!std::isfinite(out.gap)) return lost();
+            }
+            done.push_back(b);
+            todo.pop_back();
+        }
+        out.curve = joined(done);
+        return out;
+    }
+    // As `node`, in smaller steps where one is too large.
+    bool advance(TraceNode from, double t, TraceNode& out) const {
+        for (int steps = 1; steps <= 64; steps *= 8) {
+            TraceNode at = from;
+            bool good = true;
+            for (int i = 1; i <= steps && good; ++i) {
+                const double to = i == steps ? t : from.t + (t - from.t) * i / steps;
+                good = node(to, at, out);
+                at = out;
+            }
+            if (good) return true;
+        }
+        return false;
+    }
+
+    static CurveGeometry<2> joined(const std::vector<TraceNode>& nodes) {
+        std::vector<double> knots(2, nodes.front().t);
+        std::vector<Vec<2>> net;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const TraceNode& n = nodes[i];
+            knots.insert(knots.end(), 2, n.t);
+            net.push_back(i == 0 ? n.at : n.at - ((n.t - nodes[i - 1].t) / 3) * n.before);
+            net.push_back(i + 1 == nodes.size() ? n.at : n.at + ((nodes[i + 1].t - n.t) / 3) * n.after);
+            if (i > 0 && i + 1 < nodes.size() && !(n.before == n.after)) {  // a corner
+                knots.push_back(n.t);
+                net.insert(net.end() - 1, n.at);
+            }
+        }
+        knots.insert(knots.end(), 2, nodes.back().t);
+        const int size = int(net.size());
+        return Curve<Vec<2>>::trusted({*BSplineBasis::make(3, std::move(knots))},
+                                      Net<1, Vec<2>>({size}, std::move(net)));
+    }
+
+    const Chart& chart_;
+    const CurveGeometry<3>& c_;
+    Interval on_;
+    double accuracy_;
+};
+
+}  // namespace
+
+Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy) {
+    return Tracer(chart, c, on, accuracy).run();
+}
+
+CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by) {
+    return std::visit(
+        [&](const auto& c) -> CurveGeometry<2> {
+            using C = std::remove_cvref_t<decltype(c)>;
+            if constexpr (std::same_as<C, Line<2>>) {
+                return Line<2>{c.origin + by, c.direction};
+            } else if constexpr (std::same_as<C, Conic<2>>) {
+                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
+            } else {
+                auto net = c.net();
+                for (auto& p : net.flat()) {
+                    if constexpr (std::same_as<C, Curve<Vec<2>>>)
+                        p += by;
+                    else
+                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
+                }
+                return C::trusted(c.bases(), std::move(net));
+            }
+        },
+        curve);
+}
+
+}  // namespace freiform::step

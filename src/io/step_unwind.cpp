@@ -1,0 +1,80 @@
+// A closed spline continued beyond its end: the coefficients of its turns one after the other. The ends are
+// clamped first, so that each turn begins with the point where the last one ended.
+#include "step_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+namespace {
+
+// Turns `turns` of the patch along the axis; the first one is the patch itself.
+template <std::size_t N, class P>
+Patch<N, P> turned_patch(const Patch<N, P>& given, int axis, int turns) {
+    const Interval whole = given.domain()[std::size_t(axis)];
+    const auto clamped_ends = restrict_to(given, axis, whole);
+    if (!clamped_ends) return given;
+    const Patch<N, P>& s = *clamped_ends;
+    const auto& basis = s.basis(axis);
+    const int p = basis.degree(), n = basis.size();
+    const auto knots = basis.knots();
+    std::vector<double> t(knots.begin(), knots.end() - 1);
+    for (int k = 1; k < turns; ++k) {
+        for (std::size_t i = std::size_t(p) + 1; i + 1 < knots.size(); ++i)
+            t.push_back(i >= std::size_t(n) ? whole.lo + (k + 1) * whole.length()
+                                            : knots[i] + k * whole.length());
+    }
+    t.push_back(t.back());
+    auto longer = BSplineBasis::make(p, std::move(t));
+    if (!longer) return given;
+    Index<N> extent = s.net().extent();
+    const int size = 1 + turns * (n - 1);
+    extent[std::size_t(axis)] = size;
+    std::vector<P> all;
+    each_index(extent, [&](const Index<N>& at) {
+        Index<N> from = at;
+        int& i = from[std::size_t(axis)];
+        i = i == size - 1 ? n - 1 : i % (n - 1);
+        all.push_back(s.net().view()(from));
+    });
+    auto bases = s.bases();
+    bases[std::size_t(axis)] = std::move(*longer);
+    auto made = Patch<N, P>::make(std::move(bases), Net<N, P>(extent, std::move(all)));
+    return made ? *made : given;
+}
+
+}  // namespace
+
+SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on) {
+    SurfaceGeometry out = surface;
+    for (int axis = 0; axis < 2; ++axis) {
+        const Interval whole = chart.whole()[std::size_t(axis)];
+        const double turn = chart.period(axis);
+        if (!chart.is_spline(axis) || !(turn > 0) || on.is_empty()) continue;
+        const int turns = int(std::clamp(std::ceil((on.hi[axis] - whole.lo) / turn - 1e-6), 1.0, 8.0));
+        if (turns == 1) continue;
+        const auto longer = [&](auto& g) {
+            if constexpr (requires { g.net(); })
+                g = turned_patch(g, std::remove_cvref_t<decltype(g)>::kParams == 1 ? 0 : axis, turns);
+        };
+        const auto change = [&](SurfaceGeometry& s) {
+            if (auto* e = std::get_if<Extrusion>(&s))
+                std::visit(longer, e->profile);
+            else if (auto* r = std::get_if<Revolution>(&s))
+                std::visit(longer, r->profile);
+            else
+                std::visit(longer, s);
+        };
+        if (const auto* o = std::get_if<OffsetSurface>(&out)) {
+            SurfaceGeometry base = *o->base;
+            change(base);
+            out = OffsetSurface{std::make_shared<const SurfaceGeometry>(std::move(base)), o->distance};
+        } else {
+            change(out);
+        }
+    }
+    return out;
+}
+
+}  // namespace freiform::step
