@@ -39,6 +39,7 @@ namespace freiform::cli {
 struct Limits {
     double timeout = 0;            // seconds, 0: none
     std::uint64_t max_memory = 0;  // bytes, 0: none
+    std::string reader;            // of STEP files: "occt", or ours
     std::uint64_t max_triangles = 20'000'000;
 };
 
@@ -90,7 +91,7 @@ public:
     Option object(std::string& value) const;       // --object
     void answer_file() const;                      // -o for the answer
     void output(std::string_view what) const;      // -o and --to for a file that is made
-    void limits() const;                           // --timeout and --max-memory
+    void limits() const;                           // --timeout, --max-memory and --reader
     void triangle_limit() const;                   // --max-triangles
 
     // What the command does: run(context, options), where the context may be const.

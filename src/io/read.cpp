@@ -5,6 +5,7 @@
 #include <freiform/io/obj_freeform.hpp>
 #include <freiform/io/quake3.hpp>
 #include <freiform/io/read.hpp>
+#include <freiform/io/step_read.hpp>
 #include <freiform/io/svg.hpp>
 
 #include <algorithm>
@@ -63,8 +64,25 @@ std::optional<FileFormat> format_of_content(std::string_view bytes) {
 
 namespace {
 
-bool is_exchange(FileFormat f) {
-    return f == FileFormat::step || f == FileFormat::iges || f == FileFormat::brep;
+// What the program of its own reads.
+bool is_exchange(FileFormat f, const ReadOptions& options) {
+    return (f == FileFormat::step && options.step_reader == StepReader::occt) || f == FileFormat::iges ||
+           f == FileFormat::brep;
+}
+
+Document document_with(Model model) {
+    Document document;
+    document.unit = model.unit;
+    document.objects.push_back({"", std::move(model), {}});
+    return document;
+}
+
+Result<Document> read_step_document(std::string_view bytes, const ReadOptions& options) {
+    StepReadOptions limits;
+    if (options.max_memory > 0) limits.memory_bytes = std::size_t(options.max_memory);
+    auto model = read_step(bytes, limits);
+    if (!model) return std::unexpected(model.error());
+    return document_with(std::move(*model));
 }
 
 Result<Document> import(const std::string& path, const ReadOptions& options) {
@@ -73,10 +91,7 @@ Result<Document> import(const std::string& path, const ReadOptions& options) {
     if (options.max_memory > 0) limits.memory_bytes = std::size_t(options.max_memory);
     auto model = read_with_occt(path, limits);
     if (!model) return std::unexpected(model.error());
-    Document document;
-    document.unit = model->unit;
-    document.objects.push_back({"", std::move(*model), {}});
-    return document;
+    return document_with(std::move(*model));
 }
 
 // The reader of these formats wants a file: one without a name, which is gone when the process is.
@@ -121,7 +136,7 @@ Result<Document> within(const std::string& label, Result<Document> document) {
 Result<Document> read_any(const std::string& path, const ReadOptions& options) {
     const std::string label = path == "-" ? "standard input" : path;
     auto format = options.format ? options.format : format_of_name(path);
-    if (format && is_exchange(*format) && path != "-") return within(label, import(path, options));
+    if (format && is_exchange(*format, options) && path != "-") return within(label, import(path, options));
     auto bytes = read_file(path, options.max_bytes);
     if (!bytes) return std::unexpected(bytes.error());
     if (!format) format = format_of_content(*bytes);
@@ -130,11 +145,12 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                       bytes->empty()
                           ? "the file is empty"
                           : text("neither its name nor its content says a format that is known: ", kKnown));
-    if (is_exchange(*format))
+    if (is_exchange(*format, options))
         return within(label, path == "-" ? import_bytes(*bytes, options) : import(path, options));
     return within(label, *format == FileFormat::json         ? read_document(*bytes)
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
+                         : *format == FileFormat::step       ? read_step_document(*bytes, options)
                          : *format == FileFormat::svg        ? read_svg_document(*bytes)
                          : *format == FileFormat::obj        ? read_obj_freeform(*bytes)
                                                              : read_bpt(*bytes));

@@ -79,7 +79,7 @@ std::vector<double> samples_of(const SurfaceGeometry& s, int axis, const Interva
 
 }  // namespace
 
-Chart::Chart(const SurfaceGeometry& surface, double close) : s_(&surface) {
+Chart::Chart(const SurfaceGeometry& surface, double close) : s_(&surface), close_(close) {
     const SurfaceGeometry* s = s_;
     if (const auto* o = std::get_if<OffsetSurface>(s)) s = o->base.get();
     whole_ = domain(*s);
@@ -136,10 +136,13 @@ void Chart::poles_of(const Revolution& s, double close) {
 }
 
 // Splines: opposite sides that agree, sides that are one point.
-void Chart::poles_of_sides(double close) {
+void Chart::poles_of_sides(double stated) {
     std::visit(
         [&](const auto& s) {
             if constexpr (requires { s.net(); }) {
+                Box<3> box;
+                for (const Vec<3>& p : points(s)) box.add(p);
+                const double close = std::min(stated, 1e-3 * box.diagonal());
                 for (int axis = 0; axis < 2; ++axis) {
                     const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
                     const auto a = points(lo), b = points(hi);
@@ -182,7 +185,11 @@ Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess
         const double distance = norm(r);
         if (!std::isfinite(distance)) break;
         Vec<2> slope{}, step{};
-        const bool regular = solve(j.d[1], j.d[2], motion, slope) && solve(j.d[1], j.d[2], r, step);
+        const bool at_pole = std::any_of(poles_.begin(), poles_.end(), [&](const Pole& p) {
+            return norm(j.d[0] - p.point) <= 1e-4 * close_;
+        });
+        const bool regular =
+            !at_pole && solve(j.d[1], j.d[2], motion, slope) && solve(j.d[1], j.d[2], r, step);
         const bool settled = !(distance < 0.99 * best.distance);
         if (distance < best.distance) best = {at, slope, distance, regular};
         if (!regular || (settled && i > 1)) break;

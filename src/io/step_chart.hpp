@@ -48,11 +48,12 @@ public:
 private:
     void profile_traits(const CurveGeometry<3>& profile, int axis, double close);
     void poles_of(const Revolution& s, double close);
-    void poles_of_sides(double close);
+    void poles_of_sides(double stated);
     std::optional<Vec<2>> closed_form(const Vec<3>& p) const;
     void make_grid() const;
 
     const SurfaceGeometry* s_;
+    double close_;
     std::array<double, 2> period_{};
     std::array<Interval, 2> whole_{};
     std::array<bool, 2> spline_{};

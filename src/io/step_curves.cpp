@@ -179,10 +179,10 @@ Result<GeometryReader::Operator> GeometryReader::transformation(std::uint32_t i)
         if (!p) return std::unexpected(p.error());
         return Operator{*p, 1};
     }
-    // name (twice: of the item and of the transformation), axis1, axis2, origin, scale, axis3
+    // The last five: axis1, axis2, origin, scale, axis3; names come before them.
     const Fields f(f_, i, list);
-    int k = 0;
-    while (k < f.size() && f.is(k, TokenKind::string)) ++k;
+    if (f.size() < 5) return f.refused("has fewer than five values");
+    const int k = f.size() - 5;
     std::array<std::optional<Vec<3>>, 3> axis;
     const auto read = [&](int field, int which) -> Result<void> {
         if (f.is_omitted(field)) return {};

@@ -13,9 +13,10 @@ namespace freiform::step {
 
 namespace {
 
-// Relative to the size of the face: parameter curves follow their edges as well as this; those that are
-// further off than kHopeless describe another face.
-constexpr double kFollows = 1e-9, kHopeless = 0.25;
+// Relative to the size of the face: parameter curves follow their edges as well as kFollows, or as kFollowsRoughly
+// where the tolerance of the file is a thousand times that; those that are further off than kHopeless describe
+// another face.
+constexpr double kFollows = 1e-9, kFollowsRoughly = 1e-7, kHopeless = 0.25;
 // Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
 // believed, of what the file promises.
 constexpr double kMargin = 1.5;
@@ -34,9 +35,13 @@ Result<ShapeReader::SurfaceMade*> ShapeReader::surface(std::uint32_t i) {
     return at;
 }
 
+double ShapeReader::accuracy_for(double size) const {
+    return std::max(kFollows * size, std::min(kFollowsRoughly * size, 1e-3 * tolerance_));
+}
+
 Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size) {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
-    auto t = trace(chart, *e.curve, e.range, kFollows * size);
+    auto t = trace(chart, *e.curve, e.range, accuracy_for(size));
     if (!t) return std::unexpected(t.error());
     if (size > 0 && !(t->gap < kHopeless * size))
         return refuse(RefusalKind::ill_conditioned, "edge",
@@ -145,7 +150,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
             const bool beyond = kMargin * u.gap > e.tolerance;
             if ((u.fitted || beyond) && e.curve) {
                 EdgeGapOptions options;
-                options.target = u.fitted ? std::max(kFollows * size, e.tolerance / 8) : e.tolerance;
+                options.target = u.fitted ? std::max(accuracy_for(size), e.tolerance / 8) : e.tolerance;
                 options.factor = 2;
                 options.max_samples = 4000;
                 const EdgeGap gap = edge_gap(*query, u.coedge.curve, *e.curve, e.range, options);
@@ -171,7 +176,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
 }
 
 // The extent of the edges of a face, from points on them.
-Result<double> ShapeReader::size_of(std::uint32_t, const Fields& f) {
+Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen) {
     Box<3> box;
     const auto bounds = f.references(1, "bounds");
     if (!bounds) return std::unexpected(bounds.error());
@@ -202,10 +207,36 @@ Result<double> ShapeReader::size_of(std::uint32_t, const Fields& f) {
             const Edge& e = out_.model.edges[std::size_t(made->edge)];
             const int n = std::holds_alternative<Line<3>>(*e.curve) ? 1 : 6;
             for (int k = 0; k <= n; ++k)
-                box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * k / n).value());
+                seen.push_back(jet<0>(*e.curve, e.range.lo + e.range.length() * k / n).value());
         }
     }
+    for (const Vec<3>& p : seen) box.add(p);
     return box.diagonal();
+}
+
+// A sphere with its poles elsewhere: as far as possible from points of the edges. An edge that runs through a
+// pole has no continuous parameter curve; the same sphere with another axis has one for it.
+std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface, const std::vector<Vec<3>>& on) {
+    const auto* s = std::get_if<Revolution>(&surface);
+    if (s == nullptr || s->kind != SurfaceKind::sphere) return std::nullopt;
+    const auto* circle = std::get_if<Conic<3>>(&s->profile);
+    if (circle == nullptr) return std::nullopt;
+    const double radius = norm(circle->x);
+    Vec<3> best{};
+    double widest = -1;
+    for (int a = -2; a <= 2; ++a)
+        for (int b = -2; b <= 2; ++b)
+            for (int c = 0; c <= 2; ++c) {
+                const Vec<3> z = unit(Vec<3>{{double(a) + 0.1, double(b) - 0.07, double(c) + 0.03}});
+                double near = 2;
+                for (const Vec<3>& p : on) near = std::min(near, 1 - std::abs(dot(unit(p - circle->centre), z)));
+                if (near > widest) widest = near, best = z;
+            }
+    Vec<3> x = unit(circle->x);
+    if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
+    x = unit(x - dot(x, best) * best);
+    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best}, circle->centre, best,
+                      SurfaceKind::sphere};
 }
 
 Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
@@ -217,17 +248,26 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
     if (!bounds) return std::unexpected(bounds.error());
     const auto s = surface(*on);
     if (!s) return std::unexpected(s.error());
-    const Chart& chart = *(*s)->chart;
     const bool same = f->flag(3);
-    const auto size = size_of(i, *f);
+    std::vector<Vec<3>> on_edges;
+    const auto size = size_of(*f, on_edges);
     if (!size) return std::unexpected(size.error());
-    LoopBuilder loops(chart, out_.model, tolerance_);
-    for (const std::uint32_t b : *bounds)
-        if (auto ok = add_bound(b, same, chart, *size, loops); !ok) return std::unexpected(ok.error());
-    Face face;
-    face.reversed = !same;
-    face.tolerance = tolerance_;
-    return close_face(std::move(face), loops, chart, i, *size);
+    const auto attempt = [&](const Chart& chart) -> Result<Face> {
+        LoopBuilder loops(chart, out_.model, tolerance_);
+        for (const std::uint32_t b : *bounds)
+            if (auto ok = add_bound(b, same, chart, *size, loops); !ok) return std::unexpected(ok.error());
+        Face face;
+        face.reversed = !same;
+        face.tolerance = tolerance_;
+        return close_face(std::move(face), loops, chart, i, *size);
+    };
+    auto made = attempt(*(*s)->chart);
+    if (!made) {
+        if (const auto turned = other_poles((*s)->surface, on_edges)) {
+            if (auto again = attempt(Chart(*turned, tolerance_))) return again; else if(getenv("DBG")) fprintf(stderr,"again: %s %s\n",again.error().where.c_str(),again.error().message.c_str());
+        }
+    }
+    return made;
 }
 
 // A surface that stands for a face: RECTANGULAR_TRIMMED_SURFACE, CURVE_BOUNDED_SURFACE, or any that ends.

@@ -144,14 +144,20 @@ void LoopBuilder::add(std::vector<Use> uses) {
     };
     pole_between(c.uses, last, first, true);
     winding_of();
-    // A full turn about a pole that the loop only touches.
+    // Which way to turn about a pole between two uses of one edge, and whether at all, only the whole loop tells.
     for (int k = 0; k < 2; ++k)
         for (std::size_t i = 0; i < c.uses.size() && c.winding[std::size_t(k)] != 0; ++i) {
             const double turn = chart_.period(k), by = c.uses[i].end[k] - c.uses[i].start[k];
             if (!model_.edges[std::size_t(c.uses[i].coedge.edge)].degenerate) continue;
-            if (std::abs(std::abs(by) - turn) > kNearPole * turn || by * c.winding[std::size_t(k)] < 0)
-                continue;
-            c.uses.erase(c.uses.begin() + std::ptrdiff_t(i));
+            const double better = by - c.winding[std::size_t(k)] * turn;
+            if (std::abs(std::abs(by) - turn) > kNearPole * turn || std::abs(better) > 1.5 * turn) continue;
+            if (std::abs(better) <= kNearPole * turn) {
+                c.uses.erase(c.uses.begin() + std::ptrdiff_t(i));
+            } else {
+                auto& line = std::get<Line<2>>(c.uses[i].coedge.curve);
+                line.direction[k] = better;
+                c.uses[i].end[k] = c.uses[i].start[k] + better;
+            }
             std::vector<Use> again;
             for (Use& u : c.uses) attach(again, std::move(u));
             c.uses = std::move(again);

@@ -23,6 +23,7 @@ public:
     Result<Model> run() {
         structure_ = structure_of(f_);
         parts_.resize(structure_.nodes.size());
+        largest_ = largest_uncertainty(f_);
         model_.refused = f_.refused;
         append(model_.refused, structure_.refused);
         const bool products = std::any_of(structure_.nodes.begin(), structure_.nodes.end(),
@@ -71,7 +72,8 @@ private:
     Part& part_of(std::uint32_t n) {
         if (!parts_[n]) {
             const Node& node = structure_.nodes[n];
-            ShapeReader reader(f_, structure_.styles, node.context.angle, node.context.tolerance);
+            ShapeReader reader(f_, structure_.styles, node.context.angle,
+                                        std::min(node.context.tolerance, largest_));
             for (const std::uint32_t i : node.items) reader.add(i);
             parts_[n] = reader.finish();
             append(model_.refused, parts_[n]->model.refused);
@@ -92,7 +94,8 @@ private:
         if (!node.items.empty())
             if (auto ok = place(part_of(v.node), here, v); !ok) return ok;
         for (const auto& [item, by] : node.replicas) {
-            ShapeReader reader(f_, structure_.styles, node.context.angle, node.context.tolerance);
+            ShapeReader reader(f_, structure_.styles, node.context.angle,
+                                        std::min(node.context.tolerance, largest_));
             reader.add(item);
             const Part part = reader.finish();
             append(model_.refused, part.model.refused);
@@ -221,7 +224,7 @@ private:
     std::vector<std::optional<Part>> parts_;
     std::vector<Free> free_;
     Model model_;
-    double length_ = 1;
+    double length_ = 1, largest_ = 0;
     std::size_t visits_ = 0, bytes_ = 0;
 };
 

@@ -68,7 +68,9 @@ private:
     Result<int> vertex(std::uint32_t i);
     int vertex_at(std::uint32_t point, const Vec<3>& p);
     Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size);
-    Result<double> size_of(std::uint32_t face, const Fields& f);
+    Result<double> size_of(const Fields& f, std::vector<Vec<3>>& seen);
+    double accuracy_for(double size) const;
+    static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface, const std::vector<Vec<3>>& on);
     void refuse_item(std::uint32_t item, Refusal why);
     void report(int edge, std::string what, std::optional<double> bound, double estimate);
     std::optional<Colour> colour_of(std::uint32_t i) const;

@@ -34,6 +34,9 @@ struct Structure {
 };
 Structure structure_of(const File& file);
 
+// The largest distance that can pass for an uncertainty: a part of the extent of all vertices.
+double largest_uncertainty(const File& file);
+
 // Of a representation context.
 Context context_of(const File& file, std::uint32_t context);
 Styles styles_of(const File& file);

@@ -31,17 +31,42 @@ public:
 
     Result<Trace> run() {
         if (auto flat = on_plane()) return *flat;
+        auto t = on_curved();
+        if (t && crosses_pole(t->curve)) return through_pole();
+        return t;
+    }
+
+private:
+    static std::unexpected<Refusal> through_pole() {
+        return refuse(RefusalKind::ill_conditioned, "parameter curve",
+                      "runs through a pole or a fold of the surface");
+    }
+    // Beyond a pole the same points have other parameters, where the next edge begins.
+    bool crosses_pole(const CurveGeometry<2>& c) const {
+        for (const Pole& p : chart_.poles()) {
+            const double turn = chart_.period(p.axis);
+            double least = 0, most = 0;
+            for (int i = 0; i <= 8; ++i) {
+                double off = jet<0>(c, on_.lo + on_.length() * i / 8).value()[p.axis] - p.at;
+                if (turn > 0) off -= std::round(off / turn) * turn;
+                if (std::abs(off) > 0.4 * turn && turn > 0) continue;
+                least = std::min(least, off), most = std::max(most, off);
+            }
+            const double small = 1e-5 * (most - least);
+            if (least < -small && most > small) return true;
+        }
+        return false;
+    }
+
+    Result<Trace> on_curved() {
         const double middle = on_.lo + 0.46875 * on_.length();
         const auto j = jet<1>(c_, middle);
         const Foot start = chart_.foot(j.d[0], j.d[1], chart_.locate(j.d[0]));
-        if (!start.regular)
-            return refuse(RefusalKind::ill_conditioned, "parameter curve",
-                          "runs through a pole or a fold of the surface");
+        if (!start.regular) return through_pole();
         if (auto straight = line(start, middle)) return *straight;
         return spline(start, middle);
     }
 
-private:
     double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }
 
     // bound of the gap, in exact arithmetic: the distance from a plane is convex, so that of the control
@@ -108,19 +133,22 @@ private:
 
     std::optional<Trace> line(const Foot& start, double middle) const {
         const auto guess = [&](double t) { return start.at + (t - middle) * start.slope; };
-        Vec<2> a = end(on_.lo, guess(on_.lo)), b = end(on_.hi, guess(on_.hi));
+        const Vec<2> from = guess(on_.lo), to = guess(on_.hi);
+        Vec<2> a = end(on_.lo, from), b = end(on_.hi, to);
+        // Isoparametric lines exactly so.
+        const auto j = jet<1>(chart_.surface(), chart_.wrapped(start.at).c);
+        const auto moves = [&](int k) { return std::abs(from[k] - to[k]) * norm(j.d[std::size_t(k) + 1]); };
+        for (int k = 0; k < 2; ++k)
+            if (moves(k) <= 0.5 * accuracy_ && moves(1 - k) > 2 * moves(k)) a[k] = b[k] = start.at[k];
+        if (a == b) a = from, b = to;
         for (const Pole& p : chart_.poles())  // meridians end exactly there
             for (Vec<2>* x : {&a, &b})
                 if (std::abs((*x)[p.axis] - p.at) <=
                     1e-9 * (std::abs(p.at) + std::abs(a[p.axis] - b[p.axis])))
                     (*x)[p.axis] = p.at;
-        // Isoparametric lines exactly so.
-        const auto j = jet<1>(chart_.surface(), chart_.wrapped(start.at).c);
-        for (int k = 0; k < 2; ++k)
-            if (std::abs(a[k] - b[k]) * norm(j.d[std::size_t(k) + 1]) <= 1e-3 * accuracy_)
-                a[k] = b[k] = start.at[k];
         snap(a, b);
         const Vec<2> d = (1 / on_.length()) * (b - a);
+        if (max_abs(d) == 0) return std::nullopt;
         Trace out;
         out.curve = Line<2>{a - on_.lo * d, d};
         for (const double x : kPlacesOfLine)

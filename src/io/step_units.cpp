@@ -127,6 +127,18 @@ Context context_of(const File& f, std::uint32_t context) {
     return out;
 }
 
+double largest_uncertainty(const File& f) {
+    const GeometryReader geometry(f);
+    Box<3> box;
+    for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
+        if (f.type(i) != Type::VERTEX_POINT) continue;
+        const auto at = Fields(f, i, f.instances[i].first + 1).reference(1, "point");
+        if (!at) continue;
+        if (const auto p = geometry.point(*at); p && max_abs(*p) < 1e100) box.add(*p);
+    }
+    return box.diagonal() > 0 ? 1e-5 * box.diagonal() : 1e300;
+}
+
 namespace {
 
 std::optional<Colour> named_colour(std::string_view name) {

@@ -17,11 +17,14 @@ std::optional<FileFormat> format_of_name(std::string_view file_name);
 // By what the content begins with.
 std::optional<FileFormat> format_of_content(std::string_view bytes);
 
+enum class StepReader { own, occt };
+
 struct ReadOptions {
     std::optional<FileFormat> format;  // else the ending decides, and where it says nothing, the content
     std::uint64_t max_bytes = std::uint64_t(2) << 30;
-    double timeout = 0;            // seconds, 0: none; for the program that reads STEP, IGES and BREP
-    std::uint64_t max_memory = 0;  // bytes, 0: none; likewise
+    StepReader step_reader = StepReader::own;
+    double timeout = 0;            // seconds, 0: none; for the program that reads IGES and BREP, and STEP by wish
+    std::uint64_t max_memory = 0;  // bytes, 0: none; likewise, and for models in STEP files
 };
 
 // Of OBJ the free-form objects. "-" is standard input. Every refusal begins with the file name: "teapot.bpt:
