@@ -175,6 +175,10 @@ SurfaceNode node_of(const Charts& charts, const Cluster& cluster, int arms, doub
 SurfaceOverlap overlap_of(const SameMap& m, const std::array<const PartSpline*, 2>& parts) {
     SurfaceOverlap out;
     out.gap = m.gap;
+    for (std::size_t side = 0; side < 2; ++side)
+        for (std::size_t k = 0; k < 2; ++k)
+            out.is_affine =
+                out.is_affine && m.side[side].own[k].is_identity() == parts[side]->map[k].is_identity();
     const auto place = [&](std::size_t side, std::size_t k, bool high) {
         const Interval& on = m.on[side][k];
         return parts[side]->map[k].at(high ? on.hi : on.lo);

@@ -153,6 +153,32 @@ Result<FaceLoops> FaceLoops::make(const Face& face, const std::vector<Edge>& edg
     auto query = InsideQuery::make(loops, 2 * gap);
     if (!query) return std::unexpected(query.error());
     out.query_ = std::move(*query);
+    out.loops_ = std::move(loops);
+    return out;
+}
+
+Result<FaceLoops::AsPath> FaceLoops::path(const Vec<2>& unit, double tolerance) const {
+    AsPath out;
+    for (const auto& loop : loops_) {
+        Subpath all;
+        for (const CurveGeometry<2>& curve : loop) {
+            auto part = subpath_of(in_units(weighted_curve(curve), unit), tolerance);
+            if (!part) return std::unexpected(part.error());
+            out.bound = std::max(out.bound, part->bound);
+            auto& segments = part->subpath.segments;
+            if (segments.empty()) continue;
+            if (all.segments.empty())
+                all.start = part->subpath.start;
+            else if (const Vec<2> end = all.segments.back().back(); !(end == segments.front().front()))
+                all.segments.push_back({1, {end, segments.front().front()}});
+            all.segments.insert(all.segments.end(), segments.begin(), segments.end());
+        }
+        if (all.segments.empty()) continue;
+        if (const Vec<2> end = all.segments.back().back(); !(end == all.start))
+            all.segments.push_back({1, {end, all.start}});
+        all.closed = true;
+        out.path.subpaths.push_back(std::move(all));
+    }
     return out;
 }
 

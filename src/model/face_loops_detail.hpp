@@ -1,6 +1,7 @@
 // The loops of a face as splines in its parameter plane, to clip curves of the plane by.
 #pragma once
 #include <freiform/model/model.hpp>
+#include <freiform/path/path.hpp>
 #include <freiform/trim/inside.hpp>
 
 #include <optional>
@@ -35,6 +36,16 @@ public:
         ClippedPart::End on{};
     };
     Where place(const Box<2>& box) const;
+    // The loops in order, every parameter times `unit`; curves that are no segments of paths become cubics,
+    // within `bound` of the tolerance (both in these units).
+    struct AsPath {
+        Path path;
+        double bound = 0;
+    };
+    Result<AsPath> path(const Vec<2>& unit, double tolerance) const;
+    const Vec<2>& unit() const {
+        return unit_;
+    }  // with which lengths are about those in space, at least half
     bool is_empty() const { return trims_.empty(); }
 
 private:
@@ -46,6 +57,7 @@ private:
     Result<void> add(const CurveGeometry<2>& curve, ClippedPart::End place);
     Vec<2> unit_{};  // powers of two
     std::vector<Trim> trims_;
+    std::vector<std::vector<CurveGeometry<2>>> loops_;
     std::optional<InsideQuery> query_;
 };
 

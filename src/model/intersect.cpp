@@ -5,12 +5,15 @@
 // the loops of both faces (face_loops.cpp).
 //
 // Method. Faces are paired by boxes of their parts. Where both clips keep a stretch of a branch it stays; a
-// closed branch that is cut somewhere else than at its seam is joined there again. Nodes stay unless all
+// closed branch that is cut somewhere else than at its seam is joined there again. Ends at edges are joined
+// to chains (branch_chains.cpp), overlaps are clipped by the loops (face_overlaps.cpp). Nodes stay unless all
 // their cells are outside of a face: no loop meets the cell, and its middle is outside.
 //
 // Cost. A search for each pair of faces whose boxes overlap.
 //
 // Why not faces as they are, with their loops carried into splines? Loops in angles have no such spline.
+#include "branch_chains_detail.hpp"
+#include "face_overlaps_detail.hpp"
 #include "prepared_face_detail.hpp"
 
 #include <freiform/model/intersect.hpp>
@@ -68,6 +71,7 @@ public:
                     faces_ = {int(i), int(j)};
                     meet({&*faces[0][i], &*faces[1][j]});
                 }
+        out_.chains = chains_of(out_.branches, models_, options_.tolerance);
         return std::move(out_);
     }
 
@@ -87,7 +91,8 @@ private:
         for (std::size_t i = 0; i < node.size(); ++i) {
             if (!may_touch(face, found->nodes[i].cells)) continue;
             node[i] = int(out_.nodes.size());
-            out_.nodes.push_back({found->nodes[i], faces_});
+            out_.nodes.push_back({std::move(found->nodes[i]), faces_, {}});
+            clip_overlaps(face, out_.nodes.back());
         }
         for (const SurfaceBranch& b : found->branches) {
             std::array<std::vector<ClippedPart>, 2> parts;
@@ -102,6 +107,23 @@ private:
         }
         std::erase_if(found->undecided, [&](const auto& box) { return !may_touch(face, {box}); });
         if (!found->undecided.empty()) out_.open.push_back({faces_, found->undecided, {}});
+    }
+    void clip_overlaps(const std::array<const PreparedFace*, 2>& face, FaceNode& node) {
+        std::vector<SurfaceOverlap> kept;
+        for (SurfaceOverlap& o : node.overlaps) {
+            if (o.is_affine) {
+                auto region = face_overlap({&face[0]->loops, &face[1]->loops}, o, options_.tolerance);
+                if (!region)
+                    leave_open(region.error());
+                else if (!*region)
+                    continue;
+                else
+                    node.regions.push_back(std::move(**region));
+            }
+            kept.push_back(std::move(o));
+        }
+        if (kept.empty() && !node.overlaps.empty()) node.kind = SurfaceNodeKind::along;  // borders at most
+        node.overlaps = std::move(kept);
     }
     // Of some box, is a part in both faces, as far as is known?
     static bool may_touch(const std::array<const PreparedFace*, 2>& face,

@@ -5,6 +5,7 @@
 
 #include <freiform/model/intersect.hpp>
 #include <freiform/model/rescale.hpp>
+#include <freiform/region/boolean.hpp>
 
 #include <gtest/gtest.h>
 
@@ -47,13 +48,13 @@ ModelIntersection faces_met(const Model& a, const Model& b, double tolerance) {
     return found;
 }
 
-// The plane z = height over [-2, 2]^2, with a round hole, or without.
-Model plate(double height, std::optional<Vec<2>> hole, double radius) {
+// The plane z = height + slope x over [-2, 2]^2, with a round hole, or without.
+Model plate(double height, std::optional<Vec<2>> hole, double radius, double slope = 0) {
+    const double lo = height - 2 * slope, hi = height + 2 * slope;
     const auto basis = must(BSplineBasis::bezier(1, {-2, 2}));
     const auto flat = must(Surface<Vec<3>>::make(
         {basis, basis},
-        Net<2, Vec<3>>({2, 2},
-                       {{{-2, -2, height}}, {{-2, 2, height}}, {{2, -2, height}}, {{2, 2, height}}})));
+        Net<2, Vec<3>>({2, 2}, {{{-2, -2, lo}}, {{-2, 2, lo}}, {{2, -2, hi}}, {{2, 2, hi}}})));
     std::vector<std::vector<CurveGeometry<2>>> loops(1);
     const Vec<2> corner[] = {{{-2, -2}}, {{2, -2}}, {{2, 2}}, {{-2, 2}}};
     for (int i = 0; i < 4; ++i)
@@ -105,6 +106,66 @@ TEST(ModelIntersect, an_apex_is_met_on_the_side_where_the_face_is) {
     for (const FaceBranch& b : found.branches)
         if (b.faces == std::array{0, 0}) at_wall += arc_length(b.curve);
     EXPECT_NEAR(at_wall, kPi, 1e-5);
+}
+
+// Over the rim of a tube: an arc on the wall and a chord on the disc, the wall's seam crossed or not.
+TEST(ModelIntersect, branches_are_joined_over_edges) {
+    for (const double slope : {1.0, -1.0})
+        for (const bool swapped : {false, true}) {
+            const Model tube = frustum(1, 1, 2), plane = plate(1.5, {}, 0, slope);
+            const auto found = swapped ? faces_met(plane, tube, 1e-7) : faces_met(tube, plane, 1e-7);
+            ASSERT_EQ(found.chains.size(), 1u);
+            const BranchChain& c = found.chains[0];
+            EXPECT_TRUE(c.closed);
+            EXPECT_LE(c.gap, 1e-6);
+            ASSERT_EQ(c.links.size(), found.branches.size());
+            EXPECT_GE(c.links.size(), 2u);
+            for (std::size_t i = 0; i < c.links.size(); ++i) {
+                const auto end = [&](const BranchChain::Link& l, bool last) {
+                    const Curve<Vec<3>>& curve = found.branches[std::size_t(l.branch)].curve;
+                    return curve(last != l.reversed ? curve.domain()[0].hi : curve.domain()[0].lo);
+                };
+                EXPECT_LE(norm(end(c.links[i], true) - end(c.links[(i + 1) % c.links.size()], false)), c.gap);
+            }
+        }
+    const auto found = faces_met(sphere({{0, 0, 1}}, 1.25), frustum(1, 1, 2), 1e-7);
+    ASSERT_EQ(found.chains.size(), 4u);
+    for (const BranchChain& c : found.chains) EXPECT_TRUE(c.closed && c.links.size() == 1);
+    const auto open = faces_met(plate(0, {}, 0, 1), plate(0, {}, 0, 0), 1e-7);
+    ASSERT_EQ(open.chains.size(), 1u);
+    EXPECT_FALSE(open.chains[0].closed);
+}
+
+double area_of_regions(const ModelIntersection& m, std::array<int, 2> faces) {
+    double sum = 0;
+    for (const FaceNode& n : m.nodes)
+        if (n.faces == faces)
+            for (const FaceOverlap& o : n.regions) {
+                EXPECT_LE(o.bound, 1e-6);
+                EXPECT_LE(o.gap, 1e-6);
+                EXPECT_NEAR(std::abs(signed_area(o.at_b).value), signed_area(o.at_a).value, 1e-6);
+                sum += signed_area(o.at_a).value;
+            }
+    return sum;
+}
+
+TEST(ModelIntersect, overlaps_are_clipped_by_the_loops_of_both_faces) {
+    const auto two =
+        must(intersect(plate(1, Vec<2>{{0, 0}}, 1), plate(1, Vec<2>{{1, 0}}, 1), {.tolerance = 1e-6}));
+    const double lens = 2 * kPi / 3 - std::sqrt(0.75);
+    EXPECT_NEAR(area_of_regions(two, {0, 0}), 16 - 2 * kPi + lens, 1e-5);
+    // One hole in the other: what is left has the larger one only.
+    const auto ring =
+        must(intersect(plate(1, Vec<2>{{0, 0}}, 1), plate(1, Vec<2>{{0.1, 0}}, 0.5), {.tolerance = 1e-6}));
+    EXPECT_NEAR(area_of_regions(ring, {0, 0}), 16 - kPi, 1e-5);
+    // Walls and discs: turned about their axis, the same.
+    const auto tubes = must(intersect(frustum(1, 1, 1), frustum(1, 1, 1), {.tolerance = 1e-6}));
+    EXPECT_NEAR(area_of_regions(tubes, {0, 0}), 2 * kPi, 1e-5);
+    EXPECT_NEAR(area_of_regions(tubes, {1, 1}), kPi, 1e-5);
+    // The disc fills the hole: they share a border, and nothing else.
+    const auto filled = must(intersect(frustum(1, 1, 1), plate(1, Vec<2>{{0, 0}}, 1), {.tolerance = 1e-6}));
+    for (const FaceNode& n : filled.nodes) EXPECT_NE(n.kind, SurfaceNodeKind::overlap);
+    EXPECT_EQ(area_of_regions(filled, {2, 0}), 0);
 }
 
 TEST(ModelIntersect, powers_of_two_scale_the_answer) {

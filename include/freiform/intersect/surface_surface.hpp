@@ -53,6 +53,9 @@ std::string_view name_of(SurfaceNodeKind kind);
 struct SurfaceOverlap {
     std::vector<Vec<2>> loop_a, loop_b;
     double gap = 0;  // bound: no point of either region is farther from the other one
+    // The corners give the map between the parameters: it is affine. Otherwise it goes along angles of
+    // rational splines.
+    bool is_affine = true;
 };
 
 // Parameters of both surfaces where they are so near to each other, and so parallel, that the tolerance does

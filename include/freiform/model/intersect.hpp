@@ -2,6 +2,7 @@
 #pragma once
 #include <freiform/intersect/surface_surface.hpp>
 #include <freiform/model/model.hpp>
+#include <freiform/path/path.hpp>
 
 namespace freiform {
 
@@ -20,8 +21,27 @@ struct FaceBranch : SurfaceBranch {
     std::array<TrimPlace, 2> trims{};  // of ends that are kAtTrim
     std::array<bool, 2> along_trim{};  // some of it runs along a loop of this face within the tolerance
 };
+// The part of an overlap that is in both faces, as a region: outer loops counter-clockwise in the parameters
+// of the first face, holes clockwise; the same segments in those of the second one.
+struct FaceOverlap {
+    Path at_a, at_b;
+    double gap = 0;    // bound: no point of either region is farther from the other one
+    double bound = 0;  // bound: of how far the outline may be off in space, on the first face
+};
 struct FaceNode : SurfaceNode {
     std::array<int, 2> faces{};
+    // Of `overlaps`, what the loops of both faces leave; not of maps between parameters that are not affine.
+    std::vector<FaceOverlap> regions;
+};
+// Branches one after the other, over the edges of faces.
+struct BranchChain {
+    struct Link {
+        int branch = -1;
+        bool reversed = false;  // it is run through from its end
+    };
+    std::vector<Link> links;
+    bool closed = false;
+    double gap = 0;  // bound: from where a branch ends to where the next one begins
 };
 // Two faces of which nothing is known: over boxes of both parameters, or all of them, with the reason.
 struct OpenFaces {
@@ -32,7 +52,10 @@ struct OpenFaces {
 
 struct ModelIntersection {
     std::vector<FaceBranch> branches;  // ordered by faces
-    std::vector<FaceNode> nodes;       // those whose boxes are not proven to be outside of one of the faces
+    // Every branch is in one of them. Ends at loops are joined where they are the only two at a place: within
+    // the tolerance of the edges there and 64 times the tolerance asked for.
+    std::vector<BranchChain> chains;
+    std::vector<FaceNode> nodes;  // those whose boxes are not proven to be outside of one of the faces
     std::vector<OpenFaces> open;
     double search_bound = 0;  // PartIntersection::search_bound, the largest sum of both
 };
