@@ -33,6 +33,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/gpu/surfaces.hpp>
+#include <freiform/spline/bezier.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
@@ -65,15 +66,74 @@ struct BuiltFace {
 
 struct SecondDerivatives {
     double ss = 0, st = 0, tt = 0;
+    void include(const SecondDerivatives& o) {
+        ss = std::max(ss, o.ss), st = std::max(st, o.st), tt = std::max(tt, o.tt);
+    }
 };
+
+constexpr int kHalvings = 2;  // per direction: control points of high degrees are far from their surface
+
+SecondDerivatives bounds_of(const Net<2, Hom<3>>& net, std::array<double, 2> width, int halvings, int axis) {
+    if (halvings == 0) {
+        const auto b = derivative_bounds<2, Hom<3>>(net.view(), width);
+        return {b(2, 0), b(1, 1), b(0, 2)};
+    }
+    const int next = axis == 0 ? halvings : halvings - 1;
+    if (net.extent()[std::size_t(axis)] == 2 && net.extent()[std::size_t(1 - axis)] == 2)
+        return bounds_of(net, width, 0, 0);
+    Net<2, Hom<3>> low = net, high = net;
+    each_fibre(axis, net.extent(), [&](const Index<2>& at) {
+        keep_left(low.view().fibre(axis, at), 0.5);
+        keep_right(high.view().fibre(axis, at), 0.5);
+    });
+    width[std::size_t(axis)] /= 2;
+    SecondDerivatives out = bounds_of(low, width, next, 1 - axis);
+    out.include(bounds_of(high, width, next, 1 - axis));
+    return out;
+}
+
+// Of a triangle of degree n: all of second order are at most as long. Differences of the coefficients
+// about a point near them, as block_bounds.cpp has it; parts are half as large.
+double bend_of(const SimplexPatch<2, Hom<3>>& s, int halvings) {
+    const int n = s.degree();
+    if (halvings > 0) {
+        double most = 0;
+        for (const auto& part : split_in_four(s)) most = std::max(most, 4 * bend_of(part, halvings - 1));
+        return most;
+    }
+    const Vec<3> centre = project(s.coefficient(n / 3, n / 3));
+    const auto at = [&](int j, int k) {
+        Hom<3> h = s.coefficient(j, k);
+        for (int c = 0; c < 3; ++c) h[c] -= h.weight() * centre[c];
+        return h;
+    };
+    const auto step = [&](int j, int k, int d) { return (d == 0 ? at(j + 1, k) : at(j, k + 1)) - at(j, k); };
+    const auto length = [](const Hom<3>& h) { return std::hypot(h[0], h[1], h[2]); };
+    double radius = 0, least = kInfinity, first = 0, weight_first = 0, second = 0, weight_second = 0;
+    for (int j = 0; j <= n; ++j)
+        for (int k = 0; j + k <= n; ++k) {
+            least = std::min(least, at(j, k).weight());
+            radius = std::max(radius, norm(project(at(j, k))));
+            for (const int d : {0, 1}) {
+                if (j + k + 1 > n) continue;
+                first = std::max(first, n * length(step(j, k, d)));
+                weight_first = std::max(weight_first, n * std::abs(step(j, k, d).weight()));
+                if (j + k + 2 > n) continue;
+                for (const int e : {0, 1}) {
+                    const Hom<3> twice = (e == 0 ? step(j + 1, k, d) : step(j, k + 1, d)) - step(j, k, d);
+                    second = std::max(second, n * (n - 1) * length(twice));
+                    weight_second = std::max(weight_second, n * (n - 1) * std::abs(twice.weight()));
+                }
+            }
+        }
+    const double slope = (first + weight_first * radius) / least;
+    return (second + 2 * weight_first * slope + weight_second * radius) / least;
+}
 
 std::vector<SecondDerivatives> second_derivatives(const Face& face, const SurfacePieces& p) {
     std::vector<SecondDerivatives> out;
     if (p.distance == 0) {
-        for (const Net<2, Hom<3>>& net : p.nets) {
-            const auto b = derivative_bounds<2, Hom<3>>(net.view(), {1, 1});
-            out.push_back({b(2, 0), b(1, 1), b(0, 2)});
-        }
+        for (const Net<2, Hom<3>>& net : p.nets) out.push_back(bounds_of(net, {1, 1}, kHalvings, 0));
         return out;
     }
     // Of the offset itself, by its own parameters.
@@ -91,8 +151,7 @@ std::vector<SecondDerivatives> second_derivatives(const Face& face, const Surfac
 std::array<std::vector<double>, 2> bends_of(const std::vector<SecondDerivatives>& all, std::size_t columns,
                                             std::size_t rows) {
     SecondDerivatives most;
-    for (const SecondDerivatives& m : all)
-        most = {std::max(most.ss, m.ss), std::max(most.st, m.st), std::max(most.tt, m.tt)};
+    for (const SecondDerivatives& m : all) most.include(m);
     const double both = most.st > 0 ? std::sqrt((most.ss + most.st) / (most.tt + most.st)) : 1;
     std::array<std::vector<double>, 2> out{std::vector<double>(columns, 0.0), std::vector<double>(rows, 0.0)};
     std::array<double, 2> largest{};
@@ -139,7 +198,6 @@ private:
     void write_trim(BuiltFace& face, std::array<float, 4>& record);
     void write_records();
     void write_seams();
-    Colour colour_of(std::size_t face) const { return faces_[face].colour; }
     Vec<3> scene(const Vec<3>& p) const { return (1 / out_.size) * (p - out_.middle); }
     std::array<float, 3> floats(const Vec<3>& p) const { return {float(p[0]), float(p[1]), float(p[2])}; }
 
@@ -214,43 +272,10 @@ void BufferBuilder::add_triangle(const TriangularFace& triangle) {
     const auto net = triangle.patch.coefficients();
     Box<3> box;
     for (const Hom<3>& h : net) box.add(project(h));
-    // Bounds of the map of degree n x n over the square that the triangle is the image of would count its pole;
-    // differences of the coefficients of the triangle do not. Homogeneous ones are projected by the largest and
-    // smallest weight: sub-triangles are too many to be worth more.
-    const auto surface = triangle.patch;
-    double least_weight = kInfinity, weight_first = 0, weight_second = 0, first = 0, second = 0;
-    const Vec<3> centre = 0.5 * (box.lo + box.hi);
-    const auto at = [&](int j, int k) {
-        Hom<3> h = surface.coefficient(j, k);
-        for (int c = 0; c < 3; ++c) h[c] -= h.weight() * centre[c];
-        return h;
-    };
-    const auto length = [](const Hom<3>& h) { return std::hypot(h[0], h[1], h[2]); };
-    double radius = 0;
-    for (int j = 0; j <= n; ++j)
-        for (int k = 0; j + k <= n; ++k) {
-            least_weight = std::min(least_weight, at(j, k).weight());
-            radius = std::max(radius, norm(project(at(j, k))));
-        }
-    // Towards corners 2 and 3 from 1: e_u = E2 - E1, e_v = E3 - E1.
-    const auto step = [&](int j, int k, int d) { return (d == 0 ? at(j + 1, k) : at(j, k + 1)) - at(j, k); };
-    for (int j = 0; j < n; ++j)
-        for (int k = 0; j + k < n; ++k)
-            for (const int d : {0, 1}) {
-                first = std::max(first, n * length(step(j, k, d)));
-                weight_first = std::max(weight_first, n * std::abs(step(j, k, d).weight()));
-                if (j + k + 2 > n) continue;
-                for (const int e : {0, 1}) {
-                    const Hom<3> twice = (e == 0 ? step(j + 1, k, d) : step(j, k + 1, d)) - step(j, k, d);
-                    second = std::max(second, n * (n - 1) * length(twice));
-                    weight_second = std::max(weight_second, n * (n - 1) * std::abs(twice.weight()));
-                }
-            }
-    const double slope = (first + weight_first * radius) / least_weight;
-    const double bend = (second + 2 * weight_first * slope + weight_second * radius) / least_weight;
+    const double bend = bend_of(triangle.patch, kHalvings);
     // h = k, and all three second derivatives at most `bend`: 4 bend h^2 / 8.
     pieces_.push_back({int(triangle_nets_.size()), int(faces_.size()), {n, -1}, {}, false, 0, {bend / 2, bend / 2}});
-    faces_.push_back({centre, false, triangle.colour.value_or(options_.colour), {}, {}, {}});
+    faces_.push_back({0.5 * (box.lo + box.hi), false, triangle.colour.value_or(options_.colour), {}, {}, {}});
     triangle_nets_.emplace_back(net.begin(), net.end());
     for (Seam& s : seams_of(triangle.patch, int(faces_.size()) - 1, options_.edge_tolerance)) seams_.push_back(std::move(s));
     for (int i = 0; i <= kMostSamples / 2; ++i)
@@ -354,11 +379,16 @@ void BufferBuilder::write_records() {
 void BufferBuilder::write_seams() {
     const auto byte = [](double x) { return std::uint8_t(std::lround(255 * x)); };
     for (const Seam& s : seams_) {
-        const Colour c = colour_of(std::size_t(s.face));
+        const auto bytes = [&](int face) -> std::array<std::uint8_t, 4> {
+            const Colour& c = faces_[std::size_t(face)].colour;
+            return {byte(c.r), byte(c.g), byte(c.b), 255};
+        };
         for (std::size_t i = 1; i < s.points.size(); ++i) {
-            out_.seams.push_back({floats(scene(s.points[i - 1])), floats(scene(s.points[i])),
+            if (!s.open)
+                out_.seams.push_back({floats(scene(s.points[i - 1])), floats(scene(s.points[i])),
                                   floats(scene(s.edge[i - 1])), floats(scene(s.edge[i])), floats(s.normals[i - 1]),
-                                  floats(s.normals[i]), {byte(c.r), byte(c.g), byte(c.b), 255}});
+                                  floats(s.normals[i]), floats(s.others[i - 1]), floats(s.others[i]), bytes(s.face),
+                                  bytes(s.other)});
             if (s.outline) out_.outlines.push_back({floats(scene(s.edge[i - 1])), floats(scene(s.edge[i]))});
         }
     }

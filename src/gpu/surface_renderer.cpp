@@ -8,15 +8,16 @@
 // bezier.glsl). Between faces: what is drawn of a face ends in the points of its triangles at the places of its
 // parameter curve, which are within `deviation` of that curve on the surface at the same parameter; the seam's segments
 // are within the tolerance of edges of it, and fill what lies between face and edge. A seam reaches beyond its
-// segments by both distances and half a sample's width. So the outlines that two faces are drawn with, and all between
+// segments by both distances, and by rounding. So the outlines that two faces are drawn with, and all between
 // them, are covered by their two seams: if the pictures of the faces themselves leave no gap, nothing of what is behind
-// is seen. Seams lie a little deeper than faces, which hide them where they reach.
+// is seen. Seams lie deeper than the faces, by what these fall within the reach, so that they are hidden where faces
+// are drawn; beyond a silhouette they have the light of the face that is turned to the eye.
 //
 // Cost. A picture costs the evaluation of its vertices; nothing is made per view by the processor but lists of pieces
 // for grids.
 //
-// Accuracy. As surface_buffers.cpp; the boundary of a face is drawn within deviation plus reach, below half a
-// pixel for the usual deviation of 0.2.
+// Accuracy. As surface_buffers.cpp; the boundary of a face is drawn within the deviation where nothing meets it,
+// elsewhere seams may be seen beyond it by their reach, below half a pixel for the usual deviation of 0.2.
 //
 // Why not one polyline for an edge, to which both faces are drawn: fragments of the pieces would have to be cut off
 // or pulled there; a mesh is the better way then. Why not trimming a little outside: a face that is seen edge on
@@ -36,7 +37,7 @@ namespace {
 
 constexpr int kRowTexels = 4096;           // of the texture that OpenGL ES reads
 constexpr double kMostCells = 1e8;         // of a picture
-constexpr double kSampleReach = 0.25;      // pixels of the framebuffer
+constexpr double kRoundingReach = 0.05;    // pixels of the framebuffer
 constexpr float kSeamFarther = 1e-4f;      // in depth from -1 to 1
 constexpr float kOrientationBow = 1.7321f;  // the scene reaches no nearer to the eye: the corner of a cube
 
@@ -154,11 +155,13 @@ Result<void> SurfaceRenderer::State::prepare() {
     seams.begin();
     seams.fill(GL_ARRAY_BUFFER, data.seams);
     constexpr std::size_t kStride = sizeof(SeamSegment);
-    const std::array offsets{offsetof(SeamSegment, from),      offsetof(SeamSegment, to),
-                             offsetof(SeamSegment, edge_from), offsetof(SeamSegment, edge_to),
-                             offsetof(SeamSegment, normal_from), offsetof(SeamSegment, normal_to)};
+    const std::array offsets{offsetof(SeamSegment, from),        offsetof(SeamSegment, to),
+                             offsetof(SeamSegment, edge_from),   offsetof(SeamSegment, edge_to),
+                             offsetof(SeamSegment, normal_from), offsetof(SeamSegment, normal_to),
+                             offsetof(SeamSegment, other_from),  offsetof(SeamSegment, other_to)};
     for (GLuint i = 0; i < offsets.size(); ++i) seams.attribute(i, 3, GL_FLOAT, kStride, offsets[i], 1);
-    seams.attribute(6, 4, GL_UNSIGNED_BYTE, kStride, offsetof(SeamSegment, colour), 1);
+    seams.attribute(8, 4, GL_UNSIGNED_BYTE, kStride, offsetof(SeamSegment, colour), 1);
+    seams.attribute(9, 4, GL_UNSIGNED_BYTE, kStride, offsetof(SeamSegment, other_colour), 1);
     for (const OutlineSegment& o : data.outlines) outlines.push_back({o.from, o.to});
     return {};
 }
@@ -173,10 +176,6 @@ Result<void> SurfaceRenderer::State::check_work(double density) const {
     for (const auto& bend : data.bends) {
         const Levels n = levels_of(bend, density);
         cells += double(n.u) * n.v;
-        if (pipeline == SurfacePipeline::tessellation && &bend - data.bends.data() >= data.tensor_pieces &&
-            n.u > hardware_level)
-            return refuse(RefusalKind::limit, "deviation",
-                          text("a triangular piece needs ", n.u, " cells along its sides, the driver has ", hardware_level));
     }
     if (cells > kMostCells)
         return refuse(RefusalKind::limit, "deviation",
@@ -204,7 +203,7 @@ int SurfaceRenderer::State::set_patches(GLuint program, const GpuScene& scene, d
         const Levels n = levels_of(data.bends[std::size_t(i)], density);
         most = std::max({most, n.u, n.v});
     }
-    const int cells = triangular ? 1 : (most + hardware_level - 1) / hardware_level;
+    const int cells = (most + hardware_level - 1) / hardware_level;
     glUniform1i(place(program, "first_piece"), first);
     glUniform1i(place(program, "cells"), cells);
     glUniform1f(place(program, "hardware_level"), float(hardware_level));
@@ -238,7 +237,7 @@ void SurfaceRenderer::State::draw_grids(GLuint program, const GpuScene& scene, d
 Result<void> SurfaceRenderer::State::draw_seams(const GpuScene& scene, const RenderOptions& options,
                                                 double deviation) const {
     const double nearest = 1 / (1 - double(scene.inverse_distance) * kOrientationBow);
-    const double reach = options.supersampling * (deviation + data.edge_tolerance * scene.pixels * nearest) + kSampleReach;
+    const double reach = options.supersampling * (deviation + data.edge_tolerance * scene.pixels * nearest) + kRoundingReach;
     glUseProgram(seam);
     set_camera(seam, scene);
     set_light(seam, scene, options, options.painting == Painting::normals ? 2 : 0);
@@ -246,6 +245,8 @@ Result<void> SurfaceRenderer::State::draw_seams(const GpuScene& scene, const Ren
                 float(options.height * options.supersampling) / 2);
     glUniform1f(place(seam, "reach"), float(reach));
     glUniform1f(place(seam, "farther"), kSeamFarther);
+    glUniform1f(place(seam, "slopes"), float(reach + options.supersampling));
+    glUniform1f(place(seam, "inverse_distance"), scene.inverse_distance);
     glBindVertexArray(seams.array);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(data.seams.size()));
     return {};

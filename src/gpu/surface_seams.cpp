@@ -96,16 +96,23 @@ std::vector<Seam> seams_of(const Model& model, double tolerance) {
         if (edge.curve) curves.emplace_back([&](double t) { return jet<0>(*edge.curve, t).value(); });
         const auto t = parameters_for(edge.range, pieces_of(edge, uses[e]), tolerance, curves);
         const bool inner = std::ranges::all_of(uses[e], [&](const Use& u) { return u.face == uses[e][0].face; });
+        const std::size_t first = out.size();
         for (std::size_t i = 0; i < uses[e].size(); ++i) {
             const Face& face = model.faces[std::size_t(uses[e][i].face)];
             const Vec<2> inside = uv_of({uses[e][i].face, &face.loops[0].coedges[0]}, model.edges[std::size_t(face.loops[0].coedges[0].edge)].range.middle());
-            Seam seam{uses[e][i].face, {}, {}, {}, i == 0 && (uses[e].size() == 1 || !inner)};
+            Seam seam{uses[e][i].face, uses[e][i].face, {}, {}, {}, {}, i == 0 && (uses[e].size() == 1 || !inner), uses[e].size() == 1};
             for (const double at : t) {
                 seam.points.push_back(curves[i](at));
                 seam.edge.push_back(edge.curve ? curves.back()(at) : curves[0](at));
                 seam.normals.push_back(normal_at(face, uv_of(uses[e][i], at), inside));
             }
             out.push_back(std::move(seam));
+        }
+        for (std::size_t i = first; i < out.size(); ++i) {
+            const auto other = std::find_if(out.begin() + std::ptrdiff_t(first), out.end(),
+                                            [&](const Seam& s) { return s.face != out[i].face; });
+            out[i].others = other == out.end() ? out[i].normals : other->normals;
+            if (other != out.end()) out[i].other = other->face;
         }
     }
     return out;
@@ -118,13 +125,13 @@ std::vector<Seam> seams_of(const SimplexPatch<2, Hom<3>>& triangle, int face, do
             return edge == 0 ? Param<2>{1 - t, t} : edge == 1 ? Param<2>{0, 1 - t} : Param<2>{t, 0};
         };
         const auto point = [&](double t) { return triangle(uv(t)); };
-        Seam seam{face, {}, {}, {}, true};
+        Seam seam{face, face, {}, {}, {}, {}, true, false};
         for (const double t : parameters_for({0, 1}, 1, tolerance, {point})) {
             seam.points.push_back(point(t));
             const auto n = normal(triangle, uv(t));
             seam.normals.push_back(n.value_or(Vec<3>{}));
         }
-        seam.edge = seam.points;
+        seam.edge = seam.points, seam.others = seam.normals;
         out.push_back(std::move(seam));
     }
     return out;

@@ -14,8 +14,9 @@ namespace freiform {
 // A segment of an edge, where it lies on one of its faces and where it lies itself: mostly the same.
 struct SeamSegment {
     std::array<float, 3> from{}, to{}, edge_from{}, edge_to{};  // in the scene
-    std::array<float, 3> normal_from{}, normal_to{};  // of the face, outward; zero where there is none
-    std::array<std::uint8_t, 4> colour{};
+    // Of the face, outward, and of another one that meets it there (without one, the same); zero: none.
+    std::array<float, 3> normal_from{}, normal_to{}, other_from{}, other_to{};
+    std::array<std::uint8_t, 4> colour{}, other_colour{};
 };
 struct OutlineSegment {
     std::array<float, 3> from{}, to{};

@@ -35,9 +35,13 @@ void main() {
     Real2 at = (uv - low) / (high - low);
     int first = (piece.x * extent.y + piece.y) * (degree.x + 1) * (degree.y + 1);
     Jet j = tensor_jet(first, degree.x, degree.y, at);
-    for (int k = 0; k < 3; ++k) points[3 * i + k] = j.point[k];
+    points[3 * i] = j.point.x;
+    points[3 * i + 1] = j.point.y;
+    points[3 * i + 2] = j.point.z;
     if (with_normals != 0) {
         Real3 n = normal_of(j, at);
-        for (int k = 0; k < 3; ++k) normals[3 * i + k] = n[k];
+        normals[3 * i] = n.x;
+        normals[3 * i + 1] = n.y;
+        normals[3 * i + 2] = n.z;
     }
 }

@@ -13,7 +13,11 @@ out vec2 at;
 flat out int piece_number;
 void main() {
 #ifdef TRIANGLES
-    at = gl_TessCoord.yz;
+    // Cells beyond the diagonal stand for the triangles between the others, turned by half a turn. Places are
+    // quotients of whole numbers, so that both sides of a common side have the same bits.
+    float n = cell.w, k = cell.z;
+    vec2 steps = round(gl_TessCoord.yz * n);
+    at = (cell.x + cell.y < k ? cell.xy * n + steps : (vec2(k) - cell.xy) * n - steps) / (k * n);
 #else
     at = (cell.xy + gl_TessCoord.xy) / cell.zw;
 #endif

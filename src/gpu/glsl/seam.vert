@@ -6,14 +6,23 @@ layout(location = 2) in vec3 edge_from;
 layout(location = 3) in vec3 edge_to;
 layout(location = 4) in vec3 normal_from;
 layout(location = 5) in vec3 normal_to;
-layout(location = 6) in vec4 paint;
+layout(location = 6) in vec3 other_from;
+layout(location = 7) in vec3 other_to;
+layout(location = 8) in vec4 paint;
+layout(location = 9) in vec4 other_paint;
 uniform mat3 rotation;
 uniform mat4 projection;
+uniform float inverse_distance;
 uniform vec2 half_size;  // of the picture, in pixels
-uniform float reach, farther;
+uniform float reach, farther, slopes;  // slopes: over so many pixels faces fall away
 out vec3 place, direction, albedo;
 
 vec2 pixel_of(vec4 p) { return half_size * p.xy / p.w; }
+
+// What the depth of a plane changes by in a pixel, up to planes that are seen nearly edge on.
+float slope_of(vec3 n) {
+    return length(n.xy) / max(abs(n.z), 0.05) * abs(projection[2].z) / (projection[0].x * half_size.x);
+}
 
 void main() {
     vec4 a = projection * vec4(rotation * from, 1.0), b = projection * vec4(rotation * to, 1.0);
@@ -28,7 +37,11 @@ void main() {
     vec4 p = at_edge ? (at_end ? d : c) : (at_end ? b : a);
     vec2 offset = reach * ((at_end ? along : -along) + (at_edge ? across : -across));
     place = rotation * (at_edge ? (at_end ? edge_to : edge_from) : (at_end ? to : from));
-    direction = rotation * (at_end ? normal_to : normal_from);
-    albedo = paint.rgb;
-    gl_Position = p + p.w * vec4(offset / half_size, farther, 0.0);
+    vec3 own = rotation * (at_end ? normal_to : normal_from), other = rotation * (at_end ? other_to : other_from);
+    vec3 view = vec3(0.0, 0.0, 1.0) - inverse_distance * place;
+    bool turned_away = dot(own, view) < 0.0 && dot(other, view) > 0.0;
+    direction = turned_away ? other : own;
+    albedo = turned_away ? other_paint.rgb : paint.rgb;
+    float deeper = farther + slopes * max(slope_of(own), slope_of(other));
+    gl_Position = p + p.w * vec4(offset / half_size, deeper, 0.0);
 }
