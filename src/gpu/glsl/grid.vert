@@ -5,7 +5,7 @@ uniform ivec2 side;
 uniform mat3 rotation;
 uniform mat4 projection;
 out vec3 place, direction;
-out vec2 at;
+centroid out vec2 at;
 flat out int piece_number;
 void main() {
     piece_number = int(instance);

@@ -21,7 +21,7 @@ vec2 pixel_of(vec4 p) { return half_size * p.xy / p.w; }
 
 // What the depth of a plane changes by in a pixel, up to planes that are seen nearly edge on.
 float slope_of(vec3 n) {
-    return length(n.xy) / max(abs(n.z), 0.05) * abs(projection[2].z) / (projection[0].x * half_size.x);
+    return length(n.xy) / max(abs(n.z), 0.2) * abs(projection[2].z) / (projection[0].x * half_size.x);
 }
 
 void main() {
@@ -44,4 +44,5 @@ void main() {
     albedo = turned_away ? other_paint.rgb : paint.rgb;
     float deeper = farther + slopes * max(slope_of(own), slope_of(other));
     gl_Position = p + p.w * vec4(offset / half_size, deeper, 0.0);
+    gl_Position.z = min(gl_Position.z, 0.9999 * gl_Position.w);  // before the far plane
 }

@@ -1,6 +1,11 @@
-// Samples of a pixel are trimmed one by one where that can be (SAMPLES), else its middle decides.
+// Samples of a pixel are trimmed one by one where that can be (SAMPLES); else its middle decides, or where less of
+// the pixel is covered, a place that is.
 in vec3 place, direction;
+#ifdef SAMPLES
 in vec2 at;
+#else
+centroid in vec2 at;
+#endif
 flat in int piece_number;
 out vec4 colour;
 

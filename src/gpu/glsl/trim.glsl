@@ -52,7 +52,9 @@ bool is_left_of(vec2 q, int first, int degree) {
 }
 
 bool is_inside(Piece p, vec2 at) {
-    vec2 q = parameter_of(p, at);
+    // What is drawn is in the box, but for rounding; its sides belong to the face.
+    const float kRounding = 2.4e-7;
+    vec2 q = clamp(parameter_of(p, clamp(at, 0.0, 1.0)), kRounding, 1.0 - kRounding);
     vec4 trim = texel(faces + 3 * p.face + 2);
     int bands = int(trim.y);
     vec4 band = texel(int(trim.x) + clamp(int(floor(q.y * trim.y)), 0, bands - 1));
