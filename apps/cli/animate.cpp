@@ -180,7 +180,11 @@ Result<void> animate_curve(const Context& context, const AnimateArguments& o, co
 Result<void> sample_gltf(const Context& context, const AnimateArguments& o) {
     const auto bytes = read_file(o.file, context.read_options().max_bytes);
     if (!bytes) return std::unexpected(bytes.error());
+#if defined(__wasm__)
+    const std::filesystem::path folder;  // there is none
+#else
     const auto folder = std::filesystem::absolute(o.file).parent_path();
+#endif
     const auto all = read_gltf_animations(*bytes, folder);
     if (!all) {
         Refusal r = all.error();

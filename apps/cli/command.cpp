@@ -19,6 +19,8 @@ ReadOptions Context::read_options() const {
     return o;
 }
 
+#if !defined(__wasm__)  // bindings/wasm
+
 void wrong_usage(const std::string& message) { throw WrongUsage(message); }
 
 Result<void> emit(const Context& context, std::string_view bytes) {
@@ -36,6 +38,8 @@ Result<void> emit(const Context& context, std::string_view bytes) {
     return {};
 }
 
+#endif
+
 void write_approximation(json::Writer& w, const Approximation& a) {
     w.begin_object().field("where", a.where).field("what", a.what);
     if (a.bound)
@@ -51,6 +55,8 @@ std::string approximation_text(const Approximation& a) {
         a.bound ? text(", within ", *a.bound) : text(", about ", a.estimate, ", which nothing proves"));
 }
 
+#if !defined(__wasm__)
+
 void remark(std::string_view message) {
     const char* no_colour = std::getenv("NO_COLOR");
     const char* terminal = std::getenv("TERM");
@@ -65,6 +71,8 @@ void remark(std::string_view message) {
         rest.remove_prefix(std::size_t(n));
     }
 }
+
+#endif
 
 Result<std::vector<std::size_t>> selected(const Document& document, const std::string& object) {
     std::vector<std::size_t> found;

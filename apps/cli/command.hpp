@@ -167,6 +167,7 @@ void add_quadric(CommandLine& line);
 void add_gallery(CommandLine& line);
 void add_text(CommandLine& line);
 void add_font(CommandLine& line);
+void add_view(CommandLine& line);
 
 // Of `wrong_usage`; nothing else is thrown.
 class WrongUsage : public std::runtime_error {

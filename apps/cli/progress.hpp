@@ -2,12 +2,25 @@
 #pragma once
 #include <freiform/core/text.hpp>
 
+#include <string>
+
+#if !defined(__wasm__)
 #include <chrono>
 #include <mutex>
-#include <string>
 #include <unistd.h>
+#endif
 
 namespace freiform::cli {
+
+#if defined(__wasm__)
+
+class Progress {
+public:
+    explicit Progress(std::string) {}
+    void operator()(double) {}
+};
+
+#else
 
 class Progress {
 public:
@@ -39,5 +52,7 @@ private:
     std::mutex mutex_;
     std::chrono::steady_clock::time_point last_{};
 };
+
+#endif
 
 }  // namespace freiform::cli

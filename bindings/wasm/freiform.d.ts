@@ -23,6 +23,7 @@ export type RefusalKind =
 export class FreiformError extends Error {
   readonly kind: RefusalKind;
   readonly where: string; // "objects[2].knots[3]"; may be empty
+  readonly reason: string; // the message without the place
   constructor(kind: RefusalKind, where: string, message: string);
 }
 
@@ -48,7 +49,9 @@ export type ObjectJson = CurveJson | SurfaceJson | VolumeJson | TriangleJson | H
 export interface DocumentJson { freiform: 1; unit?: string; objects: ObjectJson[] }
 
 // Whatever can be read: an object, a document, or the text or bytes of a file (.json, .bpt, .svg, .obj, .bsp, .map).
-export type Source = DocumentJson | ObjectJson | string | Uint8Array;
+// Where neither the content nor a `.json` says what it is (.obj, .map): with its name.
+export interface NamedFile { file: string; content: string | Uint8Array }
+export type Source = DocumentJson | ObjectJson | Shape | NamedFile | string | Uint8Array;
 
 // Shapes ------------------------------------------------------------------------------------------------------------
 
@@ -85,7 +88,7 @@ export interface Shape {
   // Values (order 0) or derivatives of all basis functions along an axis: at.length * size[axis] numbers, row by row.
   basis(at: Numbers, options?: { axis?: number; order?: number }): Float64Array;
   // All intermediate points of de Casteljau and de Boor at a parameter.
-  construction(at: Numbers): Construction;
+  construction(at: number | Numbers): Construction;
   // The nearest points of this shape to each of `points` (coordinates after each other), with the proof. Of all types.
   nearest(points: Numbers, options?: { accuracy?: number }): Nearest;
   // Triangles within the tolerance, watertight where the shape is closed. Of surfaces, triangles, trimmed and models.
@@ -159,8 +162,9 @@ export type CommandName =
   | 'quadric';
 
 // `tolerance: 0.01` is --tolerance 0.01, `insertKnots: [0.25, 0.5]` is --insert-knots 0.25,0.5, `reverse: true` is
-// --reverse; undefined and false are left out. A value that is an object or bytes becomes a file: `rail: curveJson`.
-export type OptionValue = string | number | boolean | undefined | Numbers | Source;
+// --reverse, `at: [[0, 0.5], [1, 1]]` is --at 0,0.5;1,1; undefined and false are left out. A value that is an object or
+// bytes becomes a file: `rail: curveJson`.
+export type OptionValue = string | number | boolean | undefined | Numbers | Numbers[] | Source;
 export type Options = Record<string, OptionValue>;
 
 export interface Reply {
@@ -195,8 +199,11 @@ export interface Freiform {
   //     run('draw', document, { to: 'svg', control: true }).text               a picture
   //     run('tessellate', document, { to: 'glb', tolerance: 0.01 }).bytes      a file; .report says what was reached
   //     run('quadric', ['sphere'], { radius: 2 }).json                         a word instead of a file
-  // Inputs that are strings: words as they are if they are short and have no line break, else texts of files.
-  run(command: CommandName, inputs?: Source | Source[], options?: Options): Reply;
+  //     run('interpolate', [[0, 0], [1, 1], [2, 0]], { degree: 2 }).json       points
+  //     run('nearest', curve, { points: [[2, 3]] }).json                       an option that wants a file
+  // Inputs that are strings: words as they are if they are short and have no line break or bracket, else texts of files.
+  // Without `to` the answer (of commands that make something, a document) is in .json; with it the file in .bytes.
+  run(command: CommandName, inputs?: Source | Source[] | Point[] | Point[][], options?: Options): Reply;
   // The same as a person types it, with files by name; files that it makes are in `files`.
   command(args: string[], files?: Record<string, string | Uint8Array>): {
     code: number; stdout: Uint8Array; stderr: string; files: Record<string, Uint8Array>;

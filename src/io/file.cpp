@@ -9,6 +9,7 @@
 //
 // Why not O_TMPFILE and linkat: it cannot replace an existing file, and some file systems have no O_TMPFILE.
 // Why not fsync of the folder: after a crash either file may be found, and both are whole.
+#if !defined(__wasm__)  // file_memory.cpp
 #include <freiform/io/file.hpp>
 
 #include <algorithm>
@@ -246,3 +247,4 @@ void remove_unfinished_files() noexcept {
 }
 
 }  // namespace freiform
+#endif

@@ -9,9 +9,11 @@
 #include <freiform/io/svg.hpp>
 
 #include <algorithm>
+#if !defined(__wasm__)
 #include <cerrno>
 #include <sys/mman.h>
 #include <unistd.h>
+#endif
 
 namespace freiform {
 
@@ -94,6 +96,12 @@ Result<Document> import(const std::string& path, const ReadOptions& options) {
     return document_with(std::move(*model));
 }
 
+#if defined(__wasm__)
+
+Result<Document> import_bytes(std::string_view, const ReadOptions& options) { return import("", options); }
+
+#else
+
 // The reader of these formats wants a file: one without a name, which is gone when the process is.
 Result<Document> import_bytes(std::string_view bytes, const ReadOptions& options) {
     const int fd = ::memfd_create("freiform", MFD_CLOEXEC);
@@ -116,6 +124,8 @@ Result<Document> import_bytes(std::string_view bytes, const ReadOptions& options
     }
     return document;
 }
+
+#endif
 
 Result<Document> read_svg_document(std::string_view bytes) {
     const auto picture = read_svg(bytes);

@@ -3,6 +3,9 @@
 #include <freiform/core/result.hpp>
 
 #include <cstdint>
+#if defined(__wasm__)
+#include <map>
+#endif
 #include <string>
 #include <string_view>
 
@@ -21,5 +24,11 @@ Result<std::string> read_file(const std::string& path, std::uint64_t max_bytes);
 // files. For signal handlers of a program that is about to exit: async-signal-safe, whichever thread gets the
 // signal.
 void remove_unfinished_files() noexcept;
+
+#if defined(__wasm__)
+// WebAssembly: there are no other files than these, by name; "-" is what is read as standard input and what
+// was written to standard output.
+std::map<std::string, std::string>& files_in_memory();
+#endif
 
 }  // namespace freiform

@@ -1,0 +1,57 @@
+#include "module.hpp"
+
+#include <freiform/spline/prepared.hpp>
+
+#include <cstdlib>
+#include <new>
+
+namespace freiform::wasm {
+
+namespace {
+
+#define FF_IMPORT(name) __attribute__((import_module("freiform"), import_name(name)))
+FF_IMPORT("refuse")
+extern "C" void ff_page_refuse(const char* kind, std::size_t kind_size, const char* where,
+                               std::size_t where_size, const char* message, std::size_t message_size);
+FF_IMPORT("progress") extern "C" int ff_page_progress(double part);
+#undef FF_IMPORT
+
+}  // namespace
+
+Reply& reply() {
+    static Reply all;
+    return all;
+}
+
+void refuse_to_page(std::string_view kind, std::string_view where, std::string_view message) {
+    ff_page_refuse(kind.data(), kind.size(), where.data(), where.size(), message.data(), message.size());
+    std::abort();  // the page has thrown
+}
+
+bool progress(double part) { return ff_page_progress(part) != 0; }
+
+}  // namespace freiform::wasm
+
+using freiform::wasm::reply;
+
+FF_EXPORT(start) void ff_start() {
+    std::set_new_handler([] {
+        freiform::wasm::refuse_to_page("limit", "", "more memory is needed than the module can have");
+    });
+}
+
+FF_EXPORT(allocate) void* ff_allocate(std::size_t bytes) { return ::operator new(bytes); }
+FF_EXPORT(release) void ff_release(void* memory) { ::operator delete(memory); }
+
+FF_EXPORT(text) const char* ff_text() { return reply().text.data(); }
+FF_EXPORT(text_size) std::size_t ff_text_size() { return reply().text.size(); }
+FF_EXPORT(numbers) const double* ff_numbers() { return reply().numbers.data(); }
+FF_EXPORT(numbers_size) std::size_t ff_numbers_size() { return reply().numbers.size(); }
+FF_EXPORT(floats) const float* ff_floats() { return reply().floats.data(); }
+FF_EXPORT(floats_size) std::size_t ff_floats_size() { return reply().floats.size(); }
+FF_EXPORT(indices) const std::uint32_t* ff_indices() { return reply().indices.data(); }
+FF_EXPORT(indices_size) std::size_t ff_indices_size() { return reply().indices.size(); }
+
+FF_EXPORT(about) void ff_about() {
+    reply().text = freiform::text(FREIFORM_VERSION " ", freiform::instruction_set());
+}

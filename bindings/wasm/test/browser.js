@@ -1,0 +1,83 @@
+// node browser.js [--speed]: the tests of cases.js, and all questions to the examples, in a page of Chromium. The page's
+// answers have to be those of node, bit for bit. Exit code 1 if something is wrong; 77 where there is no Chromium.
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, existsSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { load } from '../freiform.js';
+import { questions } from './cases.js';
+
+const root = new URL('../../../', import.meta.url).pathname;
+const modules = process.env.FREIFORM_WASM ?? join(root, 'build-wasm/bin');
+const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
+if (!existsSync(chromium)) {
+  console.log(`${chromium} is not there`);
+  process.exit(77);
+}
+
+const folder = join(root, 'examples/gallery');
+const documents = Object.fromEntries(readdirSync(folder).filter((f) => f.endsWith('.json')).slice(0, 8)
+  .map((f) => [f, readFileSync(join(folder, f), 'utf8')]));
+const page = `<!doctype html><meta charset="utf-8"><script type="module">
+import { load } from '/freiform.js';
+import { tests } from '/test/cases.js';
+import { speed } from '/test/speed.js';
+const tell = (body) => fetch('/answer', { method: 'POST', body: JSON.stringify(body) });
+try {
+  const { documents, questions, wantsSpeed } = await (await fetch('/task')).json();
+  const ff = await load('/freiform.wasm'), failed = [], answers = {};
+  for (const [name, run] of Object.entries(tests))
+    try { run(ff); } catch (error) { failed.push(name + ': ' + error.stack); }
+  for (const [name, content] of Object.entries(documents))
+    for (const [command, ...options] of questions) {
+      const args = [command, name, ...options], { code, stdout } = ff.command(args, { [name]: content });
+      answers[args.join(' ')] = [code, new TextDecoder().decode(stdout)];
+    }
+  await tell({ count: Object.keys(tests).length, failed, answers, speed: wantsSpeed ? speed(ff) : null });
+} catch (error) { await tell({ count: 0, failed: [String(error.stack)], answers: {} }); }
+</script>`;
+
+const wantsSpeed = process.argv.includes('--speed');
+let answered;
+const answer = new Promise((resolve) => { answered = resolve; });
+const server = createServer((request, reply) => {
+  const send = (type, body) => reply.writeHead(200, { 'Content-Type': type }).end(body);
+  const script = 'text/javascript';
+  if (request.url === '/') return send('text/html', page);
+  if (request.url === '/freiform.js') return send(script, readFileSync(join(root, 'bindings/wasm/freiform.js')));
+  if (/^\/test\/\w+\.js$/.test(request.url)) return send(script, readFileSync(join(root, 'bindings/wasm', request.url)));
+  if (request.url === '/freiform.wasm') return send('application/wasm', readFileSync(join(modules, 'freiform.wasm')));
+  if (request.url === '/task') return send('application/json', JSON.stringify({ documents, questions, wantsSpeed }));
+  if (request.url !== '/answer') return reply.writeHead(404).end();
+  let body = '';
+  request.on('data', (part) => { body += part; });
+  request.on('end', () => { reply.writeHead(204).end(); answered(JSON.parse(body)); });
+});
+await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
+
+const profile = mkdtempSync(join(tmpdir(), 'freiform-chromium-'));
+const browser = spawn(chromium, ['--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--no-first-run',
+  `--user-data-dir=${profile}`, `http://127.0.0.1:${server.address().port}/`], { stdio: 'ignore' });
+const late = setTimeout(() => answered({ count: 0, failed: ['no answer within 240 s'], answers: {} }), 240000);
+const found = await answer;
+clearTimeout(late);
+browser.kill();
+await new Promise((ended) => browser.once('exit', ended));
+server.close();
+rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
+
+const ff = await load(readFileSync(join(modules, 'freiform.wasm')));
+const withoutTimes = (s) => s.replace(/"seconds": \{[^}]*\}/g, '');
+let same = 0;
+for (const [name, content] of Object.entries(documents))
+  for (const [command, ...options] of questions) {
+    const args = [command, name, ...options], { code, stdout } = ff.command(args, { [name]: content });
+    const theirs = found.answers[args.join(' ')];
+    if (theirs?.[0] === code && withoutTimes(theirs[1]) === withoutTimes(new TextDecoder().decode(stdout))) ++same;
+    else found.failed.push(`${args.join(' ')}: other than in node`);
+  }
+if (wantsSpeed) console.log(JSON.stringify(found.speed));
+else console.log(`in Chromium: ${found.count} tests, ${same} answers equal to node's, ${found.failed.length} wrong`);
+for (const line of found.failed) console.error(line);
+process.exit(found.failed.length > 0 || found.count === 0 ? 1 : 0);
