@@ -3,7 +3,7 @@ SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test bench accuracy format clean
+.PHONY: help setup build demo test bench accuracy wasm studio format clean
 .NOTPARALLEL:
 
 help:
@@ -12,6 +12,8 @@ help:
 	@echo "make bench   compare tessellation and curves with other libraries (bench/*.md)"
 	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"
 	@echo "make build   build the program: build/bin/freiform"
+	@echo "make wasm    build the WebAssembly modules and test them in node (bindings/wasm/)"
+	@echo "make studio  build the page that freiform view serves (studio/dist); make build then puts it into the program"
 	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
 	@echo "make format  format the C++ files"
 	@echo "make clean   remove what was built"
@@ -60,6 +62,18 @@ accuracy:
 	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
 	step "Build" cmake --build --preset release --target bench-accuracy bench-accuracy-occt bench-accuracy-sisl; \
 	step "Compare" tools/accuracy_report.py
+
+wasm:
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh wasm; \
+	step "Configure" cmake --preset wasm --log-level=WARNING; \
+	step "Build" cmake --build --preset wasm; \
+	step "Test in node" node --test bindings/wasm/test/module.test.js
+
+studio: wasm
+	@source tools/steps.sh; \
+	step "Packages (npm)" npm ci --prefix studio --no-audit --no-fund; \
+	step "Page" npm run build --prefix studio
 
 format:
 	@tools/format.sh

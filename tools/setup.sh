@@ -13,6 +13,7 @@ test="libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
+command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
 
 purpose=${1:-demo}
@@ -21,7 +22,7 @@ case $purpose in
     test) packages="$build $library $occt $gl $paint $font $test" ;;
     bench) packages="$build $library $occt $gl $paint $font $bench" ;;
     ci) packages="$build $library $occt $gl $paint $font $test $ci" ;;
-    wasm) packages="$build $wasm" ;;
+    wasm) packages="$build $wasm nlohmann-json3-dev"; command -v node >/dev/null || packages="$packages nodejs" ;;
     *)
         echo "usage: tools/setup.sh [demo|test|bench|ci|wasm]" >&2
         exit 2
@@ -55,7 +56,8 @@ what_for() {
         gmsh-doc | occt-misc) echo "models to compare on" ;;
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
         g++-aarch64-linux-gnu | qemu-user) echo "the kernels for ARM, and a processor to test them on" ;;
-        nodejs) echo "runs the kernels for WebAssembly in a test" ;;
+        nodejs) echo "runs the WebAssembly modules" ;;
+        chromium) echo "runs the WebAssembly modules and the page as a browser does" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;
     esac

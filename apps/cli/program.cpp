@@ -11,45 +11,57 @@ namespace {
 
 constexpr int kWrongUsage = 2;
 
-void add_commands(CommandLine& line) {
-    add_info(line);
-    add_eval(line);
-    add_basis(line);
-    add_convert(line);
-    add_tessellate(line);
-    add_check(line);
-    add_bounds(line);
-    add_features(line);
-    add_draw(line);
-    add_conic(line);
-    add_implicit(line);
-    add_continuity(line);
-    add_inside(line);
-    add_nearest(line);
-    add_distance(line);
-    add_intersect(line);
-    add_section(line);
-    add_interpolate(line);
-    add_flatten(line);
-    add_path(line);
-    add_length(line);
-    add_fit(line);
-    add_ease(line);
-    add_gradient(line);
-    add_animate(line);
-    add_revolve(line);
-    add_extrude(line);
-    add_ruled(line);
-    add_sweep(line);
-    add_loft(line);
-    add_coons(line);
-    add_quadric(line);
+struct NamedCommand {
+    std::string_view name;
+    void (*add)(CommandLine&);
+};
+constexpr NamedCommand kCommands[] = {
+    {"info", add_info},
+    {"eval", add_eval},
+    {"basis", add_basis},
+    {"convert", add_convert},
+    {"tessellate", add_tessellate},
+    {"check", add_check},
+    {"bounds", add_bounds},
+    {"features", add_features},
+    {"draw", add_draw},
+    {"conic", add_conic},
+    {"implicit", add_implicit},
+    {"continuity", add_continuity},
+    {"inside", add_inside},
+    {"nearest", add_nearest},
+    {"distance", add_distance},
+    {"intersect", add_intersect},
+    {"section", add_section},
+    {"interpolate", add_interpolate},
+    {"flatten", add_flatten},
+    {"path", add_path},
+    {"length", add_length},
+    {"fit", add_fit},
+    {"ease", add_ease},
+    {"gradient", add_gradient},
+    {"animate", add_animate},
+    {"revolve", add_revolve},
+    {"extrude", add_extrude},
+    {"ruled", add_ruled},
+    {"sweep", add_sweep},
+    {"loft", add_loft},
+    {"coons", add_coons},
+    {"quadric", add_quadric},
 #if !defined(__wasm__)  // no folders, no fonts, no network
-    add_gallery(line);
-    add_text(line);
-    add_font(line);
-    add_view(line);
+    {"gallery", add_gallery},
+    {"text", add_text},
+    {"font", add_font},
+    {"view", add_view},
 #endif
+};
+
+// The one that is meant, if the first word is one; describing all the others takes longer than many answers.
+void add_commands(CommandLine& line, const std::vector<std::string>& arguments) {
+    const auto meant = arguments.empty() ? std::end(kCommands)
+                                         : std::ranges::find(kCommands, arguments[0], &NamedCommand::name);
+    for (const NamedCommand& c : kCommands)
+        if (meant == std::end(kCommands) || meant->name == c.name) c.add(line);
 }
 
 std::string version(bool verbose) {
@@ -103,7 +115,7 @@ int perform(CommandLine& line, std::vector<std::string> arguments) {
     bool show_version = false, verbose = false;
     line.program().flag("--version", show_version, "Print the version");
     line.program().flag("--verbose", verbose, "With --version: compiler and components");
-    add_commands(line);
+    add_commands(line, arguments);
     const auto help = line.understand(std::move(arguments));
     if (!help) return usage_error(context, help.error());
     if (!help->empty() || show_version) {

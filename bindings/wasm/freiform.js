@@ -289,10 +289,15 @@ const kebab = (name) => '--' + name.replace(/[A-Z]/g, (c) => '-' + c.toLowerCase
 
 // The name and bytes of a source that is no word.
 function fileOf(source, number) {
+  if (source instanceof Shape) return fileOf(source.json(), number);
   if (isNamedFile(source)) return [source.file, asBytes(source.content)];
   if (isBytes(source) || typeof source === 'string') return [`input${number}`, asBytes(source)];
   return [`input${number}.json`, utf8.encode(JSON.stringify(source))];
 }
+
+// Whether the arguments ask for this file to be written, although it was there before.
+const wasWritten = (args, name) =>
+  args.some((a, i) => (a === '-o' || a === '--output') ? args[i + 1] === name : a === `--output=${name}`);
 
 class Freiform {
   #commandInstance; #described;
@@ -365,7 +370,7 @@ class Freiform {
       const named = utf8.encode(name);
       instance.with([named], (at) => instance.call('take_file', at, named.length));
       if (name === '-') stdout ??= instance.replyBytes();
-      else if (!(name in files)) made[name] = instance.replyBytes();
+      else if (!(name in files) || wasWritten(args, name)) made[name] = instance.replyBytes();
     }
     return { code, stdout: stdout ?? new Uint8Array(), stderr, files: made };
   }
@@ -373,7 +378,7 @@ class Freiform {
   run(command, inputs = [], options = {}) {
     const files = {};
     const keep = (source) => {
-      const [name, bytes] = fileOf(source instanceof Shape ? source.json() : source, Object.keys(files).length);
+      const [name, bytes] = fileOf(source, Object.keys(files).length);
       files[name] = bytes;
       return name;
     };

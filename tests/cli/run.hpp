@@ -57,10 +57,12 @@ protected:
         redirect(out, 1, O_WRONLY | O_CREAT | O_TRUNC);
         redirect(path(".err"), 2, O_WRONLY | O_CREAT | O_TRUNC);
         if (::chdir(folder_.c_str()) != 0) ::_exit(98);
-        std::vector<char*> argv{const_cast<char*>(FREIFORM_BINARY)};
+        const char* other = std::getenv("FREIFORM_TEST_PROGRAM");  // such as bindings/wasm/cli.js
+        const char* program = other ? other : FREIFORM_BINARY;
+        std::vector<char*> argv{const_cast<char*>(program)};
         for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
         argv.push_back(nullptr);
-        ::execv(FREIFORM_BINARY, argv.data());
+        ::execv(program, argv.data());
         ::_exit(97);
     }
     static int wait(pid_t child) {
