@@ -112,7 +112,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
                 on.add(Vec<2>{{hi, 0}});
                 if (chart.period(0) > 0) {
                     Edge e;
-                    const SurfaceGeometry longer = unwound(sheet, chart, on);
+                    const SurfaceGeometry longer = unwound(sheet, chart, on, 0);
                     e.curve = std::get<Extrusion>(longer).profile;
                     e.range = {lo, hi};
                     e.start = end[0], e.end = end[1], e.tolerance = std::max({tolerance_, off_a, off_b});

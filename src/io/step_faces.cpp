@@ -277,8 +277,17 @@ Result<Face> ShapeReader::bare_face(std::uint32_t i) {
     const Chart& chart = *(*s)->chart;
     LoopBuilder loops(chart, out_.model, tolerance_);
     std::array<Interval, 2> on = chart.whole();
-    if (f_.is(i, Type::CURVE_BOUNDED_SURFACE))
-        return refuse(RefusalKind::unsupported, f_.label(i), "is bounded by curves, which are not read yet");
+    if (f_.is(i, Type::CURVE_BOUNDED_SURFACE)) {
+        const auto f = Fields::of(f_, i, Type::CURVE_BOUNDED_SURFACE, 4);
+        if (!f) return std::unexpected(f.error());
+        const auto boundaries = f->references(2, "boundaries");
+        if (!boundaries) return std::unexpected(boundaries.error());
+        for (const std::uint32_t b : *boundaries)
+            if (auto ok = add_boundary_curve(b, chart, loops); !ok) return std::unexpected(ok.error());
+        Face face;
+        face.tolerance = tolerance_;
+        if (!f->flag(3)) return close_face(std::move(face), loops, chart, i, 0);
+    }
     if (f_.is(i, Type::RECTANGULAR_TRIMMED_SURFACE)) {
         const auto f = Fields::of(f_, i, Type::RECTANGULAR_TRIMMED_SURFACE, 6);
         if (!f) return std::unexpected(f.error());

@@ -58,6 +58,8 @@ private:
     int face(std::uint32_t i);
     Result<Face> make_face(std::uint32_t i, Type type);
     Result<Face> bare_face(std::uint32_t i);
+    Result<void> add_boundary_curve(std::uint32_t i, const Chart& chart, LoopBuilder& loops);
+    Result<EdgeMade> segment_edge(std::uint32_t curve, std::vector<int>& corners);
     Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
                            LoopBuilder& loops);
     Result<Face> close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i, double size);
@@ -87,6 +89,8 @@ private:
 };
 
 // The surface with a spline that closes continued by whole turns, so that `on` is inside its domain.
-SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on);
+// `slack`: of a turn, by which `on` may leave the domain.
+SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on,
+                        double slack = 1e-6);
 
 }  // namespace freiform::step

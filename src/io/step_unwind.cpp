@@ -46,13 +46,14 @@ Patch<N, P> turned_patch(const Patch<N, P>& given, int axis, int turns) {
 
 }  // namespace
 
-SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on) {
+SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on,
+                        double slack) {
     SurfaceGeometry out = surface;
     for (int axis = 0; axis < 2; ++axis) {
         const Interval whole = chart.whole()[std::size_t(axis)];
         const double turn = chart.period(axis);
         if (!chart.is_spline(axis) || !(turn > 0) || on.is_empty()) continue;
-        const int turns = int(std::clamp(std::ceil((on.hi[axis] - whole.lo) / turn - 1e-6), 1.0, 8.0));
+        const int turns = int(std::clamp(std::ceil((on.hi[axis] - whole.lo) / turn - slack), 1.0, 8.0));
         if (turns == 1) continue;
         const auto longer = [&](auto& g) {
             if constexpr (requires { g.net(); })

@@ -1,0 +1,85 @@
+// CURVE_BOUNDED_SURFACE: boundaries that are composite curves instead of loops of edges. Each segment becomes an
+// edge; what two boundaries share as one instance is one edge. Corners are points that agree within the
+// tolerance.
+#include "step_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std::vector<int>& corners) {
+    if (const auto known = edges_.find(curve); known != edges_.end()) {
+        const Edge& e = out_.model.edges[std::size_t(known->second.edge)];
+        corners.insert(corners.end(), {e.start, e.end});
+        return known->second;
+    }
+    const auto c = geometry_.curve(curve);
+    if (!c) return std::unexpected(c.error());
+    const Interval on = c->range.value_or(domain(c->curve)[0]);
+    if (!std::isfinite(on.length()) || !(on.lo < on.hi))
+        return refuse(RefusalKind::invalid, f_.label(curve), "is a segment of a boundary without an end");
+    const auto corner = [&](double t) {
+        const Vec<3> p = jet<0>(c->curve, t).value();
+        const auto near = [&](int v) { return norm(out_.model.vertices[std::size_t(v)].point - p) <= tolerance_; };
+        if (const auto at = std::find_if(corners.begin(), corners.end(), near); at != corners.end()) return *at;
+        out_.model.vertices.push_back({p, tolerance_});
+        corners.push_back(int(out_.model.vertices.size()) - 1);
+        return corners.back();
+    };
+    Edge e;
+    e.curve = c->curve;
+    e.range = on;
+    e.tolerance = tolerance_;
+    e.start = corner(on.lo);
+    e.end = corner(on.hi);
+    EdgeMade made;
+    made.flipped = c->reversed;
+    made.edge = int(out_.model.edges.size());
+    out_.model.edges.push_back(std::move(e));
+    edges_.emplace(curve, made);
+    return made;
+}
+
+Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart, LoopBuilder& loops) {
+    Type type = Type::COMPOSITE_CURVE;
+    for (const Type t : {Type::OUTER_BOUNDARY_CURVE, Type::BOUNDARY_CURVE})
+        if (f_.is(i, t)) type = t;
+    const auto f = Fields::of(f_, i, type, 2);
+    if (!f) return std::unexpected(f.error());
+    const auto segments = f->references(1, "segments");
+    if (!segments) return std::unexpected(segments.error());
+    struct Along {
+        EdgeMade made;
+        bool forward;
+        std::uint32_t segment;
+    };
+    std::vector<Along> list;
+    std::vector<int> corners;
+    Box<3> box;
+    for (const std::uint32_t s : *segments) {
+        const auto g = Fields::of(f_, s, Type::COMPOSITE_CURVE_SEGMENT, 3);
+        if (!g) return std::unexpected(g.error());
+        const auto parent = g->reference(2, "curve");
+        if (!parent) return std::unexpected(parent.error());
+        const auto made = segment_edge(*parent, corners);
+        if (!made) return std::unexpected(made.error());
+        list.push_back({*made, g->flag(1), s});
+        const Edge& e = out_.model.edges[std::size_t(made->edge)];
+        for (int k = 0; k <= 4; ++k) box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * k / 4).value());
+    }
+    std::vector<Use> uses;
+    for (const Along& a : list) {
+        auto u = use_of(a.made, a.forward, chart, box.diagonal());
+        if (!u) return refuse(u.error().kind, f_.label(a.segment), text(u.error().where, ": ", u.error().message));
+        if (!uses.empty() && uses.back().to != u->from)
+            return f->refused("is a boundary whose segments do not follow each other", RefusalKind::invalid);
+        uses.push_back(std::move(*u));
+    }
+    if (uses.empty() || uses.back().to != uses.front().from)
+        return f->refused("is a boundary that is not closed", RefusalKind::invalid);
+    loops.add(std::move(uses));
+    return {};
+}
+
+}  // namespace freiform::step
