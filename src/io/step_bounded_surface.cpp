@@ -57,6 +57,16 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
     std::vector<Along> list;
     std::vector<int> corners;
     Box<3> box;
+    // Corners that other boundaries have made, before new ones are.
+    for (const std::uint32_t s : *segments) {
+        const auto g = Fields::of(f_, s, Type::COMPOSITE_CURVE_SEGMENT, 3);
+        const auto parent = g ? g->reference(2, "curve") : Result<std::uint32_t>(std::unexpected(g.error()));
+        if (!parent) return std::unexpected(parent.error());
+        if (const auto known = edges_.find(*parent); known != edges_.end()) {
+            const Edge& e = out_.model.edges[std::size_t(known->second.edge)];
+            corners.insert(corners.end(), {e.start, e.end});
+        }
+    }
     for (const std::uint32_t s : *segments) {
         const auto g = Fields::of(f_, s, Type::COMPOSITE_CURVE_SEGMENT, 3);
         if (!g) return std::unexpected(g.error());
@@ -68,15 +78,20 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
         const Edge& e = out_.model.edges[std::size_t(made->edge)];
         for (int k = 0; k <= 4; ++k) box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * k / 4).value());
     }
+    const double joint = std::max(2 * tolerance_, 1e-6 * box.diagonal());
+    const auto apart = [&](int a, int b) {
+        const auto& v = out_.model.vertices;
+        return norm(v[std::size_t(a)].point - v[std::size_t(b)].point);
+    };
     std::vector<Use> uses;
     for (const Along& a : list) {
         auto u = use_of(a.made, a.forward, chart, box.diagonal());
         if (!u) return refuse(u.error().kind, f_.label(a.segment), text(u.error().where, ": ", u.error().message));
-        if (!uses.empty() && uses.back().to != u->from)
+        if (!uses.empty() && apart(uses.back().to, u->from) > joint)
             return f->refused("is a boundary whose segments do not follow each other", RefusalKind::invalid);
         uses.push_back(std::move(*u));
     }
-    if (uses.empty() || uses.back().to != uses.front().from)
+    if (uses.empty() || apart(uses.back().to, uses.front().from) > joint)
         return f->refused("is a boundary that is not closed", RefusalKind::invalid);
     loops.add(std::move(uses));
     return {};

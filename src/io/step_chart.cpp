@@ -174,6 +174,13 @@ Vec<2> Chart::wrapped(Vec<2> uv) const {
     return uv;
 }
 
+Vec<2> Chart::inside(Vec<2> uv) const {
+    for (int k = 0; k < 2; ++k)
+        if (spline_[std::size_t(k)] && period_[std::size_t(k)] == 0)
+            uv[k] = clamped(uv[k], whole_[std::size_t(k)]);
+    return uv;
+}
+
 Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess) const {
     Foot best;
     best.at = guess;
@@ -206,10 +213,7 @@ Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess
             }
             next[k] = clamped(next[k], on);
         }
-        for (int k = 0; k < 2; ++k)
-            if (spline_[std::size_t(k)] && period_[std::size_t(k)] == 0)
-                next[k] = clamped(next[k], whole_[std::size_t(k)]);
-        at = next;
+        at = inside(next);
     }
     return best;
 }
@@ -259,8 +263,8 @@ std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
         }
         const Vec<2> at{{u, v}};
         const double distance = norm(jet<0>(*s, at.c).value() - p);
-        // The first one wins but for a good reason.
-        if (distance < least * (least < kInfinity ? 1 - 1e-6 : 1)) least = distance, best = at;
+        // The half-plane of the profile itself wins, but for a good reason.
+        if (distance < least - 1e-7 * (norm(q) + norm(at_profile))) least = distance, best = at;
     }
     return best;
 }

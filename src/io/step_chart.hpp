@@ -37,6 +37,8 @@ public:
 
     // Parameters outside of a spline moved into it.
     Vec<2> wrapped(Vec<2> uv) const;
+    // Into splines that do not close, whatever their other parameter does.
+    Vec<2> inside(Vec<2> uv) const;
     Vec<3> point(const Vec<2>& uv) const { return jet<0>(*s_, wrapped(uv).c).value(); }
     // Newton's method towards the nearest point, from a guess; `target`: a point and how it moves.
     Foot foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess) const;

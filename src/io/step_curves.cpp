@@ -345,6 +345,9 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
                     bad = x.error();
                 else if (!x->empty())
                     parameter = x->front() * (conic && ellipse ? angle : 1.0);
+            } else if (token.kind == TokenKind::number) {  // without its type, against the standard
+                if (const auto x = Fields(f_, i, f->list(2 + end)).number(0, "trim"))
+                    parameter = *x * (conic && ellipse ? angle : 1.0);
             } else if (token.kind == TokenKind::reference && token.at != kMissing) {
                 if (const auto p = point(token.at)) {
                     double distance = 0;

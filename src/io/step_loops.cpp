@@ -491,8 +491,11 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
             return refuse(RefusalKind::unsupported, "loop", "winds around the surface in both directions");
     for (int axis = 0; axis < 2; ++axis)
         if (auto ok = join_winding(axis); !ok) return std::unexpected(ok.error());
-    const bool only_holes =
-        std::all_of(chains_.begin(), chains_.end(), [](const Chain& c) { return c.area < 0; });
+    // One that goes around all of the surface is its boundary, however it runs.
+    const double all = chart_.whole()[0].length() * chart_.whole()[1].length();
+    const bool only_holes = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
+        return c.area < 0 && !(c.area < -all * (1 - 1e-6));
+    });
     if (only_holes && (is_closed_surface() || chains_.empty())) {
         std::array<Interval, 2> on = chart_.whole();
         for (std::size_t k = 0; k < 2; ++k) {

@@ -122,7 +122,7 @@ private:
     Vec<2> end(double t, const Vec<2>& guess) const {
         const auto j = jet<1>(c_, t);
         const Foot f = chart_.foot(j.d[0], j.d[1], guess);
-        return f.regular && near(f.at, guess) ? f.at : guess;
+        return f.regular && near(f.at, guess) ? f.at : chart_.inside(guess);
     }
     // Not a period further, and not elsewhere on the surface.
     bool near(const Vec<2>& a, const Vec<2>& b) const {
@@ -240,7 +240,9 @@ private:
         const Foot g =
             chart_.foot(k.d[0], k.d[1], from.at + (inside - from.t) * (h > 0 ? from.after : from.before));
         if (!g.regular) return false;
-        out.at = g.at + (t - inside) * g.slope;
+        out.at = chart_.inside(g.at + (t - inside) * g.slope);
+        // A corner where the directions of the parameters are parallel.
+        if (near(f.at, out.at) && f.distance < norm(chart_.point(out.at) - j.d[0])) out.at = f.at;
         for (const Pole& p : chart_.poles())
             if (norm(p.point - j.d[0]) <= norm(chart_.point(out.at) - j.d[0]) + accuracy_)
                 out.at[p.axis] = p.at;
