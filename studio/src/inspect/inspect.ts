@@ -1,0 +1,242 @@
+// The part of the studio that looks at surfaces and models.
+
+import type { MeshOptions } from "freiform";
+import teapot from "../../../examples/teapot.bpt?url";
+import { ff, mesh, type Meshing, type Source } from "../kernel/module";
+import type { Shown } from "../explore/explore";
+import { download, h, shown } from "../ui/dom";
+import { droppable, opener, type Opened } from "../ui/files";
+import { say, t, type Text } from "../ui/language";
+import { refuse } from "../ui/toast";
+import { Space, type Look } from "../views/space";
+import { legend } from "./colours";
+import { draw, extent, type Colouring, type Drawn, type Model, type Showing } from "./scene";
+
+interface Refused { readonly where: string; readonly kind: string; readonly message: string }
+
+const kLooks: Record<Look, Text> = { shaded: t("Schattiert", "Shaded"), zebra: t("Zebra", "Zebra"), isophotes: t("Isophoten", "Isophotes"), normals: t("Normalen", "Normals"), flat: t("Facetten", "Facets") };
+const kColourings: Record<Colouring, Text> = { plain: t("ohne", "none"), faces: t("nach Flächen", "by faces"), gauss: t("Gauß-Krümmung", "Gauss curvature"), mean: t("mittlere Krümmung", "mean curvature"),
+    bound: t("Fehlerschranke", "error bound"), deviation: t("gemessene Abweichung", "measured deviation") };
+
+/** What the reader looks at stays when the language changes. */
+let last: { name: string; source: Source; refused: Refused[] } | undefined;
+
+async function served(): Promise<typeof last> {
+    const reply = await fetch("./view.json").catch(() => undefined);
+    if (!reply?.ok || !reply.headers.get("content-type")?.includes("json")) return undefined;
+    const about = (await reply.json()) as { file: string };
+    const document = await fetch("./document.json");
+    if (!document.ok) {
+        const { error } = (await document.json()) as { error: Refused };
+        throw Object.assign(new Error(error.message), error);
+    }
+    const faces = (await fetch("./faces.json").then((r) => (r.ok ? r.json() : undefined)).catch(() => undefined)) as { refused?: Refused[] } | undefined;
+    return { name: about.file, source: await document.text(), refused: faces?.refused ?? [] };
+}
+
+async function example(): Promise<NonNullable<typeof last>> {
+    return { name: "teapot.bpt", source: await (await fetch(teapot)).text(), refused: [] };
+}
+
+export function inspect(taken: string | undefined, edit: (text: string) => void): Shown {
+    const view = new Inspector(edit);
+    view.begin(taken).catch(refuse);
+    return view;
+}
+
+class Inspector implements Shown {
+    readonly element: HTMLElement;
+    private readonly space = new Space(say(t("Modell: Pfeiltasten drehen, + und − zoomen, 1, 3, 7 Ansichten, F alles", "Model: arrow keys turn, + and − zoom, 1, 3, 7 views, F all")));
+    private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
+    private readonly facts = h("div", { class: "readout" });
+    private readonly progress = h("progress", { max: 1, value: 0, hidden: true, "aria-label": say(t("Fortschritt", "Progress")) });
+    private readonly stop = h("button", { hidden: true, onclick: () => { this.meshing?.cancel(); } }, say(t("Abbrechen", "Cancel")));
+    private readonly list = h("ul", { class: "list", "aria-label": say(t("Flächen", "Faces")) });
+    private readonly tolerance = h("input", { type: "range", min: 1, max: 5.5, step: 0.1, value: 3, "aria-label": say(t("Toleranz", "Tolerance")), onchange: () => { this.tessellate(); },
+        oninput: () => { this.said.textContent = shown(this.accuracy(), 3); } });
+    private readonly said = h("output", {});
+    private readonly name = h("strong", {});
+    private readonly showing: Showing = { look: "shaded", colouring: "plain", edges: false, net: false, knots: false, isolines: 0, comb: false, normals: false, plane: undefined, chosen: undefined };
+    private model: Model | undefined;
+    private drawn: Drawn | undefined;
+    private meshing: Meshing | undefined;
+    private key: HTMLElement | undefined;
+    private size = 1;
+    private cut = { axis: 2, at: 0.5, on: false };
+    private box = { lower: [-1, -1, -1], upper: [1, 1, 1] };
+    private source: Source = "";
+    private refused: Refused[] = [];
+    private gone = false;
+
+    constructor(private readonly toEdit: (text: string) => void) {
+        this.space.onColours = () => { this.draw(); };
+        const stage = h("div", { class: "stage" }, this.bar(), this.space.element, this.status);
+        this.element = h("div", { style: "display:contents" }, stage, this.tools());
+        droppable(stage, (file) => { this.open(file); });
+        this.space.canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) this.point(event.offsetX, event.offsetY); });
+    }
+
+    async begin(taken: string | undefined): Promise<void> {
+        if (taken !== undefined) { this.show("studio.json", taken, []); return; }
+        const found = last ?? (await served()) ?? (await example());
+        if (!this.gone) this.show(found.name, found.source, found.refused);
+    }
+
+    dispose(): void {
+        this.gone = true;
+        this.meshing?.cancel();
+        this.model?.shapes.forEach((shape) => { shape.free(); });
+        this.space.dispose();
+    }
+
+    private open(file: Opened): void {
+        try { this.show(file.name, file.source, []); } catch (error) { refuse(error); }
+    }
+
+    private show(name: string, source: Source, refused: Refused[]): void {
+        const { shapes, leftOut } = ff().document(source);
+        this.model?.shapes.forEach((shape) => { shape.free(); });
+        last = { name, source, refused };
+        this.source = source;
+        this.refused = [...refused, ...leftOut.map((x) => ({ kind: "left out", ...x }))];
+        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [] };
+        this.name.textContent = name;
+        const bounds = ff().run("bounds", source, { }).json as { box?: { min: number[]; max: number[] } | null };
+        this.box = { lower: [...(bounds.box?.min ?? [-1, -1, -1]), 0].slice(0, 3), upper: [...(bounds.box?.max ?? [1, 1, 1]), 0].slice(0, 3) };
+        this.size = extent([this.box.lower, this.box.upper]);
+        this.space.fit([this.box.lower, this.box.upper]);
+        this.showing.chosen = undefined;
+        this.tessellate();
+    }
+
+    private accuracy(): number { return this.size * 10 ** -this.tolerance.valueAsNumber; }
+
+    private tessellate(): void {
+        this.meshing?.cancel();
+        const { model } = this;
+        if (!model) return;
+        this.said.textContent = shown(this.accuracy(), 3);
+        if (model.solid.length === 0) { this.draw(); this.tell(0); return; }
+        const options: MeshOptions = { tolerance: this.accuracy(), maxTriangles: 4_000_000 };
+        const began = performance.now();
+        const meshing = mesh(this.source, options, (part) => { this.progress.value = part; });
+        this.meshing = meshing;
+        this.progress.hidden = this.stop.hidden = false;
+        meshing.done.then(({ meshes }) => {
+            if (this.gone || this.model !== model) return;
+            model.meshes = meshes;
+            this.draw();
+            this.tell(performance.now() - began);
+        }).catch((error: unknown) => { if (!(error instanceof DOMException)) refuse(error); }).finally(() => {
+            if (this.meshing === meshing) this.progress.hidden = this.stop.hidden = true;
+        });
+    }
+
+    private draw(): void {
+        if (!this.model || this.gone) return;
+        this.key?.remove();
+        this.key = undefined;
+        const { axis, at, on } = this.cut;
+        const [lo = 0, hi = 1] = [this.box.lower[axis], this.box.upper[axis]];
+        this.showing.plane = on ? [...[0, 1, 2].map((k) => (k === axis ? 1 : 0)), -(lo + at * (hi - lo))] : undefined;
+        try {
+            this.drawn = draw(this.space, this.model, this.showing);
+        } catch (error) {
+            refuse(error);
+            this.drawn = draw(this.space, this.model, { ...this.showing, colouring: "plain", plane: undefined });
+        }
+        if (this.drawn.scale) {
+            this.key = legend(say(kColourings[this.showing.colouring]), this.drawn.scale);
+            this.space.element.append(this.key);
+        }
+        this.space.element.dataset["triangles"] = String(this.model.meshes.reduce((n, m) => n + m.indices.length / 3, 0));
+    }
+
+    private tell(time: number): void {
+        const meshes = this.model?.meshes ?? [];
+        const sum = (f: (m: (typeof meshes)[0]) => number): number => meshes.reduce((n, m) => n + f(m), 0);
+        const rows: [string, string][] = [
+            [say(t("Dreiecke", "triangles")), String(sum((m) => m.indices.length / 3))], [say(t("Flächen", "faces")), String(sum((m) => m.parts.length))],
+            [say(t("Schranke", "error bound")), shown(meshes.reduce((x, m) => Math.max(x, m.errorBound), 0), 4)], [say(t("Lücke am Rand", "boundary gap")), shown(meshes.reduce((x, m) => Math.max(x, m.boundaryGap), 0), 4)],
+            [say(t("offene Kanten", "open edges")), String(sum((m) => m.openEdges))], [say(t("Zeit", "time")), `${shown(time, 3)} ms`]];
+        this.facts.replaceChildren(h("table", {}, ...rows.map(([a, b]) => h("tr", {}, h("th", { scope: "row" }, a), h("td", {}, b)))));
+        const entries = meshes.flatMap((m, shape) => m.parts.map((part) => {
+            const name = part.name || this.model?.solid[shape]?.name || `${say(t("Fläche", "face"))} ${shape}.${part.face}`;
+            const button = h("button", { "aria-pressed": "false", onclick: () => {
+                const on = button.getAttribute("aria-pressed") !== "true";
+                this.list.querySelectorAll("[aria-pressed]").forEach((b) => { b.setAttribute("aria-pressed", "false"); });
+                button.setAttribute("aria-pressed", String(on));
+                this.showing.chosen = on ? { shape, face: part.face } : undefined;
+                this.draw();
+            } }, `${name} · ${part.count} · ≤ ${shown(part.errorBound, 2)}`);
+            return h("li", {}, button);
+        }));
+        const bad = [...this.refused, ...meshes.flatMap((m) => m.refused.map((r) => ({ where: r.where || r.name || `face ${r.face}`, kind: r.kind, message: r.message })))];
+        this.list.replaceChildren(...bad.map((r) => h("li", { class: "bad" }, h("button", { onclick: () => { refuse(r); } }, `⚠ ${r.where}: ${r.message}`))), ...entries.slice(0, 2000));
+    }
+
+    /** The nearest point of the shape that is under the cursor. */
+    private point(x: number, y: number): void {
+        const hits = (this.drawn?.objects ?? []).map((object, i) => ({ i, hit: this.model && this.model.meshes.length > 0 ? this.space.pick(x, y, object) : undefined }));
+        const eye = this.space.camera.position;
+        const first = hits.filter((a) => a.hit).sort((a, b) => far(a.hit?.point, eye) - far(b.hit?.point, eye))[0];
+        const shape = first && this.model?.solid[first.i];
+        if (!first?.hit || !shape) { this.status.textContent = ""; return; }
+        const near = shape.nearest(first.hit.point);
+        const words = (a: ArrayLike<number>): string => Array.from(a, (c) => shown(c, 5)).join(", ");
+        this.status.textContent = `${shape.name || shape.type}${near.faces ? ` · ${say(t("Fläche", "face"))} ${near.faces[0] ?? ""}` : ""} · u, v = ${words(near.parameters)} · ` +
+            `${say(t("nächster Punkt", "nearest point"))} (${words(near.points)}) · ${say(t("Abstand des Netzes hier", "distance of the mesh here"))} ${shown(near.distances[0] ?? 0, 3)} ≥ ${shown(near.lowerBounds[0] ?? 0, 3)}`;
+    }
+
+    private bar(): HTMLElement {
+        return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Ansicht", "View")) }, opener((file) => { this.open(file); }), this.name, h("span", { class: "sep" }),
+            ...([["1", t("Vorn", "Front"), 0, -1, 0], ["3", t("Rechts", "Right"), 1, 0, 0], ["7", t("Oben", "Top"), 0, -1e-3, 1], ["0", t("Schräg", "Oblique"), 4, -6, 4]] as const).map(([key, name, x, y, z]) =>
+                h("button", { title: key, onclick: () => { this.space.look(x, y, z); } }, say(name))),
+            h("button", { title: "F", onclick: () => { this.space.frame(); } }, say(t("Alles", "Fit"))),
+            h("button", { title: "5", onclick: () => { this.space.project5(); } }, say(t("Parallel", "Parallel"))), h("span", { class: "sep" }),
+            h("button", { onclick: () => { this.toEdit(JSON.stringify(this.model?.document ?? {})); } }, say(t("Bearbeiten", "Edit"))),
+            h("button", { onclick: () => { download("freiform.png", bytesOf(this.space.png()), "image/png"); } }, "PNG"),
+            ...(["glb", "stl"] as const).map((format) => h("button", { onclick: () => { this.save(format); } }, format)));
+    }
+
+    private save(format: "glb" | "stl"): void {
+        try {
+            const bytes = ff().run("tessellate", this.source, { to: format, tolerance: this.accuracy() }).bytes;
+            download(`freiform.${format}`, bytes, format === "glb" ? "model/gltf-binary" : "model/stl");
+        } catch (error) { refuse(error); }
+    }
+
+    private tools(): HTMLElement {
+        const pick = <K extends string>(label: Text, options: Record<K, Text>, set: (key: K) => void): HTMLElement => {
+            const select = h("select", { "aria-label": say(label), onchange: () => { set(select.value as K); this.draw(); } },
+                ...(Object.keys(options) as K[]).map((key) => h("option", { value: key }, say(options[key]))));
+            return h("label", { class: "knob" }, h("span", {}, say(label)), select);
+        };
+        const check = (label: Text, set: (on: boolean) => void): HTMLElement => {
+            const input = h("input", { type: "checkbox", onchange: () => { set(input.checked); this.draw(); } });
+            return h("label", { class: "check" }, input, say(label));
+        };
+        const isolines = h("input", { type: "range", min: 0, max: 12, step: 1, value: 0, "aria-label": say(t("Isolinien", "Iso-curves")), oninput: () => { this.showing.isolines = isolines.valueAsNumber; this.draw(); } });
+        const at = h("input", { type: "range", min: 0.001, max: 0.999, step: 0.001, value: 0.5, "aria-label": say(t("Ort der Schnittebene", "Place of the plane")), oninput: () => { this.cut.at = at.valueAsNumber; if (this.cut.on) this.draw(); } });
+        const axis = h("select", { "aria-label": say(t("Achse der Schnittebene", "Axis of the plane")), onchange: () => { this.cut.axis = Number(axis.value); if (this.cut.on) this.draw(); } },
+            ...["x", "y", "z"].map((name, i) => h("option", { value: i, selected: i === 2 }, name)));
+        const s = this.showing;
+        return h("div", { class: "tools" },
+            h("section", {}, h("h2", {}, say(t("Netz", "Mesh"))), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.progress, this.stop, this.facts),
+            h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), pick(t("Farben", "Colours"), kColourings, (key) => { s.colouring = key; }),
+                check(t("Dreiecke", "Triangles"), (on) => { s.edges = on; }), check(t("Kontrollnetz", "Control net"), (on) => { s.net = on; }), check(t("Knotenlinien", "Knots"), (on) => { s.knots = on; }),
+                check(t("Krümmungskamm (Kurven)", "Curvature comb (curves)"), (on) => { s.comb = on; }), check(t("Normalen", "Normals"), (on) => { s.normals = on; }),
+                h("label", { class: "knob" }, h("span", {}, say(t("Isolinien", "Iso-curves"))), isolines)),
+            h("section", {}, h("h2", {}, say(t("Schnitt", "Section"))), check(t("Ebene schneidet", "Cut by a plane"), (on) => { this.cut.on = on; }), h("label", { class: "knob" }, h("span", {}, say(t("Achse", "Axis"))), axis, at)),
+            h("section", {}, h("h2", {}, say(t("Flächen", "Faces"))), this.list));
+    }
+}
+
+const far = (p: readonly number[] | undefined, eye: { x: number; y: number; z: number }): number =>
+    Math.hypot((p?.[0] ?? 0) - eye.x, (p?.[1] ?? 0) - eye.y, (p?.[2] ?? 0) - eye.z);
+
+function bytesOf(url: string): Uint8Array {
+    const text = atob(url.slice(url.indexOf(",") + 1));
+    return Uint8Array.from(text, (c) => c.charCodeAt(0));
+}
+

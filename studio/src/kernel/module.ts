@@ -1,0 +1,72 @@
+// The library, loaded once. Every point that the studio draws was computed there.
+
+import { FreiformError, load, type Freiform, type Mesh, type MeshOptions, type Shape, type Source } from "freiform";
+import wasm from "freiform/freiform.wasm?url";
+import Worker from "./worker?worker";
+
+export type { CurveJson, DocumentJson, Freiform, Mesh, ObjectJson, Point as PointJson, Shape, Source, SurfaceJson } from "freiform";
+export { FreiformError };
+
+let module: (Freiform & { readonly module: WebAssembly.Module }) | undefined;
+
+/** Loads the module; the page waits for it once. */
+export async function start(): Promise<Freiform> {
+    module ??= await load(fetch(wasm));
+    return module;
+}
+
+/** The library. REQUIRES `start` to have ended. */
+export function ff(): Freiform {
+    if (!module) throw new Error("the module is not loaded");
+    return module;
+}
+
+/** Makes shapes that live as long as one call. */
+export type Make = (source: Source) => Shape;
+
+/** Calls `f` and frees the shapes that it made, whatever happens. */
+export function arena<T>(f: (make: Make, keep: (shape: Shape) => Shape) => T): T {
+    const made: Shape[] = [];
+    const keep = (shape: Shape): Shape => {
+        made.push(shape);
+        return shape;
+    };
+    try {
+        return f((source) => keep(ff().shape(source)), keep);
+    } finally {
+        for (const shape of made) shape.free();
+    }
+}
+
+/** What a worker is asked, and what it says. */
+export interface Order { readonly module: WebAssembly.Module; readonly source: Source; readonly options: Omit<MeshOptions, "progress"> }
+export type News =
+    | { readonly kind: "progress"; readonly part: number }
+    | { readonly kind: "meshes"; readonly meshes: readonly Mesh[]; readonly names: readonly string[] }
+    | { readonly kind: "refused"; readonly refusal: { readonly kind: string; readonly where: string; readonly message: string } };
+
+export interface Meshing { readonly done: Promise<{ meshes: readonly Mesh[]; names: readonly string[] }>; cancel(): void }
+
+/** Triangles of everything in a document that has a surface, computed beside the page. */
+export function mesh(source: Source, options: Omit<MeshOptions, "progress">, progress: (part: number) => void): Meshing {
+    if (!module) throw new Error("the module is not loaded");
+    const worker = new Worker();
+    const order: Order = { module: module.module, source, options };
+    let stop: (reason: Error) => void = () => undefined;
+    const done = new Promise<{ meshes: readonly Mesh[]; names: readonly string[] }>((resolve, reject) => {
+        stop = reject;
+        worker.onmessage = (event: MessageEvent<News>) => {
+            const news = event.data;
+            if (news.kind === "progress") { progress(news.part); return; }
+            worker.terminate();
+            if (news.kind === "meshes") resolve(news);
+            else reject(Object.assign(new Error(news.refusal.message), news.refusal));
+        };
+        worker.onerror = (event) => {
+            worker.terminate();
+            reject(new Error(event.message || "the worker failed"));
+        };
+        worker.postMessage(order);
+    });
+    return { done, cancel: () => { worker.terminate(); stop(new DOMException("cancelled", "AbortError")); } };
+}

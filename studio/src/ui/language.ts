@@ -1,0 +1,28 @@
+// German and English. A text is a pair; the whole page is built anew when the language changes.
+
+export interface Text { readonly de: string; readonly en: string }
+export type Language = keyof Text;
+
+const kKey = "freiform.language";
+
+function first(): Language {
+    const stored = localStorage.getItem(kKey);
+    if (stored === "de" || stored === "en") return stored;
+    return navigator.language.toLowerCase().startsWith("de") ? "de" : "en";
+}
+
+let current: Language = typeof localStorage === "undefined" ? "en" : first();
+
+export const language = (): Language => current;
+
+export function speak(language: Language): void {
+    current = language;
+    localStorage.setItem(kKey, language);
+    document.documentElement.lang = language;
+}
+
+/** The text in the language of the page. */
+export const say = (text: Text): string => text[current];
+
+/** A pair of texts, German first. */
+export const t = (de: string, en: string): Text => ({ de, en });

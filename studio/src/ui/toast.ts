@@ -1,0 +1,47 @@
+// Messages at the lower edge. Refusals stay until they are closed and show what kind, where and why.
+
+import { h } from "./dom";
+import { say, t } from "./language";
+
+const kTexts = {
+    close: t("Schließen", "Close"),
+    where: t("wo", "where"),
+};
+
+let box: HTMLElement | undefined;
+
+function host(): HTMLElement {
+    box ??= h("div", { class: "toasts", role: "region", "aria-live": "polite", "aria-label": "messages" });
+    if (!box.isConnected) document.body.append(box);
+    return box;
+}
+
+function add(element: HTMLElement): void {
+    const list = host();
+    list.append(element);
+    while (list.children.length > 4) list.firstElementChild?.remove();
+}
+
+export interface Refusal { readonly kind: string; readonly where: string; readonly message: string }
+
+/** Any thrown thing as kind, where and message. */
+export function refusal(error: unknown): Refusal {
+    const it = (error ?? {}) as Partial<Record<"kind" | "where" | "message" | "name", unknown>>;
+    const word = (x: unknown): string => (typeof x === "string" ? x : "");
+    return { kind: word(it.kind) || word(it.name) || "error", where: word(it.where), message: word(it.message) || String(error) };
+}
+
+export function refuse(error: unknown): void {
+    const { kind, where, message } = refusal(error);
+    const element = h("div", { class: "toast refused", role: "alert" },
+        h("div", {}, h("strong", {}, kind), where !== "" && h("span", { class: "where" }, `${say(kTexts.where)}: ${where}`)),
+        h("p", {}, message));
+    element.append(h("button", { class: "close", "aria-label": say(kTexts.close), onclick: () => { element.remove(); } }, "×"));
+    add(element);
+}
+
+export function notify(text: string): void {
+    const element = h("div", { class: "toast", role: "status" }, h("p", {}, text));
+    add(element);
+    setTimeout(() => { element.remove(); }, 4000);
+}

@@ -1,0 +1,60 @@
+// What a figure can draw on: the plane (SVG) and space (three.js) understand the same few words. A view keeps what was
+// drawn and shows it again when it is moved; `clear` starts the next picture. Handles live on top of either.
+
+import type { Handles } from "./handles";
+
+export type Point = readonly number[];
+
+export interface Style {
+    /** Name of a colour in style.css without its dashes, or a CSS colour. */
+    readonly colour: string;
+    readonly width?: number;
+    readonly dashed?: boolean;
+    readonly opacity?: number;
+    /** Areas: the colour inside. */
+    readonly fill?: string;
+    readonly rule?: "evenodd" | "nonzero";
+}
+
+/** Points one after another in one array, `dimension` numbers each. */
+export interface Run { readonly at: ArrayLike<number>; readonly dimension: number }
+
+export const run = (points: readonly Point[]): Run => ({ at: points.flat(), dimension: points[0]?.length ?? 2 });
+
+export interface View {
+    readonly element: HTMLElement;
+    readonly handles: Handles;
+    clear(): void;
+    line(run: Run, style: Style): void;
+    dots(run: Run, style: Style): void;
+    label(at: Point, text: string, colour?: string): void;
+    /** Shows all of these points. */
+    fit(points: readonly Point[]): void;
+    /** Pixels from the upper left corner. */
+    project(point: Point): readonly [number, number];
+    /** The point under a pixel, as deep in the picture as `like`. */
+    unproject(x: number, y: number, like: Point): number[];
+    dispose(): void;
+}
+
+/** The smallest box around finite points: lower and upper corner. */
+export function box(points: readonly Point[]): { lower: number[]; upper: number[] } {
+    const n = Math.max(2, ...points.map((p) => p.length));
+    const lower = new Array<number>(n).fill(Infinity), upper = new Array<number>(n).fill(-Infinity);
+    for (const p of points) {
+        for (let i = 0; i < n; ++i) {
+            const x = p[i] ?? 0;
+            if (!Number.isFinite(x)) continue;
+            lower[i] = Math.min(lower[i] ?? x, x);
+            upper[i] = Math.max(upper[i] ?? x, x);
+        }
+    }
+    return { lower: lower.map((x) => (Number.isFinite(x) ? x : -1)), upper: upper.map((x) => (Number.isFinite(x) ? x : 1)) };
+}
+
+/** A round number near `x` from below: 1, 2 or 5 times a power of ten. */
+export function round125(x: number): number {
+    const power = 10 ** Math.floor(Math.log10(x));
+    const lead = x / power;
+    return (lead >= 5 ? 5 : lead >= 2 ? 2 : 1) * power;
+}

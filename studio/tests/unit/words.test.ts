@@ -1,0 +1,65 @@
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { expect, test } from "vitest";
+import { formula } from "../../src/explore/formula";
+import { keyOf } from "../../src/edit/keys";
+import { address, parse } from "../../src/ui/router";
+import { range, tint } from "../../src/inspect/colours";
+
+const folder = fileURLToPath(new URL("../../src", import.meta.url));
+const sources = (at: string): string[] => readdirSync(at, { withFileTypes: true }).flatMap((entry) => {
+    const path = join(at, entry.name);
+    return entry.isDirectory() ? sources(path) : path.endsWith(".ts") ? [path] : [];
+});
+const all = sources(folder).map((path) => readFileSync(path, "utf8"));
+
+test("every row R1 to R36 has one page", () => {
+    const rows = all.flatMap((text) => [...text.matchAll(/^ {4}row: "R(\d+)"/gm)].map((m) => Number(m[1]))).sort((a, b) => a - b);
+    expect(rows).toEqual(Array.from({ length: 36 }, (_, i) => i + 1));
+});
+
+test("no text is empty in one of the languages", () => {
+    const texts = all.flatMap((text) => [...text.matchAll(/\bt\(\s*"((?:[^"\\]|\\.)*)"(?:\s*\+\s*"(?:[^"\\]|\\.)*")*,\s*"((?:[^"\\]|\\.)*)"/g)]);
+    expect(texts.length).toBeGreaterThan(200);
+    for (const [, german, english] of texts) expect(german === "" && english === "" || german !== "" && english !== "").toBe(true);
+});
+
+test("no source names another machine", () => {
+    for (const text of all) expect([...text.matchAll(/https?:\/\/[^"'\s)]+/g)].map((m) => m[0]).filter((url) => !url.startsWith("http://www.w3.org/"))).toEqual([]);
+});
+
+test("places and addresses are the same thing", () => {
+    for (const place of [{ view: "explore", page: "R5" }, { view: "explore", page: "" }, { view: "edit", page: "" }, { view: "inspect", page: "" }] as const)
+        expect(parse(address(place))).toEqual(place);
+    expect(parse("#/explore/<script>")).toEqual({ view: "explore", page: "" });
+    expect(parse("")).toEqual({ view: "explore", page: "" });
+});
+
+test("formulas are MathML with every bracket closed", () => {
+    expect(formula("b_i^r")).toBe('<math display="block"><mrow><msubsup><mi>b</mi><mi>i</mi><mi>r</mi></msubsup></mrow></math>');
+    for (const text of all) for (const [, source = ""] of text.matchAll(/formula: `([^`]*)`/g)) {
+        const made = formula(source);
+        for (const tag of ["mrow", "mfrac", "msub", "msup", "mtable"]) expect(made.split(`<${tag}`).length, tag + source).toBe(made.split(`</${tag}>`).length + made.split(`<${tag}sup`).length - 1);
+        expect(made).not.toMatch(/[{}]/);
+    }
+    expect(formula("a < b")).toContain("&lt;");
+});
+
+test("keys mean what other programs taught", () => {
+    const key = (name: string, more: object = {}) => keyOf({ key: name, ctrlKey: false, metaKey: false, shiftKey: false, altKey: false, ...more });
+    expect(key("z", { ctrlKey: true })).toBe("undo");
+    expect(key("Z", { metaKey: true, shiftKey: true })).toBe("redo");
+    expect(key("g")).toBe("grab");
+    expect(key("Delete")).toBe("remove");
+    expect(key("q")).toBeUndefined();
+    expect(key("b", { ctrlKey: true })).toBeUndefined();
+});
+
+test("colours: ends, middle, and grey where there is no number", () => {
+    const scale = range([-2, -1, 0, 1, 5], true);
+    expect(scale.low).toBe(-scale.high);
+    expect(tint(NaN, scale)).toEqual([0.55, 0.55, 0.55]);
+    expect(tint(0, scale)).toEqual([0.96, 0.96, 0.94]);
+    expect(range([1, NaN, 3], false)).toEqual({ low: 0, high: 3, both: false });
+});
