@@ -1,0 +1,342 @@
+// What is tested in the browser: name, what is done, and with which browser.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+
+const kRows = Array.from({ length: 36 }, (_, i) => `R${i + 1}`);
+const settle = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+const go = async (page, url, hash, ready) => { await page.goto(`${url}${hash}`); await page.waitForSelector(ready, { timeout: 20000 }); await settle(page); };
+
+/** All that a figure shows, as text: changes when the picture does. */
+const seen = (page) => page.evaluate(() => {
+    const flat = [...document.querySelectorAll(".picture, .readout, pre")].map((e) => e.innerHTML).join("");
+    const depth = [...document.querySelectorAll("canvas")].map((c) => c.toDataURL()).join("");
+    return flat + depth;
+});
+const refused = (page) => page.evaluate(() => [...document.querySelectorAll(".readout.refused, .toast.refused")].map((e) => e.textContent).join("; "));
+
+async function drag(page, locator, dx, dy) {
+    const box = await locator.boundingBox();
+    const x = box.x + box.width / 2, y = box.y + box.height / 2;
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + dx / 2, y + dy / 2);
+    await page.mouse.move(x + dx, y + dy);
+    await page.mouse.up();
+    await settle(page);
+}
+
+const points = (page) => page.evaluate(async () => {
+    const base = await new Promise((done) => { const r = indexedDB.open("freiform", 1); r.onsuccess = () => done(r.result); });
+    return new Promise((done) => { const r = base.transaction("documents").objectStore("documents").get("now"); r.onsuccess = () => { base.close(); done(JSON.parse(r.result)); }; });
+});
+const toast = async (page) => { await page.waitForSelector(".toast.refused", { timeout: 8000 }); return page.locator(".toast.refused").last().innerText(); };
+const file = async (page, path) => { await page.locator('input[type="file"]').first().setInputFiles(path); await settle(page); };
+
+async function axe(page) {
+    await page.evaluate(readFileSync(fileURLToPath(new URL("../../node_modules/axe-core/axe.min.js", import.meta.url)), "utf8"));
+    const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+    assert.deepEqual(found.violations.map((v) => `${v.id}: ${v.nodes[0]?.html.slice(0, 120)}`), []);
+}
+
+const explore = kRows.map((row) => [`explore ${row}: draws, follows a handle or knob, by mouse and keyboard`, async ({ page, url, picture }) => {
+    await go(page, url, `#/explore/${row}`, ".page .side h1");
+    await page.waitForFunction(() => document.querySelector(".picture *, canvas"), null, { timeout: 8000 });
+    await settle(page);
+    assert.equal(await refused(page), "");
+    await picture(row);
+    const before = await seen(page);
+    const handle = page.locator(".handle").first();
+    if (await handle.count() > 0) {
+        await drag(page, handle, 14, -18);
+        assert.equal(await refused(page), "");
+        const dragged = await seen(page);
+        assert.notEqual(dragged, before, "dragging a handle changes the picture");
+        await handle.focus();
+        await page.keyboard.press("ArrowLeft");
+        await settle(page);
+        assert.notEqual(await seen(page), dragged, "an arrow key changes the picture");
+    }
+    const slider = page.locator('.side input[type="range"]').first();
+    if (await slider.count() > 0) {
+        const was = await seen(page);
+        await slider.focus();
+        for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowRight");
+        await page.keyboard.press("ArrowLeft");
+        await settle(page);
+        assert.notEqual(await seen(page), was, "a slider changes the picture");
+    }
+    for (const button of await page.locator(".side .choice button").all()) {
+        await button.click();
+        await settle(page);
+        assert.equal(await refused(page), "", await button.innerText());
+    }
+    assert.equal(await refused(page), "");
+}]);
+
+export const cases = [
+    ["overview: every row has a tile; no accessibility violations", async ({ page, url, picture }) => {
+        await go(page, url, "", ".tiles");
+        assert.equal(await page.locator(".tile").count(), kRows.length);
+        await picture("overview");
+        await axe(page);
+    }],
+    ...explore,
+    ["language and theme change the page and stay", async ({ page, url, picture }) => {
+        await go(page, url, "#/explore/R15", ".page h1");
+        await page.getByRole("button", { name: "Deutsch" }).click();
+        await page.waitForSelector("text=Im Editor öffnen");
+        await page.getByRole("button", { name: "Hell oder dunkel" }).click();
+        await settle(page);
+        const theme = await page.evaluate(() => document.documentElement.dataset.theme);
+        await picture("german-dark");
+        await page.reload();
+        await page.waitForSelector("text=Im Editor öffnen");
+        assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), theme);
+        assert.equal(await page.evaluate(() => document.documentElement.lang), "de");
+        await axe(page);
+    }],
+    ["open in editor takes the curve along", async ({ page, url }) => {
+        await go(page, url, "#/explore/R12", ".page h1");
+        await page.getByRole("button", { name: "Open in editor" }).click();
+        await page.waitForSelector(".tools .list li");
+        assert.equal(await page.locator(".handle[aria-label*='point']").count(), 7);
+    }],
+    ["edit: create, drag, undo, redo, save, reload, open", async ({ page, url, write, read, picture }) => {
+        await go(page, url, "#/edit", ".bar");
+        await page.getByRole("button", { name: "New" }).click();
+        await page.keyboard.press("b");
+        const box = await page.locator("svg.plane").first().boundingBox();
+        for (const [x, y] of [[0.2, 0.7], [0.35, 0.2], [0.55, 0.3], [0.7, 0.75], [0.85, 0.4]]) await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+        await page.keyboard.press("Enter");
+        await settle(page);
+        assert.equal(await page.locator(".handle[aria-label*='point']").count(), 5);
+        const made = await points(page);
+        assert.equal(made.objects[0].degree, 3);
+        await drag(page, page.locator(".handle[aria-label*='point']").nth(2), 60, -40);
+        const moved = await points(page);
+        assert.notDeepEqual(moved.objects[0].points[2], made.objects[0].points[2]);
+        assert.deepEqual(moved.objects[0].points[1], made.objects[0].points[1]);
+        await picture("edit");
+        await page.keyboard.press("Control+z");
+        assert.deepEqual((await points(page)).objects[0].points, made.objects[0].points, "a drag is one step back");
+        await page.keyboard.press("Control+Shift+z");
+        assert.deepEqual((await points(page)).objects[0].points, moved.objects[0].points);
+        const saving = page.waitForEvent("download");
+        await page.keyboard.press("Control+s");
+        const saved = read(await (await saving).path()).toString();
+        assert.deepEqual(JSON.parse(saved).objects[0].points, moved.objects[0].points);
+        await page.reload();
+        await page.waitForFunction(() => document.querySelectorAll(".handle[aria-label*='point']").length === 5);
+        assert.deepEqual((await points(page)).objects[0].points, moved.objects[0].points, "autosave outlives a reload");
+        await page.getByRole("button", { name: "New" }).click();
+        await file(page, write("saved.json", saved));
+        await page.waitForFunction(() => document.querySelectorAll(".handle[aria-label*='point']").length === 5);
+        assert.deepEqual((await points(page)).objects[0].points, moved.objects[0].points, "opened as it was saved");
+        await axe(page);
+    }],
+    ["edit: a crash of the page loses nothing", async ({ page, context, url }) => {
+        await go(page, url, "#/edit", ".bar");
+        await drag(page, page.locator(".handle[aria-label*='point']").nth(1), 30, 20);
+        const before = await points(page);
+        page.goto("chrome://crash").catch(() => undefined);
+        await new Promise((done) => setTimeout(done, 600));
+        const again = await context.newPage();
+        await go(again, url, "#/edit", ".handle");
+        assert.deepEqual(await points(again), before);
+        await again.close();
+    }],
+    ["edit: by keyboard alone", async ({ page, url }) => {
+        await go(page, url, "#/edit", ".handle");
+        for (let i = 0; i < 60; ++i) {
+            await page.keyboard.press("Tab");
+            if (await page.evaluate(() => document.activeElement?.classList.contains("handle"))) break;
+        }
+        const name = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+        assert.match(name, /point 0/);
+        await page.keyboard.press("ArrowUp");
+        await page.keyboard.press("ArrowUp");
+        await settle(page);
+        const once = await points(page);
+        assert.ok(once.objects[0].points[0][1] > 0);
+        assert.match(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), /point 0/, "focus stays");
+        await page.keyboard.press("Enter");
+        await page.keyboard.press("g");
+        await page.waitForSelector("dialog input");
+        await page.keyboard.type("1 2");
+        await page.keyboard.press("Enter");
+        await settle(page);
+        const [x, y] = (await points(page)).objects[0].points[0];
+        assert.ok(Math.abs(x - once.objects[0].points[0][0] - 1) < 1e-9 && Math.abs(y - once.objects[0].points[0][1] - 2) < 1e-9);
+        await page.keyboard.press("Control+z");
+        await page.keyboard.press("Control+z");
+        await page.keyboard.press("Control+z");
+        await settle(page);
+        assert.deepEqual((await points(page)).objects[0].points[0], [0, 0]);
+        await page.keyboard.press("Control+a");
+        await page.keyboard.press("Control+d");
+        await settle(page);
+        assert.equal((await points(page)).objects.length, 2);
+        await page.keyboard.press("Delete");
+        await settle(page);
+        assert.equal((await points(page)).objects.length, 1);
+    }],
+    ["edit: knots, degree, split, join, reverse keep the curve; weights change it", async ({ page, url }) => {
+        await go(page, url, "#/edit", ".handle");
+        const press = async (name) => { await page.getByRole("button", { name, exact: true }).click(); await settle(page); assert.equal(await refused(page), "", name); };
+        await page.locator(".tools .list button").first().click();
+        await press("Insert knot");
+        assert.equal((await points(page)).objects[0].points.length, 6);
+        await press("Elevate");
+        assert.equal((await points(page)).objects[0].degree, 4);
+        await press("Remove knots");
+        await press("Reverse");
+        await press("Split");
+        assert.equal((await points(page)).objects.length, 2);
+        await page.locator(".tools .list button").nth(0).click();
+        await page.locator(".tools .list button").nth(1).click({ modifiers: ["Shift"] });
+        await press("Join");
+        const joined = await points(page);
+        assert.equal(joined.objects.length, 1);
+        await page.locator(".handle[aria-label*='point']").nth(1).focus();
+        await page.keyboard.press("Enter");
+        await page.getByLabel("weight").fill("3");
+        await page.getByLabel("weight").press("Enter");
+        await settle(page);
+        assert.equal((await points(page)).objects[0].weights[1], 3);
+    }],
+    ["edit: revolve and extrude make surfaces; exports are what they say", async ({ page, url, read, picture }) => {
+        await go(page, url, "#/edit", ".handle");
+        await page.locator(".tools .list button").first().click();
+        await page.getByRole("button", { name: "Revolve" }).click();
+        await page.waitForSelector(".view.space canvas");
+        await settle(page);
+        assert.equal(await refused(page), "");
+        assert.deepEqual((await points(page)).objects.map((o) => o.type), ["curve", "surface"]);
+        await picture("revolved");
+        const head = { svg: "<?xml", png: "\x89PNG", glb: "glTF", stl: "", step: "ISO-10303-21" };
+        for (const [format, start] of Object.entries(head)) {
+            const saving = page.waitForEvent("download");
+            await page.getByLabel("Export as").selectOption(format);
+            const bytes = read(await (await saving).path());
+            assert.ok(bytes.length > 80, format);
+            assert.equal(bytes.subarray(0, start.length).toString("latin1"), start, format);
+            if (format === "stl") assert.equal(bytes.length, 84 + 50 * bytes.readUInt32LE(80));
+        }
+    }],
+    ["edit: loft and Coons", async ({ page, url, write }) => {
+        const z = (h, s) => [[0, 0, h], [1 * s, 1, h], [2, 1, h], [3, 0, h]];
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("loft.json", JSON.stringify({ freiform: 1, objects: [0, 1, 2].map((h) => ({ type: "curve", points: z(h, 1 + h) })) })));
+        await page.keyboard.press("Control+a");
+        await page.getByRole("button", { name: "Loft" }).click();
+        await settle(page);
+        assert.equal(await refused(page), "");
+        assert.equal((await points(page)).objects.length, 4);
+        const side = (p) => ({ type: "curve", points: p });
+        await file(page, write("coons.json", JSON.stringify({ freiform: 1, objects: [side([[0, 0, 0], [1, 0, 1], [2, 0, 0]]), side([[2, 2, 0], [2, 1, 1], [2, 0, 0]]), side([[0, 2, 0], [1, 2, 1], [2, 2, 0]]), side([[0, 0, 0], [0, 1, -1], [0, 2, 0]])] })));
+        await page.keyboard.press("Control+a");
+        await page.getByRole("button", { name: "Coons (four curves)" }).click();
+        await settle(page);
+        assert.equal(await refused(page), "");
+        const made = (await points(page)).objects[4];
+        assert.equal(made.type, "surface");
+    }],
+    ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
+        await go(page, url, "#/edit", ".handle");
+        const before = JSON.stringify((await page.locator(".handle").count()));
+        await file(page, write("bad.json", '{"type": "curve", "points": [[0,0],[1,'));
+        assert.match(await toast(page), /unreadable|invalid/);
+        await file(page, write("knots.json", '{"type": "curve", "degree": 2, "knots": [0,0,0,2,1,1,1], "points": [[0,0],[1,1],[2,0],[3,3]]}'));
+        await settle(page);
+        assert.match(await page.locator(".toast.refused").last().innerText(), /knots/);
+        await file(page, write("part.step", "ISO-10303-21;"));
+        await settle(page);
+        assert.match(await page.locator(".toast.refused").last().innerText(), /freiform view part\.step/);
+        assert.equal(JSON.stringify(await page.locator(".handle").count()), before);
+    }],
+    ["edit and explore: by finger", async ({ page, url, context, picture }) => {
+        await go(page, url, "#/explore/R15", ".handle");
+        await picture("phone");
+        const touch = await context.newCDPSession(page);
+        const box = await page.locator(".handle").nth(1).boundingBox();
+        const at = (x, y) => [{ x: box.x + box.width / 2 + x, y: box.y + box.height / 2 + y }];
+        const before = await seen(page);
+        await touch.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0, 0) });
+        for (let i = 1; i <= 5; ++i) await touch.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(6 * i, 5 * i) });
+        await touch.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+        await settle(page);
+        assert.notEqual(await seen(page), before);
+    }, { context: { viewport: { width: 400, height: 800 }, hasTouch: true, isMobile: true } }],
+    ["inspect: the teapot within its tolerance, looks, colours, section, nearest", async ({ page, url, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        const count = () => page.evaluate(() => Number(document.querySelector(".view.space").dataset.triangles ?? 0));
+        await page.waitForFunction(() => Number(document.querySelector(".view.space")?.dataset.triangles) > 100, null, { timeout: 20000 });
+        await settle(page);
+        await picture("teapot");
+        const coarse = await count();
+        const bound = await page.locator(".tools tr", { hasText: "error bound" }).locator("td").innerText();
+        assert.ok(Number(bound) > 0);
+        await page.getByLabel("Tolerance").focus();
+        for (let i = 0; i < 5; ++i) await page.keyboard.press("ArrowRight");
+        await page.waitForFunction((was) => Number(document.querySelector(".view.space").dataset.triangles) > was, coarse, { timeout: 20000 });
+        const shot = () => page.evaluate(() => document.querySelector("canvas").toDataURL());
+        let before = await shot();
+        for (const look of ["zebra", "isophotes", "normals", "flat", "shaded"]) {
+            await page.getByLabel("Look").selectOption(look);
+            await settle(page);
+            const after = await shot();
+            assert.notEqual(after, before, look);
+            await picture(`teapot-${look}`);
+            before = after;
+        }
+        for (const colours of ["faces", "gauss", "mean", "bound", "deviation"]) {
+            await page.getByLabel("Colours").selectOption(colours);
+            await settle(page);
+            assert.equal(await refused(page), "", colours);
+            if (colours !== "faces") await page.waitForSelector(".legend");
+            await picture(`teapot-${colours}`);
+        }
+        await page.getByLabel("Colours").selectOption("plain");
+        for (const name of ["Triangles", "Control net", "Knots", "Normals", "Cut by a plane"]) { before = await shot(); await page.getByLabel(name, { exact: true }).check(); await settle(page); assert.notEqual(await shot(), before, name); }
+        assert.equal(await refused(page), "");
+        await picture("teapot-all");
+        const box = await page.locator("canvas").boundingBox();
+        await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+        await page.waitForFunction(() => /u, v/.test(document.querySelector(".status").textContent));
+        await page.locator("canvas").focus();
+        before = await shot();
+        await page.keyboard.press("ArrowLeft");
+        await settle(page);
+        assert.notEqual(await shot(), before, "arrow keys turn");
+        await axe(page);
+    }],
+    ["inspect: what freiform view serves is opened, refused faces are marked", async ({ page, url }) => {
+        await page.goto(url);
+        await page.waitForFunction(() => Number(document.querySelector(".view.space")?.dataset.triangles) > 0, null, { timeout: 20000 });
+        assert.match(page.url(), /#\/inspect$/);
+        await page.waitForSelector("text=part.step");
+        await page.waitForSelector(".list li.bad");
+        assert.match(await page.locator(".list li.bad").first().innerText(), /#17/);
+    }, { extra: () => ({ "/view.json": JSON.stringify({ version: "0.1.0", file: "part.step", format: "step", unit: "mm", objects: [], models: 0, box: null }),
+        "/document.json": JSON.stringify({ freiform: 1, unit: "mm", objects: [{ type: "surface", points: [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]] }] }),
+        "/faces.json": JSON.stringify({ faces: [], refused: [{ where: "#17", kind: "unsupported", message: "a surface that is not known" }], approximations: [] }) }) }],
+    ["nothing leaves the machine, even if a script tried", async ({ page, url, trouble }) => {
+        await go(page, url, "#/explore/R5", ".handle");
+        const outcome = await page.evaluate(() => fetch("http://127.0.0.1:9/x").then(() => "sent", () => "blocked"));
+        assert.equal(outcome, "blocked");
+        assert.ok(trouble.some((line) => /Content Security Policy/.test(line)), trouble.join());
+        trouble.length = 0;
+    }],
+    ["offline: the page opens again without a network", async ({ page, context, url }) => {
+        await go(page, url, "#/explore/R5", ".handle");
+        await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
+        await page.reload();
+        await page.waitForSelector(".handle");
+        await settle(page);
+        await context.setOffline(true);
+        await page.reload();
+        await page.waitForSelector(".handle", { timeout: 8000 });
+        assert.equal(await refused(page), "");
+    }],
+];

@@ -1,0 +1,57 @@
+// The studio as readers meet it: in Chromium, by mouse, keyboard and finger. Needs studio/dist (npm run build).
+//     node tests/browser/run.mjs [part of a name ..]        STUDIO_PICTURES=folder keeps screenshots
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+import { serve } from "./served.mjs";
+import { cases } from "./cases.mjs";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const pictures = process.env.STUDIO_PICTURES;
+if (pictures) mkdirSync(pictures, { recursive: true });
+const scratch = join(tmpdir(), `freiform-studio-${process.pid}`);
+mkdirSync(scratch, { recursive: true });
+
+const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"] });
+const site = await serve(join(here, "../../dist"));
+const wanted = process.argv.slice(2);
+let failed = 0, passed = 0;
+
+/** A page of its own, watched: nothing may be thrown, nothing may leave the machine. */
+async function opened(options, url) {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "en-GB", acceptDownloads: true, ...options });
+    const page = await context.newPage();
+    const trouble = [];
+    page.on("pageerror", (error) => trouble.push(`thrown: ${error.message}`));
+    page.on("console", (message) => { if (message.type() === "error" && !/404 \(Not Found\)/.test(message.text())) trouble.push(`console: ${message.text()}`); });
+    page.on("request", (request) => { if (!/^(data|blob):/.test(request.url()) && !request.url().startsWith(url)) trouble.push(`request: ${request.url()}`); });
+    return { context, page, trouble };
+}
+
+for (const [name, act, options = {}] of cases) {
+    if (wanted.length > 0 && !wanted.some((w) => name.includes(w))) continue;
+    const began = performance.now();
+    const own = options.extra ? await serve(join(here, "../../dist"), options.extra()) : site;
+    const { context, page, trouble } = await opened(options.context ?? {}, own.url);
+    try {
+        await act({ page, context, url: own.url, scratch, trouble, write: (file, text) => { const path = join(scratch, file); writeFileSync(path, text); return path; },
+            read: (path) => readFileSync(path), picture: async (file) => { if (pictures) await page.screenshot({ path: join(pictures, `${file}.png`) }); } });
+        if (trouble.length > 0) throw new Error(trouble.join("\n    "));
+        ++passed;
+        console.log(`ok    ${name} (${Math.round(performance.now() - began)} ms)`);
+    } catch (error) {
+        ++failed;
+        console.log(`FAIL  ${name}\n    ${error.message.split("\n").slice(0, 12).join("\n    ")}`);
+        if (pictures) await page.screenshot({ path: join(pictures, `failed-${name.replace(/\W+/g, "-")}.png`) }).catch(() => undefined);
+    }
+    await context.close();
+    if (own !== site) own.close();
+}
+await browser.close();
+site.close();
+rmSync(scratch, { recursive: true, force: true });
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed > 0 || passed === 0 ? 1 : 0);
