@@ -3,9 +3,9 @@
 import type { CurveJson, DocumentJson, ObjectJson } from "freiform";
 import { curve, lattice, net, polygon, surface } from "../explore/draw";
 import type { Shown } from "../explore/explore";
-import { arena, ff, type Source } from "../kernel/module";
+import { arena, ff, file, type Source } from "../kernel/module";
 import { coalesced, h } from "../ui/dom";
-import { droppable, opener, type Opened } from "../ui/files";
+import { droppable, opener } from "../ui/files";
 import { say, t, type Text } from "../ui/language";
 import { notify, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
@@ -50,7 +50,7 @@ export class Editor implements Shown {
         this.panel = new Panel(this);
         this.stage.append(this.bar(), this.view.element, this.status);
         this.element = h("div", { style: "display:contents" }, this.stage, this.panel.element);
-        droppable(this.stage, (file) => { this.open(file.source); });
+        droppable(this.stage, (opened) => { this.open(file(opened.name, opened.source)); });
         document.addEventListener("keydown", this.onKey);
         if (taken === undefined) void this.restore();
         else this.open(taken);
@@ -168,7 +168,7 @@ export class Editor implements Shown {
         return undefined;
     }
 
-    private open(source: Source | Opened["source"]): void {
+    private open(source: Source): void {
         try {
             const { shapes, unit } = ff().document(source);
             let state: Document;
@@ -208,6 +208,12 @@ export class Editor implements Shown {
 
     private refresh(): void {
         if (this.gone) return;
+        if (this.history.busy) {
+            this.panel.showNumbers();
+            this.view.handles.place();
+            this.draw();
+            return;
+        }
         const space = !flat(this.document);
         if (space !== this.view instanceof Space) {
             const next = this.viewFor(space);
@@ -228,7 +234,6 @@ export class Editor implements Shown {
     }
 
     private hold(): void {
-        if (this.history.busy) { this.view.handles.place(); return; }
         const count = this.document.objects.reduce((n, o) => n + pointsOf(o).length, 0);
         const shown = this.document.objects.flatMap((o, object) => (this.chosen.has(object) || (this.chosen.size === 0 && count <= kMostHandles) ? pointsOf(o).map((_, point) => ({ object, point })) : []));
         this.view.handles.show(shown.slice(0, kMostHandles).map((place) => this.handle(place)), {
@@ -462,7 +467,7 @@ export class Editor implements Shown {
 
     private bar(): HTMLElement {
         return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Werkzeuge", "Tools")) },
-            h("button", { onclick: () => { this.attempt(say(t("Neu", "new")), () => ({ objects: [] })); } }, say(t("Neu", "New"))), opener((file) => { this.open(file.source); }),
+            h("button", { onclick: () => { this.attempt(say(t("Neu", "new")), () => ({ objects: [] })); } }, say(t("Neu", "New"))), opener((opened) => { this.open(file(opened.name, opened.source)); }),
             ...exportButtons(() => this.json(), () => this.view, () => 0.001 * size(this.document)), h("span", { class: "sep" }), this.back, this.again, h("span", { class: "sep" }), this.pen,
             h("button", { title: "Enter", onclick: () => { this.finish(); } }, say(t("Fertig", "Finish"))), h("label", { class: "check" }, this.snap, say(t("Einrasten", "Snap"))),
             h("button", { title: "F", onclick: () => { this.fit(); } }, say(t("Alles", "Fit"))), h("button", { title: "Del", onclick: () => { this.remove(); } }, say(t("Löschen", "Delete"))),

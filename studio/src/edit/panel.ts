@@ -49,7 +49,8 @@ export class Panel {
         if (document.objects.length === 0) this.objects.append(h("p", { class: "hint" }, say(t("Noch nichts. Mit B (Stift) klicken Sie Kontrollpunkte, oder öffnen Sie eine Datei.", "Nothing yet. With B (pen) click control points, or open a file."))));
     }
 
-    private showNumbers(): void {
+    /** Place and weight of the first point that is chosen. */
+    showNumbers(): void {
         const { editor } = this, places = editor.places;
         this.numbers.replaceChildren();
         const place = places[0];

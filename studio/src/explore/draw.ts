@@ -4,7 +4,7 @@ import type { Construction, Shape } from "freiform";
 import type { Make } from "../kernel/module";
 import type { Space, SurfaceStyle, Triangles } from "../views/space";
 import type { Point, Run, Style, View } from "../views/view";
-import { box, run } from "../views/view";
+import { run } from "../views/view";
 
 export const kPalette = ["curve", "control", "aux", "violet", "hot", "gold"] as const;
 export const shade = (i: number): string => kPalette[i % kPalette.length] ?? "curve";
@@ -18,12 +18,9 @@ export function net(shape: Shape): number[][] {
     return Array.from({ length: shape.points.length / d }, (_, i) => Array.from(shape.points.slice(i * d, i * d + d)));
 }
 
-/** A curve as finely as a screen shows it. */
+/** A curve as finely as a screen shows it: many equal steps in every span. */
 export function curve(view: View, shape: Shape, style: Style = { colour: "curve", width: 2.6 }): void {
-    const { lower, upper } = box(net(shape));
-    const size = Math.max(...upper.map((x, i) => x - (lower[i] ?? 0)));
-    if (!(size > 0)) return;
-    for (const line of shape.polylines(size / 4000)) view.line({ at: line.points, dimension: shape.dimension }, style);
+    view.line({ at: shape.evaluate(spread(shape, 0, 200)), dimension: shape.dimension }, style);
 }
 
 /** The values of a curve at equal steps of the parameter. */
@@ -90,9 +87,9 @@ export function graphs(view: View, shape: Shape, options: { n?: number; chosen?:
 }
 
 /** The levels of de Casteljau or de Boor between the control points and the point. */
-export function construction(view: View, scheme: Construction): void {
-    const last = scheme.levels.length - 1;
-    scheme.levels.forEach((level, r) => {
+export function construction(view: View, scheme: Construction["levels"]): void {
+    const last = scheme.length - 1;
+    scheme.forEach((level, r) => {
         if (r === 0) return;
         if (r < last) view.line(run(level.points), { colour: shade(r + 1), width: 1.8 });
         dots(view, level.points, r === last ? "hot" : shade(r + 1), r === last ? 12 : 7);
@@ -125,7 +122,7 @@ export function spread(shape: Shape, axis: number, n: number): number[] {
     const [a, b] = shape.domain[axis] ?? [0, 1];
     const breaks = [...new Set(shape.knots[axis] ?? [])].filter((k) => k >= a && k <= b);
     if (breaks.length < 2) return steps(a, b, n);
-    const each = Math.max(2, Math.ceil(n / (breaks.length - 1)));
+    const each = Math.max(axis === 0 && shape.parameters === 1 ? 12 : 2, Math.ceil(n / (breaks.length - 1)));
     return breaks.flatMap((k, i) => (i + 1 < breaks.length ? steps(k, breaks[i + 1] ?? k, each).slice(0, -1) : [k]));
 }
 

@@ -2,7 +2,7 @@
 
 import type { MeshOptions } from "freiform";
 import teapot from "../../../examples/teapot.bpt?url";
-import { ff, mesh, type Meshing, type Source } from "../kernel/module";
+import { ff, file, mesh, type Meshing, type Source } from "../kernel/module";
 import type { Shown } from "../explore/explore";
 import { download, h, shown } from "../ui/dom";
 import { droppable, opener, type Opened } from "../ui/files";
@@ -35,7 +35,7 @@ async function served(): Promise<typeof last> {
 }
 
 async function example(): Promise<NonNullable<typeof last>> {
-    return { name: "teapot.bpt", source: await (await fetch(teapot)).text(), refused: [] };
+    return { name: "teapot.bpt", source: file("teapot.bpt", await (await fetch(teapot)).text()), refused: [] };
 }
 
 export function inspect(taken: string | undefined, edit: (text: string) => void): Shown {
@@ -72,7 +72,7 @@ class Inspector implements Shown {
         this.space.onColours = () => { this.draw(); };
         const stage = h("div", { class: "stage" }, this.bar(), this.space.element, this.status);
         this.element = h("div", { style: "display:contents" }, stage, this.tools());
-        droppable(stage, (file) => { this.open(file); });
+        droppable(stage, (opened) => { this.open(opened); });
         this.space.canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) this.point(event.offsetX, event.offsetY); });
     }
 
@@ -89,8 +89,8 @@ class Inspector implements Shown {
         this.space.dispose();
     }
 
-    private open(file: Opened): void {
-        try { this.show(file.name, file.source, []); } catch (error) { refuse(error); }
+    private open(opened: Opened): void {
+        try { this.show(opened.name, file(opened.name, opened.source), []); } catch (error) { refuse(error); }
     }
 
     private show(name: string, source: Source, refused: Refused[]): void {
@@ -189,7 +189,7 @@ class Inspector implements Shown {
     }
 
     private bar(): HTMLElement {
-        return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Ansicht", "View")) }, opener((file) => { this.open(file); }), this.name, h("span", { class: "sep" }),
+        return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Ansicht", "View")) }, opener((opened) => { this.open(opened); }), this.name, h("span", { class: "sep" }),
             ...([["1", t("Vorn", "Front"), 0, -1, 0], ["3", t("Rechts", "Right"), 1, 0, 0], ["7", t("Oben", "Top"), 0, -1e-3, 1], ["0", t("Schräg", "Oblique"), 4, -6, 4]] as const).map(([key, name, x, y, z]) =>
                 h("button", { title: key, onclick: () => { this.space.look(x, y, z); } }, say(name))),
             h("button", { title: "F", onclick: () => { this.space.frame(); } }, say(t("Alles", "Fit"))),

@@ -1,6 +1,6 @@
 // The library, loaded once. Every point that the studio draws was computed there.
 
-import { FreiformError, load, type Freiform, type Mesh, type MeshOptions, type Shape, type Source } from "freiform";
+import { FreiformError, load, type Construction, type Freiform, type Mesh, type MeshOptions, type Shape, type Source } from "freiform";
 import wasm from "freiform/freiform.wasm?url";
 import Worker from "./worker?worker";
 
@@ -36,6 +36,15 @@ export function arena<T>(f: (make: Make, keep: (shape: Shape) => Shape) => T): T
     } finally {
         for (const shape of made) shape.free();
     }
+}
+
+/** A source whose name says what it is. */
+export const file = (name: string, content: string | Uint8Array): Source => ({ file: name, content }) as unknown as Source;
+
+/** The levels of de Casteljau or de Boor at a parameter. */
+export function construct(shape: Shape, at: readonly number[]): Construction["levels"] {
+    const answer = shape.construction(at) as Construction | Construction["levels"];
+    return Array.isArray(answer) ? answer : answer.levels;
 }
 
 /** What a worker is asked, and what it says. */

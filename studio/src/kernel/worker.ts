@@ -22,7 +22,7 @@ async function work({ module, source, options }: Order): Promise<void> {
 
 onmessage = (event: MessageEvent<Order>) => {
     work(event.data).catch((error: unknown) => {
-        const it = error as { kind?: string; where?: string; message?: string };
-        tell({ kind: "refused", refusal: { kind: it.kind ?? "error", where: it.where ?? "", message: it.message ?? String(error) } });
+        const it = error as { kind?: string; where?: string; reason?: string; message?: string };
+        tell({ kind: "refused", refusal: { kind: it.kind ?? "error", where: it.where ?? "", message: it.reason ?? it.message ?? String(error) } });
     });
 };

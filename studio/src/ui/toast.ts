@@ -26,9 +26,9 @@ export interface Refusal { readonly kind: string; readonly where: string; readon
 
 /** Any thrown thing as kind, where and message. */
 export function refusal(error: unknown): Refusal {
-    const it = (error ?? {}) as Partial<Record<"kind" | "where" | "message" | "name", unknown>>;
+    const it = (error ?? {}) as Partial<Record<"kind" | "where" | "reason" | "message" | "name", unknown>>;
     const word = (x: unknown): string => (typeof x === "string" ? x : "");
-    return { kind: word(it.kind) || word(it.name) || "error", where: word(it.where), message: word(it.message) || String(error) };
+    return { kind: word(it.kind) || word(it.name) || "error", where: word(it.where), message: word(it.reason) || word(it.message) || String(error) };
 }
 
 export function refuse(error: unknown): void {

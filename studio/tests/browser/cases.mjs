@@ -61,8 +61,7 @@ const explore = kRows.map((row) => [`explore ${row}: draws, follows a handle or 
     if (await slider.count() > 0) {
         const was = await seen(page);
         await slider.focus();
-        for (let i = 0; i < 12; ++i) await page.keyboard.press("ArrowRight");
-        await page.keyboard.press("ArrowLeft");
+        for (let i = 0; i < 6; ++i) await page.keyboard.press("ArrowRight");
         await settle(page);
         assert.notEqual(await seen(page), was, "a slider changes the picture");
     }

@@ -15,7 +15,7 @@ const scratch = join(tmpdir(), `freiform-studio-${process.pid}`);
 mkdirSync(scratch, { recursive: true });
 
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"] });
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", ...(process.env.CHROMIUM_ARGS ?? "").split(" ").filter(Boolean)] });
 const site = await serve(join(here, "../../dist"));
 const wanted = process.argv.slice(2);
 let failed = 0, passed = 0;

@@ -1,7 +1,7 @@
 // R25 to R27, R29, R30: revolution, Quake patches, trimming, triangles, what the graphics processor draws.
 
 import type { CurveJson, DocumentJson, ObjectJson, SurfaceJson } from "../../kernel/module";
-import { ff } from "../../kernel/module";
+import { ff, file } from "../../kernel/module";
 import { h, shown } from "../../ui/dom";
 import { say, t } from "../../ui/language";
 import type { Space } from "../../views/space";
@@ -73,11 +73,11 @@ const r26: Page = {
         stage.add(text);
         const map = (): string => `{\n"classname" "worldspawn"\n{\npatchDef2\n{\nbase_wall/concrete\n( ${points.length} 3 0 0 0 )\n(\n${points.map((row, i) =>
             `( ${row.map((p, j) => `( ${p.map((x) => Number(x.toPrecision(6))).join(" ")} ${i / 4} ${j / 2} )`).join(" ")} )`).join("\n")}\n)\n}\n}\n}\n`;
-        stage.opens(() => ff().run("convert", map(), { to: "json" }).json as DocumentJson);
+        stage.opens(() => ff().run("convert", file("patch.map", map()), { to: "json" }).json as DocumentJson);
         stage.update(() => {
             space.clear();
             text.textContent = map();
-            const shapes = ff().document(map()).shapes;
+            const shapes = ff().document(file("patch.map", map())).shapes;
             try {
                 shapes.forEach((s) => { surface(space, s, {}, 30); });
                 for (const s of shapes) for (const axis of [0, 1] as const) for (const k of new Set(s.knots[axis])) isoline(space, s, axis, k, { colour: "curve", width: 1.5 });

@@ -1,7 +1,7 @@
 // R11, R12, R14 to R16: splines, weights, de Casteljau, subdivision.
 
 import type { CurveJson, DocumentJson } from "../../kernel/module";
-import { ff } from "../../kernel/module";
+import { construct, ff } from "../../kernel/module";
 import { shown } from "../../ui/dom";
 import { say, t } from "../../ui/language";
 import type { Handle } from "../../views/handles";
@@ -182,14 +182,14 @@ const r15: Page = {
             const json = made();
             if (held !== json.points.length) { held = json.points.length; stage.hold(plane, json.points, b); }
             plane.clear();
-            const q = make(json), scheme = q.construction([u.value]);
+            const q = make(json), scheme = construct(q, [u.value]);
             polygon(plane, json.points);
             curve(plane, q, { colour: "curve", width: 3 });
             labels(plane, json.points, "b");
             construction(plane, scheme);
-            const point = scheme.levels[scheme.levels.length - 1]?.points[0] ?? [];
+            const point = scheme[scheme.length - 1]?.points[0] ?? [];
             plane.label(point, `b₀${superscript(degree.value)}`, "hot");
-            stage.say([["Q(u)", `(${point.map((x) => shown(x, 8)).join(", ")})`], [say(t("Schranke", "bound")), shown(scheme.bound)]]);
+            stage.say([["Q(u)", `(${point.map((x) => shown(x, 8)).join(", ")})`], [say(t("Schranke", "bound")), shown(q.valueErrorBound)]]);
         });
     },
 };

@@ -1,7 +1,7 @@
 // R21 to R24, R28, R31: tensor products and how they join.
 
 import type { DocumentJson, SurfaceJson } from "../../kernel/module";
-import { ff } from "../../kernel/module";
+import { construct, ff } from "../../kernel/module";
 import { h, shown } from "../../ui/dom";
 import { say, t } from "../../ui/language";
 import type { Space } from "../../views/space";
@@ -110,8 +110,8 @@ const r23: Page = {
                 surface(space, make(part), { opacity: 0.8, colour: all.length > 1 ? shade(i) : "surface" }, 24);
                 if (all.length > 1) lattice(space, part.points, { colour: shade(i), width: 1.6 });
             });
-            const s = make({ type: "surface", points }), scheme = s.construction([u.value, v.value]);
-            if (all.length === 1) scheme.levels.forEach(({ level, extent, points: at }) => {
+            const s = make({ type: "surface", points }), scheme = construct(s, [u.value, v.value]);
+            if (all.length === 1) scheme.forEach(({ level, extent, points: at }) => {
                 if (level[0] !== level[1]) return;
                 const [rows = 1, columns = 1] = extent, r = level[0] ?? 0;
                 if (rows > 1) lattice(space, Array.from({ length: rows }, (_, i) => at.slice(i * columns, (i + 1) * columns)), { colour: shade(r + 1), width: 1.8 });
@@ -131,7 +131,7 @@ const r24: Page = {
         const space = stage.space(t("Fläche", "surface"));
         space.fit(points.flat());
         holdNet(stage, space, points, "Q");
-        const ends = stage.choice(t("Art", "Way"), { "catmull-rom": t("C¹, lokal", "C¹, local"), natural: t("C², natürlich", "C², natural"), akima: t("Akima", "Akima") }, "catmull-rom");
+        const ends = stage.choice(t("Art", "Way"), { "catmull-rom": t("C¹, lokal", "C¹, local"), natural: t("C², natürlich", "C², natural"), "not-a-knot": t("C² not-a-knot", "C² not-a-knot") }, "catmull-rom");
         const look = stage.choice(t("Ansicht", "Look"), { shaded: t("Schattiert", "Shaded"), zebra: t("Zebra", "Zebra") }, "shaded");
         const made = (): DocumentJson => ff().run("interpolate", JSON.stringify(points) + "\n", { ends: ends.value }).json as DocumentJson;
         stage.opens(made);
