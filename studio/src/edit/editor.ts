@@ -301,7 +301,7 @@ export class Editor implements Shown {
                         lattice(view, Array.from({ length: shape.size[0] ?? 0 }, (_, k) => points.slice(k * columns, (k + 1) * columns)), { colour: lit ? "hot" : "control", width: 1 });
                     } else if (view instanceof Space && shape.type !== "volume") {
                         const mesh = shape.mesh({ tolerance: 0.003 * size(this.document) });
-                        view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices }, { colour: lit ? "gold" : "surface" }).position.fromArray(mesh.origin);
+                        view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "gold" : "surface" });
                     }
                 });
             });

@@ -56,8 +56,8 @@ function item(t: Tokens): string {
         if (large) return `<mo data-large>${large}</mo>`;
         if (word === "sqrt") return `<msqrt>${group(t)}</msqrt>`;
         if (word === "bar") return `<mover>${group(t)}<mo>‾</mo></mover>`;
-        const parts = group(t) + group(t);
-        return word === "frac" ? `<mfrac>${parts}</mfrac>` : `<mrow><mo>(</mo><mfrac linethickness="0">${parts}</mfrac><mo>)</mo></mrow>`;
+        const parts = [group(t), group(t)];
+        return word === "frac" ? `<mfrac>${parts.join("")}</mfrac>` : table(parts.map((x) => [x]));
     }
     const number = /^\d+(\.\d+)?/.exec(rest)?.[0];
     if (number) { t.at += number.length; return `<mn>${number}</mn>`; }
@@ -69,6 +69,11 @@ function matrix(t: Tokens): string {
     const end = t.text.indexOf("]", t.at);
     const rows = t.text.slice(t.at + 1, end).split(";").map((line) => line.trim().split(/\s+/));
     t.at = end + 1;
-    const cells = rows.map((line) => `<mtr>${line.map((x) => `<mtd>${row({ text: x, at: 0 }, "")}</mtd>`).join("")}</mtr>`);
-    return `<mrow><mo>(</mo><mtable>${cells.join("")}</mtable><mo>)</mo></mrow>`;
+    return table(rows.map((line) => line.map((x) => row({ text: x, at: 0 }, ""))));
+}
+
+/** In brackets that style.css draws: signs that stretch need a font for formulas, which not every machine has. */
+function table(rows: readonly (readonly string[])[]): string {
+    const cells = rows.map((line) => `<mtr>${line.map((x) => `<mtd>${x}</mtd>`).join("")}</mtr>`);
+    return `<mtable class="matrix">${cells.join("")}</mtable>`;
 }

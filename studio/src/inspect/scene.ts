@@ -119,11 +119,8 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
         const split = colouring === "deviation" ? apart(mesh) : mesh;
         const colours = list && scale ? painted(colouring === "deviation" ? list.flatMap((x) => [x, x, x]) : list, scale)
             : colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
-        const object = space.surface({ points: split.positions, normals: split.normals, indices: split.indices, colours }, { look: showing.look, edges: showing.edges });
-        object.position.fromArray(mesh.origin);
-        return object;
+        return space.surface({ points: split.positions, normals: split.normals, indices: split.indices, colours, origin: mesh.origin }, { look: showing.look, edges: showing.edges });
     });
-    for (const child of space.scene.children) child.updateMatrixWorld();
     for (const shape of model.shapes) lines(space, shape, showing);
     if (showing.plane) section(space, model.document, showing.plane);
     return { objects, scale };

@@ -18,6 +18,8 @@ export interface Triangles {
     readonly indices: Uint32Array;
     /** Red, green, blue of each point, 0 to 1. */
     readonly colours?: Float32Array | undefined;
+    /** What all points are relative to. */
+    readonly origin?: readonly [number, number, number] | undefined;
 }
 
 export type Look = "shaded" | "zebra" | "isophotes" | "normals" | "flat";
@@ -170,12 +172,15 @@ export class Space implements View {
         else geometry.computeVertexNormals();
         if (triangles.colours) geometry.setAttribute("color", new THREE.BufferAttribute(triangles.colours, 3));
         const mesh = new THREE.Mesh(geometry, material(style, triangles.colours !== undefined));
+        mesh.position.set(...(triangles.origin ?? [0, 0, 0]));
         this.add(mesh);
         if (style.edges) {
             const wire = new THREE.LineSegments(new THREE.WireframeGeometry(geometry),
                 new THREE.LineBasicMaterial({ color: paint("ink"), transparent: true, opacity: 0.35 }));
+            wire.position.copy(mesh.position);
             this.add(wire);
         }
+        mesh.updateMatrixWorld();
         return mesh;
     }
 
@@ -260,7 +265,7 @@ export class Space implements View {
         const narrow = Math.min(1, this.element.clientWidth / Math.max(1, this.element.clientHeight));
         const distance = radius / Math.sin((this.eye.fov * Math.PI) / 360) / narrow;
         this.controls.target.copy(centre);
-        this.camera.position.copy(centre).addScaledVector(away.normalize(), distance * 1.02);
+        this.camera.position.copy(centre).addScaledVector(away.normalize(), distance * 0.9);
         this.eye.near = distance / 200;
         this.eye.far = distance * 20;
         this.eye.updateProjectionMatrix();

@@ -44,6 +44,7 @@ test("formulas are MathML with every bracket closed", () => {
         expect(made).not.toMatch(/[{}]/);
     }
     expect(formula("a < b")).toContain("&lt;");
+    expect(formula("binom{n}{i}").match(/<mtr>/g)).toHaveLength(2);
 });
 
 test("keys mean what other programs taught", () => {

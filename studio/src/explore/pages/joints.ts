@@ -165,7 +165,7 @@ const r13: Page = {
     build(stage) {
         const points = [[0, 0], [0.5, 2.4], [2.4, 3], [4, 0.2], [5.8, 0], [6.6, 2.4]], knots = [[1, 0], [2, 0]];
         const plane = stage.plane({ label: "A-frames" });
-        const strip = stage.plane({ label: "knots", graph: true, movable: false, height: 74 });
+        const strip = stage.plane({ label: "knots", graph: true, movable: false, grid: false, height: 74 });
         plane.fit(points);
         strip.fit([[0, 0], [3, 0.01]]);
         stage.hold(plane, points, (i) => `d${i}`);

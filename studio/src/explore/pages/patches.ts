@@ -14,9 +14,7 @@ const document = (...objects: ObjectJson[]): DocumentJson => ({ freiform: 1, obj
 
 /** A mesh of the module in a space view. */
 export function triangles(space: Space, mesh: Mesh, style: Parameters<Space["surface"]>[1] = {}): void {
-    const [x, y, z] = mesh.origin;
-    const object = space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices }, style);
-    object.position.set(x, y, z);
+    space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, style);
 }
 
 const r25: Page = {
@@ -133,7 +131,8 @@ const r27: Page = {
             plane.line(run([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]), { colour: "axis", width: 1 });
             const at = probe[0] ?? [0, 0], ray: CurveJson = { type: "curve", points: [at, [1.2, at[1] ?? 0]] };
             plane.line(run(ray.points), { colour: "aux", width: 1.6, dashed: true });
-            const meets = (ff().run("intersect", [ray, { freiform: 1, objects: loops().flat().map((c) => ({ type: "curve", ...c })) }]).json as { points: { point: number[]; kind: string }[] }).points;
+            const meets = (ff().run("intersect", [ray, { freiform: 1, objects: loops().flat().map((c) => ({ type: "curve", ...c })) }]).json as { points: { point: number[]; kind: string }[] }).points
+                .filter((m, i, all) => all.findIndex((o) => Math.hypot(...o.point.map((x, k) => x - (m.point[k] ?? 0))) < 1e-9) === i);
             dots(plane, meets.map((m) => m.point), "hot", 10);
             const trimmed = made();
             const place = (ff().run("inside", trimmed, { points: `${at.join(",")}\n` }).json as { results: { place: string; winding: number }[] }).results[0];
