@@ -48,7 +48,7 @@ export class Editor implements Shown {
         this.history = this.fresh(kFirst);
         this.view = this.viewFor(!flat(this.document));
         this.panel = new Panel(this);
-        this.stage.append(this.bar(), this.view.element, this.status);
+        this.stage.append(h("h1", { class: "unseen" }, say(t("Bearbeiten", "Edit"))), this.bar(), this.view.element, this.status);
         this.element = h("div", { style: "display:contents" }, this.stage, this.panel.element);
         droppable(this.stage, (opened) => { this.open(file(opened.name, opened.source)); });
         document.addEventListener("keydown", this.onKey);

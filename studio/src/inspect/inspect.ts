@@ -70,7 +70,7 @@ class Inspector implements Shown {
 
     constructor(private readonly toEdit: (text: string) => void) {
         this.space.onColours = () => { this.draw(); };
-        const stage = h("div", { class: "stage" }, this.bar(), this.space.element, this.status);
+        const stage = h("div", { class: "stage" }, h("h1", { class: "unseen" }, say(t("Untersuchen", "Inspect"))), this.bar(), this.space.element, this.status);
         this.element = h("div", { style: "display:contents" }, stage, this.tools());
         droppable(stage, (opened) => { this.open(opened); });
         this.space.canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) this.point(event.offsetX, event.offsetY); });

@@ -39,7 +39,7 @@ export function arena<T>(f: (make: Make, keep: (shape: Shape) => Shape) => T): T
 }
 
 /** A source whose name says what it is. */
-export const file = (name: string, content: string | Uint8Array): Source => ({ file: name, content }) as unknown as Source;
+export const file = (name: string, content: string | Uint8Array): Source => ({ file: name, content });
 
 /** The levels of de Casteljau or de Boor at a parameter. */
 export function construct(shape: Shape, at: readonly number[]): Construction["levels"] {
