@@ -297,11 +297,11 @@ export class Editor implements Shown {
                         curve(view, shape, { colour: "curve", width: lit ? 4 : 2.8 });
                     } else if (view instanceof Space && shape.type === "surface") {
                         const points = net(shape), columns = shape.size[1] ?? 1;
-                        surface(view, shape, { colour: lit ? "gold" : "surface" }, 36);
+                        surface(view, shape, { colour: lit ? "lit" : "surface" }, 36);
                         lattice(view, Array.from({ length: shape.size[0] ?? 0 }, (_, k) => points.slice(k * columns, (k + 1) * columns)), { colour: lit ? "hot" : "control", width: 1 });
                     } else if (view instanceof Space && shape.type !== "volume") {
                         const mesh = shape.mesh({ tolerance: 0.003 * size(this.document) });
-                        view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "gold" : "surface" });
+                        view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "lit" : "surface" });
                     }
                 });
             });

@@ -23,7 +23,7 @@ export function tint(x: number, scale: Scale): Rgb {
 export function range(values: readonly number[], both: boolean): Scale {
     const sorted = values.filter(Number.isFinite).sort((a, b) => a - b);
     const at = (share: number): number => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? 0;
-    if (!both) return { low: 0, high: sorted[sorted.length - 1] ?? 1, both };
+    if (!both) return { low: sorted[0] ?? 0, high: sorted[sorted.length - 1] ?? 1, both };
     const most = Math.max(Math.abs(at(0.05)), Math.abs(at(0.95))) || 1;
     return { low: -most, high: most, both };
 }

@@ -99,7 +99,7 @@ class Inspector implements Shown {
         last = { name, source, refused };
         this.source = source;
         this.refused = [...refused, ...leftOut.map((x) => ({ kind: "left out", ...x }))];
-        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [] };
+        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], deviations: undefined };
         this.name.textContent = name;
         const bounds = ff().run("bounds", source, { }).json as { box?: { min: number[]; max: number[] } | null };
         this.box = { lower: [...(bounds.box?.min ?? [-1, -1, -1]), 0].slice(0, 3), upper: [...(bounds.box?.max ?? [1, 1, 1]), 0].slice(0, 3) };
@@ -119,12 +119,13 @@ class Inspector implements Shown {
         if (model.solid.length === 0) { this.draw(); this.tell(0); return; }
         const options: MeshOptions = { tolerance: this.accuracy(), maxTriangles: 4_000_000 };
         const began = performance.now();
-        const meshing = mesh(this.source, options, (part) => { this.progress.value = part; });
+        const meshing = mesh(this.source, options, this.showing.colouring === "deviation", (part) => { this.progress.value = part; });
         this.meshing = meshing;
         this.progress.hidden = this.stop.hidden = false;
-        meshing.done.then(({ meshes }) => {
+        meshing.done.then(({ meshes, deviations }) => {
             if (this.gone || this.model !== model) return;
             model.meshes = meshes;
+            model.deviations = deviations;
             this.draw();
             this.tell(performance.now() - began);
         }).catch((error: unknown) => { if (!(error instanceof DOMException)) refuse(error); }).finally(() => {
@@ -158,7 +159,7 @@ class Inspector implements Shown {
         const rows: [string, string][] = [
             [say(t("Dreiecke", "triangles")), String(sum((m) => m.indices.length / 3))], [say(t("Flächen", "faces")), String(sum((m) => m.parts.length))],
             [say(t("Schranke", "error bound")), shown(meshes.reduce((x, m) => Math.max(x, m.errorBound), 0), 4)], [say(t("Lücke am Rand", "boundary gap")), shown(meshes.reduce((x, m) => Math.max(x, m.boundaryGap), 0), 4)],
-            [say(t("offene Kanten", "open edges")), String(sum((m) => m.openEdges))], [say(t("Zeit", "time")), `${shown(time, 3)} ms`]];
+            ...(this.model?.solid.some((s) => s.type === "model") ? [[say(t("offene Kanten", "open edges")), String(sum((m) => m.openEdges))] as [string, string]] : []), [say(t("Zeit", "time")), `${shown(time, 3)} ms`]];
         this.facts.replaceChildren(h("table", {}, ...rows.map(([a, b]) => h("tr", {}, h("th", { scope: "row" }, a), h("td", {}, b)))));
         const entries = meshes.flatMap((m, shape) => m.parts.map((part) => {
             const name = part.name || this.model?.solid[shape]?.name || `${say(t("Fläche", "face"))} ${shape}.${part.face}`;
@@ -223,7 +224,7 @@ class Inspector implements Shown {
         const s = this.showing;
         return h("div", { class: "tools" },
             h("section", {}, h("h2", {}, say(t("Netz", "Mesh"))), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.progress, this.stop, this.facts),
-            h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), pick(t("Farben", "Colours"), kColourings, (key) => { s.colouring = key; }),
+            h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), pick(t("Farben", "Colours"), kColourings, (key) => { s.colouring = key; if (key === "deviation" && !this.model?.deviations) this.tessellate(); }),
                 check(t("Dreiecke", "Triangles"), (on) => { s.edges = on; }), check(t("Kontrollnetz", "Control net"), (on) => { s.net = on; }), check(t("Knotenlinien", "Knots"), (on) => { s.knots = on; }),
                 check(t("Krümmungskamm (Kurven)", "Curvature comb (curves)"), (on) => { s.comb = on; }), check(t("Normalen", "Normals"), (on) => { s.normals = on; }),
                 h("label", { class: "knob" }, h("span", {}, say(t("Isolinien", "Iso-curves"))), isolines)),

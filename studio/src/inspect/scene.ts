@@ -24,11 +24,9 @@ export interface Showing {
     chosen: { shape: number; face: number } | undefined;
 }
 
-export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[] }
+export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; deviations: readonly Float64Array[] | undefined }
 
 export interface Drawn { readonly objects: readonly Object3[]; readonly scale: Scale | undefined }
-
-const kMostAsked = 20_000;
 
 /** Gauss or mean curvature at every vertex, where the surface of the face is a spline. */
 function curvatures(model: Model, which: "gauss" | "mean"): number[][] {
@@ -70,21 +68,6 @@ function bounds(model: Model): number[][] {
     });
 }
 
-/** The distance from the middle of each triangle to the shape, as the module finds the nearest point: one number a triangle. */
-function deviations(model: Model): number[][] {
-    return model.meshes.map((mesh, i) => {
-        const n = mesh.indices.length / 3, [x, y, z] = mesh.origin;
-        if (n > kMostAsked) throw Object.assign(new Error(`${n} triangles; nearest points are asked for at most ${kMostAsked}`), { kind: "limit", where: `mesh ${i}` });
-        const middles = new Float64Array(3 * n);
-        for (let k = 0; k < n; ++k)
-            for (let c = 0; c < 3; ++c) {
-                const corner = (m: number): number => mesh.positions[3 * (mesh.indices[3 * k + m] ?? 0) + c] ?? 0;
-                middles[3 * k + c] = (corner(0) + corner(1) + corner(2)) / 3 + ([x, y, z][c] ?? 0);
-            }
-        return Array.from(model.solid[i]?.nearest(middles).distances ?? []);
-    });
-}
-
 /** The same mesh with three vertices of its own for each triangle. */
 function apart(mesh: Mesh): { positions: Float32Array; normals: Float32Array; indices: Uint32Array } {
     const n = mesh.indices.length, positions = new Float32Array(3 * n), normals = new Float32Array(3 * n);
@@ -112,12 +95,13 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
     space.clear();
     const { colouring } = showing;
     const values = colouring === "gauss" || colouring === "mean" ? curvatures(model, colouring) : colouring === "bound" ? bounds(model)
-        : colouring === "deviation" ? deviations(model) : undefined;
+        : colouring === "deviation" ? model.deviations?.map((d) => Array.from(d)) : undefined;
     const scale = values ? range(values.flat(), colouring === "gauss" || colouring === "mean") : undefined;
     const objects = model.meshes.map((mesh, i) => {
         const list = values?.[i];
-        const split = colouring === "deviation" ? apart(mesh) : mesh;
-        const colours = list && scale ? painted(colouring === "deviation" ? list.flatMap((x) => [x, x, x]) : list, scale)
+        const single = list !== undefined && colouring === "deviation";
+        const split = single ? apart(mesh) : mesh;
+        const colours = list && scale ? painted(single ? list.flatMap((x) => [x, x, x]) : list, scale)
             : colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
         return space.surface({ points: split.positions, normals: split.normals, indices: split.indices, colours, origin: mesh.origin }, { look: showing.look, edges: showing.edges });
     });

@@ -48,27 +48,32 @@ export function construct(shape: Shape, at: readonly number[]): Construction["le
 }
 
 /** What a worker is asked, and what it says. */
-export interface Order { readonly module: WebAssembly.Module; readonly source: Source; readonly options: Omit<MeshOptions, "progress"> }
+export interface Order { readonly module: WebAssembly.Module; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly deviations: boolean }
+export interface Meshed {
+    readonly meshes: readonly Mesh[];
+    /** If asked for: the distance from the middle of each triangle to its shape, as the nearest point there was found. */
+    readonly deviations: readonly Float64Array[] | undefined;
+}
 export type News =
     | { readonly kind: "progress"; readonly part: number }
-    | { readonly kind: "meshes"; readonly meshes: readonly Mesh[]; readonly names: readonly string[] }
+    | { readonly kind: "meshes"; readonly meshed: Meshed }
     | { readonly kind: "refused"; readonly refusal: { readonly kind: string; readonly where: string; readonly message: string } };
 
-export interface Meshing { readonly done: Promise<{ meshes: readonly Mesh[]; names: readonly string[] }>; cancel(): void }
+export interface Meshing { readonly done: Promise<Meshed>; cancel(): void }
 
 /** Triangles of everything in a document that has a surface, computed beside the page. */
-export function mesh(source: Source, options: Omit<MeshOptions, "progress">, progress: (part: number) => void): Meshing {
+export function mesh(source: Source, options: Omit<MeshOptions, "progress">, deviations: boolean, progress: (part: number) => void): Meshing {
     if (!module) throw new Error("the module is not loaded");
     const worker = new Worker();
-    const order: Order = { module: module.module, source, options };
+    const order: Order = { module: module.module, source, options, deviations };
     let stop: (reason: Error) => void = () => undefined;
-    const done = new Promise<{ meshes: readonly Mesh[]; names: readonly string[] }>((resolve, reject) => {
+    const done = new Promise<Meshed>((resolve, reject) => {
         stop = reject;
         worker.onmessage = (event: MessageEvent<News>) => {
             const news = event.data;
             if (news.kind === "progress") { progress(news.part); return; }
             worker.terminate();
-            if (news.kind === "meshes") resolve(news);
+            if (news.kind === "meshes") resolve(news.meshed);
             else reject(Object.assign(new Error(news.refusal.message), news.refusal));
         };
         worker.onerror = (event) => {

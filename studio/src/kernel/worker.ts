@@ -1,23 +1,43 @@
 // Tessellation beside the page: large models leave it fluid, and cancelling is the end of the worker.
 
-import { load, type Mesh } from "freiform";
+import { load, type Mesh, type Shape } from "freiform";
 import type { News, Order } from "./module";
 
 const tell = (news: News, transfer: Transferable[] = []): void => { postMessage(news, { transfer }); };
 
 const kMeshed = new Set(["surface", "triangle", "trimmed", "model"]);
 
-async function work({ module, source, options }: Order): Promise<void> {
+const kBatch = 2000;
+
+/** Distances from the middles of all triangles to the shape. */
+function asked(shape: Shape, mesh: Mesh, progress: (part: number) => void): Float64Array {
+    const n = mesh.indices.length / 3, middles = new Float64Array(3 * n), out = new Float64Array(n);
+    for (let k = 0; k < n; ++k)
+        for (let c = 0; c < 3; ++c) {
+            const corner = (m: number): number => mesh.positions[3 * (mesh.indices[3 * k + m] ?? 0) + c] ?? 0;
+            middles[3 * k + c] = (corner(0) + corner(1) + corner(2)) / 3 + (mesh.origin[c] ?? 0);
+        }
+    for (let k = 0; k < n; k += kBatch) {
+        out.set(shape.nearest(middles.subarray(3 * k, 3 * Math.min(n, k + kBatch))).distances, k);
+        progress(Math.min(1, (k + kBatch) / n));
+    }
+    return out;
+}
+
+async function work({ module, source, options, deviations }: Order): Promise<void> {
     const ff = await load(module);
     const shapes = ff.document(source).shapes.filter((shape) => kMeshed.has(shape.type));
-    const meshes: Mesh[] = [];
+    const meshes: Mesh[] = [], distances: Float64Array[] = [];
+    const share = deviations ? 0.3 : 1;
     for (const [i, shape] of shapes.entries()) {
-        meshes.push(shape.mesh({ ...options, progress: (part) => { tell({ kind: "progress", part: (i + part) / shapes.length }); } }));
-        tell({ kind: "progress", part: (i + 1) / shapes.length });
+        const at = (part: number): void => { tell({ kind: "progress", part: (i + part) / shapes.length }); };
+        const mesh = shape.mesh({ ...options, progress: (part) => { at(share * part); } });
+        meshes.push(mesh);
+        if (deviations) distances.push(asked(shape, mesh, (part) => { at(share + (1 - share) * part); }));
     }
     const buffers = new Set<ArrayBufferLike>();
     for (const m of meshes) for (const a of [m.positions, m.normals, m.uvs, m.indices]) buffers.add(a.buffer);
-    tell({ kind: "meshes", meshes, names: shapes.map((shape) => shape.name) }, [...buffers] as ArrayBuffer[]);
+    tell({ kind: "meshes", meshed: { meshes, deviations: deviations ? distances : undefined } }, [...buffers] as ArrayBuffer[]);
 }
 
 onmessage = (event: MessageEvent<Order>) => {

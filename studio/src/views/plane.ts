@@ -47,7 +47,7 @@ export class Plane implements View {
         this.handles = new Handles(this, this.svg);
         this.svg.append(this.ground, this.picture, this.handles.layer);
         this.element = h("div", { class: `view${options.graph ? " graph" : ""}`,
-            style: options.height ? `height:${options.height}px;flex:none` : null }, this.svg);
+            style: options.height ? `height:${options.height}px;min-height:0;flex:none` : null }, this.svg);
         this.watcher = new ResizeObserver(() => { this.measure(); });
         this.watcher.observe(this.element);
         if (options.movable !== false) this.listen();

@@ -62,5 +62,5 @@ test("colours: ends, middle, and grey where there is no number", () => {
     expect(scale.low).toBe(-scale.high);
     expect(tint(NaN, scale)).toEqual([0.55, 0.55, 0.55]);
     expect(tint(0, scale)).toEqual([0.96, 0.96, 0.94]);
-    expect(range([1, NaN, 3], false)).toEqual({ low: 0, high: 3, both: false });
+    expect(range([1, NaN, 3], false)).toEqual({ low: 1, high: 3, both: false });
 });

@@ -84,7 +84,8 @@ const r23: Page = {
     row: "R23", title: t("De Casteljau auf Flächen", "De Casteljau on surfaces"), gist: t("bilineare Interpolation, immer wieder", "bilinear interpolation, again and again"),
     text: t("In jeder Masche des Netzes wird bilinear interpoliert; das Netz schrumpft um eine Reihe in jeder Richtung, bis ein Punkt bleibt: S(u, v). Schneiden lässt sich die Fläche in u, in v oder in beiden.",
         "Each cell of the net is interpolated bilinearly; the net shrinks by a row in each direction until one point is left: S(u, v). The surface can be cut in u, in v or in both."),
-    formula: `b_{ij}^r = (1-u)(1-v) b_{ij}^{r-1} + u(1-v) b_{i+1,j}^{r-1} + (1-u)v b_{i,j+1}^{r-1} + u v b_{i+1,j+1}^{r-1}`,
+    formula: `b_{ij}^r = (1-u)(1-v) b_{ij}^{r-1} + u(1-v) b_{i+1,j}^{r-1}
+              + (1-u)v b_{i,j+1}^{r-1} + u v b_{i+1,j+1}^{r-1}`,
     build(stage) {
         const points = hills(kSixteen);
         const space = stage.space(t("Fläche", "surface"));
