@@ -73,8 +73,10 @@ void SurfaceMeetings::add_branch(const SurfaceBranch& b, int before,
 }
 
 void SurfaceMeetings::add_node(const SurfaceNode& n, const std::array<std::size_t, 2>& objects,
-                               const std::string& where, const std::array<int, 2>* faces) {
-    const std::optional<std::array<int, 2>> own = faces ? std::optional(*faces) : std::nullopt;
+                               const std::string& where, const FaceNode* of_faces) {
+    std::optional<std::array<int, 2>> own;
+    std::vector<FaceOverlap> regions;
+    if (of_faces) own = of_faces->faces, regions = of_faces->regions;
     nodes_.push_back([=](json::Writer& w) {
         w.new_line(1).begin_object().key("objects").array(objects);
         if (own) w.key("faces").array(*own);
@@ -90,7 +92,19 @@ void SurfaceMeetings::add_node(const SurfaceNode& n, const std::array<std::size_
             write_corners(w, "b", o.loop_b);
             w.end_object();
         }
-        w.end_array().end_object();
+        w.end_array();
+        if (own) {
+            w.key("regions").begin_array();
+            for (const FaceOverlap& o : regions)
+                w.begin_object()
+                    .field("gap", o.gap)
+                    .field("bound", o.bound)
+                    .field("a", path_data(o.at_a))
+                    .field("b", path_data(o.at_b))
+                    .end_object();
+            w.end_array();
+        }
+        w.end_object();
     });
     plain_ += text(where, own ? text(", faces ", (*own)[0], " and ", (*own)[1]) : "", ": ", name_of(n.kind),
                    " at ", n.point[0], ", ", n.point[1], ", ", n.point[2], ", ", n.arms,
@@ -106,13 +120,28 @@ void SurfaceMeetings::add(const SurfaceIntersection& found, const std::array<std
 
 void SurfaceMeetings::add(const ModelIntersection& found, const std::array<std::size_t, 2>& objects,
                           const std::string& where) {
-    const int before = int(nodes_.size());
+    const int before = int(nodes_.size()), first = int(branches_.size());
     for (const FaceBranch& b : found.branches) add_branch(b, before, objects, where, &b);
-    for (const FaceNode& n : found.nodes) add_node(n, objects, where, &n.faces);
+    for (const FaceNode& n : found.nodes) add_node(n, objects, where, &n);
+    for (const BranchChain& c : found.chains) {
+        chains_.push_back([=](json::Writer& w) {
+            std::vector<int> curves, reversed;
+            for (const BranchChain::Link& l : c.links) {
+                curves.push_back(first + l.branch);
+                if (l.reversed) reversed.push_back(first + l.branch);
+            }
+            w.new_line(1).begin_object().key("objects").array(objects).key("curves").array(curves);
+            w.key("reversed").array(reversed).field("closed", c.closed).field("gap", c.gap).end_object();
+        });
+        if (c.links.size() > 1)
+            plain_ += text(where, ": ", c.links.size(), " branches are one ", c.closed ? "closed" : "open",
+                           " curve over edges, with gaps of at most ", c.gap, "\n");
+    }
 }
 
 void SurfaceMeetings::write(json::Writer& w) const {
-    for (const auto& [key, rows] : {std::pair("curves", &branches_), {"nodes", &nodes_}}) {
+    for (const auto& [key, rows] :
+         {std::pair("curves", &branches_), {"nodes", &nodes_}, {"chains", &chains_}}) {
         w.key(key).begin_array();
         for (const Row& row : *rows) row(w);
         w.end_array();

@@ -22,8 +22,8 @@ private:
     void add_branch(const SurfaceBranch& b, int before, const std::array<std::size_t, 2>& objects,
                     const std::string& where, const FaceBranch* of_faces);
     void add_node(const SurfaceNode& n, const std::array<std::size_t, 2>& objects, const std::string& where,
-                  const std::array<int, 2>* faces);
-    std::vector<Row> branches_, nodes_;
+                  const FaceNode* of_faces);
+    std::vector<Row> branches_, nodes_, chains_;
     Document curves_;
     std::string plain_;
 };

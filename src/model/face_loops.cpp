@@ -1,10 +1,11 @@
 // Clipping by the loops of a face.
 //
-// Method. The curve is cut where it meets the curves of the loops (curve_curve.hpp: proven roots, overlaps
-// within the tolerance). Between two cuts it meets no loop, so that its middle decides, exactly. Cuts that
-// are nearer to each other than rounding moves them are one: where a curve leaves through a corner, two
-// curves of the loop have it. u and v are multiplied by powers of two, so that lengths in the plane are about
-// those in space, and the tolerance means something.
+// Method. Parts of the curve that run along a loop are set aside (loop_runs.cpp); the rest is cut where it
+// meets the curves of the loops (curve_curve.hpp: proven roots, overlaps within the tolerance). Between two
+// cuts it meets no loop, so that its middle decides, exactly. Cuts that are nearer to each other than
+// rounding moves them are one: where a curve leaves through a corner, two curves of the loop have it. u and v
+// are multiplied by powers of two, so that lengths in the plane are about those in space, and the tolerance
+// means something.
 //
 // Accuracy. That a middle is in or out is exact for the curve's value there as it is computed.
 #include "face_loops_detail.hpp"
@@ -22,6 +23,9 @@ namespace freiform {
 namespace {
 
 constexpr double kOneCut = 0x1p-36;  // of the domain of the curve
+// Of the tolerance, that a branch may be from a loop that it runs along: it and its parameters are that far
+// from both surfaces each, and a length in the plane is up to twice as long in space.
+constexpr double kAlong = 4;
 
 // The part of a coedge's curve as a spline, in the direction of the loop.
 Result<CurveGeometry<2>> loop_spline(const Coedge& coedge, Interval on) {
@@ -114,7 +118,7 @@ bool are_boxes_apart(const Box<2>& a, const Box<2>& b, double by) {
 
 Result<void> FaceLoops::add(const CurveGeometry<2>& curve, ClippedPart::End place) {
     const Curve<Hom<2>> own = in_units(weighted_curve(curve), unit_);
-    trims_.push_back({own, box_of_net(own), place});
+    trims_.push_back({LoopRail(own), box_of_net(own), place});
     return {};
 }
 
@@ -140,12 +144,12 @@ Result<FaceLoops> FaceLoops::make(const Face& face, const std::vector<Edge>& edg
             if (from == to) continue;
             gap = std::max(gap, norm(to - from));
             out.trims_.push_back(
-                {in_units(to_rational(Curve<Vec<2>>::trusted({*BSplineBasis::bezier(1, {0, 1})},
-                                                             Net<1, Vec<2>>({2}, {from, to}))),
-                          out.unit_),
+                {LoopRail(in_units(to_rational(Curve<Vec<2>>::trusted({*BSplineBasis::bezier(1, {0, 1})},
+                                                                      Net<1, Vec<2>>({2}, {from, to}))),
+                                   out.unit_)),
                  {},
                  {int(l), -1}});
-            out.trims_.back().box = box_of_net(out.trims_.back().curve);
+            out.trims_.back().box = box_of_net(out.trims_.back().curve());
         }
         loops.push_back(std::move(loop));
     }
@@ -187,7 +191,7 @@ FaceLoops::Where FaceLoops::place(const Box<2>& box) const {
     const Vec<2> lo{{box.lo[0] * unit_[0], box.lo[1] * unit_[1]}},
         hi{{box.hi[0] * unit_[0], box.hi[1] * unit_[1]}};
     for (const Trim& trim : trims_)
-        if (may_pass(trim.curve, trim.box, {lo, hi})) return {Place::boundary, trim.place};
+        if (may_pass(trim.curve(), trim.box, {lo, hi})) return {Place::boundary, trim.place};
     return {is_inside(0.5 * (box.lo + box.hi)) ? Place::inside : Place::outside, {}};
 }
 
@@ -202,16 +206,35 @@ Result<std::vector<ClippedPart>> FaceLoops::clip(const Curve<Vec<2>>& curve, dou
     std::vector<Interval> along;
     const Curve<Hom<2>> own = in_units(to_rational(curve), unit_);
     const Box<2> box = box_of_net(own);
-    for (const Trim& trim : trims_) {
-        if (are_boxes_apart(box, trim.box, 4 * tolerance)) continue;
-        const auto found = intersect(own, trim.curve, IntersectOptions{.accuracy = tolerance});
-        if (!found) return std::unexpected(found.error());
-        if (!found->undecided.empty())
-            return refuse(RefusalKind::limit, "loops", "are crossed in more places than work is allowed for");
-        for (const auto& c : found->contacts) cuts.push_back({c.at[0], trim.place});
-        for (const Overlap& o : found->overlaps) {
-            along.push_back(o.a);
-            cuts.push_back({o.a.lo, trim.place}), cuts.push_back({o.a.hi, trim.place});
+    std::vector<const Trim*> near;
+    std::vector<const LoopRail*> rails;
+    for (const Trim& trim : trims_)
+        if (!are_boxes_apart(box, trim.box, kAlong * tolerance))
+            near.push_back(&trim), rails.push_back(&trim.rail);
+    std::vector<Vec<2>> net = points(own);
+    const int n = int(net.size());
+    const auto plain = Curve<Vec<2>>::trusted(own.bases(), Net<1, Vec<2>>({n}, std::move(net)));
+    for (const RailRun& run : rail_runs(plain, rails, kAlong * tolerance)) {
+        if (run.rail >= 0) {
+            along.push_back(run.on);
+            const auto place = near[std::size_t(run.rail)]->place;
+            cuts.push_back({run.on.lo, place}), cuts.push_back({run.on.hi, place});
+            continue;
+        }
+        const auto part = run.on == on ? Result<Curve<Hom<2>>>(own) : restrict_to(own, 0, run.on);
+        if (!part) return std::unexpected(part.error());
+        for (const Trim* trim : near) {
+            if (are_boxes_apart(box_of_net(*part), trim->box, kAlong * tolerance)) continue;
+            const auto found = intersect(*part, trim->curve(), IntersectOptions{.accuracy = tolerance});
+            if (!found) return std::unexpected(found.error());
+            if (!found->undecided.empty())
+                return refuse(RefusalKind::limit, "loops",
+                              "are crossed in more places than work is allowed for");
+            for (const auto& c : found->contacts) cuts.push_back({c.at[0], trim->place});
+            for (const Overlap& o : found->overlaps) {
+                along.push_back(o.a);
+                cuts.push_back({o.a.lo, trim->place}), cuts.push_back({o.a.hi, trim->place});
+            }
         }
     }
     std::ranges::sort(cuts, {}, &Cut::t);

@@ -1,5 +1,7 @@
 // The loops of a face as splines in its parameter plane, to clip curves of the plane by.
 #pragma once
+#include "loop_runs_detail.hpp"
+
 #include <freiform/model/model.hpp>
 #include <freiform/path/path.hpp>
 #include <freiform/trim/inside.hpp>
@@ -50,7 +52,8 @@ public:
 
 private:
     struct Trim {
-        Curve<Hom<2>> curve;  // in lengths in space, roughly
+        LoopRail rail;  // in lengths in space, roughly
+        const Curve<Hom<2>>& curve() const { return rail.curve(); }
         Box<2> box;
         ClippedPart::End place;
     };

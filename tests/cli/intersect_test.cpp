@@ -103,6 +103,9 @@ TEST_F(IntersectCommand, trimmed_faces_are_cut_off_at_their_loops) {
         ASSERT_EQ(all["curves"].size(), 1u) << r.out;
         const auto& c = all["curves"][0];
         EXPECT_EQ(c["kind"], "crossing");
+        ASSERT_EQ(all["chains"].size(), 1u);
+        EXPECT_EQ(all["chains"][0]["curves"], (std::vector<int>{0}));
+        EXPECT_EQ(all["chains"][0]["closed"], false);
         EXPECT_EQ(c["faces"], (std::vector<int>{0, 0}));
         EXPECT_EQ(c["ends"], (std::vector<int>{-3, -3}));
         for (const auto& trim : c["trims"]) EXPECT_EQ(trim[0], swapped ? 1 : 0);

@@ -162,6 +162,13 @@ TEST(ModelIntersect, overlaps_are_clipped_by_the_loops_of_both_faces) {
     const auto tubes = must(intersect(frustum(1, 1, 1), frustum(1, 1, 1), {.tolerance = 1e-6}));
     EXPECT_NEAR(area_of_regions(tubes, {0, 0}), 2 * kPi, 1e-5);
     EXPECT_NEAR(area_of_regions(tubes, {1, 1}), kPi, 1e-5);
+    // The rims, each of a wall and a disc, both ways round: they run along the loops of both.
+    EXPECT_TRUE(tubes.open.empty());
+    ASSERT_EQ(tubes.branches.size(), 4u);
+    for (const FaceBranch& b : tubes.branches) {
+        EXPECT_TRUE(b.along_trim[0] && b.along_trim[1]);
+        EXPECT_NEAR(arc_length(b.curve), 2 * kPi, 1e-4);
+    }
     // The disc fills the hole: they share a border, and nothing else.
     const auto filled = must(intersect(frustum(1, 1, 1), plate(1, Vec<2>{{0, 0}}, 1), {.tolerance = 1e-6}));
     for (const FaceNode& n : filled.nodes) EXPECT_NE(n.kind, SurfaceNodeKind::overlap);
