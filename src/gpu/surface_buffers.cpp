@@ -184,7 +184,7 @@ class BufferBuilder {
 public:
     BufferBuilder(const Model& model, std::span<const TriangularFace> triangles,
                   const SurfaceBufferOptions& options)
-        : model_(model), triangles_(triangles), options_(options) {}
+        : model_(model), triangles_(triangles), options_(options), body_colour_(model.faces.size(), options.colour) {}
 
     Result<SurfaceBuffers> run();
 
@@ -204,9 +204,9 @@ private:
     const Model& model_;
     std::span<const TriangularFace> triangles_;
     const SurfaceBufferOptions& options_;
+    std::vector<Colour> body_colour_;
     std::vector<BuiltFace> faces_;
     std::vector<BuiltPiece> pieces_;
-    std::vector<const Net<2, Hom<3>>*> nets_;
     std::vector<std::vector<Hom<3>>> triangle_nets_;
     std::vector<Seam> seams_;
     SurfaceBuffers out_;
@@ -260,7 +260,7 @@ Result<void> BufferBuilder::add_face(std::size_t index) {
                            cover == PieceCover::crossed, pieces->distance, {bends[0][i], bends[1][j]}});
             for (const Hom<3>& h : pieces->nets[i * rows + j].flat()) box.add(project(h));
         }
-    faces_.push_back({0.5 * (box.lo + box.hi), face.reversed, face.colour.value_or(options_.colour), std::move(*pieces),
+    faces_.push_back({0.5 * (box.lo + box.hi), face.reversed, face.colour.value_or(body_colour_[index]), std::move(*pieces),
                       std::move(*trim), {}});
     add_extent(face, faces_.back(), own);
     pieces_.insert(pieces_.end(), own.begin(), own.end());
@@ -384,8 +384,7 @@ void BufferBuilder::write_seams() {
             return {byte(c.r), byte(c.g), byte(c.b), 255};
         };
         for (std::size_t i = 1; i < s.points.size(); ++i) {
-            if (!s.open)
-                out_.seams.push_back({floats(scene(s.points[i - 1])), floats(scene(s.points[i])),
+            out_.seams.push_back({floats(scene(s.points[i - 1])), floats(scene(s.points[i])),
                                   floats(scene(s.edge[i - 1])), floats(scene(s.edge[i])), floats(s.normals[i - 1]),
                                   floats(s.normals[i]), floats(s.others[i - 1]), floats(s.others[i]), bytes(s.face),
                                   bytes(s.other)});
@@ -397,6 +396,10 @@ void BufferBuilder::write_seams() {
 Result<SurfaceBuffers> BufferBuilder::run() {
     if (!(options_.edge_tolerance > 0 && std::isfinite(options_.edge_tolerance)))
         return refuse(RefusalKind::invalid, "edge_tolerance", text(options_.edge_tolerance, " is not a positive distance"));
+    for (const Body& b : model_.bodies)
+        if (b.colour)
+            for (const int s : b.shells)
+                for (const FaceUse& u : model_.shells[std::size_t(s)].faces) body_colour_[std::size_t(u.face)] = *b.colour;
     for (std::size_t f = 0; f < model_.faces.size(); ++f)
         if (auto ok = add_face(f); !ok)
             return refuse_within(text("face ", f, model_.faces[f].name.empty() ? "" : " ", model_.faces[f].name), ok.error());

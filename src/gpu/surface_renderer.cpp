@@ -16,8 +16,9 @@
 // Cost. A picture costs the evaluation of its vertices; nothing is made per view by the processor but lists of pieces
 // for grids.
 //
-// Accuracy. As surface_buffers.cpp; the boundary of a face is drawn within the deviation where nothing meets it,
-// elsewhere seams may be seen beyond it by their reach, below half a pixel for the usual deviation of 0.2.
+// Accuracy. As surface_buffers.cpp; beyond the boundary of a face its seam may be seen by the reach, with that less
+// than half a pixel for the usual deviation of 0.2. Edges of one face have seams too: faces of surface models often
+// meet without sharing them.
 //
 // Why not one polyline for an edge, to which both faces are drawn: fragments of the pieces would have to be cut off
 // or pulled there; a mesh is the better way then. Why not trimming a little outside: a face that is seen edge on

@@ -100,7 +100,7 @@ std::vector<Seam> seams_of(const Model& model, double tolerance) {
         for (std::size_t i = 0; i < uses[e].size(); ++i) {
             const Face& face = model.faces[std::size_t(uses[e][i].face)];
             const Vec<2> inside = uv_of({uses[e][i].face, &face.loops[0].coedges[0]}, model.edges[std::size_t(face.loops[0].coedges[0].edge)].range.middle());
-            Seam seam{uses[e][i].face, uses[e][i].face, {}, {}, {}, {}, i == 0 && (uses[e].size() == 1 || !inner), uses[e].size() == 1};
+            Seam seam{uses[e][i].face, uses[e][i].face, {}, {}, {}, {}, i == 0 && (uses[e].size() == 1 || !inner)};
             for (const double at : t) {
                 seam.points.push_back(curves[i](at));
                 seam.edge.push_back(edge.curve ? curves.back()(at) : curves[0](at));
@@ -125,7 +125,7 @@ std::vector<Seam> seams_of(const SimplexPatch<2, Hom<3>>& triangle, int face, do
             return edge == 0 ? Param<2>{1 - t, t} : edge == 1 ? Param<2>{0, 1 - t} : Param<2>{t, 0};
         };
         const auto point = [&](double t) { return triangle(uv(t)); };
-        Seam seam{face, face, {}, {}, {}, {}, true, false};
+        Seam seam{face, face, {}, {}, {}, {}, true};
         for (const double t : parameters_for({0, 1}, 1, tolerance, {point})) {
             seam.points.push_back(point(t));
             const auto n = normal(triangle, uv(t));

@@ -12,7 +12,6 @@ struct Seam {
     int face = -1, other = -1;  // another face at the edge; without one, the same
     std::vector<Vec<3>> points, edge, normals, others;  // on the face, on the edge, of the faces
     bool outline = false;  // this one also stands for the edge as a line
-    bool open = false;     // nothing meets the face here: there is no gap to fill
 };
 
 // Along all edges, once for each of their coedges. Segments leave the curves by about `tolerance` at most: an

@@ -34,6 +34,7 @@ constexpr double kFlatStep = 0x1p-26;    // of the unit box, below what floats s
 constexpr double kSmallCurve = 0x1p-26;  // what is smaller is its chord
 constexpr std::size_t kMostCurves = 100'000, kMostBands = 1024;
 constexpr int kSamples = 16;
+constexpr double kNearEnd = 1.0 / 64;
 
 using Net2 = std::vector<Hom<2>>;
 
@@ -77,7 +78,8 @@ double place_to_cut(const Net2& net) {
                     const double middle = (lo + hi) / 2;
                     ((turning(net, axis, middle) < 0) == (before < 0) ? lo : hi) = middle;
                 }
-                if (lo > 1e-9 && lo < 1 - 1e-9) return lo;
+                // Near an end it may be rounding at the last cut; after halving it is not near.
+                if (lo > kNearEnd && lo < 1 - kNearEnd) return lo;
             }
             lo = double(k) / kSamples, before = here;
         }
