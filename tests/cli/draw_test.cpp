@@ -91,6 +91,28 @@ TEST_F(Draw, surfaces_are_coloured_and_the_range_is_said) {
         EXPECT_EQ(run({"draw", "-", "-o", "p.png", "--colour", way, "--isophotes"}, pipe).code, 0) << way;
 }
 
+TEST_F(Draw, surfaces_are_drawn_by_shaders_or_the_reason_is_said) {
+    const std::string teapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
+    const auto drawn = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments{"draw", teapot, "-o", "t.png", "--width", "120", "--height", "90"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    };
+    const Ran mesh = drawn({});
+    if (mesh.code == 3 && mesh.err.find("libegl") != std::string::npos) GTEST_SKIP() << mesh.err;
+    const std::string of_mesh = content(path("t.png"));
+    const Ran r = drawn({"--gpu"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    if (r.err.find("OpenGL") != std::string::npos) GTEST_SKIP() << r.err;
+    EXPECT_EQ(r.err, "");
+    EXPECT_NE(content(path("t.png")), of_mesh) << "other triangles";
+    const Ran edges = drawn({"--gpu", "--edges"});
+    EXPECT_EQ(edges.code, 0);
+    EXPECT_NE(edges.err.find("drawn as a mesh: --gpu: --edges"), std::string::npos) << edges.err;
+    const std::string triangle = R"({"type": "triangle", "degree": 2, "points": [[0,0,0],[1,0,0.5],[0,1,0.5],[2,0,0],[1,1,0.5],[0,2,0]]})";
+    EXPECT_EQ(run({"draw", "-", "-o", "t.png", "--gpu"}, triangle).code, 0);
+}
+
 TEST_F(Draw, pictures_of_nothing_are_refused) {
     // A whole sphere without a loop: a face of a model needs one.
     const std::string bare = R"({"type": "model", "faces": [{"surface": {"type": "revolution",

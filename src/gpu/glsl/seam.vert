@@ -39,7 +39,8 @@ void main() {
     place = rotation * (at_edge ? (at_end ? edge_to : edge_from) : (at_end ? to : from));
     vec3 own = rotation * (at_end ? normal_to : normal_from), other = rotation * (at_end ? other_to : other_from);
     vec3 view = vec3(0.0, 0.0, 1.0) - inverse_distance * place;
-    bool turned_away = dot(own, view) < 0.0 && dot(other, view) > 0.0;
+    // A face that is seen edge on, or from behind, leaves the light to the other.
+    bool turned_away = dot(own, view) < min(0.1 * length(view), dot(other, view));
     direction = turned_away ? other : own;
     albedo = turned_away ? other_paint.rgb : paint.rgb;
     float deeper = farther + slopes * max(slope_of(own), slope_of(other));
