@@ -233,9 +233,10 @@ void add_draw(CommandLine& line) {
     command.count("--normals", options->normals, 1, 200,
                   "Normals of every face, this many in each direction");
     command.flag("--perspective", options->perspective, "Perspective instead of a parallel view");
-    command.flag("--gpu", options->gpu,
-                 "Surfaces by shaders, without a mesh, as fine as the picture needs; where that cannot be, as a "
-                 "mesh, and the reason is said");
+    command.flag(
+        "--gpu", options->gpu,
+        "Surfaces by shaders, without a mesh, as fine as the picture needs; where that cannot be, as a "
+        "mesh, and the reason is said");
     command.object(options->object);
     command.limits();
     command.triangle_limit();

@@ -182,7 +182,8 @@ std::string_view needs_mesh(const ShadedOptions& o) {
     if (o.edges) return "--edges are those of a mesh";
     if (o.tolerance) return "--tolerance is that of a mesh";
     if (!o.colour.empty()) return "--colour takes numbers at the vertices of a mesh";
-    if (o.isolines || o.normals || o.control) return "isolines, normals and control nets are drawn over a mesh";
+    if (o.isolines || o.normals || o.control)
+        return "isolines, normals and control nets are drawn over a mesh";
     return {};
 }
 
@@ -224,7 +225,8 @@ Result<Image> drawn_directly(const Document& document, std::span<const std::size
     for (const TriangularFace& t : scene->triangles)
         for (const Hom<3>& h : t.patch.coefficients()) box.add(project(h));
     if (!(box.diagonal() > 0)) return refuse(RefusalKind::no_answer, "model", "it has no extent");
-    auto buffers = surface_buffers(scene->model, scene->triangles, {.edge_tolerance = box.diagonal() * kMirrorTolerance});
+    auto buffers = surface_buffers(scene->model, scene->triangles,
+                                   {.edge_tolerance = box.diagonal() * kMirrorTolerance});
     if (!buffers) return std::unexpected(buffers.error());
     auto renderer = SurfaceRenderer::make(std::move(*buffers));
     if (!renderer) return std::unexpected(renderer.error());

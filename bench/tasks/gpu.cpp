@@ -1,7 +1,8 @@
 // Surfaces by shaders against meshes and against the kernels of the processor, as a table in Markdown:
 //   bench-gpu FILE ..      (FREIFORM_SIZE=1600x1200 for another size of pictures)
-// Pictures of a file: by tessellation shaders and by instanced grids, from a renderer that is ready; as a mesh that
-// is there, by render(), which uploads it; and how long that mesh takes to make. Then points of one surface.
+// Pictures of a file: by tessellation shaders and by instanced grids, from a renderer that is ready; as a
+// mesh that is there, by render(), which uploads it; and how long that mesh takes to make. Then points of one
+// surface.
 #include <freiform/gpu/surfaces.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
@@ -47,13 +48,16 @@ void print_row(const std::string& name, const Model& model) {
     const double size = summary(model).box.diagonal();
     const auto buffers = surface_buffers(model, {.edge_tolerance = size / 16000});
     if (!buffers) {
-        std::printf("| %s | %s: %s |\n", name.c_str(), buffers.error().where.c_str(), buffers.error().message.c_str());
+        std::printf("| %s | %s: %s |\n", name.c_str(), buffers.error().where.c_str(),
+                    buffers.error().message.c_str());
         return;
     }
     const RenderOptions options = picture_options();
-    auto tessellated = SurfaceRenderer::make(*buffers), grid = SurfaceRenderer::make(*buffers, SurfacePipeline::grid);
+    auto tessellated = SurfaceRenderer::make(*buffers),
+         grid = SurfaceRenderer::make(*buffers, SurfacePipeline::grid);
     if (!tessellated || !grid) {
-        std::printf("| %s | %s |\n", name.c_str(), (tessellated ? grid : tessellated).error().message.c_str());
+        std::printf("| %s | %s |\n", name.c_str(),
+                    (tessellated ? grid : tessellated).error().message.c_str());
         return;
     }
     const auto triangles = tessellated->triangles(options);
@@ -78,8 +82,9 @@ void print_points() {
     const auto basis = *BSplineBasis::clamped_uniform(3, kSize);
     Net<2, Hom<3>> net({kSize, kSize});
     each_index(net.extent(), [&](const Index<2>& k) {
-        net.view()(k) = weighted(Vec<3>{{double(k[0]), double(k[1]), std::sin(k[0] * 1.7) * std::cos(k[1] * 0.9)}},
-                                 1 + 0.5 * ((k[0] + k[1]) % 2));
+        net.view()(k) =
+            weighted(Vec<3>{{double(k[0]), double(k[1]), std::sin(k[0] * 1.7) * std::cos(k[1] * 0.9)}},
+                     1 + 0.5 * ((k[0] + k[1]) % 2));
     });
     const auto surface = *Surface<Hom<3>>::make({basis, basis}, net);
     const Interval on = basis.domain();
@@ -92,7 +97,8 @@ void print_points() {
     const auto prepared = *PreparedPatch<2, Hom<3>>::make(surface);
     const double cpu = seconds_of([&] { return prepared.evaluate(at, points).has_value(); });
     const double cpu_normals = seconds_of([&] { return prepared.evaluate(at, points, normals).has_value(); });
-    std::printf("\n| points, 10^6 a second | points | ratio | with normals | ratio |\n|---|---:|---:|---:|---:|\n");
+    std::printf(
+        "\n| points, 10^6 a second | points | ratio | with normals | ratio |\n|---|---:|---:|---:|---:|\n");
     std::printf("| kernel of the processor, all threads | %.1f | 1 | %.1f | 1 |\n", 1e-6 * kPoints / cpu,
                 1e-6 * kPoints / cpu_normals);
     for (const auto& [name, precision] : {std::pair("compute shader, float", ShaderPrecision::single),
@@ -104,8 +110,8 @@ void print_points() {
         }
         const double plain = seconds_of([&] { return shader->evaluate(at, points, {}).has_value(); });
         const double both = seconds_of([&] { return shader->evaluate(at, points, normals).has_value(); });
-        std::printf("| %s, transfers included | %.1f | %.2f | %.1f | %.2f |\n", name, 1e-6 * kPoints / plain, cpu / plain,
-                    1e-6 * kPoints / both, cpu_normals / both);
+        std::printf("| %s, transfers included | %.1f | %.2f | %.1f | %.2f |\n", name, 1e-6 * kPoints / plain,
+                    cpu / plain, 1e-6 * kPoints / both, cpu_normals / both);
     }
 }
 
@@ -114,9 +120,11 @@ void print_points() {
 int main(int argc, char** argv) {
     const RenderOptions options = picture_options();
     std::printf("Pictures of %d x %d, 4 samples a pixel.\n\n", options.width, options.height);
-    std::printf("| model | faces | triangles | pictures/s | 10^6 triangles/s | pictures/s, grids | triangles of the mesh | "
-                "pictures/s, mesh | mesh made in ms | shaders against mesh | against making and drawing it |\n"
-                "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+    std::printf(
+        "| model | faces | triangles | pictures/s | 10^6 triangles/s | pictures/s, grids | triangles of the "
+        "mesh | "
+        "pictures/s, mesh | mesh made in ms | shaders against mesh | against making and drawing it |\n"
+        "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
     for (int i = 1; i < argc; ++i) {
         const auto document = read_any(argv[i]);
         const auto model = document ? scene_of(*document) : Result<Model>(std::unexpected(document.error()));

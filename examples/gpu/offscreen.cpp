@@ -25,7 +25,8 @@ int main(int argc, char** argv) {
     if (!model) return refused(model.error());
 
     // Everything the card needs, once; edges within a 16000th of the model.
-    auto buffers = ff::surface_buffers(*model, {.edge_tolerance = ff::summary(*model).box.diagonal() / 16000});
+    auto buffers =
+        ff::surface_buffers(*model, {.edge_tolerance = ff::summary(*model).box.diagonal() / 16000});
     if (!buffers) return refused(buffers.error());
     auto renderer = ff::SurfaceRenderer::make(std::move(*buffers));
     if (!renderer) return refused(renderer.error());
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
         if (!image) return refused(image.error());
         const auto png = ff::to_png(*image);
         if (!png) return refused(png.error());
-        if (auto ok = ff::write_file(std::string(argv[2]) + "-" + name + ".png", *png); !ok) return refused(ok.error());
+        if (auto ok = ff::write_file(std::string(argv[2]) + "-" + name + ".png", *png); !ok)
+            return refused(ok.error());
     }
 }

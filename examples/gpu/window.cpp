@@ -1,5 +1,5 @@
-// The surfaces of a file in a window, by a renderer of its own: what the library gives are buffers and shaders. Drag to
-// turn, scroll to zoom; the triangles are made anew for every picture.
+// The surfaces of a file in a window, by a renderer of its own: what the library gives are buffers and
+// shaders. Drag to turn, scroll to zoom; the triangles are made anew for every picture.
 //   gpu-window teapot.bpt
 // With --hidden one picture is drawn into a window that is not shown, and its middle is printed.
 #include <freiform/gpu/surfaces.hpp>
@@ -9,7 +9,6 @@
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -45,8 +44,9 @@ GLuint program_of(std::initializer_list<std::pair<GLenum, ff::SurfaceShader>> st
 void set_view(GLuint program, int width, int height) {
     const double ca = std::cos(eye.azimuth), sa = std::sin(eye.azimuth), ce = std::cos(eye.elevation),
                  se = std::sin(eye.elevation);
-    const float rotation[9] = {float(-sa), float(-se * ca), float(ce * ca), float(ca), float(-se * sa),
-                               float(ce * sa), 0, float(ce), float(se)};
+    const float rotation[9] = {float(-sa), float(-se * ca), float(ce * ca),
+                               float(ca),  float(-se * sa), float(ce * sa),
+                               0,          float(ce),       float(se)};
     const double pixels = eye.zoom * std::min(width, height) / 2;
     float projection[16] = {};
     projection[0] = float(2 * pixels / width), projection[5] = float(2 * pixels / height);
@@ -99,7 +99,8 @@ int main(int argc, char** argv) {
     GLuint buffer = 0, texture = 0, none = 0, seams = 0, segments = 0;
     glGenBuffers(1, &buffer);
     glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-    glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(surfaces->texels.size() * 16), surfaces->texels.data(), GL_STATIC_DRAW);
+    glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(surfaces->texels.size() * 16), surfaces->texels.data(),
+                 GL_STATIC_DRAW);
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_BUFFER, texture);
     glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
@@ -111,7 +112,8 @@ int main(int argc, char** argv) {
     glGenBuffers(1, &segments);
     glBindBuffer(GL_ARRAY_BUFFER, segments);
     constexpr auto kSize = GLsizei(sizeof(ff::SeamSegment));
-    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(surfaces->seams.size()) * kSize, surfaces->seams.data(), GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, GLsizeiptr(surfaces->seams.size()) * kSize, surfaces->seams.data(),
+                 GL_STATIC_DRAW);
     for (GLuint i = 0; i < 10; ++i) {  // eight points and normals, two colours
         const bool colour = i >= 8;
         const std::size_t offset = colour ? 96 + 4 * (i - 8) : 12 * i;

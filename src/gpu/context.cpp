@@ -44,9 +44,8 @@ bool GlContext::open(EGLDisplay display) {
         return false;
     EGLConfig config = nullptr;
     if (!has_extension(display, "EGL_KHR_no_config_context")) {
-        const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE,
-                                           es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_SURFACE_TYPE,
-                                           EGL_PBUFFER_BIT, EGL_NONE};
+        const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE, es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT,
+                                           EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_NONE};
         EGLint count = 0;
         if (!eglChooseConfig(display, wanted.data(), &config, 1, &count) || count < 1) return false;
     }
@@ -88,8 +87,9 @@ Result<std::unique_ptr<GlContext>> GlContext::make(GlVersion version) {
     const std::string_view wanted = version == GlVersion::core_33   ? "OpenGL 3.3"
                                     : version == GlVersion::core_43 ? "OpenGL 4.3"
                                                                     : "OpenGL ES 3.0";
-    return refuse(RefusalKind::unavailable, "OpenGL",
-                  text("no ", wanted, " without a window; on Debian install libegl-mesa0 and libgl1-mesa-dri"));
+    return refuse(
+        RefusalKind::unavailable, "OpenGL",
+        text("no ", wanted, " without a window; on Debian install libegl-mesa0 and libgl1-mesa-dri"));
 }
 
 bool GlContext::use() {

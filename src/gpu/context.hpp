@@ -9,8 +9,8 @@ namespace freiform {
 
 enum class GlVersion { core_33, core_43, es_30 };
 
-// Current in the thread that made it, until it is destroyed or released; then what was current before is again.
-// All objects of OpenGL made in between end with it.
+// Current in the thread that made it, until it is destroyed or released; then what was current before is
+// again. All objects of OpenGL made in between end with it.
 class GlContext {
 public:
     static Result<std::unique_ptr<GlContext>> make(GlVersion version = GlVersion::core_33);

@@ -1,10 +1,10 @@
 // The parts of a picture.
 //
-// Idea. Everything is drawn at `supersampling` times the size with the hardware's multisampling, then averaged.
+// Idea. Everything is drawn at `supersampling` times the size with the hardware's multisampling, then
+// averaged.
 //
 // Why not GL_LINES: a core profile promises a width of one pixel only.
 #include "gpu/gl_tools_detail.hpp"
-
 #include "gpu/shaders.hpp"
 
 #include <algorithm>
@@ -83,9 +83,8 @@ Result<void> check(const RenderOptions& o) {
 }
 
 std::string version_line(GlslDialect dialect) {
-    return dialect == GlslDialect::gl430
-               ? "#version 430 core\n"
-               : "#version 300 es\nprecision highp float;\nprecision highp int;\n";
+    return dialect == GlslDialect::gl430 ? "#version 430 core\n"
+                                         : "#version 300 es\nprecision highp float;\nprecision highp int;\n";
 }
 
 Result<GLuint> link_program(const std::vector<ShaderPart>& parts, const std::vector<const char*>& captured) {
@@ -103,11 +102,13 @@ Result<GLuint> link_program(const std::vector<ShaderPart>& parts, const std::vec
         glDeleteShader(shader);
         if (!compiled) {
             glDeleteProgram(program);
-            return refuse(RefusalKind::unavailable, "OpenGL", text("the driver refuses a shader: ", log.data()));
+            return refuse(RefusalKind::unavailable, "OpenGL",
+                          text("the driver refuses a shader: ", log.data()));
         }
     }
     if (!captured.empty())
-        glTransformFeedbackVaryings(program, GLsizei(captured.size()), captured.data(), GL_INTERLEAVED_ATTRIBS);
+        glTransformFeedbackVaryings(program, GLsizei(captured.size()), captured.data(),
+                                    GL_INTERLEAVED_ATTRIBS);
     glLinkProgram(program);
     GLint linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
@@ -120,7 +121,8 @@ Result<GLuint> link_program(const std::vector<ShaderPart>& parts, const std::vec
 Result<GLuint> GlPrograms::of(std::string_view vertex, std::string_view fragment) {
     const std::string key = text(vertex, fragment);
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
-    auto program = link_program({{GL_VERTEX_SHADER, text(version_, vertex)}, {GL_FRAGMENT_SHADER, text(version_, fragment)}});
+    auto program = link_program(
+        {{GL_VERTEX_SHADER, text(version_, vertex)}, {GL_FRAGMENT_SHADER, text(version_, fragment)}});
     if (program) programs_[key] = *program;
     return program;
 }

@@ -18,7 +18,8 @@ struct ShaderPart {
     std::string source;  // with its version line
 };
 // `captured`: outputs that transform feedback takes, interleaved.
-Result<GLuint> link_program(const std::vector<ShaderPart>& parts, const std::vector<const char*>& captured = {});
+Result<GLuint> link_program(const std::vector<ShaderPart>& parts,
+                            const std::vector<const char*>& captured = {});
 
 std::string version_line(GlslDialect dialect);
 inline constexpr const char* kMeshVersion = "#version 330 core\n";
@@ -50,7 +51,8 @@ struct VertexArray {
         fill_bytes(target, data.data(), data.size() * sizeof(T));
     }
     void fill_bytes(GLenum target, const void* data, std::size_t size);
-    void attribute(GLuint index, GLint size, GLenum type, std::size_t stride, std::size_t offset, GLuint divisor);
+    void attribute(GLuint index, GLint size, GLenum type, std::size_t stride, std::size_t offset,
+                   GLuint divisor);
     void release();
 };
 

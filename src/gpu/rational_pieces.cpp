@@ -1,14 +1,15 @@
 // From analytic and spline geometry to rational Bezier pieces.
 //
-// Idea. Everything that models are made of but offsets is rational in some parameter. Trimming loops refer to the
-// parameters of the model, an angle for circles, so that each piece says how its own parameter becomes that one.
+// Idea. Everything that models are made of but offsets is rational in some parameter. Trimming loops refer to
+// the parameters of the model, an angle for circles, so that each piece says how its own parameter becomes
+// that one.
 //
-// Method. An arc of an ellipse of half angle a about its middle m has the weights 1, cos a, 1 and the corner in
-// the middle at x / cos a, x the axis turned to m. With s in [0, 1] its angle is m + 2 atan(tan(a / 2) (2 s - 1)):
-// the weights are those of 1 + X^2 with X = tan(angle / 2). A branch of a hyperbola is the same with cosh and
-// tanh. A parabola keeps its parameter. Extrusions are a profile times a line; revolutions an arc times a profile,
-// each control point of which runs on a circle of its own. Splines are cut to the interval and decomposed; what of
-// a closed one reaches over its period is the same piece again.
+// Method. An arc of an ellipse of half angle a about its middle m has the weights 1, cos a, 1 and the corner
+// in the middle at x / cos a, x the axis turned to m. With s in [0, 1] its angle is m + 2 atan(tan(a / 2) (2
+// s - 1)): the weights are those of 1 + X^2 with X = tan(angle / 2). A branch of a hyperbola is the same with
+// cosh and tanh. A parabola keeps its parameter. Extrusions are a profile times a line; revolutions an arc
+// times a profile, each control point of which runs on a circle of its own. Splines are cut to the interval
+// and decomposed; what of a closed one reaches over its period is the same piece again.
 //
 // Accuracy. Within a few roundings of the coefficients.
 //
@@ -50,7 +51,8 @@ std::vector<CurvePiece<D>> conic_pieces(const Conic<D>& c, Interval on) {
     const bool ellipse = c.kind == ConicKind::ellipse;
     const int n = std::max(1, int(std::ceil(on.length() / kWidestArc)));
     for (int i = 0; i < n; ++i) {
-        const Interval part{on.lo + on.length() * i / n, i + 1 == n ? on.hi : on.lo + on.length() * (i + 1) / n};
+        const Interval part{on.lo + on.length() * i / n,
+                            i + 1 == n ? on.hi : on.lo + on.length() * (i + 1) / n};
         const double m = part.middle(), a = part.length() / 2;
         const double even = ellipse ? std::cos(m) : std::cosh(m), odd = ellipse ? std::sin(m) : std::sinh(m);
         const Vec<D> x = even * c.x + odd * c.y, y = (ellipse ? -odd : odd) * c.x + even * c.y;
@@ -75,7 +77,8 @@ Result<std::vector<SplinePart>> spline_parts(const BSplineBasis& basis, const st
     const double period = domain.length();
     int first = 0, last = 0;
     if (basis.is_closed()) {
-        if (!(std::abs(on.lo - domain.lo) < kMostPeriods * period && std::abs(on.hi - domain.lo) < kMostPeriods * period))
+        if (!(std::abs(on.lo - domain.lo) < kMostPeriods * period &&
+              std::abs(on.hi - domain.lo) < kMostPeriods * period))
             return refuse(RefusalKind::limit, "domain", "the parameters go round the surface too often");
         first = int(std::floor((on.lo - domain.lo) / period));
         last = int(std::floor((on.hi - domain.lo) / period));
@@ -146,7 +149,8 @@ Result<SurfacePieces> revolved(const Revolution& r, std::array<Interval, 2> on) 
             for (const Hom<2>& a : arc.net)
                 for (const Hom<3>& p : piece.net) {
                     const Vec<2> c = project(a);
-                    const Vec<3> q = project(p) - r.origin, along = dot(q, r.axis) * r.axis, out_of = q - along;
+                    const Vec<3> q = project(p) - r.origin, along = dot(q, r.axis) * r.axis,
+                                 out_of = q - along;
                     net.push_back(weighted(r.origin + along + c[0] * out_of + c[1] * cross(r.axis, out_of),
                                            a.weight() * p.weight()));
                 }

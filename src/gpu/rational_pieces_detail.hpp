@@ -1,4 +1,5 @@
-// Curves and surfaces of every sort as rational Bezier pieces on [0, 1], with the way back to their parameters.
+// Curves and surfaces of every sort as rational Bezier pieces on [0, 1], with the way back to their
+// parameters.
 #pragma once
 #include <freiform/core/result.hpp>
 #include <freiform/spline/geometry.hpp>

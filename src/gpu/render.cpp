@@ -61,7 +61,9 @@ Result<void> draw(const GpuScene& scene, const RenderOptions& options) {
     GlPrograms programs(kMeshVersion);
     if (auto r = draw_background(programs, options); !r) return r;
     if (auto r = draw_surface(programs, scene, options); !r) return r;
-    if (auto r = draw_lines(programs, scene, scene.edges, {0.9, {0.05f, 0.07f, 0.10f, 0.65f}, 2e-4f}, options); !r)
+    if (auto r =
+            draw_lines(programs, scene, scene.edges, {0.9, {0.05f, 0.07f, 0.10f, 0.65f}, 2e-4f}, options);
+        !r)
         return r;
     if (auto r = draw_lines(programs, scene, scene.outlines, kOutlinePen, options); !r) return r;
     return draw_user_lines(programs, scene, options);

@@ -1,40 +1,22 @@
 // A model as buffers of texels. The layout is in docs/gpu.md.
 //
-// Idea. A face is rational Bezier pieces, so the card can evaluate it wherever it likes. How finely it has to be is
-// decided per picture, by one number: with `density` pixels of a unit divided by the allowed pixels, a piece takes
-// ceil(sqrt(bend density)) cells in each direction.
+// Idea. A face is rational Bezier pieces, so the card can evaluate it wherever it likes. How finely it has to
+// be is decided per picture, by one number: with `density` pixels of a unit divided by the allowed pixels, a
+// piece takes ceil(sqrt(bend density)) cells in each direction (surface_bends.cpp).
 //
-// Notation. s, t in [0, 1] place in a piece; M_ss, M_st, M_tt bounds of its second derivatives
-// (derivative_bounds.hpp); h, k the sides of a cell.
+// Accuracy. Coefficients are floats about a point of the face, so that positions are within some 2^-21 of its
+// size (the sum of tens of products of relative error 2^-24) and the pieces of a face agree on their common
+// sides to the bit. Derivatives are differences of coefficients: the direction of a normal is off by about
+// 2^-22 times the degree times the size of the face in sizes of the piece.
 //
-// Method. Let a triangle lie in a box of h by k, x_i its corners, l_i the barycentric coordinates of a place x in
-// it. The triangle drawn and the surface are apart by |sum l_i (S(x_i) - S(x))| <= sum l_i Q(x_i - x) / 2, Q(d) =
-// M_ss ds^2 + 2 M_st |ds dt| + M_tt dt^2. The sum of l_i ds_i^2 is a variance of numbers from an interval of length h,
-// at most h^2 / 4 [Popoviciu 1935], and that of |ds dt| at most h k / 4 by Cauchy's inequality. So the
-// distance is at most (M_ss h^2 + 2 M_st h k + M_tt k^2) / 8 at the same place, for every triangle in the box. With 2
-// M_st h k <= M_st (r h^2 + k^2 / r), r > 0 the same for the whole face, it splits into a part for each direction. All
-// pieces of a column take the largest of their first part, all of a row that of the second: neighbours have
-// the same points on their common side, and no crack opens. The two parts share the deviation so that the number
-// of cells is least, a : c as their roots.
-//
-// Accuracy. Coefficients are floats about a point of the face, so that positions are within some 2^-21 of its size
-// (the sum of tens of products of relative error 2^-24) and the pieces of a face agree on their common sides to the
-// bit. Derivatives are differences of coefficients: the direction of a normal is off by about 2^-22 times the degree
-// times the size of the face in sizes of the piece.
-//
-// References: [Filip Magedson Markot 1986] for right triangles.
-//
-// Why not levels per side of a piece: triangles between sides of different levels lie in larger boxes, and how they
-// are put together is left to the driver. Why not coefficients about each piece: the sum with its point would be
-// rounded differently on both sides of a boundary.
-#include "gpu/rational_pieces_detail.hpp"
+// Why not coefficients about each piece: the sum with its
+// point would be rounded differently on both sides of a boundary.
+#include "gpu/surface_bends_detail.hpp"
 #include "gpu/surface_seams_detail.hpp"
 #include "gpu/trim_curves_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/gpu/surfaces.hpp>
-#include <freiform/spline/bezier.hpp>
-#include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -61,112 +43,7 @@ struct BuiltFace {
     Colour colour;
     SurfacePieces pieces;
     TrimCurves trim;
-    std::vector<std::array<double, 2>> bends;  // of columns, then of rows
 };
-
-struct SecondDerivatives {
-    double ss = 0, st = 0, tt = 0;
-    void include(const SecondDerivatives& o) {
-        ss = std::max(ss, o.ss), st = std::max(st, o.st), tt = std::max(tt, o.tt);
-    }
-};
-
-constexpr int kHalvings = 2;  // per direction: control points of high degrees are far from their surface
-
-SecondDerivatives bounds_of(const Net<2, Hom<3>>& net, std::array<double, 2> width, int halvings, int axis) {
-    if (halvings == 0) {
-        const auto b = derivative_bounds<2, Hom<3>>(net.view(), width);
-        return {b(2, 0), b(1, 1), b(0, 2)};
-    }
-    const int next = axis == 0 ? halvings : halvings - 1;
-    if (net.extent()[std::size_t(axis)] == 2 && net.extent()[std::size_t(1 - axis)] == 2)
-        return bounds_of(net, width, 0, 0);
-    Net<2, Hom<3>> low = net, high = net;
-    each_fibre(axis, net.extent(), [&](const Index<2>& at) {
-        keep_left(low.view().fibre(axis, at), 0.5);
-        keep_right(high.view().fibre(axis, at), 0.5);
-    });
-    width[std::size_t(axis)] /= 2;
-    SecondDerivatives out = bounds_of(low, width, next, 1 - axis);
-    out.include(bounds_of(high, width, next, 1 - axis));
-    return out;
-}
-
-// Of a triangle of degree n: all of second order are at most as long. Differences of the coefficients
-// about a point near them, as block_bounds.cpp has it; parts are half as large.
-double bend_of(const SimplexPatch<2, Hom<3>>& s, int halvings) {
-    const int n = s.degree();
-    if (halvings > 0) {
-        double most = 0;
-        for (const auto& part : split_in_four(s)) most = std::max(most, 4 * bend_of(part, halvings - 1));
-        return most;
-    }
-    const Vec<3> centre = project(s.coefficient(n / 3, n / 3));
-    const auto at = [&](int j, int k) {
-        Hom<3> h = s.coefficient(j, k);
-        for (int c = 0; c < 3; ++c) h[c] -= h.weight() * centre[c];
-        return h;
-    };
-    const auto step = [&](int j, int k, int d) { return (d == 0 ? at(j + 1, k) : at(j, k + 1)) - at(j, k); };
-    const auto length = [](const Hom<3>& h) { return std::hypot(h[0], h[1], h[2]); };
-    double radius = 0, least = kInfinity, first = 0, weight_first = 0, second = 0, weight_second = 0;
-    for (int j = 0; j <= n; ++j)
-        for (int k = 0; j + k <= n; ++k) {
-            least = std::min(least, at(j, k).weight());
-            radius = std::max(radius, norm(project(at(j, k))));
-            for (const int d : {0, 1}) {
-                if (j + k + 1 > n) continue;
-                first = std::max(first, n * length(step(j, k, d)));
-                weight_first = std::max(weight_first, n * std::abs(step(j, k, d).weight()));
-                if (j + k + 2 > n) continue;
-                for (const int e : {0, 1}) {
-                    const Hom<3> twice = (e == 0 ? step(j + 1, k, d) : step(j, k + 1, d)) - step(j, k, d);
-                    second = std::max(second, n * (n - 1) * length(twice));
-                    weight_second = std::max(weight_second, n * (n - 1) * std::abs(twice.weight()));
-                }
-            }
-        }
-    const double slope = (first + weight_first * radius) / least;
-    return (second + 2 * weight_first * slope + weight_second * radius) / least;
-}
-
-std::vector<SecondDerivatives> second_derivatives(const Face& face, const SurfacePieces& p) {
-    std::vector<SecondDerivatives> out;
-    if (p.distance == 0) {
-        for (const Net<2, Hom<3>>& net : p.nets) out.push_back(bounds_of(net, {1, 1}, kHalvings, 0));
-        return out;
-    }
-    // Of the offset itself, by its own parameters.
-    const DerivativeQuery<2, 3> query(face.surface);
-    for (const ParameterMap& u : p.u)
-        for (const ParameterMap& v : p.v) {
-            const auto b = query({u.on, v.on});
-            out.push_back({b(2, 0) * u.slope() * u.slope() + b(1, 0) * u.bend(), b(1, 1) * u.slope() * v.slope(),
-                           b(0, 2) * v.slope() * v.slope() + b(0, 1) * v.bend()});
-        }
-    return out;
-}
-
-// Of a direction that bends not at all against the other: 0.
-std::array<std::vector<double>, 2> bends_of(const std::vector<SecondDerivatives>& all, std::size_t columns,
-                                            std::size_t rows) {
-    SecondDerivatives most;
-    for (const SecondDerivatives& m : all) most.include(m);
-    const double both = most.st > 0 ? std::sqrt((most.ss + most.st) / (most.tt + most.st)) : 1;
-    std::array<std::vector<double>, 2> out{std::vector<double>(columns, 0.0), std::vector<double>(rows, 0.0)};
-    std::array<double, 2> largest{};
-    for (std::size_t i = 0; i < columns; ++i)
-        for (std::size_t j = 0; j < rows; ++j) {
-            const SecondDerivatives& m = all[i * rows + j];
-            out[0][i] = std::max(out[0][i], m.ss + both * m.st);
-            out[1][j] = std::max(out[1][j], m.tt + m.st / both);
-            largest = {std::max(largest[0], out[0][i]), std::max(largest[1], out[1][j])};
-        }
-    const double sum = std::sqrt(largest[0]) + std::sqrt(largest[1]);
-    for (const std::size_t d : {std::size_t(0), std::size_t(1)})
-        for (double& b : out[d]) b = largest[d] > 0 ? b * sum / (8 * std::sqrt(largest[d])) : 0;
-    return out;
-}
 
 // Does a curve of the loops come into the part of the box that a piece covers?
 enum class PieceCover { outside, crossed, inside };
@@ -184,7 +61,10 @@ class BufferBuilder {
 public:
     BufferBuilder(const Model& model, std::span<const TriangularFace> triangles,
                   const SurfaceBufferOptions& options)
-        : model_(model), triangles_(triangles), options_(options), body_colour_(model.faces.size(), options.colour) {}
+        : model_(model),
+          triangles_(triangles),
+          options_(options),
+          body_colour_(model.faces.size(), options.colour) {}
 
     Result<SurfaceBuffers> run();
 
@@ -208,7 +88,7 @@ private:
     std::vector<BuiltFace> faces_;
     std::vector<BuiltPiece> pieces_;
     std::vector<std::vector<Hom<3>>> triangle_nets_;
-    std::vector<Seam> seams_;
+    std::vector<EdgeSeam> seams_;
     SurfaceBuffers out_;
 };
 
@@ -217,7 +97,8 @@ void BufferBuilder::add_extent(const Face& face, const BuiltFace& built, const s
     for (const BuiltPiece& p : own) {
         std::array<int, 2> n{};
         for (const std::size_t d : {std::size_t(0), std::size_t(1)})
-            n[d] = int(std::clamp(std::ceil(std::sqrt(p.bend[d] / options_.edge_tolerance)), 1.0, double(kMostSamples)));
+            n[d] = int(std::clamp(std::ceil(std::sqrt(p.bend[d] / options_.edge_tolerance)), 1.0,
+                                  double(kMostSamples)));
         for (int i = 0; i <= n[0]; ++i)
             for (int j = 0; j <= n[1]; ++j) {
                 const Vec<2> uv{{p.map[0](double(i) / n[0]), p.map[1](double(j) / n[1])}};
@@ -240,7 +121,7 @@ Result<void> BufferBuilder::add_face(std::size_t index) {
     auto pieces = rational_pieces(face.surface, {trim->box.side(0), trim->box.side(1)});
     if (!pieces) return std::unexpected(pieces.error());
     const std::size_t columns = pieces->u.size(), rows = pieces->v.size();
-    const auto bends = bends_of(second_derivatives(face, *pieces), columns, rows);
+    const auto bends = bends_of(face, *pieces);
     for (const auto& side : bends)
         for (const double b : side)
             if (!std::isfinite(b))
@@ -249,19 +130,25 @@ Result<void> BufferBuilder::add_face(std::size_t index) {
     Box<3> box;
     for (std::size_t i = 0; i < columns; ++i)
         for (std::size_t j = 0; j < rows; ++j) {
-            Box<2> part{{{pieces->u[i].on.lo, pieces->v[j].on.lo}}, {{pieces->u[i].on.hi, pieces->v[j].on.hi}}};
+            Box<2> part{{{pieces->u[i].on.lo, pieces->v[j].on.lo}},
+                        {{pieces->u[i].on.hi, pieces->v[j].on.hi}}};
             for (int k = 0; k < 2; ++k) {
                 const double from = trim->box.lo[k], by = trim->box.hi[k] - from;
                 part.lo[k] = (part.lo[k] - from) / by, part.hi[k] = (part.hi[k] - from) / by;
             }
             const PieceCover cover = cover_of(*trim, part);
             if (cover == PieceCover::outside) continue;
-            own.push_back({int(i * rows + j), int(index), pieces->degree, {pieces->u[i], pieces->v[j]},
-                           cover == PieceCover::crossed, pieces->distance, {bends[0][i], bends[1][j]}});
+            own.push_back({int(i * rows + j),
+                           int(index),
+                           pieces->degree,
+                           {pieces->u[i], pieces->v[j]},
+                           cover == PieceCover::crossed,
+                           pieces->distance,
+                           {bends[0][i], bends[1][j]}});
             for (const Hom<3>& h : pieces->nets[i * rows + j].flat()) box.add(project(h));
         }
-    faces_.push_back({0.5 * (box.lo + box.hi), face.reversed, face.colour.value_or(body_colour_[index]), std::move(*pieces),
-                      std::move(*trim), {}});
+    faces_.push_back({0.5 * (box.lo + box.hi), face.reversed, face.colour.value_or(body_colour_[index]),
+                      std::move(*pieces), std::move(*trim)});
     add_extent(face, faces_.back(), own);
     pieces_.insert(pieces_.end(), own.begin(), own.end());
     return {};
@@ -272,12 +159,12 @@ void BufferBuilder::add_triangle(const TriangularFace& triangle) {
     const auto net = triangle.patch.coefficients();
     Box<3> box;
     for (const Hom<3>& h : net) box.add(project(h));
-    const double bend = bend_of(triangle.patch, kHalvings);
-    // h = k, and all three second derivatives at most `bend`: 4 bend h^2 / 8.
-    pieces_.push_back({int(triangle_nets_.size()), int(faces_.size()), {n, -1}, {}, false, 0, {bend / 2, bend / 2}});
-    faces_.push_back({0.5 * (box.lo + box.hi), false, triangle.colour.value_or(options_.colour), {}, {}, {}});
+    const double bend = bend_of(triangle.patch);
+    pieces_.push_back({int(triangle_nets_.size()), int(faces_.size()), {n, -1}, {}, false, 0, {bend, bend}});
+    faces_.push_back({0.5 * (box.lo + box.hi), false, triangle.colour.value_or(options_.colour), {}, {}});
     triangle_nets_.emplace_back(net.begin(), net.end());
-    for (Seam& s : seams_of(triangle.patch, int(faces_.size()) - 1, options_.edge_tolerance)) seams_.push_back(std::move(s));
+    for (EdgeSeam& s : seams_of(triangle.patch, int(faces_.size()) - 1, options_.edge_tolerance))
+        seams_.push_back(std::move(s));
     for (int i = 0; i <= kMostSamples / 2; ++i)
         for (int j = 0; i + j <= kMostSamples / 2; ++j)
             out_.extent.push_back(triangle.patch(2.0 * i / kMostSamples, 2.0 * j / kMostSamples));
@@ -285,7 +172,7 @@ void BufferBuilder::add_triangle(const TriangularFace& triangle) {
 
 // The middle and the size of the scene.
 void BufferBuilder::place() {
-    for (const Seam& s : seams_) out_.extent.insert(out_.extent.end(), s.points.begin(), s.points.end());
+    for (const EdgeSeam& s : seams_) out_.extent.insert(out_.extent.end(), s.points.begin(), s.points.end());
     Box<3> box;
     for (const Vec<3>& p : out_.extent) box.add(p);
     for (int d = 0; d < 3; ++d) out_.middle[d] = box.lo[d] / 2 + box.hi[d] / 2;
@@ -315,7 +202,8 @@ void BufferBuilder::write_coefficients() {
         const auto net = each(p);
         p.first = int(out_.texels.size());
         for (const Hom<3>& h : net)
-            out_.texels.push_back(texel(h, faces_[std::size_t(p.face)].centre, heaviest[std::size_t(p.face)]));
+            out_.texels.push_back(
+                texel(h, faces_[std::size_t(p.face)].centre, heaviest[std::size_t(p.face)]));
     }
 }
 
@@ -327,7 +215,8 @@ void BufferBuilder::write_trim(BuiltFace& face, std::array<float, 4>& record) {
         double heaviest = 0;
         for (const Hom<2>& h : c.net) heaviest = std::max(heaviest, h.weight());
         for (const Hom<2>& h : c.net)
-            out_.texels.push_back({float(h[0] / heaviest), float(h[1] / heaviest), float(h.weight() / heaviest), 0});
+            out_.texels.push_back(
+                {float(h[0] / heaviest), float(h[1] / heaviest), float(h.weight() / heaviest), 0});
     }
     std::vector<std::array<float, 4>> bands;
     for (const auto& band : face.trim.bands) {
@@ -359,7 +248,8 @@ void BufferBuilder::write_records() {
                 map[2 * d + 1] = float((p.map[d].bow == 0 ? on.length() : 1) / by);
             }
         out_.texels.push_back(map);
-        out_.texels.push_back({float(p.map[0].bow), float(p.map[1].bow), float(p.distance / out_.size), p.trimmed ? 1.0f : 0.0f});
+        out_.texels.push_back({float(p.map[0].bow), float(p.map[1].bow), float(p.distance / out_.size),
+                               p.trimmed ? 1.0f : 0.0f});
         const std::array bend{float(p.bend[0] / out_.size), float(p.bend[1] / out_.size)};
         out_.texels.push_back({bend[0], bend[1], 0, 0});
         out_.bends.push_back(bend);
@@ -378,16 +268,16 @@ void BufferBuilder::write_records() {
 
 void BufferBuilder::write_seams() {
     const auto byte = [](double x) { return std::uint8_t(std::lround(255 * x)); };
-    for (const Seam& s : seams_) {
+    for (const EdgeSeam& s : seams_) {
         const auto bytes = [&](int face) -> std::array<std::uint8_t, 4> {
             const Colour& c = faces_[std::size_t(face)].colour;
             return {byte(c.r), byte(c.g), byte(c.b), 255};
         };
         for (std::size_t i = 1; i < s.points.size(); ++i) {
             out_.seams.push_back({floats(scene(s.points[i - 1])), floats(scene(s.points[i])),
-                                  floats(scene(s.edge[i - 1])), floats(scene(s.edge[i])), floats(s.normals[i - 1]),
-                                  floats(s.normals[i]), floats(s.others[i - 1]), floats(s.others[i]), bytes(s.face),
-                                  bytes(s.other)});
+                                  floats(scene(s.edge[i - 1])), floats(scene(s.edge[i])),
+                                  floats(s.normals[i - 1]), floats(s.normals[i]), floats(s.others[i - 1]),
+                                  floats(s.others[i]), bytes(s.face), bytes(s.other)});
             if (s.outline) out_.outlines.push_back({floats(scene(s.edge[i - 1])), floats(scene(s.edge[i]))});
         }
     }
@@ -395,17 +285,21 @@ void BufferBuilder::write_seams() {
 
 Result<SurfaceBuffers> BufferBuilder::run() {
     if (!(options_.edge_tolerance > 0 && std::isfinite(options_.edge_tolerance)))
-        return refuse(RefusalKind::invalid, "edge_tolerance", text(options_.edge_tolerance, " is not a positive distance"));
+        return refuse(RefusalKind::invalid, "edge_tolerance",
+                      text(options_.edge_tolerance, " is not a positive distance"));
     for (const Body& b : model_.bodies)
         if (b.colour)
             for (const int s : b.shells)
-                for (const FaceUse& u : model_.shells[std::size_t(s)].faces) body_colour_[std::size_t(u.face)] = *b.colour;
+                for (const FaceUse& u : model_.shells[std::size_t(s)].faces)
+                    body_colour_[std::size_t(u.face)] = *b.colour;
     for (std::size_t f = 0; f < model_.faces.size(); ++f)
         if (auto ok = add_face(f); !ok)
-            return refuse_within(text("face ", f, model_.faces[f].name.empty() ? "" : " ", model_.faces[f].name), ok.error());
+            return refuse_within(
+                text("face ", f, model_.faces[f].name.empty() ? "" : " ", model_.faces[f].name), ok.error());
     seams_ = seams_of(model_, options_.edge_tolerance);
     for (const TriangularFace& t : triangles_) {
-        if (t.patch.degree() < 1) return refuse(RefusalKind::no_answer, "triangles", "a triangle of degree 0 is a point");
+        if (t.patch.degree() < 1)
+            return refuse(RefusalKind::no_answer, "triangles", "a triangle of degree 0 is a point");
         add_triangle(t);
     }
     if (pieces_.empty()) return refuse(RefusalKind::no_answer, "model", "there is no face to draw");
@@ -416,7 +310,8 @@ Result<SurfaceBuffers> BufferBuilder::run() {
         for (const MonotoneCurve& c : f.trim.curves) texels += c.net.size();
     }
     if (texels > kMostTexels)
-        return refuse(RefusalKind::limit, "model", text("needs ", texels, " texels, more than ", kMostTexels));
+        return refuse(RefusalKind::limit, "model",
+                      text("needs ", texels, " texels, more than ", kMostTexels));
     place();
     write_coefficients();
     write_records();

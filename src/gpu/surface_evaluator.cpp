@@ -1,5 +1,5 @@
-// Batches of parameters by a compute shader: evaluate.comp. In single precision parameters are taken from the lower
-// end of the domain, so that where it lies costs no digits.
+// Batches of parameters by a compute shader: evaluate.comp. In single precision parameters are taken from the
+// lower end of the domain, so that where it lies costs no digits.
 #include "gpu/context.hpp"
 #include "gpu/gl_tools_detail.hpp"
 
@@ -73,7 +73,8 @@ Result<void> SurfaceEvaluator::State::evaluate(std::span<const Param<2>> at, std
         const auto part = at.subspan(begin, std::min(kMostAtOnce, at.size() - begin));
         parameters.clear();
         for (const Param<2>& u : part)
-            for (const std::size_t d : {std::size_t(0), std::size_t(1)}) parameters.push_back(Real(u[d] - from[d]));
+            for (const std::size_t d : {std::size_t(0), std::size_t(1)})
+                parameters.push_back(Real(u[d] - from[d]));
         out.assign(3 * part.size(), Real(0));
         fill_storage(2, buffers[2], parameters);
         fill_storage(3, buffers[3], out);
@@ -87,7 +88,8 @@ Result<void> SurfaceEvaluator::State::evaluate(std::span<const Param<2>> at, std
         glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto read = [&](GLuint buffer, std::span<Vec<3>> to) {
             glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
-            glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(out.size() * sizeof(Real)), out.data());
+            glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(out.size() * sizeof(Real)),
+                               out.data());
             for (std::size_t i = 0; i < part.size(); ++i)
                 for (std::size_t d = 0; d < 3; ++d) to[begin + i][int(d)] = double(out[3 * i + d]);
         };
@@ -111,8 +113,9 @@ Result<SurfaceEvaluator> SurfaceEvaluator::make(const Surface<Hom<3>>& surface, 
     auto state = std::make_unique<State>();
     state->context = std::move(*context);
     state->twice = precision == ShaderPrecision::twice;
-    auto program = link_program({{GL_COMPUTE_SHADER, shader_source(state->twice ? SurfaceShader::evaluate_double
-                                                                                : SurfaceShader::evaluate_float)}});
+    auto program =
+        link_program({{GL_COMPUTE_SHADER, shader_source(state->twice ? SurfaceShader::evaluate_double
+                                                                     : SurfaceShader::evaluate_float)}});
     if (program) state->program = *program;
     const Result<void> ready = !program       ? std::unexpected(program.error())
                                : state->twice ? state->load<double>(surface)
@@ -125,7 +128,8 @@ Result<SurfaceEvaluator> SurfaceEvaluator::make(const Surface<Hom<3>>& surface, 
 Result<void> SurfaceEvaluator::evaluate(std::span<const Param<2>> at, std::span<Vec<3>> points,
                                         std::span<Vec<3>> normals) {
     FF_REQUIRE(points.size() == at.size() && (normals.empty() || normals.size() == at.size()));
-    if (!state_->context->use()) return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
+    if (!state_->context->use())
+        return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
     const auto done = state_->twice ? state_->evaluate<double>(at, points, normals)
                                     : state_->evaluate<float>(at, points, normals);
     state_->context->release();

@@ -1,30 +1,31 @@
 // Surfaces on the graphics card, without a mesh.
 //
-// Idea. A piece becomes a patch of one control point, its number; the control stage reads how finely it has to be
-// cut, the evaluation stage its coefficients. The fragment stage trims. Without tessellation stages instances of a
-// grid do the same.
+// Idea. A piece becomes a patch of one control point, its number; the control stage reads how finely it has
+// to be cut, the evaluation stage its coefficients. The fragment stage trims. Without tessellation stages
+// instances of a grid do the same.
 //
-// No cracks. Within a face neighbouring pieces have the same points on their common side (surface_buffers.cpp,
-// bezier.glsl). Between faces: what is drawn of a face ends in the points of its triangles at the places of its
-// parameter curve, which are within `deviation` of that curve on the surface at the same parameter; the seam's segments
-// are within the tolerance of edges of it, and fill what lies between face and edge. A seam reaches beyond its
-// segments by both distances, and by rounding. So the outlines that two faces are drawn with, and all between
-// them, are covered by their two seams: if the pictures of the faces themselves leave no gap, nothing of what is behind
-// is seen. Seams lie deeper than the faces, by what these fall within the reach, so that they are hidden where faces
-// are drawn; beyond a silhouette they have the light of the face that is turned to the eye.
+// No cracks. Within a face neighbouring pieces have the same points on their common side
+// (surface_buffers.cpp, bezier.glsl). Between faces: what is drawn of a face ends in the points of its
+// triangles at the places of its parameter curve, which are within `deviation` of that curve on the surface
+// at the same parameter; the seam's segments are within the tolerance of edges of it, and fill what lies
+// between face and edge. A seam reaches beyond its segments by both distances, and by rounding. So the
+// outlines that two faces are drawn with, and all between them, are covered by their two seams: if the
+// pictures of the faces themselves leave no gap, nothing of what is behind is seen. Seams lie deeper than the
+// faces, by what these fall within the reach, so that they are hidden where faces are drawn; beyond a
+// silhouette they have the light of the face that is turned to the eye.
 //
-// Cost. A picture costs the evaluation of its vertices; nothing is made per view by the processor but lists of pieces
-// for grids.
+// Cost. A picture costs the evaluation of its vertices; nothing is made per view by the processor but lists
+// of pieces for grids.
 //
-// Accuracy. As surface_buffers.cpp; beyond the boundary of a face its seam may be seen by the reach, with that less
-// than half a pixel for the usual deviation of 0.2. Edges of one face have seams too: faces of surface models often
-// meet without sharing them.
+// Accuracy. As surface_buffers.cpp; beyond the boundary of a face its seam may be seen by the reach, with
+// that less than half a pixel for the usual deviation of 0.2. Edges of one face have seams too: faces of
+// surface models often meet without sharing them.
 //
-// Why not one polyline for an edge, to which both faces are drawn: fragments of the pieces would have to be cut off
-// or pulled there; a mesh is the better way then. Why not trimming a little outside: a face that is seen edge on
-// would reach far in front of or behind its neighbour, and untrimmed faces end with their surface.
-#include "gpu/context.hpp"
-#include "gpu/gl_tools_detail.hpp"
+// Why not one polyline for an edge, to which both faces are drawn: fragments of the pieces would have to be
+// cut off or pulled there; a mesh is the better way then. Why not trimming a little outside: a face that is
+// seen edge on would reach far in front of or behind its neighbour, and untrimmed faces end with their
+// surface.
+#include "gpu/surface_renderer_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -36,10 +37,9 @@ namespace freiform {
 
 namespace {
 
-constexpr int kRowTexels = 4096;           // of the texture that OpenGL ES reads
-constexpr double kMostCells = 1e8;         // of a picture
-constexpr double kRoundingReach = 0.05;    // pixels of the framebuffer
-constexpr float kSeamFarther = 1e-4f;      // in depth from -1 to 1
+constexpr double kMostCells = 1e8;          // of a picture
+constexpr double kRoundingReach = 0.05;     // pixels of the framebuffer
+constexpr float kSeamFarther = 1e-4f;       // in depth from -1 to 1
 constexpr float kOrientationBow = 1.7321f;  // the scene reaches no nearer to the eye: the corner of a cube
 
 struct Levels {
@@ -47,7 +47,9 @@ struct Levels {
 };
 // No fewer than the shaders find in floats.
 Levels levels_of(const std::array<float, 2>& bend, double density) {
-    const auto of = [&](double b) { return int(std::min(std::max(std::ceil(std::sqrt(b * density) * (1 + 1e-5)), 1.0), 1e6)); };
+    const auto of = [&](double b) {
+        return int(std::min(std::max(std::ceil(std::sqrt(b * density) * (1 + 1e-5)), 1.0), 1e6));
+    };
     return {of(bend[0]), of(bend[1])};
 }
 
@@ -58,114 +60,6 @@ int power_of_two(int n) {
 }
 
 }  // namespace
-
-struct SurfaceRenderer::State {
-    SurfaceBuffers data;
-    SurfacePipeline pipeline;
-    std::unique_ptr<GlContext> context;
-    GlPrograms programs{""};
-    GLuint patches = 0, triangle_patches = 0, grid = 0, seam = 0, captured = 0, captured_triangles = 0;
-    GLuint texture = 0, buffer = 0;
-    GLint hardware_level = 64;
-    VertexArray none, seams;
-    std::vector<SceneLine> outlines;
-    Canvas canvas;
-
-    GlslDialect dialect() const {
-        return pipeline == SurfacePipeline::grid ? GlslDialect::gles300 : GlslDialect::gl430;
-    }
-    GLenum target() const { return pipeline == SurfacePipeline::grid ? GL_TEXTURE_2D : GL_TEXTURE_BUFFER; }
-    Result<void> prepare();
-    Result<void> upload();
-    Result<GLuint> link(std::initializer_list<std::pair<GLenum, SurfaceShader>> shaders,
-                        const std::vector<const char*>& captures = {});
-    double density(const GpuScene& scene, double deviation) const;
-    Result<void> check_work(double density) const;
-    void set_pieces(GLuint program, const GpuScene& scene, double density) const;
-    int set_patches(GLuint program, const GpuScene& scene, double density, bool triangular) const;
-    void draw_patches(bool triangular, int cells) const;
-    void draw_grids(GLuint program, const GpuScene& scene, double density) const;
-    Result<void> draw_seams(const GpuScene& scene, const RenderOptions& options, double deviation) const;
-    Result<void> draw(const RenderOptions& options, double deviation);
-    Result<std::vector<SurfaceVertex>> capture(const RenderOptions& options, double deviation);
-};
-
-Result<GLuint> SurfaceRenderer::State::link(std::initializer_list<std::pair<GLenum, SurfaceShader>> shaders,
-                                            const std::vector<const char*>& captures) {
-    std::vector<ShaderPart> parts;
-    for (const auto& [stage, shader] : shaders) parts.push_back({stage, shader_source(shader, dialect())});
-    return link_program(parts, captures);
-}
-
-Result<void> SurfaceRenderer::State::upload() {
-    GLint most = 0;
-    glGenTextures(1, &texture);
-    if (pipeline == SurfacePipeline::tessellation) {
-        glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-        if (data.texels.size() > std::size_t(most))
-            return refuse(RefusalKind::limit, "OpenGL",
-                          text("needs ", data.texels.size(), " texels, the driver has ", most));
-        glGenBuffers(1, &buffer);
-        glBindBuffer(GL_TEXTURE_BUFFER, buffer);
-        glBufferData(GL_TEXTURE_BUFFER, GLsizeiptr(data.texels.size() * sizeof(data.texels[0])), data.texels.data(),
-                     GL_STATIC_DRAW);
-        glBindTexture(GL_TEXTURE_BUFFER, texture);
-        glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
-        return {};
-    }
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    const std::size_t rows = (data.texels.size() + kRowTexels - 1) / kRowTexels;
-    if (rows > std::size_t(most) || kRowTexels > most)
-        return refuse(RefusalKind::limit, "OpenGL", text("needs a texture of ", rows, " rows, the driver has ", most));
-    std::vector<std::array<float, 4>> padded = data.texels;
-    padded.resize(rows * kRowTexels);
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kRowTexels, GLsizei(rows), 0, GL_RGBA, GL_FLOAT, padded.data());
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
-    return {};
-}
-
-Result<void> SurfaceRenderer::State::prepare() {
-    using enum SurfaceShader;
-    programs = GlPrograms(version_line(dialect()));
-    const auto keep = [](GLuint& to, const Result<GLuint>& made) -> Result<void> {
-        if (!made) return std::unexpected(made.error());
-        to = *made;
-        return {};
-    };
-    if (pipeline == SurfacePipeline::grid) {
-        if (auto r = keep(grid, link({{GL_VERTEX_SHADER, grid_vertex}, {GL_FRAGMENT_SHADER, surface_fragment}})); !r)
-            return r;
-    } else {
-        glGetIntegerv(GL_MAX_TESS_GEN_LEVEL, &hardware_level);
-        const auto patch_program = [&](SurfaceShader evaluation) {
-            return link({{GL_VERTEX_SHADER, patch_vertex},
-                         {GL_TESS_CONTROL_SHADER, patch_control},
-                         {GL_TESS_EVALUATION_SHADER, evaluation},
-                         {GL_FRAGMENT_SHADER, surface_fragment}});
-        };
-        if (data.tensor_pieces > 0)
-            if (auto r = keep(patches, patch_program(patch_evaluation)); !r) return r;
-        if (data.triangles > 0)
-            if (auto r = keep(triangle_patches, patch_program(triangle_evaluation)); !r) return r;
-    }
-    if (auto r = keep(seam, link({{GL_VERTEX_SHADER, seam_vertex}, {GL_FRAGMENT_SHADER, seam_fragment}})); !r) return r;
-    if (auto r = upload(); !r) return r;
-    none.begin();
-    seams.begin();
-    seams.fill(GL_ARRAY_BUFFER, data.seams);
-    constexpr std::size_t kStride = sizeof(SeamSegment);
-    const std::array offsets{offsetof(SeamSegment, from),        offsetof(SeamSegment, to),
-                             offsetof(SeamSegment, edge_from),   offsetof(SeamSegment, edge_to),
-                             offsetof(SeamSegment, normal_from), offsetof(SeamSegment, normal_to),
-                             offsetof(SeamSegment, other_from),  offsetof(SeamSegment, other_to)};
-    for (GLuint i = 0; i < offsets.size(); ++i) seams.attribute(i, 3, GL_FLOAT, kStride, offsets[i], 1);
-    seams.attribute(8, 4, GL_UNSIGNED_BYTE, kStride, offsetof(SeamSegment, colour), 1);
-    seams.attribute(9, 4, GL_UNSIGNED_BYTE, kStride, offsetof(SeamSegment, other_colour), 1);
-    for (const OutlineSegment& o : data.outlines) outlines.push_back({o.from, o.to});
-    return {};
-}
 
 // Pixels of the framebuffer that a unit has where it is nearest to the eye, for one pixel of deviation.
 double SurfaceRenderer::State::density(const GpuScene& scene, double deviation) const {
@@ -196,8 +90,10 @@ void SurfaceRenderer::State::set_pieces(GLuint program, const GpuScene& scene, d
 }
 
 // Returns how many cells in each direction the piece has that needs most.
-int SurfaceRenderer::State::set_patches(GLuint program, const GpuScene& scene, double density, bool triangular) const {
-    const int first = triangular ? data.tensor_pieces : 0, count = triangular ? data.triangles : data.tensor_pieces;
+int SurfaceRenderer::State::set_patches(GLuint program, const GpuScene& scene, double density,
+                                        bool triangular) const {
+    const int first = triangular ? data.tensor_pieces : 0,
+              count = triangular ? data.triangles : data.tensor_pieces;
     set_pieces(program, scene, density);
     int most = 1;
     for (int i = first; i < first + count; ++i) {
@@ -238,7 +134,8 @@ void SurfaceRenderer::State::draw_grids(GLuint program, const GpuScene& scene, d
 Result<void> SurfaceRenderer::State::draw_seams(const GpuScene& scene, const RenderOptions& options,
                                                 double deviation) const {
     const double nearest = 1 / (1 - double(scene.inverse_distance) * kOrientationBow);
-    const double reach = options.supersampling * (deviation + data.edge_tolerance * scene.pixels * nearest) + kRoundingReach;
+    const double reach =
+        options.supersampling * (deviation + data.edge_tolerance * scene.pixels * nearest) + kRoundingReach;
     glUseProgram(seam);
     set_camera(seam, scene);
     set_light(seam, scene, options, options.painting == Painting::normals ? 2 : 0);
@@ -278,64 +175,13 @@ Result<void> SurfaceRenderer::State::draw(const RenderOptions& options, double d
     return draw_user_lines(programs, scene, options);
 }
 
-Result<std::vector<SurfaceVertex>> SurfaceRenderer::State::capture(const RenderOptions& options, double deviation) {
-    using enum SurfaceShader;
-    GpuScene scene = make_scene(data, options);
-    const double dense = density(scene, deviation);
-    if (auto r = check_work(dense); !r) return std::unexpected(r.error());
-    if (auto r = canvas.begin(options); !r) return std::unexpected(r.error());
-    scene.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    std::vector<SurfaceVertex> out;
-    glEnable(GL_RASTERIZER_DISCARD);
-    for (const bool triangular : {false, true}) {
-        if ((triangular ? data.triangles : data.tensor_pieces) == 0) continue;
-        GLuint& program = triangular ? captured_triangles : captured;
-        if (program == 0) {
-            auto made = link({{GL_VERTEX_SHADER, patch_vertex},
-                              {GL_TESS_CONTROL_SHADER, patch_control},
-                              {GL_TESS_EVALUATION_SHADER, triangular ? triangle_evaluation : patch_evaluation}},
-                             {"place", "direction", "at", "piece_number"});
-            if (!made) return std::unexpected(made.error());
-            program = *made;
-        }
-        // Once to count, once to keep.
-        GLuint query = 0, count = 0;
-        glGenQueries(1, &query);
-        const int cells = set_patches(program, scene, dense, triangular);
-        glBeginQuery(GL_PRIMITIVES_GENERATED, query);
-        draw_patches(triangular, cells);
-        glEndQuery(GL_PRIMITIVES_GENERATED);
-        glGetQueryObjectuiv(query, GL_QUERY_RESULT, &count);
-        glDeleteQueries(1, &query);
-        const std::size_t vertices = 3 * std::size_t(count), before = out.size();
-        static_assert(sizeof(SurfaceVertex) == 9 * sizeof(float));
-        GLuint kept = 0;
-        glGenBuffers(1, &kept);
-        glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, kept);
-        glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, GLsizeiptr(vertices * sizeof(SurfaceVertex)), nullptr, GL_STREAM_READ);
-        glBeginTransformFeedback(GL_TRIANGLES);
-        draw_patches(triangular, cells);
-        glEndTransformFeedback();
-        out.resize(before + vertices);
-        glGetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, GLsizeiptr(vertices * sizeof(SurfaceVertex)),
-                           out.data() + before);
-        glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-        glDeleteBuffers(1, &kept);
-    }
-    glDisable(GL_RASTERIZER_DISCARD);
-    if (const GLenum error = glGetError(); error != GL_NO_ERROR)
-        return refuse(RefusalKind::unavailable, "OpenGL", text("the driver reports error ", error));
-    return out;
-}
-
 SurfaceRenderer::SurfaceRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SurfaceRenderer::SurfaceRenderer(SurfaceRenderer&&) noexcept = default;
 SurfaceRenderer& SurfaceRenderer::operator=(SurfaceRenderer&&) noexcept = default;
 SurfaceRenderer::~SurfaceRenderer() = default;
 
 Result<SurfaceRenderer> SurfaceRenderer::make(SurfaceBuffers buffers, SurfacePipeline pipeline) {
-    auto context =
-        GlContext::make(pipeline == SurfacePipeline::grid ? GlVersion::es_30 : GlVersion::core_43);
+    auto context = GlContext::make(pipeline == SurfacePipeline::grid ? GlVersion::es_30 : GlVersion::core_43);
     if (!context) return std::unexpected(context.error());
     auto state = std::make_unique<State>();
     state->data = std::move(buffers);
@@ -352,10 +198,12 @@ namespace {
 Result<void> check_surface_options(const RenderOptions& options, double deviation) {
     if (auto r = check(options); !r) return r;
     if (!(deviation > 0 && std::isfinite(deviation)))
-        return refuse(RefusalKind::invalid, "deviation", text(deviation, " is not a positive number of pixels"));
+        return refuse(RefusalKind::invalid, "deviation",
+                      text(deviation, " is not a positive number of pixels"));
     if (options.painting == Painting::sequential || options.painting == Painting::diverging)
         return refuse(RefusalKind::unsupported, "painting", "fields are given at the vertices of a mesh");
-    if (options.edges) return refuse(RefusalKind::unsupported, "edges", "there is no mesh to draw the edges of");
+    if (options.edges)
+        return refuse(RefusalKind::unsupported, "edges", "there is no mesh to draw the edges of");
     return {};
 }
 
@@ -363,17 +211,20 @@ Result<void> check_surface_options(const RenderOptions& options, double deviatio
 
 Result<Image> SurfaceRenderer::draw(const RenderOptions& options, double deviation) {
     if (auto r = check_surface_options(options, deviation); !r) return std::unexpected(r.error());
-    if (!state_->context->use()) return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
+    if (!state_->context->use())
+        return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
     const auto drawn = state_->draw(options, deviation);
     auto image = drawn ? state_->canvas.finish(options) : Result<Image>(std::unexpected(drawn.error()));
     state_->context->release();
     return image;
 }
 
-Result<std::vector<SurfaceVertex>> SurfaceRenderer::triangles(const RenderOptions& options, double deviation) {
+Result<std::vector<SurfaceVertex>> SurfaceRenderer::triangles(const RenderOptions& options,
+                                                              double deviation) {
     FF_REQUIRE(state_->pipeline == SurfacePipeline::tessellation);
     if (auto r = check_surface_options(options, deviation); !r) return std::unexpected(r.error());
-    if (!state_->context->use()) return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
+    if (!state_->context->use())
+        return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
     auto out = state_->capture(options, deviation);
     state_->context->release();
     return out;

@@ -1,10 +1,10 @@
 // Segments along edges, by halving.
 //
-// Faces are drawn each by itself, within the deviation of their surfaces, so that between two of them, or beside
-// rounding, a gap of that size may show what is behind. Seams fill it: see surface_renderer.cpp for why that suffices.
-#include "gpu/surface_seams_detail.hpp"
-
+// Faces are drawn each by itself, within the deviation of their surfaces, so that between two of them, or
+// beside rounding, a gap of that size may show what is behind. Seams fill it: see surface_renderer.cpp for
+// why that suffices.
 #include "gpu/rational_pieces_detail.hpp"
+#include "gpu/surface_seams_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -35,7 +35,8 @@ std::vector<double> parameters_for(Interval on, int begin, double tolerance,
     };
     std::vector<Part> stack;
     for (int k = begin; k-- > 0;)
-        stack.push_back({on.lo + on.length() * k / begin, k + 1 == begin ? on.hi : on.lo + on.length() * (k + 1) / begin, 0});
+        stack.push_back({on.lo + on.length() * k / begin,
+                         k + 1 == begin ? on.hi : on.lo + on.length() * (k + 1) / begin, 0});
     std::vector<double> out{on.lo};
     while (!stack.empty()) {
         const Part p = stack.back();
@@ -75,12 +76,12 @@ int pieces_of(const Edge& edge, const std::vector<Use>& uses) {
 
 }  // namespace
 
-std::vector<Seam> seams_of(const Model& model, double tolerance) {
+std::vector<EdgeSeam> seams_of(const Model& model, double tolerance) {
     std::vector<std::vector<Use>> uses(model.edges.size());
     for (std::size_t f = 0; f < model.faces.size(); ++f)
         for (const Loop& loop : model.faces[f].loops)
             for (const Coedge& c : loop.coedges) uses[std::size_t(c.edge)].push_back({int(f), &c});
-    std::vector<Seam> out;
+    std::vector<EdgeSeam> out;
     for (std::size_t e = 0; e < model.edges.size(); ++e) {
         const Edge& edge = model.edges[e];
         if (edge.degenerate || uses[e].empty()) continue;
@@ -95,12 +96,16 @@ std::vector<Seam> seams_of(const Model& model, double tolerance) {
             });
         if (edge.curve) curves.emplace_back([&](double t) { return jet<0>(*edge.curve, t).value(); });
         const auto t = parameters_for(edge.range, pieces_of(edge, uses[e]), tolerance, curves);
-        const bool inner = std::ranges::all_of(uses[e], [&](const Use& u) { return u.face == uses[e][0].face; });
+        const bool inner =
+            std::ranges::all_of(uses[e], [&](const Use& u) { return u.face == uses[e][0].face; });
         const std::size_t first = out.size();
         for (std::size_t i = 0; i < uses[e].size(); ++i) {
             const Face& face = model.faces[std::size_t(uses[e][i].face)];
-            const Vec<2> inside = uv_of({uses[e][i].face, &face.loops[0].coedges[0]}, model.edges[std::size_t(face.loops[0].coedges[0].edge)].range.middle());
-            Seam seam{uses[e][i].face, uses[e][i].face, {}, {}, {}, {}, i == 0 && (uses[e].size() == 1 || !inner)};
+            const Vec<2> inside =
+                uv_of({uses[e][i].face, &face.loops[0].coedges[0]},
+                      model.edges[std::size_t(face.loops[0].coedges[0].edge)].range.middle());
+            EdgeSeam seam{
+                uses[e][i].face, uses[e][i].face, {}, {}, {}, {}, i == 0 && (uses[e].size() == 1 || !inner)};
             for (const double at : t) {
                 seam.points.push_back(curves[i](at));
                 seam.edge.push_back(edge.curve ? curves.back()(at) : curves[0](at));
@@ -110,7 +115,7 @@ std::vector<Seam> seams_of(const Model& model, double tolerance) {
         }
         for (std::size_t i = first; i < out.size(); ++i) {
             const auto other = std::find_if(out.begin() + std::ptrdiff_t(first), out.end(),
-                                            [&](const Seam& s) { return s.face != out[i].face; });
+                                            [&](const EdgeSeam& s) { return s.face != out[i].face; });
             out[i].others = other == out.end() ? out[i].normals : other->normals;
             if (other != out.end()) out[i].other = other->face;
         }
@@ -118,14 +123,14 @@ std::vector<Seam> seams_of(const Model& model, double tolerance) {
     return out;
 }
 
-std::vector<Seam> seams_of(const SimplexPatch<2, Hom<3>>& triangle, int face, double tolerance) {
-    std::vector<Seam> out;
+std::vector<EdgeSeam> seams_of(const SimplexPatch<2, Hom<3>>& triangle, int face, double tolerance) {
+    std::vector<EdgeSeam> out;
     for (int edge = 0; edge < 3; ++edge) {
         const auto uv = [edge](double t) {
             return edge == 0 ? Param<2>{1 - t, t} : edge == 1 ? Param<2>{0, 1 - t} : Param<2>{t, 0};
         };
         const auto point = [&](double t) { return triangle(uv(t)); };
-        Seam seam{face, face, {}, {}, {}, {}, true};
+        EdgeSeam seam{face, face, {}, {}, {}, {}, true};
         for (const double t : parameters_for({0, 1}, 1, tolerance, {point})) {
             seam.points.push_back(point(t));
             const auto n = normal(triangle, uv(t));

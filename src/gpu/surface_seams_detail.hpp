@@ -8,16 +8,16 @@
 
 namespace freiform {
 
-struct Seam {
-    int face = -1, other = -1;  // another face at the edge; without one, the same
+struct EdgeSeam {
+    int face = -1, other = -1;                          // another face at the edge; without one, the same
     std::vector<Vec<3>> points, edge, normals, others;  // on the face, on the edge, of the faces
-    bool outline = false;  // this one also stands for the edge as a line
+    bool outline = false;                               // this one also stands for the edge as a line
 };
 
 // Along all edges, once for each of their coedges. Segments leave the curves by about `tolerance` at most: an
 // estimate, from three points within each.
-std::vector<Seam> seams_of(const Model& model, double tolerance);
+std::vector<EdgeSeam> seams_of(const Model& model, double tolerance);
 // Along the sides of a triangle.
-std::vector<Seam> seams_of(const SimplexPatch<2, Hom<3>>& triangle, int face, double tolerance);
+std::vector<EdgeSeam> seams_of(const SimplexPatch<2, Hom<3>>& triangle, int face, double tolerance);
 
 }  // namespace freiform

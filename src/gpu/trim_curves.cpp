@@ -1,27 +1,28 @@
 // Trimming loops for graphics cards.
 //
-// Idea. Whether a fragment is inside its face is decided for that fragment, by the curves themselves: a ray in the
-// direction of u meets a curve that is monotone in u and v once or not at all, and halving finds out. Curves whose
-// box the ray misses, nearly all, cost one comparison each, and only those of one band are looked at.
+// Idea. Whether a fragment is inside its face is decided for that fragment, by the curves themselves: a ray
+// in the direction of u meets a curve that is monotone in u and v once or not at all, and halving finds out.
+// Curves whose box the ray misses, nearly all, cost one comparison each, and only those of one band are
+// looked at.
 //
-// Method. Parameter curves become rational Bezier pieces in the unit box of the face. A piece whose control points
-// increase or decrease in both coordinates is monotone (variation diminishing: a line u = c meets the curve no more
-// often than the polygon; weights are positive). Others are cut where a coordinate has an extremum, found by the
-// sign of its derivative, else in the middle. The ends of neighbours are made the same numbers, so that the half-open
-// rule lo <= v < hi counts every joint once; open joints get a segment. Curves along the sides of the box alone are
-// left out: then the face is the box.
+// Method. Parameter curves become rational Bezier pieces in the unit box of the face. A piece whose control
+// points increase or decrease in both coordinates is monotone (variation diminishing: a line u = c meets the
+// curve no more often than the polygon; weights are positive). Others are cut where a coordinate has an
+// extremum, found by the sign of its derivative, else in the middle. The ends of neighbours are made the same
+// numbers, so that the half-open rule lo <= v < hi counts every joint once; open joints get a segment. Curves
+// along the sides of the box alone are left out: then the face is the box.
 //
 // Cost. Pieces times their degree; bands as many as curves, up to 1024.
 //
-// Accuracy. In shaders parameters and curves are floats in the unit box: the boundary is off by some 2^-23 of the
-// face, which a picture of 16384 pixels does not show.
+// Accuracy. In shaders parameters and curves are floats in the unit box: the boundary is off by some 2^-23 of
+// the face, which a picture of 16384 pixels does not show.
 //
-// References: [Schollmeyer Froehlich 2009], who trim by monotone curves in bands, too; [Nishita Sederberg Kakimoto 1990].
+// References: [Schollmeyer Froehlich 2009], who trim by monotone curves in bands, too; [Nishita Sederberg
+// Kakimoto 1990].
 //
 // Why not a texture of the trimmed domain: it is as coarse as its texels, and zooming in shows them.
-#include "gpu/trim_curves_detail.hpp"
-
 #include "gpu/rational_pieces_detail.hpp"
+#include "gpu/trim_curves_detail.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +31,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kFlatStep = 0x1p-26;    // of the unit box, below what floats show: control points may step back
+constexpr double kFlatStep =
+    0x1p-26;  // of the unit box, below what floats show: control points may step back
 constexpr double kSmallCurve = 0x1p-26;  // what is smaller is its chord
 constexpr std::size_t kMostCurves = 100'000, kMostBands = 1024;
 constexpr int kSamples = 16;

@@ -14,8 +14,8 @@ struct MonotoneCurve {
 };
 
 struct TrimCurves {
-    Box<2> box;                         // of the loops, in parameters of the surface
-    std::vector<MonotoneCurve> curves;  // empty: the face is the whole box
+    Box<2> box;                           // of the loops, in parameters of the surface
+    std::vector<MonotoneCurve> curves;    // empty: the face is the whole box
     std::vector<std::vector<int>> bands;  // of equal height in v: the curves that meet each
 };
 

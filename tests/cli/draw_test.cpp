@@ -109,7 +109,8 @@ TEST_F(Draw, surfaces_are_drawn_by_shaders_or_the_reason_is_said) {
     const Ran edges = drawn({"--gpu", "--edges"});
     EXPECT_EQ(edges.code, 0);
     EXPECT_NE(edges.err.find("drawn as a mesh: --gpu: --edges"), std::string::npos) << edges.err;
-    const std::string triangle = R"({"type": "triangle", "degree": 2, "points": [[0,0,0],[1,0,0.5],[0,1,0.5],[2,0,0],[1,1,0.5],[0,2,0]]})";
+    const std::string triangle =
+        R"({"type": "triangle", "degree": 2, "points": [[0,0,0],[1,0,0.5],[0,1,0.5],[2,0,0],[1,1,0.5],[0,2,0]]})";
     EXPECT_EQ(run({"draw", "-", "-o", "t.png", "--gpu"}, triangle).code, 0);
 }
 

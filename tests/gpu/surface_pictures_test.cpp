@@ -27,7 +27,9 @@ Model cut_roof() {
         return Curve<Vec<2>>::trusted({basis}, Net<1, Vec<2>>({2}, {a, b}));
     };
     const std::vector<std::vector<CurveGeometry<2>>> loops{
-        {side({{0, 0}}, {{1, 0}}), side({{1, 0}}, {{1, 1}}), side({{1, 1}}, {{0, 1}}), side({{0, 1}}, {{0, 0}})}, {hole}};
+        {side({{0, 0}}, {{1, 0}}), side({{1, 0}}, {{1, 1}}), side({{1, 1}}, {{0, 1}}),
+         side({{0, 1}}, {{0, 0}})},
+        {hole}};
     EXPECT_TRUE(builder.add_trimmed(flat({{{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}}), loops));
     EXPECT_TRUE(builder.add(flat({{{{1, 0, 0}}, {{1, 1, 0}}, {{1.5, 0, 0.8}}, {{1.5, 1, 0.8}}}})));
     return *std::move(builder).finish();
@@ -47,7 +49,8 @@ protected:
     Result<Image> picture(Model model) {
         for (Face& f : model.faces) f.colour.reset();
         for (Body& b : model.bodies) b.colour.reset();
-        auto b = surface_buffers(model, {.edge_tolerance = summary(model).box.diagonal() / 16000, .colour = options_.colour});
+        auto b = surface_buffers(
+            model, {.edge_tolerance = summary(model).box.diagonal() / 16000, .colour = options_.colour});
         if (!b) return std::unexpected(b.error());
         extent_ = b->extent;
         options_.frame = extent_;
@@ -72,8 +75,8 @@ protected:
     struct Compared {
         int cracked = 0, different = 0, surface = 0;
     };
-    // Cracked: background where the mesh has none around. Different: darker or lighter than everything around in the
-    // other picture, by more than `by`.
+    // Cracked: background where the mesh has none around. Different: darker or lighter than everything around
+    // in the other picture, by more than `by`.
     static Compared compared(const Image& gpu, const Image& mesh, int by) {
         Compared out;
         const auto is_beyond = [&](const Image& a, const Image& b, int x, int y) {
@@ -99,7 +102,8 @@ protected:
             }
         return out;
     }
-    void expect_same(const Model& model, const std::string& name, std::initializer_list<const char*> views, int by = 16) {
+    void expect_same(const Model& model, const std::string& name, std::initializer_list<const char*> views,
+                     int by = 16) {
         for (const char* view : views) {
             options_.view = *parse_view(view);
             const auto gpu = picture(model);
@@ -140,9 +144,11 @@ TEST_P(SurfacePictures, show_models_of_the_corpus_without_cracks) {
     setenv("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY, 0);
     if (!std::getenv("FREIFORM_MODELS")) GTEST_SKIP() << "FREIFORM_MODELS=1 compares pictures of ten models";
     options_.width = 400, options_.height = 300;
-    for (const char* name : {"step/linkrods.step", "step/screw.step", "step/as1-oc-214.stp", "step/trj4_k1_geo-tc-214.stp",
-                             "step/conical-surface.step", "step/bug28414_bug_toroidal_surface.stp", "step/red_cube_blue_cylinder.step",
-                             "brep/CrankArm.brep", "brep/Ball.brep", "iges/bearing.iges", "bpt/teaset_teaspoon.bpt"}) {
+    for (const char* name :
+         {"step/linkrods.step", "step/screw.step", "step/as1-oc-214.stp", "step/trj4_k1_geo-tc-214.stp",
+          "step/conical-surface.step", "step/bug28414_bug_toroidal_surface.stp",
+          "step/red_cube_blue_cylinder.step", "brep/CrankArm.brep", "brep/Ball.brep", "iges/bearing.iges",
+          "bpt/teaset_teaspoon.bpt"}) {
         FF_CORPUS_OR_SKIP(path, name);
         const auto document = read_any(path.string());
         if (!document) GTEST_SKIP() << document.error().message;
@@ -152,8 +158,9 @@ TEST_P(SurfacePictures, show_models_of_the_corpus_without_cracks) {
     }
 }
 
-// The picture of a trimmed square from above against the exact region: wherever a pixel is more than half a pixel
-// inside or outside, it is so in the picture, and the areas agree by less than four tenths along the boundary.
+// The picture of a trimmed square from above against the exact region: wherever a pixel is more than half a
+// pixel inside or outside, it is so in the picture, and the areas agree by less than four tenths along the
+// boundary.
 TEST_P(SurfacePictures, trim_within_half_a_pixel) {
     test::Random random(7);
     for (int round = 0; round < 2; ++round) {
@@ -169,9 +176,11 @@ TEST_P(SurfacePictures, trim_within_half_a_pixel) {
             const double r = random.real(0.15, 0.48), a = 2 * test::kPi * i / 9;
             net.push_back({{0.5 + r * std::cos(a), 0.5 + r * std::sin(a)}});
         }
-        std::vector<std::vector<CurveGeometry<2>>> loops{{Curve<Vec<2>>::trusted({ring}, Net<1, Vec<2>>({9}, net))},
-                                                         {Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.07, 0.02}}, {{-0.01, 0.05}}}}};
-        const auto square = *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
+        std::vector<std::vector<CurveGeometry<2>>> loops{
+            {Curve<Vec<2>>::trusted({ring}, Net<1, Vec<2>>({9}, net))},
+            {Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.07, 0.02}}, {{-0.01, 0.05}}}}};
+        const auto square = *Surface<Vec<3>>::make(
+            {basis, basis}, Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
         ASSERT_TRUE(builder.add_trimmed(square, loops));
         options_.view = *parse_view("top");
         options_.supersampling = 1;
@@ -183,7 +192,8 @@ TEST_P(SurfacePictures, trim_within_half_a_pixel) {
         Box<3> box;
         for (const Vec<3>& p : extent_) box.add(p);
         const double margin = 2 * options_.margin * options_.height;
-        const double scale = std::min((options_.width - margin) / (box.hi[0] - box.lo[0]), (options_.height - margin) / (box.hi[1] - box.lo[1]));
+        const double scale = std::min((options_.width - margin) / (box.hi[0] - box.lo[0]),
+                                      (options_.height - margin) / (box.hi[1] - box.lo[1]));
         const auto plane_at = [&](double x, double y) {
             return Vec<2>{{(x - options_.width / 2.0) / scale + (box.lo[0] + box.hi[0]) / 2,
                            (options_.height / 2.0 - y) / scale + (box.lo[1] + box.hi[1]) / 2}};
@@ -199,12 +209,15 @@ TEST_P(SurfacePictures, trim_within_half_a_pixel) {
                 int in = 0, around = 0;
                 for (int i = 0; i < kGrid; ++i)
                     for (int j = 0; j < kGrid; ++j)
-                        in += query.at(plane_at(x + (i + 0.5) / kGrid, y + (j + 0.5) / kGrid)).place != Place::outside;
+                        in += query.at(plane_at(x + (i + 0.5) / kGrid, y + (j + 0.5) / kGrid)).place !=
+                              Place::outside;
                 exact += double(in) / (kGrid * kGrid);
                 // The pixel grown by half a pixel.
                 for (int i = 0; i <= kGrid; ++i)
                     for (int j = 0; j <= kGrid; ++j)
-                        around += query.at(plane_at(x - 0.5 + 2.0 * i / kGrid, y - 0.5 + 2.0 * j / kGrid)).place != Place::outside;
+                        around +=
+                            query.at(plane_at(x - 0.5 + 2.0 * i / kGrid, y - 0.5 + 2.0 * j / kGrid)).place !=
+                            Place::outside;
                 boundary += in > 0 && in < kGrid * kGrid;
                 if (around == 0) EXPECT_LT(drawn_share, 0.02) << x << " " << y;
                 if (around == (kGrid + 1) * (kGrid + 1)) EXPECT_GT(drawn_share, 0.9) << x << " " << y;
@@ -214,8 +227,11 @@ TEST_P(SurfacePictures, trim_within_half_a_pixel) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pipelines, SurfacePictures, testing::Values(SurfacePipeline::tessellation, SurfacePipeline::grid),
-                         [](const auto& made) { return made.param == SurfacePipeline::grid ? "grid" : "tessellation"; });
+INSTANTIATE_TEST_SUITE_P(Pipelines, SurfacePictures,
+                         testing::Values(SurfacePipeline::tessellation, SurfacePipeline::grid),
+                         [](const auto& made) {
+                             return made.param == SurfacePipeline::grid ? "grid" : "tessellation";
+                         });
 
 }  // namespace
 }  // namespace freiform

@@ -15,12 +15,13 @@ namespace {
 
 // A surface over a grid whose heights and weights are random: without folds.
 Surface<Hom<3>> hills(test::Random& random, int p, int q, int spans, double height = 0.2) {
-    const std::array bases{*BSplineBasis::clamped_uniform(p, p + spans), *BSplineBasis::clamped_uniform(q, q + spans)};
+    const std::array bases{*BSplineBasis::clamped_uniform(p, p + spans),
+                           *BSplineBasis::clamped_uniform(q, q + spans)};
     Net<2, Hom<3>> net({p + spans, q + spans});
     each_index(net.extent(), [&](const Index<2>& at) {
         net.view()(at) = weighted(Vec<3>{{double(at[0]) / (p + spans - 1), double(at[1]) / (q + spans - 1),
-                                   random.real(-height, height)}},
-                           random.real(0.5, 2));
+                                          random.real(-height, height)}},
+                                  random.real(0.5, 2));
     });
     return *Surface<Hom<3>>::make(bases, net);
 }
@@ -43,7 +44,8 @@ protected:
         return test::must(surface_buffers(model, {.edge_tolerance = summary(model).box.diagonal() / 8000}));
     }
     // Of a whole face that is not trimmed: the parameter of a place in one of its pieces.
-    static Vec<2> parameter_of(const SurfaceBuffers& b, const std::array<Interval, 2>& on, int piece, const std::array<float, 2>& at) {
+    static Vec<2> parameter_of(const SurfaceBuffers& b, const std::array<Interval, 2>& on, int piece,
+                               const std::array<float, 2>& at) {
         const auto* record = &b.texels[std::size_t(b.pieces + 4 * piece)];
         Vec<2> uv;
         for (const std::size_t d : {std::size_t(0), std::size_t(1)}) {
@@ -68,13 +70,15 @@ protected:
             if (b.texels[std::size_t(b.pieces + 4 * v.piece)][1] != 0) continue;
             const Vec<2> uv = parameter_of(b, on, v.piece, v.at);
             const Vec<3> p = (1 / b.size) * (jet<0>(model.faces[0].surface, uv.c).value() - b.middle);
-            const Vec<3> found{{v.position[0], v.position[1], v.position[2]}}, n{{v.normal[0], v.normal[1], v.normal[2]}};
+            const Vec<3> found{{v.position[0], v.position[1], v.position[2]}},
+                n{{v.normal[0], v.normal[1], v.normal[2]}};
             off.position = std::max(off.position, norm(found - p));
             // Of this piece, where a knot lets the normal jump.
             std::array<float, 2> beside = v.at;
             for (float& x : beside) x = std::clamp(x, 0x1p-22f, 1 - 0x1p-22f);
             const Vec<3> expected = normal(model.faces[0].surface, parameter_of(b, on, v.piece, beside).c);
-            if (expected != Vec<3>{}) off.angle = std::max(off.angle, norm(n - (model.faces[0].reversed ? -expected : expected)));
+            if (expected != Vec<3>{})
+                off.angle = std::max(off.angle, norm(n - (model.faces[0].reversed ? -expected : expected)));
             ++off.compared;
         }
         return off;
@@ -109,7 +113,8 @@ TEST_F(Surfaces, analytic_surfaces_have_the_points_and_normals_of_the_processor)
     }
     // An offset has the normals of its base.
     Model shell = test::torus(3.0, 1.0);
-    shell.faces[0].surface = OffsetSurface{std::make_shared<const SurfaceGeometry>(shell.faces[0].surface), 0.25};
+    shell.faces[0].surface =
+        OffsetSurface{std::make_shared<const SurfaceGeometry>(shell.faces[0].surface), 0.25};
     for (Edge& e : shell.edges) e.curve.reset();
     const Off off = compare(shell, {{{0, turn}, {0, turn}}});
     EXPECT_LT(off.position, kPositions);
@@ -194,7 +199,8 @@ TEST_F(Surfaces, pieces_that_need_more_than_the_hardware_has_are_cut_into_cells)
     for (std::size_t i = 0; i < v.size(); i += 3) {
         for (std::size_t k = i; k < i + 3; ++k) ++places[v[k].at[0]];
         area += ((v[i + 1].at[0] - v[i].at[0]) * double(v[i + 2].at[1] - v[i].at[1]) -
-                 (v[i + 2].at[0] - v[i].at[0]) * double(v[i + 1].at[1] - v[i].at[1])) / 2;
+                 (v[i + 2].at[0] - v[i].at[0]) * double(v[i + 1].at[1] - v[i].at[1])) /
+                2;
     }
     EXPECT_GT(places.size(), 65u);
     EXPECT_NEAR(area, 1, 1e-5) << "the whole square, once";
@@ -209,7 +215,8 @@ TEST_F(Surfaces, triangular_patches_are_drawn) {
                 net.push_back(weighted(Vec<3>{{double(row - k) / n, double(k) / n, random.real(-0.2, 0.2)}},
                                        random.real(0.5, 2)));
         const TriangularFace face{*SimplexPatch<2, Hom<3>>::make(n, net), {}};
-        const SurfaceBuffers b = test::must(surface_buffers(Model{}, std::span(&face, 1), {.edge_tolerance = 1e-3}));
+        const SurfaceBuffers b =
+            test::must(surface_buffers(Model{}, std::span(&face, 1), {.edge_tolerance = 1e-3}));
         auto renderer = test::must(SurfaceRenderer::make(b));
         int compared = 0;
         for (const SurfaceVertex& v : test::must(renderer.triangles(options_, n == 5 ? 0.2 : 4))) {
@@ -260,7 +267,8 @@ TEST_F(Surfaces, what_cannot_be_drawn_is_refused) {
     options_.painting = Painting::diverging;
     test::expect_refusal(renderer.draw(options_), RefusalKind::unsupported, "painting");
     test::expect_refusal(surface_buffers(Model{}, {.edge_tolerance = 1}), RefusalKind::no_answer, "model");
-    test::expect_refusal(surface_buffers(test::torus(3.0, 1.0), {.edge_tolerance = 0}), RefusalKind::invalid, "edge_tolerance");
+    test::expect_refusal(surface_buffers(test::torus(3.0, 1.0), {.edge_tolerance = 0}), RefusalKind::invalid,
+                         "edge_tolerance");
 }
 
 }  // namespace

@@ -39,9 +39,9 @@ struct RenderOptions {
     Interval range{0, 1};             // what the map runs over; diverging: 0 has the middle colour
     std::span<const RenderLines> lines{};
     std::span<const Vec<3>> frame{};  // what the picture is fitted to instead of all that is drawn
-    double room = 0;        // pixels at the right that the model leaves free
-    int supersampling = 2;  // 1 to 4 per direction, on top of what the hardware smooths by itself
-    double margin = 0.04;   // of the smaller side of the picture, in [0, 0.4]
+    double room = 0;                  // pixels at the right that the model leaves free
+    int supersampling = 2;            // 1 to 4 per direction, on top of what the hardware smooths by itself
+    double margin = 0.04;             // of the smaller side of the picture, in [0, 0.4]
     Colour colour{0.60, 0.67, 0.76, 1};                                // of parts without a colour
     Colour top{0.985, 0.988, 0.992, 1}, bottom{0.90, 0.915, 0.93, 1};  // background
 };

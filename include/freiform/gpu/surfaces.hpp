@@ -30,11 +30,11 @@ struct SurfaceBuffers {
     int pieces = 0, faces = 0;                 // where their records begin
     int tensor_pieces = 0, triangles = 0;      // the tensor product pieces come first
     int face_count = 0;
-    double edge_tolerance = 0;  // as asked for, in the scene
-    std::vector<std::array<float, 2>> bends;   // of each piece: levels are the roots of it times `density`
-    std::vector<SeamSegment> seams;            // along all edges, once for each face
-    std::vector<OutlineSegment> outlines;      // edges between faces, and open ones
-    std::vector<Vec<3>> extent;                // points of the surfaces, for fitting a view; model units
+    double edge_tolerance = 0;                // as asked for, in the scene
+    std::vector<std::array<float, 2>> bends;  // of each piece: levels are the roots of it times `density`
+    std::vector<SeamSegment> seams;           // along all edges, once for each face
+    std::vector<OutlineSegment> outlines;     // edges between faces, and open ones
+    std::vector<Vec<3>> extent;               // points of the surfaces, for fitting a view; model units
 };
 
 // A triangular patch beside the faces of a model.
@@ -58,8 +58,18 @@ inline Result<SurfaceBuffers> surface_buffers(const Model& model, const SurfaceB
 
 // The sources, complete with their version line; `grid` needs no tessellation stage.
 enum class GlslDialect { gl430, gles300 };
-enum class SurfaceShader { patch_vertex, patch_control, patch_evaluation, triangle_evaluation, grid_vertex,
-                           surface_fragment, seam_vertex, seam_fragment, evaluate_float, evaluate_double };
+enum class SurfaceShader {
+    patch_vertex,
+    patch_control,
+    patch_evaluation,
+    triangle_evaluation,
+    grid_vertex,
+    surface_fragment,
+    seam_vertex,
+    seam_fragment,
+    evaluate_float,
+    evaluate_double
+};
 std::string shader_source(SurfaceShader shader, GlslDialect dialect = GlslDialect::gl430);
 
 // tessellation: OpenGL 4.3; grid: OpenGL ES 3.0, which is WebGL 2.
@@ -72,8 +82,8 @@ struct SurfaceVertex {
     int piece = 0;
 };
 
-// Draws the same surfaces from many views. Uses OpenGL in the thread that calls, and leaves there the context that
-// was current.
+// Draws the same surfaces from many views. Uses OpenGL in the thread that calls, and leaves there the context
+// that was current.
 class SurfaceRenderer {
 public:
     static Result<SurfaceRenderer> make(SurfaceBuffers buffers,
@@ -82,8 +92,8 @@ public:
     SurfaceRenderer& operator=(SurfaceRenderer&&) noexcept;
     ~SurfaceRenderer();
 
-    // As render() of a mesh that is within `deviation` pixels of the picture, > 0, of the surfaces; fields and
-    // edges of triangles are refused.
+    // As render() of a mesh that is within `deviation` pixels of the picture, > 0, of the surfaces; fields
+    // and edges of triangles are refused.
     Result<Image> draw(const RenderOptions& options, double deviation = 0.2);
     // The triangles of that picture, three vertices each. REQUIRES SurfacePipeline::tessellation.
     Result<std::vector<SurfaceVertex>> triangles(const RenderOptions& options, double deviation = 0.2);
@@ -94,9 +104,9 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// Of many parameters by a compute shader, as PreparedPatch does it on the processor: `at` in the domain, which is
-// not checked; `normals` empty or as many. REQUIRES points.size() == at.size(). Refuses (unavailable) where
-// there is no OpenGL 4.3, or no double in shaders.
+// Of many parameters by a compute shader, as PreparedPatch does it on the processor: `at` in the domain,
+// which is not checked; `normals` empty or as many. REQUIRES points.size() == at.size(). Refuses
+// (unavailable) where there is no OpenGL 4.3, or no double in shaders.
 enum class ShaderPrecision { single, twice };
 class SurfaceEvaluator {
 public:
