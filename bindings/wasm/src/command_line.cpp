@@ -78,6 +78,28 @@ std::optional<std::string> refusal_of_word(const CLI::Option& o, const std::stri
     return text(o.name(), ": ", word, " not in {", listed(known), "}");
 }
 
+std::string help_of(const CLI::App& program) {
+    std::string s = text(program.description, "\n\nCommands:\n");
+    for (const auto& c : program.commands)
+        s += text("  ", c->name, std::string(14 - std::min<std::size_t>(13, c->name.size()), ' '),
+                  c->description, "\n");
+    return text(s, "\n", program.footer, "\n");
+}
+
+std::string help_of_command(const CLI::App& c) {
+    std::string s = text(c.description, "\nUsage: freiform ", c.name, " [OPTIONS]");
+    for (const auto& o : c.options)
+        if (o->is_argument()) s += text(" ", o->name());
+    s += "\n\n";
+    for (const auto& o : c.options) {
+        std::string left =
+            text("  ", o->name(), o->is_argument() ? "" : " ", o->is_argument() ? "" : o->shown_as);
+        left.resize(std::max<std::size_t>(30, left.size() + 1), ' ');
+        s += text(left, o->help, o->is_required ? " (required)" : "", "\n");
+    }
+    return text(s, "\nExamples:\n", c.footer, "\n");
+}
+
 // Understands the arguments of one command.
 struct Reader {
     const CLI::App& command;
@@ -285,8 +307,10 @@ Command CommandLine::add(std::string_view name, std::string_view description, st
 
 std::expected<std::string, std::string> CommandLine::understand(std::vector<std::string> arguments) {
     if (arguments.size() == 1 && arguments[0] == "--describe") return described(*app_);
+    const bool help =
+        std::ranges::any_of(arguments, [](const auto& a) { return a == "-h" || a == "--help"; });
     const auto first = std::ranges::find_if_not(arguments, is_option);
-    if (first == arguments.end()) return "";
+    if (first == arguments.end()) return help ? help_of(*app_) : "";
     const auto used = std::ranges::find(app_->commands, *first, [](const auto& c) { return c->name; });
     if (used == app_->commands.end()) {
         std::vector<std::string_view> known;
@@ -294,6 +318,7 @@ std::expected<std::string, std::string> CommandLine::understand(std::vector<std:
         return std::unexpected(text("there is no command \"", *first, "\"", did_you_mean(*first, known),
                                     " (freiform --help lists them)"));
     }
+    if (help) return help_of_command(**used);
     arguments.erase(first);
     if (auto wrong = Reader{**used, arguments}.read()) return std::unexpected(*std::move(wrong));
     if ((*used)->act) (*used)->act();
