@@ -264,7 +264,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
     auto made = attempt(*(*s)->chart);
     if (!made) {
         if (const auto turned = other_poles((*s)->surface, on_edges)) {
-            if (auto again = attempt(Chart(*turned, tolerance_))) return again; else if(getenv("DBG")) fprintf(stderr,"again: %s %s\n",again.error().where.c_str(),again.error().message.c_str());
+            if (auto again = attempt(Chart(*turned, tolerance_))) return again;
         }
     }
     return made;

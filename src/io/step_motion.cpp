@@ -4,6 +4,7 @@
 // curve of a face fits the moved face, too. A mirror turns the other way about a mirrored axis; the axis of a
 // revolution is mirrored and reversed.
 #include "step_geometry.hpp"
+#include "step_trace.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -154,6 +155,28 @@ double parameter_of(const CurveGeometry<3>& curve, const Vec<3>& p, double& dist
         curve);
     distance = norm(jet<0>(curve, t).value() - p);
     return t;
+}
+
+CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by) {
+    return std::visit(
+        [&](const auto& c) -> CurveGeometry<2> {
+            using C = std::remove_cvref_t<decltype(c)>;
+            if constexpr (std::same_as<C, Line<2>>) {
+                return Line<2>{c.origin + by, c.direction};
+            } else if constexpr (std::same_as<C, Conic<2>>) {
+                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
+            } else {
+                auto net = c.net();
+                for (auto& p : net.flat()) {
+                    if constexpr (std::same_as<C, Curve<Vec<2>>>)
+                        p += by;
+                    else
+                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
+                }
+                return C::trusted(c.bases(), std::move(net));
+            }
+        },
+        curve);
 }
 
 }  // namespace freiform::step

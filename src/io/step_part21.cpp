@@ -18,18 +18,6 @@ namespace freiform::step {
 
 namespace {
 
-#define FF_STEP_STRING(name) #name,
-constexpr std::string_view kTypeNames[] = {FF_STEP_TYPES(FF_STEP_STRING)};
-#undef FF_STEP_STRING
-#undef FF_STEP_TYPES
-static_assert(std::is_sorted(std::begin(kTypeNames), std::end(kTypeNames)));
-
-Type type_named(std::string_view name) {
-    const auto* at = std::lower_bound(std::begin(kTypeNames), std::end(kTypeNames), name);
-    if (at == std::end(kTypeNames) || *at != name) return Type::unknown;
-    return Type(at - std::begin(kTypeNames) + 1);
-}
-
 constexpr std::size_t kMostRefusals = 100;
 
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -378,24 +366,6 @@ private:
 };
 
 }  // namespace
-
-std::uint32_t File::part(std::uint32_t i, Type wanted) const {
-    const Instance& x = instances[i];
-    for (std::uint32_t k = x.first, end = x.first + x.tokens; k + 1 < end; k += 2 + tokens[k + 1].size)
-        if (tokens[k].type == wanted) return k + 1;
-    return kMissing;
-}
-
-std::string File::label(std::uint32_t i) const {
-    const Instance& x = instances[i];
-    std::string names;
-    for (std::uint32_t k = x.first, end = x.first + x.tokens; k + 1 < end; k += 2 + tokens[k + 1].size) {
-        if (names.size() > 60) continue;
-        if (!names.empty()) names += '&';
-        names += text_of(tokens[k]).substr(0, 80);
-    }
-    return text("#", x.id, " ", names);
-}
 
 Result<File> parse(std::string_view bytes) {
     if (bytes.size() >= std::numeric_limits<std::uint32_t>::max())

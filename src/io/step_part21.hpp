@@ -140,6 +140,9 @@ enum class TokenKind : std::uint8_t {
     external,   // <...>, @1, a constant: what other files hold
 };
 
+// unknown if it is not among them.
+Type type_named(std::string_view name);
+
 struct Token {
     TokenKind kind = TokenKind::omitted;
     Type type = Type::unknown;  // of a keyword

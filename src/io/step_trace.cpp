@@ -305,10 +305,9 @@ private:
                 const double t = a.t + x * (b.t - a.t);
                 if (good) good = holds(hermite(a, b, t), t, out.gap);
             }
+            TraceNode m;
             if (!good && done.size() + todo.size() <= std::size_t(kMostPieces) &&
-                b.t - a.t > 1e-7 * on_.length()) {
-                TraceNode m;
-                if (!node(a.t + (b.t - a.t) / 2, a, m)) return lost();
+                b.t - a.t > 1e-7 * on_.length() && advance(a, a.t + (b.t - a.t) / 2, m)) {
                 todo.push_back(m);
                 continue;
             }
@@ -368,28 +367,6 @@ private:
 
 Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy) {
     return Tracer(chart, c, on, accuracy).run();
-}
-
-CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by) {
-    return std::visit(
-        [&](const auto& c) -> CurveGeometry<2> {
-            using C = std::remove_cvref_t<decltype(c)>;
-            if constexpr (std::same_as<C, Line<2>>) {
-                return Line<2>{c.origin + by, c.direction};
-            } else if constexpr (std::same_as<C, Conic<2>>) {
-                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
-            } else {
-                auto net = c.net();
-                for (auto& p : net.flat()) {
-                    if constexpr (std::same_as<C, Curve<Vec<2>>>)
-                        p += by;
-                    else
-                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
-                }
-                return C::trusted(c.bases(), std::move(net));
-            }
-        },
-        curve);
 }
 
 }  // namespace freiform::step

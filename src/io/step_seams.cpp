@@ -1,0 +1,257 @@
+// Seams: new edges that make the boundaries of faces closed chains of parameters.
+//
+// Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice, one
+// period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest in the
+// period, so that it is an isoparametric line where there is one, and keeps away from holes. The rectangle of
+// parameters that a surface without any boundary gets has seams and poles as its sides.
+#include "step_loops.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+// The chain from another of its edges on.
+void LoopBuilder::turn_to(Chain& c, std::size_t first) const {
+    std::rotate(c.uses.begin(), c.uses.begin() + std::ptrdiff_t(first), c.uses.end());
+    std::vector<Use> again;
+    for (Use& u : c.uses) attach(again, std::move(u));
+    c.uses = std::move(again);
+    measure(c);
+}
+
+void LoopBuilder::turn_around(Chain& c) const {
+    std::reverse(c.uses.begin(), c.uses.end());
+    for (Use& u : c.uses) {
+        u.coedge.reversed = !u.coedge.reversed;
+        std::swap(u.from, u.to);
+        std::swap(u.start, u.end);
+    }
+    for (int& w : c.winding) w = -w;
+    measure(c);
+}
+
+// The two uses of a new edge from a to b: there, and back one period beside it.
+std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Vec<2>& b,
+                                     const Vec<2>& period) {
+    Edge e;
+    e.start = from, e.end = to, e.tolerance = close_;
+    Line<2> line{a, b - a};
+    const int axis = period[0] != 0 ? 0 : 1;
+    if (std::abs(a[axis] - b[axis]) <= 1e-12 * std::abs(period[axis]) && a[1 - axis] < b[1 - axis])
+        if (auto c = chart_.iso(axis, a[axis])) {
+            e.curve = std::move(*c);
+            e.range = {a[1 - axis], b[1 - axis]};
+            line = {};
+            line.origin[axis] = a[axis];
+            line.direction[1 - axis] = 1;
+            if (const auto* s = std::get_if<Curve<Vec<3>>>(&*e.curve);
+                s != nullptr || std::holds_alternative<Curve<Hom<3>>>(*e.curve)) {
+                const Interval on = domain(*e.curve)[0];
+                if (e.range.lo < on.lo || e.range.hi > on.hi) e.curve.reset();
+            }
+        }
+    if (!e.curve) line = {a, b - a}, e.range = {0, 1};
+    const int i = int(model_.edges.size());
+    model_.edges.push_back(e);
+    return {make_use({i, false, line}, e),
+            make_use({i, true, Line<2>{line.origin - period, line.direction}}, e)};
+}
+
+// One chain from a to b along the seam; `a` winds so that the face is on the side of b.
+void LoopBuilder::join(Chain& a, Chain b, int axis) {
+    const double turn = chart_.period(axis);
+    const auto k = std::size_t(axis);
+    const double forward = axis == 0 ? a.winding[k] : -a.winding[k];
+    // The pair of corners with the shortest way along the axis, and no hole in it.
+    std::size_t best_i = 0, best_j = 0;
+    double best = kInfinity;
+    for (std::size_t i = 0; i < a.uses.size() && i < 64; ++i)
+        for (std::size_t j = 0; j < b.uses.size() && j < 64; ++j) {
+            const double way = std::remainder(a.uses[i].start[axis] - b.uses[j].start[axis], turn);
+            double cost = std::abs(way);
+            for (const Chain& c : chains_) {
+                if (c.winding[0] != 0 || c.winding[1] != 0 || c.outline.empty()) continue;
+                Box<2> box;
+                for (const Vec<2>& p : c.outline) box.add(p);
+                const double lo = std::remainder(box.lo[axis] - a.uses[i].start[axis], turn);
+                if (lo + (box.hi[axis] - box.lo[axis]) > 0 && lo < 0) cost += turn;
+                if (lo + (box.hi[axis] - box.lo[axis]) > turn) cost += turn;
+            }
+            if (cost < best) best = cost, best_i = i, best_j = j;
+        }
+    turn_to(a, best_i);
+    turn_to(b, best_j);
+    Vec<2> period{};
+    period[axis] = a.uses.back().end[axis] - a.uses.front().start[axis];
+    Vec<2> by{};
+    by[axis] = std::round((a.uses.back().end[axis] - b.uses.front().start[axis]) / turn) * turn;
+    if (const double other = chart_.period(1 - axis); other > 0) {
+        const double ahead = forward * (b.uses.front().start[1 - axis] - a.uses.back().end[1 - axis]);
+        by[1 - axis] = -forward * std::floor((ahead - 1e-9 * other) / other) * other;
+    }
+    move(b, by);
+    auto uses =
+        seam(a.uses.front().from, b.uses.front().from, a.uses.back().end, b.uses.front().start, period);
+    a.uses.push_back(std::move(uses[0]));
+    for (Use& u : b.uses) a.uses.push_back(std::move(u));
+    a.uses.push_back(std::move(uses[1]));
+    a.winding = {0, 0};
+    measure(a);
+}
+
+void LoopBuilder::join_pole(Chain& c, const Pole& pole) {
+    const int axis = 1 - pole.axis;
+    Vec<2> period{};
+    period[axis] = c.uses.back().end[axis] - c.uses.front().start[axis];
+    Vec<2> at = c.uses.back().end;
+    double level = pole.at;
+    if (const double turn = chart_.period(pole.axis); turn > 0)
+        level += std::round((at[pole.axis] - level) / turn) * turn;
+    at[pole.axis] = level;
+    const int tip = vertex_near(pole.point), from = c.uses.front().from;
+    const Vec<2> end = c.uses.back().end;
+    std::array<Use, 2> uses;
+    if (end[pole.axis] < level) {
+        uses = seam(from, tip, end, at, period);
+    } else {  // the edge runs up to the loop
+        uses = seam(tip, from, at, end, period);
+        for (Use& u : uses) {
+            u.coedge.reversed = !u.coedge.reversed;
+            std::swap(u.from, u.to);
+            std::swap(u.start, u.end);
+        }
+    }
+    c.uses.push_back(std::move(uses[0]));
+    c.uses.push_back(degenerate(tip, at, at - period));
+    c.uses.push_back(std::move(uses[1]));
+    c.winding = {0, 0};
+    measure(c);
+}
+
+int LoopBuilder::vertex_near(const Vec<3>& p) {
+    if (vertex_ >= 0 && norm(model_.vertices[std::size_t(vertex_)].point - p) <= 4 * close_) return vertex_;
+    model_.vertices.push_back({p, close_});
+    return int(model_.vertices.size()) - 1;
+}
+
+// Pairs of chains that wind around along the axis.
+Result<void> LoopBuilder::join_winding(int axis) {
+    const auto k = std::size_t(axis);
+    const double across_turn = chart_.period(1 - axis);
+    for (std::size_t guard = chains_.size(); guard-- > 0;) {
+        const auto winds = [&](const Chain& c) { return c.winding[k] != 0; };
+        const auto forward = [&](const Chain& c) { return axis == 0 ? c.winding[k] : -c.winding[k]; };
+        const auto level = [&](const Chain& c) { return c.uses.front().start[1 - axis]; };
+        // One with the face ahead of it, and the next one from there.
+        auto a = std::find_if(chains_.begin(), chains_.end(),
+                              [&](const Chain& c) { return winds(c) && forward(c) > 0; });
+        if (a == chains_.end()) a = std::find_if(chains_.begin(), chains_.end(), winds);
+        if (a == chains_.end()) return {};
+        if (std::abs(a->winding[k]) > 1)
+            return refuse(RefusalKind::invalid, "loop",
+                          text("winds ", a->winding[k], " times around the surface"));
+        const double sign = forward(*a);
+        auto best = chains_.end();
+        double least = kInfinity;
+        for (auto b = chains_.begin(); b != chains_.end(); ++b) {
+            if (b == a || !winds(*b)) continue;
+            double ahead = sign * (level(*b) - level(*a));
+            if (across_turn > 0) ahead -= std::floor(ahead / across_turn) * across_turn;
+            // Against its orientation only if there is no other.
+            const double cost =
+                (ahead > 0 ? ahead : 1e6 + std::abs(ahead)) + (forward(*b) * sign < 0 ? 0 : 1e12);
+            if (cost < least) least = cost, best = b;
+        }
+        if (best != chains_.end()) {
+            if (forward(*best) * sign > 0) {
+                note = "two of its loops run the same way around the surface; one is taken the other way";
+                if (sign * (level(*best) - level(*a)) > 0 || across_turn > 0)
+                    turn_around(*best);
+                else
+                    turn_around(*a);
+            } else if (across_turn == 0 && sign * (level(*best) - level(*a)) < 0) {
+                note = "its loops run the wrong way around the surface; they are taken the other way";
+                turn_around(*best);
+                turn_around(*a);
+            }
+            Chain b = std::move(*best);
+            Chain first = std::move(*a);
+            if (a > best) std::swap(a, best);
+            chains_.erase(best);
+            chains_.erase(a);
+            join(first, std::move(b), axis);
+            chains_.push_back(std::move(first));
+            continue;
+        }
+        const Pole* end = nullptr;
+        double nearest = kInfinity;
+        for (const Pole& p : chart_.poles()) {
+            if (p.axis != 1 - axis) continue;
+            double ahead = sign * (p.at - level(*a));
+            if (across_turn > 0 && ahead < 0) ahead += across_turn;
+            if (ahead > 0 && ahead < nearest) nearest = ahead, end = &p;
+        }
+        if (end == nullptr)
+            for (const Pole& p : chart_.poles())
+                if (p.axis == 1 - axis && chart_.poles().size() == 1) {
+                    end = &p;
+                    note = "its loop runs the wrong way around the surface; it is taken the other way";
+                    turn_around(*a);
+                }
+        if (end == nullptr)
+            return refuse(RefusalKind::invalid, "loop",
+                          "winds around the surface, and nothing bounds the face on its other side");
+        join_pole(*a, *end);
+    }
+    return {};
+}
+
+void LoopBuilder::add_rectangle(const std::array<Interval, 2>& on) {
+    const std::array<Vec<2>, 4> corner{
+        {{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].lo}}, {{on[0].hi, on[1].hi}}, {{on[0].lo, on[1].hi}}}};
+    std::array<int, 4> vertex{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec<3> p = chart_.point(corner[i]);
+        vertex[i] = -1;
+        for (std::size_t j = 0; j < i; ++j)
+            if (norm(model_.vertices[std::size_t(vertex[j])].point - p) <= close_) vertex[i] = vertex[j];
+        if (vertex[i] < 0) vertex[i] = vertex_near(p);
+    }
+    const auto closed = [&](int k) {
+        return chart_.period(k) > 0 &&
+               std::abs(on[std::size_t(k)].length() - chart_.period(k)) <= 1e-9 * chart_.period(k);
+    };
+    std::array<int, 4> made{-1, -1, -1, -1};
+    Chain c;
+    for (std::size_t i = 0; i < 4; ++i) {  // below, right, above, left
+        const Vec<2> a = corner[i], b = corner[(i + 1) % 4];
+        const int axis = i % 2 == 0 ? 1 : 0;  // the parameter that stays
+        if (pole_at(a, b) != nullptr && pole_at(a, b)->axis == axis) {
+            c.uses.push_back(degenerate(vertex[i], a, b));
+            continue;
+        }
+        const bool backward = i >= 2;
+        Line<2> line;
+        line.origin[axis] = a[axis];
+        line.direction[1 - axis] = 1;
+        if (backward && closed(axis) && made[i - 2] >= 0) {
+            c.uses.push_back(make_use({made[i - 2], true, line}, model_.edges[std::size_t(made[i - 2])]));
+            continue;
+        }
+        Edge e;
+        e.start = vertex[backward ? (i + 1) % 4 : i], e.end = vertex[backward ? i : (i + 1) % 4];
+        e.range = on[std::size_t(1 - axis)];
+        e.curve = chart_.iso(axis, a[axis]);
+        e.tolerance = close_;
+        made[i] = int(model_.edges.size());
+        model_.edges.push_back(e);
+        c.uses.push_back(make_use({made[i], backward, line}, e));
+    }
+    measure(c);
+    chains_.push_back(std::move(c));
+}
+
+}  // namespace freiform::step
