@@ -1,0 +1,119 @@
+"""Every public object pickles, copies, compares, and has a repr; refusals are exceptions of their kind."""
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import freiform as ff
+
+CURVE = ff.Curve([[0, 0], [1, 2], [3, 2], [4, 0.1]], 3)
+ARC = ff.circle([0.1, 0.2], 1 / 3).curve
+BALL = ff.sphere(2.0).surface
+SQUARE = ff.Path("M 0 0 H 1 V 1 H 0 Z")
+SURFACE = ff.Surface(np.random.default_rng(1).normal(size=(4, 5, 3)), (3, 2))
+
+OBJECTS = [
+    ff.Interval(0, 1), ff.Bounded(1, 0.5), ff.Colour(0, 0.5, 1),
+    ff.Basis(2, [0, 0, 0, 1, 2, 2, 2]), ff.Basis.periodic(3, [0, 1, 2, 3, 4, 5]),
+    ff.PolynomialBasis.monomial(3, 0.5), ff.PolynomialBasis.bernstein(2, (1, 3)), ff.PolynomialBasis.hermite(3),
+    ff.PolynomialBasis.lagrange([0, 0.5, 1]), ff.PolynomialBasis.newton([0, 0.5, 1]),
+    ff.PolynomialBasis.uniform_b_spline(3), ff.PolynomialBasis.b_spline(ff.Basis(2, [0, 0, 0, 1, 2, 2, 2]), 2),
+    CURVE, ARC, ff.Curve([[0.0], [1.0]]), ff.Curve([[0, 0], [1, 0], [1, 1], [0, 1]], closed=True),
+    CURVE.derivative(2), CURVE.arc_length(1e-9), CURVE.implicit(), CURVE.bounds(), CURVE.length(1e-9),
+    SURFACE, BALL, ff.cylinder(1 / 3, (0, 1), form="closed").surface, ff.Volume(np.random.default_rng(2).normal(size=(2, 3, 2, 3))),
+    ff.TriangularPatch([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), ff.sphere_in_eight(1.0).octants[0],
+    SQUARE, SQUARE.area(), SQUARE.stroke(0.1, 1e-6), ff.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], "mm"),
+    ff.TrimmedSurface(SURFACE, [[ff.Curve([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.1]], 1)]]),
+    ff.Model.assemble([ff.Surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])], "mm"),
+    ff.Document([CURVE, SURFACE], "mm", ["a", "b"]),
+    ff.NearestQuery(CURVE), ff.nearest(CURVE, [[0, 1], [2, 2]]), ff.intersect(CURVE, ARC),
+    ff.CubicBezierEasing(0.25, 0.1, 0.25, 1), ff.CubicBezierEasing("ease-in"), ff.Key(0, [1.0]),
+    ff.Track([ff.Key(0, [0.0]), ff.Key(1, [2.0])]), ff.RotationTrack([0, 1], [(0, 0, 0, 1), (1, 0, 0, 0)]),
+    ff.Motion.limited(3, 1, 2), ff.Motion.with_speed(ff.Curve([[1.0], [2.0]], knots=[0, 0, 3, 3]), 1e-6),
+    ff.Trajectory(CURVE, ff.Motion.uniform(CURVE.length(1e-9).value, 2), 1e-6),
+    ff.Gradient([(0, "#ff0000"), (1, "#0000ff")]),
+    ff.MeshGradient(ff.Surface([[[0, 0], [0, 1]], [[1, 0], [1, 1]]]), ["#ff0000"] * 4),
+    ff.OutOfDomainError("at[0]", "2 is outside"), ff.IoError("file", "cannot be read"),
+]
+IDS = [f"{i}-{type(x).__name__}" for i, x in enumerate(OBJECTS)]
+
+
+@pytest.mark.parametrize("x", OBJECTS, ids=IDS)
+def test_an_object_pickles_copies_compares_and_has_a_hash(x):
+    for y in (pickle.loads(pickle.dumps(x)), copy.copy(x), copy.deepcopy(x)):
+        assert type(y) is type(x)
+        assert y == x
+        assert hash(y) == hash(x)
+    assert x != 3 and x != "x"
+
+
+@pytest.mark.parametrize("x", OBJECTS, ids=IDS)
+def test_a_repr_can_be_evaluated(x):
+    if repr(x).startswith("<"):
+        pytest.skip("too large for a repr")
+    names = dict(vars(ff), array=np.array, inf=np.inf, nan=np.nan)
+    assert eval(repr(x), names) == x
+
+
+def test_every_public_class_is_among_them():
+    classes = {n for n in ff.__all__ if isinstance(getattr(ff, n), type)}
+    seen = {type(x).__name__ for x in OBJECTS}
+    records = {n for n in classes if issubclass(getattr(ff, n), ff.Record)}
+    refusals = {n for n in classes if issubclass(getattr(ff, n), ff.Refusal)}
+    # Made only from others or from files.
+    others = {"Frame", "ModelFace", "ModelEdge", "ModelNearestQuery", "Font", "Record"}
+    assert classes - records - refusals - seen - others == set()
+
+
+def test_different_objects_are_not_equal():
+    for i, x in enumerate(OBJECTS):
+        for y in OBJECTS[i + 1:]:
+            assert not (type(x) is type(y) and repr(x) != repr(y) and x == y)
+
+
+def test_a_bit_of_a_coefficient_makes_a_difference():
+    p = CURVE.points.copy()
+    p[2, 1] = np.nextafter(p[2, 1], 9)
+    assert ff.Curve(p, 3) != CURVE
+
+
+@pytest.mark.parametrize("make, kind, where", [
+    (lambda: CURVE(2.0), ff.OutOfDomainError, "at[0]"),
+    (lambda: CURVE([0.5, np.nan]), ff.NonFiniteError, "at[1]"),
+    (lambda: ff.Curve([[0, 0], [1, np.inf]]), ff.NonFiniteError, ""),
+    (lambda: ff.Curve([[0, 0], [1, 1], [2, 0]], 2, [0, 0, 0, 1, 0.5, 1]), ff.InvalidError, "knots"),
+    (lambda: ff.Curve([[0, 0], [1, 1]], weights=[1, 0]), ff.InvalidError, "weights"),
+    (lambda: ff.Curve([[0, 0], [1, 1]], weights=[1, 1, 1]), ff.InvalidError, "weights"),
+    (lambda: ff.Curve([1.0, 2.0]), ff.InvalidError, "points"),
+    (lambda: CURVE.insert_knot(7), ff.Refusal, ""),
+    (lambda: CURVE.insert_knot(0.5, axis=3), ff.InvalidError, "axis"),
+    (lambda: CURVE.flatten(-1), ff.InvalidError, ""),
+    (lambda: CURVE.flatten(0.1, method="adaptve"), ff.InvalidError, "method"),
+    (lambda: ARC.hodograph(), ff.UnsupportedError, ""),
+    (lambda: ff.read("/no/such/file.json"), ff.IoError, "/no/such/file.json"),
+    (lambda: ff.parse("{", "json"), ff.UnreadableError, ""),
+    (lambda: ff.draw(CURVE, wdith=3), ff.InvalidError, "wdith"),
+    (lambda: ff.draw(CURVE, width="x"), ff.InvalidError, "width"),
+])
+def test_what_is_refused_says_kind_place_and_why(make, kind, where):
+    with pytest.raises(kind) as caught:
+        make()
+    error = caught.value
+    assert isinstance(error, ff.Refusal) and error.kind and error.message
+    assert error.where.startswith(where) or where in error.where
+    assert error.message in str(error)
+
+
+def test_bad_arguments_are_value_errors():
+    for kind in (ff.InvalidError, ff.NonFiniteError, ff.OutOfDomainError, ff.UnreadableError, ff.UnsupportedError):
+        assert issubclass(kind, ValueError)
+    assert issubclass(ff.IoError, OSError) and issubclass(ff.IllConditionedError, ArithmeticError)
+
+
+def test_every_function_and_class_is_documented():
+    for name in ff.__all__:
+        x = getattr(ff, name)
+        if callable(x) and name not in ("Array", "ArrayLike", "AnyPatch", "Shape", "ColourLike"):
+            assert x.__doc__, name
+    assert "GUARANTEE" not in ff.revolve.__doc__ and "Profiles may be polynomial or rational" in ff.revolve.__doc__
