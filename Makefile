@@ -3,7 +3,7 @@ SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .DEFAULT_GOAL := help
-.PHONY: help setup build demo test bench accuracy wasm studio format clean
+.PHONY: help setup build python demo test bench accuracy wasm studio format clean
 .NOTPARALLEL:
 
 help:
@@ -12,6 +12,7 @@ help:
 	@echo "make bench   compare tessellation and curves with other libraries (bench/*.md)"
 	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"
 	@echo "make build   build the program: build/bin/freiform"
+	@echo "make python  build the Python package: build/python (PYTHONPATH=build/python python3 -c 'import freiform')"
 	@echo "make wasm    build the WebAssembly modules and test them in node (bindings/wasm/)"
 	@echo "make studio  build the page that freiform view serves (studio/dist); make build then puts it into the program"
 	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
@@ -26,6 +27,12 @@ build:
 	step "Packages" tools/setup.sh demo; \
 	step "Configure" cmake --preset release --log-level=WARNING; \
 	step "Build" cmake --build --preset release
+
+python:
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh python; \
+	step "Configure" cmake --preset python --log-level=WARNING; \
+	step "Build" cmake --build --preset python
 
 demo:
 	@source tools/steps.sh; \

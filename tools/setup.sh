@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tools/setup.sh [demo|test|bench|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
+# tools/setup.sh [demo|python|test|bench|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
 # Does nothing, and takes no time, where all are there.
 set -euo pipefail
 
@@ -9,9 +9,10 @@ occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 font="libfreetype-dev libharfbuzz-dev libfontconfig-dev"
-test="libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
+python="pybind11-dev python3-dev python3-numpy"
+test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
-ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
+ci="python3 python3-venv python3-pip libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
@@ -19,12 +20,13 @@ bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenc
 purpose=${1:-demo}
 case $purpose in
     demo) packages="$build $library $occt $gl $paint $font" ;;
+    python) packages="$build $library $gl $paint $font $python" ;;
     test) packages="$build $library $occt $gl $paint $font $test" ;;
     bench) packages="$build $library $occt $gl $paint $font $bench" ;;
     ci) packages="$build $library $occt $gl $paint $font $test $ci" ;;
     wasm) packages="$build $wasm nlohmann-json3-dev"; command -v node >/dev/null || packages="$packages nodejs" ;;
     *)
-        echo "usage: tools/setup.sh [demo|test|bench|ci|wasm]" >&2
+        echo "usage: tools/setup.sh [demo|python|test|bench|ci|wasm]" >&2
         exit 2
         ;;
 esac
@@ -48,6 +50,9 @@ what_for() {
         fonts-dejavu-core) echo "the letters of drawings" ;;
         libfreetype-dev | libharfbuzz-dev | libfontconfig-dev) echo "outlines of letters, for text" ;;
         fonts-cantarell) echo "a font with cubics, to test on" ;;
+        pybind11-dev | python3-dev | python3-numpy) echo "the Python package" ;;
+        python3-pytest | python3-hypothesis | mypy) echo "the tests of the Python package" ;;
+        python3-venv | python3-pip) echo "the test of the wheel" ;;
         libgtest-dev | librapidcheck-dev) echo "the tests" ;;
         libboost-dev) echo "exact arithmetic to test against" ;;
         python3) echo "the checks of the source, the report of the benchmarks" ;;

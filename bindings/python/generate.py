@@ -223,8 +223,9 @@ class Header:
 
     def struct(self, name):
         """(template parameters, base, fields, comment)"""
-        last = name.split("::")[-1]
-        for i, line in enumerate(self.lines):
+        outer, _, last = name.rpartition("::")
+        from_line = next((i for i, line in enumerate(self.lines) if re.match(r"class %s " % outer, line)), 0) if outer else 0
+        for i, line in enumerate(self.lines[from_line:], from_line):
             match = re.match(r"( *)struct %s(?: : ([\w<>:, ]+))? \{" % last, line)
             if not match or ("::" in name) != bool(match[1]):
                 continue

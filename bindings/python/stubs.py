@@ -13,26 +13,39 @@ import sys
 
 
 def answers(package):
-    """{name of a function of _core: annotation of what it gives}, and the names of types to import by module."""
+    """{(handle class or "", name of a function): annotation of what it gives}, and the modules where types live."""
     found, homes = {}, {}
     for path in sorted(package.glob("_*.py")):
         tree = ast.parse(path.read_text())
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ClassDef):
-                homes[node.name] = path.stem
-            if not isinstance(node, ast.FunctionDef) or node.returns is None:
-                continue
-            for statement in ast.walk(node):
-                value = statement.value if isinstance(statement, ast.Return) else None
-                if isinstance(value, ast.IfExp):
-                    value = value.body
-                function = value.func if isinstance(value, ast.Call) else value
-                if isinstance(function, ast.Attribute):
+        for scope in [tree] + [n for n in ast.walk(tree) if isinstance(n, ast.ClassDef)]:
+            handle = ""
+            if isinstance(scope, ast.ClassDef):
+                homes[scope.name] = path.stem
+                text = ast.unparse(scope)
+                named = re.search(r"_Patch\[_core\.(\w+)\]|_c(?:: | = |, self\._arguments = )_core\.(\w+Handle)", text)
+                handle = next((g for g in named.groups() if g), "") if named else ""
+            for node in scope.body:
+                if not isinstance(node, ast.FunctionDef) or node.returns is None:
+                    continue
+                annotation = ast.unparse(node.returns)
+                if re.search(r"\bP\b", annotation):
+                    continue
+                for statement in ast.walk(node):
+                    value = statement.value if isinstance(statement, ast.Return) else None
+                    if isinstance(value, ast.IfExp):
+                        value = value.body
+                    if isinstance(value, ast.BoolOp):
+                        value = value.values[-1]
+                    function = value.func if isinstance(value, ast.Call) else value
+                    if not isinstance(function, ast.Attribute):
+                        continue
                     owner = ast.unparse(function.value)
-                    if owner == "_core" or owner.endswith("._c") or (owner.startswith("_core.") and owner.endswith("Handle")):
-                        annotation = ast.unparse(node.returns)
-                        if annotation != "P":
-                            found.setdefault(function.attr, set()).add(annotation)
+                    if owner == "_core":
+                        found.setdefault(("", function.attr), set()).add(annotation)
+                    elif owner == "self._c":
+                        found.setdefault((handle, function.attr), set()).add(annotation)
+                    elif owner.startswith("_core.") and owner.endswith("Handle"):
+                        found.setdefault((owner[6:], function.attr), set()).add(annotation)
     # A name that two places give different types stays open.
     return {name: types.pop() for name, types in found.items() if len(types) == 1}, homes
 
@@ -48,7 +61,10 @@ def python_type(t):
     t = re.sub(r"\blist\[", "Sequence[", t)
     t = re.sub(r"Optional\[(.*)\]", r"\1 | None", t)
     t = t.replace("std::basic_string_view<char, std::char_traits<char> >", "str")
-    return re.sub(r"\bobject\b", "Any", t) if "::" not in t else "Any"
+    t = re.sub(r"\bobject\b|\bhandle\b", "Any", t) if "::" not in t else "Any"
+    t = re.sub(r"\blist\b(?!\[)", "list[Any]", t)
+    t = re.sub(r"\btuple\b(?!\[)", "tuple[Any, ...]", t)
+    return re.sub(r"\bdict\b(?!\[)", "dict[str, Any]", t)
 
 
 def parameters(text):
@@ -66,16 +82,15 @@ def parameters(text):
     return ", ".join(out)
 
 
-def functions(name, doc, known, indent, static=False):
+def functions(name, doc, known, indent, owner="", static=False):
     lines = []
     signatures = re.findall(r"(?:^|\n)(?:\d+\. )?%s\((.*)\) -> (.*)" % re.escape(name), doc or "")
     for arguments, result in signatures:
         # A string argument may be given as bytes where text of a file is meant.
         arguments = re.sub(r"\b(data|bytes): str", r"\1: str | bytes", parameters(arguments))
         result = python_type(result)
-        if name in known and result in ("Any", "tuple", "list", "Array", "bytes"):
-            result = known[name]
-        result = {"tuple": "tuple[Any, ...]", "list": "list[Any]"}.get(result, result)
+        if (owner, name) in known and result in ("Any", "tuple[Any, ...]", "list[Any]", "Array", "bytes"):
+            result = known[owner, name]
         if len(signatures) > 1:
             lines.append(indent + "@overload")
         if static:
@@ -98,16 +113,16 @@ def main():
                 if isinstance(member, property):
                     result = re.search(r"-> (.*)", member.fget.__doc__ or "")
                     kind = python_type(result[1]) if result else "Any"
-                    if key in known and kind in ("Any", "Array", "tuple"):
-                        kind = known[key]
+                    if (name, key) in known and kind in ("Any", "Array", "tuple[Any, ...]"):
+                        kind = known[name, key]
                     members += ["    @property", f"    def {key}(self) -> {kind}: ..."]
                 elif key == "__init__" or not key.startswith("_"):
                     static = isinstance(member, staticmethod)
-                    members += functions(key, member.__doc__, known, "    ", static)
+                    members += functions(key, member.__func__.__doc__ if static else member.__doc__, known, "    ", name, static)
             body += members or ["    ..."]
         elif callable(value):
             body += functions(name, value.__doc__, known, "")
-        elif not name.startswith("__"):
+        elif name.isidentifier() and not name.startswith("__"):
             body.append(f"{name}: {'Array' if name.startswith('matrix_') else 'bool'}")
     text = "\n".join(body) + "\n"
     needed = {}

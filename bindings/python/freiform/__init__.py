@@ -7,6 +7,8 @@
 """
 from __future__ import annotations
 
+from typing import Any
+
 from . import _core
 from ._animate import *
 from ._base import *
@@ -41,6 +43,7 @@ def set_max_threads(threads: int) -> None:
 
 
 def max_threads() -> int:
+    """What set_max_threads has set; 0: as many as the machine has."""
     return _core.max_threads()
 
 
@@ -52,4 +55,5 @@ def instruction_set() -> str:
 @_base.from_header("spline/prepared:evaluate_grids")
 def evaluate_grids(patches: list[AnyPatch], *axes: ArrayLike) -> Array:
     """The same grid on many patches of one kind: an array (len(patches), .., D)."""
-    return _core.evaluate_grids([p._c for p in patches], [_base.points_array(a) for a in axes])
+    handles: list[Any] = [p._c for p in patches]
+    return _core.evaluate_grids(handles, [_base.points_array(a) for a in axes])

@@ -63,7 +63,8 @@ class CubicBezierEasing(_Made):
 
     def evaluate(self, x: ArrayLike) -> tuple[Array, Array]:
         """(values, bounds)."""
-        return self._c.evaluate(_times(x))
+        values, bounds = self._c.evaluate(_times(x))
+        return values, bounds
 
 
 @from_header("animate/easing:step_easing")

@@ -71,19 +71,19 @@ class Record:
     """An answer with named fields. Records are compared by their fields; their repr can be evaluated."""
 
     def __eq__(self, other: object) -> bool:
-        if type(self) is not type(other):
-            return NotImplemented
-        return all(same(x, y) for x, y in zip(self._values(), other._values()))  # type: ignore[attr-defined]
+        if not isinstance(other, Record) or type(self) is not type(other):
+            return False
+        return all(same(x, y) for x, y in zip(self._values(), other._values()))
 
     def __hash__(self) -> int:
         return hash((type(self).__name__, repr(self)))
 
     def __repr__(self) -> str:
-        fields = dataclasses.fields(self)  # type: ignore[arg-type]
+        fields = dataclasses.fields(self)
         return f"{type(self).__name__}({', '.join(f'{f.name}={plain(getattr(self, f.name))!r}' for f in fields)})"
 
     def _values(self) -> Iterable[object]:
-        return [getattr(self, f.name) for f in dataclasses.fields(self)]  # type: ignore[arg-type]
+        return [getattr(self, f.name) for f in dataclasses.fields(self)]
 
 
 def from_header(*keys: str) -> Callable[[F], F]:

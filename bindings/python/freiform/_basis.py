@@ -123,7 +123,7 @@ class Basis:
         return self._c.local_hulls()
 
     def __eq__(self, other: object) -> bool:
-        return self._c.equals(other._c) if isinstance(other, Basis) else NotImplemented
+        return isinstance(other, Basis) and self._c.equals(other._c)
 
     def __hash__(self) -> int:
         return hash((self.degree, self.is_closed, self.defining.tobytes()))
@@ -199,7 +199,7 @@ class PolynomialBasis:
         return self._c.values(t)
 
     def __eq__(self, other: object) -> bool:
-        return self._c.equals(other._c) if isinstance(other, PolynomialBasis) else NotImplemented
+        return isinstance(other, PolynomialBasis) and self._c.equals(other._c)
 
     def __hash__(self) -> int:
         return hash((self.scheme, self.degree, self.numbers.tobytes()))

@@ -100,7 +100,7 @@ class Document(Sequence[Shape]):
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Document):
-            return NotImplemented
+            return False
         return (list(self), self.names, self.unit) == (list(other), other.names, other.unit)
 
     def __hash__(self) -> int:

@@ -66,7 +66,7 @@ class Font:
         return self._c.outlines(text, size, list(features), language)  # type: ignore[no-any-return]
 
     def __eq__(self, other: object) -> bool:
-        return self._state == other._state if isinstance(other, Font) else NotImplemented
+        return isinstance(other, Font) and self._state == other._state
 
     def __hash__(self) -> int:
         return hash((self._state[0], self._state[1], tuple(self._state[2].items())))

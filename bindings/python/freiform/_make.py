@@ -117,7 +117,7 @@ def graph(coefficients: ArrayLike, on: IntervalLike) -> Graph:
 
 def hermite(p1: ArrayLike, p4: ArrayLike, r1: ArrayLike, r4: ArrayLike) -> Curve:
     """The cubic on [0, 1] from p1 to p4 with the derivatives r1 and r4 there."""
-    return hermite_spline([p1, p4], [r1, r4])  # type: ignore[list-item]
+    return hermite_spline(np.array([p1, p4], dtype=float), np.array([r1, r4], dtype=float))
 
 
 @from_header("make/named_curve:hermite_spline")

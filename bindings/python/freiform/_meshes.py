@@ -129,15 +129,17 @@ class Mesh:
     def render(self, *, field: ArrayLike | None = None, **options: Any) -> Array:
         """A shaded picture, (height, width, 3) bytes: width, height, view ("iso", "top", "AZIMUTH,ELEVATION", ..),
         perspective, outlines, edges, zebra, isophotes, painting, range, colour, .."""
-        return _core.render(self._c, False, options, None if field is None else points_array(field))
+        picture: Array = _core.render(self._c, False, options, None if field is None else points_array(field))
+        return picture
 
     def render_png(self, *, field: ArrayLike | None = None, **options: Any) -> bytes:
         """The same as PNG."""
-        return _core.render(self._c, True, options, None if field is None else points_array(field))
+        png: bytes = _core.render(self._c, True, options, None if field is None else points_array(field))
+        return png
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
-            return NotImplemented
+            return False
         return all(np.array_equal(getattr(self, n), getattr(other, n))
                    for n in ("points", "triangles", "vertex_points", "normals", "uv")) and self.unit == other.unit
 

@@ -72,7 +72,7 @@ class TrimmedSurface:
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TrimmedSurface):
-            return NotImplemented
+            return False
         return (self.surface, self.loops) == (other.surface, other.loops)
 
     def __hash__(self) -> int:
@@ -230,7 +230,7 @@ class Model:
         return ModelNearestQuery(self).nearest(points, accuracy, max_parts)
 
     def __eq__(self, other: object) -> bool:
-        return self.to_binary() == other.to_binary() if isinstance(other, Model) else NotImplemented
+        return isinstance(other, Model) and self.to_binary() == other.to_binary()
 
     def __hash__(self) -> int:
         return hash(self.to_binary())
@@ -283,7 +283,7 @@ class ModelNearestQuery:
         return self._c.least_distance(other._c, accuracy, max_pairs)
 
     def __eq__(self, other: object) -> bool:
-        return self.model == other.model if isinstance(other, ModelNearestQuery) else NotImplemented
+        return isinstance(other, ModelNearestQuery) and self.model == other.model
 
     def __hash__(self) -> int:
         return hash(("ModelNearestQuery", self.model))

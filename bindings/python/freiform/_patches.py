@@ -72,7 +72,8 @@ class _Patch(Generic[H]):
     @property
     def points(self) -> Array:
         """The control points, not multiplied by weights: the last axis holds the coordinates."""
-        return self._c.points()
+        points: Array = self._c.points()
+        return points
 
     @property
     def weights(self) -> Array | None:
@@ -82,7 +83,8 @@ class _Patch(Generic[H]):
     @property
     def coefficients(self) -> Array:
         """What is stored: points, or (w x, w) of a rational patch."""
-        return self._c.coefficients()
+        coefficients: Array = self._c.coefficients()
+        return coefficients
 
     @property
     def bases(self) -> tuple[Basis, ...]:
@@ -105,11 +107,11 @@ class _Patch(Generic[H]):
     def _evaluate(self, parameters: Sequence[ArrayLike], derivatives: int | None, outside: str) -> Array:
         if outside not in ("refuse", "nan"):
             raise InvalidError("outside", f'"{outside}" is not "refuse" or "nan"')
-        values = _core.evaluate(self._c, _broadcast(*parameters), derivatives or 0, outside == "nan")
+        values: Array = _core.evaluate(self._c, _broadcast(*parameters), derivatives or 0, outside == "nan")
         return values if derivatives != 0 else values[..., np.newaxis, :]
 
     def _grid(self, axes: Sequence[ArrayLike], derivatives: int | None) -> Array:
-        values = _core.evaluate_grid(self._c, [np.atleast_1d(points_array(a)) for a in axes], derivatives or 0)
+        values: Array = _core.evaluate_grid(self._c, [np.atleast_1d(points_array(a)) for a in axes], derivatives or 0)
         return values if derivatives != 0 else values[..., np.newaxis, :]
 
     def _accurate(self, parameters: Sequence[ArrayLike]) -> tuple[Array, Array]:
@@ -169,7 +171,7 @@ class _Patch(Generic[H]):
 
     def decompose(self: P) -> list[P]:
         """The Bezier pieces, in the order of the net."""
-        return _core.decompose(self._c)  # type: ignore[no-any-return]
+        return _core.decompose(self._c)
 
     @from_header("spline/transform:transform")
     def transform(self, linear: ArrayLike, offset: ArrayLike | None = None) -> Transformed:
@@ -203,7 +205,7 @@ class _Patch(Generic[H]):
         return [(b.degree, b.defining, b.is_closed) for b in self.bases]
 
     def __eq__(self, other: object) -> bool:
-        return bool(self._c.equals(other._c)) if type(self) is type(other) else NotImplemented  # type: ignore[attr-defined]
+        return type(self) is type(other) and bool(self._c.equals(other._c))  # type: ignore[attr-defined]
 
     def __hash__(self) -> int:
         return hash((type(self).__name__, self.coefficients.tobytes(), self.bases))
@@ -228,14 +230,14 @@ class _Patch(Generic[H]):
         name = type(self).__name__
         if not self.is_rational:
             return f"{name}({self.points.tolist()!r}, {self._knots_text()})"
-        points, weights = self.points, self._c.weights()
+        points, weights = self.points, self.coefficients[..., -1]
         if same(np.concatenate([points * weights[..., None], weights[..., None]], axis=-1), self.coefficients):
             return f"{name}({points.tolist()!r}, {self._knots_text()}, weights={weights.tolist()!r})"
         return f"{name}.from_homogeneous({self.coefficients.tolist()!r}, {self._knots_text()})"
 
 
 def _restored(cls: type[P], rational: bool, bases: list[BasisTuple], coefficients: Array) -> P:
-    handle: Any = {Curve: _core.CurveHandle, Surface: _core.SurfaceHandle, Volume: _core.VolumeHandle}[cls]  # type: ignore[index]
+    handle: Any = {Curve: _core.CurveHandle, Surface: _core.SurfaceHandle, Volume: _core.VolumeHandle}[cls]
     return cls._of(handle.from_homogeneous(bases, coefficients) if rational else handle.make(bases, coefficients, None))
 
 
@@ -453,7 +455,7 @@ class Curve(_Patch[_core.CurveHandle]):
 
     def to_scipy(self) -> Any:
         """``scipy.interpolate.BSpline`` of the same map; of a rational curve that of (w x, w), to be divided."""
-        from scipy.interpolate import BSpline
+        from scipy.interpolate import BSpline  # type: ignore[import]
         if self.is_closed:
             n, basis = self.basis.size, self.basis
             return BSpline(basis.knots, np.take(self.coefficients, np.arange(n + self.degree), axis=0, mode="wrap"),
@@ -554,7 +556,8 @@ class Surface(_Patch[_core.SurfaceHandle]):
 
     def normal(self, u: ArrayLike, v: ArrayLike, *, outside: str = "refuse") -> Array:
         """Unit normals S_u x S_v; zero where that is zero."""
-        return _core.evaluate_normals(self._c, _broadcast(u, v), outside == "nan")[1]
+        normals: Array = _core.evaluate_normals(self._c, _broadcast(u, v), outside == "nan")[1]
+        return normals
 
     def curvatures(self, u: ArrayLike, v: ArrayLike, *, outside: str = "refuse") -> Array:
         """Gaussian and mean curvature: shape (.., 2); estimates. With a bound: curvature_at."""

@@ -28,6 +28,12 @@ class Path:
         return made
 
     @staticmethod
+    def from_subpaths(subpaths: Sequence[Subpath]) -> Path:
+        """From subpaths as the property gives them."""
+        return _core.PathHandle.from_subpaths([(points_array(s.start), s.closed, [
+            (g.degree, points_array(g.points), g.weight) for g in s.segments]) for s in subpaths])
+
+    @staticmethod
     @from_header("path/path:subpath_of")
     def of_curve(curve: Curve, tolerance: float) -> tuple[Path, float]:
         """A curve as a path: (path, bound of what was approximated)."""
@@ -86,16 +92,18 @@ class Path:
         return _core.signed_area(self._c)
 
     def __eq__(self, other: object) -> bool:
-        return self.subpaths == other.subpaths if isinstance(other, Path) else NotImplemented
+        return isinstance(other, Path) and self.subpaths == other.subpaths
 
     def __hash__(self) -> int:
         return hash(("Path", repr(self.subpaths)))
 
     def __repr__(self) -> str:
-        return f"Path({self.data!r})"
+        if all(g.weight <= 1 for s in self.subpaths for g in s.segments) and Path(self.data) == self:
+            return f"Path({self.data!r})"
+        return f"Path.from_subpaths({self.subpaths!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Path, (self.data,)
+        return Path.from_subpaths, (self.subpaths,)
 
     def _repr_svg_(self) -> str | None:
         from ._files import Document

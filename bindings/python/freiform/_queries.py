@@ -89,7 +89,7 @@ class NearestQuery:
         return self._c.oriented_box(accuracy, max_parts)
 
     def __eq__(self, other: object) -> bool:
-        return self.objects == other.objects if isinstance(other, NearestQuery) else NotImplemented
+        return isinstance(other, NearestQuery) and self.objects == other.objects
 
     def __hash__(self) -> int:
         return hash(("NearestQuery", self.objects))
@@ -167,8 +167,8 @@ def joints(patches: Sequence[Curve] | Sequence[Surface], gap: float, *, orders: 
     """All ends of curves (edges of surfaces) that meet, with the continuity of each joint."""
     options = (orders, tolerance, angle, curvature, third, roundings)
     if patches and isinstance(patches[0], Surface):
-        return _core.surface_joints([p._c for p in patches], gap, options)
-    return _core.joints([p._c for p in patches], gap, options)
+        return _core.surface_joints([p._c for p in patches], gap, options)  # type: ignore[misc]
+    return _core.joints([p._c for p in patches], gap, options)  # type: ignore[misc]
 
 
 @from_header("query/surface_continuity:joint")

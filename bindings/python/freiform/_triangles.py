@@ -55,7 +55,8 @@ class TriangularPatch:
     @property
     def points(self) -> Array:
         c = self.coefficients
-        return c[:, :-1] / c[:, -1:] if self.is_rational else c
+        points: Array = c[:, :-1] / c[:, -1:] if self.is_rational else c
+        return points
 
     @property
     def weights(self) -> Array | None:
@@ -166,7 +167,7 @@ class TriangularPatch:
         return _core.c1_deviation(self._c, edge, other._c, other_edge, apex)
 
     def __eq__(self, other: object) -> bool:
-        return self._c.equals(other._c) if isinstance(other, TriangularPatch) else NotImplemented
+        return isinstance(other, TriangularPatch) and self._c.equals(other._c)
 
     def __hash__(self) -> int:
         return hash((self.degree, self.is_rational, self.coefficients.tobytes()))

@@ -11,6 +11,10 @@ SurfaceEdge edge_of(int axis, std::string_view end) {
     if (axis < 0 || axis > 1) reject(RefusalKind::invalid, "edge", text("axis ", axis, " is neither 0 nor 1"));
     return {axis, enum_of<End>(end, "edge")};
 }
+template <class P>
+Net<2, P> rows_of(const Array& free) {
+    return free.size() == 0 ? Net<2, P>() : net_of<2, P>(free, "free");
+}
 ShapeFunctions shape_of(const std::vector<std::vector<double>>& across, const std::vector<std::vector<double>>& along,
                         const std::vector<std::vector<double>>& scale) {
     return {across, along, scale};
@@ -58,7 +62,7 @@ void bind_joints(py::module_& m) {
               const auto edge = edge_of(axis, end);
               return visit_dims<3, 3>(*h.patch, "previous", [&](const auto& p) {
                   using P = CoefficientOf<decltype(p)>;
-                  const NextRows<P> next{interval_of(on), net_of<2, P>(free, "free")};
+                  const NextRows<P> next{interval_of(on), rows_of<P>(free)};
                   return answer([&] { return next_c(p, edge, order, next); });
               });
           },
@@ -70,7 +74,7 @@ void bind_joints(py::module_& m) {
               const auto edge = edge_of(axis, end);
               return visit_dims<3, 3>(*h.patch, "previous", [&](const auto& p) {
                   using P = CoefficientOf<decltype(p)>;
-                  const NextRows<P> next{interval_of(on), net_of<2, P>(free, "free")};
+                  const NextRows<P> next{interval_of(on), rows_of<P>(free)};
                   return answer([&] { return next_g(p, edge, shape_of(across, along, scale), next); });
               });
           },

@@ -104,6 +104,29 @@ void bind_paths(py::module_& m) {
                         return to_py(Path{{ellipse(vec_of<2>(centre, "centre"), rx, ry)}});
                     },
                     py::arg("centre"), py::arg("rx"), py::arg("ry"))
+        // [(start, closed, [(degree, points, weight)])]
+        .def_static("from_subpaths",
+                    [](const std::vector<std::tuple<Array, bool, std::vector<std::tuple<int, Array, double>>>>& given) {
+                        Path path;
+                        for (const auto& [start, closed, segments] : given) {
+                            Subpath s{vec_of<2>(start, "start"), {}, closed};
+                            for (const auto& [degree, points, weight] : segments) {
+                                const auto p = points_of<Vec<2>>(points, "points");
+                                if (degree < 1 || degree > 3 || p.size() <= std::size_t(degree) || p.size() > 4 ||
+                                    !(weight > 0) || !std::isfinite(weight))
+                                    reject(RefusalKind::invalid, "segments",
+                                           "need a degree from 1 to 3, its points and a positive weight");
+                                PathSegment g{degree, {}, weight};
+                                std::ranges::copy(p, g.points.begin());
+                                for (const Vec<2>& x : p)
+                                    if (!is_finite(x)) reject(RefusalKind::nonfinite, "points", "are not finite");
+                                s.segments.push_back(g);
+                            }
+                            path.subpaths.push_back(std::move(s));
+                        }
+                        return to_py(path);
+                    },
+                    py::arg("subpaths"))
         .def("data",
              [](const H& h) {
                  for (const Subpath& s : h.path->subpaths)
