@@ -2,7 +2,7 @@
 
 import type { MeshOptions } from "freiform";
 import teapot from "../../../examples/teapot.bpt?url";
-import { ff, file, mesh, type Meshing, type Source } from "../kernel/module";
+import { answer, ff, file, mesh, type Beside, type Meshed, type Source } from "../kernel/module";
 import type { Shown } from "../explore/explore";
 import { download, h, shown } from "../ui/dom";
 import { droppable, opener, type Opened } from "../ui/files";
@@ -10,7 +10,7 @@ import { say, t, type Text } from "../ui/language";
 import { refuse } from "../ui/toast";
 import { Space, type Look } from "../views/space";
 import { legend } from "./colours";
-import { draw, extent, type Colouring, type Drawn, type Model, type Showing } from "./scene";
+import { draw, extent, type Colouring, type Continuity, type Drawn, type Model, type Showing } from "./scene";
 
 interface Refused { readonly where: string; readonly kind: string; readonly message: string }
 
@@ -56,10 +56,10 @@ class Inspector implements Shown {
         oninput: () => { this.said.textContent = shown(this.accuracy(), 3); } });
     private readonly said = h("output", {});
     private readonly name = h("strong", {});
-    private readonly showing: Showing = { look: "shaded", colouring: "plain", edges: false, net: false, knots: false, isolines: 0, comb: false, normals: false, plane: undefined, chosen: undefined };
+    private readonly showing: Showing = { look: "shaded", colouring: "plain", edges: false, net: false, knots: false, isolines: 0, comb: false, normals: false, plane: undefined, chosen: undefined, joints: false };
     private model: Model | undefined;
     private drawn: Drawn | undefined;
-    private meshing: Meshing | undefined;
+    private meshing: Beside<Meshed> | undefined;
     private key: HTMLElement | undefined;
     private size = 1;
     private cut = { axis: 2, at: 0.5, on: false };
@@ -99,14 +99,27 @@ class Inspector implements Shown {
         last = { name, source, refused };
         this.source = source;
         this.refused = [...refused, ...leftOut.map((x) => ({ kind: "left out", ...x }))];
-        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], deviations: undefined };
+        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], deviations: undefined, continuity: undefined };
         this.name.textContent = name;
         const bounds = ff().run("bounds", source, { }).json as { box?: { min: number[]; max: number[] } | null };
         this.box = { lower: [...(bounds.box?.min ?? [-1, -1, -1]), 0].slice(0, 3), upper: [...(bounds.box?.max ?? [1, 1, 1]), 0].slice(0, 3) };
         this.size = extent([this.box.lower, this.box.upper]);
         this.space.fit([this.box.lower, this.box.upper]);
         this.showing.chosen = undefined;
+        if (this.showing.joints) this.ask();
         this.tessellate();
+    }
+
+    /** The continuity of joints and edges, which takes longer than a picture may. */
+    private ask(): void {
+        const { model } = this;
+        if (!model || model.continuity) return;
+        this.progress.removeAttribute("value");
+        this.progress.hidden = false;
+        answer("continuity", this.source, {}).done.then((found) => {
+            model.continuity = found as Continuity;
+            if (this.model === model) this.draw();
+        }).catch(refuse).finally(() => { this.progress.hidden = true; });
     }
 
     private accuracy(): number { return this.size * 10 ** -this.tolerance.valueAsNumber; }
@@ -226,6 +239,7 @@ class Inspector implements Shown {
             h("section", {}, h("h2", {}, say(t("Netz", "Mesh"))), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.progress, this.stop, this.facts),
             h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), pick(t("Farben", "Colours"), kColourings, (key) => { s.colouring = key; if (key === "deviation" && !this.model?.deviations) this.tessellate(); }),
                 check(t("Dreiecke", "Triangles"), (on) => { s.edges = on; }), check(t("Kontrollnetz", "Control net"), (on) => { s.net = on; }), check(t("Knotenlinien", "Knots"), (on) => { s.knots = on; }),
+                check(t("Anschlüsse: G⁰ rot, G¹ gelb, G² grün", "Joints: G⁰ red, G¹ yellow, G² green"), (on) => { s.joints = on; if (on) this.ask(); }),
                 check(t("Krümmungskamm (Kurven)", "Curvature comb (curves)"), (on) => { s.comb = on; }), check(t("Normalen", "Normals"), (on) => { s.normals = on; }),
                 h("label", { class: "knob" }, h("span", {}, say(t("Isolinien", "Iso-curves"))), isolines)),
             h("section", {}, h("h2", {}, say(t("Schnitt", "Section"))), check(t("Ebene schneidet", "Cut by a plane"), (on) => { this.cut.on = on; }), h("label", { class: "knob" }, h("span", {}, say(t("Achse", "Axis"))), axis, at)),

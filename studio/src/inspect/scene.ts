@@ -17,6 +17,7 @@ export interface Showing {
     knots: boolean;
     isolines: number;
     comb: boolean;
+    joints: boolean;
     normals: boolean;
     /** A x + B y + C z + D = 0, or none. */
     plane: readonly number[] | undefined;
@@ -24,7 +25,14 @@ export interface Showing {
     chosen: { shape: number; face: number } | undefined;
 }
 
-export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; deviations: readonly Float64Array[] | undefined }
+export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; deviations: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
+
+type Edge = `${"u" | "v"} ${"start" | "end"}`;
+/** What the module says about joints of surfaces, and edges and knots inside of objects. */
+export interface Continuity {
+    readonly joints: readonly { readonly first: number; readonly first_edge?: Edge; readonly g_order: number }[];
+    readonly objects: readonly { readonly edges?: readonly { readonly edge: number; readonly g_order: number }[]; readonly axes?: readonly (readonly { readonly at: number; readonly c_order: number }[])[] }[];
+}
 
 export interface Drawn { readonly objects: readonly Object3[]; readonly scale: Scale | undefined }
 
@@ -106,6 +114,7 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
         return space.surface({ points: split.positions, normals: split.normals, indices: split.indices, colours, origin: mesh.origin }, { look: showing.look, edges: showing.edges });
     });
     for (const shape of model.shapes) lines(space, shape, showing);
+    if (showing.joints && model.continuity) joints(space, model.shapes, model.continuity);
     if (showing.plane) section(space, model.document, showing.plane);
     return { objects, scale };
 }
@@ -131,6 +140,24 @@ function lines(space: Space, shape: Shape, showing: Showing): void {
     } else if (shape.type === "model" && (showing.knots || showing.isolines > 0)) {
         for (const edge of shape.polylines(1e-3 * extent(net0(shape)))) space.line({ at: edge.points, dimension: 3 }, { colour: "ink", width: 1.4 });
     }
+}
+
+/** Lines where faces meet, in the colour of the order that they reach. */
+function joints(space: Space, shapes: readonly Shape[], found: Continuity): void {
+    const style = (order: number): { colour: string; width: number } => ({ colour: order < 1 ? "hot" : order < 2 ? "gold" : "aux", width: 3.5 });
+    for (const { first, first_edge: edge, g_order: order } of found.joints) {
+        const shape = shapes[first];
+        if (shape?.type !== "surface" || !edge) continue;
+        const axis = edge.startsWith("u") ? 0 : 1;
+        isoline(space, shape, axis, shape.domain[axis]?.[edge.endsWith("start") ? 0 : 1] ?? 0, style(order));
+    }
+    found.objects.forEach(({ edges = [], axes = [] }, i) => {
+        const shape = shapes[i];
+        if (!shape) return;
+        const lines = edges.length > 0 ? shape.polylines(1e-3 * extent(net0(shape))) : [];
+        for (const { edge, g_order: order } of edges) { const line = lines[edge]; if (line) space.line({ at: line.points, dimension: 3 }, style(order)); }
+        if (shape.type === "surface") axes.forEach((knots, axis) => { for (const { at, c_order: order } of knots) isoline(space, shape, axis === 0 ? 0 : 1, at, style(order)); });
+    });
 }
 
 const net0 = (shape: Shape): number[][] => { try { return net(shape); } catch { return [[0, 0, 0], [1, 1, 1]]; } };

@@ -1,6 +1,6 @@
 // The library, loaded once. Every point that the studio draws was computed there.
 
-import { FreiformError, load, type Construction, type Freiform, type Mesh, type MeshOptions, type Shape, type Source } from "freiform";
+import { FreiformError, load, type CommandName, type Construction, type Freiform, type Mesh, type MeshOptions, type Options, type Shape, type Source } from "freiform";
 import wasm from "freiform/freiform.wasm?url";
 import Worker from "./worker?worker";
 
@@ -48,7 +48,10 @@ export function construct(shape: Shape, at: readonly number[]): Construction["le
 }
 
 /** What a worker is asked, and what it says. */
-export interface Order { readonly module: WebAssembly.Module; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly deviations: boolean }
+export type Task =
+    | { readonly kind: "mesh"; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly deviations: boolean }
+    | { readonly kind: "run"; readonly command: CommandName; readonly source: Source; readonly options: Options };
+export interface Order { readonly module: WebAssembly.Module; readonly task: Task }
 export interface Meshed {
     readonly meshes: readonly Mesh[];
     /** If asked for: the distance from the middle of each triangle to its shape, as the nearest point there was found. */
@@ -56,24 +59,23 @@ export interface Meshed {
 }
 export type News =
     | { readonly kind: "progress"; readonly part: number }
-    | { readonly kind: "meshes"; readonly meshed: Meshed }
+    | { readonly kind: "done"; readonly result: unknown }
     | { readonly kind: "refused"; readonly refusal: { readonly kind: string; readonly where: string; readonly message: string } };
 
-export interface Meshing { readonly done: Promise<Meshed>; cancel(): void }
+export interface Beside<T> { readonly done: Promise<T>; cancel(): void }
 
-/** Triangles of everything in a document that has a surface, computed beside the page. */
-export function mesh(source: Source, options: Omit<MeshOptions, "progress">, deviations: boolean, progress: (part: number) => void): Meshing {
+function beside<T>(task: Task, progress: (part: number) => void): Beside<T> {
     if (!module) throw new Error("the module is not loaded");
     const worker = new Worker();
-    const order: Order = { module: module.module, source, options, deviations };
+    const order: Order = { module: module.module, task };
     let stop: (reason: Error) => void = () => undefined;
-    const done = new Promise<Meshed>((resolve, reject) => {
+    const done = new Promise<T>((resolve, reject) => {
         stop = reject;
         worker.onmessage = (event: MessageEvent<News>) => {
             const news = event.data;
             if (news.kind === "progress") { progress(news.part); return; }
             worker.terminate();
-            if (news.kind === "meshes") resolve(news.meshed);
+            if (news.kind === "done") resolve(news.result as T);
             else reject(Object.assign(new Error(news.refusal.message), news.refusal));
         };
         worker.onerror = (event) => {
@@ -84,3 +86,10 @@ export function mesh(source: Source, options: Omit<MeshOptions, "progress">, dev
     });
     return { done, cancel: () => { worker.terminate(); stop(new DOMException("cancelled", "AbortError")); } };
 }
+
+/** Triangles of everything in a document that has a surface, computed beside the page. */
+export const mesh = (source: Source, options: Omit<MeshOptions, "progress">, deviations: boolean, progress: (part: number) => void): Beside<Meshed> =>
+    beside({ kind: "mesh", source, options, deviations }, progress);
+
+/** The answer of a command, found beside the page. */
+export const answer = (command: CommandName, source: Source, options: Options): Beside<unknown> => beside({ kind: "run", command, source, options }, () => undefined);

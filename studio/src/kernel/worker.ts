@@ -1,7 +1,7 @@
 // Tessellation beside the page: large models leave it fluid, and cancelling is the end of the worker.
 
 import { load, type Mesh, type Shape } from "freiform";
-import type { News, Order } from "./module";
+import type { Meshed, News, Order } from "./module";
 
 const tell = (news: News, transfer: Transferable[] = []): void => { postMessage(news, { transfer }); };
 
@@ -24,8 +24,10 @@ function asked(shape: Shape, mesh: Mesh, progress: (part: number) => void): Floa
     return out;
 }
 
-async function work({ module, source, options, deviations }: Order): Promise<void> {
+async function work({ module, task }: Order): Promise<void> {
     const ff = await load(module);
+    if (task.kind === "run") { tell({ kind: "done", result: ff.run(task.command, task.source, task.options).json as unknown }); return; }
+    const { source, options, deviations } = task;
     const shapes = ff.document(source).shapes.filter((shape) => kMeshed.has(shape.type));
     const meshes: Mesh[] = [], distances: Float64Array[] = [];
     const share = deviations ? 0.3 : 1;
@@ -37,7 +39,8 @@ async function work({ module, source, options, deviations }: Order): Promise<voi
     }
     const buffers = new Set<ArrayBufferLike>();
     for (const m of meshes) for (const a of [m.positions, m.normals, m.uvs, m.indices]) buffers.add(a.buffer);
-    tell({ kind: "meshes", meshed: { meshes, deviations: deviations ? distances : undefined } }, [...buffers] as ArrayBuffer[]);
+    const result: Meshed = { meshes, deviations: deviations ? distances : undefined };
+    tell({ kind: "done", result }, [...buffers] as ArrayBuffer[]);
 }
 
 onmessage = (event: MessageEvent<Order>) => {

@@ -306,6 +306,9 @@ export const cases = [
         }
         await page.locator('select[aria-label="Colours"]').selectOption("plain");
         for (const name of ["Triangles", "Control net", "Knots", "Normals", "Cut by a plane"]) { before = await shot(); await page.getByLabel(name, { exact: true }).check(); await settle(page); assert.notEqual(await shot(), before, name); }
+        await page.getByLabel(/Joints/).check();
+        before = await shot();
+        await until(page, (was) => document.querySelector("canvas").toDataURL() !== was, before);
         assert.equal(await refused(page), "");
         await picture("teapot-all");
         const box = await page.locator("canvas").boundingBox();

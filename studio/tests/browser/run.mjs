@@ -22,7 +22,7 @@ let failed = 0, passed = 0;
 
 /** A page of its own, watched: nothing may be thrown, nothing may leave the machine. */
 async function opened(options, url) {
-    const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, locale: "en-GB", acceptDownloads: true, ...options });
+    const context = await browser.newContext({ viewport: { width: 1100, height: 700 }, locale: "en-GB", acceptDownloads: true, ...options });
     const page = await context.newPage();
     const trouble = [];
     page.on("pageerror", (error) => trouble.push(`thrown: ${error.message}`));

@@ -82,7 +82,8 @@ const r12: Page = {
     row: "R12", title: t("Ungleichmäßige B-Splines", "Non-uniform B-splines"), gist: t("ziehbare Knoten", "knots to drag"),
     text: t("Ziehen Sie die Knoten unten: fallen m zusammen, bleiben p − m stetige Ableitungen, und ein dreifacher Knoten einer Kubik interpoliert einen Kontrollpunkt ohne gerade Stücke. Die Basisfunktionen zeigen es: eine erreicht dort 1.",
         "Drag the knots below: where m of them meet, p − m continuous derivatives are left, and a triple knot of a cubic interpolates a control point without straight pieces. The basis functions show it: one of them reaches 1 there."),
-    formula: `N_{i,p}(u) = frac{u - t_i}{t_{i+p} - t_i} N_{i,p-1}(u) + frac{t_{i+p+1} - u}{t_{i+p+1} - t_{i+1}} N_{i+1,p-1}(u)`,
+    formula: `N_{i,p}(u) = frac{u - t_i}{t_{i+p} - t_i} N_{i,p-1}(u)
+              + frac{t_{i+p+1} - u}{t_{i+p+1} - t_{i+1}} N_{i+1,p-1}(u)`,
     build(stage) {
         const points = [[0, 0], [0.4, 2.2], [2.2, 3], [3.4, 0.6], [4.8, 0], [6.2, 1.2], [6.6, 2.8]], knots = [0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4];
         const plane = stage.plane({ label: "B-spline" }), graph = stage.graph(t("Basisfunktionen", "basis functions"), 150), line = strip(stage);
