@@ -79,6 +79,7 @@ wasm:
 
 studio: wasm
 	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh studio; \
 	step "Packages (npm)" npm ci --prefix studio --no-audit --no-fund; \
 	step "Page" npm run build --prefix studio
 

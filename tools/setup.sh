@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # tools/setup.sh [demo|python|test|bench|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
+# tools/setup.sh [demo|test|bench|ci|wasm|studio]: installs the Debian packages that are missing for this purpose (default: demo).
 # Does nothing, and takes no time, where all are there.
 set -euo pipefail
 
@@ -25,8 +26,14 @@ case $purpose in
     bench) packages="$build $library $occt $gl $paint $font $bench" ;;
     ci) packages="$build $library $occt $gl $paint $font $test $ci" ;;
     wasm) packages="$build $wasm nlohmann-json3-dev"; command -v node >/dev/null || packages="$packages nodejs" ;;
+    studio)
+        packages="$build $wasm nlohmann-json3-dev"
+        command -v node >/dev/null || packages="$packages nodejs"
+        command -v npm >/dev/null || packages="$packages npm"
+        ;;
     *)
         echo "usage: tools/setup.sh [demo|python|test|bench|ci|wasm]" >&2
+        echo "usage: tools/setup.sh [demo|test|bench|ci|wasm|studio]" >&2
         exit 2
         ;;
 esac
@@ -62,6 +69,7 @@ what_for() {
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
         g++-aarch64-linux-gnu | qemu-user) echo "the kernels for ARM, and a processor to test them on" ;;
         nodejs) echo "runs the WebAssembly modules" ;;
+        npm) echo "fetches what the page is built with" ;;
         chromium) echo "runs the WebAssembly modules and the page as a browser does" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;

@@ -48,6 +48,7 @@ async function axe(page) {
 }
 
 const explore = kRows.map((row) => [`explore ${row}: draws, follows a handle or knob, by mouse and keyboard`, async ({ page, url, picture }) => {
+    await page.evaluate(() => document.querySelector("article")?.remove()).catch(() => undefined);
     await go(page, url, `#/explore/${row}`, ".page .side h1");
     await until(page, () => document.querySelector(".picture *, canvas"));
     await settle(page);
@@ -79,7 +80,7 @@ const explore = kRows.map((row) => [`explore ${row}: draws, follows a handle or 
         assert.equal(await refused(page), "", await button.innerText());
     }
     assert.equal(await refused(page), "");
-}]);
+}, { common: true }]);
 
 export const cases = [
     ["overview: every row has a tile; no accessibility violations", async ({ page, url, picture }) => {

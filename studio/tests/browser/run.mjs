@@ -31,15 +31,20 @@ async function opened(options, url) {
     return { context, page, trouble };
 }
 
+// Pages of Explore follow each other without loading anew, as a reader turns them.
+let common;
+
 for (const [name, act, options = {}] of cases) {
     if (wanted.length > 0 && !wanted.some((w) => name.includes(w))) continue;
     const began = performance.now();
     const own = options.extra ? await serve(join(here, "../../dist"), options.extra()) : site;
-    const { context, page, trouble } = await opened(options.context ?? {}, own.url);
+    const { context, page, trouble } = options.common ? (common ??= await opened({}, own.url)) : await opened(options.context ?? {}, own.url);
+    let fine = false;
     try {
         await act({ page, context, url: own.url, scratch, trouble, write: (file, text) => { const path = join(scratch, file); writeFileSync(path, text); return path; },
             read: (path) => readFileSync(path), picture: async (file) => { if (pictures) await page.screenshot({ path: join(pictures, `${file}.png`) }); } });
         if (trouble.length > 0) throw new Error(trouble.join("\n    "));
+        fine = true;
         ++passed;
         console.log(`ok    ${name} (${Math.round(performance.now() - began)} ms)`);
     } catch (error) {
@@ -47,7 +52,10 @@ for (const [name, act, options = {}] of cases) {
         console.log(`FAIL  ${name}\n    ${error.message.split("\n").slice(0, 12).join("\n    ")}`);
         if (pictures) await page.screenshot({ path: join(pictures, `failed-${name.replace(/\W+/g, "-")}.png`) }).catch(() => undefined);
     }
-    await context.close();
+    if (!options.common || !fine) {
+        await context.close();
+        if (options.common) common = undefined;
+    }
     if (own !== site) own.close();
 }
 await browser.close();
