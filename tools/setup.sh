@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# tools/setup.sh [demo|python|test|bench|ci|wasm]: installs the Debian packages that are missing for this purpose (default: demo).
-# tools/setup.sh [demo|test|bench|ci|wasm|studio]: installs the Debian packages that are missing for this purpose (default: demo).
+# tools/setup.sh [demo|python|test|bench|ci|wasm|studio]: installs the Debian packages that are missing for this purpose (default: demo).
 # Does nothing, and takes no time, where all are there.
 set -euo pipefail
 
@@ -32,8 +31,7 @@ case $purpose in
         command -v npm >/dev/null || packages="$packages npm"
         ;;
     *)
-        echo "usage: tools/setup.sh [demo|python|test|bench|ci|wasm]" >&2
-        echo "usage: tools/setup.sh [demo|test|bench|ci|wasm|studio]" >&2
+        echo "usage: tools/setup.sh [demo|python|test|bench|ci|wasm|studio]" >&2
         exit 2
         ;;
 esac
