@@ -1,5 +1,6 @@
 // Tight boxes of solids against those that are known, and against many points of their faces.
 #include <freiform/core/constants.hpp>
+#include <freiform/model/assemble.hpp>
 #include <freiform/model/bounds.hpp>
 #include <freiform/model/rescale.hpp>
 
@@ -123,6 +124,32 @@ TEST(ModelHull, ends_where_faces_are_trimmed) {
     EXPECT_GT(coarse.slack, 1e-4);
     EXPECT_LE(outside(hull, {{0, 0, -1}}), 1e-14);
     EXPECT_LE(outside(coarse, {{0, 0, -1}}), 1e-14);
+}
+
+// A quarter of a bowl over a triangle: the corner of the surface that is cut off is far outside.
+TEST(ModelHull, does_not_reach_the_corners_of_surfaces_that_are_cut_off) {
+    const auto basis = must(BSplineBasis::bezier(2));
+    const auto bowl = must(Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({3, 3}, {{{0, 0, 0}},
+                                                                                         {{0, 0.5, 0}},
+                                                                                         {{0, 1, 1}},
+                                                                                         {{0.5, 0, 0}},
+                                                                                         {{0.5, 0.5, 0}},
+                                                                                         {{0.5, 1, 1}},
+                                                                                         {{1, 0, 1}},
+                                                                                         {{1, 0.5, 1}},
+                                                                                         {{1, 1, 2}}})));
+    const auto side = [](const Vec<2>& from, const Vec<2>& to) -> CurveGeometry<2> {
+        return must(Curve<Vec<2>>::make({must(BSplineBasis::bezier(1))}, Net<1, Vec<2>>({2}, {from, to})));
+    };
+    const Vec<2> o{}, x{{1, 0}}, y{{0, 1}};
+    const std::vector<std::vector<CurveGeometry<2>>> loops{{side(o, x), side(x, y), side(y, o)}};
+    ModelBuilder builder;
+    EXPECT_TRUE(builder.add_trimmed(bowl, loops));
+    const auto hull = must(convex_hull(must(std::move(builder).finish()), 0.05));
+    EXPECT_LE(hull.slack, 0.05);
+    for (const Vec<3>& p : hull.points) EXPECT_LE(p[0] + p[1], 1 + std::sqrt(2.0) * hull.slack);
+    for (int i = 0; i <= 10; ++i)
+        for (int j = 0; i + j <= 10; ++j) EXPECT_LE(outside(hull, bowl(i / 10.0, j / 10.0)), 1e-15);
 }
 
 TEST(ModelHull, powers_of_two_scale_it) {

@@ -152,6 +152,8 @@ TEST(CurveModel, what_is_outside_of_the_loops_is_not_met_and_scale_changes_nothi
         EXPECT_EQ(two.contacts[1].contact.at[0], at * unit);
         EXPECT_NEAR(two.contacts[1].contact.at[0] / unit, std::sqrt(1 - 0.01 - 0.0625), 1e-14);
         EXPECT_TRUE(met_by(query, above).contacts.empty());
+        // Where the surface is searched, but the face has ended.
+        EXPECT_TRUE(met_by(query, {{{0, 0.1 * unit, 0.45 * unit}}, {{1, 0, 0}}}).contacts.empty());
         EXPECT_EQ(met_by(query, down).contacts.size(), 1u);
     }
 }
