@@ -1,12 +1,15 @@
 // Idea. An entity is a list of numbers: those of 126 and 128 are degrees, flags, knots, weights, points and
-// the domain. The file is cards of 80 columns, each with the letter of its section and a number; the
-// directory says where the parameters of each entity begin, and these which directory entry they are of.
+// the domain. A trimmed surface (144) names its surface, its outer loop and its holes; a loop (142) is a
+// composite curve (102) in the parameters and one in space, whose curves are the images of those
+// (make/image_curve.hpp). The file is cards of 80 columns, each with the letter of its section and a number;
+// the directory says where the parameters of each entity begin, and these which directory entry they are of.
 //
-// References: the Initial Graphics Exchange Specification, version 5.3, 4.23 and 4.24.
+// References: the Initial Graphics Exchange Specification, version 5.3, 4.4, 4.23, 4.24, 4.34 and 4.36.
 #include "step_detail.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/iges.hpp>
+#include <freiform/make/image_curve.hpp>
 #include <freiform/spline/in_space.hpp>
 
 #include <array>
@@ -19,10 +22,14 @@ std::string at_right(std::string_view s, std::size_t width) {
     return std::string(width - std::min(width, s.size()), ' ') + std::string(s);
 }
 
+// Whether others are made of the entity, and what it is for: columns of the status number.
+enum class IgesUse { alone, part, parameters };
+
 class IgesFile {
 public:
+    // They return the number of the directory entry.
     template <class P>
-    Result<void> add(const Curve<P>& given) {
+    Result<int> add(const Curve<P>& given, IgesUse use = IgesUse::alone) {
         const auto c = cut(in_space(given));
         if (!c) return std::unexpected(c.error());
         const BSplineBasis& b = c->basis();
@@ -33,12 +40,11 @@ public:
         for (const auto& p : all) point(p);
         interval(b.domain());
         for (int i = 0; i < 3; ++i) values_.emplace_back("0.");  // no normal of a plane is claimed
-        entity("126");
-        return {};
+        return entity("126", use);
     }
 
     template <class P>
-    Result<void> add(const Surface<P>& given) {
+    Result<int> add(const Surface<P>& given, IgesUse use = IgesUse::alone) {
         auto s = cut(in_space(given));
         if (!s) return std::unexpected(s.error());
         const BSplineBasis &u = s->basis(0), &v = s->basis(1);
@@ -60,8 +66,32 @@ public:
         each([&](const auto& p) { weight(p); });
         each([&](const auto& p) { point(p); });
         interval(u.domain()), interval(v.domain());
-        entity("128");
-        return {};
+        return entity("128", use);
+    }
+
+    // One for each outer loop; holes go to the only one.
+    Result<int> add(const TrimmedSurface& t) {
+        const auto turned = detail::oriented_loops(t);
+        if (!turned) return std::unexpected(turned.error());
+        const auto surface = std::visit([&](const auto& s) { return add(s, IgesUse::part); }, t.surface);
+        if (!surface || turned->loops.empty()) return surface;
+        std::vector<int> outer, holes;
+        for (std::size_t l = 0; l < turned->loops.size(); ++l) {
+            const auto id = loop(turned->loops[l], t, *surface);
+            if (!id) return refuse_within(text("loops[", l, "]"), id.error());
+            (turned->depth[l] % 2 == 0 ? outer : holes).push_back(*id);
+        }
+        if (outer.size() > 1 && !holes.empty())
+            return refuse(RefusalKind::unsupported, "loops",
+                          text(outer.size(), " outer loops and ", holes.size(),
+                               " holes; IGES has holes in one outer loop each: split the surface first"));
+        int last = 0;
+        for (const int o : outer) {
+            values_ = {text(*surface), "1", text(holes.size()), text(o)};
+            for (const int h : holes) values_.push_back(text(h));
+            last = entity("144", IgesUse::alone);
+        }
+        return last;
     }
 
     bool is_empty() const { return entities_ == 0; }
@@ -137,6 +167,44 @@ private:
         return s;
     }
 
+    Result<int> loop(const std::vector<CurveGeometry<2>>& curves, const TrimmedSurface& t, int surface) {
+        const SurfaceGeometry geometry = std::visit(
+            [](const auto& s) -> SurfaceGeometry {
+                const auto open = cut(s);  // which refused nothing when the surface was written
+                return open ? *open : s;
+            },
+            t.surface);
+        std::array<std::vector<int>, 2> chains;  // in the parameters, in space
+        for (const auto& c : curves) {
+            const auto flat = parameter_spline(c, domain(c)[0]);
+            if (!flat) return std::unexpected(flat.error());
+            const auto image = image_curve(geometry, *flat);
+            if (!image) return std::unexpected(image.error());
+            const auto add_spline = [&](const auto& x, IgesUse use) -> Result<int> {
+                if constexpr (requires { x.net(); })
+                    return add(x, use);
+                else
+                    return refuse(RefusalKind::unsupported, "", "a curve that is no spline");
+            };
+            const auto one =
+                std::visit([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
+            if (!one) return one;
+            const auto other =
+                std::visit([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
+            if (!other) return other;
+            chains[0].push_back(*one), chains[1].push_back(*other);
+        }
+        std::array<int, 2> whole{};
+        for (std::size_t k = 0; k < 2; ++k) {
+            values_ = {text(chains[k].size())};
+            for (const int id : chains[k]) values_.push_back(text(id));
+            whole[k] = chains[k].size() == 1 ? chains[k][0]
+                                             : entity("102", k == 0 ? IgesUse::parameters : IgesUse::part);
+        }
+        values_ = {"0", text(surface), text(whole[0]), text(whole[1]), "3"};  // both are as good
+        return entity("142", IgesUse::part);
+    }
+
     void number(double x) { values_.push_back(detail::real(x)); }
     void knots(const BSplineBasis& b) {
         for (const double t : b.knots()) number(t);
@@ -150,7 +218,8 @@ private:
         for (int i = 0; i < 3; ++i) number(x[i]);
     }
 
-    void entity(std::string_view type) {
+    int entity(std::string_view type, IgesUse use) {
+        static constexpr std::string_view kStatus[] = {"00000000", "00010000", "00010500"};
         values_.insert(values_.begin(), std::string(type));
         const int first = rows_ + 1, entry = 2 * entities_ + 1;
         for (const std::string& line : lines(values_, 64)) {
@@ -163,10 +232,13 @@ private:
             return s;
         };
         const std::string kind(type);
-        directory_ += card(fields({kind, text(first), "0", "0", "0", "0", "0", "0", "00000000"}), 'D', entry);
+        directory_ +=
+            card(fields({kind, text(first), "0", "0", "0", "0", "0", "0", std::string(kStatus[int(use)])}),
+                 'D', entry);
         directory_ +=
             card(fields({kind, "0", "0", text(rows_ - first + 1), "0", "", "", "", "0"}), 'D', entry + 1);
         ++entities_;
+        return entry;
     }
 
     std::vector<std::string> values_;  // of the entity at hand
@@ -181,15 +253,16 @@ Result<std::string> write_iges(const Document& document) {
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
         const auto done = std::visit(
-            [&](const auto& s) -> Result<void> {
+            [&](const auto& s) -> Result<int> {
                 using S = std::remove_cvref_t<decltype(s)>;
+                if constexpr (std::same_as<S, TrimmedSurface>) return file.add(s);
                 if constexpr (TensorPatch<S>)
                     if constexpr (S::kParams <= 2 && (S::Point::kCoords == 2 || S::Point::kCoords == 3))
                         return file.add(s);
-                return refuse(
-                    RefusalKind::unsupported, "",
-                    text("is a ", type_name(o.shape),
-                         "; IGES files are written of curves and surfaces of two or three coordinates"));
+                return refuse(RefusalKind::unsupported, "",
+                              text("is a ", type_name(o.shape),
+                                   "; IGES files are written of curves and surfaces of two or three "
+                                   "coordinates, trimmed or not"));
             },
             o.shape);
         if (!done) return refuse_within(object_label(document, i), done.error());

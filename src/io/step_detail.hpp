@@ -5,6 +5,8 @@
 #include <freiform/core/constants.hpp>
 #include <freiform/core/result.hpp>
 #include <freiform/spline/geometry.hpp>
+#include <freiform/trim/loops.hpp>
+#include <freiform/trim/trimmed_surface.hpp>
 
 #include <string>
 #include <vector>
@@ -28,6 +30,46 @@ inline std::string quoted(std::string_view s) {
         if (c >= ' ' && c <= '~') out += c;
     }
     return out + "'";
+}
+
+// The parts between knots where only the place goes on: readers take edges to be smooth.
+inline Result<std::vector<CurveGeometry<2>>> without_corners(const CurveGeometry<2>& curve) {
+    return std::visit(
+        [](const auto& c) -> Result<std::vector<CurveGeometry<2>>> {
+            std::vector<CurveGeometry<2>> parts;
+            if constexpr (requires { c.net(); }) {
+                const Interval on = c.basis().domain();
+                double from = on.lo;
+                for (const double t : c.basis().breaks()) {
+                    if (t <= from || (t < on.hi && c.basis().multiplicity(t) < c.basis().degree())) continue;
+                    auto part = restrict_to(c, 0, {from, t});
+                    if (!part) return std::unexpected(part.error());
+                    parts.push_back(*std::move(part)), from = t;
+                }
+            } else {
+                parts.push_back(c);
+            }
+            return parts;
+        },
+        curve);
+}
+
+// Outer loops counter-clockwise, holes clockwise, all cut at their corners.
+inline Result<OrientedLoops> oriented_loops(const TrimmedSurface& t) {
+    const auto sides = std::visit([](const auto& s) { return s.domain(); }, t.surface);
+    const double gap = TrimmedSurface::kSlack * std::hypot(sides[0].length(), sides[1].length());
+    auto out = orient_loops(t.loops, {gap, gap});
+    if (!out) return out;
+    for (auto& loop : out->loops) {
+        std::vector<CurveGeometry<2>> cut;
+        for (const auto& curve : loop) {
+            auto parts = without_corners(curve);
+            if (!parts) return std::unexpected(parts.error());
+            for (auto& part : *parts) cut.push_back(std::move(part));
+        }
+        loop = std::move(cut);
+    }
+    return out;
 }
 
 template <class List, class F>
@@ -63,6 +105,29 @@ public:
 
     Result<int> curve(const CurveGeometry<3>& c) {
         return std::visit([&](const auto& x) { return one(x); }, c);
+    }
+
+    // A curve in space that is the image of a parameter curve of a surface, and says so.
+    Result<int> surface_curve(const CurveGeometry<3>& in_space, const CurveGeometry<2>& c, int of_surface) {
+        const auto space = curve(in_space);
+        if (!space) return space;
+        const auto flat = std::visit(
+            [&](const auto& x) -> Result<int> {
+                if constexpr (requires { x.net(); })
+                    return one(x);
+                else
+                    return refuse(RefusalKind::unsupported, "", "a parameter curve that is no spline");
+            },
+            c);
+        if (!flat) return flat;
+        if (parameters_ == 0)
+            parameters_ = e_.add(
+                "(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()REPRESENTATION_"
+                "CONTEXT("
+                "'2D SPACE',''))");
+        const int held = e_.add(text("DEFINITIONAL_REPRESENTATION('',(#", *flat, "),#", parameters_, ")"));
+        const int pcurve = e_.add(text("PCURVE('',#", of_surface, ",#", held, ")"));
+        return e_.add(text("SURFACE_CURVE('',#", *space, ",(#", pcurve, "),.CURVE_3D.)"));
     }
 
     Result<int> surface(const SurfaceGeometry& s) {
@@ -104,7 +169,12 @@ private:
     template <class Coefficients>
     std::vector<int> points_of(const Coefficients& list) {
         std::vector<int> ids;
-        for (const auto& p : list) ids.push_back(point(written_point(p)));
+        for (const auto& p : list) {
+            if constexpr (Space<std::remove_cvref_t<decltype(p)>>::kDim == 2)
+                ids.push_back(e_.add(text("CARTESIAN_POINT('',", listed_as(project(p).c, real), ")")));
+            else
+                ids.push_back(point(written_point(p)));
+        }
         return ids;
     }
     template <class Coefficients>
@@ -212,6 +282,7 @@ private:
     }
 
     Entities& e_;
+    int parameters_ = 0;  // the context of parameter curves, once there is one
 };
 
 }  // namespace freiform::detail

@@ -12,6 +12,9 @@
 // Parametrisation. Extrusions and revolutions have the parameters that the standard gives them, up to scale;
 // edges are trimmed by their vertices. So conics may be turned to their principal axes.
 //
+// Trimmed surfaces. Loops are turned as above first. Their edges have parameter curves alone: what these are
+// in space is found exactly but for rounding (make/image_curve.hpp), and both are written.
+//
 // References: ISO 10303-21 (the text), -42 (geometry and topology), -214 (products).
 // Why not the writer of Open CASCADE: it rounds numbers to 15 digits, which moves control points, and takes a
 // process of its own.
@@ -21,6 +24,7 @@
 #include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
+#include <freiform/make/image_curve.hpp>
 #include <freiform/spline/in_space.hpp>
 
 namespace freiform {
@@ -121,15 +125,23 @@ private:
         return id;
     }
 
-    Result<int> edge(const Coedge& c, const SurfaceGeometry& surface) {
+    // The curve in space, or the image of the parameter curve with that beside it.
+    Result<int> curve_of(const Edge& e, const Coedge& c, const SurfaceGeometry& surface, int of_surface) {
+        if (const auto shape = e.curve ? e.curve : lifted(c.curve, surface)) return geometry_.curve(*shape);
+        const auto parameters = parameter_spline(c.curve, e.range);
+        if (!parameters) return std::unexpected(parameters.error());
+        const auto image = image_curve(surface, *parameters);
+        if (!image)
+            return refuse(RefusalKind::unsupported, "",
+                          "has no curve in space, and " + image.error().message);
+        return geometry_.surface_curve(*image, *parameters, of_surface);
+    }
+
+    Result<int> edge(const Coedge& c, const SurfaceGeometry& surface, int of_surface) {
         int& id = edges_[std::size_t(c.edge)];
         if (id != 0) return id;
         const Edge& e = m_.edges[std::size_t(c.edge)];
-        const auto shape = e.curve ? e.curve : lifted(c.curve, surface);
-        if (!shape)
-            return refuse(RefusalKind::unsupported, text("edges[", c.edge, "]"),
-                          "has no curve in space, only parameters of a surface that is not flat");
-        const auto curve = geometry_.curve(*shape);
+        const auto curve = curve_of(e, c, surface, of_surface);
         if (!curve) return refuse_within(text("edges[", c.edge, "]"), curve.error());
         const int from = vertex(e.start), to = vertex(e.end);
         return id = e_.add(text("EDGE_CURVE(", quoted(e.name), ",#", from, ",#", to, ",#", *curve, ",.T.)"));
@@ -149,7 +161,7 @@ private:
                     pole = e.start;
                     continue;
                 }
-                const auto id = edge(c, f.surface);
+                const auto id = edge(c, f.surface, *surface);
                 if (!id) return id;
                 around.push_back(e_.add(text("ORIENTED_EDGE('',*,*,#", *id, c.reversed ? ",.F.)" : ",.T.)")));
             }
@@ -222,7 +234,14 @@ private:
 
 }  // namespace
 
-Result<std::string> write_step(const Document& document) {
+Result<std::string> write_step(const Document& given) {
+    Document document = given;
+    for (std::size_t i = 0; i < document.objects.size(); ++i)
+        if (auto* t = std::get_if<TrimmedSurface>(&document.objects[i].shape)) {
+            auto turned = detail::oriented_loops(*t);
+            if (!turned) return refuse_within(object_label(document, i), turned.error());
+            t->loops = std::move(turned->loops);
+        }
     Entities entities;
     StepGeometry geometry(entities);
     std::vector<std::size_t> with_faces;

@@ -4,9 +4,9 @@
 #include <freiform/io/svg.hpp>
 
 #include <corpus.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <gtest/gtest.h>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +17,12 @@ struct RoundTrip {
     int drawings = 0, shapes = 0, segments = 0, arcs = 0, left_out = 0;
     double worst = 0;  // largest distance between points of equal parameters, over the larger side of the box
 };
+
+void print_row(std::string_view name, const RoundTrip& sum) {
+    std::puts(text("| ", name, " | ", sum.drawings, " | ", sum.shapes, " | ", sum.segments, " | ", sum.arcs,
+                   " | ", sum.worst, " | ", sum.left_out, " |")
+                  .c_str());
+}
 
 // Points of equal parameters are this near. With the weight w of the middle point, d curve / d w is
 // (share of the middle point) / w (middle point - curve): at most the diameter of the control points over w.
@@ -79,9 +85,7 @@ TEST(SvgRoundTrip, real_drawings_come_back_the_same) {
     for (const auto& [kind, sum] : kinds) {
         EXPECT_LT(sum.worst, 1e-9) << kind;
         all.drawings += sum.drawings, all.segments += sum.segments;
-        if (std::getenv("FREIFORM_TABLE") != nullptr)
-            std::cout << "| " << kind << " | " << sum.drawings << " | " << sum.shapes << " | " << sum.segments
-                      << " | " << sum.arcs << " | " << sum.worst << " | " << sum.left_out << " |\n";
+        if (std::getenv("FREIFORM_TABLE") != nullptr) print_row(kind, sum);
     }
     EXPECT_GE(all.drawings, 80);
     EXPECT_GE(all.segments, 2000);
@@ -105,9 +109,7 @@ TEST(SvgRoundTrip, path_data_come_back_the_same) {
     }
     EXPECT_LT(sum.worst, 1e-9);
     EXPECT_GE(sum.drawings, 80);
-    if (std::getenv("FREIFORM_TABLE") != nullptr)
-        std::cout << "| path data | " << sum.drawings << " | " << sum.drawings << " | " << sum.segments
-                  << " | " << sum.arcs << " | " << sum.worst << " | |\n";
+    if (std::getenv("FREIFORM_TABLE") != nullptr) print_row("path data", sum);
 }
 
 }  // namespace

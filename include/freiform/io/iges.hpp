@@ -1,5 +1,5 @@
-// IGES files (5.3) of splines: entities 126 (curves) and 128 (surfaces), numbers as the shortest text that
-// reads back as the same double.
+// IGES files (5.3) of splines: entities 126 (curves), 128 (surfaces) and 144 (trimmed surfaces, with 142 and
+// 102 for their loops), numbers as the shortest text that reads back as the same double.
 #pragma once
 #include <freiform/shape.hpp>
 
@@ -8,9 +8,11 @@
 namespace freiform {
 
 // Plane curves and surfaces lie in z = 0; closed ones are cut at their seam. Units: mm, cm, m, inch and ft;
-// others, and none, count as the millimetre. Refuses, with the object, what is neither a curve nor a surface
-// of two or three coordinates (unsupported; trimmed surfaces and models go to STEP), and documents without
-// objects (no_answer).
+// others, and none, count as the millimetre. Loops of trimmed surfaces are written in the parameters and in
+// space, there as the images of the former (exact up to rounding), turned as orient_loops has them; a surface
+// with several outer loops becomes several. Refuses, with the object, what is neither a curve nor a surface
+// of two or three coordinates (unsupported; models go to STEP), images of degrees above 25, several outer
+// loops with holes, and documents without objects (no_answer).
 Result<std::string> write_iges(const Document& document);
 
 }  // namespace freiform

@@ -13,9 +13,11 @@ namespace freiform {
 // document's, a model's own if the document says none, and the millimetre if there is none.
 //
 // Edges are written with their curves in space; parameter curves are left to the reader, who finds them from
-// those. Refuses, with the place: faces without loops, edges without a curve in space (trimmed surfaces that
-// are not flat: their boundaries have no exact curve), curves of one or four coordinates, volumes, triangles
-// (unsupported), documents with nothing to write (no_answer).
+// those. Edges of trimmed surfaces that are not flat have the images of their parameter curves (exact up to
+// rounding, of degree 18 for cubics on a bicubic surface), and the parameter curves. Loops are turned as the
+// standard has them. Refuses, with the place: faces without loops, images of degrees above 25, loops that
+// orient_loops refuses, curves of one or four coordinates, volumes, triangles (unsupported), documents with
+// nothing to write (no_answer).
 Result<std::string> write_step(const Document& document);
 
 }  // namespace freiform
