@@ -33,15 +33,18 @@ namespace {
 
 // Of the curve between knots where its direction may jump.
 template <class P>
-std::vector<Curve<P>> smooth_parts(const Curve<P>& curve) {
+Result<std::vector<Curve<P>>> smooth_parts(const Curve<P>& curve) {
     const BSplineBasis& basis = curve.basis();
     std::vector<double> cuts;
     for (const double t : basis.breaks())
         if (t == basis.domain().lo || t == basis.domain().hi || basis.multiplicity(t) >= basis.degree())
             cuts.push_back(t);
     std::vector<Curve<P>> parts;
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-        parts.push_back(*restrict_to(curve, 0, {cuts[i], cuts[i + 1]}));
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        auto part = restrict_to(curve, 0, {cuts[i], cuts[i + 1]});
+        if (!part) return std::unexpected(part.error());
+        parts.push_back(*std::move(part));
+    }
     return parts;
 }
 
@@ -62,6 +65,9 @@ Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
         return refuse(RefusalKind::invalid, "accuracy", "a positive number is expected");
     if (!is_finite(options.up) || (options.facing == Facing::upright && options.up == Vec<3>{}))
         return refuse(RefusalKind::invalid, "up", "a direction is expected");
+    if (options.facing == Facing::least_turning &&
+        !(options.facing_accuracy > 0 && std::isfinite(options.facing_accuracy)))
+        return refuse(RefusalKind::invalid, "facing_accuracy", "a positive number is expected");
     using Q = InSpace<P>;
     Way::Of<Q> of{in_space(curve), ArcLength<Q>(in_space(curve), options.accuracy / 2), {}};
     const Measure length = of.length.total();
@@ -74,7 +80,9 @@ Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
         const auto segment =
             Curve<Vec<2>>::make({*BSplineBasis::bezier(1)}, Net<1, Vec<2>>({2}, {{{0, 0}}, {{size, 0}}}));
         Vec<3> start = options.up, along{};
-        for (const Curve<Q>& part : smooth_parts(of.curve)) {
+        const auto parts = smooth_parts(of.curve);
+        if (!parts) return refuse_within("curve", parts.error());
+        for (const Curve<Q>& part : *parts) {
             const Interval on = part.domain()[0];
             const Vec<3> begins = unit(part.template jet<1>(Param<1>{on.lo}).d[1]);
             if (!of.frame.empty()) start = turned_along(start, along, begins);

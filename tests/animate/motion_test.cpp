@@ -216,5 +216,68 @@ TEST(Trajectory, refuses_by_name) {
     test::expect_refusal(up.at(NAN), RefusalKind::nonfinite, "time");
 }
 
+// Speeds over three orders of magnitude: time runs forward, and twice the accuracy moves nothing by more than
+// the bounds.
+TEST(Motion, with_speeds_far_apart_never_runs_backwards) {
+    Random random(21);
+    for (int round = 0; round < 12; ++round) {
+        std::vector<double> values;
+        for (int i = 0; i < 6; ++i) values.push_back(std::pow(10, random.real(-2, 1)));
+        const auto v = speed_curve(values, 3, 1 + round % 4);
+        const auto m = Motion::with_speed(v, 1e-3), fine = Motion::with_speed(v, 1e-5);
+        ASSERT_TRUE(m && fine);
+        EXPECT_NEAR(m->duration(), fine->duration(), 1e-2 * m->duration());
+        double before = 0;
+        for (int i = 0; i <= 500; ++i) {
+            const double t = m->duration() * i / 500;
+            const auto s = m->at(t), f = fine->at(t);
+            EXPECT_GE(s.distance, before);
+            if (i < 500) EXPECT_GT(s.speed, 0);
+            EXPECT_LE(std::abs(s.distance - f.distance), s.bound + f.bound);
+            before = s.distance;
+        }
+    }
+}
+
+TEST(Motion, limits_with_huge_numbers_are_kept_or_refused) {
+    for (const double scale : {1e100, 1e-100}) {
+        const auto m = Motion::limited(scale, {.speed = scale, .acceleration = scale, .jerk = scale});
+        ASSERT_TRUE(m) << scale;
+        EXPECT_NEAR(m->at(m->duration() / 2).distance / scale, 0.5, 1e-12);
+    }
+    // The square of the length is no double.
+    const auto far = Motion::limited(1e200, {.speed = kNoLimit, .jerk = 1});
+    ASSERT_TRUE(far);
+    EXPECT_NEAR(far->duration() / std::cbrt(32e200), 1, 1e-12);
+    test::expect_refusal(Motion::limited(1e300, {.speed = 1e-300}), RefusalKind::limit, "length");
+}
+
+TEST(Trajectory, without_turning_goes_round_closed_curves_with_corners) {
+    // A closed polygon-like spline: degree 2, double breaks make corners.
+    const auto basis = BSplineBasis::periodic(2, {0, 0, 1, 1, 2, 2, 3});
+    ASSERT_TRUE(basis) << basis.error().message;
+    std::vector<Vec<2>> net;
+    for (int i = 0; i < basis->size(); ++i) {
+        const double a = 2 * std::numbers::pi * i / basis->size();
+        net.push_back({{(2 + i % 2) * std::cos(a), (2 + i % 2) * std::sin(a)}});
+    }
+    const auto curve = Curve<Vec<2>>::make({*basis}, Net<1, Vec<2>>({basis->size()}, net));
+    ASSERT_TRUE(curve);
+    const double total = length(*curve, 1e-9).value;
+    const auto m = *Motion::uniform(total, 2);
+    const auto way = Trajectory::make(*curve, m, {.accuracy = 1e-6, .facing = Facing::least_turning});
+    ASSERT_TRUE(way) << way.error().where << ": " << way.error().message;
+    for (int i = 0; i <= 40; ++i) {
+        const auto s = way->at(2.0 * i / 40);
+        ASSERT_TRUE(s);
+        EXPECT_NEAR(norm(s->tangent), 1, 1e-12);
+    }
+    for (const double wrong : {0.0, -1.0, kNoLimit})
+        test::expect_refusal(
+            Trajectory::make(*curve, m,
+                             {.accuracy = 1e-6, .facing = Facing::least_turning, .facing_accuracy = wrong}),
+            RefusalKind::invalid, "facing_accuracy");
+}
+
 }  // namespace
 }  // namespace freiform

@@ -105,6 +105,11 @@ TEST_F(AnimateProgram, refuses_what_it_cannot_move_along) {
     EXPECT_EQ(run({"animate", "way.json", "--speeds", "1,-1,1"}).code, 3);
     file("m.gltf", "{\"asset\": {\"version\": \"2.0\"}}");
     EXPECT_EQ(run({"animate", "m.gltf"}).code, 1);
+    EXPECT_EQ(run({"animate", "m.gltf", "--rate", "0"}).code, 2);
+    file("dot.json", R"({"type": "curve", "degree": 1, "points": [[1,1],[1,1]]})");
+    const Ran dot = run({"animate", "dot.json", "--duration", "1"});
+    EXPECT_EQ(dot.code, 1);
+    EXPECT_NE(dot.err.find("no length"), dot.err.npos) << dot.err;
     EXPECT_EQ(run({"animate", kTeapot, "--duration", "1"}).code, 2);
 }
 
