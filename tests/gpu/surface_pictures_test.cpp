@@ -46,7 +46,7 @@ protected:
         if (!probe && probe.error().kind == RefusalKind::unavailable) GTEST_SKIP() << probe.error().message;
         ASSERT_TRUE(probe) << probe.error().message;
     }
-    Result<Image> picture(Model model) {
+    Result<Image> picture(Model model, double deviation = 0.2) {
         for (Face& f : model.faces) f.colour.reset();
         for (Body& b : model.bodies) b.colour.reset();
         auto b = surface_buffers(
@@ -56,7 +56,7 @@ protected:
         options_.frame = extent_;
         auto renderer = SurfaceRenderer::make(std::move(*b), GetParam());
         if (!renderer) return std::unexpected(renderer.error());
-        return renderer->draw(options_);
+        return renderer->draw(options_, deviation);
     }
     Image mesh_picture(Model model) {
         for (Face& f : model.faces) f.colour.reset();
@@ -132,6 +132,41 @@ TEST_P(SurfacePictures, show_what_the_mesh_shows) {
     expect_same(cut_roof(), "roof", {"iso", "100,20"}, 48);
     options_.perspective = true;
     expect_same(test::frustum(1, 0.6, 1), "frustum_perspective", {"20,50"});
+}
+
+// Neighbours that are cut into different numbers of cells along their common edge, coarsely: without seams
+// several pixels would lie open between them.
+TEST_P(SurfacePictures, seams_fill_what_coarse_triangles_leave_open) {
+    const std::array bases{*BSplineBasis::bezier(2), *BSplineBasis::bezier(1)};
+    const auto strip = [&](const std::array<double, 3>& near, const std::array<double, 3>& far) {
+        std::vector<Vec<3>> net;
+        for (const std::size_t i : {std::size_t(0), std::size_t(1), std::size_t(2)})
+            for (const double y : {near[i], far[i]}) net.push_back({{0.5 * double(i), y, 0}});
+        return *Surface<Vec<3>>::make(bases, Net<2, Vec<3>>({3, 2}, net));
+    };
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(strip({0, 0.5, 0}, {1.2, 1.2, 1.2})));
+    ASSERT_TRUE(builder.add(strip({0, 0.5, 0}, {-0.3, -1.5, -0.3})));
+    const Model model = *std::move(builder).finish();
+    options_.view = *parse_view("top");
+    const auto fine = picture(model);
+    ASSERT_TRUE(fine);
+    const auto coarse = picture(model, 6);
+    ASSERT_TRUE(coarse);
+    int inside = 0, open = 0;
+    constexpr int kFar = 14;  // the outline itself is coarse
+    for (int y = kFar; y + kFar < fine->height; ++y)
+        for (int x = kFar; x + kFar < fine->width; ++x) {
+            int around = 0;
+            for (int i = -kFar; i <= kFar; i += 2)
+                for (int j = -kFar; j <= kFar; j += 2)
+                    around = std::max(around, background(*fine, x + i, y + j));
+            if (around > 3) continue;
+            ++inside;
+            open += background(*coarse, x, y) > 6;
+        }
+    EXPECT_GT(inside, 1000);
+    EXPECT_EQ(open, 0);
 }
 
 TEST_P(SurfacePictures, show_the_teapot_without_cracks) {

@@ -132,6 +132,25 @@ TEST_F(Surfaces, normals_at_poles_are_their_limits) {
         ++poles;
     }
     EXPECT_GT(poles, 8);
+    // A side that is one point, to the bit.
+    test::Random random(8);
+    const Surface<Hom<3>> hill = hills(random, 2, 3, 2);
+    Net<2, Hom<3>> net = hill.net();
+    for (int j = 0; j < net.extent()[1]; ++j)
+        net.view()({0, j}) = weighted(Vec<3>{{0, 0.5, 0}}, net.view()({0, j}).weight());
+    const auto fan = *Surface<Hom<3>>::make(hill.bases(), net);
+    const SurfaceBuffers f = buffers(model_of(fan));
+    auto drawn = test::must(SurfaceRenderer::make(f));
+    poles = 0;
+    for (const SurfaceVertex& v : test::must(drawn.triangles(options_, 1))) {
+        const Vec<2> uv = parameter_of(f, fan.domain(), v.piece, v.at);
+        if (uv[0] != 0 || v.at[1] == 0 || v.at[1] == 1) continue;
+        const auto j = fan.jet<2>({0, uv[1]});
+        const Vec<3> limit = unit(cross(j(1, 0), j(1, 1)));
+        for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(v.normal[d], limit[int(d)], kNormals) << uv[1];
+        ++poles;
+    }
+    EXPECT_GT(poles, 3);
 }
 
 TEST_F(Surfaces, neighbouring_pieces_have_the_same_points_to_the_bit) {
