@@ -76,7 +76,7 @@ protected:
         int cracked = 0, different = 0, surface = 0;
     };
     // Cracked: background where the mesh has none around. Different: darker or lighter than everything around
-    // in the other picture, by more than `by`.
+    // in the other picture, by more than `by`; not at outlines, where more of a pixel may be covered.
     static Compared compared(const Image& gpu, const Image& mesh, int by) {
         Compared out;
         const auto is_beyond = [&](const Image& a, const Image& b, int x, int y) {
@@ -98,7 +98,7 @@ protected:
                     for (int j = -1; j <= 1; ++j) around = std::max(around, background(mesh, x + i, y + j));
                 out.surface += around < 3;
                 out.cracked += around < 3 && background(gpu, x, y) > 6;
-                out.different += is_beyond(gpu, mesh, x, y) || is_beyond(mesh, gpu, x, y);
+                out.different += around < 3 && (is_beyond(gpu, mesh, x, y) || is_beyond(mesh, gpu, x, y));
             }
         return out;
     }
@@ -111,7 +111,7 @@ protected:
             const Image mesh = mesh_picture(model);
             const Compared c = compared(*gpu, mesh, by);
             EXPECT_EQ(c.cracked, 0) << name << " " << view;
-            EXPECT_LE(c.different, c.surface / 500) << name << " " << view;
+            EXPECT_LE(c.different, c.surface / 1000) << name << " " << view;
             EXPECT_GT(c.surface, 200) << name << " " << view;
             if (const char* folder = std::getenv("FREIFORM_PICTURES")) {
                 std::ofstream(std::string(folder) + "/" + name + "_" + view + "_gpu.png") << *to_png(*gpu);
@@ -145,8 +145,8 @@ TEST_P(SurfacePictures, seams_fill_what_coarse_triangles_leave_open) {
         return *Surface<Vec<3>>::make(bases, Net<2, Vec<3>>({3, 2}, net));
     };
     ModelBuilder builder;
-    ASSERT_TRUE(builder.add(strip({0, 0.5, 0}, {1.2, 1.2, 1.2})));
-    ASSERT_TRUE(builder.add(strip({0, 0.5, 0}, {-0.3, -1.5, -0.3})));
+    ASSERT_TRUE(builder.add(strip({0, -0.5, 0}, {1, 1, 1})));
+    ASSERT_TRUE(builder.add(strip({0, -0.5, 0}, {-0.8, -2.8, -0.8})));
     const Model model = *std::move(builder).finish();
     options_.view = *parse_view("top");
     const auto fine = picture(model);
