@@ -13,6 +13,9 @@ python="pybind11-dev python3-dev python3-numpy"
 test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
 wasm="clang-22 lld-22 libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 python3-venv python3-pip libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
+test="libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
+wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
+ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
@@ -66,6 +69,7 @@ what_for() {
         gmsh-doc | occt-misc) echo "models to compare on" ;;
         clang-22 | libclang-rt-22-dev) echo "the second compiler, with sanitizers" ;;
         g++-aarch64-linux-gnu | qemu-user) echo "the kernels for ARM, and a processor to test them on" ;;
+        binaryen) echo "makes WebAssembly modules a fifth smaller (clang calls it where it is)" ;;
         nodejs) echo "runs the WebAssembly modules" ;;
         npm) echo "fetches what the page is built with" ;;
         chromium) echo "runs the WebAssembly modules and the page as a browser does" ;;
