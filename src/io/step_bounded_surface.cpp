@@ -1,5 +1,5 @@
-// CURVE_BOUNDED_SURFACE: boundaries that are composite curves instead of loops of edges. Each segment becomes an
-// edge; what two boundaries share as one instance is one edge. Corners are points that agree within the
+// CURVE_BOUNDED_SURFACE: boundaries that are composite curves instead of loops of edges. Each segment becomes
+// an edge; what two boundaries share as one instance is one edge. Corners are points that agree within the
 // tolerance.
 #include "step_shape.hpp"
 
@@ -21,8 +21,11 @@ Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std
         return refuse(RefusalKind::invalid, f_.label(curve), "is a segment of a boundary without an end");
     const auto corner = [&](double t) {
         const Vec<3> p = jet<0>(c->curve, t).value();
-        const auto near = [&](int v) { return norm(out_.model.vertices[std::size_t(v)].point - p) <= tolerance_; };
-        if (const auto at = std::find_if(corners.begin(), corners.end(), near); at != corners.end()) return *at;
+        const auto near = [&](int v) {
+            return norm(out_.model.vertices[std::size_t(v)].point - p) <= tolerance_;
+        };
+        if (const auto at = std::find_if(corners.begin(), corners.end(), near); at != corners.end())
+            return *at;
         out_.model.vertices.push_back({p, tolerance_});
         corners.push_back(int(out_.model.vertices.size()) - 1);
         return corners.back();
@@ -86,7 +89,9 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
     std::vector<Use> uses;
     for (const Along& a : list) {
         auto u = use_of(a.made, a.forward, chart, box.diagonal());
-        if (!u) return refuse(u.error().kind, f_.label(a.segment), text(u.error().where, ": ", u.error().message));
+        if (!u)
+            return refuse(u.error().kind, f_.label(a.segment),
+                          text(u.error().where, ": ", u.error().message));
         if (!uses.empty() && apart(uses.back().to, u->from) > joint)
             return f->refused("is a boundary whose segments do not follow each other", RefusalKind::invalid);
         uses.push_back(std::move(*u));

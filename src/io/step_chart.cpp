@@ -183,9 +183,9 @@ Vec<2> Chart::inside(Vec<2> uv) const {
 
 Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess) const {
     Foot best;
-    best.at = guess;
+    Vec<2> at = inside(guess);
+    best.at = at;
     best.distance = kInfinity;
-    Vec<2> at = guess;
     for (int i = 0; i < 12; ++i) {
         const auto j = jet<1>(*s_, wrapped(at).c);
         const Vec<3> r = target - j.d[0];

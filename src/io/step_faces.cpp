@@ -13,9 +13,9 @@ namespace freiform::step {
 
 namespace {
 
-// Relative to the size of the face: parameter curves follow their edges as well as kFollows, or as kFollowsRoughly
-// where the tolerance of the file is a thousand times that; those that are further off than kHopeless describe
-// another face.
+// Relative to the size of the face: parameter curves follow their edges as well as kFollows, or as
+// kFollowsRoughly where the tolerance of the file is a thousand times that; those that are further off than
+// kHopeless describe another face.
 constexpr double kFollows = 1e-9, kFollowsRoughly = 1e-7, kHopeless = 0.25;
 // Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
 // believed, of what the file promises.
@@ -150,7 +150,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
             const bool beyond = kMargin * u.gap > e.tolerance;
             if ((u.fitted || beyond) && e.curve) {
                 EdgeGapOptions options;
-                options.target = u.fitted ? std::max(accuracy_for(size), e.tolerance / 8) : e.tolerance;
+                options.target = std::max(e.tolerance, u.fitted ? accuracy_for(size) : 0);
                 options.factor = 2;
                 options.max_samples = 4000;
                 const EdgeGap gap = edge_gap(*query, u.coedge.curve, *e.curve, e.range, options);
@@ -216,7 +216,8 @@ Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen) 
 
 // A sphere with its poles elsewhere: as far as possible from points of the edges. An edge that runs through a
 // pole has no continuous parameter curve; the same sphere with another axis has one for it.
-std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface, const std::vector<Vec<3>>& on) {
+std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface,
+                                                        const std::vector<Vec<3>>& on) {
     const auto* s = std::get_if<Revolution>(&surface);
     if (s == nullptr || s->kind != SurfaceKind::sphere) return std::nullopt;
     const auto* circle = std::get_if<Conic<3>>(&s->profile);
@@ -229,14 +230,15 @@ std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& s
             for (int c = 0; c <= 2; ++c) {
                 const Vec<3> z = unit(Vec<3>{{double(a) + 0.1, double(b) - 0.07, double(c) + 0.03}});
                 double near = 2;
-                for (const Vec<3>& p : on) near = std::min(near, 1 - std::abs(dot(unit(p - circle->centre), z)));
+                for (const Vec<3>& p : on)
+                    near = std::min(near, 1 - std::abs(dot(unit(p - circle->centre), z)));
                 if (near > widest) widest = near, best = z;
             }
     Vec<3> x = unit(circle->x);
     if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
     x = unit(x - dot(x, best) * best);
-    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best}, circle->centre, best,
-                      SurfaceKind::sphere};
+    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best}, circle->centre,
+                      best, SurfaceKind::sphere};
 }
 
 Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {

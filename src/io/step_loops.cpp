@@ -144,7 +144,8 @@ void LoopBuilder::add(std::vector<Use> uses) {
     };
     pole_between(c.uses, last, first, true);
     winding_of();
-    // Which way to turn about a pole between two uses of one edge, and whether at all, only the whole loop tells.
+    // Which way to turn about a pole between two uses of one edge, and whether at all, only the whole loop
+    // tells.
     for (int k = 0; k < 2; ++k)
         for (std::size_t i = 0; i < c.uses.size() && c.winding[std::size_t(k)] != 0; ++i) {
             const double turn = chart_.period(k), by = c.uses[i].end[k] - c.uses[i].start[k];

@@ -334,9 +334,11 @@ private:
         const auto& all = f_.instances;
         std::vector<std::uint32_t> order(all.size());
         for (std::size_t k = 0; k < order.size(); ++k) order[k] = std::uint32_t(k);
-        const auto before = [&](std::uint32_t a, std::uint32_t b) { return all[a].id < all[b].id; };
+        const auto before = [&](std::uint32_t a, std::uint32_t b) {
+            return all[a].id != all[b].id ? all[a].id < all[b].id : a < b;
+        };
         if (!std::is_sorted(order.begin(), order.end(), before))
-            std::stable_sort(order.begin(), order.end(), before);
+            std::sort(order.begin(), order.end(), before);
         for (std::size_t k = 1; k < order.size(); ++k)
             if (all[order[k]].id == all[order[k - 1]].id)
                 complain(all[order[k]].id, all[order[k]].at, "its number is used before");

@@ -1,8 +1,8 @@
 // Points, directions, placements, transformations.
 //
-// A frame is made of unit vectors, from an axis and a direction that need not be orthogonal; one that is already
-// of length 1 and orthogonal within rounding is taken as it stands, so that what was written with full
-// precision comes back with the same bits.
+// A frame is made of unit vectors, from an axis and a direction that need not be orthogonal; one that is
+// already of length 1 and orthogonal within rounding is taken as it stands, so that what was written with
+// full precision comes back with the same bits.
 #include "step_geometry.hpp"
 
 #include <freiform/core/constants.hpp>

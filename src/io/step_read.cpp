@@ -73,7 +73,7 @@ private:
         if (!parts_[n]) {
             const Node& node = structure_.nodes[n];
             ShapeReader reader(f_, structure_.styles, node.context.angle,
-                                        std::min(node.context.tolerance, largest_));
+                               std::min(node.context.tolerance, largest_));
             for (const std::uint32_t i : node.items) reader.add(i);
             parts_[n] = reader.finish();
             append(model_.refused, parts_[n]->model.refused);
@@ -95,7 +95,7 @@ private:
             if (auto ok = place(part_of(v.node), here, v); !ok) return ok;
         for (const auto& [item, by] : node.replicas) {
             ShapeReader reader(f_, structure_.styles, node.context.angle,
-                                        std::min(node.context.tolerance, largest_));
+                               std::min(node.context.tolerance, largest_));
             reader.add(item);
             const Part part = reader.finish();
             append(model_.refused, part.model.refused);

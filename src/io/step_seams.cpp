@@ -1,9 +1,9 @@
 // Seams: new edges that make the boundaries of faces closed chains of parameters.
 //
-// Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice, one
-// period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest in the
-// period, so that it is an isoparametric line where there is one, and keeps away from holes. The rectangle of
-// parameters that a surface without any boundary gets has seams and poles as its sides.
+// Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice,
+// one period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest
+// in the period, so that it is an isoparametric line where there is one, and keeps away from holes. The
+// rectangle of parameters that a surface without any boundary gets has seams and poles as its sides.
 #include "step_loops.hpp"
 
 #include <freiform/core/constants.hpp>

@@ -72,7 +72,8 @@ private:
     Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size);
     Result<double> size_of(const Fields& f, std::vector<Vec<3>>& seen);
     double accuracy_for(double size) const;
-    static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface, const std::vector<Vec<3>>& on);
+    static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
+                                                      const std::vector<Vec<3>>& on);
     void refuse_item(std::uint32_t item, Refusal why);
     void report(int edge, std::string what, std::optional<double> bound, double estimate);
     std::optional<Colour> colour_of(std::uint32_t i) const;

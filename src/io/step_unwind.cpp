@@ -46,8 +46,7 @@ Patch<N, P> turned_patch(const Patch<N, P>& given, int axis, int turns) {
 
 }  // namespace
 
-SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on,
-                        double slack) {
+SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, const Box<2>& on, double slack) {
     SurfaceGeometry out = surface;
     for (int axis = 0; axis < 2; ++axis) {
         const Interval whole = chart.whole()[std::size_t(axis)];
