@@ -26,33 +26,45 @@ py::array_t<double> colours_at(const Array& t, F&& f) {
 }  // namespace
 
 void bind_colour(py::module_& m) {
-    m.def("colour_named", [](std::string_view hex) { return answer([&] { return colour_named(hex); }); }, py::arg("hex"));
-    m.def("hex_of", [](const Rgba& c) { return hex_of(colour_of(c)); }, py::arg("colour"));
-    m.def("to_oklab", [](const Rgba& c) { return to_py(to_oklab(colour_of(c))); }, py::arg("colour"));
-    m.def("oklab_distance", [](const Rgba& a, const Rgba& b) { return oklab_distance(colour_of(a), colour_of(b)); },
-          py::arg("a"), py::arg("b"));
-    m.def("colour_map",
-          [](std::string_view kind, const Array& t) {
-              const ColourMap map(enum_of<MapKind>(kind, "kind"));
-              return colours_at(t, [&](double x) { return map(x); });
-          },
-          py::arg("kind"), py::arg("t"));
+    m.def(
+        "colour_named", [](std::string_view hex) { return answer([&] { return colour_named(hex); }); },
+        py::arg("hex"));
+    m.def(
+        "hex_of", [](const Rgba& c) { return hex_of(colour_of(c)); }, py::arg("colour"));
+    m.def(
+        "to_oklab", [](const Rgba& c) { return to_py(to_oklab(colour_of(c))); }, py::arg("colour"));
+    m.def(
+        "oklab_distance",
+        [](const Rgba& a, const Rgba& b) { return oklab_distance(colour_of(a), colour_of(b)); }, py::arg("a"),
+        py::arg("b"));
+    m.def(
+        "colour_map",
+        [](std::string_view kind, const Array& t) {
+            const ColourMap map(enum_of<MapKind>(kind, "kind"));
+            return colours_at(t, [&](double x) { return map(x); });
+        },
+        py::arg("kind"), py::arg("t"));
     py::class_<Gradient>(m, "GradientHandle")
-        .def(py::init([](const std::vector<std::pair<double, Rgba>>& stops, std::string_view space, std::string_view way,
-                         bool longer_hue) {
+        .def(py::init([](const std::vector<std::pair<double, Rgba>>& stops, std::string_view space,
+                         std::string_view way, bool longer_hue) {
                  std::vector<ColourStop> all;
                  for (const auto& [at, c] : stops) all.push_back({at, colour_of(c)});
                  return take(Gradient::make(all, {enum_of<ColourSpace>(space, "space"),
                                                   enum_of<GradientOptions::Way>(way, "way"), longer_hue}));
              }),
              py::arg("stops"), py::arg("space"), py::arg("way"), py::arg("longer_hue"))
-        .def("evaluate", [](const Gradient& g, const Array& t) { return colours_at(t, [&](double x) { return g(x); }); },
-             py::arg("t"))
+        .def(
+            "evaluate",
+            [](const Gradient& g, const Array& t) { return colours_at(t, [&](double x) { return g(x); }); },
+            py::arg("t"))
         .def("domain", [](const Gradient& g) { return to_py(g.domain()); })
         .def("curve", [](const Gradient& g) { return to_py(g.curve()); })
-        .def("stops_in_srgb",
-             [](const Gradient& g, double tolerance) { return answer([&] { return g.stops_in_srgb(tolerance); }); },
-             py::arg("tolerance"));
+        .def(
+            "stops_in_srgb",
+            [](const Gradient& g, double tolerance) {
+                return answer([&] { return g.stops_in_srgb(tolerance); });
+            },
+            py::arg("tolerance"));
     py::class_<MeshGradient>(m, "MeshGradientHandle")
         .def(py::init([](const SurfaceHandle& s, const std::vector<Rgba>& colours, std::string_view space) {
                  std::vector<Colour> all;
@@ -61,22 +73,28 @@ void bind_colour(py::module_& m) {
                                                 enum_of<ColourSpace>(space, "space")));
              }),
              py::arg("surface"), py::arg("colours"), py::arg("space"))
-        .def("colour", [](const MeshGradient& g, double u, double v) {
-            const Box<2> on{{{g.surface().domain()[0].lo, g.surface().domain()[1].lo}},
-                            {{g.surface().domain()[0].hi, g.surface().domain()[1].hi}}};
-            if (!on.contains({{u, v}})) reject(RefusalKind::out_of_domain, "at", "is outside the domain");
-            return to_py(g.colour(u, v));
-        }, py::arg("u"), py::arg("v"))
+        .def(
+            "colour",
+            [](const MeshGradient& g, double u, double v) {
+                const Box<2> on{{{g.surface().domain()[0].lo, g.surface().domain()[1].lo}},
+                                {{g.surface().domain()[0].hi, g.surface().domain()[1].hi}}};
+                if (!on.contains({{u, v}})) reject(RefusalKind::out_of_domain, "at", "is outside the domain");
+                return to_py(g.colour(u, v));
+            },
+            py::arg("u"), py::arg("v"))
         .def("box", [](const MeshGradient& g) { return to_py(g.box()); })
-        .def("picture",
-             [](const MeshGradient& g, int width) {
-                 if (width < 1 || width > 16384) reject(RefusalKind::invalid, "width", "is not from 1 to 16384");
-                 const Image image = take(unlocked([&] { return picture_of(std::span(&g, 1), g.box(), width); }));
-                 py::array_t<unsigned char> a({image.height, image.width, 3});
-                 std::memcpy(a.mutable_data(), image.rgb.data(), image.rgb.size());
-                 return a;
-             },
-             py::arg("width"));
+        .def(
+            "picture",
+            [](const MeshGradient& g, int width) {
+                if (width < 1 || width > 16384)
+                    reject(RefusalKind::invalid, "width", "is not from 1 to 16384");
+                const Image image =
+                    take(unlocked([&] { return picture_of(std::span(&g, 1), g.box(), width); }));
+                py::array_t<unsigned char> a({image.height, image.width, 3});
+                std::memcpy(a.mutable_data(), image.rgb.data(), image.rgb.size());
+                return a;
+            },
+            py::arg("width"));
 }
 
 }  // namespace freiform::python

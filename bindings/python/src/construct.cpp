@@ -27,17 +27,19 @@ void bind_construct(py::module_& m) {
                 *h.patch);
         },
         py::arg("curve"), py::arg("t"));
-    m.def("a_frames",
-          [](const CurveHandle& h) {
-              return std::visit([](const auto& p) { return answer([&] { return a_frames(p); }); }, *h.patch);
-          },
-          py::arg("curve"));
+    m.def(
+        "a_frames",
+        [](const CurveHandle& h) {
+            return std::visit([](const auto& p) { return answer([&] { return a_frames(p); }); }, *h.patch);
+        },
+        py::arg("curve"));
     // Coefficients: points, or weighted points (w x, w) where `rational`.
     const auto with_coefficients = [](const Array& c, bool rational, auto&& f) {
-        return with_dimension(last_extent(c, "points") - (rational ? 1 : 0), "points", [&](auto d) -> py::object {
-            constexpr int D = decltype(d)::value;
-            return rational ? f(points_of<Hom<D>>(c, "points")) : f(points_of<Vec<D>>(c, "points"));
-        });
+        return with_dimension(
+            last_extent(c, "points") - (rational ? 1 : 0), "points", [&](auto d) -> py::object {
+                constexpr int D = decltype(d)::value;
+                return rational ? f(points_of<Hom<D>>(c, "points")) : f(points_of<Vec<D>>(c, "points"));
+            });
     };
     m.def(
         "de_boor_points",
@@ -54,7 +56,8 @@ void bind_construct(py::module_& m) {
                 return answer([&] { return join_pieces(points, degree, numbers_of(breaks), tolerance); });
             });
         },
-        py::arg("coefficients"), py::arg("rational"), py::arg("degree"), py::arg("breaks"), py::arg("tolerance"));
+        py::arg("coefficients"), py::arg("rational"), py::arg("degree"), py::arg("breaks"),
+        py::arg("tolerance"));
     m.def(
         "compatible",
         [](const std::vector<CurveHandle>& curves) {

@@ -1,9 +1,10 @@
 // Values of the library as Python objects, and back.
 //
-// Idea. What the library answers is made of few kinds of things: numbers, points, intervals, enumerations, patches,
-// and records (structs) of such. `to_py` turns any of them into Python, records into the dataclass of the same name:
-// generate.py reads fields and comments from the headers and writes both sides, so that nothing is said twice.
-// Refusals become exceptions; everything that computes runs without the GIL (`answer`).
+// Idea. What the library answers is made of few kinds of things: numbers, points, intervals, enumerations,
+// patches, and records (structs) of such. `to_py` turns any of them into Python, records into the dataclass
+// of the same name: generate.py reads fields and comments from the headers and writes both sides, so that
+// nothing is said twice. Refusals become exceptions; everything that computes runs without the GIL
+// (`answer`).
 #pragma once
 
 #include <freiform/core/bounded.hpp>
@@ -14,14 +15,13 @@
 #include <freiform/core/result.hpp>
 #include <freiform/core/spelling.hpp>
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-
 #include <array>
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 #include <string>
 #include <variant>
 #include <vector>
@@ -91,9 +91,13 @@ template <class T>
 struct Wrapped;  // patches, models, meshes: handles.hpp
 
 template <class T>
-concept IsRecord = requires(const T& x) { Fields<T>::of(x); };
+concept IsRecord = requires(const T& x) {
+    Fields<T>::of(x);
+};
 template <class T>
-concept IsWrapped = requires(const T& x) { Wrapped<T>::object(x); };
+concept IsWrapped = requires(const T& x) {
+    Wrapped<T>::object(x);
+};
 
 template <class T, template <class...> class Form>
 inline constexpr bool is_form = false;
@@ -182,7 +186,7 @@ py::object to_py(const T& x) {
     } else if constexpr (is_std_array<T>) {
         using E = typename T::value_type;
         if constexpr (std::same_as<E, double> || std::same_as<E, int> || std::same_as<E, std::size_t> ||
-                      tuple_size_of<E> > 0) {
+                      tuple_size_of < E >> 0) {
             return sequence(x);
         } else {
             py::tuple t(x.size());
@@ -222,18 +226,24 @@ py::object answer(F&& f) {
 template <class F>
 auto with_dimension(py::ssize_t d, std::string_view where, F&& f) {
     switch (d) {
-        case 1: return f(std::integral_constant<int, 1>());
-        case 2: return f(std::integral_constant<int, 2>());
-        case 3: return f(std::integral_constant<int, 3>());
-        case 4: return f(std::integral_constant<int, 4>());
-        default: reject(RefusalKind::invalid, std::string(where), text("points have 1 to 4 coordinates, not ", d));
+        case 1:
+            return f(std::integral_constant<int, 1>());
+        case 2:
+            return f(std::integral_constant<int, 2>());
+        case 3:
+            return f(std::integral_constant<int, 3>());
+        case 4:
+            return f(std::integral_constant<int, 4>());
+        default:
+            reject(RefusalKind::invalid, std::string(where), text("points have 1 to 4 coordinates, not ", d));
     }
 }
 
 inline std::span<const double> numbers_of(const Array& a) { return {a.data(), std::size_t(a.size())}; }
 
 inline py::ssize_t last_extent(const Array& a, std::string_view where) {
-    if (a.ndim() < 1) reject(RefusalKind::invalid, std::string(where), "is a number and not an array of points");
+    if (a.ndim() < 1)
+        reject(RefusalKind::invalid, std::string(where), "is a number and not an array of points");
     return a.shape(a.ndim() - 1);
 }
 // The array as points, (n, D); without copying.
@@ -259,7 +269,8 @@ Net<N, P> net_of(const Array& a, std::string_view where) {
     if (a.ndim() != py::ssize_t(N) + 1)
         reject(RefusalKind::invalid, std::string(where), text("has ", a.ndim(), " axes and not ", N + 1));
     Index<N> extent;
-    for (std::size_t d = 0; d < N; ++d) extent[d] = int(std::min<py::ssize_t>(a.shape(py::ssize_t(d)), 0x7fffffff));
+    for (std::size_t d = 0; d < N; ++d)
+        extent[d] = int(std::min<py::ssize_t>(a.shape(py::ssize_t(d)), 0x7fffffff));
     const auto p = points_of<P>(a, where);
     return take(Net<N, P>::make(extent, std::vector<P>(p.begin(), p.end())));
 }

@@ -1,7 +1,7 @@
 // Curves, surfaces and volumes made into others: knots, degrees, parts, maps.
 #include "records/spline/refine.hpp"
-#include "records/spline/transform.hpp"
 #include "records/spline/subdivision.hpp"
+#include "records/spline/transform.hpp"
 
 #include <freiform/spline/bezier.hpp>
 
@@ -9,19 +9,20 @@ namespace freiform::python {
 namespace {
 
 template <std::size_t N>
-int checked_axis(int axis) {
+int axis_below(int axis) {
     if (axis < 0 || axis >= int(N)) reject(RefusalKind::invalid, "axis", text(axis, " is not below ", N));
     return axis;
 }
 
 // f(patch, axis) as a function of Python, with more arguments.
 template <std::size_t N, class... More, class F, class... Names>
-void def(py::module_& m, const char* name, F f, Names... names) {
+void def_along(py::module_& m, const char* name, F f, Names... names) {
     m.def(
         name,
         [f](const PatchHandle<N>& h, int axis, More... more) {
-            checked_axis<N>(axis);
-            return std::visit([&](const auto& p) { return answer([&] { return f(p, axis, more...); }); }, *h.patch);
+            axis_below<N>(axis);
+            return std::visit([&](const auto& p) { return answer([&] { return f(p, axis, more...); }); },
+                              *h.patch);
         },
         py::arg("patch"), py::arg("axis"), names...);
 }
@@ -46,7 +47,8 @@ void bind_with_matrix(py::module_& m) {
         py::arg("patch"), py::arg("linear"), py::arg("offset"));
     m.def(
         "project",
-        [](const PatchHandle<N>& h, const Array& eye, const Array& origin, const Array& across, const Array& up) {
+        [](const PatchHandle<N>& h, const Array& eye, const Array& origin, const Array& across,
+           const Array& up) {
             const auto p = as<Hom<3>, N>(*h.patch, "patch");
             const auto map = take(perspective(vec_of<3>(eye, "eye"), vec_of<3>(origin, "origin"),
                                               vec_of<3>(across, "across"), vec_of<3>(up, "up")));
@@ -56,48 +58,63 @@ void bind_with_matrix(py::module_& m) {
 }
 
 template <std::size_t N>
-void bind(py::module_& m) {
+void bind_changes_of(py::module_& m) {
     m.def(
         "insert_knots",
         [](const PatchHandle<N>& h, int axis, const Array& knots) {
-            checked_axis<N>(axis);
+            axis_below<N>(axis);
             return std::visit(
-                [&](const auto& p) { return answer([&] { return insert_knots(p, axis, numbers_of(knots)); }); },
+                [&](const auto& p) {
+                    return answer([&] { return insert_knots(p, axis, numbers_of(knots)); });
+                },
                 *h.patch);
         },
         py::arg("patch"), py::arg("axis"), py::arg("knots"));
-    def<N, double>(m, "insert_knot", [](const auto& p, int a, double u) { return insert_knot(p, a, u); }, py::arg("u"));
-    def<N, double>(m, "remove_knots", [](const auto& p, int a, double t) { return remove_knots(p, a, t); },
-                   py::arg("tolerance"));
-    def<N, double>(m, "reduce_degree", [](const auto& p, int a, double t) { return reduce_degree(p, a, t); },
-                   py::arg("tolerance"));
+    def_along<N, double>(
+        m, "insert_knot", [](const auto& p, int a, double u) { return insert_knot(p, a, u); }, py::arg("u"));
+    def_along<N, double>(
+        m, "remove_knots", [](const auto& p, int a, double t) { return remove_knots(p, a, t); },
+        py::arg("tolerance"));
+    def_along<N, double>(
+        m, "reduce_degree", [](const auto& p, int a, double t) { return reduce_degree(p, a, t); },
+        py::arg("tolerance"));
     m.def(
         "elevate",
         [](const PatchHandle<N>& h, int axis, int by) {
-            checked_axis<N>(axis);
+            axis_below<N>(axis);
             if (by < 0) reject(RefusalKind::invalid, "by", text(by, " is negative"));
             return std::visit(
-                [&](const auto& p) { return answer([&] { return elevate(p, axis, std::min(by, kMaxDegree + 1)); }); },
+                [&](const auto& p) {
+                    return answer([&] { return elevate(p, axis, std::min(by, kMaxDegree + 1)); });
+                },
                 *h.patch);
         },
         py::arg("patch"), py::arg("axis"), py::arg("by"));
-    def<N, double, double>(m, "restrict_to",
-                           [](const auto& p, int a, double lo, double hi) { return restrict_to(p, a, {lo, hi}); },
-                           py::arg("lo"), py::arg("hi"));
-    def<N, double, double>(m, "extend_to",
-                           [](const auto& p, int a, double lo, double hi) { return extend_to(p, a, {lo, hi}); },
-                           py::arg("lo"), py::arg("hi"));
-    def<N, double>(m, "split", [](const auto& p, int a, double u) { return split(p, a, u); }, py::arg("u"));
-    def<N>(m, "reverse", [](const auto& p, int a) { return reverse(p, a); });
-    def<N>(m, "halve_uniform", [](const auto& p, int a) { return halve_uniform(p, a); });
+    def_along<N, double, double>(
+        m, "restrict_to",
+        [](const auto& p, int a, double lo, double hi) {
+            return restrict_to(p, a, {lo, hi});
+        },
+        py::arg("lo"), py::arg("hi"));
+    def_along<N, double, double>(
+        m, "extend_to",
+        [](const auto& p, int a, double lo, double hi) {
+            return extend_to(p, a, {lo, hi});
+        },
+        py::arg("lo"), py::arg("hi"));
+    def_along<N, double>(
+        m, "split", [](const auto& p, int a, double u) { return split(p, a, u); }, py::arg("u"));
+    def_along<N>(m, "reverse", [](const auto& p, int a) { return reverse(p, a); });
+    def_along<N>(m, "halve_uniform", [](const auto& p, int a) { return halve_uniform(p, a); });
     m.def(
         "derivative",
         [](const PatchHandle<N>& h, int axis) {
-            checked_axis<N>(axis);
+            axis_below<N>(axis);
             return std::visit(
                 [&](const auto& p) -> py::object {
                     if constexpr (Space<CoefficientOf<decltype(p)>>::kRational)
-                        reject(RefusalKind::unsupported, "patch", "the derivative of a rational patch is no patch");
+                        reject(RefusalKind::unsupported, "patch",
+                               "the derivative of a rational patch is no patch");
                     else if (p.basis(axis).degree() < 1)
                         reject(RefusalKind::invalid, "degree", "is 0");
                     else
@@ -114,7 +131,8 @@ void bind(py::module_& m) {
                 [](const auto& p) {
                     const auto pieces = unlocked([&] { return decompose(p); });
                     py::list list;
-                    each_index(pieces.extent(), [&](const Index<N>& at) { list.append(to_py(pieces.piece(at))); });
+                    each_index(pieces.extent(),
+                               [&](const Index<N>& at) { list.append(to_py(pieces.piece(at))); });
                     return list;
                 },
                 *h.patch);
@@ -124,13 +142,14 @@ void bind(py::module_& m) {
         m.def(
             "iso",
             [](const PatchHandle<N>& h, int axis, double at) {
-                checked_axis<N>(axis);
+                axis_below<N>(axis);
                 return std::visit(
                     [&](const auto& p) {
                         const auto& basis = p.basis(axis);
                         if (!std::isfinite(at) || (!basis.is_closed() && !basis.domain().contains(at)))
                             reject(RefusalKind::out_of_domain, "at",
-                                   text(at, " is not in the domain [", basis.domain().lo, ", ", basis.domain().hi, "]"));
+                                   text(at, " is not in the domain [", basis.domain().lo, ", ",
+                                        basis.domain().hi, "]"));
                         return to_py(iso(p, axis, at));
                     },
                     *h.patch);
@@ -142,9 +161,9 @@ void bind(py::module_& m) {
 }  // namespace
 
 void bind_edit(py::module_& m) {
-    bind<1>(m);
-    bind<2>(m);
-    bind<3>(m);
+    bind_changes_of<1>(m);
+    bind_changes_of<2>(m);
+    bind_changes_of<3>(m);
 }
 
 }  // namespace freiform::python

@@ -1,10 +1,10 @@
 // Evaluation of many parameters on NumPy's memory.
 //
-// Method. Parameters of a curve that lie one after the other go to the kernels where they are, and results come where
-// NumPy has them. Parameters of several axes, or with other strides (as broadcasting makes them), are gathered in
-// blocks of kBlock, so that the memory beyond the result is 2 kBlock N numbers for each thread. Patches that the kernels
-// do not take (extreme spans or weights), and derivatives of order above 2, go point by point.
-// Cost. 1e6 points of a cubic curve: what PreparedPatch takes, and one call.
+// Method. Parameters of a curve that lie one after the other go to the kernels where they are, and results
+// come where NumPy has them. Parameters of several axes, or with other strides (as broadcasting makes them),
+// are gathered in blocks of kBlock, so that the memory beyond the result is 2 kBlock N numbers for each
+// thread. Patches that the kernels do not take (extreme spans or weights), and derivatives of order above 2,
+// go point by point. Cost. 1e6 points of a cubic curve: what PreparedPatch takes, and one call.
 #include "handles.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -86,7 +86,8 @@ Refusal shifted(Refusal r, std::size_t from) {
     return r;
 }
 
-// f(from, count) for blocks that cover 0 .. n - 1, on several threads; the refusal of the first block that has one.
+// f(from, count) for blocks that cover 0 .. n - 1, on several threads; the refusal of the first block that
+// has one.
 template <class F>
 Result<void> in_blocks(std::size_t n, F&& f) {
     std::mutex mutex;
@@ -104,8 +105,8 @@ Result<void> in_blocks(std::size_t n, F&& f) {
 
 // Point by point, any order.
 template <std::size_t N>
-Result<void> one_by_one(const PatchVariant<N>& patch, std::span<const double> at, int order, std::size_t slots,
-                        double* out, Outside outside) {
+Result<void> one_by_one(const PatchVariant<N>& patch, std::span<const double> at, int order,
+                        std::size_t slots, double* out, Outside outside) {
     return std::visit(
         [&](const auto& p) -> Result<void> {
             using V = PointOf<CoefficientOf<decltype(p)>>;
@@ -116,7 +117,8 @@ Result<void> one_by_one(const PatchVariant<N>& patch, std::span<const double> at
                 const Result<void> ok = p.evaluate(std::span<const Param<N>>(&u, 1), std::span<V>(&value, 1));
                 double* to = out + i * slots * std::size_t(V::kCoords);
                 if (!ok && outside == Outside::nan) {
-                    std::fill_n(to, slots * std::size_t(V::kCoords), std::numeric_limits<double>::quiet_NaN());
+                    std::fill_n(to, slots * std::size_t(V::kCoords),
+                                std::numeric_limits<double>::quiet_NaN());
                     continue;
                 }
                 if (!ok) return std::unexpected(shifted(ok.error(), i));
@@ -130,11 +132,12 @@ Result<void> one_by_one(const PatchVariant<N>& patch, std::span<const double> at
 }
 
 template <std::size_t N>
-Result<void> evaluate(const PatchHandle<N>& h, const Parameters<N>& at, int order, std::size_t slots, std::size_t dim,
-                      const detail::PreparedNet::Destination& to, Outside outside) {
+Result<void> evaluate(const PatchHandle<N>& h, const Parameters<N>& at, int order, std::size_t slots,
+                      std::size_t dim, const detail::PreparedNet::Destination& to, Outside outside) {
     const detail::PreparedNet* fast = order <= 2 ? h.prepared() : nullptr;
     if (!fast && (to.normals || to.curvatures))
-        return refuse(RefusalKind::unsupported, "surface", "spans or weights are too extreme for this question");
+        return refuse(RefusalKind::unsupported, "surface",
+                      "spans or weights are too extreme for this question");
     if (fast && at.direct()) return fast->evaluate({at.direct(), at.size()}, order, slots, to, outside);
     return in_blocks(at.size(), [&](std::size_t from, std::size_t count) -> Result<void> {
         std::vector<double> block(count * N);
@@ -149,8 +152,9 @@ Result<void> evaluate(const PatchHandle<N>& h, const Parameters<N>& at, int orde
 }
 
 template <std::size_t N>
-std::size_t dimension(const PatchHandle<N>& h) {
-    return std::visit([](const auto& p) { return std::size_t(dim_of<CoefficientOf<decltype(p)>>); }, *h.patch);
+std::size_t dimension_of(const PatchHandle<N>& h) {
+    return std::visit([](const auto& p) { return std::size_t(dim_of<CoefficientOf<decltype(p)>>); },
+                      *h.patch);
 }
 
 py::array_t<double> empty(std::vector<py::ssize_t> shape, std::initializer_list<std::size_t> more) {
@@ -159,18 +163,19 @@ py::array_t<double> empty(std::vector<py::ssize_t> shape, std::initializer_list<
 }
 
 void check_order(int order) {
-    if (order < 0 || order > 100) reject(RefusalKind::invalid, "derivatives", text(order, " is not an order from 0 to 100"));
+    if (order < 0 || order > 100)
+        reject(RefusalKind::invalid, "derivatives", text(order, " is not an order from 0 to 100"));
 }
 
 template <std::size_t N>
-void bind(py::module_& m) {
+void bind_values_of(py::module_& m) {
     // Order 0: points; else all partial derivatives up to the order, in graded order.
     m.def(
         "evaluate",
         [](const PatchHandle<N>& h, const std::vector<AnyArray>& given, int order, bool nan) {
             check_order(order);
             const Parameters<N> at(given);
-            const std::size_t dim = dimension(h), slots = jet_size(N, order);
+            const std::size_t dim = dimension_of(h), slots = jet_size(N, order);
             auto out = order == 0 ? empty(at.shape(), {dim}) : empty(at.shape(), {slots, dim});
             double* to = out.mutable_data();
             take(unlocked([&] {
@@ -190,7 +195,7 @@ void bind(py::module_& m) {
                 axes.push_back(numbers_of(a));
                 shape.push_back(a.size());
             }
-            const std::size_t dim = dimension(h), slots = jet_size(N, order);
+            const std::size_t dim = dimension_of(h), slots = jet_size(N, order);
             auto out = order == 0 ? empty(shape, {dim}) : empty(shape, {slots, dim});
             double* to = out.mutable_data();
             take(unlocked([&]() -> Result<void> {
@@ -204,7 +209,8 @@ void bind(py::module_& m) {
                     for (std::size_t i = 0; i < count; ++i)
                         for (std::size_t d = N, rest = from + i; d-- > 0; rest /= axes[d].size())
                             block[i * N + d] = axes[d][rest % axes[d].size()];
-                    return one_by_one<N>(*h.patch, block, order, slots, to + from * slots * dim, Outside::refuse);
+                    return one_by_one<N>(*h.patch, block, order, slots, to + from * slots * dim,
+                                         Outside::refuse);
                 });
             }));
             return out;
@@ -222,7 +228,8 @@ void bind(py::module_& m) {
                     at.gather(0, at.size(), reinterpret_cast<double*>(u.data()));
                     std::vector<Accurate<V>> found(at.size());
                     take(unlocked([&] {
-                        return evaluate_accurate(p, std::span<const Param<N>>(u), std::span<Accurate<V>>(found));
+                        return evaluate_accurate(p, std::span<const Param<N>>(u),
+                                                 std::span<Accurate<V>>(found));
                     }));
                     auto value = empty(at.shape(), {std::size_t(V::kCoords)});
                     auto bound = empty(at.shape(), {std::size_t(V::kCoords)});
@@ -257,8 +264,9 @@ void bind(py::module_& m) {
                 auto out = empty(shape, {std::size_t(dim_of<P>)});
                 const std::span<PointOf<P>> to(reinterpret_cast<PointOf<P>*>(out.mutable_data()),
                                                std::size_t(out.size()) / dim_of<P>);
-                take(unlocked(
-                    [&] { return evaluate_grids<N, P, BSplineBasis>(std::span<const Patch<N, P>>(all), axes, to); }));
+                take(unlocked([&] {
+                    return evaluate_grids<N, P, BSplineBasis>(std::span<const Patch<N, P>>(all), axes, to);
+                }));
                 return out;
             });
         },
@@ -268,13 +276,14 @@ void bind(py::module_& m) {
 }  // namespace
 
 void bind_evaluate(py::module_& m) {
-    bind<1>(m);
-    bind<2>(m);
-    bind<3>(m);
+    bind_values_of<1>(m);
+    bind_values_of<2>(m);
+    bind_values_of<3>(m);
     m.def(
         "evaluate_normals",
         [](const SurfaceHandle& h, const std::vector<AnyArray>& given, bool nan) {
-            if (dimension(h) != 3) reject(RefusalKind::unsupported, "surface", "normals need three coordinates");
+            if (dimension_of(h) != 3)
+                reject(RefusalKind::unsupported, "surface", "normals need three coordinates");
             const Parameters<2> at(given);
             auto points = empty(at.shape(), {3}), normals = empty(at.shape(), {3});
             double *to = points.mutable_data(), *n = normals.mutable_data();
@@ -287,12 +296,14 @@ void bind_evaluate(py::module_& m) {
     m.def(
         "evaluate_curvatures",
         [](const SurfaceHandle& h, const std::vector<AnyArray>& given, bool nan) {
-            if (dimension(h) != 3) reject(RefusalKind::unsupported, "surface", "curvatures need three coordinates");
+            if (dimension_of(h) != 3)
+                reject(RefusalKind::unsupported, "surface", "curvatures need three coordinates");
             const Parameters<2> at(given);
             auto out = empty(at.shape(), {2});
             double* to = out.mutable_data();
             take(unlocked([&] {
-                return evaluate<2>(h, at, 2, 0, 3, {nullptr, nullptr, to}, nan ? Outside::nan : Outside::refuse);
+                return evaluate<2>(h, at, 2, 0, 3, {nullptr, nullptr, to},
+                                   nan ? Outside::nan : Outside::refuse);
             }));
             return out;
         },

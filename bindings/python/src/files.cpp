@@ -20,8 +20,7 @@
 namespace freiform::python {
 namespace {
 
-using H = DocumentHandle;
-DocumentHandle handle(Document d) { return {std::make_shared<const Document>(std::move(d))}; }
+DocumentHandle document_handle(Document d) { return {std::make_shared<const Document>(std::move(d))}; }
 
 template <class Variant>
 Shape shape_of(const Variant& v) {
@@ -34,7 +33,8 @@ Shape shape_of_handle(const py::handle& x) {
     if (py::isinstance<TriangleHandle>(x)) return shape_of(x.cast<const TriangleHandle&>().patch);
     if (py::isinstance<TrimmedHandle>(x)) return *x.cast<const TrimmedHandle&>().surface;
     if (py::isinstance<ModelHandle>(x)) return *x.cast<const ModelHandle&>().model;
-    reject(RefusalKind::invalid, "objects", "are curves, surfaces, volumes, triangular patches, trimmed surfaces and models");
+    reject(RefusalKind::invalid, "objects",
+           "are curves, surfaces, volumes, triangular patches, trimmed surfaces and models");
 }
 
 Result<std::string> bytes_as(const Document& d, std::string_view format, double tolerance) {
@@ -48,8 +48,9 @@ Result<std::string> bytes_as(const Document& d, std::string_view format, double 
         if (!picture) return std::unexpected(picture.error());
         return write_svg(picture->picture);
     }
-    return refuse(RefusalKind::unsupported, "format",
-                  text("\"", format, "\" is not json, bpt, step, iges, obj or svg; meshes are written by Mesh"));
+    return refuse(
+        RefusalKind::unsupported, "format",
+        text("\"", format, "\" is not json, bpt, step, iges, obj or svg; meshes are written by Mesh"));
 }
 Result<Document> parsed(std::string_view bytes, std::string_view format) {
     if (format == "json") return read_document(bytes);
@@ -69,57 +70,78 @@ Result<Document> parsed(std::string_view bytes, std::string_view format) {
 }  // namespace
 
 void bind_files(py::module_& m) {
-    py::class_<H>(m, "DocumentHandle")
-        .def(py::init([](const std::vector<std::pair<std::string, py::object>>& objects, const std::string& unit) {
-                 Document d;
-                 d.unit = unit;
-                 for (const auto& [name, shape] : objects) d.objects.push_back({name, shape_of_handle(shape)});
-                 return handle(std::move(d));
-             }),
+    py::class_<DocumentHandle>(m, "DocumentHandle")
+        .def(py::init(
+                 [](const std::vector<std::pair<std::string, py::object>>& objects, const std::string& unit) {
+                     Document d;
+                     d.unit = unit;
+                     for (const auto& [name, shape] : objects)
+                         d.objects.push_back({name, shape_of_handle(shape)});
+                     return document_handle(std::move(d));
+                 }),
              py::arg("objects"), py::arg("unit"))
-        .def("size", [](const H& h) { return h.document->objects.size(); })
-        .def("name", [](const H& h, std::size_t i) { return h.document->objects.at(i).name; }, py::arg("index"))
-        .def("type", [](const H& h, std::size_t i) { return to_py(type_name(h.document->objects.at(i).shape)); },
-             py::arg("index"))
-        .def("shape", [](const H& h, std::size_t i) { return to_py(h.document->objects.at(i).shape); },
-             py::arg("index"))
-        .def("approximations", [](const H& h, std::size_t i) { return to_py(h.document->objects.at(i).approximations); },
-             py::arg("index"))
-        .def_property_readonly("unit", [](const H& h) { return h.document->unit; })
-        .def("left_out", [](const H& h) { return to_py(h.document->left_out); })
-        .def("to_bytes",
-             [](const H& h, std::string_view format, double tolerance) {
-                 return py::bytes(take(unlocked([&] { return bytes_as(*h.document, format, tolerance); })));
-             },
-             py::arg("format"), py::arg("tolerance"))
-        .def("scene", [](const H& h) { return answer([&] { return scene_of(*h.document); }); });
-    m.def("read",
-          [](const std::string& path, const std::optional<std::string>& format, double timeout, std::uint64_t max_bytes,
-             std::uint64_t max_memory) {
-              ReadOptions options;
-              if (format) options.format = enum_of<FileFormat>(*format, "format");
-              options.timeout = timeout, options.max_memory = max_memory;
-              if (max_bytes > 0) options.max_bytes = max_bytes;
-              return handle(take(unlocked([&] { return read_any(path, options); })));
-          },
-          py::arg("path"), py::arg("format"), py::arg("timeout"), py::arg("max_bytes"), py::arg("max_memory"));
-    m.def("parse",
-          [](std::string_view bytes, std::string_view format) {
-              return handle(take(unlocked([&] { return parsed(bytes, format); })));
-          },
-          py::arg("data"), py::arg("format"));
-    m.def("write_file",
-          [](const std::string& path, std::string_view bytes) { answer([&] { return write_file(path, bytes); }); },
-          py::arg("path"), py::arg("data"));
-    m.def("read_points",
-          [](const std::string& path) {
-              const PointTable t = take(unlocked([&] { return read_points(path); }));
-              std::vector<py::ssize_t> shape{t.extent[0]};
-              if (t.grid) shape.push_back(t.extent[1]);
-              shape.push_back(t.coords);
-              return array_of(t.values.data(), shape);
-          },
-          py::arg("path"));
+        .def("size", [](const DocumentHandle& h) { return h.document->objects.size(); })
+        .def(
+            "name", [](const DocumentHandle& h, std::size_t i) { return h.document->objects.at(i).name; },
+            py::arg("index"))
+        .def(
+            "type",
+            [](const DocumentHandle& h, std::size_t i) {
+                return to_py(type_name(h.document->objects.at(i).shape));
+            },
+            py::arg("index"))
+        .def(
+            "shape",
+            [](const DocumentHandle& h, std::size_t i) { return to_py(h.document->objects.at(i).shape); },
+            py::arg("index"))
+        .def(
+            "approximations",
+            [](const DocumentHandle& h, std::size_t i) {
+                return to_py(h.document->objects.at(i).approximations);
+            },
+            py::arg("index"))
+        .def_property_readonly("unit", [](const DocumentHandle& h) { return h.document->unit; })
+        .def("left_out", [](const DocumentHandle& h) { return to_py(h.document->left_out); })
+        .def(
+            "to_bytes",
+            [](const DocumentHandle& h, std::string_view format, double tolerance) {
+                return py::bytes(take(unlocked([&] { return bytes_as(*h.document, format, tolerance); })));
+            },
+            py::arg("format"), py::arg("tolerance"))
+        .def("scene", [](const DocumentHandle& h) { return answer([&] { return scene_of(*h.document); }); });
+    m.def(
+        "read",
+        [](const std::string& path, const std::optional<std::string>& format, double timeout,
+           std::uint64_t max_bytes, std::uint64_t max_memory) {
+            ReadOptions options;
+            if (format) options.format = enum_of<FileFormat>(*format, "format");
+            options.timeout = timeout, options.max_memory = max_memory;
+            if (max_bytes > 0) options.max_bytes = max_bytes;
+            return document_handle(take(unlocked([&] { return read_any(path, options); })));
+        },
+        py::arg("path"), py::arg("format"), py::arg("timeout"), py::arg("max_bytes"), py::arg("max_memory"));
+    m.def(
+        "parse",
+        [](std::string_view bytes, std::string_view format) {
+            return document_handle(take(unlocked([&] { return parsed(bytes, format); })));
+        },
+        py::arg("data"), py::arg("format"));
+    m.def(
+        "write_file",
+        [](const std::string& path, std::string_view bytes) {
+            answer([&] { return write_file(path, bytes); });
+        },
+        py::arg("path"), py::arg("data"));
+    m.def(
+        "read_points",
+        [](const std::string& path) {
+            const PointTable t = take(unlocked([&] { return read_points(path); }));
+            std::vector<py::ssize_t> shape{t.extent[0]};
+            if (t.grid) shape.push_back(t.extent[1]);
+            shape.push_back(t.coords);
+            return array_of(t.values.data(), shape);
+        },
+        py::arg("path"));
 }
 
 }  // namespace freiform::python

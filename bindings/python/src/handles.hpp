@@ -13,9 +13,8 @@
 namespace freiform::python {
 
 template <std::size_t N>
-using PatchVariant =
-    std::variant<Patch<N, Vec<1>>, Patch<N, Vec<2>>, Patch<N, Vec<3>>, Patch<N, Vec<4>>, Patch<N, Hom<1>>,
-                 Patch<N, Hom<2>>, Patch<N, Hom<3>>, Patch<N, Hom<4>>>;
+using PatchVariant = std::variant<Patch<N, Vec<1>>, Patch<N, Vec<2>>, Patch<N, Vec<3>>, Patch<N, Vec<4>>,
+                                  Patch<N, Hom<1>>, Patch<N, Hom<2>>, Patch<N, Hom<3>>, Patch<N, Hom<4>>>;
 
 // A patch, and what evaluates it: prepared with the first question, then shared by all threads.
 template <std::size_t N>
@@ -73,7 +72,10 @@ py::object in_class(const char* module, const char* name, Handle handle) {
 template <std::size_t N, class P>
 struct Wrapped<Patch<N, P>> {
     static py::object object(const Patch<N, P>& p) {
-        return in_class("freiform._patches", N == 1 ? "Curve" : N == 2 ? "Surface" : "Volume",
+        return in_class("freiform._patches",
+                        N == 1   ? "Curve"
+                        : N == 2 ? "Surface"
+                                 : "Volume",
                         PatchHandle<N>(PatchVariant<N>(p)));
     }
 };
@@ -145,8 +147,8 @@ py::object visit_dims(const Variant& v, std::string_view where, F&& f) {
                 return f(p);
             else
                 reject(RefusalKind::unsupported, std::string(where),
-                       text("has ", d, " coordinates; ", Least == Most ? text(Least) : text(Least, " to ", Most),
-                            " are needed"));
+                       text("has ", d, " coordinates; ",
+                            Least == Most ? text(Least) : text(Least, " to ", Most), " are needed"));
         },
         v);
 }
@@ -159,7 +161,8 @@ Patch<N, P> as(const PatchVariant<N>& v, std::string_view where) {
             using Q = CoefficientOf<decltype(p)>;
             if constexpr (std::same_as<P, Q>) {
                 return p;
-            } else if constexpr (dim_of<P> == 3 && dim_of<Q> < 3 && Space<P>::kRational >= Space<Q>::kRational) {
+            } else if constexpr (dim_of<P> == 3 && dim_of<Q> < 3 &&
+                                 Space<P>::kRational >= Space<Q>::kRational) {
                 return as<P, N>(PatchVariant<N>(in_space(p)), where);
             } else if constexpr (dim_of<P> == dim_of<Q> && Space<P>::kRational) {
                 return to_rational(p);

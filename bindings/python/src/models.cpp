@@ -30,13 +30,12 @@
 namespace freiform::python {
 namespace {
 
-using H = ModelHandle;
-using Loops = std::vector<std::vector<CurveGeometry<2>>>;
+using TrimLoops = std::vector<std::vector<CurveGeometry<2>>>;
 
-ModelHandle handle(Model model) { return {std::make_shared<const Model>(std::move(model))}; }
+ModelHandle model_handle(Model model) { return {std::make_shared<const Model>(std::move(model))}; }
 
-Loops loops_from(const std::vector<std::vector<CurveHandle>>& given) {
-    Loops loops;
+TrimLoops loops_from(const std::vector<std::vector<CurveHandle>>& given) {
+    TrimLoops loops;
     for (std::size_t i = 0; i < given.size(); ++i) {
         loops.emplace_back();
         for (const CurveHandle& h : given[i]) {
@@ -53,12 +52,12 @@ ModelBuilder::SplineSurface spline_of(const SurfaceHandle& h, std::string_view w
     return as<Vec<3>, 2>(*h.patch, where);
 }
 
-TessellateOptions options_of(double tolerance, double max_edge, double max_angle, double max_aspect, bool quads,
-                             long long max_triangles) {
+TessellateOptions tessellate_options(double tolerance, double max_edge, double max_angle, double max_aspect,
+                                     bool quads, long long max_triangles) {
     return {tolerance, max_edge, max_angle, max_aspect, quads, max_triangles};
 }
 
-void bind_making(py::module_& m) {
+void bind_model_making(py::module_& m) {
     py::class_<TrimmedHandle>(m, "TrimmedHandle")
         .def(py::init([](const SurfaceHandle& s, const std::vector<std::vector<CurveHandle>>& loops) {
                  auto made = take(TrimmedSurface::make(spline_of(s, "surface"), loops_from(loops)));
@@ -67,208 +66,255 @@ void bind_making(py::module_& m) {
              py::arg("surface"), py::arg("loops"))
         .def("surface", [](const TrimmedHandle& h) { return to_py(h.surface->surface); })
         .def("loops", [](const TrimmedHandle& h) { return to_py(h.surface->loops); })
-        .def("inside",
-             [](const TrimmedHandle& h, const Array& points) {
-                 const auto p = points_of<Vec<2>>(points, "points");
-                 std::vector<Inside> found(p.size());
-                 const auto query = take(InsideQuery::make(h.surface->loops, kInfinity));
-                 unlocked([&] { return query.at(p, found), 0; });
-                 py::list places;
-                 py::array_t<int> winding(py::ssize_t(found.size()));
-                 for (std::size_t i = 0; i < found.size(); ++i) {
-                     places.append(to_py(found[i].place));
-                     winding.mutable_data()[i] = found[i].winding;
-                 }
-                 return py::make_tuple(places, winding);
-             },
-             py::arg("points"));
+        .def(
+            "inside",
+            [](const TrimmedHandle& h, const Array& points) {
+                const auto p = points_of<Vec<2>>(points, "points");
+                std::vector<Inside> found(p.size());
+                const auto query = take(InsideQuery::make(h.surface->loops, kInfinity));
+                unlocked([&] { return query.at(p, found), 0; });
+                py::list places;
+                py::array_t<int> winding(py::ssize_t(found.size()));
+                for (std::size_t i = 0; i < found.size(); ++i) {
+                    places.append(to_py(found[i].place));
+                    winding.mutable_data()[i] = found[i].winding;
+                }
+                return py::make_tuple(places, winding);
+            },
+            py::arg("points"));
     // Faces of one body: surfaces and trimmed surfaces that share equal boundaries.
-    m.def("assemble",
-          [](const py::list& surfaces, const std::string& unit, const std::string& name) {
-              ModelBuilder builder(unit);
-              for (const py::handle& s : surfaces) {
-                  if (py::isinstance<TrimmedHandle>(s)) {
-                      const auto& t = *s.cast<const TrimmedHandle&>().surface;
-                      take(builder.add_trimmed(t.surface, t.loops));
-                  } else {
-                      take(builder.add(spline_of(s.cast<const SurfaceHandle&>(), "surfaces")));
-                  }
-              }
-              return handle(take(std::move(builder).finish(name)));
-          },
-          py::arg("surfaces"), py::arg("unit"), py::arg("name"));
-    m.def("prism",
-          [](const PathHandle& p, const Array& by) {
-              const Vec<3> v = vec_of<3>(by, "by");
-              return answer([&] { return prism(loops_of(*p.path), v); });
-          },
-          py::arg("path"), py::arg("by"));
-    m.def("solid_of_revolution",
-          [](const PathHandle& p, const Array& origin, const Array& direction, double angle) {
-              const Axis axis{vec_of<3>(origin, "origin"), vec_of<3>(direction, "direction")};
-              return answer([&] { return solid_of_revolution(loops_of(*p.path), axis, angle); });
-          },
-          py::arg("path"), py::arg("origin"), py::arg("direction"), py::arg("angle"));
-    m.def("inside_loops",
-          [](const std::vector<std::vector<CurveHandle>>& loops, double gap, const Array& points) {
-              const auto p = points_of<Vec<2>>(points, "points");
-              std::vector<Inside> found(p.size());
-              const auto query = take(InsideQuery::make(loops_from(loops), gap));
-              unlocked([&] { return query.at(p, found), 0; });
-              py::list places;
-              py::array_t<int> winding(py::ssize_t(found.size()));
-              for (std::size_t i = 0; i < found.size(); ++i) {
-                  places.append(to_py(found[i].place));
-                  winding.mutable_data()[i] = found[i].winding;
-              }
-              return py::make_tuple(places, winding);
-          },
-          py::arg("loops"), py::arg("gap"), py::arg("points"));
-    m.def("orient_loops",
-          [](const std::vector<std::vector<CurveHandle>>& loops, double gap, double accuracy) {
-              auto found = take(unlocked([&] { return orient_loops(loops_from(loops), {gap, accuracy}); }));
-              return py::make_tuple(to_py(found.loops), to_py(found.depth), to_py(found.reversed));
-          },
-          py::arg("loops"), py::arg("gap"), py::arg("accuracy"));
+    m.def(
+        "assemble",
+        [](const py::list& surfaces, const std::string& unit, const std::string& name) {
+            ModelBuilder builder(unit);
+            for (const py::handle& s : surfaces) {
+                if (py::isinstance<TrimmedHandle>(s)) {
+                    const auto& t = *s.cast<const TrimmedHandle&>().surface;
+                    take(builder.add_trimmed(t.surface, t.loops));
+                } else {
+                    take(builder.add(spline_of(s.cast<const SurfaceHandle&>(), "surfaces")));
+                }
+            }
+            return model_handle(take(std::move(builder).finish(name)));
+        },
+        py::arg("surfaces"), py::arg("unit"), py::arg("name"));
+    m.def(
+        "prism",
+        [](const PathHandle& p, const Array& by) {
+            const Vec<3> v = vec_of<3>(by, "by");
+            return answer([&] { return prism(loops_of(*p.path), v); });
+        },
+        py::arg("path"), py::arg("by"));
+    m.def(
+        "solid_of_revolution",
+        [](const PathHandle& p, const Array& origin, const Array& direction, double angle) {
+            const Axis axis{vec_of<3>(origin, "origin"), vec_of<3>(direction, "direction")};
+            return answer([&] { return solid_of_revolution(loops_of(*p.path), axis, angle); });
+        },
+        py::arg("path"), py::arg("origin"), py::arg("direction"), py::arg("angle"));
+    m.def(
+        "inside_loops",
+        [](const std::vector<std::vector<CurveHandle>>& loops, double gap, const Array& points) {
+            const auto p = points_of<Vec<2>>(points, "points");
+            std::vector<Inside> found(p.size());
+            const auto query = take(InsideQuery::make(loops_from(loops), gap));
+            unlocked([&] { return query.at(p, found), 0; });
+            py::list places;
+            py::array_t<int> winding(py::ssize_t(found.size()));
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                places.append(to_py(found[i].place));
+                winding.mutable_data()[i] = found[i].winding;
+            }
+            return py::make_tuple(places, winding);
+        },
+        py::arg("loops"), py::arg("gap"), py::arg("points"));
+    m.def(
+        "orient_loops",
+        [](const std::vector<std::vector<CurveHandle>>& loops, double gap, double accuracy) {
+            auto found = take(unlocked([&] { return orient_loops(loops_from(loops), {gap, accuracy}); }));
+            return py::make_tuple(to_py(found.loops), to_py(found.depth), to_py(found.reversed));
+        },
+        py::arg("loops"), py::arg("gap"), py::arg("accuracy"));
 }
 
-void bind_questions(py::module_& m) {
-    m.def("model_summary", [](const H& h) { return answer([&] { return summary(*h.model); }); }, py::arg("model"));
-    m.def("model_tight_box",
-          [](const H& h, double accuracy, int max_parts) {
-              return answer([&] { return tight_box(*h.model, accuracy, max_parts); });
-          },
-          py::arg("model"), py::arg("accuracy"), py::arg("max_parts"));
-    m.def("model_oriented_box",
-          [](const H& h, double accuracy, int max_parts) {
-              return answer([&] { return oriented_box(*h.model, accuracy, max_parts); });
-          },
-          py::arg("model"), py::arg("accuracy"), py::arg("max_parts"));
-    m.def("model_rescaled", [](const H& h, int exponent) { return answer([&] { return rescaled(*h.model, exponent); }); },
-          py::arg("model"), py::arg("exponent"));
-    m.def("model_sew", [](const H& h, double tolerance) { return answer([&] { return sew(*h.model, {tolerance}); }); },
-          py::arg("model"), py::arg("tolerance"));
-    m.def("model_edge_lengths",
-          [](const H& h, double accuracy) { return answer([&] { return edge_lengths(*h.model, accuracy); }); },
-          py::arg("model"), py::arg("accuracy"));
-    m.def("model_edge_continuity",
-          [](const H& h, double gap, double angle, double curvature, int max_parts) {
-              return answer([&] { return edge_continuity(*h.model, {gap, angle, curvature, max_parts}); });
-          },
-          py::arg("model"), py::arg("gap"), py::arg("angle"), py::arg("curvature"), py::arg("max_parts"));
-    m.def("model_inside",
-          [](const H& h, const Array& points, double accuracy, long long max_triangles) {
-              return answer([&] { return inside_solid(*h.model, points_of<Vec<3>>(points, "points"), accuracy, max_triangles); });
-          },
-          py::arg("model"), py::arg("points"), py::arg("accuracy"), py::arg("max_triangles"));
-    m.def("model_intersect",
-          [](const H& a, const H& b, double tolerance, int max_pairs) {
-              return answer([&] { return intersect(*a.model, *b.model, SurfaceIntersectOptions{tolerance, max_pairs}); });
-          },
-          py::arg("a"), py::arg("b"), py::arg("tolerance"), py::arg("max_pairs"));
-    m.def("model_section",
-          [](const H& h, const Array& normal, double offset, double tolerance, long long max_triangles) {
-              const Plane plane{vec_of<3>(normal, "normal"), offset};
-              TessellateOptions options{tolerance};
-              options.max_triangles = max_triangles;
-              return answer([&] { return section(*h.model, plane, options); });
-          },
-          py::arg("model"), py::arg("normal"), py::arg("offset"), py::arg("tolerance"), py::arg("max_triangles"));
-    m.def("model_deviation",
-          [](const H& h, const MeshHandle& mesh, double enough, std::size_t max_parts) {
-              return answer([&] { return deviation(*h.model, *mesh.mesh, {enough, max_parts}); });
-          },
-          py::arg("model"), py::arg("mesh"), py::arg("enough"), py::arg("max_parts"));
+void bind_model_questions(py::module_& m) {
+    m.def(
+        "model_summary", [](const ModelHandle& h) { return answer([&] { return summary(*h.model); }); },
+        py::arg("model"));
+    m.def(
+        "model_tight_box",
+        [](const ModelHandle& h, double accuracy, int max_parts) {
+            return answer([&] { return tight_box(*h.model, accuracy, max_parts); });
+        },
+        py::arg("model"), py::arg("accuracy"), py::arg("max_parts"));
+    m.def(
+        "model_oriented_box",
+        [](const ModelHandle& h, double accuracy, int max_parts) {
+            return answer([&] { return oriented_box(*h.model, accuracy, max_parts); });
+        },
+        py::arg("model"), py::arg("accuracy"), py::arg("max_parts"));
+    m.def(
+        "model_rescaled",
+        [](const ModelHandle& h, int exponent) {
+            return answer([&] { return rescaled(*h.model, exponent); });
+        },
+        py::arg("model"), py::arg("exponent"));
+    m.def(
+        "model_sew",
+        [](const ModelHandle& h, double tolerance) {
+            return answer([&] { return sew(*h.model, {tolerance}); });
+        },
+        py::arg("model"), py::arg("tolerance"));
+    m.def(
+        "model_edge_lengths",
+        [](const ModelHandle& h, double accuracy) {
+            return answer([&] { return edge_lengths(*h.model, accuracy); });
+        },
+        py::arg("model"), py::arg("accuracy"));
+    m.def(
+        "model_edge_continuity",
+        [](const ModelHandle& h, double gap, double angle, double curvature, int max_parts) {
+            return answer([&] { return edge_continuity(*h.model, {gap, angle, curvature, max_parts}); });
+        },
+        py::arg("model"), py::arg("gap"), py::arg("angle"), py::arg("curvature"), py::arg("max_parts"));
+    m.def(
+        "model_inside",
+        [](const ModelHandle& h, const Array& points, double accuracy, long long max_triangles) {
+            return answer([&] {
+                return inside_solid(*h.model, points_of<Vec<3>>(points, "points"), accuracy, max_triangles);
+            });
+        },
+        py::arg("model"), py::arg("points"), py::arg("accuracy"), py::arg("max_triangles"));
+    m.def(
+        "model_intersect",
+        [](const ModelHandle& a, const ModelHandle& b, double tolerance, int max_pairs) {
+            return answer([&] {
+                return intersect(*a.model, *b.model, SurfaceIntersectOptions{tolerance, max_pairs});
+            });
+        },
+        py::arg("a"), py::arg("b"), py::arg("tolerance"), py::arg("max_pairs"));
+    m.def(
+        "model_section",
+        [](const ModelHandle& h, const Array& normal, double offset, double tolerance,
+           long long max_triangles) {
+            const Plane plane{vec_of<3>(normal, "normal"), offset};
+            TessellateOptions options{tolerance};
+            options.max_triangles = max_triangles;
+            return answer([&] { return section(*h.model, plane, options); });
+        },
+        py::arg("model"), py::arg("normal"), py::arg("offset"), py::arg("tolerance"),
+        py::arg("max_triangles"));
+    m.def(
+        "model_deviation",
+        [](const ModelHandle& h, const MeshHandle& mesh, double enough, std::size_t max_parts) {
+            return answer([&] { return deviation(*h.model, *mesh.mesh, {enough, max_parts}); });
+        },
+        py::arg("model"), py::arg("mesh"), py::arg("enough"), py::arg("max_parts"));
     py::class_<ModelNearestQuery>(m, "ModelNearestHandle")
-        .def(py::init([](const H& h) { return take(unlocked([&] { return ModelNearestQuery::make(*h.model); })); }),
+        .def(py::init([](const ModelHandle& h) {
+                 return take(unlocked([&] { return ModelNearestQuery::make(*h.model); }));
+             }),
              py::arg("model"))
-        .def("nearest",
-             [](const ModelNearestQuery& q, const Array& points, double accuracy, int max_parts) {
-                 const auto p = points_of<Vec<3>>(points, "points");
-                 std::vector<ModelNearest> found(p.size());
-                 take(unlocked([&] { return q.nearest(p, std::span<ModelNearest>(found), {accuracy, max_parts}); }));
-                 return to_py(found);
-             },
-             py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
-        .def("farthest",
-             [](const ModelNearestQuery& q, const Array& point, double accuracy, int max_parts) {
-                 const Vec<3> p = vec_of<3>(point, "point");
-                 return answer([&] { return q.farthest(p, {accuracy, max_parts}); });
-             },
-             py::arg("point"), py::arg("accuracy"), py::arg("max_parts"))
-        .def("nearest_faces",
-             [](const ModelNearestQuery& q, const Array& point, int count, double radius) {
-                 const Vec<3> p = vec_of<3>(point, "point");
-                 return answer([&] { return q.nearest_faces(p, count, radius); });
-             },
-             py::arg("point"), py::arg("count"), py::arg("radius"))
-        .def("least_distance",
-             [](const ModelNearestQuery& a, const ModelNearestQuery& b, double accuracy, int max_pairs) {
-                 return answer([&] { return least_distance(a, b, {accuracy, max_pairs}); });
-             },
-             py::arg("other"), py::arg("accuracy"), py::arg("max_pairs"));
+        .def(
+            "nearest",
+            [](const ModelNearestQuery& q, const Array& points, double accuracy, int max_parts) {
+                const auto p = points_of<Vec<3>>(points, "points");
+                std::vector<ModelNearest> found(p.size());
+                take(unlocked([&] {
+                    return q.nearest(p, std::span<ModelNearest>(found), {accuracy, max_parts});
+                }));
+                return to_py(found);
+            },
+            py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
+        .def(
+            "farthest",
+            [](const ModelNearestQuery& q, const Array& point, double accuracy, int max_parts) {
+                const Vec<3> p = vec_of<3>(point, "point");
+                return answer([&] { return q.farthest(p, {accuracy, max_parts}); });
+            },
+            py::arg("point"), py::arg("accuracy"), py::arg("max_parts"))
+        .def(
+            "nearest_faces",
+            [](const ModelNearestQuery& q, const Array& point, int count, double radius) {
+                const Vec<3> p = vec_of<3>(point, "point");
+                return answer([&] { return q.nearest_faces(p, count, radius); });
+            },
+            py::arg("point"), py::arg("count"), py::arg("radius"))
+        .def(
+            "least_distance",
+            [](const ModelNearestQuery& a, const ModelNearestQuery& b, double accuracy, int max_pairs) {
+                return answer([&] { return least_distance(a, b, {accuracy, max_pairs}); });
+            },
+            py::arg("other"), py::arg("accuracy"), py::arg("max_pairs"));
 }
 
 void bind_tessellate(py::module_& m) {
-    m.def("tessellate",
-          [](const H& h, double tolerance, double max_edge, double max_angle, double max_aspect, bool quads,
-             long long max_triangles) {
-              const auto options = options_of(tolerance, max_edge, max_angle, max_aspect, quads, max_triangles);
-              return answer([&] { return tessellate(*h.model, options); });
-          },
-          py::arg("model"), py::arg("tolerance"), py::arg("max_edge"), py::arg("max_angle"), py::arg("max_aspect"),
-          py::arg("quads"), py::arg("max_triangles"));
-    m.def("surface_field",
-          [](const H& h, const MeshHandle& mesh, std::string_view field) {
-              const auto f = enum_of<SurfaceField>(field, "field");
-              return answer([&] { return surface_field(*h.model, *mesh.mesh, f); });
-          },
-          py::arg("model"), py::arg("mesh"), py::arg("field"));
-    m.def("isolines",
-          [](const H& h, const MeshHandle& mesh, std::optional<int> count) {
-              return answer([&] { return isolines(*h.model, *mesh.mesh, count); });
-          },
-          py::arg("model"), py::arg("mesh"), py::arg("count"));
-    m.def("silhouettes",
-          [](const H& h, const MeshHandle& mesh, const Array& eye) {
-              const Vec<3> e = unit(vec_of<3>(eye, "eye"));
-              return answer([&] { return silhouettes(*h.model, *mesh.mesh, e); });
-          },
-          py::arg("model"), py::arg("mesh"), py::arg("eye"));
+    m.def(
+        "tessellate",
+        [](const ModelHandle& h, double tolerance, double max_edge, double max_angle, double max_aspect,
+           bool quads, long long max_triangles) {
+            const auto options =
+                tessellate_options(tolerance, max_edge, max_angle, max_aspect, quads, max_triangles);
+            return answer([&] { return tessellate(*h.model, options); });
+        },
+        py::arg("model"), py::arg("tolerance"), py::arg("max_edge"), py::arg("max_angle"),
+        py::arg("max_aspect"), py::arg("quads"), py::arg("max_triangles"));
+    m.def(
+        "surface_field",
+        [](const ModelHandle& h, const MeshHandle& mesh, std::string_view field) {
+            const auto f = enum_of<SurfaceField>(field, "field");
+            return answer([&] { return surface_field(*h.model, *mesh.mesh, f); });
+        },
+        py::arg("model"), py::arg("mesh"), py::arg("field"));
+    m.def(
+        "isolines",
+        [](const ModelHandle& h, const MeshHandle& mesh, std::optional<int> count) {
+            return answer([&] { return isolines(*h.model, *mesh.mesh, count); });
+        },
+        py::arg("model"), py::arg("mesh"), py::arg("count"));
+    m.def(
+        "silhouettes",
+        [](const ModelHandle& h, const MeshHandle& mesh, const Array& eye) {
+            const Vec<3> e = unit(vec_of<3>(eye, "eye"));
+            return answer([&] { return silhouettes(*h.model, *mesh.mesh, e); });
+        },
+        py::arg("model"), py::arg("mesh"), py::arg("eye"));
 }
 
 }  // namespace
 
 void bind_models(py::module_& m) {
-    py::class_<H>(m, "ModelHandle")
-        .def("to_binary", [](const H& h) { return py::bytes(to_binary(*h.model)); })
-        .def_static("from_binary", [](std::string_view bytes) { return handle(take(from_binary(bytes))); },
-                    py::arg("data"))
-        .def_property_readonly("unit", [](const H& h) { return h.model->unit; })
-        .def("refused", [](const H& h) { return to_py(h.model->refused); })
-        .def("approximations", [](const H& h) { return to_py(h.model->approximations); })
+    py::class_<ModelHandle>(m, "ModelHandle")
+        .def("to_binary", [](const ModelHandle& h) { return py::bytes(to_binary(*h.model)); })
+        .def_static(
+            "from_binary", [](std::string_view bytes) { return model_handle(take(from_binary(bytes))); },
+            py::arg("data"))
+        .def_property_readonly("unit", [](const ModelHandle& h) { return h.model->unit; })
+        .def("refused", [](const ModelHandle& h) { return to_py(h.model->refused); })
+        .def("approximations", [](const ModelHandle& h) { return to_py(h.model->approximations); })
         .def("vertices",
-             [](const H& h) {
+             [](const ModelHandle& h) {
                  std::vector<Vec<3>> p;
                  for (const Vertex& v : h.model->vertices) p.push_back(v.point);
                  return to_py(p);
              })
         .def("faces",
-             [](const H& h) {
+             [](const ModelHandle& h) {
                  py::list list;
                  for (const Face& f : h.model->faces)
-                     list.append(py::make_tuple(f.name, to_py(kind_name(f.surface)), f.reversed, to_py(f.colour)));
+                     list.append(
+                         py::make_tuple(f.name, to_py(kind_name(f.surface)), f.reversed, to_py(f.colour)));
                  return list;
              })
-        .def("edges", [](const H& h) {
+        .def("edges", [](const ModelHandle& h) {
             py::list list;
             for (const Edge& e : h.model->edges)
-                list.append(py::make_tuple(e.curve ? to_py(*e.curve) : py::none(), to_py(e.range), e.start, e.end,
-                                           e.degenerate));
+                list.append(py::make_tuple(e.curve ? to_py(*e.curve) : py::none(), to_py(e.range), e.start,
+                                           e.end, e.degenerate));
             return list;
         });
-    bind_making(m);
-    bind_questions(m);
+    bind_model_making(m);
+    bind_model_questions(m);
     bind_tessellate(m);
 }
 

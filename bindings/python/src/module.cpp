@@ -1,5 +1,5 @@
-// The extension module freiform._core: functions over handles and arrays. The package around it has the names, the
-// types and the documentation.
+// The extension module freiform._core: functions over handles and arrays. The package around it has the
+// names, the types and the documentation.
 #include "handles.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -46,9 +46,11 @@ PYBIND11_MODULE(_core, m) {
     m.def("set_max_threads", &freiform::set_max_threads, py::arg("threads"));
     m.def("max_threads", &freiform::max_threads);
     m.def("instruction_set", [] { return std::string(freiform::instruction_set()); });
-    for (auto* bind : {bind_basis, bind_patches, bind_evaluate, bind_edit, bind_construct, bind_triangles, bind_paths,
-                       bind_make_curves, bind_named, bind_make_surfaces, bind_joints, bind_fit, bind_curve_queries,
-                       bind_surface_queries, bind_nearest, bind_intersect, bind_meshes, bind_models, bind_files,
-                       bind_draw, bind_colour, bind_animate, bind_font})
+    for (auto* bind : {bind_basis,         bind_patches,         bind_evaluate, bind_edit,
+                       bind_construct,     bind_triangles,       bind_paths,    bind_make_curves,
+                       bind_named,         bind_make_surfaces,   bind_joints,   bind_fit,
+                       bind_curve_queries, bind_surface_queries, bind_nearest,  bind_intersect,
+                       bind_meshes,        bind_models,          bind_files,    bind_draw,
+                       bind_colour,        bind_animate,         bind_font})
         bind(m);
 }

@@ -1,8 +1,9 @@
 // Nearest and farthest points, distances, hulls.
+#include "records/query/nearest.hpp"
+
 #include "records/core/interval.hpp"
 #include "records/query/distance.hpp"
 #include "records/query/hull.hpp"
-#include "records/query/nearest.hpp"
 #include "records/query/oriented_box.hpp"
 
 namespace freiform::python {
@@ -17,7 +18,8 @@ NearestObject object_of(const py::handle& x) {
     if (py::isinstance<SurfaceHandle>(x)) return object_of(x.cast<const SurfaceHandle&>());
     if (py::isinstance<VolumeHandle>(x)) return object_of(x.cast<const VolumeHandle&>());
     if (py::isinstance<TriangleHandle>(x))
-        return std::visit([](const auto& p) { return NearestObject::of(p); }, x.cast<const TriangleHandle&>().patch);
+        return std::visit([](const auto& p) { return NearestObject::of(p); },
+                          x.cast<const TriangleHandle&>().patch);
     reject(RefusalKind::invalid, "objects", "are curves, surfaces, volumes and triangular patches");
 }
 
@@ -74,75 +76,85 @@ void bind_nearest(py::module_& m) {
              }),
              py::arg("objects"))
         .def_property_readonly("coordinates", &Q::coordinates)
-        .def("nearest",
-             [](const Q& q, const Array& points, double accuracy, int max_parts) {
-                 return with_query(q, points, [&](auto d, auto p) {
-                     constexpr int D = decltype(d)::value;
-                     std::vector<Nearest<D>> found(p.size());
-                     take(unlocked([&] { return q.nearest<D>(p, found, {accuracy, max_parts}); }));
-                     return columns<D>(std::span<const Nearest<D>>(found), {points.shape(), points.shape() + points.ndim() - 1},
-                                       &Nearest<D>::lower_bound);
-                 });
-             },
-             py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
-        .def("farthest",
-             [](const Q& q, const Array& points, double accuracy, int max_parts) {
-                 return with_query(q, points, [&](auto d, auto p) {
-                     constexpr int D = decltype(d)::value;
-                     std::vector<Farthest<D>> found(p.size());
-                     take(unlocked([&] { return q.farthest<D>(p, found, {accuracy, max_parts}); }));
-                     return columns<D>(std::span<const Farthest<D>>(found), {points.shape(), points.shape() + points.ndim() - 1},
-                                       &Farthest<D>::upper_bound);
-                 });
-             },
-             py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
-        .def("feet",
-             [](const Q& q, const Array& point, int count, double accuracy, int max_parts) {
-                 return with_point(q, point, [&](auto d, const auto& p) {
-                     constexpr int D = decltype(d)::value;
-                     return answer([&] { return q.feet<D>(p, count, {accuracy, max_parts}); });
-                 });
-             },
-             py::arg("point"), py::arg("count"), py::arg("accuracy"), py::arg("max_parts"))
-        .def("within",
-             [](const Q& q, const Array& point, double radius, double finest, int max_parts) {
-                 return with_point(q, point, [&](auto d, const auto& p) {
-                     constexpr int D = decltype(d)::value;
-                     return answer([&] { return q.within<D>(p, radius, finest, {0, max_parts}); });
-                 });
-             },
-             py::arg("point"), py::arg("radius"), py::arg("finest"), py::arg("max_parts"))
-        .def("least_distance",
-             [](const Q& a, const Q& b, double accuracy, int max_pairs) {
-                 return with_dimension(a.coordinates(), "objects", [&](auto d) -> py::object {
-                     constexpr int D = decltype(d)::value;
-                     return answer([&] { return least_distance<D>(a, b, {accuracy, max_pairs}); });
-                 });
-             },
-             py::arg("other"), py::arg("accuracy"), py::arg("max_pairs"))
-        .def("convex_hull",
-             [](const Q& q, double tolerance, int max_parts) {
-                 return plane_or_space(q, [&](auto d) {
-                     constexpr int D = decltype(d)::value;
-                     return answer([&] { return convex_hull<D>(q, tolerance, max_parts); });
-                 });
-             },
-             py::arg("tolerance"), py::arg("max_parts"))
-        .def("oriented_box",
-             [](const Q& q, double accuracy, int max_parts) {
-                 return plane_or_space(q, [&](auto d) {
-                     constexpr int D = decltype(d)::value;
-                     return answer([&] { return oriented_box<D>(q, accuracy, max_parts); });
-                 });
-             },
-             py::arg("accuracy"), py::arg("max_parts"));
-    m.def("convex_hull_of_points",
-          [](const Array& points) {
-              return last_extent(points, "points") == 2
-                         ? answer([&] { return convex_hull(points_of<Vec<2>>(points, "points")); })
-                         : answer([&] { return hull_triangles(points_of<Vec<3>>(points, "points")); });
-          },
-          py::arg("points"));
+        .def(
+            "nearest",
+            [](const Q& q, const Array& points, double accuracy, int max_parts) {
+                return with_query(q, points, [&](auto d, auto p) {
+                    constexpr int D = decltype(d)::value;
+                    std::vector<Nearest<D>> found(p.size());
+                    take(unlocked([&] { return q.nearest<D>(p, found, {accuracy, max_parts}); }));
+                    return columns<D>(std::span<const Nearest<D>>(found),
+                                      {points.shape(), points.shape() + points.ndim() - 1},
+                                      &Nearest<D>::lower_bound);
+                });
+            },
+            py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
+        .def(
+            "farthest",
+            [](const Q& q, const Array& points, double accuracy, int max_parts) {
+                return with_query(q, points, [&](auto d, auto p) {
+                    constexpr int D = decltype(d)::value;
+                    std::vector<Farthest<D>> found(p.size());
+                    take(unlocked([&] { return q.farthest<D>(p, found, {accuracy, max_parts}); }));
+                    return columns<D>(std::span<const Farthest<D>>(found),
+                                      {points.shape(), points.shape() + points.ndim() - 1},
+                                      &Farthest<D>::upper_bound);
+                });
+            },
+            py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
+        .def(
+            "feet",
+            [](const Q& q, const Array& point, int count, double accuracy, int max_parts) {
+                return with_point(q, point, [&](auto d, const auto& p) {
+                    constexpr int D = decltype(d)::value;
+                    return answer([&] { return q.feet<D>(p, count, {accuracy, max_parts}); });
+                });
+            },
+            py::arg("point"), py::arg("count"), py::arg("accuracy"), py::arg("max_parts"))
+        .def(
+            "within",
+            [](const Q& q, const Array& point, double radius, double finest, int max_parts) {
+                return with_point(q, point, [&](auto d, const auto& p) {
+                    constexpr int D = decltype(d)::value;
+                    return answer([&] { return q.within<D>(p, radius, finest, {0, max_parts}); });
+                });
+            },
+            py::arg("point"), py::arg("radius"), py::arg("finest"), py::arg("max_parts"))
+        .def(
+            "least_distance",
+            [](const Q& a, const Q& b, double accuracy, int max_pairs) {
+                return with_dimension(a.coordinates(), "objects", [&](auto d) -> py::object {
+                    constexpr int D = decltype(d)::value;
+                    return answer([&] { return least_distance<D>(a, b, {accuracy, max_pairs}); });
+                });
+            },
+            py::arg("other"), py::arg("accuracy"), py::arg("max_pairs"))
+        .def(
+            "convex_hull",
+            [](const Q& q, double tolerance, int max_parts) {
+                return plane_or_space(q, [&](auto d) {
+                    constexpr int D = decltype(d)::value;
+                    return answer([&] { return convex_hull<D>(q, tolerance, max_parts); });
+                });
+            },
+            py::arg("tolerance"), py::arg("max_parts"))
+        .def(
+            "oriented_box",
+            [](const Q& q, double accuracy, int max_parts) {
+                return plane_or_space(q, [&](auto d) {
+                    constexpr int D = decltype(d)::value;
+                    return answer([&] { return oriented_box<D>(q, accuracy, max_parts); });
+                });
+            },
+            py::arg("accuracy"), py::arg("max_parts"));
+    m.def(
+        "convex_hull_of_points",
+        [](const Array& points) {
+            return last_extent(points, "points") == 2
+                       ? answer([&] { return convex_hull(points_of<Vec<2>>(points, "points")); })
+                       : answer([&] { return hull_triangles(points_of<Vec<3>>(points, "points")); });
+        },
+        py::arg("points"));
 }
 
 }  // namespace freiform::python
