@@ -29,6 +29,7 @@ export class Plane implements View {
     private readonly ground = s("g", { class: "grid" });
     private readonly picture = s("g", { class: "picture" });
     private items: Item[] = [];
+    private readonly drawings = new Map<string, string>();
     private width = 600;
     private height = 400;
     private scale: [number, number] = [50, 50];
@@ -53,9 +54,16 @@ export class Plane implements View {
         if (options.movable !== false) this.listen();
     }
 
-    dispose(): void { this.watcher.disconnect(); }
+    dispose(): void {
+        this.watcher.disconnect();
+        for (const url of this.drawings.values()) URL.revokeObjectURL(url);
+    }
 
     clear(): void {
+        for (const [svg, url] of [...this.drawings].slice(0, -2)) {
+            URL.revokeObjectURL(url);
+            this.drawings.delete(svg);
+        }
         this.items = [];
         this.redraw();
     }
@@ -77,7 +85,10 @@ export class Plane implements View {
 
     /** A drawing (SVG text) that fills the box between two corners. */
     image(svg: string, lower: Point, upper: Point): void {
-        this.items.push({ kind: "image", url: `data:image/svg+xml,${encodeURIComponent(svg)}`, lower, upper });
+        // One address for one drawing: what is shown already is not decoded again.
+        const url = this.drawings.get(svg) ?? URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
+        this.drawings.set(svg, url);
+        this.items.push({ kind: "image", url, lower, upper });
         this.redraw();
     }
 

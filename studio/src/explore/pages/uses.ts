@@ -167,6 +167,8 @@ const r35: Page = {
         const mesh = (): ObjectJson => ({ type: "surface", degrees: [3, 3], points,
             colours: points.flatMap((_, i) => [0, 1, 2, 3].map((j) => rgb(colours[(i + j) % 4] ?? "#888888"))) }) as unknown as ObjectJson;
         stage.opens(() => document({ type: "surface", points: points.map((row) => row.map((p) => [...p, 0])) }));
+        // Thousands of triangles: made anew only when they are others.
+        let drawn = "", made = "";
         stage.update(() => {
             plane.clear();
             strip.clear();
@@ -176,7 +178,11 @@ const r35: Page = {
             dots(graph, stops.flatMap((s) => s.rgba.slice(0, 3).map((y) => [s.at, y])), "ink-soft", 4);
             const gradient = stops.map((s) => `<stop offset="${s.at}" stop-color="${s.colour}"/>`).join("");
             strip.image(`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 10" preserveAspectRatio="none"><defs><linearGradient id="g">${gradient}</linearGradient></defs><rect width="100" height="10" fill="url(#g)"/></svg>`, [0, 0], [1, 1]);
-            const drawn = ff().run("gradient", [], { mesh: mesh(), to: "svg", space: space.value === "oklch" ? "oklab" : space.value }).text;
+            const key = `${space.value} ${JSON.stringify(mesh())}`;
+            if (made !== key) {
+                drawn = ff().run("gradient", [], { mesh: mesh(), to: "svg", space: space.value === "oklch" ? "oklab" : space.value }).text;
+                made = key;
+            }
             const view = /viewBox="([^"]+)"/.exec(drawn)?.[1]?.split(/\s+/).map(Number) ?? [0, 0, 1, 1];
             const [x = 0, y = 0, w = 1, tall = 1] = view;
             plane.image(drawn, [x, -y - tall], [x + w, -y]);
