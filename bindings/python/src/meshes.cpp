@@ -37,7 +37,9 @@ TriangleMesh mesh_of(const Array& points,
     for (std::size_t i = 0; i < p.size(); ++i) mesh.vertices[i].point = int(i);
     for (py::ssize_t i = 0; i < triangles.shape(0); ++i)
         mesh.triangles.push_back({triangles.at(i, 0), triangles.at(i, 1), triangles.at(i, 2)});
-    mesh.parts.push_back({.count = int(mesh.triangles.size())});
+    MeshPart all;
+    all.count = int(mesh.triangles.size());
+    mesh.parts.push_back(all);
     mesh.unit = unit;
     take(validate(mesh));
     return mesh;
