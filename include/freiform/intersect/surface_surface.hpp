@@ -42,9 +42,11 @@ struct SurfaceBranch {
 enum class SurfaceNodeKind {
     touch,     // the surfaces touch: nothing, one point, or a loop, all within the box
     crossing,  // branches cross, or pass each other by, within the box
-    overlap,   // they are the same over `overlaps`, or whole pieces have the same control points
-    tangent,   // they touch along tangent branches, as far as is known
-    along,     // the surfaces run along each other within the tolerance, and no more is known
+    // They are the same over `overlaps`; or whole pieces have the same control points; or both are parts of
+    // one sphere, with other poles.
+    overlap,
+    tangent,  // they touch along tangent branches, as far as is known
+    along,    // the surfaces run along each other within the tolerance, and no more is known
 };
 std::string_view name_of(SurfaceNodeKind kind);
 
