@@ -16,6 +16,7 @@ ci="python3 python3-venv python3-pip libclang-rt-22-dev clang-format g++-aarch64
 test="libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
 wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
+ci="python3 gmsh libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
@@ -73,6 +74,8 @@ what_for() {
         nodejs) echo "runs the WebAssembly modules" ;;
         npm) echo "fetches what the page is built with" ;;
         chromium) echo "runs the WebAssembly modules and the page as a browser does" ;;
+        nodejs) echo "runs the kernels for WebAssembly in a test" ;;
+        gmsh) echo "measures the STEP and IGES files that are written" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;
     esac
