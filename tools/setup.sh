@@ -17,6 +17,7 @@ test="libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
 wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 ci="python3 gmsh libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
+ci="python3 libglfw3-dev libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
@@ -55,6 +56,7 @@ what_for() {
         libegl-dev | libepoxy-dev) echo "OpenGL without a window, for pictures" ;;
         libegl-mesa0 | libgl1-mesa-dri) echo "OpenGL in software, for pictures without a graphics card" ;;
         libpng-dev) echo "writes pictures" ;;
+        libglfw3-dev) echo "a window, for an example" ;;
         libcairo2-dev) echo "drawings as PDF and PNG" ;;
         fonts-dejavu-core) echo "the letters of drawings" ;;
         libfreetype-dev | libharfbuzz-dev | libfontconfig-dev) echo "outlines of letters, for text" ;;

@@ -42,8 +42,8 @@ Result<void> SurfaceRenderer::State::upload() {
     glBindTexture(GL_TEXTURE_2D, texture);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kRowTexels, GLsizei(rows), 0, GL_RGBA, GL_FLOAT,
                  padded.data());
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+    for (const auto filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+        glTexParameteri(GL_TEXTURE_2D, GLenum(filter), GL_NEAREST);
     return {};
 }
 
