@@ -146,12 +146,15 @@ export const cases = [
     ["edit: a crash of the page loses nothing", async ({ page, context, url }) => {
         await go(page, url, "#/edit", ".bar");
         await drag(page, page.locator(".handle[aria-label*='point']").nth(1), 30, 20);
-        const before = await points(page);
+        const before = await points(page), places = (on) => on.evaluate(() => [...document.querySelectorAll(".handle")].map((e) => e.getAttribute("aria-valuetext")).join(";"));
+        const shown = await places(page);
         page.goto("chrome://crash").catch(() => undefined);
         await new Promise((done) => setTimeout(done, 600));
         const again = await context.newPage();
         await go(again, url, "#/edit", ".handle");
         assert.deepEqual(await points(again), before);
+        for (let i = 0; i < 40 && (await places(again)) !== shown; ++i) await new Promise((done) => setTimeout(done, 50));
+        assert.equal(await places(again), shown, "what is shown is what was kept");
         await again.close();
     }],
     ["edit: by keyboard alone", async ({ page, url }) => {
