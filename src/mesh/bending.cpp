@@ -53,6 +53,8 @@
 // looked at.
 #include "curvature_tree_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 namespace freiform {
 
 namespace {
@@ -61,50 +63,92 @@ constexpr double kRounding = 1e-6;
 constexpr double kLeastStretch = 0.1, kMostQ = 1.0 / 16;
 constexpr double kDisc = 2.5;
 
+constexpr double kSumSlack = 1 + 0x1p-46;  // more than the roundings of sums below
+
 Curvature seconds(const DerivativeBounds<2>& b) { return {b(2, 0), b(1, 1), b(0, 2)}; }
+std::array<double, 4> thirds(const DerivativeBounds<2>& b) { return {b(3, 0), b(2, 1), b(1, 2), b(0, 3)}; }
 
-}  // namespace
+// The normal of the tangents u and v in the middle of the box, where rounding leaves one.
+std::optional<Vec<3>> normal_in(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& on,
+                                const Vec<3>& u, const Vec<3>& v) {
+    const double a = norm(u), b = norm(v);
+    const Vec<3> m = cross(u, v);
+    if (!(a * b > 0) || !(norm(m) > kRounding * a * b)) return std::nullopt;
+    const double side = std::min(a * std::min(on[0].length() / 2, surface.thinnest_piece(0)),
+                                 b * std::min(on[1].length() / 2, surface.thinnest_piece(1)));
+    if (!(surface.value_error(on) <= 1e-9 * side)) return std::nullopt;
+    return unit(m);
+}
 
-BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
-                      const Jet<2, 1, Vec<3>>& j) {
-    const std::array<Interval, 2> on{box.side(0), box.side(1)};
-    BoxBending out;
-    const auto set = [&](const DerivativeBounds<2>& all) {
-        out.full = seconds(all);
-        out.first[0] = all(1, 0), out.first[1] = all(0, 1);
-    };
-    const double a = norm(j.d[1]), b = norm(j.d[2]), hu = on[0].length() / 2, hv = on[1].length() / 2;
-    const Vec<3> m = cross(j.d[1], j.d[2]);
-    const auto is_resolved = [&] {
-        const double side = std::min(a * std::min(hu, surface.thinnest_piece(0)),
-                                     b * std::min(hv, surface.thinnest_piece(1)));
-        return surface.value_error(on) <= 1e-9 * side;
-    };
-    if (!knows_normals || !(a * b > 0) || !(norm(m) > kRounding * a * b) || !is_resolved()) {
-        set(surface(on));
-        return out;
-    }
-    const Vec<3> n = unit(m);
-    const auto both = surface.both(n, on);
-    set(both.all);
-    if (!out.full.is_finite()) return out;
-    const double c = std::abs(dot(j.d[1], j.d[2])) / (a * b);
+// What makes parameters lengths, and how steady the normal is: from the tangents u, v and the normal n in the
+// middle, and `along`, bounds of the second derivatives of n . S.
+void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3>& u, const Vec<3>& v,
+                 const Vec<3>& n, const Curvature& along) {
+    if (!out.full.is_finite()) return;
+    const double a = norm(u), b = norm(v), hu = on[0].length() / 2, hv = on[1].length() / 2;
+    const double c = std::abs(dot(u, v)) / (a * b);
     const auto swing = [&](const Curvature& k) {
         return std::hypot((k.uu * hu + k.uv * hv) / a, (k.uv * hu + k.vv * hv) / b) + kRounding;
     };
     out.a = a, out.b = b;
     out.n = n;
-    const Curvature along = seconds(both.along);
-    out.across = {std::min(along.uu, out.full.uu), std::min(along.uv, out.full.uv),
-                  std::min(along.vv, out.full.vv)};
+    out.across = along;
+    out.across.restrict_to(out.full);
     const double change = swing(out.full);
     const double least = std::sqrt(std::max(0.0, 1 - c)) - change;
-    if (!(least > kLeastStretch)) return out;
+    if (!(least > kLeastStretch)) return;
     const double turn = swing(out.across) / least;
-    if (!(turn <= kMostTurn)) return out;
+    if (!(turn <= kMostTurn)) return;
     out.least = least;
     out.most = std::sqrt(1 + c) + change;
     out.tilt = kChord * turn;
+}
+
+}  // namespace
+
+BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                      const Jet<2, 1, Vec<3>>& j, Variation* variation) {
+    const std::array<Interval, 2> on{box.side(0), box.side(1)};
+    const int order = variation ? 3 : 2;
+    BoxBending out;
+    const auto n = knows_normals ? normal_in(surface, on, j.d[1], j.d[2]) : std::nullopt;
+    const auto both = n ? surface.both(*n, on, order) : DerivativeQuery<2, 3>::Both{surface(on, order), {}};
+    if (variation) *variation = {n.value_or(Vec<3>{}), thirds(both.all), thirds(n ? both.along : both.all)};
+    out.full = seconds(both.all);
+    out.first[0] = both.all(1, 0), out.first[1] = both.all(0, 1);
+    if (n) add_normals(out, on, j.d[1], j.d[2], *n, seconds(both.along));
+    return out;
+}
+
+BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                               const Jet<2, 2, Vec<3>>& j, const Variation& variation) {
+    const std::array<Interval, 2> on{box.side(0), box.side(1)};
+    // From the middle, which is rounded, to the ends.
+    const auto half = [](const Interval& x) {
+        return x.length() / 2 + 2 * kUnitRoundoff * std::max(std::abs(x.lo), std::abs(x.hi));
+    };
+    const double hu = half(on[0]), hv = half(on[1]);
+    const auto varied = [&](double uu, double uv, double vv, const std::array<double, 4>& third) {
+        return Curvature{(uu + hu * third[0] + hv * third[1] + surface.second_rounding(0, 0)) * kSumSlack,
+                         (uv + hu * third[1] + hv * third[2] + surface.second_rounding(0, 1)) * kSumSlack,
+                         (vv + hu * third[2] + hv * third[3] + surface.second_rounding(1, 1)) * kSumSlack};
+    };
+    BoxBending out;
+    out.full = varied(norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2)), variation.all);
+    for (int d = 0; d < 2; ++d)
+        out.first[d] = (norm(j.d[std::size_t(d) + 1]) + (d == 0 ? out.full.uu : out.full.uv) * hu +
+                        (d == 0 ? out.full.uv : out.full.vv) * hv) *
+                       (1 + kRounding);
+    if (!knows_normals) return out;
+    const auto n = normal_in(surface, on, j(1, 0), j(0, 1));
+    if (!n) return out;
+    std::array<double, 4> along;
+    const double turned = norm(*n - variation.n);
+    for (std::size_t k = 0; k < 4; ++k)
+        along[k] = std::min(variation.all[k], variation.along[k] + turned * variation.all[k]);
+    add_normals(
+        out, on, j(1, 0), j(0, 1), *n,
+        varied(std::abs(dot(*n, j(2, 0))), std::abs(dot(*n, j(1, 1))), std::abs(dot(*n, j(0, 2))), along));
     return out;
 }
 

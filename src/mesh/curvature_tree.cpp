@@ -25,7 +25,6 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
-#include <freiform/mesh/segment_box.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -38,28 +37,9 @@ namespace freiform {
 
 namespace {
 
-constexpr int kMaxDepth = 100;  // backstop: 2^-50 of the box in both directions
-constexpr double kLittleTilt = 0.125;
-
 // More than a part of the edge.
 bool has_common_part(const Box<2>& a, const Box<2>& b) {
     return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
-}
-
-// The second derivatives at one place, along the normal if there is one and it is asked for.
-Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal) {
-    const Vec<3> m = cross(j(1, 0), j(0, 1));
-    if (!along_normal || !(norm(m) > 0)) return {norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2))};
-    const Vec<3> n = unit(m);
-    return {std::abs(dot(n, j(2, 0))), std::abs(dot(n, j(1, 1))), std::abs(dot(n, j(0, 2)))};
-}
-
-// The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
-int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
-    const double by_u = c.uu * size[0] * size[0], by_v = c.vv * size[1] * size[1],
-                 by_both = c.uv * size[0] * size[1];
-    if (by_both > std::max(by_u, by_v)) return length[0] >= length[1] ? 0 : 1;
-    return by_u >= by_v ? 0 : 1;
 }
 
 // Half of the squared min-containment radius with the metric diag(A, B).
@@ -80,6 +60,13 @@ double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b,
 }
 
 }  // namespace
+
+Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal) {
+    const Vec<3> m = cross(j(1, 0), j(0, 1));
+    if (!along_normal || !(norm(m) > 0)) return {norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2))};
+    const Vec<3> n = unit(m);
+    return {std::abs(dot(n, j(2, 0))), std::abs(dot(n, j(1, 1))), std::abs(dot(n, j(0, 2)))};
+}
 
 double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, const FaceDemands& demands,
                            int samples) {
@@ -124,124 +111,6 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
     return grow * best;
 }
 
-Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
-                                          std::span<const Vec<2>> polygon,
-                                          std::span<const std::array<int, 2>> segments,
-                                          const FaceDemands& demands, std::size_t max_leaves,
-                                          bool knows_normals) {
-    const double tolerance = demands.tolerance;
-    CurvatureTree tree;
-    tree.knows_normals_ = knows_normals;
-    for (std::size_t d = 0; d < 2; ++d)
-        tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
-    Box<2> root;
-    for (const Vec<2>& p : polygon) root.add(p);
-    struct Item {
-        int node, depth;
-        BoxBending outer;  // of the smallest box around it of which bounds have been found
-        std::vector<std::array<int, 2>> near;
-        bool inside = false;  // wholly
-    };
-    std::vector<Item> stack;
-    tree.nodes_.push_back({root, {}, 0});
-    BoxBending any;
-    any.full = {kInfinity, kInfinity, kInfinity};
-    any.first[0] = any.first[1] = kInfinity;
-    stack.push_back({0, 0, any, {segments.begin(), segments.end()}});
-    std::size_t leaves = 1;
-    while (!stack.empty()) {
-        const Item item = std::move(stack.back());
-        stack.pop_back();
-        const Box<2> box = tree.nodes_[std::size_t(item.node)].box;
-        const Vec<2> size = box.hi - box.lo;
-        const bool inside =
-            item.inside || (item.near.empty() && is_inside(0.5 * (box.lo + box.hi), polygon, segments));
-        if (item.near.empty() && !inside) {
-            tree.nodes_[std::size_t(item.node)].outside = true;
-            continue;
-        }
-        Node& node = tree.nodes_[std::size_t(item.node)];
-        double length[2];
-        // What is known of the box decides; whether it is fine, and whether it stays whole.
-        const auto is_leaf = [&](const BoxBending& known, bool& fine) {
-            node.bending = known;
-            const double error = known.full.along(size[0], size[1]) / 8 + tree.kink_bound(box);
-            for (int d = 0; d < 2; ++d) length[d] = known.first[d] * size[d];
-            const double longer = std::max(length[0], length[1]), shorter = std::min(length[0], length[1]);
-            const bool round = longer <= demands.max_aspect * shorter || longer <= tolerance;
-            fine = tree.accept(node, error, tolerance);
-            return fine && longer <= demands.max_edge && round;
-        };
-        bool fine = false;
-        // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
-        if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(item.outer, fine)) continue;
-        // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but
-        // the last boxes, they need not be found.
-        const auto middle = jet<2>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
-        Curvature matters = seen_at(middle, knows_normals);
-        for (int d = 0; d < 2; ++d) length[d] = norm(middle.d[std::size_t(d + 1)]) * size[d];
-        std::optional<Cut> cut;
-        if (matters.along(size[0], size[1]) / 8 > tolerance && item.depth < kMaxDepth)
-            cut = tree.cut(box, longer_side(matters, size, length));
-        BoxBending outer = item.outer;
-        if (!cut) {
-            const Curvature before = outer.full;
-            outer = bending_of(surface, box, knows_normals, {{middle.d[0], middle.d[1], middle.d[2]}});
-            // What holds for the whole holds for a part: of very small boxes rounding would make the bound
-            // larger.
-            outer.full.restrict_to(before);
-            if (is_leaf(outer, fine) || !(size[0] > 0) || !(size[1] > 0)) continue;
-            const double error = outer.full.along(size[0], size[1]);
-            if (item.depth == kMaxDepth) {
-                if (!std::isfinite(error))
-                    return refuse(RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
-                                  "the surface has no bounded curvature here");
-                continue;
-            }
-            matters = outer.least > 0 ? outer.seen(0) : outer.full;
-            const int axis = fine || !std::isfinite(error) ? int(length[0] < length[1])
-                                                           : longer_side(matters, size, length);
-            cut = tree.cut(box, axis);
-            if (!cut) continue;  // no double between the ends
-        }
-        if (++leaves > max_leaves)
-            return refuse(
-                RefusalKind::limit, "max_triangles",
-                text("the tolerance ", tolerance, " needs more than ", 2 * max_leaves, " triangles"));
-        const auto [axis, at] = *cut;
-        const int child = int(tree.nodes_.size());
-        node.child = child;
-        for (int half = 1; half >= 0; --half) {
-            Box<2> part = box;
-            (half == 0 ? part.hi : part.lo)[axis] = at;
-            Item next{child + half, item.depth + 1, outer, {}, inside};
-            for (const auto& s : item.near)
-                if (meets(part, polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]))
-                    next.near.push_back(s);
-            stack.push_back(std::move(next));
-        }
-        Box<2> low = box, high = box;
-        low.hi[axis] = high.lo[axis] = at;
-        tree.nodes_.push_back({low, {}, item.node});
-        tree.nodes_.push_back({high, {}, item.node});
-    }
-    bool all_flat = true;                               // enough to do without normals
-    for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
-        if (auto& n = tree.nodes_[i]; n.child >= 0) {
-            const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];
-            n.bending = a.outside ? b.bending : a.bending;
-            if (!a.outside && !b.outside) n.bending.include(b.bending);
-            n.outside = a.outside && b.outside;
-            n.whole = a.whole && b.whole;
-        } else if (!n.outside) {
-            all_flat = all_flat && n.flat;
-            n.whole = true;
-        }
-    if (all_flat) tree.knows_normals_ = false;
-    tree.find_corners();
-    return tree;
-}
-
 // At the kink that is nearest to the middle if there is one, else across the axis.
 std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Box<2>& box, int axis) const {
     const Vec<2> size = box.hi - box.lo;
@@ -276,7 +145,7 @@ bool CurvatureTree::meets_kink(const Box<2>& box) const {
 }
 
 bool CurvatureTree::is_outside(const Box<2>& box) const {
-    int stack[2 * kMaxDepth + 4], size = 0;
+    int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = 0;
     while (size > 0) {
         const Node& n = nodes_[std::size_t(stack[--size])];
@@ -309,7 +178,7 @@ const Curvature* CurvatureTree::all_in(int place, const Box<2>& box) const {
 Bending CurvatureTree::over(const Box<2>& box, int place) const {
     Bending all;
     bool any = false;
-    int stack[2 * kMaxDepth + 4], size = 0;
+    int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
         const Node& n = nodes_[std::size_t(stack[--size])];
@@ -329,7 +198,7 @@ Bending CurvatureTree::over(const Box<2>& box, int place) const {
 std::optional<Curvature> CurvatureTree::all_over(const Box<2>& box, int place) const {
     if (!nodes_[0].box.contains(box.lo) || !nodes_[0].box.contains(box.hi)) return std::nullopt;
     Curvature all;
-    int stack[2 * kMaxDepth + 4], size = 0;
+    int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
         const Node& n = nodes_[std::size_t(stack[--size])];

@@ -34,6 +34,9 @@ struct Curvature {
     }
 };
 
+// The second derivatives at one place, along the normal if there is one and it is asked for.
+Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal);
+
 // Bound of the distance between S and its linear interpolant at the corners of the triangle, on the triangle,
 // from second derivatives that `c` bounds there. See the essay in curvature_tree.cpp.
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d);
@@ -61,8 +64,18 @@ struct Bending {
 struct BoxBending : Bending {
     double first[2] = {};
 };
+// What second derivatives vary by within a box where they are continuous: bounds of |S_uuu|, |S_uuv|,
+// |S_uvv|, |S_vvv| and of those of n . S.
+struct Variation {
+    Vec<3> n{};
+    std::array<double, 4> all{}, along{};
+};
+// Finds `variation`, too, if it is asked for. REQUIRES surface.is_twice_smooth(box) then.
 BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
-                      const Jet<2, 1, Vec<3>>& middle);
+                      const Jet<2, 1, Vec<3>>& middle, Variation* variation = nullptr);
+// The same from what is seen in the middle, by the variation over some box around.
+BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                               const Jet<2, 2, Vec<3>>& middle, const Variation& variation);
 inline BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals) {
     return bending_of(surface, box, knows_normals,
                       jet<1>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()}));
@@ -88,6 +101,8 @@ Shift shift_of(const Bending& at, double e, const Curvature& near, double reflec
 // (bending.cpp).
 bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance);
 
+inline constexpr int kMaxTreeDepth = 100;  // backstop: 2^-50 of the box in both directions
+
 class CurvatureTree {
 public:
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut
@@ -100,6 +115,12 @@ public:
                                       bool knows_normals = true);
 
     bool is_outside(const Box<2>& box) const;  // wholly, and known to be
+    // Over the part of the tree at `place`, or nothing.
+    const Variation* variation_in(int place) const {
+        const int v = nodes_[std::size_t(place)].variation;
+        return v < 0 ? nullptr : &variations_[std::size_t(v)];
+    }
+    bool knows_normals() const { return knows_normals_; }
     // Where the tree holds the box: the smallest part of it that contains the box, or all of it. Boxes near
     // the one that was asked for before are found from there, others from 0.
     int place_of(const Box<2>& box, int near = 0) const;
@@ -126,11 +147,13 @@ public:
     Vec<2> mean_leaf() const;
 
 private:
+    class Grower;
     struct Node {
         Box<2> box;
         Bending bending;
         int parent = 0;
-        int child = -1;  // the first of two neighbours in nodes_; -1: a leaf
+        int child = -1;      // the first of two neighbours in nodes_; -1: a leaf
+        int variation = -1;  // over it, in variations_
         bool outside = false;
         bool whole = false;  // nothing of it is outside
         bool flat = false;   // fine without a shift
@@ -142,7 +165,11 @@ private:
     bool accept(Node& node, double error, double tolerance) const;
     std::optional<Cut> cut(const Box<2>& box, int axis) const;
     void find_corners();
+    bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
+    bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
+    std::span<const std::array<int, 2>> segments_;  // while it is made
     std::vector<Node> nodes_;
+    std::vector<Variation> variations_;
     std::vector<Corner> corners_;
     bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;

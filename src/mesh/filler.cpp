@@ -2,6 +2,7 @@
 #include "filler_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
@@ -152,7 +153,7 @@ bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
 
 // See bending.cpp for what is claimed here.
 Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
-                             int plain) const {
+                             int plain, int near_place) const {
     const auto& [a, b, c] = corner;
     const double e = linear_interpolation_bound(at.full, a, b, c) + tree_.kink_bound(box);
     Known k{0, true, false, kInfinity, e, at.full};
@@ -161,6 +162,13 @@ Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::ar
         return k;
     }
     if (!(at.least > 0)) return k;
+    // Where a foot straight below would not do, none will.
+    const Curvature straight = plain > 0 ? at.full : at.seen(0);
+    if (e > demands_.tolerance &&
+        (plain > 0 || linear_interpolation_bound(straight, a, b, c) > demands_.tolerance)) {
+        k.curvature = straight;
+        return k;
+    }
     const Vec<2> reach = reach_of(at, e);
     const Box<2> around{box.lo - reach, box.hi + reach};
     if (tree_.meets_kink(around)) return k;
@@ -185,7 +193,7 @@ Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::ar
     // What holds everywhere first, then what holds in the part of the tree that has all of it.
     const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
     if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_)) return k;
-    const int place = tree_.place_of(around, place_);
+    const int place = tree_.place_of(around, near_place);
     if (const Curvature* all = tree_.all_in(place, around); all && is_enough(*all)) return k;
     const auto near = tree_.all_over(around, place);
     is_enough(near ? *near : over_clamped(inside));
@@ -194,26 +202,55 @@ Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::ar
 
 // What the tree says of the leaves that the triangle meets; where that is not enough, what can be said of its
 // own box, which may be much smaller than a leaf.
-const Filler::Known& Filler::known(int triangle) {
-    const std::size_t i = std::size_t(triangle);
-    if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
-    const auto stamp = t_.stamp(triangle);
-    if (known_[i].any && known_[i].stamp == stamp) return known_[i];
+Filler::Known Filler::found(int triangle, int& place) const {
     const auto& v = t_.vertices(triangle);
     const std::array<Vec<2>, 3> corner{uv(v[0]), uv(v[1]), uv(v[2])};
     Box<2> box;
     for (const Vec<2>& p : corner) box.add(p);
     const int plain = is_plain(v[0]) + is_plain(v[1]) + is_plain(v[2]);
-    place_ = tree_.place_of(box, place_);
-    const Bending over = tree_.over(box, place_);
-    Known k = judged(over, box, corner, plain);
-    if (!(k.bound <= demands_.tolerance)) {
-        Bending own = bending_of(surface_, box, plain < 3);
+    place = tree_.place_of(box, place);
+    const Bending over = tree_.over(box, place);
+    Known k = judged(over, box, corner, plain, place);
+    if (k.bound <= demands_.tolerance) return k;
+    const auto judge_by = [&](Bending own) {
         own.full.restrict_to(over.full);
-        if (const Known second = judged(own, box, corner, plain); second.bound <= k.bound) k = second;
+        if (const Known second = judged(own, box, corner, plain, place); second.bound <= k.bound) k = second;
+    };
+    bool hopeless = false;  // by what is seen in the middle already
+    if (const Variation* varies = tree_.variation_in(place)) {
+        const auto middle = jet<2>(surface_.geometry(), (0.5 * (box.lo + box.hi)).c);
+        hopeless = !(linear_interpolation_bound(seen_at(middle, plain < 3), corner[0], corner[1],
+                                                corner[2]) <= demands_.tolerance);
+        judge_by(bending_from_middle(surface_, box, plain < 3, middle, *varies));
     }
-    k.stamp = stamp;
-    return known_[i] = k;
+    if (!(k.bound <= demands_.tolerance) && !hopeless) judge_by(bending_of(surface_, box, plain < 3));
+    return k;
+}
+
+const Filler::Known& Filler::known(int triangle) {
+    const std::size_t i = std::size_t(triangle);
+    if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
+    const auto stamp = t_.stamp(triangle);
+    if (known_[i].any && known_[i].stamp == stamp) return known_[i];
+    known_[i] = found(triangle, place_);
+    known_[i].stamp = stamp;
+    return known_[i];
+}
+
+// All triangles inside, some of which nobody may ask about. Where in the tree the search for one begins does
+// not change what is found.
+void Filler::judge_all() {
+    constexpr std::size_t kBatch = 256;
+    const std::size_t n = std::size_t(t_.size());
+    known_.resize(n);
+    parallel_for((n + kBatch - 1) / kBatch, 1, [&](std::size_t batch) {
+        int place = 0;
+        for (std::size_t i = batch * kBatch; i < std::min(n, (batch + 1) * kBatch); ++i) {
+            if (!t_.is_inside(int(i))) continue;
+            known_[i] = found(int(i), place);
+            known_[i].stamp = t_.stamp(int(i));
+        }
+    });
 }
 
 double Filler::bound(int triangle) { return known(triangle).bound; }
@@ -274,6 +311,7 @@ bool Filler::refine(std::size_t max_points) {
     };
     std::vector<Entry> queue;
     std::vector<int> again;
+    if (demands_.alone && known_.empty()) judge_all();
     for (int i = 0; i < t_.size(); ++i)
         if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
     for (std::size_t head = 0; head < queue.size(); ++head) {

@@ -49,13 +49,16 @@ private:
         Curvature curvature;          // that matters
     };
     const Known& known(int triangle);
+    Known found(int triangle, int& place) const;  // `place`: in the tree, where to begin, and where it is
+    void judge_all();
 
     Triangulation& t_;
     std::vector<Known> known_;
     bool is_plain(int vertex) const;
     // Makes all corners plain; false if they are.
     bool make_plain(int triangle, std::vector<int>& judge_again);
-    Known judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain) const;
+    Known judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain,
+                 int near_place) const;
     Curvature over_clamped(const Box<2>& box) const;
     const CurvatureTree& tree_;
     const DerivativeQuery<2, 3>& surface_;

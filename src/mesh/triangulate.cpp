@@ -119,18 +119,18 @@ std::vector<Conflict> conflicts_on_a_line(std::span<const Segment> segments, con
 
 // Conflicts come with the ends of the segment that was crossed in point and other_point: finds the segment.
 void name_crossed_segments(std::vector<Conflict>& conflicts, std::span<const Segment> segments) {
-    struct Ends {
+    struct SegmentEnds {
         int low, high, segment;
-        auto operator<=>(const Ends&) const = default;
+        auto operator<=>(const SegmentEnds&) const = default;
     };
-    std::vector<Ends> table;
+    std::vector<SegmentEnds> table;
     for (std::size_t i = 0; i < segments.size(); ++i)
         table.push_back(
             {std::min(segments[i].a, segments[i].b), std::max(segments[i].a, segments[i].b), int(i)});
     std::sort(table.begin(), table.end());
     for (Conflict& c : conflicts) {
         if (c.other_point < 0) continue;
-        const Ends key{std::min(c.point, c.other_point), std::max(c.point, c.other_point), -1};
+        const SegmentEnds key{std::min(c.point, c.other_point), std::max(c.point, c.other_point), -1};
         c.second_segment = std::lower_bound(table.begin(), table.end(), key)->segment;
         c.point = c.other_point = -1;
     }

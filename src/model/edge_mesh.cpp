@@ -15,6 +15,7 @@
 #include "edge_mesh_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
+#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -62,8 +63,6 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
 
 EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
     : model_(model), faces_(faces), edges_(model.edges.size()) {
-    for (std::size_t e = 0; e < model.edges.size(); ++e)
-        if (model.edges[e].curve) edges_[e].curve = std::make_unique<ChordCurve>(*model.edges[e].curve);
     for (std::size_t f = 0; f < model.faces.size(); ++f)
         for (std::size_t l = 0; l < model.faces[f].loops.size(); ++l) {
             const auto& coedges = model.faces[f].loops[l].coedges;
@@ -71,18 +70,21 @@ EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<Deriv
                 auto use = std::make_unique<CoedgeQuery>();
                 use->face = int(f), use->loop = int(l), use->index = int(c);
                 use->coedge = &coedges[c];
-                use->curve = std::make_unique<DerivativeQuery<1, 2>>(coedges[c].curve);
-                use->lift = lifted(model.faces[f].surface, coedges[c].curve);
-                if (use->lift) {
-                    const auto& own = model.edges[std::size_t(coedges[c].edge)].curve;
-                    if (own && use->lift->shift == 0 && use->lift->speed == 1)
-                        use->twin = distance_of_twins(*own, *use->lift->geometry);
-                    if (use->twin == kInfinity)
-                        use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
-                }
                 edges_[std::size_t(coedges[c].edge)].uses.push_back(std::move(use));
             }
         }
+    parallel_for(model.edges.size(), 4, [&](std::size_t e) {
+        const auto& own = model.edges[e].curve;
+        if (own) edges_[e].curve = std::make_unique<ChordCurve>(*own);
+        for (auto& use : edges_[e].uses) {
+            use->curve = std::make_unique<DerivativeQuery<1, 2>>(use->coedge->curve);
+            use->lift = lifted(model.faces[std::size_t(use->face)].surface, use->coedge->curve);
+            if (!use->lift) continue;
+            if (own && use->lift->shift == 0 && use->lift->speed == 1)
+                use->twin = distance_of_twins(*own, *use->lift->geometry);
+            if (use->twin == kInfinity) use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
+        }
+    });
 }
 
 Vec<3> EdgeMesher::position(int edge, double t) const {

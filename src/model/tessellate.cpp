@@ -37,8 +37,10 @@ double now() {
 
 SharedWork::SharedWork(const Model& model)
     : queries([&] {
-          std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> all;
-          for (const Face& f : model.faces) all.push_back(std::make_unique<DerivativeQuery<2, 3>>(f.surface));
+          std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> all(model.faces.size());
+          parallel_for(all.size(), 1, [&](std::size_t f) {
+              all[f] = std::make_unique<DerivativeQuery<2, 3>>(model.faces[f].surface);
+          });
           return all;
       }()),
       edges(model, queries) {}
@@ -73,7 +75,8 @@ Result<void> Tessellator::discretise_edges() {
 
 FaceDemands Tessellator::face_demands(std::size_t f) const {
     return {tolerance_,          options_.max_edge, options_.max_angle,
-            options_.max_aspect, options_.quads,    f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr};
+            options_.max_aspect, options_.quads,    f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
+            faces() == 1};
 }
 
 Result<void> Tessellator::match_grids() {

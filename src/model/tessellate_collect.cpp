@@ -9,6 +9,12 @@
 
 namespace freiform {
 
+namespace {
+
+constexpr std::size_t kVerticesAtOnce = 1024;
+
+}  // namespace
+
 // Unit normal, from the jet at uv; where the surface has none (a pole), that of a point a little inside the
 // triangle. First derivatives above `usual` are not small.
 Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
@@ -59,6 +65,40 @@ void Tessellator::measure_angles(Tessellation& out) const {
     }
 }
 
+// The vertices of a face; those with the point -1 - i are at inner[i].
+Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
+    const SurfaceGeometry& surface = model_.faces[f].surface;
+    const FaceMesh& m = meshes_[f];
+    std::vector<Vec<2>> inwards(m.uv.size());
+    for (const auto& t : m.triangles)
+        for (int k = 0; k < 3; ++k)
+            inwards[std::size_t(t[std::size_t(k)])] =
+                (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
+    // Faces are looked at in parallel, the vertices of one that is alone.
+    const auto each_vertex = [&](const std::function<void(std::size_t)>& look) {
+        parallel_for(m.uv.size(), faces() == 1 ? kVerticesAtOnce : m.uv.size(), look);
+    };
+    std::vector<Jet<2, 1, Vec<3>>> jets(m.uv.size());
+    each_vertex([&](std::size_t i) { jets[i] = jet<1>(surface, m.uv[i].c); });
+    Vec<2> usual{};
+    for (const auto& j : jets)
+        for (int d = 0; d < 2; ++d) usual[d] = std::max(usual[d], 1e-6 * norm(j.d[std::size_t(d + 1)]));
+    FaceLook out;
+    out.vertices.resize(m.uv.size());
+    each_vertex([&](std::size_t i) {
+        const Vec<3> normal = normal_at(f, m.uv[i], inwards[i], jets[i], usual);
+        out.vertices[i].uv = m.uv[i];
+        out.vertices[i].normal = flip ? -normal : normal;
+    });
+    for (std::size_t i = 0; i < m.uv.size(); ++i) {
+        out.vertices[i].point = m.point[i];
+        if (m.point[i] >= 0) continue;
+        out.inner.push_back(jets[i].value());
+        out.vertices[i].point = -int(out.inner.size());
+    }
+    return out;
+}
+
 Tessellation Tessellator::collect() {
     Tessellation out;
     out.mesh.unit = model_.unit;
@@ -72,6 +112,10 @@ Tessellation Tessellator::collect() {
             for (int s : b.shells)
                 for (const FaceUse& u : model_.shells[std::size_t(s)].faces)
                     body_colour[std::size_t(u.face)] = &*b.colour;
+    std::vector<FaceLook> looks(faces());
+    parallel_for(faces(), 1, [&](std::size_t f) {
+        if (!is_refused(f)) looks[f] = look_of(f, model_.faces[f].reversed != bool(flipped[f]));
+    });
     for (std::size_t f = 0; f < faces(); ++f) {
         const Face& face = model_.faces[f];
         if (is_refused(f)) {
@@ -81,29 +125,10 @@ Tessellation Tessellator::collect() {
         const FaceMesh& m = meshes_[f];
         const bool flip = face.reversed != bool(flipped[f]);
         const int base = int(out.mesh.vertices.size());
-        std::vector<Vec<2>> inwards(m.uv.size());
-        for (const auto& t : m.triangles)
-            for (int k = 0; k < 3; ++k)
-                inwards[std::size_t(t[std::size_t(k)])] =
-                    (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
-        std::vector<Jet<2, 1, Vec<3>>> jets(m.uv.size());
-        Vec<2> usual{};
-        for (std::size_t i = 0; i < m.uv.size(); ++i) {
-            jets[i] = jet<1>(face.surface, m.uv[i].c);
-            for (int d = 0; d < 2; ++d)
-                usual[d] = std::max(usual[d], 1e-6 * norm(jets[i].d[std::size_t(d + 1)]));
-        }
-        for (std::size_t i = 0; i < m.uv.size(); ++i) {
-            MeshVertex v;
-            v.uv = m.uv[i];
-            v.point = m.point[i];
-            const auto& here = jets[i];
-            if (v.point < 0) {
-                v.point = int(out.mesh.points.size());
-                out.mesh.points.push_back(here.value());
-            }
-            v.normal = normal_at(f, m.uv[i], inwards[i], here, usual);
-            if (flip) v.normal = -v.normal;
+        const int inner = int(out.mesh.points.size());
+        out.mesh.points.insert(out.mesh.points.end(), looks[f].inner.begin(), looks[f].inner.end());
+        for (MeshVertex v : looks[f].vertices) {
+            if (v.point < 0) v.point = inner - 1 - v.point;
             out.mesh.vertices.push_back(v);
         }
         MeshPart part{face.name, face.colour, int(out.mesh.triangles.size()), 0, int(f)};

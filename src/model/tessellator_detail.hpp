@@ -50,6 +50,11 @@ private:
     Result<void> fill_all();
     std::optional<Refusal> far_parameter(std::size_t face) const;
     std::vector<std::size_t> non_manifold_faces();
+    struct FaceLook {
+        std::vector<MeshVertex> vertices;
+        std::vector<Vec<3>> inner;
+    };
+    FaceLook look_of(std::size_t face, bool flip) const;
     Tessellation collect();
     void measure_angles(Tessellation& out) const;
     Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards, const Jet<2, 1, Vec<3>>& here,

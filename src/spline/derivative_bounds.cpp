@@ -8,6 +8,7 @@
 // from the products; both together are less than what would come from coefficients of size 2 |P|.
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
+#include "bends_detail.hpp"
 #include "kinks_detail.hpp"
 #include "room_detail.hpp"
 #include "swept_bounds_detail.hpp"
@@ -178,9 +179,12 @@ DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&ge
                 for (std::size_t d = 0; d < N; ++d) {
                     kinks_[d] = kinks_of(g, pieces, int(d));
                     const auto& b = pieces.breaks(int(d));
+                    bends_[d] = bends_of(g.basis(int(d)), b);
                     for (std::size_t i = 1; i < b.size(); ++i)
                         thinnest_[d] = std::min(thinnest_[d], b[i] - b[i - 1]);
                 }
+                second_rounding_ = second_rounding_of(g);
+                piece_numbers_ = count_of(pieces.net({}).extent) * G::Coefficients::kCoords;
                 pieces_ = std::move(pieces);
             } else if constexpr (requires { g.profile; }) {
                 profile_ = std::make_shared<const DerivativeQuery<1, 3>>(g.profile);
@@ -293,6 +297,17 @@ PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>& curve, Interval 
         },
         *curve.geometry_);
     return out;
+}
+
+template <std::size_t N, int D>
+bool DerivativeQuery<N, D>::is_twice_smooth(const std::array<Interval, N>& box) const {
+    for (std::size_t d = 0; d < N; ++d) {
+        const auto& b = bends_[d];
+        const auto next = std::upper_bound(b.begin(), b.end(), box[d].lo);
+        const bool at_end = next == b.end() && !b.empty() && box[d].lo == b.back() && box[d].hi == b.back();
+        if (!at_end && (next == b.begin() || next == b.end() || box[d].hi > *next)) return false;
+    }
+    return true;
 }
 
 template class DerivativeQuery<1, 1>;

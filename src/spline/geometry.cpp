@@ -18,22 +18,28 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-// The derivative of this order.
+// The functions that its derivatives are sums of, at one place.
 template <int D>
-Vec<D> conic_derivative(const Conic<D>& c, double t, int order) {
-    const Vec<D> at = order == 0 ? c.centre : Vec<D>{};
-    if (c.kind == ConicKind::parabola) {
-        if (order == 0) return at + (t * t) * c.x + t * c.y;
-        return order == 1 ? (2 * t) * c.x + c.y : order == 2 ? 2.0 * c.x : Vec<D>{};
+struct ConicAt {
+    ConicAt(const Conic<D>& conic, double at) : c(conic), t(at) {
+        if (c.kind == ConicKind::ellipse) even = std::cos(t), odd = std::sin(t);
+        if (c.kind == ConicKind::hyperbola) even = std::cosh(t), odd = std::sinh(t);
     }
-    if (c.kind == ConicKind::hyperbola) {
-        const double even = std::cosh(t), odd = std::sinh(t);
-        return at + (order % 2 == 0 ? even * c.x + odd * c.y : odd * c.x + even * c.y);
+    Vec<D> derivative(int order) const {
+        const Vec<D> at = order == 0 ? c.centre : Vec<D>{};
+        if (c.kind == ConicKind::parabola) {
+            if (order == 0) return at + (t * t) * c.x + t * c.y;
+            return order == 1 ? (2 * t) * c.x + c.y : order == 2 ? 2.0 * c.x : Vec<D>{};
+        }
+        if (c.kind == ConicKind::hyperbola)
+            return at + (order % 2 == 0 ? even * c.x + odd * c.y : odd * c.x + even * c.y);
+        const Vec<D> r = order % 2 == 0 ? even * c.x + odd * c.y : even * c.y - odd * c.x;
+        return at + (order % 4 < 2 ? r : -r);
     }
-    const double s = std::sin(t), k = std::cos(t);
-    const Vec<D> r = order % 2 == 0 ? k * c.x + s * c.y : k * c.y - s * c.x;
-    return at + (order % 4 < 2 ? r : -r);
-}
+
+    const Conic<D>& c;
+    double t, even = 0, odd = 0;
+};
 
 }  // namespace
 
@@ -146,8 +152,8 @@ Jet<1, K, Vec<D>> jet(const CurveGeometry<D>& curve, double t) {
                                  },
                                  [&](const Conic<D>& c) {
                                      Jet<1, K, Vec<D>> j;
-                                     for (int k = 0; k <= K; ++k)
-                                         j.d[std::size_t(k)] = conic_derivative(c, t, k);
+                                     const ConicAt<D> at(c, t);
+                                     for (int k = 0; k <= K; ++k) j.d[std::size_t(k)] = at.derivative(k);
                                      return j;
                                  },
                                  [&](const auto& spline) { return spline.template jet<K>(t); }},

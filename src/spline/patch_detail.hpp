@@ -291,10 +291,14 @@ Patch<N, Hom<D>, B> to_rational(const Patch<N, Vec<D>, B>& s) {
 template <std::size_t N, class P>
 BezierPieces<N, P>::BezierPieces(const Patch<N, P>& patch) : net_(patch.net()) {
     for (std::size_t d = 0; d < N; ++d) {
-        const Change<BSplineBasis> change = to_bezier(patch.basis(int(d)));
-        degree_[d] = patch.basis(int(d)).degree();
-        breaks_[d] = patch.basis(int(d)).breaks();
-        net_ = along(int(d), change.map, net_);
+        const BSplineBasis& basis = patch.basis(int(d));
+        const int p = degree_[d] = basis.degree();
+        breaks_[d] = basis.breaks();
+        // One piece with all its knots at the ends is what it is to become.
+        if (!basis.is_closed() && basis.size() == p + 1 && basis.knot(0) == basis.knot(p) &&
+            basis.knot(p + 1) == basis.knot(2 * p + 1))
+            continue;
+        net_ = along(int(d), to_bezier(basis).map, net_);
     }
 }
 template <std::size_t N, class P>

@@ -82,5 +82,95 @@ TEST(CurvatureTree, bounds_second_derivatives_at_samples) {
     }
 }
 
+// So many control points for each piece that leaves are judged by samples; C1 at some of its knots, and
+// rational.
+SurfaceGeometry many_waves(Random& random) {
+    const auto u = *BSplineBasis::make(6, {0, 0, 0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2, 3, 5, 5, 5, 5, 5, 5, 5});
+    const auto v = *BSplineBasis::clamped_uniform(5, 10);
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < u.size(); ++i)
+        for (int k = 0; k < 10; ++k)
+            c.push_back(weighted(Vec<3>{{5.0 * i / (u.size() - 1), double(k), 0.2 * random.real(-1, 1)}},
+                                 random.real(0.8, 1.2)));
+    return must(Surface<Hom<3>>::make({u, v}, Net<2, Hom<3>>({u.size(), 10}, c)));
+}
+
+TEST(CurvatureTree, bounds_by_samples_of_pieces_with_many_control_points_hold) {
+    Random random(5);
+    const SurfaceGeometry s = many_waves(random);
+    const DerivativeQuery<2, 3> surface(s);
+    ASSERT_TRUE(surface.is_twice_smooth({Interval{0.5, 2}, Interval{0, 5}}));
+    EXPECT_FALSE(surface.is_twice_smooth({Interval{1.5, 2.5}, Interval{0, 5}})) << "C1 at 2";
+    EXPECT_FALSE(surface.is_twice_smooth({Interval{4, 5.1}, Interval{0, 5}})) << "beyond the end";
+    int known = 0;
+    double sharpness = 0;
+    for (int k = 0; k < 300; ++k) {
+        const auto box_in = [&](const Box<2>& all) {
+            Box<2> out;
+            for (int i = 0; i < 2; ++i)
+                out.add(Vec<2>{{random.real(all.lo[0], all.hi[0]), random.real(all.lo[1], all.hi[1])}});
+            return out;
+        };
+        const Box<2> outer = box_in({{{2, 0}}, {{5, 5}}}), box = box_in(outer);
+        const auto middle_of = [&](const Box<2>& b) {
+            return jet<2>(s, {b.side(0).middle(), b.side(1).middle()});
+        };
+        const auto j = middle_of(outer);
+        Variation variation;
+        (void)bending_of(surface, outer, true, {{j.d[0], j.d[1], j.d[2]}}, &variation);
+        const BoxBending at = bending_from_middle(surface, box, true, middle_of(box), variation);
+        for (int i = 0; i < 40; ++i) {
+            const auto x = jet<2>(s, {random.real(box.lo[0], box.hi[0]), random.real(box.lo[1], box.hi[1])});
+            EXPECT_LE(norm(x(2, 0)), at.full.uu);
+            EXPECT_LE(norm(x(1, 1)), at.full.uv);
+            EXPECT_LE(norm(x(0, 2)), at.full.vv);
+            EXPECT_LE(norm(x(1, 0)), at.first[0]);
+            EXPECT_LE(norm(x(0, 1)), at.first[1]);
+            if (!(norm(at.n) > 0)) continue;
+            EXPECT_LE(std::abs(dot(at.n, x(2, 0))), at.across.uu);
+            EXPECT_LE(std::abs(dot(at.n, x(1, 1))), at.across.uv);
+            EXPECT_LE(std::abs(dot(at.n, x(0, 2))), at.across.vv);
+        }
+        if (!(at.least > 0)) continue;
+        ++known;
+        sharpness = std::max(sharpness, norm(middle_of(box)(2, 0)) / at.full.uu);
+    }
+    EXPECT_GT(known, 50);
+    EXPECT_GT(sharpness, 0.9) << "bounds that are useful";
+}
+
+// Threads, and growing a tree in parts, change nothing.
+TEST(CurvatureTree, of_a_face_that_is_alone_is_the_same_tree) {
+    Random random(6);
+    const std::vector<Vec<2>> polygon{{{0, 0}}, {{5, 0}}, {{5, 3}}, {{0, 5}}};
+    const std::vector<std::array<int, 2>> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+    for (const SurfaceGeometry& s : {waves(random), many_waves(random)}) {
+        const DerivativeQuery<2, 3> surface(s);
+        const auto made = [&](bool alone) {
+            return must(CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3, .alone = alone},
+                                            100'000));
+        };
+        const auto usual = made(false), alone = made(true);
+        ASSERT_GT(usual.corners().size(), 200u);
+        ASSERT_EQ(usual.corners().size(), alone.corners().size());
+        for (std::size_t i = 0; i < usual.corners().size(); ++i) {
+            EXPECT_EQ(usual.corners()[i].at, alone.corners()[i].at);
+            EXPECT_EQ(usual.corners()[i].leaf, alone.corners()[i].leaf);
+        }
+        const Box<2> box{{{0.3, 0.2}}, {{2.7, 2.1}}};
+        EXPECT_EQ(usual.over(box, 0).full.uu, alone.over(box, 0).full.uu);
+        EXPECT_EQ(usual.over(box, 0).least, alone.over(box, 0).least);
+        EXPECT_EQ(alone.place_of(box, alone.place_of({{{0.1, 0.1}}, {{0.2, 0.2}}})), alone.place_of(box));
+    }
+    const SurfaceGeometry s = waves(random);
+    const DerivativeQuery<2, 3> surface(s);
+    for (const bool alone : {false, true}) {
+        const auto none =
+            CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3, .alone = alone}, 50);
+        ASSERT_FALSE(none);
+        EXPECT_EQ(none.error().kind, RefusalKind::limit);
+    }
+}
+
 }  // namespace
 }  // namespace freiform

@@ -182,15 +182,21 @@ TEST(Tessellate, powers_of_two_scale_the_mesh_exactly) {
 }
 
 TEST(Tessellate, any_number_of_threads_gives_the_same_bits) {
-    const auto model = frustum(2, 1, 3);
-    set_max_threads(1);
-    const auto one = tessellate(model, {.tolerance = 0.001});
-    set_max_threads(4);
-    const auto four = tessellate(model, {.tolerance = 0.001});
-    set_max_threads(0);
-    ASSERT_TRUE(one && four);
-    EXPECT_EQ(one->mesh.points, four->mesh.points);
-    EXPECT_EQ(one->mesh.triangles, four->mesh.triangles);
+    std::mt19937 rng(13);
+    ModelBuilder single;
+    ASSERT_TRUE(single.add(landscape(rng, 3, 8, 0.3)));
+    for (const Model& model : {frustum(2, 1, 3), *std::move(single).finish()}) {
+        set_max_threads(1);
+        const auto one = tessellate(model, {.tolerance = 0.001});
+        set_max_threads(4);
+        const auto four = tessellate(model, {.tolerance = 0.001});
+        set_max_threads(0);
+        ASSERT_TRUE(one && four);
+        EXPECT_GT(one->mesh.triangles.size(), 500u);
+        EXPECT_EQ(one->mesh.points, four->mesh.points);
+        EXPECT_EQ(one->mesh.triangles, four->mesh.triangles);
+        EXPECT_EQ(one->error_bound, four->error_bound);
+    }
 }
 
 TEST(Tessellate, refuses_tolerances_that_ask_for_too_much_at_once) {

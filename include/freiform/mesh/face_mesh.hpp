@@ -59,6 +59,9 @@ struct FaceDemands {
     // ends. None where the lines would be too many.
     bool quads = false;
     const GridLines* lines = nullptr;
+    // No other face is meshed at the same time: work inside this one is for all threads. Results are the same
+    // for any number of them.
+    bool alone = false;
 
     bool shapes_triangles() const {
         return std::isfinite(max_edge) || std::isfinite(max_angle) || std::isfinite(max_aspect);

@@ -91,11 +91,23 @@ public:
     }
     // Inside the domain, in increasing order. Between kinks the first derivative is continuous.
     std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
+    // How many numbers the control points of a polynomial or rational piece are; 0 where there is no spline.
+    long long piece_numbers() const { return piece_numbers_; }
+    // Whether the box is one of a spline and within its domain, and second derivatives are continuous in it.
+    bool is_twice_smooth(const std::array<Interval, N>& box) const;
+    // Of such a spline: |jet<2> - exact| of the second derivative along both axes is at most this.
+    double second_rounding(int axis, int other) const {
+        return second_rounding_ / (thinnest_[std::size_t(axis)] * thinnest_[std::size_t(other)]);
+    }
 
 private:
     friend PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>&, Interval);
     const Geometry* geometry_;
     std::array<std::vector<Kink>, N> kinks_;
+    // Of a spline: its ends, and where second derivatives may jump.
+    std::array<std::vector<double>, N> bends_;
+    long long piece_numbers_ = 0;
+    double second_rounding_ = 0;  // times two sides of the thinnest piece
     std::array<double, N> thinnest_;
     std::optional<double> value_error_;
     std::variant<std::monostate, BezierPieces<N, Vec<D>>, BezierPieces<N, Hom<D>>> pieces_;

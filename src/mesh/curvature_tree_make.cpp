@@ -1,0 +1,293 @@
+// How the tree of curvature_tree.cpp is made: by halving boxes.
+//
+// Cost. What bounds over a small box cost is mostly the restriction of control points to it, which are many
+// where degrees are high. But a second derivative over the box is at most what it is in the middle, and half
+// the sides of the box times third derivatives, for which bounds over something longer will do. So where
+// control points are many, they are asked about boxes of some leaves, and leaves by one sample each; and
+// where that is too much for a leaf, of its own box, so that no leaf is halved for want of a better bound.
+//
+// Threads. A face that is meshed alone has its tree begun breadth first, until there are enough boxes; each
+// of these is then grown by itself. Where it is cut does not depend on the number of threads.
+//
+// Accuracy. The sample is off by roundings for which DerivativeQuery::second_rounding has a bound. Why not
+// for small pieces: with 16 control points of four numbers the sample costs as much as the bound.
+#include "curvature_tree_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/core/parallel.hpp>
+#include <freiform/mesh/segment_box.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <optional>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kLittleTilt = 0.125;
+constexpr std::size_t kPartsOfTree = 64;
+constexpr double kLeavesAtOnce = 16;
+constexpr long long kFewNumbers = 96;  // of a piece: asking them is as cheap as a sample
+
+// The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
+int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
+    const double by_u = c.uu * size[0] * size[0], by_v = c.vv * size[1] * size[1],
+                 by_both = c.uv * size[0] * size[1];
+    if (by_both > std::max(by_u, by_v)) return length[0] >= length[1] ? 0 : 1;
+    return by_u >= by_v ? 0 : 1;
+}
+
+}  // namespace
+
+// Splits boxes. What it makes of a box depends on that box and the bounds around it alone, so parts of a tree
+// can be grown by themselves.
+class CurvatureTree::Grower {
+public:
+    struct Item {
+        int node = 0, depth = 0;
+        BoxBending outer;  // of the smallest box around it of which bounds have been found
+        std::vector<std::array<int, 2>> near;
+        bool inside = false;  // wholly
+        int variation = -1;   // over some box around it
+    };
+    struct Task {
+        const DerivativeQuery<2, 3>& surface;
+        std::span<const Vec<2>> polygon;
+        const FaceDemands& demands;
+        std::size_t max_leaves;
+        std::atomic<std::size_t> leaves{1};
+    };
+
+    Grower(CurvatureTree& tree, Task& task) : tree_(tree), task_(task) {}
+    // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
+    std::optional<Refusal> grow(std::deque<Item>& items, std::size_t enough);
+    // Each of them by itself.
+    std::optional<Refusal> grow_parts(std::deque<Item> items);
+
+private:
+    bool is_leaf(Node& node, const BoxBending& known);
+    void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
+    std::optional<Refusal> take(const Item& item, std::deque<Item>& items);
+    void split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
+               std::deque<Item>& items);
+    void add(const CurvatureTree& part, const Item& item);
+
+    CurvatureTree& tree_;
+    Task& task_;
+    double length_[2] = {};  // of the sides of the box that was looked at last
+    bool fine_ = false;      // whether its error is small enough
+};
+
+// What is known of the box decides; whether it is fine, and whether it stays whole.
+bool CurvatureTree::Grower::is_leaf(Node& node, const BoxBending& known) {
+    const double tolerance = task_.demands.tolerance;
+    const Vec<2> size = node.box.hi - node.box.lo;
+    node.bending = known;
+    const double error = known.full.along(size[0], size[1]) / 8 + tree_.kink_bound(node.box);
+    for (int d = 0; d < 2; ++d) length_[d] = known.first[d] * size[d];
+    const double longer = std::max(length_[0], length_[1]), shorter = std::min(length_[0], length_[1]);
+    const bool round = longer <= task_.demands.max_aspect * shorter || longer <= tolerance;
+    fine_ = tree_.accept(node, error, tolerance);
+    return fine_ && longer <= task_.demands.max_edge && round;
+}
+
+// Control points. What holds for the whole holds for a part: of very small boxes rounding would make the
+// bound larger.
+void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
+                                BoxBending& outer) {
+    const Curvature before = outer.full;
+    const bool varies = tree_.varies(task_.surface, box);
+    Variation variation;
+    outer = bending_of(task_.surface, box, tree_.knows_normals_, {{middle.d[0], middle.d[1], middle.d[2]}},
+                       varies ? &variation : nullptr);
+    outer.full.restrict_to(before);
+    if (!varies) return;
+    node.variation = int(tree_.variations_.size());
+    tree_.variations_.push_back(variation);
+}
+
+std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::deque<Item>& items) {
+    const double tolerance = task_.demands.tolerance;
+    Node& node = tree_.nodes_[std::size_t(item.node)];
+    const Box<2> box = node.box;
+    const Vec<2> size = box.hi - box.lo;
+    bool inside = item.inside;
+    if (item.near.empty() && !inside) {
+        inside = tree_.holds_inside(0.5 * (box.lo + box.hi), task_.polygon);
+        node.outside = !inside;
+        if (node.outside) return std::nullopt;
+    }
+    node.variation = item.variation;
+    // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
+    if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(node, item.outer))
+        return std::nullopt;
+    // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but the
+    // last boxes, they need not be found.
+    const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
+    const Curvature seen = seen_at(middle, tree_.knows_normals_);
+    for (int d = 0; d < 2; ++d) length_[d] = norm(middle.d[std::size_t(d + 1)]) * size[d];
+    const double asked = seen.along(size[0], size[1]) / 8;
+    std::optional<Cut> cut;
+    if (asked > tolerance && item.depth < kMaxTreeDepth)
+        cut = tree_.cut(box, longer_side(seen, size, length_));
+    // Where control points are many, they are asked about boxes of some leaves, and within these the middle
+    // and what varies tell.
+    BoxBending outer = item.outer;
+    if (item.variation >= 0) {
+        outer = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
+                                    tree_.variations_[std::size_t(item.variation)]);
+        outer.full.restrict_to(item.outer.full);
+    } else if (!cut || (asked <= kLeavesAtOnce * tolerance && tree_.varies(task_.surface, box))) {
+        ask(node, box, middle, outer);
+    }
+    if (!cut) {
+        if (is_leaf(node, outer) || !(size[0] > 0) || !(size[1] > 0)) return std::nullopt;
+        if (item.variation >= 0) {
+            ask(node, box, middle, outer);
+            if (is_leaf(node, outer)) return std::nullopt;
+        }
+        const double error = outer.full.along(size[0], size[1]);
+        if (item.depth == kMaxTreeDepth) {
+            if (std::isfinite(error)) return std::nullopt;
+            return Refusal{RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
+                           "the surface has no bounded curvature here"};
+        }
+        const Curvature matters = outer.least > 0 ? outer.seen(0) : outer.full;
+        const int axis = fine_ || !std::isfinite(error) ? int(length_[0] < length_[1])
+                                                        : longer_side(matters, size, length_);
+        cut = tree_.cut(box, axis);
+        if (!cut) return std::nullopt;  // no double between the ends
+    }
+    if (++task_.leaves > task_.max_leaves)
+        return Refusal{
+            RefusalKind::limit, "max_triangles",
+            text("the tolerance ", tolerance, " needs more than ", 2 * task_.max_leaves, " triangles")};
+    split(item, outer, *cut, inside, items);
+    return std::nullopt;
+}
+
+void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
+                                  std::deque<Item>& items) {
+    const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
+    const int child = int(tree_.nodes_.size()), variation = tree_.nodes_[std::size_t(item.node)].variation;
+    tree_.nodes_[std::size_t(item.node)].child = child;
+    Item both[2];
+    for (int half = 0; half < 2; ++half) {
+        Box<2> part = box;
+        (half == 0 ? part.hi : part.lo)[cut.axis] = cut.at;
+        Item next{child + half, item.depth + 1, outer, {}, inside, variation};
+        for (const auto& s : item.near)
+            if (meets(part, task_.polygon[std::size_t(s[0])], task_.polygon[std::size_t(s[1])]))
+                next.near.push_back(s);
+        both[half] = std::move(next);
+        tree_.nodes_.push_back({part, {}, item.node});
+    }
+    items.push_back(std::move(both[1]));
+    items.push_back(std::move(both[0]));
+}
+
+std::optional<Refusal> CurvatureTree::Grower::grow(std::deque<Item>& items, std::size_t enough) {
+    const bool all = enough == 0;  // depth first then: less to remember
+    while (!items.empty() && (all || items.size() < enough)) {
+        const Item item = std::move(all ? items.back() : items.front());
+        all ? items.pop_back() : items.pop_front();
+        if (auto bad = take(item, items)) return bad;
+    }
+    return std::nullopt;
+}
+
+std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::deque<Item> items) {
+    std::vector<CurvatureTree> parts(items.size());
+    std::vector<std::optional<Refusal>> bad(items.size());
+    parallel_for(items.size(), 1, [&](std::size_t i) {
+        CurvatureTree& part = parts[i];
+        part.knows_normals_ = tree_.knows_normals_;
+        part.kinks_ = tree_.kinks_;
+        part.segments_ = tree_.segments_;
+        part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
+        std::deque<Item> own{items[i]};
+        own.front().node = 0;
+        if (own.front().variation >= 0) {
+            part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
+            own.front().variation = 0;
+        }
+        bad[i] = Grower(part, task_).grow(own, 0);
+    });
+    // All together need too many leaves, or none of them says so: which one does is chance.
+    for (const bool limit : {true, false})
+        for (const auto& b : bad)
+            if (b && (!limit || b->kind == RefusalKind::limit)) return b;
+    for (std::size_t i = 0; i < parts.size(); ++i) add(parts[i], items[i]);
+    return std::nullopt;
+}
+
+// A part that has been grown from the item.
+void CurvatureTree::Grower::add(const CurvatureTree& part, const Item& item) {
+    const int nodes = int(tree_.nodes_.size()) - 1, variations = int(tree_.variations_.size());
+    tree_.variations_.insert(tree_.variations_.end(), part.variations_.begin(), part.variations_.end());
+    for (std::size_t k = 0; k < part.nodes_.size(); ++k) {
+        Node n = part.nodes_[k];
+        n.parent = k == 0          ? tree_.nodes_[std::size_t(item.node)].parent
+                   : n.parent == 0 ? item.node
+                                   : nodes + n.parent;
+        if (n.child >= 0) n.child += nodes;
+        if (n.variation >= 0) n.variation += variations;
+        if (k == 0)
+            tree_.nodes_[std::size_t(item.node)] = n;
+        else
+            tree_.nodes_.push_back(n);
+    }
+}
+
+bool CurvatureTree::varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const {
+    return surface.piece_numbers() > kFewNumbers && surface.is_twice_smooth({box.side(0), box.side(1)});
+}
+
+bool CurvatureTree::holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const {
+    return is_inside(p, polygon, segments_);
+}
+
+Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
+                                          std::span<const Vec<2>> polygon,
+                                          std::span<const std::array<int, 2>> segments,
+                                          const FaceDemands& demands, std::size_t max_leaves,
+                                          bool knows_normals) {
+    CurvatureTree tree;
+    tree.knows_normals_ = knows_normals;
+    tree.segments_ = segments;
+    for (std::size_t d = 0; d < 2; ++d)
+        tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
+    Box<2> root;
+    for (const Vec<2>& p : polygon) root.add(p);
+    tree.nodes_.push_back({root, {}, 0});
+    BoxBending any;
+    any.full = {kInfinity, kInfinity, kInfinity};
+    any.first[0] = any.first[1] = kInfinity;
+    Grower::Task task{surface, polygon, demands, max_leaves};
+    Grower grower(tree, task);
+    std::deque<Grower::Item> items{{0, 0, any, {segments.begin(), segments.end()}}};
+    auto bad = grower.grow(items, demands.alone ? kPartsOfTree : 0);
+    if (!bad && demands.alone) bad = grower.grow_parts(std::move(items));
+    if (bad) return std::unexpected(*bad);
+    bool all_flat = true;                               // enough to do without normals
+    for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
+        if (auto& n = tree.nodes_[i]; n.child >= 0) {
+            const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];
+            n.bending = a.outside ? b.bending : a.bending;
+            if (!a.outside && !b.outside) n.bending.include(b.bending);
+            n.outside = a.outside && b.outside;
+            n.whole = a.whole && b.whole;
+        } else if (!n.outside) {
+            all_flat = all_flat && n.flat;
+            n.whole = true;
+        }
+    if (all_flat) tree.knows_normals_ = false;
+    tree.segments_ = {};
+    tree.find_corners();
+    return tree;
+}
+
+}  // namespace freiform
