@@ -11,8 +11,8 @@ paint="libcairo2-dev fonts-dejavu-core"
 font="libfreetype-dev libharfbuzz-dev libfontconfig-dev"
 python="pybind11-dev python3-dev python3-numpy"
 test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
-ci="python3 python3-venv python3-pip gmsh libglfw3-dev libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
+ci="python3 python3-venv python3-pip gmsh libglfw3-dev libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
@@ -71,7 +71,6 @@ what_for() {
         nodejs) echo "runs the WebAssembly modules" ;;
         npm) echo "fetches what the page is built with" ;;
         chromium) echo "runs the WebAssembly modules and the page as a browser does" ;;
-        nodejs) echo "runs the kernels for WebAssembly in a test" ;;
         gmsh) echo "measures the STEP and IGES files that are written" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;
