@@ -311,7 +311,8 @@ bool Filler::refine(std::size_t max_points) {
     };
     std::vector<Entry> queue;
     std::vector<int> again;
-    if (demands_.alone && known_.empty()) judge_all();
+    // One thread judges when it is asked to: triangles that are gone by then cost nothing.
+    if (demands_.alone && max_threads() != 1 && known_.empty()) judge_all();
     for (int i = 0; i < t_.size(); ++i)
         if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
     for (std::size_t head = 0; head < queue.size(); ++head) {
