@@ -59,7 +59,7 @@ void ModelContactRows::add(const ModelContacts& found, const std::array<std::siz
             numbers(c.point.c),
             c.is_proven() ? "" : text(", ", c.least, " to ", c.most, " times, gap at most ", c.gap), "\n");
     }
-    for (const ModelContacts::Open& o : found.open) {
+    for (const OpenContacts& o : found.open) {
         const std::string face = text(where, ", face ", o.face);
         if (o.reason) remark(text(face, ": nothing is known: ", o.reason->message));
         for (const auto& box : o.boxes) {

@@ -126,7 +126,7 @@ void SurfaceMeetings::add(const ModelIntersection& found, const std::array<std::
     for (const BranchChain& c : found.chains) {
         chains_.push_back([=](json::Writer& w) {
             std::vector<int> curves, reversed;
-            for (const BranchChain::Link& l : c.links) {
+            for (const ChainLink& l : c.links) {
                 curves.push_back(first + l.branch);
                 if (l.reversed) reversed.push_back(first + l.branch);
             }

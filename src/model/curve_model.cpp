@@ -58,7 +58,7 @@ bool may_meet(const Curve<Hom<3>>& curve, const Box<3>& box) {
 
 struct IntersectModel::Prepared {
     std::vector<std::optional<MetFace>> faces;
-    std::vector<ModelContacts::Open> open;
+    std::vector<OpenContacts> open;
     Model model;
     double size = 0;
 

@@ -121,7 +121,7 @@ TEST(ModelIntersect, branches_are_joined_over_edges) {
             ASSERT_EQ(c.links.size(), found.branches.size());
             EXPECT_GE(c.links.size(), 2u);
             for (std::size_t i = 0; i < c.links.size(); ++i) {
-                const auto end = [&](const BranchChain::Link& l, bool last) {
+                const auto end = [&](const ChainLink& l, bool last) {
                     const Curve<Vec<3>>& curve = found.branches[std::size_t(l.branch)].curve;
                     return curve(last != l.reversed ? curve.domain()[0].hi : curve.domain()[0].lo);
                 };

@@ -24,7 +24,8 @@ HEADER_EXCEPTIONS = {
     "mesh/segment_box": CPP, "mesh/visibility": CPP, "model/edge_gap": CPP, "query/checks": CPP,
     "query/hull_search": CPP, "query/pair_search": CPP, "spline/chain": CPP, "spline/derivative_bounds": CPP,
     "spline/jet": CPP, "io/json": CPP, "io/colour_bar": FIGURE, "io/figure": FIGURE, "io/paper": FIGURE,
-    "io/exchange": "read() calls it",
+    "io/exchange": "read() calls it", "io/step_read": "read() calls it",
+    "gpu/surfaces": "of programs that draw with OpenGL", "intersect/curve_part": CPP, "make/image_curve": CPP,
 }
 # Headers that come with others that are included.
 THROUGH = {"core/image", "core/vec", "core/view", "basis/band_map", "basis/bspline", "basis/change", "fit/parameters",
@@ -39,6 +40,7 @@ FUNCTION_EXCEPTIONS = {
     "box_of_part": "of surfaces as models have them; Model.bounds",
     "cardinal_matrix": "kochanek_bartels_matrix((tension, 0, 0), ..)",
     "check": "models are checked when they are read",
+    "check_line": "intersect_lines refuses what it refuses",
     "check_loops": "TrimmedSurface and orient_loops refuse what it refuses",
     "clamped": "numpy.clip",
     "closest": "for messages",
@@ -58,6 +60,7 @@ FUNCTION_EXCEPTIONS = {
     "elliptic_arc": "Path('A ..')",
     "equidistant": "numpy.linspace",
     "exp": "of rotations: numpy",
+    "files_in_memory": "of WebAssembly",
     "flatten_on": "TrimmedSurface.tessellate",
     "format_of_content": "a step of read()",
     "format_of_name": "a step of read()",

@@ -7,13 +7,13 @@ from typing import Any, NamedTuple, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, Colour, Interval, from_header, points_array
+from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, from_header, pair, points_array
 from ._meshes import Mesh
 from ._patches import Curve, Surface
 from ._paths import Path
-from ._records import (Approximation, Conic, EdgeContinuity, FieldValues, Line, Measure, MeshDeviation, ModelDistance,
-                       ModelFarthest, ModelIntersection, ModelNearest, ModelSection, ModelSummary, NearestFaces, OrientedBox,
-                       Sewing, SolidInside, SurfaceLine, Tessellation, TightBox)
+from ._records import (Approximation, Conic, ConvexHull, EdgeContinuity, FieldValues, Line, Measure, MeshDeviation,
+                       ModelContacts, ModelDistance, ModelFarthest, ModelIntersection, ModelNearest, ModelSection,
+                       ModelSummary, NearestFaces, OrientedBox, Sewing, SolidInside, SurfaceLine, Tessellation, TightBox)
 from ._refusals import Refusal
 
 __all__ = ["Model", "ModelFace", "ModelEdge", "ModelNearestQuery", "TrimmedSurface", "inside_loops", "orient_loops"]
@@ -195,6 +195,22 @@ class Model:
     @from_header("model/intersect:intersect")
     def intersect(self, other: Model, tolerance: float, max_pairs: int = 2_000_000) -> ModelIntersection:
         return _core.model_intersect(self._c, other._c, tolerance, max_pairs)
+
+    @from_header("model/bounds:convex_hull")
+    def convex_hull(self, tolerance: float, max_parts: int = 20000) -> ConvexHull:
+        return _core.model_convex_hull(self._c, tolerance, max_parts)
+
+    @from_header("model/curve_model:IntersectModel")
+    def intersect_curve(self, curve: Curve, accuracy: float = 0.0, max_parts: int = 50_000) -> ModelContacts:
+        """Where a curve meets the faces."""
+        return _core.model_intersect_curve(self._c, curve._c, accuracy, max_parts)
+
+    @from_header("model/curve_model:IntersectModel")
+    def intersect_lines(self, points: ArrayLike, directions: ArrayLike, on: IntervalLike = (-inf, inf),
+                        accuracy: float = 0.0, max_parts: int = 50_000) -> list[ModelContacts]:
+        """Lines, rays (on = (0, inf)) or segments point + t direction with the faces, on all threads."""
+        p, d = np.broadcast_arrays(np.atleast_2d(points_array(points)), np.atleast_2d(points_array(directions)))
+        return _core.model_intersect_lines(self._c, points_array(p), points_array(d), pair(on), accuracy, max_parts)
 
     @from_header("model/section:section")
     def section(self, normal: ArrayLike, offset: float, tolerance: float, max_triangles: int = 20_000_000) -> ModelSection:

@@ -1,7 +1,9 @@
 // Solid models and trimmed surfaces.
 #include "records/core/interval.hpp"
+#include "records/intersect/contact.hpp"
 #include "records/intersect/surface_surface.hpp"
 #include "records/mesh/triangle_mesh.hpp"
+#include "records/model/curve_model.hpp"
 #include "records/model/deviation.hpp"
 #include "records/model/distance.hpp"
 #include "records/model/edge_continuity.hpp"
@@ -15,6 +17,7 @@
 #include "records/model/surface_lines.hpp"
 #include "records/model/tessellate.hpp"
 #include "records/query/bounds.hpp"
+#include "records/query/hull.hpp"
 #include "records/query/length.hpp"
 #include "records/query/oriented_box.hpp"
 #include "records/spline/geometry.hpp"
@@ -193,6 +196,40 @@ void bind_model_questions(py::module_& m) {
             });
         },
         py::arg("a"), py::arg("b"), py::arg("tolerance"), py::arg("max_pairs"));
+    m.def(
+        "model_convex_hull",
+        [](const ModelHandle& h, double tolerance, int max_parts) {
+            return answer([&] { return convex_hull(*h.model, tolerance, max_parts); });
+        },
+        py::arg("model"), py::arg("tolerance"), py::arg("max_parts"));
+    m.def(
+        "model_intersect_curve",
+        [](const ModelHandle& h, const CurveHandle& c, double accuracy, int max_parts) {
+            const auto curve = as<Hom<3>, 1>(*c.patch, "curve");
+            return answer([&] { return IntersectModel(*h.model).intersect(curve, {accuracy, max_parts}); });
+        },
+        py::arg("model"), py::arg("curve"), py::arg("accuracy"), py::arg("max_parts"));
+    // Lines point + t direction, t in on.
+    m.def(
+        "model_intersect_lines",
+        [](const ModelHandle& h, const Array& points, const Array& directions, std::pair<double, double> on,
+           double accuracy, int max_parts) {
+            const auto from = points_of<Vec<3>>(points, "points"),
+                       along = points_of<Vec<3>>(directions, "directions");
+            if (from.size() != along.size())
+                reject(RefusalKind::invalid, "directions",
+                       text(along.size(), " for ", from.size(), " points"));
+            std::vector<StraightLine> lines;
+            for (std::size_t i = 0; i < from.size(); ++i)
+                lines.push_back({from[i], along[i], interval_of(on)});
+            std::vector<ModelContacts> found(lines.size());
+            take(unlocked([&] {
+                return IntersectModel(*h.model).intersect(lines, found, {accuracy, max_parts});
+            }));
+            return to_py(found);
+        },
+        py::arg("model"), py::arg("points"), py::arg("directions"), py::arg("on"), py::arg("accuracy"),
+        py::arg("max_parts"));
     m.def(
         "model_section",
         [](const ModelHandle& h, const Array& normal, double offset, double tolerance,

@@ -20,15 +20,16 @@ struct ModelContact {
     std::vector<ContactFace> others;  // what else has the same place on its boundary: neighbours, a seam
 };
 
+// A face of which something is not known: over boxes of (t, u, v), or all, with the reason.
+struct OpenContacts {
+    int face = -1;
+    std::vector<std::array<Interval, 3>> boxes;
+    std::optional<Refusal> reason;
+};
+
 struct ModelContacts {
     std::vector<ModelContact> contacts;  // ordered by the parameter of the curve
-    // Faces of which something is not known: over boxes of (t, u, v), or all, with the reason.
-    struct Open {
-        int face = -1;
-        std::vector<std::array<Interval, 3>> boxes;
-        std::optional<Refusal> reason;
-    };
-    std::vector<Open> open;
+    std::vector<OpenContacts> open;
 };
 
 // A model ready to be met by many. Const and safe to share between threads.

@@ -33,13 +33,13 @@ struct FaceNode : SurfaceNode {
     // Of `overlaps`, what the loops of both faces leave; not of maps between parameters that are not affine.
     std::vector<FaceOverlap> regions;
 };
+struct ChainLink {
+    int branch = -1;
+    bool reversed = false;  // it is run through from its end
+};
 // Branches one after the other, over the edges of faces.
 struct BranchChain {
-    struct Link {
-        int branch = -1;
-        bool reversed = false;  // it is run through from its end
-    };
-    std::vector<Link> links;
+    std::vector<ChainLink> links;
     bool closed = false;
     double gap = 0;  // bound: from where a branch ends to where the next one begins
 };
