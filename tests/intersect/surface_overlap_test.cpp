@@ -147,7 +147,8 @@ TEST(SurfaceOverlaps, rational_splines_with_their_seams_elsewhere_share_a_rectan
     } cases[] = {
         {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(turned, 1, {-1, 3})).surface, 2, 0.75},
         {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(over, 1, {-1, 3})).surface, 2, 0.75},
-        {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(turned, 1, {-2, 2}, Turn{{0, 1}})).surface, 1, 0},
+        {must(cylinder(at_z, 1, {-2, 2})).surface, must(cylinder(turned, 1, {-2, 2}, Turn{{0, 1}})).surface,
+         1, 0},
         {uneven, must(cylinder(turned, 1, {-1, 3})).surface, 2, 0.75},
         {must(cone(at_z, 2, 1, {0, 1})).surface, must(cone(turned, 2, 1, {0, 1})).surface, 2, 1},
         {must(sphere(at_z, 1)).surface, must(sphere(turned, 1)).surface, 2, 1},

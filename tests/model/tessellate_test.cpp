@@ -3,7 +3,7 @@
 
 #include <freiform/core/parallel.hpp>
 
-#include <chrono>
+#include <ctime>
 #include <gtest/gtest.h>
 
 using namespace freiform;
@@ -202,13 +202,13 @@ TEST(Tessellate, any_number_of_threads_gives_the_same_bits) {
 TEST(Tessellate, refuses_tolerances_that_ask_for_too_much_at_once) {
     const auto model = torus(3, 1);
     for (double tolerance : {1e-9, 1e-20, 1e-300}) {
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = std::clock();
         const auto t =
             tessellate(model, {.tolerance = tolerance, .max_triangles = 1'000'000, .progress = {}});
         ASSERT_FALSE(t) << tolerance;
         EXPECT_EQ(t.error().kind, RefusalKind::limit) << tolerance;
         EXPECT_NE(t.error().message.find_first_of("0123456789"), std::string::npos);
-        EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 3);
+        EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 3);
     }
     EXPECT_EQ(tessellate(model, {.tolerance = 0}).error().kind, RefusalKind::invalid);
     EXPECT_EQ(tessellate(model, {.tolerance = NAN}).error().kind, RefusalKind::nonfinite);
@@ -224,10 +224,9 @@ TEST(Tessellate, knots_a_rounding_apart_end_in_a_mesh_or_a_refusal) {
     ModelBuilder builder;
     ASSERT_TRUE(builder.add(*Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({9, 9}, c))));
     const auto model = std::move(builder).finish();
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = std::clock();
     const auto t = tessellate(*model, {.tolerance = 0.002});
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    EXPECT_LT(seconds, 20);
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 20);
     ASSERT_TRUE(t) << t.error().message;
     if (t->refused.empty()) {
         EXPECT_LE(t->error_bound, 0.002);
