@@ -20,8 +20,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <deque>
 #include <optional>
+#include <vector>
 
 namespace freiform {
 
@@ -63,16 +63,16 @@ public:
 
     Grower(CurvatureTree& tree, Task& task) : tree_(tree), task_(task) {}
     // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
-    std::optional<Refusal> grow(std::deque<Item>& items, std::size_t enough);
+    std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
     // Each of them by itself.
-    std::optional<Refusal> grow_parts(std::deque<Item> items);
+    std::optional<Refusal> grow_parts(std::vector<Item> items);
 
 private:
     bool is_leaf(Node& node, const BoxBending& known);
     void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
-    std::optional<Refusal> take(const Item& item, std::deque<Item>& items);
+    std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
-               std::deque<Item>& items);
+               std::vector<Item>& items);
     void add(const CurvatureTree& part, const Item& item);
 
     CurvatureTree& tree_;
@@ -109,7 +109,7 @@ void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, V
     tree_.variations_.push_back(variation);
 }
 
-std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::deque<Item>& items) {
+std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector<Item>& items) {
     const double tolerance = task_.demands.tolerance;
     Node& node = tree_.nodes_[std::size_t(item.node)];
     const Box<2> box = node.box;
@@ -170,7 +170,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::deque<
 }
 
 void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
-                                  std::deque<Item>& items) {
+                                  std::vector<Item>& items) {
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
     const int child = int(tree_.nodes_.size()), variation = tree_.nodes_[std::size_t(item.node)].variation;
     tree_.nodes_[std::size_t(item.node)].child = child;
@@ -189,26 +189,41 @@ void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, con
     items.push_back(std::move(both[0]));
 }
 
-std::optional<Refusal> CurvatureTree::Grower::grow(std::deque<Item>& items, std::size_t enough) {
+std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std::size_t enough) {
     const bool all = enough == 0;  // depth first then: less to remember
     while (!items.empty() && (all || items.size() < enough)) {
-        const Item item = std::move(all ? items.back() : items.front());
-        all ? items.pop_back() : items.pop_front();
+        const auto next = all ? items.end() - 1 : items.begin();
+        const Item item = std::move(*next);
+        items.erase(next);
         if (auto bad = take(item, items)) return bad;
     }
     return std::nullopt;
 }
 
-std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::deque<Item> items) {
-    std::vector<CurvatureTree> parts(items.size());
+std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items) {
     std::vector<std::optional<Refusal>> bad(items.size());
+    // All together need too many leaves, or none of them says so: which one does is chance.
+    const auto worst = [&]() -> std::optional<Refusal> {
+        for (const bool limit : {true, false})
+            for (const auto& b : bad)
+                if (b && (!limit || b->kind == RefusalKind::limit)) return b;
+        return std::nullopt;
+    };
+    if (max_threads() == 1) {  // into this tree at once, in the order in which parts are added below
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            std::vector<Item> own{std::move(items[i])};
+            bad[i] = grow(own, 0);
+        }
+        return worst();
+    }
+    std::vector<CurvatureTree> parts(items.size());
     parallel_for(items.size(), 1, [&](std::size_t i) {
         CurvatureTree& part = parts[i];
         part.knows_normals_ = tree_.knows_normals_;
         part.kinks_ = tree_.kinks_;
         part.segments_ = tree_.segments_;
         part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
-        std::deque<Item> own{items[i]};
+        std::vector<Item> own{items[i]};
         own.front().node = 0;
         if (own.front().variation >= 0) {
             part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
@@ -216,10 +231,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::deque<Item> items)
         }
         bad[i] = Grower(part, task_).grow(own, 0);
     });
-    // All together need too many leaves, or none of them says so: which one does is chance.
-    for (const bool limit : {true, false})
-        for (const auto& b : bad)
-            if (b && (!limit || b->kind == RefusalKind::limit)) return b;
+    if (auto first = worst()) return first;
     for (std::size_t i = 0; i < parts.size(); ++i) add(parts[i], items[i]);
     return std::nullopt;
 }
@@ -268,7 +280,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     any.first[0] = any.first[1] = kInfinity;
     Grower::Task task{surface, polygon, demands, max_leaves};
     Grower grower(tree, task);
-    std::deque<Grower::Item> items{{0, 0, any, {segments.begin(), segments.end()}}};
+    std::vector<Grower::Item> items{{0, 0, any, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.alone ? kPartsOfTree : 0);
     if (!bad && demands.alone) bad = grower.grow_parts(std::move(items));
     if (bad) return std::unexpected(*bad);

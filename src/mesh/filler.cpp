@@ -2,7 +2,6 @@
 #include "filler_detail.hpp"
 
 #include <freiform/core/constants.hpp>
-#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
@@ -237,22 +236,6 @@ const Filler::Known& Filler::known(int triangle) {
     return known_[i];
 }
 
-// All triangles inside, some of which nobody may ask about. Where in the tree the search for one begins does
-// not change what is found.
-void Filler::judge_all() {
-    constexpr std::size_t kBatch = 256;
-    const std::size_t n = std::size_t(t_.size());
-    known_.resize(n);
-    parallel_for((n + kBatch - 1) / kBatch, 1, [&](std::size_t batch) {
-        int place = 0;
-        for (std::size_t i = batch * kBatch; i < std::min(n, (batch + 1) * kBatch); ++i) {
-            if (!t_.is_inside(int(i))) continue;
-            known_[i] = found(int(i), place);
-            known_[i].stamp = t_.stamp(int(i));
-        }
-    });
-}
-
 double Filler::bound(int triangle) { return known(triangle).bound; }
 
 // Inserts a point that makes the triangle better; false if there is none.
@@ -311,8 +294,6 @@ bool Filler::refine(std::size_t max_points) {
     };
     std::vector<Entry> queue;
     std::vector<int> again;
-    // One thread judges when it is asked to: triangles that are gone by then cost nothing.
-    if (demands_.alone && max_threads() != 1 && known_.empty()) judge_all();
     for (int i = 0; i < t_.size(); ++i)
         if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
     for (std::size_t head = 0; head < queue.size(); ++head) {
@@ -336,46 +317,6 @@ bool Filler::refine(std::size_t max_points) {
         }
     }
     return true;
-}
-
-// Around a pole two triangles that are neighbours across a single inner point fall on each other, and so do
-// edges across a seam when a strip is one edge wide.
-int Filler::separate(std::span<const int> place) {
-    std::vector<int> corners_at(place.size(), 0);
-    const auto id = [&](int v) { return v < int(place.size()) ? place[std::size_t(v)] : v; };
-    for (int p : place) ++corners_at[std::size_t(p)];
-    struct Side {
-        int a, b, u, v;
-        bool operator<(const Side& o) const { return std::tie(a, b, u, v) < std::tie(o.a, o.b, o.u, o.v); }
-    };
-    std::vector<Side> sides;
-    for (int i = 0; i < t_.size(); ++i) {
-        if (!t_.is_inside(i)) continue;
-        const auto& v = t_.vertices(i);
-        if (id(v[0]) == id(v[1]) || id(v[1]) == id(v[2]) || id(v[2]) == id(v[0])) continue;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const int u = std::min(v[k], v[(k + 1) % 3]), w = std::max(v[k], v[(k + 1) % 3]);
-            if (u >= int(place.size()) || (corners_at[std::size_t(id(u))] < 2 &&
-                                           (w >= int(place.size()) || corners_at[std::size_t(id(w))] < 2)))
-                continue;
-            const int a = id(u), b = id(w);
-            sides.push_back({std::min(a, b), std::max(a, b), u, w});
-        }
-    }
-    std::sort(sides.begin(), sides.end());
-    int inserted = 0;
-    for (std::size_t i = 0, j; i < sides.size(); i = j) {
-        for (j = i; j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b;) ++j;
-        if (j - i <= 2) continue;
-        for (std::size_t k = i; k < j; ++k) {
-            if (k > i && sides[k].u == sides[k - 1].u && sides[k].v == sides[k - 1].v) continue;
-            const auto e = t_.find_edge(sides[k].u, sides[k].v);
-            if (e.triangle < 0 || t_.is_constrained(e.triangle, e.edge)) continue;
-            inserted += t_.insert(scaled(0.5 * (uv(sides[k].u) + uv(sides[k].v))), e.triangle).status ==
-                        Triangulation::Insert::done;
-        }
-    }
-    return inserted;
 }
 
 }  // namespace freiform

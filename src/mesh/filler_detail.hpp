@@ -18,7 +18,7 @@ public:
     // Of the interpolation error of the triangle; computed once for each.
     double bound(int triangle);
     // Inserts the middles of inner edges that more than two triangles have once corners with the same `place`
-    // are one. The number of points inserted.
+    // are one, and of the longest sides of triangles without area there. The number of points inserted.
     int separate(std::span<const int> place);
     Vec<2> uv(int vertex) const { return unscaled(t_.points()[std::size_t(vertex)]); }
 
@@ -27,6 +27,9 @@ private:
     Vec<2> scaled(const Vec<2>& x) const { return {{x[0] * scale_[0], x[1] * scale_[1]}}; }
     bool is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf) const;
     bool improve(int triangle);
+    bool halve(int v, int w);
+    std::vector<std::array<int, 2>> flat_sides(std::span<const int> place,
+                                               std::span<const int> corners_at) const;
     bool is_fine(int triangle);
     Vec<3> position(int vertex);
     struct LongestSide {
@@ -50,7 +53,6 @@ private:
     };
     const Known& known(int triangle);
     Known found(int triangle, int& place) const;  // `place`: in the tree, where to begin, and where it is
-    void judge_all();
 
     Triangulation& t_;
     std::vector<Known> known_;

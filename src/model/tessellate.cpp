@@ -216,13 +216,13 @@ std::vector<std::size_t> Tessellator::non_manifold_faces() {
     std::vector<Side> sides;
     for (std::size_t f = 0; f < faces(); ++f) {
         if (is_refused(f)) continue;
-        const auto& polygon = boundaries_[f].polygon;
-        const int n = int(polygon.uv.size());
-        for (const auto& t : meshes_[f].triangles)
+        const FaceMesh& mesh = meshes_[f];
+        for (const auto& t : mesh.triangles)
             for (int k = 0; k < 3; ++k) {
                 const int u = t[std::size_t(k)], v = t[std::size_t((k + 1) % 3)];
-                if (u >= n || v >= n) continue;
-                const auto [a, b] = std::minmax(polygon.point[std::size_t(u)], polygon.point[std::size_t(v)]);
+                // Poles have more corners than the polygon knows.
+                const auto [a, b] = std::minmax(mesh.point[std::size_t(u)], mesh.point[std::size_t(v)]);
+                if (a < 0) continue;
                 sides.push_back({a, b, int(f), u, v});
             }
     }
@@ -234,13 +234,14 @@ std::vector<std::size_t> Tessellator::non_manifold_faces() {
         if (j - i > 2)
             for (std::size_t k = i; k < j; ++k) {
                 const auto& s = sides[k];
-                const auto& polygon = boundaries_[std::size_t(s.face)].polygon;
-                const bool boundary = std::any_of(
-                    polygon.segments.begin(), polygon.segments.end(), [&](const std::array<int, 2>& g) {
+                const auto& segments = boundaries_[std::size_t(s.face)].polygon.segments;
+                const bool boundary =
+                    std::any_of(segments.begin(), segments.end(), [&](const std::array<int, 2>& g) {
                         return (g[0] == s.u && g[1] == s.v) || (g[0] == s.v && g[1] == s.u);
                     });
                 if (boundary) continue;
-                const Vec<2> middle = 0.5 * (polygon.uv[std::size_t(s.u)] + polygon.uv[std::size_t(s.v)]);
+                const auto& uv = meshes_[std::size_t(s.face)].uv;
+                const Vec<2> middle = 0.5 * (uv[std::size_t(s.u)] + uv[std::size_t(s.v)]);
                 auto& extra = extra_[std::size_t(s.face)];
                 if (std::find(extra.begin(), extra.end(), middle) == extra.end()) {
                     extra.push_back(middle);

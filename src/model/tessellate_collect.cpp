@@ -116,6 +116,13 @@ Tessellation Tessellator::collect() {
     parallel_for(faces(), 1, [&](std::size_t f) {
         if (!is_refused(f)) looks[f] = look_of(f, model_.faces[f].reversed != bool(flipped[f]));
     });
+    std::size_t points = points_.size(), vertices = 0, triangles = 0;
+    for (std::size_t f = 0; f < faces(); ++f)
+        points += looks[f].inner.size(), vertices += looks[f].vertices.size(),
+            triangles += meshes_[f].triangles.size();
+    out.mesh.points.reserve(points);
+    out.mesh.vertices.reserve(vertices);
+    out.mesh.triangles.reserve(triangles);
     for (std::size_t f = 0; f < faces(); ++f) {
         const Face& face = model_.faces[f];
         if (is_refused(f)) {
