@@ -30,9 +30,11 @@ struct ArcPieces {
     std::array<std::vector<double>, N> breaks;  // of the pieces
     std::array<Interval, N> domain{};
     std::array<bool, N> closed{};
-    std::vector<P> points;      // piece by piece, row-major, in the scale of the user
-    std::vector<double> error;  // of each number of a piece; 0: exactly those of the object
-    std::vector<char> jump;     // curves: the curve jumps at the beginning of piece i
+    std::vector<P> points;  // piece by piece, row-major, in the scale of the user
+    // Of each number of a piece, coordinates times weight, and of each weight: these have units of their own.
+    // 0: exactly those of the object.
+    std::vector<double> error, weight_error;
+    std::vector<char> jump;  // curves: the curve jumps at the beginning of piece i
     Exponents exponents;
 
     int block() const {
@@ -71,11 +73,12 @@ ArcPieces<N, P> arc_pieces(const Patch<N, P>& patch) {
         out.closed[d] = basis.is_closed();
     }
     each_index(all.extent(), [&](const Index<N>& at) {
-        double roundings = 0, most = 0;
+        double roundings = 0, most = 0, heaviest = 0;
         const auto net = all.net(at);
         each_index(net.extent, [&](const Index<N>& i) {
             out.points.push_back(net(i));
-            for (int k = 0; k < P::kCoords; ++k) most = std::max(most, std::abs(net(i)[k]));
+            for (int k = 0; k < Space<P>::kDim; ++k) most = std::max(most, std::abs(net(i)[k]));
+            if (Space<P>::kRational) heaviest = std::max(heaviest, std::abs(Space<P>::weight(net(i))));
         });
         for (std::size_t d = 0; d < N; ++d) {
             const BSplineBasis& basis = patch.basis(int(d));
@@ -85,7 +88,11 @@ ArcPieces<N, P> arc_pieces(const Patch<N, P>& patch) {
                 roundings += 12 * p + 8;
             if (N == 1) out.jump.push_back(at[0] > 0 && basis.multiplicity(on.lo) > p);
         }
-        out.error.push_back(roundings == 0 ? 0 : roundings * kUnitRoundoff * most + 0x1p-1060);
+        const auto rounded = [&](double x) {
+            return roundings == 0 ? 0 : roundings * kUnitRoundoff * x + 0x1p-1060;
+        };
+        out.error.push_back(rounded(most));
+        out.weight_error.push_back(rounded(heaviest));
     });
     return out;
 }

@@ -59,9 +59,10 @@ public:
         for (int i = 0; i < source.pieces(); ++i) {
             Part<N, D> part;
             part.width.fill(1);
-            part.raw_error = std::max(times(source.error[std::size_t(i)], x, small),
-                                      kRational ? times(source.error[std::size_t(i)], w, light) : 0.0) +
-                             0x1p-1060;
+            part.raw_error =
+                std::max(times(source.error[std::size_t(i)], x, small),
+                         kRational ? times(source.weight_error[std::size_t(i)], w, light) : 0.0) +
+                0x1p-1060;
             part.first = i * block_;
             part.piece = i;
             finish(part);

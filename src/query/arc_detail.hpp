@@ -20,8 +20,28 @@ struct Arc {
     Box<D> box;
 };
 
+// A bound for each number of some homogeneous points: coordinates and weights have units of their own.
+struct NumberError {
+    double point = 0, weight = 0;
+};
+// The largest coordinate and the largest weight, times `factor`.
 template <class P>
-void add_points(Arc<Space<P>::kDim>& arc, const std::vector<P>& b, double error, int skip_lo, int skip_hi) {
+NumberError share_of(const std::vector<P>& b, double factor) {
+    NumberError most;
+    for (const P& p : b) {
+        for (int k = 0; k < Space<P>::kDim; ++k) most.point = std::max(most.point, std::abs(p[k]));
+        if (Space<P>::kRational) most.weight = std::max(most.weight, std::abs(Space<P>::weight(p)));
+    }
+    return {factor * most.point + 0x1p-1060, Space<P>::kRational ? factor * most.weight + 0x1p-1060 : 0};
+}
+inline NumberError operator+(const NumberError& a, const NumberError& b) {
+    return {a.point + b.point, a.weight + b.weight};
+}
+
+// Numbers X, W that are off by e_X, e_W: X / W is off by (e_X + |X / W| e_W) / (W - e_W) at most.
+template <class P>
+void add_points(Arc<Space<P>::kDim>& arc, const std::vector<P>& b, const NumberError& error, int skip_lo,
+                int skip_hi) {
     double x = 0, w = std::numeric_limits<double>::infinity();
     const std::size_t first = arc.points.size();
     for (const P& p : b) {
@@ -29,10 +49,11 @@ void add_points(Arc<Space<P>::kDim>& arc, const std::vector<P>& b, double error,
         x = std::max(x, max_abs(arc.points.back()));
         w = std::min(w, Space<P>::weight(p));
     }
-    double e = error;
+    double e = error.point;
     if (Space<P>::kRational)
-        e = w > 2 * error ? error * (1 + x) / (w - error) + 2 * kUnitRoundoff * x
-                          : std::numeric_limits<double>::infinity();
+        e = w > 2 * error.weight
+                ? (error.point + x * error.weight) / (w - error.weight) + 2 * kUnitRoundoff * x
+                : std::numeric_limits<double>::infinity();
     arc.error = std::max(arc.error, 1.01 * e);
     for (std::size_t i = first + std::size_t(skip_lo); i + 1 + std::size_t(skip_hi) < arc.points.size(); ++i)
         arc.legs.push_back(arc.points[i + 1] - arc.points[i]);

@@ -44,14 +44,14 @@ struct Distance {
 Distance distance_of(const CurvePiece& piece, std::span<const Bounded> plane, int dimension) {
     Distance d;
     d.terms = 2 * (dimension + 1);
-    bool exact = piece.error == 0;
+    bool exact = piece.is_exact();
     const std::size_t rows = piece.row.size(), count = piece.row[0].size();
     for (std::size_t i = 0; i < count; ++i) {
         Bounded sum;
         for (std::size_t k = 0; k <= std::size_t(dimension); ++k) {
             const bool weight = k == std::size_t(dimension);
             const double x = k < rows ? piece.row[k][i] : 1;
-            const double error = weight && rows == k ? 0 : piece.error;
+            const double error = weight && rows == k ? 0 : piece.error[k];
             const double high = plane[k].value * x, low = std::fma(plane[k].value, x, -high);
             d.parts.push_back(high);
             d.parts.push_back(low);
@@ -90,14 +90,15 @@ std::vector<Bounded> scale(CurvePieces& curve, std::span<const double> plane) {
                 (k < dimension ? x : w) = std::max(k < dimension ? x : w, std::abs(y));
     const int ex = x > 0 ? std::ilogb(x) + 1 : 0, ew = curve.is_rational ? std::ilogb(w) + 1 : 0;
     for (CurvePiece& p : curve.pieces) {
-        for (std::size_t k = 0; k < p.row.size(); ++k)
+        for (std::size_t k = 0; k < p.row.size(); ++k) {
+            const int e = k < dimension ? ex : ew;
+            p.error[k] = std::scalbn(p.error[k], -e);
             for (double& y : p.row[k]) {
-                const double z = std::scalbn(y, k < dimension ? -ex : -ew);
-                if (std::scalbn(z, k < dimension ? ex : ew) != y)
-                    p.error = std::max(p.error, std::scalbn(1.0, -1070 + std::max(ex, ew)));
+                const double z = std::scalbn(y, -e);
+                if (std::scalbn(z, e) != y) p.error[k] = std::max(p.error[k], 0x1p-1070);
                 y = z;
             }
-        p.error = std::max(std::scalbn(p.error, -ex), std::scalbn(p.error, -ew));
+        }
     }
     // n . x + c w = 2^ex n . (x 2^-ex) + 2^ew c (w 2^-ew)
     for (std::size_t k = 0; k < dimension; ++k) n = std::max(n, std::abs(plane[k]));

@@ -143,7 +143,7 @@ private:
                                [&](const auto& c) { return excludes_zero(c, r.at); });
         });
         if (candidates.kind == RootsKind::isolated && candidates.roots.empty()) return out;
-        if (piece.error > 0) {
+        if (!piece.is_exact()) {
             for (Root& r : candidates.roots) r = {r.at, 0, r.most, false, 0, 0};
             out.found = std::move(candidates);
             return out;

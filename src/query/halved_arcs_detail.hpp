@@ -29,8 +29,7 @@ public:
         for (int i = 0; i < pieces.extent()[0]; ++i) {
             Part part;
             const auto net = pieces.net({i});
-            double most = 0;
-            for (int j = 0; j <= p; ++j) part.b.push_back(net({j})), most = std::max(most, max_abs(net({j})));
+            for (int j = 0; j <= p; ++j) part.b.push_back(net({j}));
             part.arc.on = pieces.box({i})[0];
             const int s = basis.span(part.arc.on.lo);
             const bool exact =
@@ -40,9 +39,10 @@ public:
                 while (part.still_hi < p && net({p - part.still_hi}) == net({p - part.still_hi - 1}))
                     ++part.still_hi;
             } else {
-                part.error = (12 * p + 8) * kUnitRoundoff * most + 0x1p-1060;
+                part.error = share_of(part.b, (12 * p + 8) * kUnitRoundoff);
             }
-            if (!errors.empty()) part.error += errors[std::size_t(i)];
+            if (!errors.empty())
+                part.error = part.error + NumberError{errors[std::size_t(i)], errors[std::size_t(i)]};
             if (i > 0) jumps_.push_back(basis.multiplicity(part.arc.on.lo) > p);
             finish(part);
             parts_.push_back(std::move(part));
@@ -66,10 +66,8 @@ public:
         const Part& whole = parts_[std::size_t(i)];
         const double middle = whole.arc.on.middle();
         if (!(whole.arc.on.lo < middle && middle < whole.arc.on.hi)) return std::nullopt;
-        double most = 0;
-        for (const P& p : whole.b) most = std::max(most, max_abs(p));
         const int n = int(whole.b.size());
-        const double e = whole.error + 1.01 * n * kUnitRoundoff * most + 0x1p-1060;
+        const NumberError e = whole.error + share_of(whole.b, 1.01 * n * kUnitRoundoff);
         Part left{whole.b, e, whole.still_lo, 0, -1, -1, {}},
             right{whole.b, e, 0, whole.still_hi, -1, -1, {}};
         keep_left(Fibre<P>{left.b.data(), n, 1}, 0.5);
@@ -96,12 +94,10 @@ public:
             const double lo = std::max(on.lo, own.lo), hi = std::min(on.hi, own.hi);
             if (!(lo < hi)) continue;
             std::vector<P> b = part.b;
-            double most = 0;
-            for (const P& p : b) most = std::max(most, max_abs(p));
             const int n = int(b.size());
             // Local parameters are off by 6 u, their quotients, with divisors of at least 1/2, by 24 u; that
             // moves coefficients by 2 n times as much of the largest. Each cut has 3 n roundings of its own.
-            const double e = part.error + 60 * n * kUnitRoundoff * most + 0x1p-1060;
+            const NumberError e = part.error + share_of(b, 60 * n * kUnitRoundoff);
             const double from = (lo - own.lo) / own.length(), to = (hi - own.lo) / own.length();
             const Fibre<P> row{b.data(), n, 1};
             if (from <= 0.5) {
@@ -137,7 +133,7 @@ public:
 private:
     struct Part {
         std::vector<P> b;
-        double error = 0;                // of the numbers in b
+        NumberError error;               // of the numbers in b
         int still_lo = 0, still_hi = 0;  // legs at the ends that are exactly zero
         int left = -1, right = -1;       // halves, once they are made
         Arc<D> arc;

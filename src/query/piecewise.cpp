@@ -50,17 +50,18 @@ CurvePieces pieces_of(const Curve<P>& curve) {
     CurvePieces out{Space<P>::kDim, Space<P>::kRational, basis.is_closed(), {}};
     for (int i = 0; i < pieces.extent()[0]; ++i) {
         const auto net = pieces.net({i});
-        CurvePiece piece{pieces.box({i})[0], {}, 0};
-        double most = 0;
+        CurvePiece piece{pieces.box({i})[0], {}, {}};
+        const int s = basis.span(piece.on.lo);
+        const bool exact =
+            p == 0 || (basis.knot(s - p + 1) == piece.on.lo && basis.knot(s + p) == piece.on.hi);
         for (int k = 0; k < P::kCoords; ++k) {
             std::vector<double> row;
+            double most = 0;
             for (int j = 0; j <= p; ++j)
                 row.push_back(net({j})[k]), most = std::max(most, std::abs(row.back()));
             piece.row.push_back(std::move(row));
+            piece.error.push_back(exact ? 0 : (12 * p + 8) * kUnitRoundoff * most + 0x1p-1060);
         }
-        const int s = basis.span(piece.on.lo);
-        const bool exact = basis.knot(s - p + 1) == piece.on.lo && basis.knot(s + p) == piece.on.hi;
-        if (!exact && p > 0) piece.error = (12 * p + 8) * kUnitRoundoff * most + 0x1p-1060;
         out.pieces.push_back(std::move(piece));
     }
     return out;
@@ -80,21 +81,23 @@ Coordinates<Bounded> bounded_coordinates(const CurvePiece& piece, int dimension)
     for (const auto& row : piece.row)
         for (const double x : row) most = std::max(most, std::abs(x));
     const int e = most > 0 ? -std::ilogb(most) : 0;
-    const auto form = [&](const std::vector<double>& row) {
+    const auto form = [&](std::size_t k) {
+        const std::vector<double>& row = piece.row[k];
+        const double error = piece.error[k];
         Form<Bounded> f;
         const int n = int(row.size()) - 1;
         for (int i = 0; i <= n; ++i) {
             // Scaling loses at most 2^-1074, and only where the error is not 0 anyway or x is tiny.
             const double x = std::scalbn(row[std::size_t(i)], e);
             const bool lost = std::scalbn(x, -e) != row[std::size_t(i)];
-            const Bounded c{x, std::scalbn(piece.error, e) + (lost || piece.error > 0 ? 0x1p-1074 : 0)};
+            const Bounded c{x, std::scalbn(error, e) + (lost || error > 0 ? 0x1p-1074 : 0)};
             f.s.push_back(bounded_choose(n, i) * c);
         }
         return f;
     };
     Coordinates<Bounded> c;
-    for (int k = 0; k < dimension; ++k) c.x.push_back(form(piece.row[std::size_t(k)]));
-    c.w = int(piece.row.size()) > dimension ? form(piece.row.back()) : Form<Bounded>{{Bounded(1)}};
+    for (int k = 0; k < dimension; ++k) c.x.push_back(form(std::size_t(k)));
+    c.w = int(piece.row.size()) > dimension ? form(piece.row.size() - 1) : Form<Bounded>{{Bounded(1)}};
     return c;
 }
 
@@ -164,8 +167,8 @@ Result<PieceZeros> zeros_of(const Expression& f, const CurvePiece& piece, int di
     if (finite) {
         auto found = real_roots(values, width, error);
         if (!found) return std::unexpected(found.error());
-        if (is_settled(*found) || piece.error > 0) return with_ends(std::move(*found), c);
-    } else if (piece.error > 0) {
+        if (is_settled(*found) || !piece.is_exact()) return with_ends(std::move(*found), c);
+    } else if (!piece.is_exact()) {
         return PieceZeros{{RootsKind::possibly_zero, {}, Arithmetic::plain}, 0, 0};
     }
     const std::vector<Integer> whole = bernstein(f.whole(integer_coordinates(piece, dimension)));
@@ -278,10 +281,12 @@ double speed_bound(const CurvePiece& piece, int dimension) {
     // wide.
     const int n = piece.degree();
     const bool rational = int(piece.row.size()) > dimension;
-    double most = 0, least_w = 1, most_w = 1, scale = 0;
+    double most = 0, least_w = 1, most_w = 1, scale = 0, off_w = 0, off = 0;
+    for (int k = 0; k < dimension; ++k) off = std::max(off, piece.error[std::size_t(k)]);
     if (rational) {
-        least_w = *std::min_element(piece.row.back().begin(), piece.row.back().end()) - piece.error;
-        most_w = *std::max_element(piece.row.back().begin(), piece.row.back().end()) + piece.error;
+        off_w = piece.error.back();
+        least_w = *std::min_element(piece.row.back().begin(), piece.row.back().end()) - off_w;
+        most_w = *std::max_element(piece.row.back().begin(), piece.row.back().end()) + off_w;
         if (!(least_w > 0)) return std::numeric_limits<double>::infinity();
     }
     const auto at = [&](int k, int i) {
@@ -298,8 +303,7 @@ double speed_bound(const CurvePiece& piece, int dimension) {
         most = std::max(most, sum * std::sqrt(double(dimension)));
     }
     const double ratio = most_w / least_w;
-    const double lost =
-        (piece.error * (1 + (rational ? scale : 0)) / least_w + 4 * kUnitRoundoff * scale) * 4;
+    const double lost = ((off + scale * off_w) / least_w + 4 * kUnitRoundoff * scale) * 4;
     return 1.01 * n * ratio * ratio * (most + lost * dimension);
 }
 

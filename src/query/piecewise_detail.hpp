@@ -6,6 +6,7 @@
 #include <freiform/poly/roots.hpp>
 #include <freiform/spline/bezier.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <span>
@@ -16,8 +17,11 @@ namespace freiform::detail {
 struct CurvePiece {
     Interval on;
     std::vector<std::vector<double>> row;  // the coordinates; of rational pieces also the weights
-    double error = 0;                      // of each number; 0: exact
+    std::vector<double> error;             // of each number of a row; 0: exact
     int degree() const { return int(row[0].size()) - 1; }
+    bool is_exact() const {
+        return std::ranges::all_of(error, [](double e) { return e == 0; });
+    }
 };
 struct CurvePieces {
     int dimension = 0;
@@ -37,7 +41,7 @@ struct Coordinates {
     Form<T> w;
 };
 Coordinates<Bounded> bounded_coordinates(const CurvePiece& piece, int dimension);
-Coordinates<Integer> integer_coordinates(const CurvePiece& piece, int dimension);  // REQUIRES error == 0
+Coordinates<Integer> integer_coordinates(const CurvePiece& piece, int dimension);  // REQUIRES is_exact()
 
 std::vector<Bounded> bernstein(const Form<Bounded>& f);
 std::vector<Integer> bernstein(const Form<Integer>& f);  // up to a positive factor

@@ -17,7 +17,8 @@ struct ChainPiece {
 };
 
 // The chain of a loop, or none if the loop is one ellipse. Refuses, as "[i]", loops without curves, curves
-// without ends, and gaps between neighbours of more than `gap`; smaller ones are left open.
+// without ends, and gaps between neighbours of more than `gap` and what rounding accounts for, where curves
+// are rational or not clamped; smaller ones are left open.
 Result<std::vector<ChainPiece>> chain_of(const std::vector<CurveGeometry<2>>& loop, double gap);
 
 // An ellipse that is a whole loop.

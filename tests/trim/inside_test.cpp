@@ -89,6 +89,35 @@ TEST(Inside, a_spline_and_its_bezier_pieces_agree) {
     }
 }
 
+// The first point and the last are the same, their weights are not: point times weight is rounded.
+TEST(Inside, ends_that_only_rounding_parts_are_one) {
+    std::mt19937 rng(12);
+    const auto number = [&] { return test::uniform(rng, -1, 1); };
+    int parted = 0;
+    for (int i = 0; i < 40; ++i) {
+        const double scale = i % 2 ? 1e11 : 1e-9, off = i % 4 ? 0 : 1e6 * scale;
+        const auto point = [&] { return Vec<2>{{off + scale * number(), off + scale * number()}}; };
+        const Vec<2> first = point();
+        std::vector<Hom<2>> net{weighted(first, std::exp(number()))};
+        for (int k = 0; k < 3; ++k) net.push_back(weighted(point(), std::exp(number())));
+        net.push_back(weighted(first, std::exp(number())));
+        parted += project(net.front()) != project(net.back());
+        const auto query = InsideQuery::make(Loops{{rational(net)}}, 0);
+        EXPECT_TRUE(query.has_value()) << i;
+        // A periodic spline that is given as one without clamped knots.
+        std::vector<double> knots;
+        for (int k = 0; k < 12; ++k) knots.push_back(k * 0.3);
+        std::vector<Vec<2>> points;
+        for (int k = 0; k < 5; ++k) points.push_back(point());
+        for (std::size_t k = 0; k < 3; ++k) points.push_back(points[k]);
+        const auto ring = *Curve<Vec<2>>::make({*BSplineBasis::make(3, knots)}, Net<1, Vec<2>>({8}, points));
+        EXPECT_TRUE(InsideQuery::make(Loops{{ring}}, 0).has_value()) << i;
+        net.back() = weighted(first + Vec<2>{{1e-13 * (scale + off), 0}}, net.back().weight());
+        EXPECT_FALSE(InsideQuery::make(Loops{{rational(net)}}, 0).has_value()) << i;
+    }
+    EXPECT_GT(parted, 3);
+}
+
 TEST(Inside, open_loops_and_curves_without_ends_are_refused_with_the_place) {
     const Loops open = {polygon({{{0, 0}}, {{1, 0}}, {{1, 1}}}),
                         {plane_bezier({{{0, 0}}, {{1, 0}}}), plane_bezier({{{1, 0.25}}, {{0, 0}}})}};

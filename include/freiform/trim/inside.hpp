@@ -20,7 +20,8 @@ struct Inside {
 // Prepared once from loops, asked for many points; const and safe to share between threads.
 //
 // A loop is a chain of splines, the end of each at the start of the next, the last at the first; or one
-// ellipse. Gaps of at most `gap` (a distance) are closed by segments, which belong to the boundary. The
+// ellipse. Gaps of at most `gap` (a distance), and such as rounding alone leaves between ends with weights or
+// without clamped knots, are closed by segments, which belong to the boundary. The
 // splines are taken as their Bezier pieces: exact where inner knots have the multiplicity of the degree (as
 // polygons and Bezier chains do); elsewhere their pieces are the spline up to the rounding of knot insertion,
 // and the answer is exact for them.
