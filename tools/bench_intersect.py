@@ -6,7 +6,7 @@ Runs bench-intersect, bench-surface_pairs and the same with Open CASCADE and SIS
 """
 import argparse
 
-from bench_shared import duration, head, keep_shortest, parse, ratio, run, write
+from bench_shared import duration, head, keep_shortest, parse, ratio, run, verdicts, write
 
 ROUNDS = 3
 TASKS = [("cubics", "1000 pairs of Bézier cubics"), ("splines", "50 pairs of cubic splines of 30 points")]
@@ -42,7 +42,23 @@ of these pairs it does not end.
 |---|---|---:|---:|---:|
 {surfaces}
 
-## Nasty pairs
+## Curves on which others fail
+
+What every library that was tried gets wrong somewhere: misses, doubles, invents, or answers with hundreds of points. Right: all points, overlaps as one
+interval each, and nothing else, proven; the number that is none is refused. The accuracy asked for is 0.
+
+| case | pairs | right | open | wrong | time |
+|---|---:|---:|---:|---:|---:|
+{known}
+
+1,000 nasty pairs whose number of common points is counted by Sturm's theorem in integers, up to degree 4 and 4. Open: the answer says that it does
+not know, and the truth is within what it says.
+
+| kind | pairs | right | open | wrong | longest call |
+|---|---:|---:|---:|---:|---:|
+{curves}
+
+## Nasty pairs of surfaces
 
 Pairs that touch, overlap, nearly do so, or are singular where they meet; the tolerance is 1e-6 of coordinates of about 1, the budget the
 default one. Each is one call, in each of {rounds} processes. The longest call of {nasty_count}: {nasty_longest}. "along": near each other and parallel, and no more is known; "undecided": the
@@ -108,10 +124,12 @@ def main():
     top = head("bench_intersect.py")
     curves = measure(options.programs, dict.fromkeys(p for _, p, _ in METHODS))
     surfaces = measure(options.programs, [p for _, p in SURFACE_METHODS])
+    nasty_curves = measure(options.programs, ["bench-nasty"])["bench-nasty"]
     hard = nasty(surfaces)
     longest = max(hard, key=lambda name: hard[name]["seconds"])
     write(options, "INTERSECT.md",
           PAGE.format(head=top, rounds=ROUNDS, rows=table(curves), surfaces=surface_table(surfaces), nasty=nasty_table(hard),
+                      known=verdicts(nasty_curves, "known"), curves=verdicts(nasty_curves, "curves"),
                       nasty_count=len(hard),
                       nasty_longest=f"{duration(hard[longest]['seconds'])} ({longest.replace('_', ' ')})"))
 

@@ -6,7 +6,7 @@ prints it. The time of a task is the median of the medians of all processes.
 """
 import argparse
 
-from bench_shared import duration, head, medians, parse, ratio, run, write
+from bench_shared import duration, head, keep_shortest, medians, parse, ratio, run, verdicts, write
 
 ROUNDS = 3
 TASKS = [("curve", "curve of 30 points, 10,000 queries", 10000), ("surface", "surface of 10 x 10 points, 2,000 queries", 2000)]
@@ -26,6 +26,20 @@ at 1e-6; s1957 and s1958 are quick and promise nothing.
 | task | | time per query | right | wrong by up to |
 |---|---|---:|---:|---:|
 {rows}
+
+## Nasty questions
+
+1,000 questions about objects with folds, cusps, collapsed sides, uneven weights, and of extreme size and place, one of four on the object
+itself. Right: no sample is nearer than the answer, and the lower bound proves it to 1e-9 of the size. Open: what the answer says holds, but its
+interval is wider, or `max_parts` ended the search. Wrong: a sample is nearer than the bound, or than an answer that is said to be proven. The longest
+call of each kind is the shortest of {rounds} processes.
+
+| kind | questions | right | open | wrong | longest call |
+|---|---:|---:|---:|---:|---:|
+{nasty}
+
+What stays open are rational pieces whose weights are 1e10 and more apart: where the curve is between two heavy control points, squares of distances
+times squares of weights are below what is lost to rounding beside them.
 """
 
 
@@ -34,9 +48,11 @@ def main():
     top = head("bench_nearest.py")
     programs = [p for p in dict.fromkeys(p for _, p, _ in METHODS) if (options.programs / p).is_file()]
     rounds = {p: [] for p in programs}
+    hard = {}
     for _ in range(ROUNDS):
         for p in programs:
             rounds[p].append(run(options.programs / p))
+        keep_shortest(hard, run(options.programs / "bench-nasty"))
     found = {p: medians(r) for p, r in rounds.items()}
     rows = []
     for task, title, count in TASKS:
@@ -48,7 +64,7 @@ def main():
             beside = "" if program + suffix == "bench-nearest" else f" ({ratio(numbers['seconds'], own)})"
             rows.append(f"| {title} | {name} | {duration(numbers['seconds'])}{beside} | {100 * numbers['right'] / count:.2f} % | "
                         f"{numbers['worst']:.2g} |")
-    write(options, "NEAREST.md", PAGE.format(head=top, rounds=ROUNDS, rows="\n".join(rows)))
+    write(options, "NEAREST.md", PAGE.format(head=top, rounds=ROUNDS, rows="\n".join(rows), nasty=verdicts(hard, "nearest")))
 
 
 if __name__ == "__main__":

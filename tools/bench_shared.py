@@ -73,6 +73,21 @@ def parse(arguments, needed):
     return options
 
 
+def verdicts(tasks, kind):
+    """The rows of a table from lines "kind:name seconds count= right= open= wrong=" of bench-nasty, and the sum of all."""
+    rows, total, longest = [], {"count": 0, "right": 0, "open": 0, "wrong": 0}, (0, "")
+    for task, n in tasks.items():
+        if not task.startswith(kind + ":"):
+            continue
+        name = task.split(":", 1)[1].replace("_", " ")
+        rows.append(f"| {name} | {n['count']:.0f} | {n['right']:.0f} | {n['open']:.0f} | {n['wrong']:.0f} | {duration(n['seconds'])} |")
+        total = {k: v + n[k] for k, v in total.items()}
+        longest = max(longest, (n["seconds"], name))
+    rows.append(f"| all | {total['count']:.0f} | {total['right']:.0f} | {total['open']:.0f} | {total['wrong']:.0f} | "
+                f"{duration(longest[0])} ({longest[1]}) |")
+    return "\n".join(rows)
+
+
 def write(options, name, page):
     if options.only_print:
         print(page)

@@ -181,7 +181,7 @@ struct SeenPiece {
         jets[0] = jet(t);
         int now = 0;  // jets[now] is that at t
         double s = square(jets[0]);
-        for (int step = 0; step < 24; ++step) {  // a backstop: ordinary feet take four or five
+        for (int step = 0; step < 64; ++step) {  // a backstop: ordinary feet take four or five, folds many
             const LocalJet& j = jets[now];
             NearestTree::Parameters g{}, move{};
             std::array<bool, kMostParams> held{};

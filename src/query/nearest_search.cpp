@@ -16,11 +16,14 @@
 //     lower bound. Where that is more than points are rounded, F is made anew from the coefficients of the
 //     part (nearest_local_detail.hpp), whose rounding is as small as the part: near folds, for points close
 //     to the object, and where weights are uneven.
-// Every part that ends is added to the proof with what it proved: the answer's lower bound is the least of
-// them, whatever ended the search. Where a nearer point is found, T changes, and the piece at hand begins
-// anew: what was proven of F holds for one T. Points from which a whole arc or patch is equally far (centres)
-// make F constant, which the first test decides at once. Most parts beside that of the foot are monotone, so
-// that what is left there are curves and corners.
+// Where a whole curve of parameters is as near, on a piece that is flattened to a line or onto a plane, all
+// of that would take parts without end. So when they become many, the piece is judged at once: no point of it
+// is nearer than the least n . (P_i - q) of its control points, |n| = 1, and n from q to the foot is nearly
+// the best there is; steps of [Gilbert 1966] make it better. Every part that ends is added to the proof with
+// what it proved: the answer's lower bound is the least of them, whatever ended the search. Where a nearer
+// point is found, T changes, and the piece at hand begins anew: what was proven of F holds for one T. Points
+// from which a whole arc or patch is equally far (centres) make F constant, which the first test decides at
+// once. Most parts beside that of the foot are monotone, so that what is left there are curves and corners.
 // A point nearer than rounding of points ends the search with the lower bound 0. Parts with uneven weights
 // are not left for a face, where F would say little of F / W^2 beside it. A descent that ends on a side of
 // its part goes on over the piece: at a fold, where the Jacobian is singular, it would be walked part by
@@ -32,10 +35,13 @@
 // prod (p_d + 1) terms with relative weights of 8 params + 2 roundings, then of coords + 2 terms: at most
 //     K u M,   K = 1.01 (prod (p_d + 1) + 8 params + 4 coords + 24).
 // Halving along d averages m_d times: m_d u M more. The subtraction of T W^2, with M no less than that, adds
-// 3 u M and the same K for the form W^2. First differences double the error. Second differences along d
-// quadruple the error and multiply it by m_d (m_d - 1); mixed ones by 4 m_d m_e. From the pieces to the
-// object: slip_ (nearest_tree.cpp); from q to q' + c: u |q'| in each coordinate. References: convexity by
-// control nets [Farin 2002, ch. 17]; the pruning is [Johnson Cohen 1998]'s with F in place of boxes.
+// 3 u M and the same K for the form W^2. Along n, |n| <= 1 + 4 u: N_i / W_i - q' has three roundings of |N_i|
+// / W_i
+// + |q'|, n one, their products and sums at most D more. First differences double the error. Second
+// differences along d quadruple the error and multiply it by m_d (m_d - 1); mixed ones by 4 m_d m_e. From the
+// pieces to the object: slip_ (nearest_tree.cpp); from q to q' + c: u |q'| in each coordinate. References:
+// convexity by control nets [Farin 2002, ch. 17]; the pruning is [Johnson Cohen 1998]'s with F in place of
+// boxes.
 #include "query/nearest_blocks_detail.hpp"
 #include "query/nearest_local_detail.hpp"
 
@@ -54,6 +60,7 @@ using Coords = Tree::Coords;
 
 constexpr double kUneven = 0x1p10;     // weights
 constexpr double kLevelGap = 0x1p-30;  // of a square: not worth another look
+constexpr int kMany = 96;              // parts of a piece: few feet need so many
 
 template <int D>
 struct NearestSearch : NearestBlocks<D> {
@@ -150,14 +157,70 @@ struct NearestSearch : NearestBlocks<D> {
         h.anew = true;
     }
 
+    // A lower bound of the distance to all of the piece: that to a plane which has its control points beyond.
+    // Its normal is from q to the foot on the piece near `at`, and turned a few times to the control point
+    // that is least far, until the bound is `enough`.
+    double lower_along(Parameters at, double enough) {
+        Parameters least{}, most{};
+        for (std::size_t d = 0; d < std::size_t(piece->params); ++d) most[d] = 1;
+        seen.descend(least, most, at);
+        const LocalJet foot = seen.jet(at);
+        Coords n{};  // from q
+        double away = 0, low = 0;
+        for (std::size_t k = 0; k < std::size_t(D); ++k) {
+            n[k] = foot.value[k] - seen.local[k];
+            away += seen.local[k] * seen.local[k];
+        }
+        for (int turn = 0; turn < 8 && low < enough; ++turn) {
+            double length = 0, nearest = std::numeric_limits<double>::infinity(), spread = 0;
+            for (std::size_t k = 0; k < std::size_t(D); ++k) length += n[k] * n[k];
+            if (!((length = std::sqrt(length)) > 0)) break;
+            Coords toward{};
+            const double* c = seen.coefficients;
+            for (std::size_t i = piece->control_points(); i-- > 0; c += D + 1) {
+                Coords x{};
+                double along = 0, size = 0;
+                for (std::size_t k = 0; k < std::size_t(D); ++k) {
+                    x[k] = (c[k] - seen.local[k] * c[D]) / c[D];
+                    along += n[k] / length * x[k];
+                    size += c[k] * c[k];
+                }
+                if (along < nearest) nearest = along, toward = x;
+                spread = std::max(spread, std::sqrt(size) / c[D]);
+            }
+            low = std::max(low, nearest * (1 - 8 * kUnitRoundoff) -
+                                    1.01 * (D + 8) * kUnitRoundoff * (spread + std::sqrt(away)));
+            // To the point of the segment to the nearest control point that is least far.
+            double fall = 0, square = 0;
+            for (std::size_t k = 0; k < std::size_t(D); ++k) {
+                toward[k] -= n[k];
+                fall -= n[k] * toward[k];
+                square += toward[k] * toward[k];
+            }
+            if (!(fall > 0)) break;
+            for (std::size_t k = 0; k < std::size_t(D); ++k) n[k] += std::min(fall / square, 1.0) * toward[k];
+        }
+        return low;
+    }
+
     // Whether all of the piece was decided for F of this t; `last`: then it is, for better or worse.
     bool search_with(double t, bool last) {
         push_whole(t);
         // Of squares: what rounding of points and of their distance leaves anyway.
         const double gap = std::sqrt(t) * (std::sqrt(t) * kLevelGap + 2 * noise);
         bool first = true;
+        int looked_at = 0;
         while (!heads.empty()) {
             const Head h = heads.back();
+            if (++looked_at == kMany) {
+                const double enough = std::sqrt(std::max(t - gap, 0.0)) * (1 + 4 * kUnitRoundoff);
+                const double low = lower_along(best_piece == index ? best_at : h.lo, enough);
+                if (low >= enough) {
+                    proven = std::min(proven, low * low * (1 - 4 * kUnitRoundoff));
+                    heads.clear();
+                    return true;
+                }
+            }
             const double eps = Base::error_of(h);
             const NearestForm form = Base::top_form();
             const auto least = form.least();

@@ -76,6 +76,28 @@ Patch<N, Hom<3>> spoilt(std::mt19937& rng, std::array<int, N> degrees, int inner
     return must(Patch<N, Hom<3>>::make(base.bases(), Net<N, Hom<3>>(base.net().extent(), net)));
 }
 
+// All of a curve of parameters is as near there: without a look at the whole piece, parts have no end.
+TEST(NearestRandom, a_surface_flattened_to_a_line_or_plane_is_proven_with_few_parts) {
+    Random random(6);
+    std::mt19937 rng(79);
+    for (int i = 0; i < 40; ++i) {
+        const bool line = i % 2 == 0;
+        const auto s = spoilt<2>(rng, {2 + i % 3, 2}, 0, [&](std::size_t, Vec<3>& x, double&) {
+            line ? x = x[0] * Vec<3>{{1, 2, 3}} : x = x[0] * Vec<3>{{1, 2, 3}} + x[1] * Vec<3>{{3, -1, 0.5}};
+        });
+        const auto query = must(NearestQuery::make(std::array{NearestObject::of(s)}));
+        const Vec<3> inside =
+            s(random.real(0.2, 0.8) * s.domain()[0].hi, random.real(0.2, 0.8) * s.domain()[1].hi);
+        for (const double away : {0.1, 1.0, 30.0}) {  // across
+            const Vec<3> q =
+                inside + away * (line ? Vec<3>{{3, -3, 1}} : cross(Vec<3>{{1, 2, 3}}, Vec<3>{{3, -1, 0.5}}));
+            const auto n = must(query.nearest<3>(q, {.max_parts = 400}));
+            EXPECT_LE(n.distance - n.lower_bound, 1e-9 * (1 + away)) << i;
+            EXPECT_LE(n.lower_bound, separation<3>(inside, q) + 1e-12 * (1 + away)) << i;
+        }
+    }
+}
+
 // Points, cusps, collapsed sides, lines run to and fro, uneven weights, tiny, huge and far away.
 TEST(NearestRandom, nasty_objects_are_answered_too) {
     Random random(5);
