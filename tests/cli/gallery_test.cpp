@@ -16,7 +16,7 @@ std::vector<std::string> rows() {
     std::vector<std::string> out;
     for (int i = 1; i <= 29; ++i) out.push_back((i < 10 ? "R0" : "R") + std::to_string(i));
     out.push_back("R31");
-    for (const char* row : {"R32", "R35", "R36"}) out.push_back(row);
+    for (const char* row : {"R32", "R33", "R34", "R35", "R36"}) out.push_back(row);
     return out;
 }
 

@@ -4,7 +4,7 @@
 namespace freiform::cli::gallery {
 
 std::span<const Entry> entries() {
-    static constexpr std::array<Entry, 33> kEntries{{
+    static constexpr std::array<Entry, 35> kEntries{{
         {"R01", "Three descriptions",
          "An explicit curve is the graph of a function, an implicit one the zeros of a function of the "
          "plane, a parametric "
@@ -162,6 +162,17 @@ std::span<const Entry> entries() {
          "and nothing is "
          "made of lines. A stroke is a region, too.",
          "--control", regions},
+        {"R33", "Letters",
+         "Outlines of fonts are made of lines and quadratic or cubic Bézier curves; the inner ones run the "
+         "other way round. "
+         "Control points of two weights are mixed for those between, and a letter is a region like any "
+         "other.",
+         "--control", letters},
+        {"R34", "Bodies for other programs",
+         "A plane profile becomes a body by turning, by lifting or by being carried along a rail. Edges are "
+         "stored once "
+         "and used by both of their faces, so the body is closed in every file that is written of it.",
+         "--control", bodies},
         {"R35", "Gradients",
          "Colours are points, so splines mix them; what lies between depends on the space. A surface with a "
          "colour at "

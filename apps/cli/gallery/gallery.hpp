@@ -61,6 +61,10 @@ Figure triangles(const Document&);
 // illustration.cpp
 Figure regions(const Document&);
 Figure gradients(const Document&);
+// letters.cpp
+Figure letters(const Document&);
+// bodies.cpp
+Figure bodies(const Document&);
 // motions.cpp
 Figure motions(const Document&);
 

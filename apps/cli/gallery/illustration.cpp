@@ -1,27 +1,32 @@
 // R32 and R35: what illustration programs do with curves, and gradients.
 #include "gallery/gallery.hpp"
+#include "gallery/regions.hpp"
 
 #include <freiform/colour/mesh_gradient.hpp>
 #include <freiform/region/stroke.hpp>
 
 namespace freiform::cli::gallery {
 
-namespace {
-
-// The loops of a region as one area with holes, and their outline.
 Plot& filled(Plot& plot, const Path& path, const Colour& colour) {
     DrawnGroup inside{"", "area", mixed(colour, kWhite, 0.65), 0, {}, {}, {}};
     DrawnGroup outline{"", "lines", colour, 1.6, {}, {}, {}};
     for (const Subpath& s : path.subpaths) {
         DrawnPath drawn{s.start, {}, true, false, {}};
-        std::visit(
-            [&](const auto& curve) {
-                const Interval on = curve.domain()[0];
-                const int n = 24 * int(s.segments.size());
-                for (int i = 1; i <= n; ++i)
-                    drawn.segments.push_back({1, {curve(on.lo + on.length() * i / n)}});
-            },
-            curve_of(s));
+        for (const PathSegment& p : s.segments) {
+            if (p.weight == 1) {
+                drawn.segments.push_back({p.degree, {}});
+                for (std::size_t k = 0; k < std::size_t(p.degree); ++k)
+                    drawn.segments.back().points[k] = p.points[k + 1];
+                continue;
+            }
+            const int parts = 1 + int(30 * std::acos(std::min(1.0, p.weight)));  // as the arc turns
+            for (int i = 1; i <= parts; ++i) {
+                const double t = double(i) / parts, a = (1 - t) * (1 - t), b = 2 * t * (1 - t) * p.weight,
+                             c = t * t;
+                drawn.segments.push_back(
+                    {1, {(1 / (a + b + c)) * (a * p.points[0] + b * p.points[1] + c * p.points[2])}});
+            }
+        }
         inside.paths.push_back(drawn), outline.paths.push_back(std::move(drawn));
     }
     inside.area = true;
@@ -30,14 +35,15 @@ Plot& filled(Plot& plot, const Path& path, const Colour& colour) {
     return plot;
 }
 
-Path path_in(const Document& d, std::string_view name) {
-    return {{sure(subpath_of(curve_in(d, name), 1e-6)).subpath}};
+Path path_in(const Document& d, std::initializer_list<std::string_view> names) {
+    Path path;
+    for (const std::string_view name : names)
+        path.subpaths.push_back(sure(subpath_of(curve_in(d, name), 1e-6)).subpath);
+    return path;
 }
 
-}  // namespace
-
 Figure regions(const Document& d) {
-    const Path drop = path_in(d, "drop"), star = path_in(d, "star"), line = path_in(d, "line");
+    const Path drop = path_in(d, {"drop"}), star = path_in(d, {"star"}), line = path_in(d, {"line"});
     const RegionOptions how{.tolerance = 1e-6};
     std::vector<Panel> panels;
     for (const auto operation : {RegionOperation::union_of, RegionOperation::intersection,
