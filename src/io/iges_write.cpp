@@ -1,250 +1,86 @@
 // Idea. An entity is a list of numbers: those of 126 and 128 are degrees, flags, knots, weights, points and
 // the domain. A trimmed surface (144) names its surface, its outer loop and its holes; a loop (142) is a
 // composite curve (102) in the parameters and one in space, whose curves are the images of those
-// (make/image_curve.hpp). The file is cards of 80 columns, each with the letter of its section and a number;
+// (make/image_curve.hpp). Models: iges_model.cpp. The file is cards of 80 columns, each with the letter of its section and a number;
 // the directory says where the parameters of each entity begin, and these which directory entry they are of.
 //
 // References: the Initial Graphics Exchange Specification, version 5.3, 4.4, 4.23, 4.24, 4.34 and 4.36.
-#include "step_detail.hpp"
+#include "iges_file.hpp"
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/iges.hpp>
 #include <freiform/make/image_curve.hpp>
-#include <freiform/spline/in_space.hpp>
-
-#include <array>
 
 namespace freiform {
 
 namespace {
 
-std::string at_right(std::string_view s, std::size_t width) {
-    return std::string(width - std::min(width, s.size()), ' ') + std::string(s);
+using detail::IgesFile;
+using detail::IgesUse;
+
+Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curves, const TrimmedSurface& t, int surface) {
+    const SurfaceGeometry geometry = std::visit(
+        [](const auto& s) -> SurfaceGeometry {
+            const auto open = IgesFile::cut(s);  // which refused nothing when the surface was written
+            return open ? *open : s;
+        },
+        t.surface);
+    std::array<std::vector<int>, 2> chains;  // in the parameters, in space
+    for (const auto& c : curves) {
+        const auto flat = parameter_spline(c, domain(c)[0]);
+        if (!flat) return std::unexpected(flat.error());
+        const auto image = image_curve(geometry, *flat);
+        if (!image) return std::unexpected(image.error());
+        const auto add_spline = [&](const auto& x, IgesUse use) -> Result<int> {
+            if constexpr (requires { x.net(); })
+                return file.add(x, use);
+            else
+                return refuse(RefusalKind::unsupported, "", "a curve that is no spline");
+        };
+        const auto one =
+            std::visit([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
+        if (!one) return one;
+        const auto other =
+            std::visit([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
+        if (!other) return other;
+        chains[0].push_back(*one), chains[1].push_back(*other);
+    }
+    std::array<int, 2> whole{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        std::vector<std::string> values = {text(chains[k].size())};
+        for (const int id : chains[k]) values.push_back(text(id));
+        whole[k] = chains[k].size() == 1
+                       ? chains[k][0]
+                       : file.entity("102", k == 0 ? IgesUse::parameters : IgesUse::part, values);
+    }
+    return file.entity("142", IgesUse::part,
+                       {"0", text(surface), text(whole[0]), text(whole[1]), "3"});  // both are as good
 }
 
-// Whether others are made of the entity, and what it is for: columns of the status number.
-enum class IgesUse { alone, part, parameters };
-
-class IgesFile {
-public:
-    // They return the number of the directory entry.
-    template <class P>
-    Result<int> add(const Curve<P>& given, IgesUse use = IgesUse::alone) {
-        const auto c = cut(in_space(given));
-        if (!c) return std::unexpected(c.error());
-        const BSplineBasis& b = c->basis();
-        values_ = {text(b.size() - 1), text(b.degree()), "0", "0", Space<P>::kRational ? "0" : "1", "0"};
-        knots(b);
-        const auto all = c->net().flat();
-        for (const auto& p : all) weight(p);
-        for (const auto& p : all) point(p);
-        interval(b.domain());
-        for (int i = 0; i < 3; ++i) values_.emplace_back("0.");  // no normal of a plane is claimed
-        return entity("126", use);
+// One for each outer loop; holes go to the only one.
+Result<int> iges_trimmed(IgesFile& file, const TrimmedSurface& t) {
+    const auto turned = detail::oriented_loops(t);
+    if (!turned) return std::unexpected(turned.error());
+    const auto surface = std::visit([&](const auto& s) { return file.add(s, IgesUse::part); }, t.surface);
+    if (!surface || turned->loops.empty()) return surface;
+    std::vector<int> outer, holes;
+    for (std::size_t l = 0; l < turned->loops.size(); ++l) {
+        const auto id = iges_loop(file, turned->loops[l], t, *surface);
+        if (!id) return refuse_within(text("loops[", l, "]"), id.error());
+        (turned->depth[l] % 2 == 0 ? outer : holes).push_back(*id);
     }
-
-    template <class P>
-    Result<int> add(const Surface<P>& given, IgesUse use = IgesUse::alone) {
-        auto s = cut(in_space(given));
-        if (!s) return std::unexpected(s.error());
-        const BSplineBasis &u = s->basis(0), &v = s->basis(1);
-        values_ = {text(u.size() - 1),
-                   text(v.size() - 1),
-                   text(u.degree()),
-                   text(v.degree()),
-                   "0",
-                   "0",
-                   Space<P>::kRational ? "0" : "1",
-                   "0",
-                   "0"};
-        knots(u), knots(v);
-        const auto all = s->net().flat();
-        const auto each = [&](auto&& f) {  // the first index runs fastest
-            for (int j = 0; j < v.size(); ++j)
-                for (int i = 0; i < u.size(); ++i) f(all[std::size_t(i * v.size() + j)]);
-        };
-        each([&](const auto& p) { weight(p); });
-        each([&](const auto& p) { point(p); });
-        interval(u.domain()), interval(v.domain());
-        return entity("128", use);
+    if (outer.size() > 1 && !holes.empty())
+        return refuse(RefusalKind::unsupported, "loops",
+                      text(outer.size(), " outer loops and ", holes.size(),
+                           " holes; IGES has holes in one outer loop each: split the surface first"));
+    int last = 0;
+    for (const int o : outer) {
+        std::vector<std::string> values = {text(*surface), "1", text(holes.size()), text(o)};
+        for (const int h : holes) values.push_back(text(h));
+        last = file.entity("144", IgesUse::alone, values);
     }
-
-    // One for each outer loop; holes go to the only one.
-    Result<int> add(const TrimmedSurface& t) {
-        const auto turned = detail::oriented_loops(t);
-        if (!turned) return std::unexpected(turned.error());
-        const auto surface = std::visit([&](const auto& s) { return add(s, IgesUse::part); }, t.surface);
-        if (!surface || turned->loops.empty()) return surface;
-        std::vector<int> outer, holes;
-        for (std::size_t l = 0; l < turned->loops.size(); ++l) {
-            const auto id = loop(turned->loops[l], t, *surface);
-            if (!id) return refuse_within(text("loops[", l, "]"), id.error());
-            (turned->depth[l] % 2 == 0 ? outer : holes).push_back(*id);
-        }
-        if (outer.size() > 1 && !holes.empty())
-            return refuse(RefusalKind::unsupported, "loops",
-                          text(outer.size(), " outer loops and ", holes.size(),
-                               " holes; IGES has holes in one outer loop each: split the surface first"));
-        int last = 0;
-        for (const int o : outer) {
-            values_ = {text(*surface), "1", text(holes.size()), text(o)};
-            for (const int h : holes) values_.push_back(text(h));
-            last = entity("144", IgesUse::alone);
-        }
-        return last;
-    }
-
-    bool is_empty() const { return entities_ == 0; }
-
-    std::string take(std::string_view unit) const {
-        static constexpr std::array<std::array<std::string_view, 3>, 5> kUnits{{{"mm", "2", "2HMM"},
-                                                                                {"inch", "1", "4HINCH"},
-                                                                                {"ft", "4", "2HFT"},
-                                                                                {"m", "6", "1HM"},
-                                                                                {"cm", "10", "2HCM"}}};
-        auto of = kUnits[0];
-        for (const auto& u : kUnits)
-            if (u[0] == unit) of = u;
-        const std::vector<std::string> global{"1H,",
-                                              "1H;",
-                                              "8Hfreiform",
-                                              "8Hfreiform",
-                                              "8Hfreiform",
-                                              "8Hfreiform",
-                                              "32",
-                                              "308",
-                                              "15",
-                                              "308",
-                                              "15",
-                                              "8Hfreiform",
-                                              "1.",
-                                              std::string(of[1]),
-                                              std::string(of[2]),
-                                              "1",
-                                              "0.01",
-                                              "15H20000101.000000",
-                                              "1.E-07",
-                                              "0.",
-                                              "8Hfreiform",
-                                              "8Hfreiform",
-                                              "11",
-                                              "0",
-                                              "15H20000101.000000"};
-        std::string out = card("freiform", 'S', 1);
-        int count = 0;
-        for (const std::string& line : lines(global, 72)) out += card(line, 'G', ++count);
-        out += directory_ + parameters_;
-        return out + card(text("S", at_right("1", 7), "G", at_right(text(count), 7), "D",
-                               at_right(text(2 * entities_), 7), "P", at_right(text(rows_), 7)),
-                          'T', 1);
-    }
-
-private:
-    static std::string card(std::string_view content, char section, int number) {
-        return text(content, std::string(72 - std::min<std::size_t>(72, content.size()), ' '), section,
-                    at_right(text(number), 7), "\n");
-    }
-
-    // Values with commas between them, a semicolon at the end, none of them on two lines.
-    static std::vector<std::string> lines(const std::vector<std::string>& values, std::size_t width) {
-        std::vector<std::string> all{""};
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            const std::string word = values[i] + (i + 1 < values.size() ? "," : ";");
-            if (all.back().size() + word.size() > width) all.emplace_back();
-            all.back() += word;
-        }
-        return all;
-    }
-
-    template <std::size_t N, class P>
-    static Result<Patch<N, P>> cut(Patch<N, P> s) {
-        for (int axis = 0; axis < int(N); ++axis) {
-            if (!s.basis(axis).is_closed()) continue;
-            auto open = restrict_to(s, axis, s.basis(axis).domain());
-            if (!open) return open;
-            s = *std::move(open);
-        }
-        return s;
-    }
-
-    Result<int> loop(const std::vector<CurveGeometry<2>>& curves, const TrimmedSurface& t, int surface) {
-        const SurfaceGeometry geometry = std::visit(
-            [](const auto& s) -> SurfaceGeometry {
-                const auto open = cut(s);  // which refused nothing when the surface was written
-                return open ? *open : s;
-            },
-            t.surface);
-        std::array<std::vector<int>, 2> chains;  // in the parameters, in space
-        for (const auto& c : curves) {
-            const auto flat = parameter_spline(c, domain(c)[0]);
-            if (!flat) return std::unexpected(flat.error());
-            const auto image = image_curve(geometry, *flat);
-            if (!image) return std::unexpected(image.error());
-            const auto add_spline = [&](const auto& x, IgesUse use) -> Result<int> {
-                if constexpr (requires { x.net(); })
-                    return add(x, use);
-                else
-                    return refuse(RefusalKind::unsupported, "", "a curve that is no spline");
-            };
-            const auto one =
-                std::visit([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
-            if (!one) return one;
-            const auto other =
-                std::visit([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
-            if (!other) return other;
-            chains[0].push_back(*one), chains[1].push_back(*other);
-        }
-        std::array<int, 2> whole{};
-        for (std::size_t k = 0; k < 2; ++k) {
-            values_ = {text(chains[k].size())};
-            for (const int id : chains[k]) values_.push_back(text(id));
-            whole[k] = chains[k].size() == 1 ? chains[k][0]
-                                             : entity("102", k == 0 ? IgesUse::parameters : IgesUse::part);
-        }
-        values_ = {"0", text(surface), text(whole[0]), text(whole[1]), "3"};  // both are as good
-        return entity("142", IgesUse::part);
-    }
-
-    void number(double x) { values_.push_back(detail::real(x)); }
-    void knots(const BSplineBasis& b) {
-        for (const double t : b.knots()) number(t);
-    }
-    void interval(Interval on) { number(on.lo), number(on.hi); }
-    void weight(const Vec<3>&) { number(1); }
-    void weight(const Hom<3>& p) { number(p.weight()); }
-    template <class P>
-    void point(const P& p) {
-        const Vec<3> x = detail::written_point(p);
-        for (int i = 0; i < 3; ++i) number(x[i]);
-    }
-
-    int entity(std::string_view type, IgesUse use) {
-        static constexpr std::string_view kStatus[] = {"00000000", "00010000", "00010500"};
-        values_.insert(values_.begin(), std::string(type));
-        const int first = rows_ + 1, entry = 2 * entities_ + 1;
-        for (const std::string& line : lines(values_, 64)) {
-            const std::string padded = line + std::string(64 - line.size(), ' ');
-            parameters_ += card(padded + at_right(text(entry), 8), 'P', ++rows_);
-        }
-        const auto fields = [](std::initializer_list<std::string> words) {
-            std::string s;
-            for (const std::string& w : words) s += at_right(w, 8);
-            return s;
-        };
-        const std::string kind(type);
-        directory_ +=
-            card(fields({kind, text(first), "0", "0", "0", "0", "0", "0", std::string(kStatus[int(use)])}),
-                 'D', entry);
-        directory_ +=
-            card(fields({kind, "0", "0", text(rows_ - first + 1), "0", "", "", "", "0"}), 'D', entry + 1);
-        ++entities_;
-        return entry;
-    }
-
-    std::vector<std::string> values_;  // of the entity at hand
-    std::string directory_, parameters_;
-    int entities_ = 0, rows_ = 0;
-};
+    return last;
+}
 
 }  // namespace
 
@@ -255,14 +91,18 @@ Result<std::string> write_iges(const Document& document) {
         const auto done = std::visit(
             [&](const auto& s) -> Result<int> {
                 using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (std::same_as<S, TrimmedSurface>) return file.add(s);
+                if constexpr (std::same_as<S, TrimmedSurface>) return iges_trimmed(file, s);
+                if constexpr (std::same_as<S, Model>) {
+                    const auto model = detail::add_model(file, s);
+                    return model ? Result<int>(0) : std::unexpected(model.error());
+                }
                 if constexpr (TensorPatch<S>)
                     if constexpr (S::kParams <= 2 && (S::Point::kCoords == 2 || S::Point::kCoords == 3))
                         return file.add(s);
                 return refuse(RefusalKind::unsupported, "",
                               text("is a ", type_name(o.shape),
-                                   "; IGES files are written of curves and surfaces of two or three "
-                                   "coordinates, trimmed or not"));
+                                   "; IGES files are written of models, and of curves and surfaces of two or "
+                                   "three coordinates, trimmed or not"));
             },
             o.shape);
         if (!done) return refuse_within(object_label(document, i), done.error());

@@ -206,19 +206,19 @@ private:
     std::vector<double> knots_;  // the end of each
 };
 
-}  // namespace
-
-Result<CurveGeometry<2>> parameter_spline(const CurveGeometry<2>& curve, Interval on) {
+template <int D>
+Result<CurveGeometry<D>> spline_of_part(const CurveGeometry<D>& curve, Interval on) {
     return std::visit(
-        [&](const auto& c) -> Result<CurveGeometry<2>> {
+        [&](const auto& c) -> Result<CurveGeometry<D>> {
             using C = std::remove_cvref_t<decltype(c)>;
-            if constexpr (std::same_as<C, Line<2>>) {
-                auto made = Curve<Vec<2>>::make(
-                    {*BSplineBasis::make(1, {on.lo, on.lo, on.hi, on.hi})},
-                    Net<1, Vec<2>>({2}, {c.origin + on.lo * c.direction, c.origin + on.hi * c.direction}));
+            if constexpr (std::same_as<C, Line<D>>) {
+                const auto basis = BSplineBasis::make(1, {on.lo, on.lo, on.hi, on.hi});
+                if (!basis) return std::unexpected(basis.error());
+                auto made = Curve<Vec<D>>::make({*basis}, Net<1, Vec<D>>({2}, {c.origin + on.lo * c.direction,
+                                                                               c.origin + on.hi * c.direction}));
                 if (!made) return std::unexpected(made.error());
                 return *std::move(made);
-            } else if constexpr (std::same_as<C, Conic<2>>) {
+            } else if constexpr (std::same_as<C, Conic<D>>) {
                 auto arc = conic_arc(c, on);
                 if (!arc) return std::unexpected(arc.error());
                 return std::move(arc->curve);
@@ -230,6 +230,15 @@ Result<CurveGeometry<2>> parameter_spline(const CurveGeometry<2>& curve, Interva
             }
         },
         curve);
+}
+
+}  // namespace
+
+Result<CurveGeometry<2>> parameter_spline(const CurveGeometry<2>& curve, Interval on) {
+    return spline_of_part(curve, on);
+}
+Result<CurveGeometry<3>> space_spline(const CurveGeometry<3>& curve, Interval on) {
+    return spline_of_part(curve, on);
 }
 
 Result<CurveGeometry<3>> image_curve(const SurfaceGeometry& surface, const CurveGeometry<2>& curve) {

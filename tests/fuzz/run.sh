@@ -16,7 +16,7 @@ case $name in
             src/core/text.cpp src/core/result.cpp) ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
-        case $name in svg | font) own=path ;; region) own="path query intersect region" ;; *) own=$name ;; esac
+        case $name in svg | font) own=path ;; gltf) own= ;; region) own="path query intersect region" ;; *) own=$name ;; esac
         for layer in core poly basis spline $own; do
             printf '#include "%s"\n' "$PWD"/src/"$layer"/*.cpp >"build-fuzz/unity/$layer.cpp"
             sources+=("build-fuzz/unity/$layer.cpp")
@@ -25,6 +25,9 @@ case $name in
             printf '#include "%s"\n' "$PWD"/src/io/svg*.cpp >build-fuzz/unity/svg.cpp
             sources+=(build-fuzz/unity/svg.cpp)
             libraries=(-lpugixml)
+        elif [ "$name" = gltf ]; then
+            sources+=(src/io/gltf_animation.cpp src/io/json.cpp src/io/json_write.cpp src/io/file.cpp src/io/file_memory.cpp src/animate/rotation.cpp)
+            longest=4096
         elif [ "$name" = font ]; then
             sources+=(src/font/freetype.cpp src/font/harfbuzz.cpp)
             # shellcheck disable=SC2207  # lists of flags
@@ -44,6 +47,7 @@ compile() {
 }
 mkdir -p "build-fuzz/$name-objects"
 for source in "${sources[@]}" "tests/fuzz/${name}_fuzzer.cpp"; do compile "$source"; done
+cp -n tests/fuzz/seeds/"$name"/* "$corpus" 2>/dev/null || true
 export ASAN_OPTIONS=detect_container_overflow=0  # vectors that layers without checks have grown
 "${CXX:-clang++-22}" -fsanitize=fuzzer,address,undefined build-fuzz/"$name"-objects/*.o "${libraries[@]}" -o "build-fuzz/$name"
-"build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len="$longest" -rss_limit_mb=600 "$corpus"
+"build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len="$longest" -rss_limit_mb=600 -malloc_limit_mb=256 "$corpus"

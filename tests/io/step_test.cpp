@@ -90,10 +90,13 @@ TEST_F(Step, curves_come_back_exactly) {
     }
 }
 
-TEST_F(Step, solids_keep_their_volume) {
+class SolidFiles : public Step, public testing::WithParamInterface<bool> {};
+
+TEST_P(SolidFiles, keep_volumes_shells_and_faces) {
+    const bool iges = GetParam();
     for (const Vec<3> by : {Vec<3>{{0, 0, 2}}, Vec<3>{{1, 0.5, -2}}}) {
         const Model solid = must(prism(ring_region(), by));
-        const Model back = read_again({"mm", {{"plate", solid}}});
+        const Model back = read_again({"mm", {{"plate", solid}}}, iges);
         EXPECT_EQ(back.faces.size(), solid.faces.size());
         EXPECT_EQ(summary(back).solids, 1);
         EXPECT_EQ(summary(back).open_edges, 0);
@@ -103,15 +106,19 @@ TEST_F(Step, solids_keep_their_volume) {
         for (const double side : {1.0, -1.0}) {
             const Model solid =
                 must(solid_of_revolution(ring_region(), {{{0, 0, 0}}, {{0, side, 0}}}, angle));
-            const Model back = read_again({"mm", {{"ring", solid}}});
+            const Model back = read_again({"mm", {{"ring", solid}}}, iges);
             EXPECT_EQ(summary(back).solids, 1);
             EXPECT_EQ(back.shells.size(), solid.shells.size()) << "a void is a shell of its own";
             EXPECT_NEAR(volume(back, 1e-1), angle * (5 * kPi * 4 - 5.25 * kPi * 0.5), 0.03 * angle * 55)
                 << angle;
         }
-    EXPECT_NEAR(volume(read_again({"mm", {{"", torus(3, 1)}}}), 5e-2), 2 * kPi * kPi * 3, 2);
-    EXPECT_NEAR(volume(read_again({"mm", {{"", sphere({{1, 2, 3}}, 1)}}}), 1e-2), 4.0 / 3 * kPi, 0.1);
+    EXPECT_NEAR(volume(read_again({"mm", {{"", torus(3, 1)}}}, iges), 5e-2), 2 * kPi * kPi * 3, 2);
+    EXPECT_NEAR(volume(read_again({"mm", {{"", sphere({{1, 2, 3}}, 1)}}}, iges), 1e-2), 4.0 / 3 * kPi, 0.1);
+    EXPECT_NEAR(volume(read_again({"mm", {{"", frustum(2, 1, 3)}}}, iges), 1e-2), 7 * kPi, 0.2);
 }
+
+INSTANTIATE_TEST_SUITE_P(written, SolidFiles, testing::Bool(),
+                         [](const auto& p) { return std::string(p.param ? "iges" : "step"); });
 
 // A rational surface with a knot, a loop with corners and a cubic side, and a circle as a hole.
 Document trimmed_sheet() {
@@ -179,10 +186,15 @@ std::vector<double> measured_by_gmsh(const std::string& bytes, const std::string
 TEST(StepText, is_measured_by_gmsh_as_it_should) {
     if (std::system("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "gmsh is not installed";
     const Model ring = must(solid_of_revolution(ring_region(), {{{0, 0, 0}}, {{0, 1, 0}}}, 2 * kPi));
-    const auto of_ring = measured_by_gmsh(must(write_step({"mm", {{"ring", ring}}})), ".step");
-    ASSERT_EQ(of_ring.size(), 9u);
-    EXPECT_NEAR(of_ring[2], 2 * kPi * (5 * kPi * 4 - 5.25 * kPi * 0.5), 1e-2);
-    EXPECT_NEAR(of_ring[7], 7, 1e-2);  // the ring lies between y = 3 and 7
+    const Document of_one{"mm", {{"ring", ring}}};
+    for (const bool iges : {false, true}) {
+        const auto of_ring =
+            measured_by_gmsh(must(iges ? write_iges(of_one) : write_step(of_one)), iges ? ".igs" : ".step");
+        ASSERT_EQ(of_ring.size(), 9u);
+        EXPECT_EQ(of_ring[1], double(ring.faces.size()));
+        EXPECT_NEAR(of_ring[2], 2 * kPi * (5 * kPi * 4 - 5.25 * kPi * 0.5), 1e-2) << iges;
+        EXPECT_NEAR(of_ring[7], 7, 1e-2);  // the ring lies between y = 3 and 7
+    }
     // Its areas of trimmed faces are those of a quadrature with 0.3 %.
     const Document sheet = trimmed_sheet();
     const double area = area_of(must(scene_of(sheet)));
@@ -206,8 +218,12 @@ TEST_F(Step, units_are_written) {
 
 TEST(IgesText, is_refused_where_it_cannot_say_it) {
     expect_refusal(write_iges({}), RefusalKind::no_answer, "objects");
-    expect_refusal(write_iges({"", {{"m", torus(3, 1)}}}), RefusalKind::unsupported, "objects[0] \"m\"",
-                   "is a model");
+    const auto line = Curve<Vec<4>>::make({must(BSplineBasis::bezier(1))}, Net<1, Vec<4>>({2}, {Vec<4>{}, Vec<4>{}}));
+    expect_refusal(write_iges({"", {{"m", must(line)}}}), RefusalKind::unsupported, "objects[0] \"m\"",
+                   "is a curve");
+    Model bare = torus(3, 1);
+    bare.faces[0].loops.clear();
+    expect_refusal(write_iges({"", {{"m", bare}}}), RefusalKind::unsupported, "faces[0]: loops", "without boundary");
 }
 
 TEST(StepText, is_refused_where_it_cannot_say_it) {

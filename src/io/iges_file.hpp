@@ -1,0 +1,188 @@
+// Files of the Initial Graphics Exchange Specification: cards of 80 columns, entities, and splines among them.
+#pragma once
+#include "step_detail.hpp"
+
+#include <freiform/model/model.hpp>
+#include <freiform/spline/in_space.hpp>
+
+#include <array>
+
+namespace freiform::detail {
+
+inline std::string at_right(std::string_view s, std::size_t width) {
+    return std::string(width - std::min(width, s.size()), ' ') + std::string(s);
+}
+
+// Whether others are made of the entity, and what it is for: columns of the status number.
+enum class IgesUse { alone, part, parameters };
+
+class IgesFile {
+public:
+    // They return the number of the directory entry.
+    template <class P>
+    Result<int> add(const Curve<P>& given, IgesUse use = IgesUse::alone) {
+        const auto c = cut(in_space(given));
+        if (!c) return std::unexpected(c.error());
+        const BSplineBasis& b = c->basis();
+        values_ = {text(b.size() - 1), text(b.degree()), "0", "0", Space<P>::kRational ? "0" : "1", "0"};
+        knots(b);
+        const auto all = c->net().flat();
+        for (const auto& p : all) weight(p);
+        for (const auto& p : all) point(p);
+        interval(b.domain());
+        for (int i = 0; i < 3; ++i) values_.emplace_back("0.");  // no normal of a plane is claimed
+        return entity("126", use);
+    }
+
+    template <class P>
+    Result<int> add(const Surface<P>& given, IgesUse use = IgesUse::alone) {
+        auto s = cut(in_space(given));
+        if (!s) return std::unexpected(s.error());
+        const BSplineBasis &u = s->basis(0), &v = s->basis(1);
+        values_ = {text(u.size() - 1),
+                   text(v.size() - 1),
+                   text(u.degree()),
+                   text(v.degree()),
+                   "0",
+                   "0",
+                   Space<P>::kRational ? "0" : "1",
+                   "0",
+                   "0"};
+        knots(u), knots(v);
+        const auto all = s->net().flat();
+        const auto each = [&](auto&& f) {  // the first index runs fastest
+            for (int j = 0; j < v.size(); ++j)
+                for (int i = 0; i < u.size(); ++i) f(all[std::size_t(i * v.size() + j)]);
+        };
+        each([&](const auto& p) { weight(p); });
+        each([&](const auto& p) { point(p); });
+        interval(u.domain()), interval(v.domain());
+        return entity("128", use);
+    }
+
+    bool is_empty() const { return entities_ == 0; }
+
+    std::string take(std::string_view unit) const {
+        static constexpr std::array<std::array<std::string_view, 3>, 5> kUnits{{{"mm", "2", "2HMM"},
+                                                                                {"inch", "1", "4HINCH"},
+                                                                                {"ft", "4", "2HFT"},
+                                                                                {"m", "6", "1HM"},
+                                                                                {"cm", "10", "2HCM"}}};
+        auto of = kUnits[0];
+        for (const auto& u : kUnits)
+            if (u[0] == unit) of = u;
+        const std::vector<std::string> global{"1H,",
+                                              "1H;",
+                                              "8Hfreiform",
+                                              "8Hfreiform",
+                                              "8Hfreiform",
+                                              "8Hfreiform",
+                                              "32",
+                                              "308",
+                                              "15",
+                                              "308",
+                                              "15",
+                                              "8Hfreiform",
+                                              "1.",
+                                              std::string(of[1]),
+                                              std::string(of[2]),
+                                              "1",
+                                              "0.01",
+                                              "15H20000101.000000",
+                                              "1.E-07",
+                                              "0.",
+                                              "8Hfreiform",
+                                              "8Hfreiform",
+                                              "11",
+                                              "0",
+                                              "15H20000101.000000"};
+        std::string out = card("freiform", 'S', 1);
+        int count = 0;
+        for (const std::string& line : lines(global, 72)) out += card(line, 'G', ++count);
+        out += directory_ + parameters_;
+        return out + card(text("S", at_right("1", 7), "G", at_right(text(count), 7), "D",
+                               at_right(text(2 * entities_), 7), "P", at_right(text(rows_), 7)),
+                          'T', 1);
+    }
+
+    // The entity of these values; `form` says which kind of its type.
+    int entity(std::string_view type, IgesUse use, std::vector<std::string> values, int form = 0) {
+        values_ = std::move(values);
+        return entity(type, use, form);
+    }
+
+    // Open: closed patches are cut at their seam.
+    template <std::size_t N, class P>
+    static Result<Patch<N, P>> cut(Patch<N, P> s) {
+        for (int axis = 0; axis < int(N); ++axis) {
+            if (!s.basis(axis).is_closed()) continue;
+            auto open = restrict_to(s, axis, s.basis(axis).domain());
+            if (!open) return open;
+            s = *std::move(open);
+        }
+        return s;
+    }
+
+private:
+    static std::string card(std::string_view content, char section, int number) {
+        return text(content, std::string(72 - std::min<std::size_t>(72, content.size()), ' '), section,
+                    at_right(text(number), 7), "\n");
+    }
+
+    // Values with commas between them, a semicolon at the end, none of them on two lines.
+    static std::vector<std::string> lines(const std::vector<std::string>& values, std::size_t width) {
+        std::vector<std::string> all{""};
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const std::string word = values[i] + (i + 1 < values.size() ? "," : ";");
+            if (all.back().size() + word.size() > width) all.emplace_back();
+            all.back() += word;
+        }
+        return all;
+    }
+
+    void number(double x) { values_.push_back(real(x)); }
+    void knots(const BSplineBasis& b) {
+        for (const double t : b.knots()) number(t);
+    }
+    void interval(Interval on) { number(on.lo), number(on.hi); }
+    void weight(const Vec<3>&) { number(1); }
+    void weight(const Hom<3>& p) { number(p.weight()); }
+    template <class P>
+    void point(const P& p) {
+        const Vec<3> x = written_point(p);
+        for (int i = 0; i < 3; ++i) number(x[i]);
+    }
+
+    int entity(std::string_view type, IgesUse use, int form = 0) {
+        static constexpr std::string_view kStatus[] = {"00000000", "00010000", "00010500"};
+        values_.insert(values_.begin(), std::string(type));
+        const int first = rows_ + 1, entry = 2 * entities_ + 1;
+        for (const std::string& line : lines(values_, 64)) {
+            const std::string padded = line + std::string(64 - line.size(), ' ');
+            parameters_ += card(padded + at_right(text(entry), 8), 'P', ++rows_);
+        }
+        const auto fields = [](std::initializer_list<std::string> words) {
+            std::string s;
+            for (const std::string& w : words) s += at_right(w, 8);
+            return s;
+        };
+        const std::string kind(type);
+        directory_ +=
+            card(fields({kind, text(first), "0", "0", "0", "0", "0", "0", std::string(kStatus[int(use)])}),
+                 'D', entry);
+        directory_ +=
+            card(fields({kind, "0", "0", text(rows_ - first + 1), text(form), "", "", "", "0"}), 'D', entry + 1);
+        ++entities_;
+        return entry;
+    }
+
+    std::vector<std::string> values_;  // of the entity at hand
+    std::string directory_, parameters_;
+    int entities_ = 0, rows_ = 0;
+};
+
+
+// The solids of the model as B-rep objects (186), its other shells as 514.
+Result<void> add_model(IgesFile& file, const Model& model);
+
+}  // namespace freiform::detail
