@@ -141,7 +141,11 @@ std::array<std::vector<double>, 2> bends_of(const Face& face, const SurfacePiece
     return out;
 }
 
-// A cell is h by h, and all three second derivatives are at most M: 4 M h^2 / 8.
-double bend_of(const SimplexPatch<2, Hom<3>>& triangle) { return second_derivative(triangle, kHalvings) / 2; }
+// All three second derivatives are at most M. Between the rings of the hardware's tessellation, which are 2 h
+// / 3 apart, a triangle has a box of h by 4 h / 3: (1 + 4 / 3)^2 M h^2 / 8, or 49 / 72, and a little for
+// places that the hardware has as fixed-point numbers of 16 bits.
+double bend_of(const SimplexPatch<2, Hom<3>>& triangle) {
+    return 0.7 * second_derivative(triangle, kHalvings);
+}
 
 }  // namespace freiform

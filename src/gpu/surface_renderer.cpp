@@ -37,7 +37,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kMostCells = 1e8;          // of a picture
+constexpr double kMostCells = 1e7;          // of a picture
 constexpr double kRoundingReach = 0.05;     // pixels of the framebuffer
 constexpr float kSeamFarther = 1e-4f;       // in depth from -1 to 1
 constexpr float kOrientationBow = 1.7321f;  // the scene reaches no nearer to the eye: the corner of a cube

@@ -1,3 +1,4 @@
+#include "compared_pictures.hpp"
 #include "support/corpus.hpp"
 #include "support/random.hpp"
 #include "support/solids.hpp"
@@ -67,41 +68,6 @@ protected:
         EXPECT_TRUE(t.refused.empty());
         return test::must(render(t.mesh, options_));
     }
-    // How much of the background, magenta, is in a pixel; surfaces are grey.
-    static int background(const Image& image, int x, int y) {
-        const unsigned char* p = image.pixel(x, y);
-        return (p[0] + p[2]) / 2 - p[1];
-    }
-    struct Compared {
-        int cracked = 0, different = 0, surface = 0;
-    };
-    // Cracked: background where the mesh has none around. Different: darker or lighter than everything around
-    // in the other picture, by more than `by`; not at outlines, where more of a pixel may be covered.
-    static Compared compared(const Image& gpu, const Image& mesh, int by) {
-        Compared out;
-        const auto is_beyond = [&](const Image& a, const Image& b, int x, int y) {
-            for (int c = 0; c < 3; ++c) {
-                int least = 255, most = 0;
-                for (int i = -1; i <= 1; ++i)
-                    for (int j = -1; j <= 1; ++j) {
-                        least = std::min(least, int(b.pixel(x + i, y + j)[c]));
-                        most = std::max(most, int(b.pixel(x + i, y + j)[c]));
-                    }
-                if (a.pixel(x, y)[c] < least - by || a.pixel(x, y)[c] > most + by) return true;
-            }
-            return false;
-        };
-        for (int y = 1; y + 1 < gpu.height; ++y)
-            for (int x = 1; x + 1 < gpu.width; ++x) {
-                int around = 0;
-                for (int i = -1; i <= 1; ++i)
-                    for (int j = -1; j <= 1; ++j) around = std::max(around, background(mesh, x + i, y + j));
-                out.surface += around < 3;
-                out.cracked += around < 3 && background(gpu, x, y) > 6;
-                out.different += around < 3 && (is_beyond(gpu, mesh, x, y) || is_beyond(mesh, gpu, x, y));
-            }
-        return out;
-    }
     void expect_same(const Model& model, const std::string& name, std::initializer_list<const char*> views,
                      int by = 16) {
         for (const char* view : views) {
@@ -109,7 +75,7 @@ protected:
             const auto gpu = picture(model);
             ASSERT_TRUE(gpu) << name << ": " << gpu.error().where << ": " << gpu.error().message;
             const Image mesh = mesh_picture(model);
-            const Compared c = compared(*gpu, mesh, by);
+            const test::ComparedPictures c = test::compared(*gpu, mesh, by);
             EXPECT_EQ(c.cracked, 0) << name << " " << view;
             EXPECT_LE(c.different, c.surface / 1000) << name << " " << view;
             EXPECT_GT(c.surface, 200) << name << " " << view;
@@ -160,10 +126,10 @@ TEST_P(SurfacePictures, seams_fill_what_coarse_triangles_leave_open) {
             int around = 0;
             for (int i = -kFar; i <= kFar; i += 2)
                 for (int j = -kFar; j <= kFar; j += 2)
-                    around = std::max(around, background(*fine, x + i, y + j));
+                    around = std::max(around, test::background(*fine, x + i, y + j));
             if (around > 3) continue;
             ++inside;
-            open += background(*coarse, x, y) > 6;
+            open += test::background(*coarse, x, y) > 6;
         }
     EXPECT_GT(inside, 1000);
     EXPECT_EQ(open, 0);
@@ -233,12 +199,12 @@ TEST_P(SurfacePictures, trim_within_half_a_pixel) {
             return Vec<2>{{(x - options_.width / 2.0) / scale + (box.lo[0] + box.hi[0]) / 2,
                            (options_.height / 2.0 - y) / scale + (box.lo[1] + box.hi[1]) / 2}};
         };
-        const int full = background(*drawn, 0, 0);
+        const int full = test::background(*drawn, 0, 0);
         double covered = 0, exact = 0;
         int boundary = 0;
         for (int y = 0; y < options_.height; ++y)
             for (int x = 0; x < options_.width; ++x) {
-                const double drawn_share = 1 - double(background(*drawn, x, y)) / full;
+                const double drawn_share = 1 - double(test::background(*drawn, x, y)) / full;
                 covered += drawn_share;
                 constexpr int kGrid = 3;
                 int in = 0, around = 0;

@@ -207,6 +207,42 @@ TEST_F(Surfaces, triangles_are_within_the_deviation) {
     }
 }
 
+// A patch whose second derivatives are all the same: no bound of them is larger than it has to be.
+TEST_F(Surfaces, triangles_of_triangular_patches_are_within_the_deviation) {
+    std::vector<Hom<3>> net;
+    for (const Vec<3>& p :
+         {Vec<3>{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{2, 0, 1}}, {{1, 1, -1}}, {{0, 2, 1}}})
+        net.push_back(weighted(p, 1.0));
+    const TriangularFace face{*SimplexPatch<2, Hom<3>>::make(2, net), {}};
+    const SurfaceBuffers b =
+        test::must(surface_buffers(Model{}, std::span(&face, 1), {.edge_tolerance = 1e-3}));
+    auto renderer = test::must(SurfaceRenderer::make(b));
+    for (const double deviation : {1.0, 0.02}) {  // the second with more levels than the hardware has
+        const auto v = test::must(renderer.triangles(options_, deviation));
+        const double allowed = deviation / make_scene(b, options_).pixels;
+        double most = 0, area = 0;
+        for (std::size_t i = 0; i < v.size(); i += 3) {
+            for (std::size_t k = 0; k < 4; ++k) {  // the middles of its sides, its own
+                std::array<double, 3> l{1.0 / 3, 1.0 / 3, 1.0 / 3};
+                if (k < 3) l = {0.5, 0.5, 0.5}, l[k] = 0;
+                Vec<3> flat;
+                Param<2> at{};
+                for (std::size_t c = 0; c < 3; ++c) {
+                    for (std::size_t d = 0; d < 3; ++d) flat[int(d)] += l[c] * double(v[i + c].position[d]);
+                    for (std::size_t d = 0; d < 2; ++d) at[d] += l[c] * double(v[i + c].at[d]);
+                }
+                most = std::max(most, norm(flat - (1 / b.size) * (face.patch(at) - b.middle)));
+            }
+            area += ((v[i + 1].at[0] - v[i].at[0]) * double(v[i + 2].at[1] - v[i].at[1]) -
+                     (v[i + 2].at[0] - v[i].at[0]) * double(v[i + 1].at[1] - v[i].at[1])) /
+                    2;
+        }
+        EXPECT_LE(most, allowed + 1e-6);
+        EXPECT_GT(most, 0.3 * allowed) << "needlessly fine";
+        EXPECT_NEAR(area, 0.5, 1e-5) << "the whole triangle, once";
+    }
+}
+
 TEST_F(Surfaces, pieces_that_need_more_than_the_hardware_has_are_cut_into_cells) {
     test::Random random(4);
     const Surface<Hom<3>> s = hills(random, 3, 1, 1, 0.6);

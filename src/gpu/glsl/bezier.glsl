@@ -67,19 +67,15 @@ Jet tensor_jet(int first, int n, int m, Real2 at) {
 // t3 A_3, f_u = n (A_2 - A_1), f_v = n (A_3 - A_1).
 Jet triangle_jet(int first, int n, Real2 at) {
     Real t = Real(1) - at.x - at.y;
-    Real p[kMostDegree + 1];
-    p[0] = Real(1);
-    for (int i = 1; i < n; ++i) p[i] = t * p[i - 1];
+    Real p[kMostDegree + 1], x[kMostDegree + 1], y[kMostDegree + 1];
+    p[0] = x[0] = y[0] = Real(1);
+    for (int i = 1; i < n; ++i) p[i] = t * p[i - 1], x[i] = at.x * x[i - 1], y[i] = at.y * y[i - 1];
     Real4 a = Real4(0), b = Real4(0), c = Real4(0);
     Real rows = Real(1);  // binomial (n - 1, r)
-    Real powers = Real(1);  // at.x^(r - k) at.y^k, kept apart where at.x is 0
     for (int r = 0; r < n; ++r) {
         Real binomial = Real(1);
         for (int k = 0; k <= r; ++k) {
-            powers = Real(1);
-            for (int e = 0; e < r - k; ++e) powers *= at.x;
-            for (int e = 0; e < k; ++e) powers *= at.y;
-            Real weight = rows * binomial * powers * p[n - 1 - r];
+            Real weight = rows * binomial * x[r - k] * y[k] * p[n - 1 - r];
             int here = r * (r + 1) / 2 + k, next = (r + 1) * (r + 2) / 2 + k;
             a += weight * coefficient(first + here);
             b += weight * coefficient(first + next);

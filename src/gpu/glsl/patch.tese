@@ -13,10 +13,12 @@ out vec2 at;
 flat out int piece_number;
 void main() {
 #ifdef TRIANGLES
-    // Cells beyond the diagonal stand for the triangles between the others, turned by half a turn. Places are
-    // quotients of whole numbers, so that both sides of a common side have the same bits.
+    // Cells beyond the diagonal stand for the triangles between the others, turned by half a turn. Places on the sides
+    // of cells are quotients of whole numbers, so that both neighbours have the same bits. Inside, the rings of the
+    // hardware lie between such places.
     float n = cell.w, k = cell.z;
-    vec2 steps = round(gl_TessCoord.yz * n);
+    vec2 steps = gl_TessCoord.yz * n;
+    if (min(min(gl_TessCoord.x, gl_TessCoord.y), gl_TessCoord.z) == 0.0) steps = round(steps);
     at = (cell.x + cell.y < k ? cell.xy * n + steps : (vec2(k) - cell.xy) * n - steps) / (k * n);
 #else
     at = (cell.xy + gl_TessCoord.xy) / cell.zw;

@@ -1,0 +1,47 @@
+// Pictures of surfaces against those of meshes, before a background of magenta; surfaces are grey.
+#pragma once
+#include <freiform/core/image.hpp>
+
+#include <algorithm>
+
+namespace freiform::test {
+
+// How much of the background is in a pixel.
+inline int background(const Image& image, int x, int y) {
+    const unsigned char* p = image.pixel(x, y);
+    return (p[0] + p[2]) / 2 - p[1];
+}
+
+// Cracked: background where the mesh has none around. Different: darker or lighter than everything around in
+// the other picture, by more than `by`; not at outlines, where more of a pixel may be covered.
+struct ComparedPictures {
+    int cracked = 0, different = 0, surface = 0;
+};
+inline ComparedPictures compared(const Image& gpu, const Image& mesh, int by) {
+    ComparedPictures out;
+    const auto is_beyond = [&](const Image& a, const Image& b, int x, int y) {
+        for (int c = 0; c < 3; ++c) {
+            int least = 255, most = 0;
+            for (int i = -1; i <= 1; ++i)
+                for (int j = -1; j <= 1; ++j) {
+                    least = std::min(least, int(b.pixel(x + i, y + j)[c]));
+                    most = std::max(most, int(b.pixel(x + i, y + j)[c]));
+                }
+            if (a.pixel(x, y)[c] < least - by || a.pixel(x, y)[c] > most + by) return true;
+        }
+        return false;
+    };
+    for (int y = 1; y + 1 < gpu.height; ++y)
+        for (int x = 1; x + 1 < gpu.width; ++x) {
+            int around = 0;
+            for (int i = -1; i <= 1; ++i)
+                for (int j = -1; j <= 1; ++j) around = std::max(around, background(mesh, x + i, y + j));
+            if (around >= 3) continue;
+            ++out.surface;
+            out.cracked += background(gpu, x, y) > 6;
+            out.different += is_beyond(gpu, mesh, x, y) || is_beyond(mesh, gpu, x, y);
+        }
+    return out;
+}
+
+}  // namespace freiform::test
