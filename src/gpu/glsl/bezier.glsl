@@ -1,36 +1,14 @@
 // Values and derivatives of rational Bezier pieces. REQUIRES Real, Real2 .. Real4 and Real4 coefficient(int).
 //
-// Neighbouring pieces of a face have the same coefficients along the side between them. There one of the
-// Bernstein polynomials is exactly 1 and the others exactly 0, and the sums along the side are the same in both:
-// the points are the same bits, so that no crack opens.
+// By the scheme of Horner for Bernstein polynomials: s = 1 - t, from sum to s sum + binomial t^i c_i. Nothing is kept in
+// arrays, which cards and compilers of shaders are slow with.
+//
+// Neighbouring pieces of a face have the same coefficients along the side between them. There t is exactly 0 or 1, so
+// that the sum is its first coefficient plus zeros, or zero plus its last one, whose binomial is put as 1: the points
+// are the same bits, and no crack opens.
 struct Jet {
     Real3 point, u, v, uv;
 };
-
-const int kMostDegree = 25;
-
-// From the Bernstein polynomials of degree k - 1 to those of degree k.
-void raise(int k, Real t, inout Real b[kMostDegree + 1]) {
-    Real s = Real(1) - t, carried = Real(0);
-    for (int i = 0; i < k; ++i) {
-        Real old = b[i];
-        b[i] = carried + s * old;
-        carried = t * old;
-    }
-    b[k] = carried;
-}
-
-// Those of degree n and their derivatives.
-void bernstein(int n, Real t, out Real b[kMostDegree + 1], out Real d[kMostDegree + 1]) {
-    b[0] = Real(1);
-    d[0] = Real(0);
-    if (n == 0) return;
-    for (int k = 1; k < n; ++k) raise(k, t, b);
-    d[0] = -Real(n) * b[0];
-    for (int i = 1; i < n; ++i) d[i] = Real(n) * (b[i - 1] - b[i]);
-    d[n] = Real(n) * b[n - 1];
-    raise(n, t, b);
-}
 
 Jet projected(Real4 h, Real4 hu, Real4 hv, Real4 huv) {
     Jet j;
@@ -41,25 +19,37 @@ Jet projected(Real4 h, Real4 hu, Real4 hv, Real4 huv) {
     return j;
 }
 
-// Degrees n by m, the first coefficient at `first`, the second parameter fastest.
+// Degrees n by m, the first coefficient at `first`, the second parameter fastest. Derivatives are sums of degree one
+// less of differences.
 Jet tensor_jet(int first, int n, int m, Real2 at) {
-    Real bu[kMostDegree + 1], du[kMostDegree + 1], bv[kMostDegree + 1], dv[kMostDegree + 1];
-    bernstein(n, at.x, bu, du);
-    bernstein(m, at.y, bv, dv);
-    Real4 h = Real4(0), hu = Real4(0), hv = Real4(0), huv = Real4(0);
+    Real2 s = Real2(1) - at;
+    Real4 h = Real4(0), hu = Real4(0), hv = Real4(0), huv = Real4(0), last_row = Real4(0), last_slope = Real4(0);
+    Real power = Real(1), binomial = Real(1), lower = Real(0);
     for (int i = 0; i <= n; ++i) {
-        Real4 row = Real4(0), slope = Real4(0);
+        Real4 row = Real4(0), slope = Real4(0), last = Real4(0);
+        Real p = Real(1), b = Real(1), q = Real(0);  // q: the factor of the difference of c and the one before
         for (int j = 0; j <= m; ++j) {
             Real4 c = coefficient(first + i * (m + 1) + j);
-            row += bv[j] * c;
-            slope += dv[j] * c;
+            row = s.y * row + (j == m ? p : p * b) * c;
+            slope = s.y * slope + q * (c - last);
+            last = c;
+            q = j == m - 1 ? p : p * b * Real(m - j) / Real(m);
+            b = b * Real(m - j) / Real(j + 1);
+            p *= at.y;
         }
-        h += bu[i] * row;
-        hu += du[i] * row;
-        hv += bu[i] * slope;
-        huv += du[i] * slope;
+        slope *= Real(m);
+        Real factor = i == n ? power : power * binomial;
+        h = s.x * h + factor * row;
+        hv = s.x * hv + factor * slope;
+        hu = s.x * hu + lower * (row - last_row);
+        huv = s.x * huv + lower * (slope - last_slope);
+        last_row = row;
+        last_slope = slope;
+        lower = i == n - 1 ? power : power * binomial * Real(n - i) / Real(n);
+        binomial = binomial * Real(n - i) / Real(i + 1);
+        power *= at.x;
     }
-    return projected(h, hu, hv, huv);
+    return projected(h, Real(n) * hu, hv, Real(n) * huv);
 }
 
 // A triangle of degree n >= 1, its coefficients row after row away from corner 1; at (u, v) = (t2, t3). With
@@ -67,21 +57,23 @@ Jet tensor_jet(int first, int n, int m, Real2 at) {
 // t3 A_3, f_u = n (A_2 - A_1), f_v = n (A_3 - A_1).
 Jet triangle_jet(int first, int n, Real2 at) {
     Real t = Real(1) - at.x - at.y;
-    Real p[kMostDegree + 1], x[kMostDegree + 1], y[kMostDegree + 1];
-    p[0] = x[0] = y[0] = Real(1);
-    for (int i = 1; i < n; ++i) p[i] = t * p[i - 1], x[i] = at.x * x[i - 1], y[i] = at.y * y[i - 1];
     Real4 a = Real4(0), b = Real4(0), c = Real4(0);
     Real rows = Real(1);  // binomial (n - 1, r)
     for (int r = 0; r < n; ++r) {
-        Real binomial = Real(1);
+        Real4 row_a = Real4(0), row_b = Real4(0), row_c = Real4(0);
+        Real binomial = Real(1), power = Real(1);
         for (int k = 0; k <= r; ++k) {
-            Real weight = rows * binomial * x[r - k] * y[k] * p[n - 1 - r];
-            int here = r * (r + 1) / 2 + k, next = (r + 1) * (r + 2) / 2 + k;
-            a += weight * coefficient(first + here);
-            b += weight * coefficient(first + next);
-            c += weight * coefficient(first + next + 1);
+            int here = first + r * (r + 1) / 2 + k, next = here + r + 1;
+            Real factor = binomial * power;
+            row_a = at.x * row_a + factor * coefficient(here);
+            row_b = at.x * row_b + factor * coefficient(next);
+            row_c = at.x * row_c + factor * coefficient(next + 1);
             binomial = binomial * Real(r - k) / Real(k + 1);
+            power *= at.y;
         }
+        a = t * a + rows * row_a;
+        b = t * b + rows * row_b;
+        c = t * c + rows * row_c;
         rows = rows * Real(n - 1 - r) / Real(r + 1);
     }
     return projected(t * a + at.x * b + at.y * c, Real(n) * (b - a), Real(n) * (c - a), Real4(0));
