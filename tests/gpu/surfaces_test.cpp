@@ -273,8 +273,9 @@ TEST_F(Surfaces, triangular_patches_are_drawn) {
         const SurfaceBuffers b =
             test::must(surface_buffers(Model{}, std::span(&face, 1), {.edge_tolerance = 1e-3}));
         auto renderer = test::must(SurfaceRenderer::make(b));
-        int compared = 0;
-        for (const SurfaceVertex& v : test::must(renderer.triangles(options_, n == 5 ? 0.2 : 4))) {
+        int compared = 0, seen = 0;
+        for (const SurfaceVertex& v : test::must(renderer.triangles(options_, n == 5 ? 0.5 : 6))) {
+            if (++seen > 300 && seen % 5 > 0) continue;  // vertices belong to some six triangles
             const Param<2> uv{v.at[0], v.at[1]};
             const Vec<3> p = (1 / b.size) * (face.patch(uv) - b.middle);
             const auto expected = normal(face.patch, {std::min(uv[0], 1 - uv[1]), uv[1]});
