@@ -114,6 +114,34 @@ TEST_F(Draw, surfaces_are_drawn_by_shaders_or_the_reason_is_said) {
     EXPECT_EQ(run({"draw", "-", "-o", "t.png", "--gpu"}, triangle).code, 0);
 }
 
+// Mesa with less than it has, then no driver at all.
+TEST_F(Draw, older_drivers_draw_the_mesh_and_none_is_a_reason) {
+    const char* mesa = "/usr/share/glvnd/egl_vendor.d/50_mesa.json";
+    if (!std::filesystem::exists(mesa)) GTEST_SKIP() << mesa << " is not there";
+    const std::vector<std::string> direct{"draw",    kTeapot, "-o",       "d.png", "--gpu",
+                                          "--width", "60",    "--height", "45"};
+    std::vector<std::string> as_mesh = direct;
+    as_mesh[3] = "m.png";
+    as_mesh.erase(as_mesh.begin() + 4);
+    setenv("__EGL_VENDOR_LIBRARY_FILENAMES", mesa, 1);
+    setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+    const Ran mesh = run(as_mesh);
+    if (mesh.code == 3) GTEST_SKIP() << mesh.err;
+    const Ran older = run(direct);
+    EXPECT_EQ(older.code, 0);
+    EXPECT_NE(older.err.find("drawn as a mesh: OpenGL: no OpenGL 4.3"), std::string::npos) << older.err;
+    EXPECT_EQ(content(path("d.png")), content(path("m.png")));
+    std::filesystem::remove(path("d.png"));
+    unsetenv("MESA_GL_VERSION_OVERRIDE");
+    setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nothing.json", 1);
+    const Ran none = run(direct);
+    EXPECT_EQ(none.code, 3);
+    EXPECT_NE(none.err.find("no OpenGL 3.3 without a window; on Debian install"), std::string::npos)
+        << none.err;
+    EXPECT_FALSE(std::filesystem::exists(path("d.png")));
+    unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+}
+
 TEST_F(Draw, pictures_of_nothing_are_refused) {
     // A whole sphere without a loop: a face of a model needs one.
     const std::string bare = R"({"type": "model", "faces": [{"surface": {"type": "revolution",
