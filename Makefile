@@ -7,7 +7,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .NOTPARALLEL:
 
 help:
-	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/)"
+	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/); name the page of the studio"
 	@echo "make test    build everything and run all tests"
 	@echo "make bench   compare tessellation and curves with other libraries (bench/*.md)"
 	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"
@@ -39,7 +39,8 @@ demo:
 	step "Packages" tools/setup.sh demo; \
 	step "Configure" cmake --preset demo --log-level=WARNING; \
 	step "Build" cmake --build --preset demo; \
-	step "Demo" env FREIFORM=build-demo/bin/freiform tools/demo.sh
+	step "Demo" env FREIFORM=build-demo/bin/freiform tools/demo.sh; \
+	step "Page" env FREIFORM=build-demo/bin/freiform tools/demo_page.sh
 
 test:
 	@source tools/steps.sh; \

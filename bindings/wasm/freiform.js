@@ -1,8 +1,9 @@
 // freiform for node and browsers; freiform.d.ts describes all that is exported.
 //
-// One instance of the module holds the shapes. Commands run in a second one, made when the first command comes: what a
-// command leaves behind, or breaks, no shape notices. A refusal leaves the module as an exception of the function
-// `refuse` that it imports, so the stack pointer is put back by hand.
+// One instance of the module holds the shapes. Commands run in a second one: what a command leaves behind, or breaks, no
+// shape notices. Both are made while `load` is awaited, because browsers refuse to make an instance of a large module at
+// once where a page would wait for it. A refusal leaves the module as an exception of the function `refuse` that it
+// imports, so the stack pointer is put back by hand.
 
 export class FreiformError extends Error {
   constructor(kind, where, message) {
@@ -49,9 +50,22 @@ function surroundings(memory, say) {
 }
 
 class Instance {
-  constructor(module) {
+  static async make(module) {
+    const it = new Instance();
+    return it.#begin(await WebAssembly.instantiate(module, it.#imports(module)));
+  }
+  // At once: in a page only where the module is small (in Chromium up to 8 MB).
+  static now(module) {
+    const it = new Instance();
+    return it.#begin(new WebAssembly.Instance(module, it.#imports(module)));
+  }
+
+  constructor() {
     this.lastWords = '';
     this.dead = false;
+  }
+
+  #imports(module) {
     const memory = () => this.exports.memory;
     const wasi = surroundings(memory, (s) => { this.lastWords += s; });
     const imports = { wasi_snapshot_preview1: {}, freiform: {
@@ -62,9 +76,14 @@ class Instance {
     } };
     for (const { module: from, name } of WebAssembly.Module.imports(module))
       if (from === 'wasi_snapshot_preview1') imports[from][name] = wasi[name] ?? (() => kNoSuchFunction);
-    this.exports = new WebAssembly.Instance(module, imports).exports;
-    this.exports._initialize();
-    this.exports.ff_start();
+    return imports;
+  }
+
+  #begin({ exports }) {
+    this.exports = exports;
+    exports._initialize();
+    exports.ff_start();
+    return this;
   }
 
   string(at, size) { return text.decode(new Uint8Array(this.exports.memory.buffer, at, size)); }
@@ -301,9 +320,10 @@ const wasWritten = (args, name) =>
 
 class Freiform {
   #commandInstance; #described;
-  constructor(module) {
+  constructor(module, instance, commandInstance) {
     this.module = module;
-    this.instance = new Instance(module);
+    this.instance = instance;
+    this.#commandInstance = commandInstance;
     this.instance.call('about');
     [this.version, this.instructions] = this.instance.reply().split(' ');
     if (typeof FinalizationRegistry !== 'undefined')
@@ -339,13 +359,23 @@ class Freiform {
     });
   }
 
+  // Another instance after a crash.
+  #replace() {
+    try {
+      this.#commandInstance = Instance.now(this.module);
+    } catch (error) {
+      if (!(error instanceof RangeError)) throw error;
+      Instance.make(this.module).then((made) => { this.#commandInstance = made; }, () => undefined);
+      throw new FreiformError('crash', '', 'a command has crashed; the module is being started again for the next');
+    }
+  }
+
   get commands() { return (this.#described ??= JSON.parse(text.decode(this.command(['--describe']).stdout))); }
 
   command(args, files = {}) {
-    if (!this.#commandInstance || this.#commandInstance.dead) this.#commandInstance = new Instance(this.module);
+    if (!this.#commandInstance) throw new FreiformError('unavailable', '', 'this module has no commands: load freiform.wasm');
+    if (this.#commandInstance.dead) this.#replace();
     const instance = this.#commandInstance;
-    if (!instance.exports.ff_command)
-      throw new FreiformError('unavailable', '', 'this module has no commands: load freiform.wasm');
     instance.call('clear_files');
     for (const [name, content] of Object.entries(files)) {
       const bytes = asBytes(content), named = utf8.encode(name);
@@ -434,9 +464,15 @@ async function compiled(source) {
   }
   const response = await source;
   if (!response.ok) throw new FreiformError('io', response.url, `cannot be fetched: ${response.status}`);
+  // While it arrives, where the server says what it is.
+  const type = response.headers.get('content-type') ?? '';
+  if (type.startsWith('application/wasm') && WebAssembly.compileStreaming) return WebAssembly.compileStreaming(response);
   return WebAssembly.compile(await response.arrayBuffer());
 }
 
+const hasCommands = (module) => WebAssembly.Module.exports(module).some(({ name }) => name === 'ff_command');
+
 export async function load(source = new URL('./freiform.wasm', import.meta.url)) {
-  return new Freiform(await compiled(source));
+  const module = await compiled(source);
+  return new Freiform(module, await Instance.make(module), hasCommands(module) ? await Instance.make(module) : undefined);
 }

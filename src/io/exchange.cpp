@@ -42,7 +42,8 @@ namespace freiform {
 #if defined(__wasm__)
 
 Result<Model> read_with_occt(const std::string& path, const ImportLimits&) {
-    return refuse(RefusalKind::unavailable, path, "STEP, IGES and BREP files cannot be read here");
+    return refuse(RefusalKind::unavailable, path,
+                  "IGES and BREP files, and STEP files with Open CASCADE, are read by the program alone");
 }
 
 #else

@@ -81,7 +81,7 @@ Document document_with(Model model) {
 
 Result<Document> read_step_document(std::string_view bytes, const ReadOptions& options) {
     StepReadOptions limits;
-    if (options.max_memory > 0) limits.memory_bytes = std::size_t(options.max_memory);
+    if (options.max_memory > 0) limits.memory_bytes = options.max_memory;
     auto model = read_step(bytes, limits);
     if (!model) return std::unexpected(model.error());
     return document_with(std::move(*model));

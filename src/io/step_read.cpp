@@ -225,7 +225,7 @@ private:
     std::vector<Free> free_;
     Model model_;
     double length_ = 1, largest_ = 0;
-    std::size_t visits_ = 0, bytes_ = 0;
+    std::uint64_t visits_ = 0, bytes_ = 0;  // also where addresses have 32 bits
 };
 
 }  // namespace

@@ -6,6 +6,7 @@ import { explore, type Shown } from "./explore/explore";
 import { inspect } from "./inspect/inspect";
 import { start } from "./kernel/module";
 import { h } from "./ui/dom";
+import { droppable, type Opened } from "./ui/files";
 import { language, say, speak, t } from "./ui/language";
 import { address, parse, type Place } from "./ui/router";
 import { show, theme, wear } from "./ui/theme";
@@ -14,8 +15,8 @@ import { refuse } from "./ui/toast";
 const app = document.querySelector("#app") ?? document.body;
 const main = h("main", { id: "main", tabindex: -1 });
 let shown: Shown | undefined;
-/** A document on its way from one part to another. */
-let carried: string | undefined;
+/** A document or file on its way from one part to another. */
+let carried: string | Opened | undefined;
 
 const kParts = [
     { view: "explore", name: t("Entdecken", "Explore") }, { view: "edit", name: t("Bearbeiten", "Edit") },
@@ -33,14 +34,17 @@ function top(place: Place): HTMLElement {
             onclick: () => { wear(theme() === "dark" ? "light" : "dark"); } }, "◐"));
 }
 
-function carry(text: string): void { carried = text; }
+function carry(what: string | Opened): void { carried = what; }
+function look(what: string | Opened): void { carry(what); location.hash = "#/inspect"; }
 
 function body(place: Place): Shown {
     const taken = carried;
     carried = undefined;
-    if (place.view === "edit") return edit(taken, (text) => { carry(text); location.hash = "#/inspect"; });
+    if (place.view === "edit") return edit(typeof taken === "string" ? taken : undefined, look);
     if (place.view === "inspect") return inspect(taken, (text) => { carry(text); location.hash = "#/edit"; });
-    return explore(place.page, carry);
+    const shown = explore(place.page, carry);
+    droppable(shown.element, look);
+    return shown;
 }
 
 function build(): void {

@@ -271,6 +271,9 @@ void Command::limits() const {
     Limits& limits = context_->limits;
     use("--timeout", positive_number("--timeout", limits.timeout), "Stop after this many seconds", "SECONDS");
     use("--max-memory", positive_number("--max-memory", limits.max_memory), "Refuse larger files", "BYTES");
+    word("--reader", limits.reader, "What reads STEP files: freiform; there is no other reader here")
+        .shown_as("READER")
+        .one_of({"freiform", "occt"});
 }
 
 void Command::triangle_limit() const {

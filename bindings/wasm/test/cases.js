@@ -185,7 +185,9 @@ export const tests = {
     check(r.message.includes('did you mean "--tolerance"'), r.message);
     r = refusal(() => ff.run('flaten', cubic));
     check(r.kind === 'usage' && r.message.includes('flatten'), r.message);
-    check(refusal(() => ff.run('info', { file: 'a.step', content: 'ISO-10303-21;' })).kind === 'unavailable', 'STEP');
+    check(refusal(() => ff.run('info', { file: 'a.step', content: 'ISO-10303-21;' })).kind === 'unreadable', 'STEP that ends too soon');
+    check(refusal(() => ff.run('info', { file: 'a.step', content: 'ISO-10303-21;' }, { reader: 'occt' })).kind === 'unavailable', 'STEP by another reader');
+    check(refusal(() => ff.document({ file: 'a.iges', content: 'S' })).kind === 'unavailable', 'IGES');
     check(refusal(() => ff.shape(cubic).evaluate([2])).kind === 'out_of_domain', 'outside');
     check(refusal(() => ff.shape({ objects: [] })).kind !== undefined, 'no object');
     // After all this the module works as before.

@@ -2,13 +2,13 @@
 #pragma once
 #include <freiform/model/model.hpp>
 
-#include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 namespace freiform {
 
 struct StepReadOptions {
-    std::size_t memory_bytes = std::size_t(4) << 30;  // that the model may take; an estimate is kept below it
+    std::uint64_t memory_bytes = std::uint64_t(4) << 30;  // that the model may take; an estimate is kept below
 };
 
 // The model in the file; coordinates in the unit of the file, which Model::unit names: that of the first

@@ -5,7 +5,7 @@ import { curve, lattice, net, polygon, surface } from "../explore/draw";
 import type { Shown } from "../explore/explore";
 import { arena, ff, file, type Source } from "../kernel/module";
 import { coalesced, h } from "../ui/dom";
-import { droppable, opener } from "../ui/files";
+import { droppable, isModel, opener, type Opened } from "../ui/files";
 import { say, t, type Text } from "../ui/language";
 import { notify, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
@@ -22,7 +22,7 @@ import * as tools from "./tools";
 const kMostHandles = 600;
 const kFirst: Document = { objects: [{ type: "curve", name: "curve", degree: 3, knots: [0, 0, 0, 0, 1, 2, 2, 2, 2], points: [[0, 0], [1, 2.4], [3, 3], [4.4, 0.6], [6, 1.2]] }] };
 
-export function edit(taken: string | undefined, inspect: (text: string) => void): Shown { return new Editor(taken, inspect); }
+export function edit(taken: string | undefined, inspect: (what: string | Opened) => void): Shown { return new Editor(taken, inspect); }
 
 export class Editor implements Shown {
     readonly element: HTMLElement;
@@ -44,13 +44,13 @@ export class Editor implements Shown {
     private readonly draw = coalesced(() => { this.picture(); });
     private readonly onKey = (event: KeyboardEvent): void => { this.key(event); };
 
-    constructor(taken: string | undefined, private readonly inspect: (text: string) => void) {
+    constructor(taken: string | undefined, private readonly inspect: (what: string | Opened) => void) {
         this.history = this.fresh(kFirst);
         this.view = this.viewFor(!flat(this.document));
         this.panel = new Panel(this);
         this.stage.append(h("h1", { class: "unseen" }, say(t("Bearbeiten", "Edit"))), this.bar(), this.view.element, this.status);
         this.element = h("div", { style: "display:contents" }, this.stage, this.panel.element);
-        droppable(this.stage, (opened) => { this.open(file(opened.name, opened.source)); });
+        droppable(this.stage, (opened) => { this.take(opened); });
         document.addEventListener("keydown", this.onKey);
         if (taken === undefined) void this.restore();
         else this.open(taken);
@@ -166,6 +166,12 @@ export class Editor implements Shown {
         if (list.length >= n) return list;
         refuse({ kind: "usage", message: say(t(`Dafür werden ${n} Objekte gewählt (Umschalt+Klick in der Liste).`, `This needs ${n} objects to be chosen (Shift+click in the list).`)) });
         return undefined;
+    }
+
+    /** A file: models are for looking at. */
+    private take(opened: Opened): void {
+        if (isModel(opened)) this.inspect(opened);
+        else this.open(file(opened.name, opened.source));
     }
 
     private open(source: Source): void {
@@ -467,7 +473,7 @@ export class Editor implements Shown {
 
     private bar(): HTMLElement {
         return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Werkzeuge", "Tools")) },
-            h("button", { onclick: () => { this.attempt(say(t("Neu", "new")), () => ({ objects: [] })); } }, say(t("Neu", "New"))), opener((opened) => { this.open(file(opened.name, opened.source)); }),
+            h("button", { onclick: () => { this.attempt(say(t("Neu", "new")), () => ({ objects: [] })); } }, say(t("Neu", "New"))), opener((opened) => { this.take(opened); }),
             ...exportButtons(() => this.json(), () => this.view, () => 0.001 * size(this.document)), h("span", { class: "sep" }), this.back, this.again, h("span", { class: "sep" }), this.pen,
             h("button", { title: "Enter", onclick: () => { this.finish(); } }, say(t("Fertig", "Finish"))), h("label", { class: "check" }, this.snap, say(t("Einrasten", "Snap"))),
             h("button", { title: "F", onclick: () => { this.fit(); } }, say(t("Alles", "Fit"))), h("button", { title: "Del", onclick: () => { this.remove(); } }, say(t("Löschen", "Delete"))),

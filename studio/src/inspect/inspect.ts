@@ -2,7 +2,7 @@
 
 import type { MeshOptions } from "freiform";
 import teapot from "../../../examples/teapot.bpt?url";
-import { answer, ff, file, mesh, type Beside, type Meshed, type Source } from "../kernel/module";
+import { answer, ff, file, mesh, read, type Beside, type Meshed, type Source, type Understood } from "../kernel/module";
 import type { Shown } from "../explore/explore";
 import { download, h, shown } from "../ui/dom";
 import { droppable, opener, type Opened } from "../ui/files";
@@ -38,7 +38,7 @@ async function example(): Promise<NonNullable<typeof last>> {
     return { name: "teapot.bpt", source: file("teapot.bpt", await (await fetch(teapot)).text()), refused: [] };
 }
 
-export function inspect(taken: string | undefined, edit: (text: string) => void): Shown {
+export function inspect(taken: string | Opened | undefined, edit: (text: string) => void): Shown {
     const view = new Inspector(edit);
     view.begin(taken).catch(refuse);
     return view;
@@ -50,7 +50,7 @@ class Inspector implements Shown {
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
     private readonly facts = h("div", { class: "readout" });
     private readonly progress = h("progress", { max: 1, value: 0, hidden: true, "aria-label": say(t("Fortschritt", "Progress")) });
-    private readonly stop = h("button", { hidden: true, onclick: () => { this.meshing?.cancel(); } }, say(t("Abbrechen", "Cancel")));
+    private readonly stop = h("button", { hidden: true, onclick: () => { this.reading?.cancel(); this.meshing?.cancel(); } }, say(t("Abbrechen", "Cancel")));
     private readonly list = h("ul", { class: "list", "aria-label": say(t("Flächen", "Faces")) });
     private readonly tolerance = h("input", { type: "range", min: 1, max: 5.5, step: 0.1, value: 3, "aria-label": say(t("Toleranz", "Tolerance")), onchange: () => { this.tessellate(); },
         oninput: () => { this.said.textContent = shown(this.accuracy(), 3); } });
@@ -60,6 +60,7 @@ class Inspector implements Shown {
     private model: Model | undefined;
     private drawn: Drawn | undefined;
     private meshing: Beside<Meshed> | undefined;
+    private reading: Beside<Understood> | undefined;
     private key: HTMLElement | undefined;
     private size = 1;
     private cut = { axis: 2, at: 0.5, on: false };
@@ -76,7 +77,8 @@ class Inspector implements Shown {
         this.space.canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) this.point(event.offsetX, event.offsetY); });
     }
 
-    async begin(taken: string | undefined): Promise<void> {
+    async begin(taken: string | Opened | undefined): Promise<void> {
+        if (typeof taken === "object") { this.open(taken); return; }
         if (taken !== undefined) { this.show("studio.json", taken, []); return; }
         const found = last ?? (await served()) ?? (await example());
         if (!this.gone) this.show(found.name, found.source, found.refused);
@@ -84,13 +86,29 @@ class Inspector implements Shown {
 
     dispose(): void {
         this.gone = true;
+        this.reading?.cancel();
         this.meshing?.cancel();
         this.model?.shapes.forEach((shape) => { shape.free(); });
         this.space.dispose();
     }
 
-    private open(opened: Opened): void {
-        try { this.show(opened.name, file(opened.name, opened.source), []); } catch (error) { refuse(error); }
+    /** Reads a file beside the page, which goes on showing what it had until all is understood. */
+    private open({ name, source }: Opened): void {
+        this.reading?.cancel();
+        const reading = read(file(name, source));
+        this.reading = reading;
+        this.busy(true);
+        reading.done.then(({ document, leftOut }) => {
+            if (this.reading !== reading) return;
+            this.busy(false);
+            if (!this.gone) this.show(name, document, leftOut.map((x) => ({ kind: "left out", ...x })));
+        }).catch((error: unknown) => { if (this.reading === reading) this.busy(false); if (!(error instanceof DOMException)) refuse(error); });
+    }
+
+    /** A bar that only says that something is under way. */
+    private busy(on: boolean): void {
+        this.progress.removeAttribute("value");
+        this.progress.hidden = this.stop.hidden = !on;
     }
 
     private show(name: string, source: Source, refused: Refused[]): void {
@@ -185,7 +203,9 @@ class Inspector implements Shown {
             } }, `${name} · ${part.count} · ≤ ${shown(part.errorBound, 2)}`);
             return h("li", {}, button);
         }));
-        const bad = [...this.refused, ...meshes.flatMap((m) => m.refused.map((r) => ({ where: r.where || r.name || `face ${r.face}`, kind: r.kind, message: r.message })))];
+        const all = [...this.refused, ...meshes.flatMap((m) => m.refused.map((r) => ({ where: r.where || r.name || `face ${r.face}`, kind: r.kind, message: r.message })))];
+        // The program lists what it refused, and its document has the list again.
+        const bad = [...new Map(all.map((r) => [`${r.where} ${r.message}`, r])).values()];
         this.list.replaceChildren(...bad.map((r) => h("li", { class: "bad" }, h("button", { onclick: () => { refuse(r); } }, `⚠ ${r.where}: ${r.message}`))), ...entries.slice(0, 2000));
     }
 

@@ -50,6 +50,7 @@ export function construct(shape: Shape, at: readonly number[]): Construction["le
 /** What a worker is asked, and what it says. */
 export type Task =
     | { readonly kind: "mesh"; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly deviations: boolean }
+    | { readonly kind: "read"; readonly source: Source }
     | { readonly kind: "run"; readonly command: CommandName; readonly source: Source; readonly options: Options };
 export interface Order { readonly module: WebAssembly.Module; readonly task: Task }
 export interface Meshed {
@@ -57,6 +58,8 @@ export interface Meshed {
     /** If asked for: the distance from the middle of each triangle to its shape, as the nearest point there was found. */
     readonly deviations: readonly Float64Array[] | undefined;
 }
+/** What a file holds. */
+export interface Understood { readonly document: string; readonly leftOut: readonly { readonly where: string; readonly message: string }[] }
 export type News =
     | { readonly kind: "progress"; readonly part: number }
     | { readonly kind: "done"; readonly result: unknown }
@@ -90,6 +93,9 @@ function beside<T>(task: Task, progress: (part: number) => void): Beside<T> {
 /** Triangles of everything in a document that has a surface, computed beside the page. */
 export const mesh = (source: Source, options: Omit<MeshOptions, "progress">, deviations: boolean, progress: (part: number) => void): Beside<Meshed> =>
     beside({ kind: "mesh", source, options, deviations }, progress);
+
+/** What a file holds, read beside the page. */
+export const read = (source: Source): Beside<Understood> => beside({ kind: "read", source }, () => undefined);
 
 /** The answer of a command, found beside the page. */
 export const answer = (command: CommandName, source: Source, options: Options): Beside<unknown> => beside({ kind: "run", command, source, options }, () => undefined);

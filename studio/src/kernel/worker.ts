@@ -1,7 +1,7 @@
 // Tessellation beside the page: large models leave it fluid, and cancelling is the end of the worker.
 
 import { load, type Mesh, type Shape } from "freiform";
-import type { Meshed, News, Order } from "./module";
+import type { Meshed, News, Order, Understood } from "./module";
 
 const tell = (news: News, transfer: Transferable[] = []): void => { postMessage(news, { transfer }); };
 
@@ -27,6 +27,12 @@ function asked(shape: Shape, mesh: Mesh, progress: (part: number) => void): Floa
 async function work({ module, task }: Order): Promise<void> {
     const ff = await load(module);
     if (task.kind === "run") { tell({ kind: "done", result: ff.run(task.command, task.source, task.options).json as unknown }); return; }
+    if (task.kind === "read") {
+        const { shapes, unit, leftOut } = ff.document(task.source);
+        const result: Understood = { document: JSON.stringify(ff.json(shapes, unit)), leftOut };
+        tell({ kind: "done", result });
+        return;
+    }
     const { source, options, deviations } = task;
     const shapes = ff.document(source).shapes.filter((shape) => kMeshed.has(shape.type));
     const meshes: Mesh[] = [], distances: Float64Array[] = [];

@@ -7,7 +7,8 @@ import { refuse } from "./toast";
 export interface Opened { readonly name: string; readonly source: string | Uint8Array }
 
 const kText = /\.(json|svg|obj|map|bpt|txt|csv)$/i;
-const kProgram = /\.(step|stp|iges|igs|brep|3dm)$/i;
+const kProgram = /\.(iges|igs|brep)$/i;
+const kModel = /\.(step|stp)$/i;
 const kMostBytes = 256 * 2 ** 20;
 
 async function read(file: File): Promise<Opened> {
@@ -19,9 +20,12 @@ async function read(file: File): Promise<Opened> {
     return { name: file.name, source: kText.test(file.name) ? await file.text() : new Uint8Array(await file.arrayBuffer()) };
 }
 
+/** Whether what comes from this file is looked at, not edited. */
+export const isModel = (opened: Opened): boolean => kModel.test(opened.name);
+
 /** A button that opens a file. */
 export function opener(open: (file: Opened) => void): HTMLElement {
-    const input = h("input", { type: "file", hidden: true, accept: ".json,.bpt,.svg,.obj,.bsp,.map", onchange: () => {
+    const input = h("input", { type: "file", hidden: true, accept: ".json,.step,.stp,.bpt,.svg,.obj,.bsp,.map", onchange: () => {
         const file = input.files?.[0];
         input.value = "";
         if (file) read(file).then(open).catch(refuse);

@@ -12,6 +12,8 @@ export interface PlaneOptions {
     /** The ground can be dragged and zoomed. */
     readonly movable?: boolean;
     readonly height?: number;
+    /** Pixels that are kept free above and below what is shown. */
+    readonly above?: number;
 }
 
 type Item =
@@ -141,7 +143,8 @@ export class Plane implements View {
         const { lower, upper } = this.wanted;
         const [x0 = 0, y0 = 0] = lower, [x1 = 1, y1 = 1] = upper;
         const margin = this.options.graph ? 34 : 48;
-        const sx = (this.width - 2 * margin) / (x1 - x0 || 1), sy = (this.height - 2 * margin) / (y1 - y0 || 1);
+        const above = this.options.above ?? margin;
+        const sx = (this.width - 2 * margin) / (x1 - x0 || 1), sy = (this.height - 2 * above) / (y1 - y0 || 1);
         const both = Math.max(1e-12, Math.min(sx, sy));
         this.scale = this.options.graph ? [Math.max(sx, 1e-12), Math.max(sy, 1e-12)] : [both, both];
         this.origin = [this.width / 2 - ((x0 + x1) / 2) * this.scale[0], this.height / 2 + ((y0 + y1) / 2) * this.scale[1]];

@@ -1,13 +1,18 @@
 // What is tested in the browser: name, what is done, and with which browser.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
+const example = (name) => fileURLToPath(new URL(`../../../examples/${name}`, import.meta.url));
+const bracket = () => readFileSync(example("bracket.step"), "utf8");
+/** One of its surfaces is of a kind that no reader knows. */
+const odd = () => bracket().replace("TOROIDAL_SURFACE(", "WRINKLED_SURFACE(");
 const kRows = Array.from({ length: 36 }, (_, i) => `R${i + 1}`);
 const settle = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
 /** Waits until `f` is true in the page. (What Playwright has for this evaluates text, which the page's policy forbids.) */
 async function until(page, f, arg) {
-    const last = Date.now() + 20000;
+    const last = Date.now() + 60000;
     while (!(await page.evaluate(f, arg).catch(() => false))) {
         if (Date.now() > last) throw new Error(`never: ${f}`);
         await new Promise((done) => setTimeout(done, 50));
@@ -40,6 +45,16 @@ const points = (page) => page.evaluate(async () => {
 });
 const toast = async (page) => { await page.waitForSelector(".toast.refused", { timeout: 8000 }); return page.locator(".toast.refused").last().innerText(); };
 const file = async (page, path) => { await page.locator('input[type="file"]').first().setInputFiles(path); await settle(page); };
+
+/** What a file dragged from elsewhere and let go there does. */
+async function drop(page, onto, name, content) {
+    const data = await page.evaluateHandle(([name, content]) => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([content], name));
+        return transfer;
+    }, [name, content]);
+    await page.locator(onto).first().dispatchEvent("drop", { dataTransfer: data });
+}
 
 async function axe(page) {
     await page.evaluate(readFileSync(fileURLToPath(new URL("../../node_modules/axe-core/axe.min.js", import.meta.url)), "utf8"));
@@ -261,9 +276,9 @@ export const cases = [
         await file(page, write("knots.json", '{"type": "curve", "degree": 2, "knots": [0,0,0,2,1,1,1], "points": [[0,0],[1,1],[2,0],[3,3]]}'));
         await settle(page);
         assert.match(await page.locator(".toast.refused").last().innerText(), /knots/);
-        await file(page, write("part.step", "ISO-10303-21;"));
+        await file(page, write("part.iges", "ISO-10303-21;"));
         await settle(page);
-        assert.match(await page.locator(".toast.refused").last().innerText(), /freiform view part\.step/);
+        assert.match(await page.locator(".toast.refused").last().innerText(), /freiform view part\.iges/);
         assert.equal(JSON.stringify(await page.locator(".handle").count()), before);
     }],
     ["edit and explore: by finger", async ({ page, url, context, picture }) => {
@@ -325,6 +340,68 @@ export const cases = [
         assert.notEqual(await shot(), before, "arrow keys turn");
         await axe(page);
     }],
+    ["inspect: a STEP file dropped anywhere is read in the browser; its refused faces say why", async ({ page, url, picture }) => {
+        const triangles = () => page.evaluate(() => Number(document.querySelector(".view.space")?.dataset.triangles ?? 0));
+        const entries = () => page.locator(".tools .list li:not(.bad)").count();
+        await go(page, url, "#/explore/R5", ".page .side h1");
+        await drop(page, "article", "bracket.step", bracket());
+        await page.waitForSelector("text=bracket.step", { timeout: 60000 });
+        await until(page, () => document.querySelectorAll(".tools .list li").length === 24);
+        assert.match(page.url(), /#\/inspect$/);
+        assert.equal(await refused(page), "");
+        assert.equal(await page.locator(".list li.bad").count(), 0);
+        assert.match(await page.locator(".tools tr", { hasText: "open edges" }).innerText(), /\b0$/);
+        await settle(page);
+        await picture("bracket");
+        const coarse = await triangles();
+        await page.getByLabel("Tolerance", { exact: true }).focus();
+        for (let i = 0; i < 3; ++i) await page.keyboard.press("ArrowRight");
+        await until(page, (was) => Number(document.querySelector(".view.space").dataset.triangles) > was, coarse);
+        await drop(page, ".stage", "odd.stp", odd());
+        await page.waitForSelector(".list li.bad", { timeout: 60000 });
+        assert.match(await page.locator(".list li.bad").first().innerText(), /#\d+ ADVANCED_FACE: .*WRINKLED_SURFACE/);
+        await until(page, () => document.querySelectorAll(".tools .list li:not(.bad)").length === 23);
+        await picture("bracket-refused");
+        assert.equal(await refused(page), "");
+        const kept = await entries();
+        await drop(page, ".stage", "half.step", bracket().slice(0, 60000));
+        assert.match(await toast(page), /unreadable/);
+        assert.equal(await entries(), kept, "a file that cannot be read leaves what is shown");
+    }],
+    ["freiform view: a STEP file, read by the program, with its faces and what the slider does", async ({ page, url, view, scratch, picture }) => {
+        await page.goto(url);
+        await until(page, () => document.querySelectorAll(".tools .list li").length === 24);
+        assert.match(page.url(), /#\/inspect$/);
+        assert.equal(await refused(page), "");
+        assert.equal(await page.locator(".list li.bad").count(), 0);
+        await settle(page);
+        await picture("view-bracket");
+        const bound = async () => Number(await page.locator(".tools tr", { hasText: "error bound" }).locator("td").innerText());
+        const coarse = await bound();
+        await page.getByLabel("Tolerance", { exact: true }).focus();
+        for (let i = 0; i < 4; ++i) await page.keyboard.press("ArrowRight");
+        for (let i = 0; i < 600 && !((await bound()) < coarse); ++i) await new Promise((done) => setTimeout(done, 100));
+        assert.ok((await bound()) < coarse && (await bound()) > 0, "a finer tolerance has a smaller bound");
+        const before = await page.evaluate(() => document.querySelector("canvas").toDataURL());
+        await page.locator(".tools .list button").nth(3).click();
+        await settle(page);
+        assert.notEqual(await page.evaluate(() => document.querySelector("canvas").toDataURL()), before, "a face that is chosen is marked");
+        await drop(page, ".stage", "bad.json", '{"type": "curve", "points": [[0,0],[1,');
+        assert.match(await toast(page), /unreadable|invalid/);
+        const bad = join(scratch, "bad.json");
+        writeFileSync(bad, '{"type": "curve", "points": [[0,0],[1,');
+        const ended = await view(bad).then(() => undefined, (error) => error);
+        assert.equal(ended?.code, 3);
+        assert.match(ended.complained, /bad\.json/);
+    }, { view: () => example("bracket.step") }],
+    ["freiform view: faces that were refused are marked, once each", async ({ page, url, picture }) => {
+        await page.goto(url);
+        await page.waitForSelector(".list li.bad", { timeout: 60000 });
+        await until(page, () => document.querySelectorAll(".tools .list li:not(.bad)").length >= 1);
+        await picture("view-refused");
+        const all = await page.locator(".list li.bad").allInnerTexts();
+        assert.ok(all.length >= 1 && new Set(all).size === all.length, all.join("\n"));
+    }, { view: (scratch) => { const path = join(scratch, "odd.step"); writeFileSync(path, odd()); return path; } }],
     ["inspect: what freiform view serves is opened, refused faces are marked", async ({ page, url }) => {
         await page.goto(url);
         await until(page, () => Number(document.querySelector(".view.space")?.dataset.triangles) > 0);

@@ -1,11 +1,11 @@
 // The studio as readers meet it: in Chromium, by mouse, keyboard and finger. Needs studio/dist (npm run build).
 //     node tests/browser/run.mjs [part of a name ..]        STUDIO_PICTURES=folder keeps screenshots
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
-import { serve } from "./served.mjs";
+import { serve, viewed } from "./served.mjs";
 import { cases } from "./cases.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -16,7 +16,10 @@ mkdirSync(scratch, { recursive: true });
 
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", ...(process.env.CHROMIUM_ARGS ?? "").split(" ").filter(Boolean)] });
-const site = await serve(join(here, "../../dist"));
+const dist = join(here, "../../dist");
+const site = await serve(dist);
+const root = join(here, "../../..");
+const program = process.env.FREIFORM ?? ["build-dev", "build", "build-demo"].map((folder) => join(root, folder, "bin/freiform")).find(existsSync);
 const wanted = process.argv.slice(2);
 let failed = 0, passed = 0;
 
@@ -36,12 +39,13 @@ let common;
 
 for (const [name, act, options = {}] of cases) {
     if (wanted.length > 0 && !wanted.some((w) => name.includes(w))) continue;
+    if (options.view && !program) { console.log(`SKIP  ${name}: the program is not built`); continue; }
     const began = performance.now();
-    const own = options.extra ? await serve(join(here, "../../dist"), options.extra()) : site;
+    const own = options.extra ? await serve(dist, options.extra()) : options.view ? await viewed(program, dist, options.view(scratch)) : site;
     const { context, page, trouble } = options.common ? (common ??= await opened({}, own.url)) : await opened(options.context ?? {}, own.url);
     let fine = false;
     try {
-        await act({ page, context, url: own.url, scratch, trouble, write: (file, text) => { const path = join(scratch, file); writeFileSync(path, text); return path; },
+        await act({ page, context, url: own.url, scratch, trouble, view: (file) => viewed(program, dist, file), write: (file, text) => { const path = join(scratch, file); writeFileSync(path, text); return path; },
             read: (path) => readFileSync(path), picture: async (file) => { if (pictures) await page.screenshot({ path: join(pictures, `${file}.png`) }); } });
         if (trouble.length > 0) throw new Error(trouble.join("\n    "));
         fine = true;

@@ -1,4 +1,5 @@
 // The built page on 127.0.0.1, with the headers that `freiform view` sends; files given in `extra` are served as well.
+import { spawn } from "node:child_process";
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import { extname, join, normalize } from "node:path";
@@ -19,4 +20,19 @@ export function serve(folder, extra = {}) {
         }, () => { response.writeHead(404, { "Content-Type": "text/plain" }); response.end("not found"); });
     });
     return new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve({ url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() })));
+}
+
+/** What `freiform view` serves, at the address that it prints. */
+export function viewed(program, page, file) {
+    const child = spawn(program, ["view", file, "--no-browser", "--page", page], { stdio: ["ignore", "pipe", "pipe"] });
+    return new Promise((resolve, reject) => {
+        let said = "", complained = "";
+        child.stderr.on("data", (part) => { complained += part; });
+        child.stdout.on("data", (part) => {
+            said += part;
+            if (said.includes("\n")) resolve({ url: said.slice(0, said.indexOf("\n")), close: () => child.kill() });
+        });
+        child.on("error", reject);
+        child.on("exit", (code) => { reject(Object.assign(new Error(`freiform view ended with ${code}: ${complained}`), { code, complained })); });
+    });
 }

@@ -18,15 +18,18 @@ interface Joint {
 }
 interface Side { readonly tangent: number[]; readonly curvature?: { value: number } }
 
+/** unit/t^2 with the figure set high. */
+export const raised = (unit: string): string => unit.replace(/\^(\d)/g, (_, n: string) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(n)] ?? "");
+
 /** Which of C0..C3 and G0..G3 hold, and by how much the first fails. */
 function report(stage: Stage, joint: Joint | undefined): void {
     if (!joint) { stage.say(say(t("Die Stücke berühren sich nicht.", "The pieces do not meet."))); return; }
     const mark = (name: string, order: number, reached: number): HTMLElement =>
-        h("span", { class: order <= reached ? "yes" : "no" }, `${order <= reached ? "✓" : "✗"} ${name}${order}  `);
+        h("span", { class: order <= reached ? "yes" : "no" }, `${order <= reached ? "✓" : "✗"}\u00a0${name}${order} `);
     const line = (name: string, reached: number): HTMLElement => h("span", {}, ...[0, 1, 2, 3].map((k) => mark(name, k, reached)));
     const first = (jumps: Jump[], reached: number): string => {
         const jump = jumps.find((j) => j.order > reached);
-        return jump ? `${shown(jump.size)} ${jump.unit}` : "–";
+        return jump ? `${shown(jump.size)} ${raised(jump.unit)}` : "–";
     };
     stage.say([["C", line("C", joint.c_order)], ["G", line("G", joint.g_order)],
         [say(t("erster Sprung C", "first jump of C")), first(joint.c_jumps, joint.c_order)],

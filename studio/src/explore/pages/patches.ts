@@ -76,12 +76,14 @@ const r26: Page = {
             space.clear();
             text.textContent = map();
             const shapes = ff().document(file("patch.map", map())).shapes;
+            // Every second row of points is on the surface, where pieces meet.
+            const pieces = shapes.reduce((n, s) => n + ((s.size[0] ?? 1) - 1) * ((s.size[1] ?? 1) - 1) / 4, 0);
             try {
                 shapes.forEach((s) => { surface(space, s, {}, 30); });
                 for (const s of shapes) for (const axis of [0, 1] as const) for (const k of new Set(s.knots[axis])) isoline(space, s, axis, k, { colour: "curve", width: 1.5 });
             } finally { shapes.forEach((s) => { s.free(); }); }
             lattice(space, points);
-            stage.say([[say(t("Stücke", "pieces")), String(shapes.length)]]);
+            stage.say([[say(t("Stücke", "pieces")), String(pieces)]]);
         });
     },
 };
@@ -154,8 +156,8 @@ function rowsOf(points: readonly number[][], degree: number): number[][][] {
 
 const r29: Page = {
     row: "R29", title: t("Dreieckige Bézier-Flächen", "Triangular Bézier patches"), gist: t("baryzentrische Koordinaten", "barycentric coordinates"),
-    text: t("Ein Dreieck mit Punkten b_ijk, i + j + k = n. Die Ränder sind Bézier-Kurven, die Ecken liegen auf der Fläche. Ziehen Sie den Prüfpunkt im kleinen Dreieck.",
-        "A triangle with points b_ijk, i + j + k = n. The boundaries are Bézier curves, the corners lie on the surface. Move the point by its coordinates."),
+    text: t("Ein Dreieck mit Punkten bᵢⱼₖ, i + j + k = n. Die Ränder sind Bézier-Kurven, die Ecken liegen auf der Fläche. Seine Koordinaten bewegen den Prüfpunkt.",
+        "A triangle with points bᵢⱼₖ, i + j + k = n. The boundaries are Bézier curves, the corners lie on the surface. Move the point by its coordinates."),
     formula: `B_{ijk}^n(t_1, t_2, t_3) = frac{n!}{i! j! k!} t_1^i t_2^j t_3^k`,
     build(stage) {
         const points = [[0, 0, 0], [1, -0.2, 0.9], [0.2, 1, 0.7], [2, -0.2, 0.8], [1.1, 1, 2.2], [0.2, 2, 0.6], [3, 0, 0], [2, 1, 0.9], [1, 2, 1.2], [0, 3, 0.2]];

@@ -39,7 +39,7 @@ function drawStrip(plane: Plane, knots: readonly number[]): void {
 }
 
 const r11: Page = {
-    row: "R11", title: t("Gleichmäßige B-Splines", "Uniform B-splines"), gist: t("C² von selbst; doppelte Punkte", "C² for free; doubled points"),
+    row: "R11", title: t("Gleichmäßige B\u2011Splines", "Uniform B\u2011splines"), gist: t("C² von selbst; doppelte Punkte", "C² for free; doubled points"),
     text: t("Mit m + 1 Punkten hat der kubische Spline m − 2 Stücke und überall zwei stetige Ableitungen. Ein Punkt, der dreimal vorkommt, wird interpoliert, um den Preis eines geraden Stücks auf jeder Seite.",
         "With m + 1 points the cubic spline has m − 2 pieces and two continuous derivatives everywhere. A point used three times is interpolated, at the price of a straight piece on each side."),
     formula: `M_{BS} = frac{1}{6} [-1 3 -3 1; 3 -6 0 4; -3 3 3 1; 1 0 0 0]`,
@@ -79,7 +79,7 @@ const r11: Page = {
 };
 
 const r12: Page = {
-    row: "R12", title: t("Ungleichmäßige B-Splines", "Non-uniform B-splines"), gist: t("ziehbare Knoten", "knots to drag"),
+    row: "R12", title: t("Ungleichmäßige B\u2011Splines", "Non-uniform B\u2011splines"), gist: t("ziehbare Knoten", "knots to drag"),
     text: t("Ziehen Sie die Knoten unten: fallen m zusammen, bleiben p − m stetige Ableitungen, und ein dreifacher Knoten einer Kubik interpoliert einen Kontrollpunkt ohne gerade Stücke. Die Basisfunktionen zeigen es: eine erreicht dort 1.",
         "Drag the knots below: where m of them meet, p − m continuous derivatives are left, and a triple knot of a cubic interpolates a control point without straight pieces. The basis functions show it: one of them reaches 1 there."),
     formula: `N_{i,p}(u) = frac{u - t_i}{t_{i+p} - t_i} N_{i,p-1}(u)
@@ -122,8 +122,8 @@ const r12: Page = {
 
 const r14: Page = {
     row: "R14", title: t("Rationale Kurven", "Rational curves"), gist: t("Gewichte und Kegelschnitte", "weights and conics"),
-    text: t("Mit Gewichten werden Polynomkurven im Raum vom Ursprung aus projiziert, und Kegelschnitte werden exakt. Ein einziges Gewicht entscheidet zwischen Ellipse (w < 1), Parabel (w = 1) und Hyperbel (w > 1). Rechts ist dieselbe Kurve vor der Projektion zu sehen.",
-        "With weights, polynomial curves in space are projected from the origin, and conics become exact. A single weight decides between ellipse (w < 1), parabola (w = 1) and hyperbola (w > 1). On the right is the same curve before the projection."),
+    text: t("Mit Gewichten werden Polynomkurven im Raum vom Ursprung aus projiziert, und Kegelschnitte werden exakt. Ein einziges Gewicht entscheidet zwischen Ellipse (w\u00a0<\u00a01), Parabel (w\u00a0=\u00a01) und Hyperbel (w\u00a0>\u00a01). Rechts ist dieselbe Kurve vor der Projektion zu sehen.",
+        "With weights, polynomial curves in space are projected from the origin, and conics become exact. A single weight decides between ellipse (w\u00a0<\u00a01), parabola (w\u00a0=\u00a01) and hyperbola (w\u00a0>\u00a01). On the right is the same curve before the projection."),
     formula: `Q(t) = frac{sum_i w_i P_i B_i^n(t)}{sum_i w_i B_i^n(t)}`,
     build(stage) {
         const points = [[1, 0], [1, 1], [0, 1]];

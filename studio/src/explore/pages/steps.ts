@@ -101,7 +101,7 @@ const r19: Page = {
             polygon(plane, flat?.points ?? [], { colour: "hot", width: 2 });
             dots(plane, flat?.points ?? [], "hot", 6);
             const table = (ff().run("flatten", q, { compare: n.value }).json as Compared).objects[0]?.methods ?? [];
-            stage.say(table.map((m): [string, string] => [`${m.method} (${m.segments})`, `${shown(m.measured, 3)} ≤ ${shown(m.error_bound, 3)}`]));
+            stage.say(table.map((m): [string, string] => [`${m.method} (${m.segments})`, `${shown(m.measured, 3)}\u00a0≤\u00a0${shown(m.error_bound, 3)}`]));
         });
     },
 };

@@ -8,6 +8,7 @@ import type { Space } from "../../views/space";
 import { run } from "../../views/view";
 import { curve, dots, isoline, lattice, net, shade, surface } from "../draw";
 import type { Page, Stage } from "../stage";
+import { raised } from "./joints";
 
 type Net = number[][][];
 const document = (...objects: SurfaceJson[]): DocumentJson => ({ freiform: 1, objects });
@@ -84,8 +85,10 @@ const r23: Page = {
     row: "R23", title: t("De Casteljau auf Flächen", "De Casteljau on surfaces"), gist: t("bilineare Interpolation, immer wieder", "bilinear interpolation, again and again"),
     text: t("In jeder Masche des Netzes wird bilinear interpoliert; das Netz schrumpft um eine Reihe in jeder Richtung, bis ein Punkt bleibt: S(u, v). Schneiden lässt sich die Fläche in u, in v oder in beiden.",
         "Each cell of the net is interpolated bilinearly; the net shrinks by a row in each direction until one point is left: S(u, v). The surface can be cut in u, in v or in both."),
-    formula: `b_{ij}^r = (1-u)(1-v) b_{ij}^{r-1} + u(1-v) b_{i+1,j}^{r-1}
-              + (1-u)v b_{i,j+1}^{r-1} + u v b_{i+1,j+1}^{r-1}`,
+    formula: `b_{ij}^r = (1-u)(1-v) b_{ij}^{r-1}
+              + u(1-v) b_{i+1,j}^{r-1}
+              + (1-u)v b_{i,j+1}^{r-1}
+              + u v b_{i+1,j+1}^{r-1}`,
     build(stage) {
         const points = hills(kSixteen);
         const space = stage.space(t("Fläche", "surface"));
@@ -230,9 +233,9 @@ const r31: Page = {
             });
             space.line(run(points[3] ?? []), { colour: "hot", width: 1.5 });
             const joint = (ff().run("continuity", document(...parts()), { tolerance: 1e-6 }).json as { joints: SurfaceJoint[] }).joints[0];
-            const order = (name: string, reached: number): Node => h("span", {}, ...[0, 1, 2].map((k) => h("span", { class: k <= reached ? "yes" : "no" }, `${k <= reached ? "✓" : "✗"} ${name}${k}  `)));
+            const order = (name: string, reached: number): Node => h("span", {}, ...[0, 1, 2].map((k) => h("span", { class: k <= reached ? "yes" : "no" }, `${k <= reached ? "✓" : "✗"}\u00a0${name}${k} `)));
             if (joint) stage.say([["C", order("C", joint.c_order)], ["G", order("G", joint.g_order)],
-                [say(t("größter Sprung", "largest jump")), joint.first_g_jump ? `${shown(joint.first_g_jump.size)} ${joint.first_g_jump.unit}` : "–"]]);
+                [say(t("größter Sprung", "largest jump")), joint.first_g_jump ? `${shown(joint.first_g_jump.size)} ${raised(joint.first_g_jump.unit)}` : "–"]]);
         });
     },
 };

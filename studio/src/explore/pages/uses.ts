@@ -150,7 +150,7 @@ const r35: Page = {
     build(stage) {
         const points = [[[0, 0], [0.2, 1], [-0.3, 2], [0, 3]], [[1, 0.5], [1, 1], [1, 2], [1, 3.5]], [[2, -0.5], [2, 1], [2, 2], [2, 2.5]], [[3, 0], [3.4, 1], [2.6, 2], [3, 3]]];
         const plane = stage.plane({ label: "mesh", grid: false });
-        const strip = stage.plane({ label: "gradient", graph: true, movable: false, grid: false, height: 70 });
+        const strip = stage.plane({ label: "gradient", graph: true, movable: false, grid: false, height: 70, above: 12 });
         const graph = stage.graph(t("Kanäle", "channels"), 130);
         plane.fit(points.flat());
         strip.fit([[0, 0], [1, 1]]);
@@ -180,7 +180,9 @@ const r35: Page = {
             strip.image(`<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 10" preserveAspectRatio="none"><defs><linearGradient id="g">${gradient}</linearGradient></defs><rect width="100" height="10" fill="url(#g)"/></svg>`, [0, 0], [1, 1]);
             const key = `${space.value} ${JSON.stringify(mesh())}`;
             if (made !== key) {
-                drawn = ff().run("gradient", [], { mesh: mesh(), to: "svg", space: space.value === "oklch" ? "oklab" : space.value }).text;
+                drawn = ff().run("gradient", [], { mesh: mesh(), to: "svg", space: space.value === "oklch" ? "oklab" : space.value }).text
+                    // Edges that are smoothed let the ground shine through where triangles meet.
+                    .replace("<svg ", '<svg shape-rendering="crispEdges" ');
                 made = key;
             }
             const view = /viewBox="([^"]+)"/.exec(drawn)?.[1]?.split(/\s+/).map(Number) ?? [0, 0, 1, 1];
