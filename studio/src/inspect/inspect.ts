@@ -18,6 +18,11 @@ const kLooks: Record<Look, Text> = { shaded: t("Schattiert", "Shaded"), zebra: t
 const kColourings: Record<Colouring, Text> = { plain: t("ohne", "none"), faces: t("nach Flächen", "by faces"), gauss: t("Gauß-Krümmung", "Gauss curvature"), mean: t("mittlere Krümmung", "mean curvature"),
     bound: t("Fehlerschranke", "error bound"), deviation: t("gemessene Abweichung", "measured deviation") };
 
+/** So many triangles move less than fluidly where pictures are made without a graphics card. */
+const kMany = 150_000;
+/** How much wider the tolerance is of what is shown while the eye moves. */
+const kCoarser = 30;
+
 /** What the reader looks at stays when the language changes. */
 let last: { name: string; source: Source; refused: Refused[] } | undefined;
 
@@ -60,6 +65,7 @@ class Inspector implements Shown {
     private model: Model | undefined;
     private drawn: Drawn | undefined;
     private meshing: Beside<Meshed> | undefined;
+    private coarsening: Beside<Meshed> | undefined;
     private reading: Beside<Understood> | undefined;
     private key: HTMLElement | undefined;
     private size = 1;
@@ -86,6 +92,7 @@ class Inspector implements Shown {
 
     dispose(): void {
         this.gone = true;
+        this.coarsening?.cancel();
         this.reading?.cancel();
         this.meshing?.cancel();
         this.model?.shapes.forEach((shape) => { shape.free(); });
@@ -144,6 +151,7 @@ class Inspector implements Shown {
 
     private tessellate(): void {
         this.meshing?.cancel();
+        this.coarsening?.cancel();
         const { model } = this;
         if (!model) return;
         this.said.textContent = shown(this.accuracy(), 3);
@@ -156,12 +164,26 @@ class Inspector implements Shown {
         meshing.done.then(({ meshes, deviations }) => {
             if (this.gone || this.model !== model) return;
             model.meshes = meshes;
+            model.coarse = undefined;
             model.deviations = deviations;
             this.draw();
+            if (meshes.reduce((n, m) => n + m.indices.length / 3, 0) > kMany) this.coarsen(model, options);
             this.tell(performance.now() - began);
         }).catch((error: unknown) => { if (!(error instanceof DOMException)) refuse(error); }).finally(() => {
             if (this.meshing === meshing) this.progress.hidden = this.stop.hidden = true;
         });
+    }
+
+    /** Another level of detail: what cannot be meshed so coarsely is always shown as it is. */
+    private coarsen(model: Model, options: MeshOptions): void {
+        const meshing = mesh(this.source, { ...options, tolerance: kCoarser * options.tolerance }, false, () => undefined);
+        this.coarsening?.cancel();
+        this.coarsening = meshing;
+        meshing.done.then(({ meshes }) => {
+            if (this.gone || this.model !== model || this.coarsening !== meshing || meshes.length !== model.meshes.length) return;
+            model.coarse = meshes;
+            this.draw();
+        }).catch(() => undefined);
     }
 
     private draw(): void {
@@ -187,10 +209,14 @@ class Inspector implements Shown {
     private tell(time: number): void {
         const meshes = this.model?.meshes ?? [];
         const sum = (f: (m: (typeof meshes)[0]) => number): number => meshes.reduce((n, m) => n + f(m), 0);
+        const all = [...this.refused, ...meshes.flatMap((m) => m.refused.map((r) => ({ where: r.where || r.name || `face ${r.face}`, kind: r.kind, message: r.message })))];
+        // The program lists what it refused, and its document has the list again.
+        const bad = [...new Map(all.map((r) => [`${r.where} ${r.message}`, r])).values()];
         const rows: [string, string][] = [
             [say(t("Dreiecke", "triangles")), String(sum((m) => m.indices.length / 3))], [say(t("Flächen", "faces")), String(sum((m) => m.parts.length))],
             [say(t("Schranke", "error bound")), shown(meshes.reduce((x, m) => Math.max(x, m.errorBound), 0), 4)], [say(t("Lücke am Rand", "boundary gap")), shown(meshes.reduce((x, m) => Math.max(x, m.boundaryGap), 0), 4)],
-            ...(this.model?.solid.some((s) => s.type === "model") ? [[say(t("offene Kanten", "open edges")), String(sum((m) => m.openEdges))] as [string, string]] : []), [say(t("Zeit", "time")), `${shown(time, 3)} ms`]];
+            ...(this.model?.solid.some((s) => s.type === "model") ? [[say(t("offene Kanten", "open edges")), String(sum((m) => m.openEdges))] as [string, string]] : []),
+            ...(bad.length > 0 ? [[say(t("nicht gelesen", "refused")), `⚠ ${bad.length}`] as [string, string]] : []), [say(t("Zeit", "time")), `${shown(time, 3)} ms`]];
         this.facts.replaceChildren(h("table", {}, ...rows.map(([a, b]) => h("tr", {}, h("th", { scope: "row" }, a), h("td", {}, b)))));
         const entries = meshes.flatMap((m, shape) => m.parts.map((part) => {
             const name = part.name || this.model?.solid[shape]?.name || `${say(t("Fläche", "face"))} ${shape}.${part.face}`;
@@ -203,9 +229,6 @@ class Inspector implements Shown {
             } }, `${name} · ${part.count} · ≤ ${shown(part.errorBound, 2)}`);
             return h("li", {}, button);
         }));
-        const all = [...this.refused, ...meshes.flatMap((m) => m.refused.map((r) => ({ where: r.where || r.name || `face ${r.face}`, kind: r.kind, message: r.message })))];
-        // The program lists what it refused, and its document has the list again.
-        const bad = [...new Map(all.map((r) => [`${r.where} ${r.message}`, r])).values()];
         this.list.replaceChildren(...bad.map((r) => h("li", { class: "bad" }, h("button", { onclick: () => { refuse(r); } }, `⚠ ${r.where}: ${r.message}`))), ...entries.slice(0, 2000));
     }
 

@@ -25,7 +25,7 @@ export interface Showing {
     chosen: { shape: number; face: number } | undefined;
 }
 
-export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; deviations: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
+export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
 
 type Edge = `${"u" | "v"} ${"start" | "end"}`;
 /** What the module says about joints of surfaces, and edges and knots inside of objects. */
@@ -112,6 +112,10 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
         const colours = list && scale ? painted(single ? list.flatMap((x) => [x, x, x]) : list, scale)
             : colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
         return space.surface({ points: split.positions, normals: split.normals, indices: split.indices, colours, origin: mesh.origin }, { look: showing.look, edges: showing.edges });
+    });
+    if (!values) model.coarse?.forEach((mesh, i) => {
+        const fine = objects[i], colours = colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
+        if (fine) space.stands(space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, colours, origin: mesh.origin }, { look: showing.look }), fine);
     });
     for (const shape of model.shapes) lines(space, shape, showing);
     if (showing.joints && model.continuity) joints(space, model.shapes, model.continuity);

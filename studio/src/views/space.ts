@@ -31,6 +31,9 @@ export interface SurfaceStyle {
     readonly edges?: boolean;
 }
 
+/** Milliseconds without a movement after which all triangles are drawn again. */
+const kStill = 250;
+
 const kLooks: Record<Look, number> = { shaded: 0, zebra: 1, isophotes: 2, normals: 3, flat: 4 };
 
 /** Stripes are the reflection of a striped room; they are computed for each pixel from the module's normals. */
@@ -79,6 +82,9 @@ export class Space implements View {
     private readonly watcher: ResizeObserver;
     private readonly forget: () => void;
     private readonly ray = new THREE.Raycaster();
+    /** What is drawn while the eye moves, in place of what is looked at. */
+    private readonly levels: { readonly fine: THREE.Object3D; readonly coarse: THREE.Object3D }[] = [];
+    private still: ReturnType<typeof setTimeout> | undefined;
     /** The theme changed: what was drawn has the colours of the old one. */
     onColours: (() => void) | undefined;
     onMoved: (() => void) | undefined;
@@ -107,7 +113,7 @@ export class Space implements View {
         this.controls = new OrbitControls(this.eye, canvas);
         this.controls.enableDamping = false;
         this.controls.zoomToCursor = true;
-        this.controls.addEventListener("change", () => { this.redraw(); this.onMoved?.(); });
+        this.controls.addEventListener("change", () => { this.moved(); this.redraw(); this.onMoved?.(); });
         canvas.addEventListener("keydown", (event) => { this.key(event); });
         this.watcher = new ResizeObserver(() => { this.measure(); });
         this.watcher.observe(this.element);
@@ -116,6 +122,7 @@ export class Space implements View {
 
     dispose(): void {
         this.clear();
+        clearTimeout(this.still);
         this.watcher.disconnect();
         this.forget();
         this.controls.dispose();
@@ -127,7 +134,30 @@ export class Space implements View {
         for (const child of [...this.picture.children]) discard(child);
         this.picture.clear();
         this.lines.clear();
+        this.levels.length = 0;
         this.texts = [];
+        this.redraw();
+    }
+
+    /** Shows `coarse` instead of `fine` while the eye moves. */
+    stands(coarse: THREE.Object3D, fine: THREE.Object3D): void {
+        coarse.visible = false;
+        this.levels.push({ fine, coarse });
+    }
+
+    private moved(): void {
+        if (this.levels.length === 0) return;
+        clearTimeout(this.still);
+        this.coarsely(true);
+        this.still = setTimeout(() => { this.coarsely(false); }, kStill);
+    }
+
+    private coarsely(on: boolean): void {
+        for (const { fine, coarse } of this.levels) {
+            fine.visible = !on;
+            coarse.visible = on;
+        }
+        this.element.dataset["level"] = on ? "coarse" : "fine";
         this.redraw();
     }
 

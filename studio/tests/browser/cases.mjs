@@ -368,6 +368,29 @@ export const cases = [
         assert.match(await toast(page), /unreadable/);
         assert.equal(await entries(), kept, "a file that cannot be read leaves what is shown");
     }],
+    ["inspect: of many triangles few are drawn while the eye moves, all when it rests", async ({ page, url, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await until(page, () => Number(document.querySelector(".view.space")?.dataset.triangles) > 100);
+        const level = () => page.evaluate(() => document.querySelector(".view.space").dataset.level ?? "only");
+        await page.locator("canvas").focus();
+        await page.keyboard.press("ArrowLeft");
+        assert.equal(await level(), "only", "the teapot within a thousandth is fluid as it is");
+        await page.getByLabel("Tolerance", { exact: true }).focus();
+        for (let i = 0; i < 17; ++i) await page.keyboard.press("ArrowRight");
+        await until(page, () => Number(document.querySelector(".view.space").dataset.triangles) > 150000);
+        const many = await page.evaluate(() => document.querySelector(".view.space").dataset.triangles);
+        await page.locator("canvas").focus();
+        await until(page, () => {
+            document.querySelector("canvas").dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft" }));
+            return document.querySelector(".view.space").dataset.level === "coarse";
+        });
+        await settle(page);
+        await picture("level-coarse");
+        await until(page, () => document.querySelector(".view.space").dataset.level === "fine");
+        await settle(page);
+        await picture("level-fine");
+        assert.equal(await page.evaluate(() => document.querySelector(".view.space").dataset.triangles), many, "the count is of what is looked at");
+    }],
     ["freiform view: a STEP file, read by the program, with its faces and what the slider does", async ({ page, url, view, scratch, picture }) => {
         await page.goto(url);
         await until(page, () => document.querySelectorAll(".tools .list li").length === 24);
@@ -399,6 +422,7 @@ export const cases = [
         await page.waitForSelector(".list li.bad", { timeout: 60000 });
         await until(page, () => document.querySelectorAll(".tools .list li:not(.bad)").length >= 1);
         await picture("view-refused");
+        assert.match(await page.locator(".tools tr", { hasText: "refused" }).innerText(), /⚠ 1$/);
         const all = await page.locator(".list li.bad").allInnerTexts();
         assert.ok(all.length >= 1 && new Set(all).size === all.length, all.join("\n"));
     }, { view: (scratch) => { const path = join(scratch, "odd.step"); writeFileSync(path, odd()); return path; } }],
