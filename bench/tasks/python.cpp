@@ -1,6 +1,7 @@
 // The C++ side of bench/PYTHON.md: a million points of a cubic curve and of a bicubic surface, both rational,
-// prepared. Prints nanoseconds per point on one thread and on all: the medians of 15 runs, after one that is
-// not counted.
+// prepared; into fresh memory, as a new array in Python has it, and into memory that is there. Prints
+// nanoseconds per point on one thread and on all, of the clock and of the processor: the medians of 15 runs,
+// after one that is not counted.
 #include <freiform/core/parallel.hpp>
 #include <freiform/spline/prepared.hpp>
 
@@ -8,23 +9,37 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
+#include <memory>
 
 namespace {
 
 using namespace freiform;
 
+struct Time {
+    double clock = 0, processor = 0;  // nanoseconds per point
+};
+
+double processor_now() { return double(std::clock()) * (1e9 / CLOCKS_PER_SEC); }
+
+double median(std::vector<double>& times) {
+    std::ranges::nth_element(times, times.begin() + std::ptrdiff_t(times.size() / 2));
+    return times[times.size() / 2];
+}
+
 template <class F>
-double nanoseconds_per_point(std::size_t n, F&& f) {
+Time time_per_point(std::size_t n, F&& f) {
     f();
-    std::vector<double> times;
+    std::vector<double> clock, processor;
     for (int run = 0; run < 15; ++run) {
+        const double before = processor_now();
         const auto start = std::chrono::steady_clock::now();
         f();
-        times.push_back(
+        clock.push_back(
             std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count());
+        processor.push_back(processor_now() - before);
     }
-    std::ranges::nth_element(times, times.begin() + 7);
-    return times[7] / double(n);
+    return {median(clock) / double(n), median(processor) / double(n)};
 }
 
 // What tools/bench_python.py makes, too.
@@ -43,11 +58,16 @@ void measure(const char* name, const std::array<int, N>& size, const std::vector
     const auto patch = PreparedPatch<N, Hom<3>>::make(*Patch<N, Hom<3>>::make(bases, net));
     for (const int threads : {1, 0}) {
         set_max_threads(threads);
-        const double time = nanoseconds_per_point(at.size(), [&] {
-            std::vector<Vec<3>> out(at.size());  // a new result each time, as Python's is
-            (void)patch->evaluate(at, out);
-        });
-        std::printf("%s %s %.3f\n", name, threads == 1 ? "one" : "all", time);
+        const auto print = [&](const char* memory, const Time& t) {
+            std::printf("%s %s %s %.3f %.3f\n", name, threads == 1 ? "one" : "all", memory, t.clock,
+                        t.processor);
+        };
+        print("fresh", time_per_point(at.size(), [&] {
+                  const auto out = std::make_unique_for_overwrite<double[]>(3 * at.size());
+                  (void)patch->evaluate(at, {reinterpret_cast<Vec<3>*>(out.get()), at.size()});
+              }));
+        std::vector<Vec<3>> out(at.size());
+        print("reused", time_per_point(at.size(), [&] { (void)patch->evaluate(at, out); }));
     }
 }
 

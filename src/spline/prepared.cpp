@@ -3,11 +3,15 @@
 #include "prepared_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/spline/evaluate_gathered.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
 
 namespace freiform {
 
@@ -27,13 +31,13 @@ bool is_good(const BSplineBasis& basis, double x) {
     return std::isfinite(x) && (basis.is_closed() || basis.domain().contains(x));
 }
 
-// The refusal of the first parameter that is not good, if there is one.
-Result<void> check(const Tables& t, std::span<const double> at) {
+// The refusal of the first parameter that is not good, if there is one; `at` begins with that of point first.
+Result<void> check(const Tables& t, std::span<const double> at, std::size_t first = 0) {
     const std::size_t axes = t.axis.size();
     for (std::size_t i = 0; i < at.size(); ++i) {
         const BSplineBasis& basis = t.axis[i % axes].basis;
         if (!is_good(basis, at[i]))
-            return bad_parameter(at[i], basis.domain(), "at", i / axes,
+            return bad_parameter(at[i], basis.domain(), "at", first + i / axes,
                                  axes == 1 ? -1 : std::ptrdiff_t(i % axes));
     }
     return {};
@@ -51,17 +55,29 @@ void in_chunks(std::size_t n, F&& f) {
                  [&](std::size_t i) { f(i * kChunk, std::min(kChunk, n - i * kChunk)); });
 }
 
-// Whether all parameters may be handed to the kernels as they are.
-bool all_inside(const Tables& t, std::span<const double> at) {
-    double lo[3], hi[3];
-    const std::size_t axes = t.axis.size();
-    for (std::size_t d = 0; d < axes; ++d) {
-        const Interval on = t.axis[d].basis.domain();
-        lo[d] = on.lo, hi[d] = on.hi;
+// Whether parameters may be handed to the kernels as they are.
+class Inside {
+public:
+    explicit Inside(const Tables& t) : axes_(t.axis.size()) {
+        for (std::size_t d = 0; d < axes_; ++d) {
+            const Interval on = t.axis[d].basis.domain();
+            lo_[d] = on.lo, hi_[d] = on.hi;
+        }
     }
+    bool operator()(std::span<const double> at) const {
+        return kernels().inside(at.data(), at.size(), int(axes_), lo_, hi_);
+    }
+
+private:
+    std::size_t axes_;
+    double lo_[3], hi_[3];
+};
+bool all_inside(const Tables& t, std::span<const double> at) {
+    const Inside inside(t);
+    const std::size_t axes = t.axis.size();
     std::atomic<bool> fine = true;
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
-        if (!kernels().inside(at.data() + first * axes, count * axes, int(axes), lo, hi)) fine = false;
+        if (!inside(at.subspan(first * axes, count * axes))) fine = false;
     });
     return fine;
 }
@@ -119,6 +135,10 @@ kernel::Output output(const PreparedNet::Destination& to, std::size_t first, int
             past};
 }
 
+bool goes_past(const Tables& t, std::size_t points, std::size_t slots, const PreparedNet::Destination& to) {
+    return points * to.numbers(slots * std::size_t(t.net.dim)) * sizeof(double) > kPastFrom;
+}
+
 Result<void> PreparedNet::evaluate(std::span<const double> at, int order, std::size_t slots,
                                    const Destination& to, Outside outside) const {
     const Tables& t = *tables_;
@@ -127,12 +147,37 @@ Result<void> PreparedNet::evaluate(std::span<const double> at, int order, std::s
     if (!plain && outside == Outside::refuse)
         if (auto ok = check(t, at); !ok) return ok;
     const kernel::Net& net = t.ready;
-    const bool past =
-        at.size() / axes * to.numbers(slots * std::size_t(net.dim)) * sizeof(double) > kPastFrom;
+    const bool past = goes_past(t, at.size() / axes, slots, to);
     in_chunks(at.size() / axes, [&](std::size_t first, std::size_t count) {
         evaluate_chunk(t, net, at.subspan(first * axes, count * axes), !plain,
                        output(to, first, order, slots, std::size_t(net.dim), past));
     });
+    return {};
+}
+
+Result<void> evaluate_gathered(const PreparedNet& net, std::size_t count, const Gather& gather, int order,
+                               std::size_t slots, const PreparedNet::Destination& to, Outside outside) {
+    const Tables& t = net.tables();
+    const std::size_t axes = t.axis.size(), dim = std::size_t(t.net.dim);
+    const Inside inside(t);
+    const bool past = goes_past(t, count, slots, to);
+    std::mutex mutex;
+    std::optional<std::pair<std::size_t, Refusal>> bad;  // and where its chunk begins
+    in_chunks(count, [&](std::size_t first, std::size_t n) {
+        const auto some = std::make_unique_for_overwrite<double[]>(n * axes);
+        gather(first, n, some.get());
+        const std::span<const double> at(some.get(), n * axes);
+        const bool plain = inside(at);
+        if (!plain && outside == Outside::refuse) {
+            if (auto ok = check(t, at, first); !ok) {
+                const std::scoped_lock lock(mutex);
+                if (!bad || first < bad->first) bad.emplace(first, ok.error());
+                return;
+            }
+        }
+        evaluate_chunk(t, t.ready, at, !plain, output(to, first, order, slots, dim, past));
+    });
+    if (bad) return std::unexpected(std::move(bad->second));
     return {};
 }
 

@@ -54,7 +54,9 @@ IntervalLike = Union[Interval, tuple[float, float], Sequence[float]]
 
 
 def plain(x: object) -> object:
-    """Arrays as nested lists, for a repr that can be evaluated."""
+    """Arrays, also those in lists, as nested lists: for a repr that can be evaluated and has all digits."""
+    if type(x) in (list, tuple):
+        return type(x)(map(plain, x))  # type: ignore[call-overload]
     return x.tolist() if isinstance(x, np.ndarray) else x
 
 

@@ -82,9 +82,13 @@ class Curve(_Patch[_core.CurveHandle]):
             return self._evaluate([t], None, outside)
         return self._evaluate([t], nu, outside)[..., nu, :]
 
-    def evaluate(self, t: ArrayLike, derivatives: int | None = None, *, outside: str = "refuse") -> Array:
-        """Points, or with derivatives=k value and derivatives to order k: shape t.shape + (k + 1, dimension)."""
-        return self._evaluate([t], derivatives, outside)
+    def evaluate(self, t: ArrayLike, derivatives: int | None = None, *, outside: str = "refuse",
+                 out: Array | None = None) -> Array:
+        """Points, or with derivatives=k value and derivatives to order k: shape t.shape + (k + 1, dimension).
+
+        out: an array of this shape that they are written to; no memory is taken then.
+        """
+        return self._evaluate([t], derivatives, outside, out)
 
     @from_header("spline/accurate:Accurate", "spline/accurate:evaluate_accurate")
     def evaluate_accurate(self, t: ArrayLike) -> tuple[Array, Array]:

@@ -130,8 +130,9 @@ def read(path: str | os.PathLike[str], *, format: str | None = None, timeout: fl
     return Document._of(_core.read(os.fspath(path), format, timeout, max_bytes, max_memory, reader))
 
 
-def parse(data: str | bytes, format: str) -> Document:
-    """From memory: json, bpt, obj, svg, quake3_bsp or quake3_map."""
+@from_header("io/step_read:read_step")
+def parse(data: str | bytes, format: str | None = None) -> Document:
+    """From memory: json, bpt, step, obj, svg, quake3_bsp or quake3_map; without a name as the content begins."""
     return Document._of(_core.parse(data, format))
 
 

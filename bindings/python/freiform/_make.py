@@ -7,7 +7,7 @@ from typing import NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, IntervalLike, from_header, pair, points_array, vector
+from ._base import Array, ArrayLike, IntervalLike, from_header, pair, plain, points_array, same, vector
 from ._basis import PolynomialBasis
 from ._patches import Curve, Surface
 from ._records import (Compatible, ConicArc, ConicForm, CoonsPatch, FivePointArc, FoundConic, FoundEquation, FrameSweep,
@@ -286,6 +286,18 @@ class Frame(NamedTuple):
     x: Array = np.array([1.0, 0.0, 0.0])
     y: Array = np.array([0.0, 1.0, 0.0])
     z: Array = np.array([0.0, 0.0, 1.0])
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Frame) and all(map(same, self, other))
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
+    def __repr__(self) -> str:
+        return f"Frame({', '.join(f'{name}={plain(value)!r}' for name, value in zip(self._fields, self))})"
 
 
 FULL = (0.0, tau)

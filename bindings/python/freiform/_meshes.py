@@ -147,7 +147,7 @@ class Mesh:
         return hash((self.points.tobytes(), self.triangles.tobytes(), self.unit))
 
     def __repr__(self) -> str:
-        if len(self) > 50:
+        if len(self) > 50 or Mesh(self.points, self.faces, self.unit) != self:  # large, or with more than these
             return f"<Mesh of {len(self.points)} points and {len(self)} triangles>"
         return f"Mesh({self.points.tolist()!r}, {self.faces.tolist()!r}, {self.unit!r})"
 

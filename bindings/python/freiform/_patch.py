@@ -99,10 +99,15 @@ class _Patch(Generic[H]):
 
     # --- values
 
-    def _evaluate(self, parameters: Sequence[ArrayLike], derivatives: int | None, outside: str) -> Array:
+    def _evaluate(self, parameters: Sequence[ArrayLike], derivatives: int | None, outside: str,
+                  out: Array | None = None) -> Array:
         if outside not in ("refuse", "nan"):
             raise InvalidError("outside", f'"{outside}" is not "refuse" or "nan"')
-        values: Array = _core.evaluate(self._c, _broadcast(*parameters), derivatives or 0, outside == "nan")
+        at = _broadcast(*parameters)
+        if out is not None and any(np.may_share_memory(out, a) for a in at):
+            raise InvalidError("out", "shares memory with the parameters")
+        into = out if derivatives != 0 or out is None else out[..., 0, :]
+        values: Array = _core.evaluate(self._c, at, derivatives or 0, outside == "nan", into)
         return values if derivatives != 0 else values[..., np.newaxis, :]
 
     def _grid(self, axes: Sequence[ArrayLike], derivatives: int | None) -> Array:

@@ -67,10 +67,11 @@ class Surface(_Patch[_core.SurfaceHandle]):
             return self._evaluate([u, v], None, outside)
         return self._evaluate([u, v], order, outside)[..., order * (order + 1) // 2 + nu[1], :]
 
-    def evaluate(self, u: ArrayLike, v: ArrayLike, derivatives: int | None = None, *, outside: str = "refuse") -> Array:
+    def evaluate(self, u: ArrayLike, v: ArrayLike, derivatives: int | None = None, *, outside: str = "refuse",
+                 out: Array | None = None) -> Array:
         """Points, or with derivatives=k all partial derivatives to total order k in graded order:
-        S; S_u, S_v; S_uu, S_uv, S_vv; .."""
-        return self._evaluate([u, v], derivatives, outside)
+        S; S_u, S_v; S_uu, S_uv, S_vv; .. (out: as Curve.evaluate has it)"""
+        return self._evaluate([u, v], derivatives, outside, out)
 
     @from_header("spline/accurate:Accurate")
     def evaluate_accurate(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
@@ -192,9 +193,9 @@ class Volume(_Patch[_core.VolumeHandle]):
         return self._evaluate([u, v, w], None, outside)
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, w: ArrayLike, derivatives: int | None = None, *,
-                 outside: str = "refuse") -> Array:
-        """Points, or all partial derivatives to a total order in graded order."""
-        return self._evaluate([u, v, w], derivatives, outside)
+                 outside: str = "refuse", out: Array | None = None) -> Array:
+        """Points, or all partial derivatives to a total order in graded order (out: as Curve.evaluate has it)."""
+        return self._evaluate([u, v, w], derivatives, outside, out)
 
     def grid(self, u: ArrayLike, v: ArrayLike, w: ArrayLike, derivatives: int | None = None) -> Array:
         """Points on a tensor grid."""

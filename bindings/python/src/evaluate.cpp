@@ -2,15 +2,14 @@
 //
 // Method. Parameters of a curve that lie one after the other go to the kernels where they are, and results
 // come where NumPy has them. Parameters of several axes, or with other strides (as broadcasting makes them),
-// are gathered in blocks of kBlock, so that the memory beyond the result is 2 kBlock N numbers for each
-// thread. Patches that the kernels do not take (extreme spans or weights), and derivatives of order above 2,
-// go point by point. Cost. 1e6 points of a cubic curve: what PreparedPatch takes, and one call.
+// are gathered in small pieces (spline/evaluate_gathered.hpp), so that there is no memory beyond the result.
+// Patches that the kernels do not take (extreme spans or weights), and derivatives of order above 2, go point
+// by point. Cost. 1e6 points of a cubic curve: what PreparedPatch takes, and one call.
 #include "handles.hpp"
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/spline/accurate.hpp>
-
-#include <atomic>
+#include <freiform/spline/evaluate_gathered.hpp>
 
 namespace freiform::python {
 namespace {
@@ -51,19 +50,22 @@ public:
             }
             return;
         }
+        // Along the last axis the steps are all the same: row after row, from the first to its end.
+        const std::size_t last = shape_.size() - 1, length = std::size_t(shape_[last]);
         std::vector<py::ssize_t> at(shape_.size());
         std::size_t rest = from;
-        for (std::size_t k = shape_.size(); k-- > 0;) {
+        for (std::size_t k = shape_.size(); k-- > 0; rest /= std::size_t(shape_[k]))
             at[k] = py::ssize_t(rest % std::size_t(shape_[k]));
-            rest /= std::size_t(shape_[k]);
-        }
-        for (std::size_t i = 0; i < count; ++i) {
+        while (count > 0) {
+            const std::size_t n = std::min(count, length - std::size_t(at[last]));
             for (std::size_t d = 0; d < N; ++d) {
                 const char* p = first_[d];
-                for (std::size_t k = 0; k < at.size(); ++k) p += at[k] * stride_[d][k];
-                std::memcpy(&out[i * N + d], p, sizeof(double));
+                for (std::size_t k = 0; k <= last; ++k) p += at[k] * stride_[d][k];
+                for (std::size_t i = 0; i < n; ++i, p += stride_[d][last])
+                    std::memcpy(&out[i * N + d], p, sizeof(double));
             }
-            for (std::size_t k = at.size(); k-- > 0;) {
+            out += n * N, count -= n, at[last] = 0;
+            for (std::size_t k = last; k-- > 0;) {
                 if (++at[k] < shape_[k]) break;
                 at[k] = 0;
             }
@@ -139,15 +141,14 @@ Result<void> evaluate(const PatchHandle<N>& h, const Parameters<N>& at, int orde
         return refuse(RefusalKind::unsupported, "surface",
                       "spans or weights are too extreme for this question");
     if (fast && at.direct()) return fast->evaluate({at.direct(), at.size()}, order, slots, to, outside);
-    return in_blocks(at.size(), [&](std::size_t from, std::size_t count) -> Result<void> {
+    const auto gather = [&](std::size_t from, std::size_t count, double* out) {
+        at.gather(from, count, out);
+    };
+    if (fast) return detail::evaluate_gathered(*fast, at.size(), gather, order, slots, to, outside);
+    return in_blocks(at.size(), [&](std::size_t from, std::size_t count) {
         std::vector<double> block(count * N);
         at.gather(from, count, block.data());
-        double* out = to.jets ? to.jets + from * slots * dim : nullptr;
-        if (!fast) return one_by_one<N>(*h.patch, block, order, slots, out, outside);
-        return fast->evaluate(block, order, slots,
-                              {out, to.normals ? to.normals + from * 3 : nullptr,
-                               to.curvatures ? to.curvatures + from * 2 : nullptr},
-                              outside);
+        return one_by_one<N>(*h.patch, block, order, slots, to.jets + from * slots * dim, outside);
     });
 }
 
@@ -162,6 +163,22 @@ py::array_t<double> empty(std::vector<py::ssize_t> shape, std::initializer_list<
     return py::array_t<double>(shape);
 }
 
+// The array that results go to: a new one, or the one that is given if it is as the new one would be.
+py::array_t<double> destination(const py::object& given, std::vector<py::ssize_t> shape,
+                                std::initializer_list<std::size_t> more) {
+    if (given.is_none()) return empty(std::move(shape), more);
+    for (const std::size_t n : more) shape.push_back(py::ssize_t(n));
+    if (!py::isinstance<py::array_t<double, py::array::c_style>>(given))
+        reject(RefusalKind::invalid, "out", "is not an array of float64 in C order");
+    auto out = py::reinterpret_borrow<py::array_t<double>>(given);
+    if (!out.writeable()) reject(RefusalKind::invalid, "out", "is read-only");
+    if (!std::equal(shape.begin(), shape.end(), out.shape(), out.shape() + out.ndim()))
+        reject(RefusalKind::invalid, "out",
+               text("has the shape ", std::string(py::str(out.attr("shape"))), " and not ",
+                    std::string(py::str(py::tuple(py::cast(shape))))));
+    return out;
+}
+
 void check_order(int order) {
     if (order < 0 || order > 100)
         reject(RefusalKind::invalid, "derivatives", text(order, " is not an order from 0 to 100"));
@@ -172,18 +189,20 @@ void bind_values_of(py::module_& m) {
     // Order 0: points; else all partial derivatives up to the order, in graded order.
     m.def(
         "evaluate",
-        [](const PatchHandle<N>& h, const std::vector<AnyArray>& given, int order, bool nan) {
+        [](const PatchHandle<N>& h, const std::vector<AnyArray>& given, int order, bool nan,
+           const py::object& into) {
             check_order(order);
             const Parameters<N> at(given);
             const std::size_t dim = dimension_of(h), slots = jet_size(N, order);
-            auto out = order == 0 ? empty(at.shape(), {dim}) : empty(at.shape(), {slots, dim});
+            auto out = order == 0 ? destination(into, at.shape(), {dim})
+                                  : destination(into, at.shape(), {slots, dim});
             double* to = out.mutable_data();
             take(unlocked([&] {
                 return evaluate<N>(h, at, order, slots, dim, {to}, nan ? Outside::nan : Outside::refuse);
             }));
             return out;
         },
-        py::arg("patch"), py::arg("at"), py::arg("order"), py::arg("nan"));
+        py::arg("patch"), py::arg("at"), py::arg("order"), py::arg("nan"), py::arg("out"));
     m.def(
         "evaluate_grid",
         [](const PatchHandle<N>& h, const std::vector<Array>& given, int order) {

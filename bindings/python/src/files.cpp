@@ -16,6 +16,7 @@
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
+#include <freiform/io/step_read.hpp>
 
 namespace freiform::python {
 namespace {
@@ -53,18 +54,28 @@ Result<std::string> bytes_as(const Document& d, std::string_view format, double 
         text("\"", format, "\" is not json, bpt, step, iges, obj or svg; meshes are written by Mesh"));
 }
 Result<Document> parsed(std::string_view bytes, std::string_view format) {
+    if (format == "step" || format == "stp") {
+        auto model = read_step(bytes);
+        if (!model) return std::unexpected(model.error());
+        Document d;
+        d.unit = model->unit;
+        d.objects.push_back({"", std::move(*model), {}});
+        return d;
+    }
     if (format == "json") return read_document(bytes);
     if (format == "bpt") return read_bpt(bytes);
     if (format == "obj") return read_obj_freeform(bytes);
-    if (format == "quake3_bsp") return read_quake3_bsp(bytes);
-    if (format == "quake3_map") return read_quake3_map(bytes);
+    if (format == "quake3_bsp" || format == "bsp") return read_quake3_bsp(bytes);
+    if (format == "quake3_map" || format == "map") return read_quake3_map(bytes);
     if (format == "svg") {
         auto picture = read_svg(bytes);
         if (!picture) return std::unexpected(picture.error());
         return document_of(*picture);
     }
     return refuse(RefusalKind::unsupported, "format",
-                  text("\"", format, "\" is not json, bpt, obj, svg, quake3_bsp or quake3_map"));
+                  text("\"", format,
+                       "\" is not json, bpt, step, obj, svg, quake3_bsp or quake3_map; IGES and BREP are "
+                       "read from files"));
 }
 
 }  // namespace
@@ -126,8 +137,13 @@ void bind_files(py::module_& m) {
         py::arg("reader"));
     m.def(
         "parse",
-        [](std::string_view bytes, std::string_view format) {
-            return document_handle(take(unlocked([&] { return parsed(bytes, format); })));
+        [](std::string_view bytes, std::optional<std::string> format) {
+            if (!format) {
+                const auto found = format_of_content(bytes);
+                if (!found) reject(RefusalKind::unreadable, "data", "say nothing of their format: name it");
+                format = name_of(*found);
+            }
+            return document_handle(take(unlocked([&] { return parsed(bytes, *format); })));
         },
         py::arg("data"), py::arg("format"));
     m.def(
