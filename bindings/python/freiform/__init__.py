@@ -56,5 +56,5 @@ def instruction_set() -> str:
 @_base.from_header("spline/prepared:evaluate_grids")
 def evaluate_grids(patches: list[AnyPatch], *axes: ArrayLike) -> Array:
     """The same grid on many patches of one kind: an array (len(patches), .., D)."""
-    handles: list[Any] = [p._c for p in patches]
+    handles = _base.handles(patches, "patches")
     return _core.evaluate_grids(handles, [_base.points_array(a) for a in axes])

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._docs import DOCS
+from ._refusals import InvalidError
 
 __all__ = ["Array", "ArrayLike", "Interval", "Bounded", "Colour", "Record"]
 
@@ -55,8 +56,10 @@ IntervalLike = Union[Interval, tuple[float, float], Sequence[float]]
 
 def plain(x: object) -> object:
     """Arrays, also those in lists, as nested lists: for a repr that can be evaluated and has all digits."""
-    if type(x) in (list, tuple):
-        return type(x)(map(plain, x))  # type: ignore[call-overload]
+    if isinstance(x, list):
+        return [plain(y) for y in x]
+    if type(x) is tuple:
+        return tuple(plain(y) for y in x)
     return x.tolist() if isinstance(x, np.ndarray) else x
 
 
@@ -100,18 +103,68 @@ def from_header(*keys: str) -> Callable[[F], F]:
     return add
 
 
-def points_array(points: ArrayLike) -> Array:
-    return np.ascontiguousarray(points, dtype=np.float64)
+def numbers(x: ArrayLike, where: str = "numbers") -> Array:
+    """An array of doubles; arrays of doubles as they are. What holds no real numbers is refused."""
+    if type(x) is np.ndarray and x.dtype == np.float64:
+        return x
+    if np.ma.is_masked(x):  # type: ignore[no-untyped-call]
+        raise InvalidError(where, "has masked values")
+    try:
+        a = np.asarray(x)
+        if a.dtype.kind in "biuf":
+            return a.astype(np.float64)
+        if a.dtype.kind == "O" and not any(v is None for v in a.flat):
+            return a.astype(np.float64)
+    except (TypeError, ValueError):
+        raise InvalidError(where, "is no array of numbers: rows of different lengths, or something else among them") from None
+    raise InvalidError(where, f"holds {a.dtype} and not real numbers" if a.dtype.kind != "O" else "holds None")
+
+
+def points_array(points: ArrayLike, where: str = "points") -> Array:
+    """Doubles in C order."""
+    return np.ascontiguousarray(numbers(points, where))
+
+
+def rows(points: ArrayLike, where: str = "points") -> Array:
+    """Points, one in each row."""
+    a = points_array(points, where)
+    if a.ndim != 2:
+        raise InvalidError(where, f"has the shape {a.shape}; points are an array (n, D), as numpy.c_[x, y] makes it")
+    if not 1 <= a.shape[1] <= 4:
+        raise InvalidError(where, f"has the shape {a.shape}: points have 1 to 4 coordinates"
+                           + (", one point in each row: transpose it" if 1 <= a.shape[0] <= 4 else ""))
+    return a
+
+
+def indices(x: ArrayLike, where: str) -> Array:
+    """int32 in C order; numbers that are none are refused."""
+    a = numbers(x, where)
+    if a.size and not (np.all(a == np.rint(a)) and np.all(np.abs(a) < 2**31)):
+        raise InvalidError(where, "holds numbers that are no indices")
+    return np.ascontiguousarray(a, dtype=np.int32)
 
 
 def vector(x: ArrayLike, size: int) -> Array:
     """The first coordinates, the others 0."""
     a = np.zeros(size)
-    given = np.asarray(x, dtype=np.float64)
+    given = numbers(x, "vector")
+    if given.ndim != 1 or given.size > size:
+        raise InvalidError("vector", f"has the shape {given.shape}; up to {size} coordinates are needed")
     a[: given.size] = given
     return a
 
 
 def pair(on: IntervalLike) -> tuple[float, float]:
-    lo, hi = on
-    return float(lo), float(hi)
+    ends = numbers(on, "interval")
+    if ends.shape != (2,):
+        raise InvalidError("interval", f"{on!r} is not a pair of numbers (lo, hi)")
+    return float(ends[0]), float(ends[1])
+
+
+def handles(objects: Iterable[Any], where: str) -> list[Any]:
+    """What the library knows of objects of this package."""
+    given = list(objects)
+    for i, x in enumerate(given):
+        if not hasattr(x, "_c"):
+            raise InvalidError(f"{where}[{i}]", f"is of the type {type(x).__name__}, which is none of freiform's")
+    return [x._c for x in given]

@@ -6,7 +6,7 @@ from typing import Any, Sequence
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, Bounded, Interval, IntervalLike, from_header, pair, points_array
+from ._base import Array, ArrayLike, Bounded, Interval, IntervalLike, from_header, numbers, pair, points_array
 from ._basis import Basis, PolynomialBasis
 from ._patch import _basis_tuple, _Patch
 from ._records import (AFrame, ArcLengthCurve, Continuity, Converted, Crossing, Feature, FlattenComparison, ImplicitTerm,
@@ -322,11 +322,11 @@ class ArcLength:
 
     def at(self, t: ArrayLike) -> tuple[Array, Array]:
         """(lengths, bounds)."""
-        return self._c.at(np.asarray(t, dtype=np.float64))
+        return self._c.at(numbers(t, "parameters"))
 
     def parameter(self, length: ArrayLike) -> tuple[Array, Array]:
         """The inverse: (parameters, bounds in model units)."""
-        return self._c.parameter(np.asarray(length, dtype=np.float64))
+        return self._c.parameter(numbers(length, "length"))
 
     def equal_parts(self, n: int) -> tuple[Array, Array]:
         """n + 1 parameters that divide the curve into n parts of equal length, and bounds."""

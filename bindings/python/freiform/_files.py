@@ -5,7 +5,7 @@ import os
 from typing import Any, Iterable, Iterator, Sequence, Union, overload
 
 from . import _core
-from ._base import Array, from_header
+from ._base import Array, from_header, handles
 from ._models import Model, TrimmedSurface
 from ._patches import Curve, Surface, Volume
 from ._records import Approximation
@@ -30,7 +30,7 @@ class Document(Sequence[Shape]):
         given = [""] * len(shapes) if names is None else list(names)
         if len(given) != len(shapes):
             raise InvalidError("names", f"{len(given)} for {len(shapes)} objects")
-        self._c = _core.DocumentHandle([(n, s._c) for n, s in zip(given, shapes)], unit)
+        self._c = _core.DocumentHandle(list(zip(given, handles(shapes, "objects"))), unit)
 
     @classmethod
     def _of(cls, handle: _core.DocumentHandle) -> Document:
@@ -132,7 +132,8 @@ def read(path: str | os.PathLike[str], *, format: str | None = None, timeout: fl
 
 @from_header("io/step_read:read_step")
 def parse(data: str | bytes, format: str | None = None) -> Document:
-    """From memory: json, bpt, step, obj, svg, quake3_bsp or quake3_map; without a name as the content begins."""
+    """From memory: json, bpt, step, obj, svg, quake3_bsp or quake3_map; without a name as the
+    content begins, which obj files do not say."""
     return Document._of(_core.parse(data, format))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Sequence
 
 from . import _core
-from ._base import Array, ArrayLike, from_header, points_array
+from ._base import Array, ArrayLike, from_header, points_array, rows
 from ._basis import Basis
 from ._patches import Curve, Surface
 from ._records import Fitted, FittedSurface, Interpolant
@@ -16,7 +16,7 @@ __all__ = ["parameters", "grid_parameters", "interpolate", "interpolate_grid", "
 @from_header("fit/parameters:parameters", "fit/parameters:Spacing")
 def parameters(points: ArrayLike, spacing: str = "chordal", *, closed: bool = False) -> Array:
     """Parameters for points: uniform, chordal or centripetal."""
-    return _core.parameters(points_array(points), spacing, closed)
+    return _core.parameters(rows(points), spacing, closed)
 
 
 @from_header("fit/parameters:parameters")
@@ -32,7 +32,7 @@ def interpolate(points: ArrayLike, degree: int = 3, ends: str = "natural", at: A
 
     Without `at` the parameters are those of `spacing`.
     """
-    p = points_array(points)
+    p = rows(points)
     t = parameters(p, spacing, closed=ends == "periodic") if at is None else points_array(at)
     return _core.interpolate(p, degree, ends, t, None if start is None else points_array(start).reshape(-1, p.shape[-1]),
                              None if end is None else points_array(end).reshape(-1, p.shape[-1]))
@@ -68,7 +68,7 @@ def averaged_basis(degree: int, sites: ArrayLike) -> Basis:
 def least_squares(basis: Basis, points: ArrayLike, at: ArrayLike, *, weights: ArrayLike | None = None,
                   smoothing: float = 0.0, smoothing_order: int = 2) -> Fitted:
     """The curve on given knots that comes closest to points."""
-    return _core.least_squares(basis._c, points_array(points), points_array(at),
+    return _core.least_squares(basis._c, rows(points), points_array(at),
                                None if weights is None else points_array(weights), smoothing, smoothing_order)
 
 
@@ -83,7 +83,7 @@ def least_squares_surface(bases: tuple[Basis, Basis], points: ArrayLike, at: tup
 def approximate(points: ArrayLike, tolerance: float, degree: int = 3, *, closed: bool = False, spacing: str = "chordal",
                 move_parameters: bool = True, smoothing: float = 0.0, smoothing_order: int = 2) -> Fitted:
     """The smallest curve found within a distance of points."""
-    return _core.approximate(points_array(points), tolerance, degree, closed, spacing, move_parameters, smoothing,
+    return _core.approximate(rows(points), tolerance, degree, closed, spacing, move_parameters, smoothing,
                              smoothing_order)
 
 
@@ -91,7 +91,7 @@ def approximate(points: ArrayLike, tolerance: float, degree: int = 3, *, closed:
 def cubic_through(points: ArrayLike, at: ArrayLike | None = None, slopes: str = "catmull_rom", *,
                   closed: bool = False) -> Curve:
     """Cubic pieces through points, from neighbours only: catmull_rom, akima, monotone or fritsch_carlson."""
-    p = points_array(points)
+    p = rows(points)
     t = parameters(p, closed=closed) if at is None else points_array(at)
     return _core.cubic_through(p, t, slopes, closed)
 

@@ -7,12 +7,13 @@ from typing import NamedTuple, Sequence
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, IntervalLike, from_header, pair, plain, points_array, same, vector
+from ._base import Array, ArrayLike, IntervalLike, from_header, handles, pair, plain, points_array, same, vector
 from ._basis import PolynomialBasis
 from ._patches import Curve, Surface
 from ._records import (Compatible, ConicArc, ConicForm, CoonsPatch, FivePointArc, FoundConic, FoundEquation, FrameSweep,
                        GordonSurface, Graph, Loft, MadeSurface, PolynomialCurve, PolynomialPatch, Reduced,
                        RevolvedPolynomial, RoundSurface, SphereInEight, SphereInSix)
+from ._refusals import InvalidError
 
 __all__ = ["Frame", "conic_arc", "full_ellipse", "circle", "circle_conic", "arc_through", "weighted_arc", "tangent_arc",
            "five_point_arc", "conic_through", "conic_equation", "classify_conic", "solve_conic", "conic_arcs_inside", "graph",
@@ -40,6 +41,8 @@ def full_ellipse(centre: ArrayLike, x: ArrayLike, y: ArrayLike, form: str = "clo
 def circle(centre: ArrayLike, radius: float, form: str = "closed") -> ConicArc:
     """A whole circle of the plane, counter-clockwise from (radius, 0) on."""
     c = points_array(centre)
+    if c.shape != (2,):
+        raise InvalidError("centre", f"has the shape {c.shape} and not two coordinates; in space: circle_conic, full_ellipse")
     return full_ellipse(c, (radius, 0.0), (0.0, radius), form)
 
 
@@ -225,7 +228,7 @@ def sweep(profile: Curve, rail: Curve, tolerance: float, x_at_start: ArrayLike =
 def loft(sections: Sequence[Curve], degree: int = 3, *, spacing: str = "chordal", ends: str = "natural",
          closed: bool = False) -> Loft:
     """The surface through sections."""
-    return _core.loft([s._c for s in sections], degree, spacing, ends, closed)
+    return _core.loft(handles(sections, "sections"), degree, spacing, ends, closed)
 
 
 @from_header("make/coons:coons")
@@ -238,14 +241,14 @@ def coons(u0: Curve, u1: Curve, v0: Curve, v1: Curve, tolerance: float) -> Coons
 def coons_bicubic(u0: tuple[Curve, Curve], u1: tuple[Curve, Curve], v0: tuple[Curve, Curve], v1: tuple[Curve, Curve],
                   tolerance: tuple[float, float, float]) -> CoonsPatch:
     """The same with derivatives across: each edge is (curve, across); tolerances of distance, tangent, twist."""
-    return _core.coons_bicubic([c._c for edge in (u0, u1, v0, v1) for c in edge], list(tolerance))
+    return _core.coons_bicubic(handles((c for edge in (u0, u1, v0, v1) for c in edge), "edges"), list(tolerance))
 
 
 @from_header("fit/loft:gordon")
 def gordon(u_curves: Sequence[Curve], at_v: ArrayLike, v_curves: Sequence[Curve], at_u: ArrayLike,
            tolerance: float) -> GordonSurface:
     """The surface through a network of curves."""
-    return _core.gordon([c._c for c in u_curves], points_array(at_v), [c._c for c in v_curves], points_array(at_u),
+    return _core.gordon(handles(u_curves, "u_curves"), points_array(at_v), handles(v_curves, "v_curves"), points_array(at_u),
                         tolerance)
 
 
@@ -260,7 +263,7 @@ def rejoined(previous: Surface, edge: tuple[int, str], neighbour: Surface, neigh
 @from_header("spline/compatible:compatible")
 def compatible(curves: Sequence[Curve]) -> Compatible:
     """The same curves with the basis of all."""
-    return _core.compatible([c._c for c in curves])
+    return _core.compatible(handles(curves, "curves"))
 
 
 @from_header("spline/a_frame:join_pieces")

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, from_header, points_array
+from ._base import Array, ArrayLike, from_header, indices, points_array
 from ._records import LevelLine, MeshEdge, MeshPart, MeshTopology, Outline
 
 __all__ = ["Mesh", "triangulate"]
@@ -25,7 +25,7 @@ class Mesh:
     _c: _core.MeshHandle
 
     def __init__(self, points: ArrayLike, triangles: ArrayLike, unit: str = "") -> None:
-        self._c = _core.MeshHandle(points_array(points), np.ascontiguousarray(triangles, dtype=np.int32), unit)
+        self._c = _core.MeshHandle(points_array(points), indices(triangles, "triangles"), unit)
 
     @classmethod
     def _of(cls, handle: _core.MeshHandle) -> Mesh:
@@ -171,5 +171,5 @@ class Mesh:
 def triangulate(points: ArrayLike, segments: ArrayLike = ()) -> Array:
     """The constrained Delaunay triangles, (n, 3), inside what the segments (index pairs) enclose; without segments of
     the convex hull."""
-    pairs = [(int(a), int(b)) for a, b in np.asarray(segments, dtype=np.int64).reshape(-1, 2)]
+    pairs = [(int(a), int(b)) for a, b in indices(segments, "segments").reshape(-1, 2)]
     return _core.triangulate(points_array(points), pairs)

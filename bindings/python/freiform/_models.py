@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, from_header, pair, points_array
+from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, from_header, handles, pair, points_array
 from ._meshes import Mesh
 from ._patches import Curve, Surface
 from ._paths import Path
@@ -46,7 +46,7 @@ class TrimmedSurface:
     _c: _core.TrimmedHandle
 
     def __init__(self, surface: Surface, loops: Sequence[Sequence[Curve]]) -> None:
-        self._c = _core.TrimmedHandle(surface._c, [[c._c for c in loop] for loop in loops])
+        self._c = _core.TrimmedHandle(surface._c, [handles(loop, "loop") for loop in loops])
 
     @classmethod
     def _of(cls, handle: _core.TrimmedHandle) -> TrimmedSurface:
@@ -114,7 +114,7 @@ class Model:
     @from_header("model/assemble:ModelBuilder")
     def assemble(cls, surfaces: Sequence[Faces], unit: str = "", name: str = "") -> Model:
         """The surfaces as faces of one body; equal boundaries become shared edges."""
-        return cls._of(_core.assemble([s._c for s in surfaces], unit, name))
+        return cls._of(_core.assemble(handles(surfaces, "surfaces"), unit, name))
 
     @staticmethod
     @from_header("model/swept_solid:prism")
@@ -314,11 +314,11 @@ class ModelNearestQuery:
 @from_header("trim/inside:InsideQuery")
 def inside_loops(loops: Sequence[Sequence[Curve]], points: ArrayLike, gap: float = 0.0) -> tuple[list[str], Array]:
     """(outside, inside or boundary; winding number) of points of the plane; exact."""
-    return _core.inside_loops([[c._c for c in loop] for loop in loops], gap, np.atleast_2d(points_array(points)))
+    return _core.inside_loops([handles(loop, "loop") for loop in loops], gap, np.atleast_2d(points_array(points)))
 
 
 @from_header("trim/loops:orient_loops")
 def orient_loops(loops: Sequence[Sequence[Curve]], accuracy: float,
                  gap: float = 0.0) -> tuple[list[list[Curve]], Array, Array]:
     """(loops with the region on their left, depth of each, which were turned)."""
-    return _core.orient_loops([[c._c for c in loop] for loop in loops], gap, accuracy)
+    return _core.orient_loops([handles(loop, "loop") for loop in loops], gap, accuracy)

@@ -6,7 +6,7 @@ from typing import Any, Generic, Sequence, TypeVar
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, IntervalLike, from_header, pair, points_array, same
+from ._base import Array, ArrayLike, IntervalLike, from_header, numbers, pair, points_array, same
 from ._basis import Basis
 from ._records import Extended, Extent, KnotLine, Reduced, TightBox, Transformed
 from ._refusals import InvalidError
@@ -18,6 +18,8 @@ BasisTuple = tuple[int, Array, bool]
 
 def _basis_tuple(size: int, degree: int | None, knots: ArrayLike | None, closed: bool) -> BasisTuple:
     """(degree, knots, closed) where some of it is left out: a Bezier patch, or clamped and uniform knots."""
+    if degree is not None and not isinstance(degree, (int, np.integer)):
+        raise InvalidError("degree", f"{degree!r} is no integer")
     if knots is not None:
         given = points_array(knots)
         return (given.size - size - 1 if degree is None and not closed else 3 if degree is None else degree), given, closed
@@ -32,8 +34,12 @@ def _basis_tuple(size: int, degree: int | None, knots: ArrayLike | None, closed:
 
 
 def _broadcast(*parameters: ArrayLike) -> list[Array]:
-    arrays = [np.asarray(p, dtype=np.float64) for p in parameters]
-    return list(np.broadcast_arrays(*arrays)) if len(arrays) > 1 else arrays
+    arrays = [numbers(p, "parameters") for p in parameters]
+    try:
+        return list(np.broadcast_arrays(*arrays)) if len(arrays) > 1 else arrays
+    except ValueError:
+        shapes = ", ".join(str(a.shape) for a in arrays)
+        raise InvalidError("parameters", f"the shapes {shapes} cannot be broadcast against each other") from None
 
 
 class _Patch(Generic[H]):

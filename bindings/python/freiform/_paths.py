@@ -7,6 +7,7 @@ from . import _core
 from ._base import ArrayLike, from_header, points_array
 from ._patches import Curve
 from ._records import PathArea, Region, SimplifiedPath, Subpath, SvgPicture
+from ._refusals import InvalidError
 
 __all__ = ["Path", "combine", "region_of", "read_svg_picture"]
 
@@ -19,6 +20,8 @@ class Path:
     _c: _core.PathHandle
 
     def __init__(self, data: str = "") -> None:
+        if not isinstance(data, str):
+            raise InvalidError("data", "is no text as SVG has it; Path.of_curve, Path.from_subpaths make paths from other things")
         self._c = _core.PathHandle(data)
 
     @classmethod

@@ -8,11 +8,11 @@ from typing import Any, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, IntervalLike, Record, from_header, pair, points_array
+from ._base import Array, ArrayLike, IntervalLike, Record, from_header, handles, pair, points_array
 from ._patches import AnyPatch, Curve, Surface
 from ._records import (ConvexHull, CurveJoint, Intersections, LeastDistance, NearestFeet, NearRegions, OrientedBox,
                        SurfaceContinuity, SurfaceIntersection, SurfaceJoint)
-from ._refusals import UnsupportedError
+from ._refusals import InvalidError, UnsupportedError
 from ._triangles import TriangularPatch
 
 __all__ = ["NearestQuery", "NearestPoints", "FarthestPoints", "nearest", "farthest", "least_distance", "convex_hull",
@@ -57,7 +57,7 @@ class NearestQuery:
 
     def __init__(self, *objects: NearObject) -> None:
         self.objects = objects
-        self._c = _core.NearestHandle([o._c for o in objects])
+        self._c = _core.NearestHandle(handles(objects, "objects"))
 
     @from_header("query/nearest:nearest")
     def nearest(self, points: ArrayLike, accuracy: float = 0.0, max_parts: int = 20000) -> NearestPoints:
@@ -101,14 +101,20 @@ class NearestQuery:
         return NearestQuery, self.objects
 
 
-def nearest(object: NearObject, points: ArrayLike, accuracy: float = 0.0) -> NearestPoints:
-    """The nearest points of one object; for many questions: NearestQuery."""
-    return NearestQuery(object).nearest(points, accuracy)
+def nearest(object: NearObject | Sequence[NearObject], points: ArrayLike, accuracy: float = 0.0) -> NearestPoints:
+    """The nearest points of one object, or of all of several; for many questions: NearestQuery."""
+    return NearestQuery(*_several(object)).nearest(points, accuracy)
 
 
-def farthest(object: NearObject, points: ArrayLike, accuracy: float = 0.0) -> FarthestPoints:
-    """The farthest points of one object."""
-    return NearestQuery(object).farthest(points, accuracy)
+def farthest(object: NearObject | Sequence[NearObject], points: ArrayLike, accuracy: float = 0.0) -> FarthestPoints:
+    """The farthest points of one object, or of all of several."""
+    return NearestQuery(*_several(object)).farthest(points, accuracy)
+
+
+def _several(object: NearObject | Sequence[NearObject]) -> Sequence[NearObject]:
+    if hasattr(object, "vertices") and hasattr(object, "edges"):
+        raise InvalidError("object", "is a model: it answers Model.nearest, or ModelNearestQuery for many questions")
+    return object if isinstance(object, (list, tuple)) else [object]  # type: ignore[list-item]
 
 
 def least_distance(a: NearObject, b: NearObject, accuracy: float = 0.0) -> LeastDistance:
@@ -142,14 +148,17 @@ def intersect(a: Curve | Surface, b: Curve | Surface, accuracy: float = 0.0, *, 
         return _core.intersect_curves(a._c, b._c, accuracy, max_parts or 50_000)
     if isinstance(a, Curve) and isinstance(b, Surface):
         return _core.intersect_curve_surface(a._c, b._c, accuracy, max_parts or 50_000)
-    raise UnsupportedError("a", "give the curve first, then the surface")
+    if isinstance(a, Surface) and isinstance(b, Curve):
+        raise UnsupportedError("a", "give the curve first, then the surface")
+    raise InvalidError("a, b", f"{type(a).__name__} and {type(b).__name__} are not two curves or surfaces; models answer "
+                       "Model.intersect, Model.intersect_curve")
 
 
 @from_header("intersect/curve_curve:IntersectCurve")
 def intersect_all(a: Sequence[Curve], b: Sequence[Curve], accuracy: float = 0.0,
                   max_parts: int = 50_000) -> list[list[Intersections]]:
     """Every curve of `a` with every one of `b`, on all threads."""
-    return _core.intersect_all_curves([c._c for c in a], [c._c for c in b], accuracy, max_parts)
+    return _core.intersect_all_curves(handles(a, "a"), handles(b, "b"), accuracy, max_parts)
 
 
 @from_header("intersect/curve_surface:IntersectSurface")
@@ -167,8 +176,8 @@ def joints(patches: Sequence[Curve] | Sequence[Surface], gap: float, *, orders: 
     """All ends of curves (edges of surfaces) that meet, with the continuity of each joint."""
     options = (orders, tolerance, angle, curvature, third, roundings)
     if patches and isinstance(patches[0], Surface):
-        return _core.surface_joints([p._c for p in patches], gap, options)  # type: ignore[misc]
-    return _core.joints([p._c for p in patches], gap, options)  # type: ignore[misc]
+        return _core.surface_joints(handles(patches, "patches"), gap, options)
+    return _core.joints(handles(patches, "patches"), gap, options)
 
 
 @from_header("query/surface_continuity:joint")

@@ -6,7 +6,7 @@ from typing import Any, Sequence
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, from_header, points_array, same
+from ._base import Array, ArrayLike, from_header, numbers, points_array, same
 from ._patches import Curve, Surface
 from ._records import (Deviation, JoinedTriangle, Parts, PointNormalTriangle, ReducedTriangle, SurfaceCurvature, TightBox,
                        TriangleJoint)
@@ -71,7 +71,7 @@ class TriangularPatch:
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, derivatives: int | None = None) -> Array:
         """Points, or all partial derivatives by u and v to a total order in graded order."""
-        a, b = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
+        a, b = np.broadcast_arrays(numbers(u, "parameters"), numbers(v, "parameters"))
         at = np.stack([a.ravel(), b.ravel()], axis=-1)
         values: Array = _core.triangle_evaluate(self._c, at, derivatives or 0)
         if derivatives == 0:
