@@ -92,9 +92,25 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
         if (!u)
             return refuse(u.error().kind, f_.label(a.segment),
                           text(u.error().where, ": ", u.error().message));
-        if (!uses.empty() && apart(uses.back().to, u->from) > joint)
-            return f->refused("is a boundary whose segments do not follow each other", RefusalKind::invalid);
         uses.push_back(std::move(*u));
+    }
+    // Segments whose sense is wrong: the first by the second, each other one by what comes before it.
+    for (std::size_t k = 0; uses.size() > 1 && k < uses.size(); ++k) {
+        Use& u = uses[k];
+        const bool first = k == 0;
+        const Use& other = uses[first ? 1 : k - 1];
+        const bool fits = first ? std::min(apart(u.to, other.from), apart(u.to, other.to)) <= joint
+                                : apart(other.to, u.from) <= joint;
+        if (fits) continue;
+        const bool turned = first ? std::min(apart(u.from, other.from), apart(u.from, other.to)) <= joint
+                                  : apart(other.to, u.to) <= joint;
+        if (!turned)
+            return f->refused("is a boundary whose segments do not follow each other", RefusalKind::invalid);
+        u.coedge.reversed = !u.coedge.reversed;
+        std::swap(u.from, u.to), std::swap(u.start, u.end);
+        report(u.coedge.edge,
+               text(f_.label(list[k].segment), " runs against its boundary; it is taken the other way"), 0.0,
+               0);
     }
     if (uses.empty() || apart(uses.back().to, uses.front().from) > joint)
         return f->refused("is a boundary that is not closed", RefusalKind::invalid);

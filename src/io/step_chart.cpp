@@ -218,6 +218,31 @@ Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess
     return best;
 }
 
+// The method of Levenberg and Marquardt, the parameters measured by how much each moves the point.
+Vec<2> Chart::damped_foot(const Vec<3>& target, const Vec<2>& guess) const {
+    Vec<2> at = inside(guess);
+    double damping = 1e-3, distance = norm(target - point(at));
+    for (int i = 0; i < 30 && distance > 0; ++i) {
+        const auto j = jet<1>(*s_, wrapped(at).c);
+        const Vec<3> r = target - j.d[0];
+        const double a = dot(j.d[1], j.d[1]) * (1 + damping), b = dot(j.d[1], j.d[2]),
+                     c = dot(j.d[2], j.d[2]) * (1 + damping), det = a * c - b * b;
+        const double p = dot(j.d[1], r), q = dot(j.d[2], r);
+        if (!(det > 0)) break;
+        const Vec<2> step{{(c * p - b * q) / det, (a * q - b * p) / det}}, next = inside(at + step);
+        const double there = norm(target - point(next));
+        if (there < distance) {
+            const bool settled = there > (1 - 1e-9) * distance;
+            at = next, distance = there, damping = std::max(damping / 8, 1e-12);
+            if (settled) break;
+        } else {
+            damping *= 10;
+            if (damping > 1e9) break;
+        }
+    }
+    return at;
+}
+
 std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
     const SurfaceGeometry* s = s_;
     if (const auto* o = std::get_if<OffsetSurface>(s)) s = o->base.get();

@@ -42,6 +42,8 @@ public:
     Vec<3> point(const Vec<2>& uv) const { return jet<0>(*s_, wrapped(uv).c).value(); }
     // Newton's method towards the nearest point, from a guess; `target`: a point and how it moves.
     Foot foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess) const;
+    // Newton's method with steps that are held back where it does not converge: slow, and never further away.
+    Vec<2> damped_foot(const Vec<3>& target, const Vec<2>& guess) const;
     // Parameters of the nearest point, or of one that is nearly so.
     Vec<2> locate(const Vec<3>& p) const;
     // The curve in space where parameter `axis` is `at`, as a function of the other one; nothing for offsets.

@@ -15,8 +15,8 @@ namespace {
 
 // Relative to the size of the face: parameter curves follow their edges as well as kFollows, or as
 // kFollowsRoughly where the tolerance of the file is a thousand times that; those that are further off than
-// kHopeless describe another face.
-constexpr double kFollows = 1e-9, kFollowsRoughly = 1e-7, kHopeless = 0.25;
+// kHopeless describe another face. At poles and folds, where no method follows, kRough has to do.
+constexpr double kFollows = 1e-9, kFollowsRoughly = 1e-7, kHopeless = 0.25, kRough = 1e-3;
 // Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
 // believed, of what the file promises.
 constexpr double kMargin = 1.5;
@@ -41,7 +41,7 @@ double ShapeReader::accuracy_for(double size) const {
 
 Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size) {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
-    auto t = trace(chart, *e.curve, e.range, accuracy_for(size));
+    auto t = trace(chart, *e.curve, e.range, accuracy_for(size), std::max(tolerance_, kRough * size));
     if (!t) return std::unexpected(t.error());
     if (size > 0 && !(t->gap < kHopeless * size))
         return refuse(RefusalKind::ill_conditioned, "edge",

@@ -227,6 +227,16 @@ void LoopBuilder::place_holes() {
     }
 }
 
+// Whether a whole turn of the chain is a pole: what it encloses lies between that and its other edges.
+bool LoopBuilder::rounds_pole(const Chain& c) const {
+    return std::any_of(c.uses.begin(), c.uses.end(), [&](const Use& u) {
+        if (!model_.edges[std::size_t(u.coedge.edge)].degenerate) return false;
+        const Vec<2> by = u.end - u.start;
+        const double turn = chart_.period(by[0] != 0 ? 0 : 1);
+        return turn > 0 && max_abs(by) >= (1 - kNearPole) * turn;
+    });
+}
+
 // All loops together to parameters near the domain.
 void LoopBuilder::into_domain() {
     Box<2> box;
@@ -251,6 +261,13 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
             return refuse(RefusalKind::unsupported, "loop", "winds around the surface in both directions");
     for (int axis = 0; axis < 2; ++axis)
         if (auto ok = join_winding(axis); !ok) return std::unexpected(ok.error());
+    for (Chain& c : chains_)
+        if (c.area < 0 && rounds_pole(c)) {
+            note =
+                "its loop runs to a pole along a seam, and the wrong way around it; it is taken the other "
+                "way";
+            turn_around(c);
+        }
     // One that goes around all of the surface is its boundary, however it runs.
     const double all = chart_.whole()[0].length() * chart_.whole()[1].length();
     const bool only_holes = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {

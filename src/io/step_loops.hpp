@@ -52,6 +52,7 @@ private:
     void join_pole(Chain& c, const Pole& pole);
     std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);
     bool is_closed_surface() const;
+    bool rounds_pole(const Chain& c) const;
     void place_holes();
     void into_domain();
     int vertex_near(const Vec<3>& p);

@@ -5,6 +5,8 @@
 // parameters of the nearest point of the surface and their derivative, so that its error is of fourth order,
 // and pieces are halved until their inner points agree.
 //
+// Where both fail, at poles and folds, it is a polygon of nearest points, if that is near enough.
+//
 // The middle, because the ends of an edge may be at a pole, where one parameter means nothing; there both
 // curves are continued from inside.
 #include "step_trace.hpp"
@@ -26,13 +28,15 @@ struct TraceNode {
 
 class Tracer {
 public:
-    Tracer(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy)
-        : chart_(chart), c_(c), on_(on), accuracy_(accuracy) {}
+    Tracer(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough)
+        : chart_(chart), c_(c), on_(on), accuracy_(accuracy), rough_(rough) {}
 
     Result<Trace> run() {
         if (auto flat = on_plane()) return *flat;
         auto t = on_curved();
-        if (t && crosses_pole(t->curve)) return through_pole();
+        if (t && crosses_pole(t->curve)) t = through_pole();
+        if (!t)
+            if (auto feet = nearest_feet()) return *feet;
         return t;
     }
 
@@ -65,6 +69,37 @@ private:
         if (!start.regular) return through_pole();
         if (auto straight = line(start, middle)) return *straight;
         return spline(start, middle);
+    }
+
+    // Where the surface shrinks to a point or folds, slopes mean nothing: a polygon of nearest points.
+    std::optional<Trace> nearest_feet() const {
+        constexpr int kFeet = 64;
+        std::vector<double> knots{on_.lo};
+        std::vector<Vec<2>> net;
+        for (int i = 0; i <= kFeet; ++i) {
+            const double t = i == kFeet ? on_.hi : on_.lo + on_.length() * i / kFeet;
+            const Vec<3> p = jet<0>(c_, t).value();
+            const Vec<2> guess = net.empty() ? chart_.locate(p) : net.back();
+            net.push_back(chart_.damped_foot(p, guess));
+            if (i > 0 && chart_.point(net.back()) == chart_.point(guess)) {  // stuck at a pole
+                const Vec<2> other = chart_.damped_foot(p, chart_.locate(p));
+                if (near(other, guess) && gap_at(other, t) < gap_at(net.back(), t)) net.back() = other;
+            }
+            knots.push_back(t);
+        }
+        knots.push_back(on_.hi);
+        auto basis = BSplineBasis::make(1, std::move(knots));
+        if (!basis) return std::nullopt;
+        Trace out;
+        out.fitted = true;
+        out.curve = Curve<Vec<2>>::trusted({*std::move(basis)}, Net<1, Vec<2>>({kFeet + 1}, std::move(net)));
+        for (int i = 0; i <= 3 * kFeet; ++i) {
+            const double t = on_.lo + on_.length() * i / (3 * kFeet);
+            const double gap = gap_at(jet<0>(out.curve, t).value(), t);
+            if (!(gap <= rough_)) return std::nullopt;
+            out.gap = std::max(out.gap, gap);
+        }
+        return out;
     }
 
     double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }
@@ -360,13 +395,14 @@ private:
     const Chart& chart_;
     const CurveGeometry<3>& c_;
     Interval on_;
-    double accuracy_;
+    double accuracy_, rough_;
 };
 
 }  // namespace
 
-Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy) {
-    return Tracer(chart, c, on, accuracy).run();
+Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy,
+                    double rough) {
+    return Tracer(chart, c, on, accuracy, rough).run();
 }
 
 }  // namespace freiform::step

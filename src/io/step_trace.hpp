@@ -14,8 +14,9 @@ struct Trace {
 
 // The curve over `on` whose image on the surface follows `c` with the same parameter, as near as the surface
 // comes to it, plus `accuracy`. It is continuous where parameters are periodic. Refuses where it runs through
-// a pole or fold, or takes too many pieces.
-Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy);
+// a pole or fold and a polygon of nearest points is further off than `rough`.
+Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy,
+                    double rough);
 
 CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by);
 
