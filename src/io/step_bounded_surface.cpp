@@ -114,6 +114,7 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
     }
     if (uses.empty() || apart(uses.back().to, uses.front().from) > joint)
         return f->refused("is a boundary that is not closed", RefusalKind::invalid);
+    for (std::size_t k = 0; k < uses.size(); ++k) join_vertices(uses[k].to, uses[(k + 1) % uses.size()].from);
     loops.add(std::move(uses));
     return {};
 }

@@ -18,6 +18,7 @@ namespace freiform::step {
 namespace {
 
 constexpr double kSingular = 1e-10;
+constexpr double kHeld = 1e-7;    // of a domain, by which a step has to leave it
 constexpr int kMostSamples = 40;  // of a grid, along each axis
 
 // The part of a vector across a unit vector.
@@ -197,6 +198,16 @@ Foot Chart::foot(const Vec<3>& target, const Vec<3>& motion, const Vec<2>& guess
         });
         const bool regular =
             !at_pole && solve(j.d[1], j.d[2], motion, slope) && solve(j.d[1], j.d[2], r, step);
+        // Held at the end of a spline: it moves along that end only.
+        for (int k = 0; k < 2 && regular; ++k) {
+            const auto axis = std::size_t(k);
+            const Interval& on = whole_[axis];
+            if (!spline_[axis] || period_[axis] > 0 || std::abs(step[k]) <= kHeld * on.length()) continue;
+            if (!(at[k] == on.lo && step[k] < 0) && !(at[k] == on.hi && step[k] > 0)) continue;
+            const Vec<3>& along = j.d[std::size_t(2 - k)];
+            slope[k] = 0;
+            slope[1 - k] = dot(along, motion) / dot(along, along);
+        }
         const bool settled = !(distance < 0.99 * best.distance);
         if (distance < best.distance) best = {at, slope, distance, regular};
         if (!regular || (settled && i > 1)) break;

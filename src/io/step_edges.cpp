@@ -12,6 +12,24 @@
 
 namespace freiform::step {
 
+namespace {
+
+// Edges shorter than this, of the tolerance, are none: they run to and fro within the errors of their ends.
+constexpr double kTiny = 1e-3;
+
+bool length_at_most(const CurveGeometry<3>& c, Interval on, double most) {
+    constexpr int kChords = 8;
+    double length = 0;
+    Vec<3> last = jet<0>(c, on.lo).value();
+    for (int i = 1; i <= kChords && length <= most; ++i) {
+        const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kChords).value();
+        length += norm(p - last), last = p;
+    }
+    return length <= most;
+}
+
+}  // namespace
+
 int ShapeReader::vertex_at(std::uint32_t point, const Vec<3>& p) {
     const auto [at, fresh] = points_.emplace(point, int(out_.model.vertices.size()));
     if (fresh) out_.model.vertices.push_back({p, 0});
@@ -153,6 +171,13 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
             return f->refused(text("runs over the empty range [", lo, ", ", hi, "] of its curve"),
                               RefusalKind::invalid);
         }
+    }
+    if (end[0] != end[1] && length_at_most(c->curve, {lo, hi}, kTiny * tolerance_)) {
+        report(-1, text(f_.label(i), " is shorter than a thousandth of the tolerance; its vertices are one"),
+               0.0, 0);
+        join_vertices(end[0], end[1]);
+        made.empty = true;
+        return made;
     }
     Edge e;
     e.curve = c->curve;

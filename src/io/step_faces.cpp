@@ -120,6 +120,7 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
             return refuse(
                 RefusalKind::invalid, f_.label(*at),
                 text("is not closed: its edge ", k + 1, " ends ", apart, " from where the next one begins"));
+        join_vertices(a.to, b.from);
     }
     loops.add(std::move(uses));
     return {};

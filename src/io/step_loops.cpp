@@ -151,7 +151,9 @@ void LoopBuilder::add(std::vector<Use> uses) {
             const double turn = chart_.period(k), by = c.uses[i].end[k] - c.uses[i].start[k];
             if (!model_.edges[std::size_t(c.uses[i].coedge.edge)].degenerate) continue;
             const double better = by - c.winding[std::size_t(k)] * turn;
-            if (std::abs(std::abs(by) - turn) > kNearPole * turn || std::abs(better) > 1.5 * turn) continue;
+            // A part of a turn only about the one pole that there is: on the other side there is no face.
+            if (std::abs(std::abs(by) - turn) > kNearPole * turn && chart_.poles().size() != 1) continue;
+            if (std::abs(better) > 1.5 * turn) continue;
             if (std::abs(better) <= kNearPole * turn) {
                 c.uses.erase(c.uses.begin() + std::ptrdiff_t(i));
             } else {
@@ -165,6 +167,7 @@ void LoopBuilder::add(std::vector<Use> uses) {
             first = c.uses.front();
             winding_of();
         }
+    close_joints(c);
     measure(c);
     chains_.push_back(std::move(c));
 }

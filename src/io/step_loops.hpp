@@ -45,6 +45,8 @@ private:
     Use degenerate(int vertex, const Vec<2>& from, const Vec<2>& to);
     void measure(Chain& c) const;
     void move(Chain& c, const Vec<2>& by) const;
+    void close_joints(Chain& c) const;
+    void end_at(Use& u, bool last, const Vec<2>& to) const;
     void turn_to(Chain& c, std::size_t first) const;
     void turn_around(Chain& c) const;
     Result<void> join_winding(int axis);

@@ -204,9 +204,28 @@ void ShapeReader::add(std::uint32_t item) {
     }
 }
 
+// Vertices that loops go through as if they were one.
+void ShapeReader::merge_vertices() {
+    std::vector<int> to(out_.model.vertices.size());
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = int(i);
+    const auto root = [&](int v) {
+        while (to[std::size_t(v)] != v) v = to[std::size_t(v)] = to[std::size_t(to[std::size_t(v)])];
+        return v;
+    };
+    for (const auto& [a, b] : same_) {
+        const int x = std::min(root(a), root(b)), y = std::max(root(a), root(b));
+        to[std::size_t(y)] = x;
+        auto& v = out_.model.vertices;
+        v[std::size_t(x)].tolerance = std::max({v[std::size_t(x)].tolerance, v[std::size_t(y)].tolerance,
+                                                norm(v[std::size_t(x)].point - v[std::size_t(y)].point)});
+    }
+    for (Edge& e : out_.model.edges) e.start = root(e.start), e.end = root(e.end);
+}
+
 // Loose faces make a body; edges and vertices that only refused faces had are left out.
 Part ShapeReader::finish() {
     Model& m = out_.model;
+    if (!same_.empty()) merge_vertices();
     if (!out_.loose.empty()) {
         Shell s;
         for (const int i : out_.loose) s.faces.push_back({i, false});

@@ -59,6 +59,10 @@ private:
     Result<Face> make_face(std::uint32_t i, Type type);
     Result<Face> bare_face(std::uint32_t i);
     Result<void> add_boundary_curve(std::uint32_t i, const Chart& chart, LoopBuilder& loops);
+    void join_vertices(int a, int b) {
+        if (a != b) same_.emplace_back(a, b);
+    }
+    void merge_vertices();
     Result<EdgeMade> segment_edge(std::uint32_t curve, std::vector<int>& corners);
     Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
                            LoopBuilder& loops);
@@ -83,6 +87,7 @@ private:
     GeometryReader geometry_;
     double tolerance_;
     Part out_;
+    std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
     std::unordered_map<std::uint32_t, EdgeMade> edges_;
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
