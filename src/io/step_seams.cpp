@@ -60,14 +60,33 @@ std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Ve
             make_use({i, true, Line<2>{line.origin - period, line.direction}}, e)};
 }
 
+// Whether the outline of a chain that winds crosses the segment from p to q.
+bool LoopBuilder::crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q, int axis) const {
+    const double turn = chart_.period(axis);
+    const auto side = [](const Vec<2>& x, const Vec<2>& y, const Vec<2>& z) { return cross(y - x, z - x); };
+    for (int k = -1; k <= 1; ++k)
+        for (std::size_t i = 0; i < c.outline.size(); ++i) {
+            Vec<2> r = c.outline[i], s = c.outline[(i + 1) % c.outline.size()];
+            if (i + 1 == c.outline.size()) s[axis] += c.winding[std::size_t(axis)] * turn;
+            r[axis] += k * turn, s[axis] += k * turn;
+            const auto same = [&](const Vec<2>& x, const Vec<2>& y) { return norm(x - y) <= 1e-9 * turn; };
+            if (same(r, p) || same(s, p) || same(r, q) || same(s, q)) continue;
+            if (side(p, q, r) * side(p, q, s) < 0 && side(r, s, p) * side(r, s, q) < 0) return true;
+        }
+    return false;
+}
+
 // One chain from a to b along the seam; `a` winds so that the face is on the side of b.
 void LoopBuilder::join(Chain& a, Chain b, int axis) {
     const double turn = chart_.period(axis);
     const auto k = std::size_t(axis);
     const double forward = axis == 0 ? a.winding[k] : -a.winding[k];
-    // The pair of corners with the shortest way along the axis, and no hole in it.
-    std::size_t best_i = 0, best_j = 0;
-    double best = kInfinity;
+    // The pair of corners with the shortest way along the axis, no hole in it, and no edge across it.
+    struct Pair {
+        double cost;
+        std::size_t i, j;
+    };
+    std::vector<Pair> pairs;
     for (std::size_t i = 0; i < a.uses.size() && i < 64; ++i)
         for (std::size_t j = 0; j < b.uses.size() && j < 64; ++j) {
             const double way = std::remainder(a.uses[i].start[axis] - b.uses[j].start[axis], turn);
@@ -80,8 +99,20 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
                 if (lo + (box.hi[axis] - box.lo[axis]) > 0 && lo < 0) cost += turn;
                 if (lo + (box.hi[axis] - box.lo[axis]) > turn) cost += turn;
             }
-            if (cost < best) best = cost, best_i = i, best_j = j;
+            pairs.push_back({cost, i, j});
         }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& x, const Pair& y) { return x.cost < y.cost; });
+    std::size_t best_i = pairs.front().i, best_j = pairs.front().j;
+    for (std::size_t n = 0; n < pairs.size() && n < 64; ++n) {
+        const Vec<2> from = a.uses[pairs[n].i].start;
+        Vec<2> to = b.uses[pairs[n].j].start;
+        to[axis] += std::round((from[axis] - to[axis]) / turn) * turn;
+        if (chart_.period(1 - axis) > 0 || !(crosses(a, from, to, axis) || crosses(b, from, to, axis))) {
+            best_i = pairs[n].i, best_j = pairs[n].j;
+            break;
+        }
+    }
     turn_to(a, best_i);
     turn_to(b, best_j);
     Vec<2> period{};

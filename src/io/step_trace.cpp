@@ -71,6 +71,19 @@ private:
         return spline(start, middle);
     }
 
+    // At a pole that an edge runs to, not along, the other parameter is what it was beside it.
+    static void keep_at_pole(std::vector<Vec<2>>& net, const Pole& pole) {
+        double farthest = 0;
+        for (const Vec<2>& uv : net) farthest = std::max(farthest, std::abs(uv[pole.axis] - pole.at));
+        const auto keep = [&](Vec<2>& uv, const Vec<2>& beside) {
+            if (std::abs(uv[pole.axis] - pole.at) > 1e-7 * farthest || beside[pole.axis] == pole.at) return;
+            uv[pole.axis] = pole.at, uv[1 - pole.axis] = beside[1 - pole.axis];
+        };
+        if (farthest <= 1e-3 * (farthest + std::abs(net.front()[1 - pole.axis] - net.back()[1 - pole.axis])))
+            return;
+        for (std::size_t i = 1; i < net.size(); ++i) keep(net[i], net[i - 1]);
+        for (std::size_t i = net.size() - 1; i-- > 0;) keep(net[i], net[i + 1]);
+    }
     // Where the surface shrinks to a point or folds, slopes mean nothing: a polygon of nearest points.
     std::optional<Trace> nearest_feet() const {
         constexpr int kFeet = 64;
@@ -88,6 +101,7 @@ private:
             knots.push_back(t);
         }
         knots.push_back(on_.hi);
+        for (const Pole& p : chart_.poles()) keep_at_pole(net, p);
         auto basis = BSplineBasis::make(1, std::move(knots));
         if (!basis) return std::nullopt;
         Trace out;
