@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace freiform {
 
@@ -138,11 +139,14 @@ double BSplineBasis::wrap(double u) const {
 }
 
 int BSplineBasis::multiplicity(double u) const {
-    if (!is_closed()) return int(std::count(knots_.begin(), knots_.end(), u));
+    const auto count = [](std::span<const double> sorted, double t) {
+        return int(std::ranges::equal_range(sorted, t).size());
+    };
+    if (!is_closed()) return count(knots_, u);
     const auto once = defining().first(std::size_t(size()));  // one period without its last break
     const auto [lo, hi] = domain();
-    if (u != lo && u != hi) return int(std::count(once.begin(), once.end(), u));
-    return int(std::count(once.begin(), once.end(), lo) + std::count(once.begin(), once.end(), hi));
+    if (u != lo && u != hi) return count(once, u);
+    return count(once, lo) + count(once, hi);
 }
 
 std::vector<double> BSplineBasis::breaks() const {

@@ -273,6 +273,7 @@ private:
         });
         const double sa = slack(a_.source()), sb = slack(b_.source());
         std::vector<Overlap> out;
+        std::vector<std::array<double, 2>> joints;  // where one goes on as the next
         for (const Overlap& o : all) {
             const auto before = std::find_if(out.begin(), out.end(), [&](const Overlap& p) {
                 return p.reversed == o.reversed && std::abs(p.a.hi - o.a.lo) <= sa &&
@@ -282,11 +283,19 @@ private:
                 out.push_back(o);
                 continue;
             }
+            joints.push_back({o.a.lo, o.reversed ? o.b.hi : o.b.lo});
             before->a = hull(before->a, o.a);
             before->b = hull(before->b, o.b);
             before->gap = std::max(before->gap, o.gap);
         }
         all = std::move(out);
+        // Ends of pieces that meet where overlaps go on are no contacts of their own.
+        std::erase_if(answer_.contacts, [&](const Contact<D, 2>& c) {
+            return std::ranges::any_of(joints, [&](const std::array<double, 2>& t) {
+                return c.box[0].lo >= t[0] - sa && c.box[0].hi <= t[0] + sa && c.box[1].lo >= t[1] - sb &&
+                       c.box[1].hi <= t[1] + sb;
+            });
+        });
         // Small boxes beside an overlap belong to it; a large one may hold more.
         const auto is_small = [](const Interval& t, const ArcPieces<1, P>& c) {
             return t.length() <= 0x1p-6 * c.domain[0].length();

@@ -10,6 +10,7 @@
 #include <array>
 #include <deque>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <utility>
 #include <vector>
@@ -88,7 +89,7 @@ public:
     Arc<D> arc_over(const Interval& on) const {
         Arc<D> out;
         out.on = on;
-        for (int i = 0; i < count_; ++i) {
+        for (int i = std::max(0, first_from(on.lo) - 1); i < count_ && arc(i).on.lo < on.hi; ++i) {
             const Part& part = parts_[std::size_t(i)];
             const Interval own = part.arc.on;
             const double lo = std::max(on.lo, own.lo), hi = std::min(on.hi, own.hi);
@@ -125,12 +126,17 @@ public:
 
     // Whether the curve jumps where two arcs have their parameter in common.
     bool jumps_at(double t) const {
-        for (int i = 1; i < count_; ++i)
-            if (arc(i).on.lo == t) return jumps_[std::size_t(i) - 1];
-        return false;
+        const int i = first_from(t);
+        return i > 0 && i < count_ && arc(i).on.lo == t && jumps_[std::size_t(i) - 1];
     }
 
 private:
+    // The first of the pieces that begins at t or later.
+    int first_from(double t) const {
+        const auto all = std::views::iota(0, count_);
+        return int(std::ranges::lower_bound(all, t, {}, [&](int i) { return arc(i).on.lo; }) - all.begin());
+    }
+
     struct Part {
         std::vector<P> b;
         NumberError error;               // of the numbers in b

@@ -238,7 +238,8 @@ NearestFound NearestTree::found_at(int piece, const Parameters& at, const double
     if (scale > 0)
         for (std::size_t k = 0; k < std::size_t(D); ++k) sum += (off[k] / scale) * (off[k] / scale);
     out.distance = 2 * (scale * std::sqrt(sum));
-    out.point_error = multiplied(slip_ + evaluation_error(p));
+    // Below the normal range halves of coordinates and the distance are rounded as well.
+    out.point_error = multiplied(slip_ + evaluation_error(p)) + 8 * underflow();
     return out;
 }
 

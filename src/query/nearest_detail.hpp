@@ -136,6 +136,9 @@ private:
     // By 2^exponent_: powers of two, which a product does not round, where they are doubles.
     double divided(double x) const { return moderate_ ? x * down_ : std::scalbn(x, -exponent_); }
     double multiplied(double x) const { return moderate_ ? x * up_ : std::scalbn(x, exponent_); }
+    // What multiplied() is off by at most: it rounds where its result is below the normal range.
+    double underflow() const { return exponent_ < -900 ? std::numeric_limits<double>::denorm_min() : 0; }
+    double multiplied_down(double x) const { return std::max(0.0, multiplied(x) - underflow()); }
     // A bound, for points of a piece: 3 p + 3 roundings along each axis in N and in W, the quotient, the sum
     // with the centre.
     double evaluation_error(const Piece& p) const {

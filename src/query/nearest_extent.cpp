@@ -296,7 +296,7 @@ NearestFound NearestTree::find_farthest(const double* point, double accuracy, in
         double moved = 0;
         if (s.far > s.kFar) moved = std::sqrt(double(int(d))) * s.far * (1 + 8 * kUnitRoundoff);
         const double upper = std::sqrt(s.proven) * (1 + 4 * kUnitRoundoff) + s.lost() + moved;
-        out.bound = std::max(multiplied(upper), out.distance);
+        out.bound = std::max(multiplied(upper) + underflow(), out.distance);
         return out;
     });
 }

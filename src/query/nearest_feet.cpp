@@ -378,9 +378,9 @@ std::vector<NearestFootFound> NearestTree::feet(const double* point, int count, 
         s.look_from(point);
         s.run();
         const auto bound = [&](double square) {
-            if (s.far > s.kFar) return multiplied(std::max(0.0, s.far / 2 - largest_));
+            if (s.far > s.kFar) return multiplied_down(s.far / 2 - largest_);
             const double root = std::sqrt(std::max(square, 0.0)) * (1 - 4 * kUnitRoundoff);
-            return multiplied(std::max(0.0, root - s.lost()));
+            return multiplied_down(root - s.lost());
         };
         for (const FootCandidate& c : s.feet) {
             NearestFound f = found_at<d>(c.piece, c.at, point);

@@ -352,7 +352,7 @@ NearestFound NearestTree::find_in(const double* point, double accuracy, int max_
     const double root = std::sqrt(std::max(s.proven, 0.0)) * (1 - 4 * kUnitRoundoff);
     const double lower =
         s.far > s.kFar ? std::max(0.0, s.far / 2 - largest_) : std::max(0.0, root - s.lost());
-    out.bound = std::min(multiplied(lower), out.distance);
+    out.bound = std::min(multiplied_down(lower), out.distance);
     return out;
 }
 

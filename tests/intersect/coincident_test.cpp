@@ -48,6 +48,25 @@ TEST(IntersectCoincident, a_line_on_a_longer_one_is_an_overlap_and_nothing_else)
         });
 }
 
+// Four arcs: joints of pieces are no contacts where the overlap goes on; where the circle is closed, its
+// first point is its last one.
+TEST(IntersectCoincident, a_circle_on_itself_is_one_overlap_and_meets_itself_at_its_seam_alone) {
+    const double w = std::sqrt(0.5);
+    const std::vector<Vec<2>> points{{{1, 0}},   {{1, 1}},  {{0, 1}},  {{-1, 1}}, {{-1, 0}},
+                                     {{-1, -1}}, {{0, -1}}, {{1, -1}}, {{1, 0}}};
+    const auto net = must(make_rational<2>(points, std::vector<double>{1, w, 1, w, 1, w, 1, w, 1}));
+    const auto basis =
+        must(BSplineBasis::make(2, {0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1}));
+    const auto circle = must(Curve<Hom<2>>::make({basis}, Net<1, Hom<2>>({9}, net)));
+    for (const auto& other : {circle, reverse(circle, 0)}) {
+        const auto x = must(intersect(circle, other));
+        ASSERT_EQ(x.overlaps.size(), 1u);
+        EXPECT_EQ(x.overlaps[0].a, (Interval{0, 1}));
+        EXPECT_EQ(x.contacts.size(), 2u);
+        for (const auto& c : x.contacts) EXPECT_EQ(c.kind, ContactKind::end);
+    }
+}
+
 TEST(IntersectCoincident, lines_end_to_end_meet_there_once) {
     each_way(plane_bezier({{{9, 0}}, {{5, 4}}}), plane_bezier({{{16, -7}}, {{9, 0}}}),
              [](const PlaneAnswer& x) {

@@ -190,6 +190,19 @@ TEST(Nearest, points_far_beyond_the_objects_and_tiny_objects_have_honest_bounds)
     EXPECT_NEAR(n.lower_bound, 5, 1e-13);
 }
 
+TEST(Nearest, coordinates_below_the_normal_range_keep_the_point_found_among_all_that_are_as_near) {
+    const double tiny = std::numeric_limits<double>::denorm_min();
+    const auto curve = must(Curve<Vec<2>>::make(
+        {*BSplineBasis::bezier(3)},
+        Net<1, Vec<2>>({4}, {{{0, 0}}, {{tiny, 2 * tiny}}, {{3 * tiny, 2 * tiny}}, {{4 * tiny, 0}}})));
+    const auto query = must(NearestQuery::make(std::array{NearestObject::of(curve)}));
+    const Vec<2> from{{tiny, tiny}};
+    const auto n = must(query.nearest<2>(from));
+    EXPECT_LE(n.distance - n.point_error, tiny);  // the true distance is 0.16 of tiny
+    EXPECT_EQ(n.lower_bound, 0);
+    EXPECT_FALSE(must(query.as_near<2>(from, n)).regions.empty());
+}
+
 // A strip folded along u = 1/2, and points on the crease, beside it, and above the image.
 TEST(Nearest, points_at_a_fold_are_found_and_the_bound_is_as_good_as_points_are) {
     const std::vector<Vec<3>> net{{{0.25, 0, 0}},  {{0.25, 1, 0}}, {{-0.25, 0, 0}},
