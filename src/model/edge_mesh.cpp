@@ -98,7 +98,10 @@ Vec<3> EdgeMesher::position(int edge, double t) const {
 }
 
 void EdgeMesher::forget() {
-    for (EdgeMesh& mesh : edges_) mesh.parameters.clear(), mesh.points.clear(), mesh.bound = 0;
+    for (EdgeMesh& mesh : edges_) {
+        mesh.parameters.clear(), mesh.points.clear();
+        mesh.bound = 0, mesh.collapsed = false;
+    }
 }
 
 // How many segments the curvature at samples asks for: tells hopeless tolerances before they take time. Only
@@ -286,10 +289,10 @@ std::vector<double> EdgeMesher::smooth_pieces(int edge, double tolerance) const 
     return must;
 }
 
-void EdgeMesher::split(int edge, int index) {
+void EdgeMesher::split(int edge, int index, double part) {
     auto& t = edges_[std::size_t(edge)].parameters;
-    const double a = t[std::size_t(index)], b = t[std::size_t(index) + 1], middle = a + (b - a) / 2;
-    if (a < middle && middle < b) t.insert(t.begin() + index + 1, middle);
+    const double a = t[std::size_t(index)], b = t[std::size_t(index) + 1], at = a + (b - a) * part;
+    if (a < at && at < b) t.insert(t.begin() + index + 1, at);
 }
 
 }  // namespace freiform

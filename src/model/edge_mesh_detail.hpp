@@ -32,6 +32,7 @@ struct CoedgeQuery {
 struct EdgeMesh {
     std::vector<double> parameters;  // increasing, the ends of the edge's range included
     std::vector<int> points;         // shared mesh points, one for each parameter
+    bool collapsed = false;          // all its points are one
     double bound = 0;  // of the distance between polyline and curve, on the edge and on its faces
     std::vector<std::unique_ptr<CoedgeQuery>> uses;
     std::unique_ptr<ChordCurve> curve;
@@ -60,8 +61,8 @@ public:
     // Parameters for which every segment keeps the demands. Refuses (limit) beyond `max_segments`.
     Result<void> discretise(int edge, const EdgeDemands& demands, std::size_t max_segments);
     void forget();  // all parameters
-    // Cuts segment `index` of the edge into two.
-    void split(int edge, int index);
+    // Cuts segment `index` of the edge into two: after this part of its parameters.
+    void split(int edge, int index, double part = 0.5);
 
     EdgeMesh& mesh(int edge) { return edges_[std::size_t(edge)]; }
     const EdgeMesh& mesh(int edge) const { return edges_[std::size_t(edge)]; }

@@ -72,11 +72,13 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
             runs.push_back(run_of(c, f.surface, edges.mesh(c.edge)));
             for (const Vec<2>& p : runs.back().uv) box.add(p);
         }
-        // A pole that has no length in the parameter plane either is left to the joint of its neighbours.
+        // A pole that has no length in the parameter plane either is left to the joint of its neighbours, and
+        // so is an edge that is to be a point.
         std::vector<int> kept;
         for (std::size_t c = 0; c < coedges.size(); ++c) {
             Box<2> own;
             for (const Vec<2>& p : runs[c].uv) own.add(p);
+            if (edges.mesh(coedges[c].edge).collapsed) continue;
             if (!model.edges[std::size_t(coedges[c].edge)].degenerate ||
                 length_in(own.hi - own.lo, box.hi - box.lo) > kNoPole)
                 kept.push_back(int(c));

@@ -5,8 +5,8 @@
 // whatever the tolerance. Method: (1) discretise edges; (2) assemble the boundary polygons, and cut segments
 // that touch each other in the parameter plane until none does; (3) fill the faces, in parallel; (4) cut
 // inner edges that two faces happen to have both (a strip between the same two corners), which would be
-// non-manifold. Accuracy: see curvature_tree.cpp for triangles and edge_mesh.cpp for what lies between
-// polygon and parameter curve. The rounding of evaluated points is added to the bound.
+// non-manifold, and triangles without area. Accuracy: see curvature_tree.cpp for triangles and edge_mesh.cpp
+// for what lies between polygon and parameter curve. The rounding of evaluated points is added to the bound.
 #include "matched_grids_detail.hpp"
 #include "tessellator_detail.hpp"
 
@@ -26,8 +26,8 @@ namespace freiform {
 
 namespace {
 
-constexpr int kConflictRounds = 12;  // each halves the segments that touch
 constexpr int kManifoldRounds = 4;
+constexpr double kFlatTriangle = 1e-9;  // of the squared longest side: no area
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -91,89 +91,6 @@ Result<void> Tessellator::match_grids() {
     return {};
 }
 
-// Mesh points: one per used vertex, then those inside the edges.
-void Tessellator::number_points() {
-    points_.clear();
-    std::vector<int> of_vertex(model_.vertices.size(), -1);
-    const auto at_vertex = [&](int v) {
-        if (of_vertex[std::size_t(v)] < 0) {
-            of_vertex[std::size_t(v)] = int(points_.size());
-            points_.push_back(model_.vertices[std::size_t(v)].point);
-        }
-        return of_vertex[std::size_t(v)];
-    };
-    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-        EdgeMesh& mesh = edges_->mesh(int(e));
-        if (mesh.uses.empty() || mesh.parameters.empty()) continue;
-        const Edge& edge = model_.edges[e];
-        mesh.points.assign(mesh.parameters.size(), -1);
-        mesh.points.front() = at_vertex(edge.start);
-        mesh.points.back() = at_vertex(edge.end);
-        for (std::size_t k = 1; k + 1 < mesh.points.size(); ++k) {
-            mesh.points[k] = edge.degenerate ? mesh.points.front() : int(points_.size());
-            if (!edge.degenerate) points_.push_back(edges_->position(int(e), mesh.parameters[k]));
-        }
-    }
-}
-
-void Tessellator::assemble(std::size_t f) {
-    auto boundary =
-        boundary_of(model_, int(f), *edges_, *queries_[f], points_, options_.tolerance, rounding_);
-    if (boundary)
-        boundaries_[f] = std::move(*boundary);
-    else
-        refusals_[f] = boundary.error();
-}
-
-void Tessellator::refuse_boundary(std::size_t f, const BoundaryConflict& conflict) {
-    const int s = std::max(conflict.first, conflict.second);
-    const int edge = s < 0 ? -1 : boundaries_[f].sources[std::size_t(s)].edge;
-    refusals_[f] = Refusal{RefusalKind::invalid, edge < 0 ? std::string("loops") : text("edges[", edge, "]"),
-                           text("the boundary touches itself in the parameter plane: ", conflict.message)};
-}
-
-void Tessellator::resolve_conflicts() {
-    std::vector<char> stale(faces(), 1);
-    for (int round = 0;; ++round) {
-        number_points();
-        std::vector<std::vector<BoundaryConflict>> conflicts(faces());
-        parallel_for(faces(), 1, [&](std::size_t f) {
-            if (is_refused(f)) return;
-            assemble(f);  // point numbers change with every cut
-            if (!is_refused(f) && stale[f]) conflicts[f] = find_conflicts(boundaries_[f].polygon);
-        });
-        std::set<std::pair<int, int>, std::greater<>> cuts;  // later segments of an edge first
-        std::fill(stale.begin(), stale.end(), 0);
-        for (std::size_t f = 0; f < faces(); ++f) {
-            for (const BoundaryConflict& conflict : conflicts[f]) {
-                std::set<std::pair<int, int>> here;
-                const auto add = [&](int s) {
-                    if (s >= 0 && boundaries_[f].sources[std::size_t(s)].edge >= 0)
-                        here.insert({boundaries_[f].sources[std::size_t(s)].edge,
-                                     boundaries_[f].sources[std::size_t(s)].segment});
-                };
-                add(conflict.first);
-                add(conflict.second);
-                if (conflict.second < 0 &&
-                    conflict.corner >= 0)  // a segment through a corner: the corner's neighbours too
-                    for (std::size_t s = 0; s < boundaries_[f].polygon.segments.size(); ++s)
-                        for (int end : boundaries_[f].polygon.segments[s])
-                            if (end == conflict.corner) add(int(s));
-                if (here.empty() || round == kConflictRounds) {
-                    refuse_boundary(f, conflict);
-                    break;
-                }
-                cuts.insert(here.begin(), here.end());
-            }
-        }
-        if (cuts.empty() || round == kConflictRounds) return;
-        for (const auto& [edge, segment] : cuts) {
-            edges_->split(edge, segment);
-            for (const auto& use : edges_->mesh(edge).uses) stale[std::size_t(use->face)] = 1;
-        }
-    }
-}
-
 Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     std::atomic<std::size_t> done{0};
     std::atomic<bool> stop{false};
@@ -205,49 +122,67 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     return {};
 }
 
-// Faces with an inner edge between two boundary points that also is an edge elsewhere; `extra_` gets its
-// middle.
-std::vector<std::size_t> Tessellator::non_manifold_faces() {
+// Notes the middle of a side inside a face as a point to begin with; false if it is none or has been noted.
+bool Tessellator::halve(std::size_t f, int u, int v) {
+    for (const auto& s : boundaries_[f].polygon.segments)
+        if ((s[0] == u && s[1] == v) || (s[0] == v && s[1] == u)) return false;
+    const auto& uv = meshes_[f].uv;
+    const Vec<2> middle = 0.5 * (uv[std::size_t(u)] + uv[std::size_t(v)]);
+    auto& extra = extra_[f];
+    if (std::find(extra.begin(), extra.end(), middle) != extra.end()) return false;
+    extra.push_back(middle);
+    return true;
+}
+
+// The longest side of a triangle of three boundary points on a line: a straight edge whose parameter curve
+// is not straight has them. Corners of the face, or -1.
+std::array<int, 2> Tessellator::flat_side(const FaceMesh& mesh, const std::array<int, 3>& t) const {
+    std::array<Vec<3>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int point = mesh.point[std::size_t(t[k])];
+        if (point < 0) return {-1, -1};
+        p[k] = points_[std::size_t(point)];
+    }
+    const auto side = [&](std::size_t k) { return norm(p[(k + 1) % 3] - p[k]); };
+    std::size_t longest = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+        if (side(k) > side(longest)) longest = k;
+    if (norm(cross(p[1] - p[0], p[2] - p[0])) > kFlatTriangle * side(longest) * side(longest))
+        return {-1, -1};
+    return {t[longest], t[(longest + 1) % 3]};
+}
+
+// Faces with an inner edge between two boundary points that also is an edge elsewhere, or with a triangle of
+// boundary points that has no area; `extra_` gets the middles.
+std::vector<std::size_t> Tessellator::faces_to_mend() {
     struct Side {
         int a, b;
         int face, u, v;  // corners in the face
         bool operator<(const Side& o) const { return std::tie(a, b, face) < std::tie(o.a, o.b, o.face); }
     };
     std::vector<Side> sides;
+    std::set<std::size_t> again;
     for (std::size_t f = 0; f < faces(); ++f) {
         if (is_refused(f)) continue;
         const FaceMesh& mesh = meshes_[f];
-        for (const auto& t : mesh.triangles)
+        for (const auto& t : mesh.triangles) {
             for (int k = 0; k < 3; ++k) {
                 const int u = t[std::size_t(k)], v = t[std::size_t((k + 1) % 3)];
                 // Poles have more corners than the polygon knows.
                 const auto [a, b] = std::minmax(mesh.point[std::size_t(u)], mesh.point[std::size_t(v)]);
-                if (a < 0) continue;
-                sides.push_back({a, b, int(f), u, v});
+                if (a >= 0) sides.push_back({a, b, int(f), u, v});
             }
+            const auto [u, v] = flat_side(mesh, t);
+            if (u >= 0 && halve(f, u, v)) again.insert(f);
+        }
     }
     std::sort(sides.begin(), sides.end());
-    std::set<std::size_t> again;
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t j = i;
         while (j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b) ++j;
-        if (j - i > 2)
-            for (std::size_t k = i; k < j; ++k) {
-                const auto& s = sides[k];
-                const auto& segments = boundaries_[std::size_t(s.face)].polygon.segments;
-                const bool boundary =
-                    std::any_of(segments.begin(), segments.end(), [&](const std::array<int, 2>& g) {
-                        return (g[0] == s.u && g[1] == s.v) || (g[0] == s.v && g[1] == s.u);
-                    });
-                if (boundary) continue;
-                const auto& uv = meshes_[std::size_t(s.face)].uv;
-                const Vec<2> middle = 0.5 * (uv[std::size_t(s.u)] + uv[std::size_t(s.v)]);
-                auto& extra = extra_[std::size_t(s.face)];
-                if (std::find(extra.begin(), extra.end(), middle) == extra.end()) {
-                    extra.push_back(middle);
-                    again.insert(std::size_t(s.face));
-                }
-            }
+        for (std::size_t k = i; j - i > 2 && k < j; ++k)
+            if (halve(std::size_t(sides[k].face), sides[k].u, sides[k].v))
+                again.insert(std::size_t(sides[k].face));
         i = j;
     }
     return {again.begin(), again.end()};
@@ -259,7 +194,7 @@ Result<void> Tessellator::fill_all() {
     for (int round = 0; !which.empty(); ++round) {
         if (auto ok = fill(which); !ok) return std::unexpected(ok.error());
         if (round == kManifoldRounds) break;
-        which = non_manifold_faces();
+        which = faces_to_mend();
     }
     return {};
 }

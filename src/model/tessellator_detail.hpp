@@ -45,11 +45,20 @@ private:
     void number_points();
     void assemble(std::size_t face);
     void refuse_boundary(std::size_t face, const BoundaryConflict& conflict);
+    struct Cut {
+        int edge, segment;
+        double part;
+    };
+    std::vector<Cut> cuts_for(std::size_t face, const BoundaryConflict& conflict) const;
+    std::vector<std::size_t> cut_conflicts(std::vector<std::vector<double>>& before);
+    bool is_tiny(int edge, double tolerance) const;
     void resolve_conflicts();
     Result<void> fill(std::span<const std::size_t> which);
     Result<void> fill_all();
     std::optional<Refusal> far_parameter(std::size_t face) const;
-    std::vector<std::size_t> non_manifold_faces();
+    bool halve(std::size_t face, int u, int v);
+    std::array<int, 2> flat_side(const FaceMesh& mesh, const std::array<int, 3>& triangle) const;
+    std::vector<std::size_t> faces_to_mend();
     struct FaceLook {
         std::vector<MeshVertex> vertices;
         std::vector<Vec<3>> inner;

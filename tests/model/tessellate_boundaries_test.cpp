@@ -1,0 +1,108 @@
+// Boundaries that nearly touch themselves in the parameter plane, or do within the tolerance of the file.
+#include "support/solids.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace freiform;
+using namespace freiform::test;
+
+namespace {
+
+const Extrusion kPlane{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+
+// In the plane z = 0, whose points are their parameters.
+Vec<3> in_space(const Vec<2>& p) { return {{p[0], p[1], 0}}; }
+Conic<2> circle(const Vec<2>& centre, double r) { return {ConicKind::ellipse, centre, {{r, 0}}, {{0, r}}}; }
+CurveGeometry<3> in_space(const Conic<2>& c) {
+    return Conic<3>{ConicKind::ellipse, in_space(c.centre), in_space(c.x), in_space(c.y)};
+}
+CurveGeometry<2> straight(const Vec<2>& from, const Vec<2>& to) { return Line<2>{from, to - from}; }
+CurveGeometry<3> straight(const Vec<3>& from, const Vec<3>& to) { return Line<3>{from, to - from}; }
+
+Model of_faces(Model m, const std::vector<std::vector<Coedge>>& loops) {
+    Shell shell;
+    for (const auto& loop : loops) {
+        Face f;
+        f.surface = kPlane;
+        f.loops = {{loop}};
+        shell.faces.push_back({int(m.faces.size()), false});
+        m.faces.push_back(f);
+    }
+    m.shells = {shell};
+    m.bodies = {{{0}, false, "", {}}};
+    return *make_model(std::move(m));
+}
+
+// Between a circle and one inside that touches it, from where they touch to the angle `to`.
+Model sickle(double outer, double inner, double to) {
+    Model m;
+    const double from = -kPi / 2;
+    const Conic<2> out = circle({}, outer), in = circle({{0, inner - outer}}, inner);
+    const Vec<2> tip{{0, -outer}}, far_end = jet<0>(CurveGeometry<2>(out), to).value(),
+                                   near_end = jet<0>(CurveGeometry<2>(in), to).value();
+    for (const Vec<2>& p : {tip, far_end, near_end}) m.vertices.push_back({in_space(p), 1e-7});
+    m.edges.push_back({in_space(out), false, {from, to}, 0, 1, 1e-7, ""});
+    m.edges.push_back({straight(in_space(far_end), in_space(near_end)), false, {0, 1}, 1, 2, 1e-7, ""});
+    m.edges.push_back({in_space(in), false, {from, to}, 0, 2, 1e-7, ""});
+    return of_faces(std::move(m),
+                    {{{0, false, out}, {1, false, straight(far_end, near_end)}, {2, true, in}}});
+}
+
+TEST(Boundaries, that_touch_in_a_cusp_are_told_apart) {
+    for (const double inner : {28.0, 26.0, 20.0})
+        for (const double tolerance : {3.0, 1.6, 1.0, 0.5, 0.1, 0.01}) {
+            const auto t = *tessellate(sickle(29, inner, 1), {.tolerance = tolerance});
+            ASSERT_TRUE(t.refused.empty()) << inner << " " << tolerance << " " << t.refused[0].reason.message;
+            EXPECT_LE(t.error_bound, tolerance);
+            EXPECT_LT(t.mesh.triangles.size(), 2000u) << inner << " " << tolerance;
+        }
+}
+
+// A square with a tiny side, and the curve of the next one begins beside its end.
+TEST(Boundaries, edges_shorter_than_the_tolerance_of_the_file_become_points) {
+    constexpr double kTiny = 1e-5;
+    for (const double tolerance : {1e-3, 1e-6}) {
+        Model m;
+        const Vec<2> at[] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{1, 1 - kTiny}}, {{0, 1}}};
+        const Vec<2> beside{{1, 1 - kTiny / 2}};  // where the curve of the last but one side begins
+        for (const Vec<2>& p : at) m.vertices.push_back({in_space(p), tolerance});
+        std::vector<Coedge> loop;
+        for (int i = 0; i < 5; ++i) {
+            const int k = (i + 1) % 5;
+            m.edges.push_back(
+                {straight(in_space(at[i]), in_space(at[k])), false, {0, 1}, i, k, tolerance, ""});
+            loop.push_back({i, false, straight(i == 3 ? beside : at[i], at[k])});
+        }
+        const auto t = *tessellate(of_faces(std::move(m), {loop}), {.tolerance = 0.01});
+        if (tolerance < kTiny) {
+            ASSERT_EQ(t.refused.size(), 1u);
+            EXPECT_EQ(t.refused[0].reason.kind, RefusalKind::invalid);
+            continue;
+        }
+        ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+        EXPECT_EQ(t.mesh.triangles.size(), 2u);
+        EXPECT_EQ(t.mesh.points.size(), 4u);
+        EXPECT_GE(t.boundary_gap, kTiny / 4);
+        EXPECT_LE(t.boundary_gap, 2 * kTiny);
+    }
+}
+
+// Curves that cross do so however often they are cut; the face beside pays nothing for it.
+TEST(Boundaries, that_cross_are_refused_and_leave_no_cuts_behind) {
+    Model m;
+    const Vec<2> at[] = {{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}}, tie[] = {at[0], at[2], at[1], at[3]};
+    for (const Vec<2>& p : at) m.vertices.push_back({in_space(p), 1e-7});
+    std::vector<Coedge> bad, good;
+    for (int i = 0; i < 4; ++i) {
+        const int k = (i + 1) % 4;
+        m.edges.push_back({straight(in_space(at[i]), in_space(at[k])), false, {0, 1}, i, k, 1e-7, ""});
+        good.push_back({i, false, straight(at[i], at[k])});
+        bad.push_back({i, false, straight(tie[i], tie[k])});
+    }
+    const auto t = *tessellate(of_faces(std::move(m), {bad, good}), {.tolerance = 1e-3});
+    ASSERT_EQ(t.refused.size(), 1u);
+    EXPECT_EQ(t.refused[0].face, 0);
+    EXPECT_EQ(t.mesh.triangles.size(), 2u);
+}
+
+}  // namespace
