@@ -122,16 +122,32 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     return {};
 }
 
-// Notes the middle of a side inside a face as a point to begin with; false if it is none or has been noted.
+// Notes a point inside a face to begin with; false if that has been done.
+bool Tessellator::add_extra(std::size_t f, const Vec<2>& uv) {
+    auto& extra = extra_[f];
+    if (std::find(extra.begin(), extra.end(), uv) != extra.end()) return false;
+    extra.push_back(uv);
+    return true;
+}
+
+// The middle of a side that is not of the boundary.
 bool Tessellator::halve(std::size_t f, int u, int v) {
     for (const auto& s : boundaries_[f].polygon.segments)
         if ((s[0] == u && s[1] == v) || (s[0] == v && s[1] == u)) return false;
     const auto& uv = meshes_[f].uv;
-    const Vec<2> middle = 0.5 * (uv[std::size_t(u)] + uv[std::size_t(v)]);
-    auto& extra = extra_[f];
-    if (std::find(extra.begin(), extra.end(), middle) != extra.end()) return false;
-    extra.push_back(middle);
-    return true;
+    return add_extra(f, 0.5 * (uv[std::size_t(u)] + uv[std::size_t(v)]));
+}
+
+// A point in the triangle across this side of a triangle without area, which is then seen from its third
+// corner: the side goes.
+bool Tessellator::look_across(std::size_t f, int u, int v) {
+    const FaceMesh& mesh = meshes_[f];
+    const auto at = [&](int i) { return mesh.uv[std::size_t(i)]; };
+    for (const auto& t : mesh.triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (t[k] == v && t[(k + 1) % 3] == u)
+                return add_extra(f, (1.0 / 3) * (at(u) + at(v) + at(t[(k + 2) % 3])));
+    return false;
 }
 
 // The longest side of a triangle of three boundary points on a line: a straight edge whose parameter curve
@@ -153,7 +169,7 @@ std::array<int, 2> Tessellator::flat_side(const FaceMesh& mesh, const std::array
 }
 
 // Faces with an inner edge between two boundary points that also is an edge elsewhere, or with a triangle of
-// boundary points that has no area; `extra_` gets the middles.
+// boundary points that has no area; `extra_` gets points that mend it.
 std::vector<std::size_t> Tessellator::faces_to_mend() {
     struct Side {
         int a, b;
@@ -173,7 +189,7 @@ std::vector<std::size_t> Tessellator::faces_to_mend() {
                 if (a >= 0) sides.push_back({a, b, int(f), u, v});
             }
             const auto [u, v] = flat_side(mesh, t);
-            if (u >= 0 && halve(f, u, v)) again.insert(f);
+            if (u >= 0 && look_across(f, u, v)) again.insert(f);
         }
     }
     std::sort(sides.begin(), sides.end());

@@ -56,7 +56,9 @@ private:
     Result<void> fill(std::span<const std::size_t> which);
     Result<void> fill_all();
     std::optional<Refusal> far_parameter(std::size_t face) const;
+    bool add_extra(std::size_t face, const Vec<2>& uv);
     bool halve(std::size_t face, int u, int v);
+    bool look_across(std::size_t face, int u, int v);
     std::array<int, 2> flat_side(const FaceMesh& mesh, const std::array<int, 3>& triangle) const;
     std::vector<std::size_t> faces_to_mend();
     struct FaceLook {

@@ -87,6 +87,29 @@ TEST(Boundaries, edges_shorter_than_the_tolerance_of_the_file_become_points) {
     }
 }
 
+// Two sides on one line whose parameter curves make a corner: the triangle there has no area in space.
+TEST(Boundaries, that_are_straight_in_space_alone_have_no_triangle_without_area) {
+    for (int i = 0; i < 20; ++i) {
+        const double height = 1 << (i % 5), deep = 0.25 * (1 << (i / 5));
+        Model m;
+        const Vec<2> at[] = {{{0, 0}}, {{0.75, 0}}, {{2, 0}}, {{2, height}}, {{0, height}}},
+                     bow{{0.75, -deep}};
+        for (const Vec<2>& p : at) m.vertices.push_back({in_space(p), 4.0});
+        std::vector<Coedge> loop;
+        for (int side = 0; side < 5; ++side) {
+            const int k = (side + 1) % 5;
+            m.edges.push_back(
+                {straight(in_space(at[side]), in_space(at[k])), false, {0, 1}, side, k, 4.0, ""});
+            loop.push_back({side, false, straight(side == 1 ? bow : at[side], k == 1 ? bow : at[k])});
+        }
+        const auto t = *tessellate(of_faces(std::move(m), {loop}), {.tolerance = 0.01});
+        ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+        EXPECT_EQ(t.topology.degenerate_triangles, 0) << height << " " << deep;
+        EXPECT_EQ(t.topology.open_edges, 5) << height << " " << deep;
+        EXPECT_NEAR(t.boundary_gap, deep, 1e-9);
+    }
+}
+
 // Curves that cross do so however often they are cut; the face beside pays nothing for it.
 TEST(Boundaries, that_cross_are_refused_and_leave_no_cuts_behind) {
     Model m;
