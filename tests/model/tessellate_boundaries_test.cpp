@@ -8,22 +8,24 @@ using namespace freiform::test;
 
 namespace {
 
-const Extrusion kPlane{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+const Extrusion kParameterPlane{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
 
 // In the plane z = 0, whose points are their parameters.
-Vec<3> in_space(const Vec<2>& p) { return {{p[0], p[1], 0}}; }
-Conic<2> circle(const Vec<2>& centre, double r) { return {ConicKind::ellipse, centre, {{r, 0}}, {{0, r}}}; }
-CurveGeometry<3> in_space(const Conic<2>& c) {
-    return Conic<3>{ConicKind::ellipse, in_space(c.centre), in_space(c.x), in_space(c.y)};
+Vec<3> on_plane(const Vec<2>& p) { return {{p[0], p[1], 0}}; }
+Conic<2> circle_about(const Vec<2>& centre, double r) {
+    return {ConicKind::ellipse, centre, {{r, 0}}, {{0, r}}};
 }
-CurveGeometry<2> straight(const Vec<2>& from, const Vec<2>& to) { return Line<2>{from, to - from}; }
-CurveGeometry<3> straight(const Vec<3>& from, const Vec<3>& to) { return Line<3>{from, to - from}; }
+CurveGeometry<3> on_plane(const Conic<2>& c) {
+    return Conic<3>{ConicKind::ellipse, on_plane(c.centre), on_plane(c.x), on_plane(c.y)};
+}
+CurveGeometry<2> side_between(const Vec<2>& from, const Vec<2>& to) { return Line<2>{from, to - from}; }
+CurveGeometry<3> side_between(const Vec<3>& from, const Vec<3>& to) { return Line<3>{from, to - from}; }
 
 Model of_faces(Model m, const std::vector<std::vector<Coedge>>& loops) {
     Shell shell;
     for (const auto& loop : loops) {
         Face f;
-        f.surface = kPlane;
+        f.surface = kParameterPlane;
         f.loops = {{loop}};
         shell.faces.push_back({int(m.faces.size()), false});
         m.faces.push_back(f);
@@ -37,15 +39,15 @@ Model of_faces(Model m, const std::vector<std::vector<Coedge>>& loops) {
 Model sickle(double outer, double inner, double to) {
     Model m;
     const double from = -kPi / 2;
-    const Conic<2> out = circle({}, outer), in = circle({{0, inner - outer}}, inner);
+    const Conic<2> out = circle_about({}, outer), in = circle_about({{0, inner - outer}}, inner);
     const Vec<2> tip{{0, -outer}}, far_end = jet<0>(CurveGeometry<2>(out), to).value(),
                                    near_end = jet<0>(CurveGeometry<2>(in), to).value();
-    for (const Vec<2>& p : {tip, far_end, near_end}) m.vertices.push_back({in_space(p), 1e-7});
-    m.edges.push_back({in_space(out), false, {from, to}, 0, 1, 1e-7, ""});
-    m.edges.push_back({straight(in_space(far_end), in_space(near_end)), false, {0, 1}, 1, 2, 1e-7, ""});
-    m.edges.push_back({in_space(in), false, {from, to}, 0, 2, 1e-7, ""});
+    for (const Vec<2>& p : {tip, far_end, near_end}) m.vertices.push_back({on_plane(p), 1e-7});
+    m.edges.push_back({on_plane(out), false, {from, to}, 0, 1, 1e-7, ""});
+    m.edges.push_back({side_between(on_plane(far_end), on_plane(near_end)), false, {0, 1}, 1, 2, 1e-7, ""});
+    m.edges.push_back({on_plane(in), false, {from, to}, 0, 2, 1e-7, ""});
     return of_faces(std::move(m),
-                    {{{0, false, out}, {1, false, straight(far_end, near_end)}, {2, true, in}}});
+                    {{{0, false, out}, {1, false, side_between(far_end, near_end)}, {2, true, in}}});
 }
 
 TEST(Boundaries, that_touch_in_a_cusp_are_told_apart) {
@@ -65,13 +67,13 @@ TEST(Boundaries, edges_shorter_than_the_tolerance_of_the_file_become_points) {
         Model m;
         const Vec<2> at[] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{1, 1 - kTiny}}, {{0, 1}}};
         const Vec<2> beside{{1, 1 - kTiny / 2}};  // where the curve of the last but one side begins
-        for (const Vec<2>& p : at) m.vertices.push_back({in_space(p), tolerance});
+        for (const Vec<2>& p : at) m.vertices.push_back({on_plane(p), tolerance});
         std::vector<Coedge> loop;
         for (int i = 0; i < 5; ++i) {
             const int k = (i + 1) % 5;
             m.edges.push_back(
-                {straight(in_space(at[i]), in_space(at[k])), false, {0, 1}, i, k, tolerance, ""});
-            loop.push_back({i, false, straight(i == 3 ? beside : at[i], at[k])});
+                {side_between(on_plane(at[i]), on_plane(at[k])), false, {0, 1}, i, k, tolerance, ""});
+            loop.push_back({i, false, side_between(i == 3 ? beside : at[i], at[k])});
         }
         const auto t = *tessellate(of_faces(std::move(m), {loop}), {.tolerance = 0.01});
         if (tolerance < kTiny) {
@@ -94,13 +96,13 @@ TEST(Boundaries, that_are_straight_in_space_alone_have_no_triangle_without_area)
         Model m;
         const Vec<2> at[] = {{{0, 0}}, {{0.75, 0}}, {{2, 0}}, {{2, height}}, {{0, height}}},
                      bow{{0.75, -deep}};
-        for (const Vec<2>& p : at) m.vertices.push_back({in_space(p), 4.0});
+        for (const Vec<2>& p : at) m.vertices.push_back({on_plane(p), 4.0});
         std::vector<Coedge> loop;
         for (int side = 0; side < 5; ++side) {
             const int k = (side + 1) % 5;
             m.edges.push_back(
-                {straight(in_space(at[side]), in_space(at[k])), false, {0, 1}, side, k, 4.0, ""});
-            loop.push_back({side, false, straight(side == 1 ? bow : at[side], k == 1 ? bow : at[k])});
+                {side_between(on_plane(at[side]), on_plane(at[k])), false, {0, 1}, side, k, 4.0, ""});
+            loop.push_back({side, false, side_between(side == 1 ? bow : at[side], k == 1 ? bow : at[k])});
         }
         const auto t = *tessellate(of_faces(std::move(m), {loop}), {.tolerance = 0.01});
         ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
@@ -114,13 +116,13 @@ TEST(Boundaries, that_are_straight_in_space_alone_have_no_triangle_without_area)
 TEST(Boundaries, that_cross_are_refused_and_leave_no_cuts_behind) {
     Model m;
     const Vec<2> at[] = {{{0, 0}}, {{2, 0}}, {{2, 1}}, {{0, 1}}}, tie[] = {at[0], at[2], at[1], at[3]};
-    for (const Vec<2>& p : at) m.vertices.push_back({in_space(p), 1e-7});
+    for (const Vec<2>& p : at) m.vertices.push_back({on_plane(p), 1e-7});
     std::vector<Coedge> bad, good;
     for (int i = 0; i < 4; ++i) {
         const int k = (i + 1) % 4;
-        m.edges.push_back({straight(in_space(at[i]), in_space(at[k])), false, {0, 1}, i, k, 1e-7, ""});
-        good.push_back({i, false, straight(at[i], at[k])});
-        bad.push_back({i, false, straight(tie[i], tie[k])});
+        m.edges.push_back({side_between(on_plane(at[i]), on_plane(at[k])), false, {0, 1}, i, k, 1e-7, ""});
+        good.push_back({i, false, side_between(at[i], at[k])});
+        bad.push_back({i, false, side_between(tie[i], tie[k])});
     }
     const auto t = *tessellate(of_faces(std::move(m), {bad, good}), {.tolerance = 1e-3});
     ASSERT_EQ(t.refused.size(), 1u);
