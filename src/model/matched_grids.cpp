@@ -30,9 +30,9 @@ namespace freiform {
 
 namespace {
 
-constexpr double kSamePart = 1e-9;    // kinks nearer than this are one
-constexpr double kSameCorner = 1e-9;  // of the rectangle
-constexpr double kMostParts = 16;     // in the place of one at a time: bounds over long ones are too large
+constexpr double kSamePart = 1e-9;      // kinks nearer than this are one
+constexpr double kSameCorner = 1e-9;    // of the rectangle
+constexpr double kMostStripParts = 16;  // in the place of one at a time: bounds over long ones are too large
 
 struct Side {
     int edge = -1;
@@ -241,7 +241,7 @@ void GridMatcher::ask_edges(EdgeClass& c) {
         for (std::size_t i = 0; i + 1 < at.size(); ++i) {
             const auto p = edges_.part(edge, at[i], at[i + 1], on_edges_);
             double& need = c.needs[turned ? at.size() - 2 - i : i];
-            need = std::max(need, std::min(p.needs, kMostParts));
+            need = std::max(need, std::min(p.needs, kMostStripParts));
             c.bounds[e] = std::max(c.bounds[e], p.bound);
             c.keeps = c.keeps && p.needs <= 1;
         }
