@@ -50,9 +50,8 @@ public:
     std::string json() const {
         json::Writer w;
         w.begin_object();
-        const std::vector<Row> none;
         for (const auto& [key, rows, more] : {std::tuple("points", &points_, &on_models_.points()),
-                                              {"overlaps", &overlaps_, &none},
+                                              {"overlaps", &overlaps_, &on_models_.overlaps()},
                                               {"possible", &possible_, &on_models_.possible()}}) {
             w.key(key).begin_array();
             for (const auto& row : *rows) row(w);

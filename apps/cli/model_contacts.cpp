@@ -59,6 +59,19 @@ void ModelContactRows::add(const ModelContacts& found, const std::array<std::siz
             numbers(c.point.c),
             c.is_proven() ? "" : text(", ", c.least, " to ", c.most, " times, gap at most ", c.gap), "\n");
     }
+    for (const ModelOverlap& o : found.overlaps) {
+        overlaps_.push_back([=](json::Writer& w) {
+            w.new_line(1).begin_object();
+            if (ray)
+                w.field("ray", *ray).field("object", objects[0]);
+            else
+                w.key("objects").array(objects);
+            w.key(swapped ? "b" : "a").array(std::array{o.on.lo, o.on.hi});
+            w.field("face", o.face).field("gap", o.gap).end_object();
+        });
+        plain_ += text(where, ": runs in face ", o.face, " over [", o.on.lo, ", ", o.on.hi, "], gap at most ",
+                       o.gap, "\n");
+    }
     for (const OpenContacts& o : found.open) {
         const std::string face = text(where, ", face ", o.face);
         if (o.reason) remark(text(face, ": nothing is known: ", o.reason->message));

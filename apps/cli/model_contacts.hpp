@@ -14,12 +14,13 @@ public:
              std::optional<std::size_t> ray, bool swapped, double tolerance, const std::string& where);
 
     const std::vector<std::function<void(json::Writer&)>>& points() const { return points_; }
+    const std::vector<std::function<void(json::Writer&)>>& overlaps() const { return overlaps_; }
     const std::vector<std::function<void(json::Writer&)>>& possible() const { return possible_; }
     const std::string& plain() const { return plain_; }
     const std::vector<std::string>& undecided() const { return undecided_; }
 
 private:
-    std::vector<std::function<void(json::Writer&)>> points_, possible_;
+    std::vector<std::function<void(json::Writer&)>> points_, possible_, overlaps_;
     std::string plain_;
     std::vector<std::string> undecided_;
 };

@@ -80,7 +80,7 @@ RECORDS = {
     "model/inside": ["SolidInside"],
     "model/intersect": ["TrimPlace", "FaceBranch", "FaceOverlap", "FaceNode", "ChainLink", "BranchChain", "OpenFaces",
                         "ModelIntersection"],
-    "model/curve_model": ["ContactFace", "ModelContact", "OpenContacts", "ModelContacts"],
+    "model/curve_model": ["ContactFace", "ModelContact", "OpenContacts", "ModelOverlap", "ModelContacts"],
     "model/tessellate": ["RefusedFace", "FaceReport", "Tessellation -seconds"],
     "model/section": ["ModelSectionLine", "ModelSection"],
     "model/sew": ["SewnEdge", "RemainingGap", "Opening", "Sewing"],

@@ -5,12 +5,17 @@
 // not decided on which side it is: it is on the boundary, and what neighbours say of the same place is one
 // contact with it.
 //
+// What runs in a plane is not found by roots: the search leaves a long box in which nothing is proven. A
+// plane is S = O + u U + v V, so the parameters of control points are those of the curve's image, the
+// difference of both is a mean of those of the control points, and the loops clip the image.
+//
 // Cost. A test of boxes for each face; a search for those that the curve may meet.
 //
 // Why not the faces with their loops as barriers of the search? The roots on the surface are few, and proven
 // anyway; loops are looked at once for each.
 #include "prepared_face_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/model/curve_model.hpp>
 #include <freiform/query/checks.hpp>
@@ -23,6 +28,21 @@ namespace freiform {
 namespace {
 
 constexpr double kOnePlace = 0x1p-36;  // of the size of the model
+constexpr double kLong = 0x1p-20;      // of the size: no place but a stretch
+
+Curve<Hom<3>> part_of(const StraightLine& line, const Interval& on) {
+    const auto end = [&](double t) { return weighted(line.point + t * line.direction, 1); };
+    return Curve<Hom<3>>::trusted({*BSplineBasis::bezier(1, on)},
+                                  Net<1, Hom<3>>({2}, {end(on.lo), end(on.hi)}));
+}
+const Curve<Hom<3>>& part_of(const Curve<Hom<3>>& curve, const Interval&) { return curve; }
+double length_over(const StraightLine& line, const Interval& on) {
+    return on.length() * norm(line.direction);
+}
+double length_over(const Curve<Hom<3>>& curve, const Interval& on) {  // of a chord, or two
+    const Vec<3> middle = curve(on.middle());
+    return norm(middle - curve(on.lo)) + norm(curve(on.hi) - middle);
+}
 
 struct MetFace {
     PreparedFace face;
@@ -72,6 +92,11 @@ struct IntersectModel::Prepared {
             auto found = faces[f]->part.intersect(line, options);
             if (!found) return std::unexpected(found.error());
             const FaceLoops& loops = faces[f]->face.loops;
+            if (auto in_face = runs_in(int(f), line, *found)) {
+                out.overlaps.insert(out.overlaps.end(), in_face->begin(), in_face->end());
+                std::erase_if(found->contacts, [&](const Contact<3, 3>& c) { return is_long(line, c); });
+                found->undecided.clear();
+            }
             std::erase_if(found->undecided, [&](const auto& box) {
                 return loops.place({{{box[1].lo, box[2].lo}}, {{box[1].hi, box[2].hi}}}).place ==
                        Place::outside;
@@ -86,6 +111,17 @@ struct IntersectModel::Prepared {
                     out.contacts.push_back(std::move(one));
                     continue;
                 }
+                if (is_long(line, one.contact)) {
+                    const Interval on = one.contact.box[0];
+                    out.open.push_back(
+                        {int(f),
+                         {one.contact.box},
+                         Refusal{RefusalKind::ill_conditioned, text("faces[", f, "]"),
+                                 text("over [", on.lo, ", ", on.hi,
+                                      "] of its parameter the curve runs along the face, at most ",
+                                      one.contact.gap, " away in the middle")}});
+                    continue;
+                }
                 if (at.on.coedge >= 0)
                     one.edge =
                         model.faces[f].loops[std::size_t(at.on.loop)].coedges[std::size_t(at.on.coedge)].edge;
@@ -97,6 +133,49 @@ struct IntersectModel::Prepared {
         join(std::move(on_loops), out.contacts);
         std::ranges::sort(out.contacts, {},
                           [](const ModelContact& c) { return std::pair(c.contact.at, c.face); });
+        return out;
+    }
+
+    template <class Line>
+    bool is_long(const Line& line, const Contact<3, 3>& c) const {
+        return c.least == 0 && length_over(line, c.box[0]) > kLong * size;
+    }
+    // Where the curve runs in the plane of a face and within its loops, if it runs there at all.
+    template <class Line>
+    std::optional<std::vector<ModelOverlap>> runs_in(int face, const Line& line,
+                                                     const Intersections<3, 3>& found) const {
+        const auto* plane = std::get_if<Extrusion>(&model.faces[std::size_t(face)].surface);
+        if (!plane || plane->kind != SurfaceKind::plane) return std::nullopt;
+        std::optional<Interval> on;
+        const auto take = [&](const Interval& t) { on = on ? hull(*on, t) : t; };
+        for (const Contact<3, 3>& c : found.contacts)
+            if (is_long(line, c)) take(c.box[0]);
+        for (const auto& box : found.undecided) take(box[0]);
+        if (!on || !(on->lo < on->hi)) return std::nullopt;
+        const Curve<Hom<3>>& curve = part_of(line, *on);
+        const auto at = [&](double u, double v) {
+            return jet<0>(model.faces[std::size_t(face)].surface, std::array{u, v}).value();
+        };
+        const Vec<3> o = at(0, 0), u = at(1, 0) - o, v = at(0, 1) - o, n = cross(u, v);
+        double gap = 0;
+        std::vector<Vec<2>> image;
+        for (const Hom<3>& p : curve.net().flat()) {
+            if (p.weight() != curve.net().flat()[0].weight()) return std::nullopt;  // the image is rational
+            const Vec<3> x = project(p), d = x - o;
+            image.push_back({{dot(cross(d, v), n) / dot(n, n), dot(cross(u, d), n) / dot(n, n)}});
+            const double scale = max_abs(x) + max_abs(o) + std::abs(image.back()[0]) * max_abs(u) +
+                                 std::abs(image.back()[1]) * max_abs(v);
+            gap = std::max(gap, norm(at(image.back()[0], image.back()[1]) - x) + 64 * kUnitRoundoff * scale);
+        }
+        if (!(gap <= kOnePlace * size)) return std::nullopt;
+        const int count = int(image.size());
+        const auto clipped = faces[std::size_t(face)]->face.loops.clip(
+            Curve<Vec<2>>::trusted({curve.basis()}, Net<1, Vec<2>>({count}, std::move(image))),
+            kOnePlace * size);
+        if (!clipped) return std::nullopt;
+        std::vector<ModelOverlap> out;
+        for (const ClippedPart& part : *clipped)
+            if (length_over(line, part.on) > kLong * size) out.push_back({face, part.on, gap});
         return out;
     }
 

@@ -114,13 +114,19 @@ private:
         points_.insert(points_.end(), own.corners.begin(), own.corners.end());
         leaves_.push_back(std::move(own));
     }
-    // Of the points, each once, on the grid.
+    // Of the corners of H and of the points that came since, each once, on the grid.
     detail::PointHull<3> hull_of_points() {
+        std::size_t at = 0;
+        std::erase_if(points_, [&](const Vec<3>&) { return at < inner_.size() && inner_[at++]; });
         for (Vec<3>& p : points_)
             for (int k = 0; k < 3; ++k) p[k] = std::nearbyint(p[k] / grid_) * grid_;
         std::ranges::sort(points_, {}, &Vec<3>::c);
         points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
-        return detail::PointHull<3>(points_);
+        detail::PointHull<3> hull(points_);
+        inner_.assign(hull.facets.empty() ? 0 : points_.size(), true);
+        for (const auto& f : hull.facets)
+            for (const auto i : f) inner_[std::size_t(i)] = false;
+        return hull;
     }
     void drop_hidden(const detail::PointHull<3>& hull) {
         if (hull.facets.empty()) return;
@@ -136,12 +142,18 @@ private:
                                            dot(n, points_[std::size_t(f[2])])})});
         }
         const double rounding = 2 * grid_ + 32 * kUnitRoundoff * size_;
+        std::size_t last = 0;  // the facet that kept the leaf before: often it keeps its neighbour
         std::erase_if(leaves_, [&](const Leaf& leaf) {
             const double depth = leaf.leaves_by + rounding;
-            return std::ranges::all_of(facets, [&](const Facet& f) {
+            const auto is_behind = [&](const Facet& f) {
                 return std::ranges::all_of(leaf.corners,
                                            [&](const Vec<3>& x) { return dot(f.n, x) <= f.at - depth; });
-            });
+            };
+            if (!is_behind(facets[last])) return false;
+            const auto before = std::ranges::find_if_not(facets, is_behind);
+            if (before == facets.end()) return true;
+            last = std::size_t(before - facets.begin());
+            return false;
         });
     }
     bool halve_above(double share) {
@@ -189,6 +201,7 @@ private:
     double off_model_ = 0;  // bound: of the points, from the model
     std::vector<Leaf> leaves_;
     std::vector<Vec<3>> points_;
+    std::vector<char> inner_;  // of those that H was made of: inside of it
 };
 
 }  // namespace

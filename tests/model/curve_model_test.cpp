@@ -158,6 +158,60 @@ TEST(CurveModel, what_is_outside_of_the_loops_is_not_met_and_scale_changes_nothi
     }
 }
 
+TEST(CurveModel, a_line_in_a_plane_face_overlaps_it_as_far_as_its_loops_reach) {
+    const Model tube = frustum(1, 1, 2);  // z in [0, 2]
+    const IntersectModel query(tube);
+    for (const double slope : {0.0, 0.1, -0.5}) {
+        const StraightLine line{{{-3, 0.25, 2}}, {{1, slope, 0}}};
+        // |(-3 + t, 0.25 + slope t)| = 1
+        const double a = 1 + slope * slope, b = -3 + 0.25 * slope, d = b * b - a * (8 + 0.0625);
+        if (d < 0) continue;
+        const auto found = met_by(query, line);
+        ASSERT_EQ(found.overlaps.size(), 1u) << slope;
+        const ModelOverlap& o = found.overlaps[0];
+        EXPECT_NEAR(o.on.lo, (-b - std::sqrt(d)) / a, 1e-9);
+        EXPECT_NEAR(o.on.hi, (-b + std::sqrt(d)) / a, 1e-9);
+        EXPECT_LE(o.gap, 1e-13);
+        ASSERT_EQ(found.contacts.size(), 2u);  // the rim, of the wall
+        for (const ModelContact& c : found.contacts) {
+            EXPECT_EQ(c.contact.kind, ContactKind::end);
+            EXPECT_NE(c.face, o.face);
+            EXPECT_LT(c.contact.box[0].length(), 1e-6);
+        }
+    }
+    // Beside the disc, and a little above it.
+    const auto beside = met_by(query, {{{-3, 1.5, 2}}, {{1, 0, 0}}}),
+               above = met_by(query, {{{-3, 0, 2.001}}, {{1, 0, 0}}});
+    EXPECT_TRUE(beside.overlaps.empty() && beside.contacts.empty());
+    EXPECT_TRUE(above.overlaps.empty() && above.contacts.empty());
+    // A parabola in the plane of the lower disc, from its middle out.
+    const auto arc =
+        must(Curve<Hom<3>>::make({must(BSplineBasis::bezier(2))},
+                                 Net<1, Hom<3>>({3}, {weighted(Vec<3>{}, 1), weighted(Vec<3>{{1, 0, 0}}, 1),
+                                                      weighted(Vec<3>{{2, 2, 0}}, 1)})));
+    const auto along = must(query.intersect(arc));
+    EXPECT_TRUE(along.open.empty());
+    ASSERT_EQ(along.overlaps.size(), 1u);
+    EXPECT_EQ(along.overlaps[0].on.lo, 0);
+    const Vec<3> out = arc(along.overlaps[0].on.hi);
+    EXPECT_NEAR(std::hypot(out[0], out[1]), 1, 1e-9);
+}
+
+// Where it is not decided whether it lies in the face, that is said: a line in the wall of the tube.
+TEST(CurveModel, a_line_in_a_curved_face_is_open_there) {
+    const Model tube = frustum(1, 1, 2);
+    const StraightLine line{{{0.6, 0.8, -1}}, {{0, 0, 1}}};
+    ModelContacts out;
+    ASSERT_TRUE(IntersectModel(tube).intersect(std::span(&line, 1), std::span(&out, 1), {.max_parts = 2000}));
+    EXPECT_TRUE(out.overlaps.empty());
+    ASSERT_EQ(out.open.size(), 1u);
+    ASSERT_FALSE(out.open[0].boxes.empty());
+    for (double t = 1.05; t < 3; t += 0.1)
+        EXPECT_TRUE(std::ranges::any_of(out.open[0].boxes, [&](const auto& box) {
+            return box[0].contains(t);
+        })) << t;
+}
+
 TEST(CurveModel, refuses_lines_that_are_none_and_leaves_offsets_open) {
     Model ball = sphere({}, 1);
     ModelContacts out;

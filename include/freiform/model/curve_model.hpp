@@ -27,8 +27,16 @@ struct OpenContacts {
     std::optional<Refusal> reason;
 };
 
+// The curve runs in a plane face over this interval of its parameter.
+struct ModelOverlap {
+    int face = -1;
+    Interval on;     // its ends are ends of the curve, or within 2^-36 of the size of the model of a loop
+    double gap = 0;  // bound: how far the curve is from the plane there
+};
+
 struct ModelContacts {
     std::vector<ModelContact> contacts;  // ordered by the parameter of the curve
+    std::vector<ModelOverlap> overlaps;  // ordered by the face
     std::vector<OpenContacts> open;
 };
 
@@ -40,9 +48,9 @@ public:
     // All faces. Contacts inside a face are as for its surface (curve_surface.hpp), and that they are inside
     // is proven: no curve of its loops meets their box of parameters, and the odd-even rule holds in its
     // middle, exactly. Those on the boundary are one where their boxes of t overlap, or their points are
-    // within their gaps, the tolerances of the edges and 2^-36 of the size of the model. A curve or line that
-    // runs in a face is left open there. Refuses what intersections with surfaces refuse. REQUIRES spans of
-    // one size.
+    // within their gaps, the tolerances of the edges and 2^-36 of the size of the model. A line or polynomial
+    // curve that runs in a plane face overlaps it; one that runs in another face is left open there. Refuses
+    // what intersections with surfaces refuse. REQUIRES spans of one size.
     Result<void> intersect(std::span<const StraightLine> lines, std::span<ModelContacts> out,
                            const IntersectOptions& options = {}) const;
     Result<ModelContacts> intersect(const Curve<Hom<3>>& curve, const IntersectOptions& options = {}) const;
