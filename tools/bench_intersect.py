@@ -124,7 +124,7 @@ def main():
     top = head("bench_intersect.py")
     curves = measure(options.programs, dict.fromkeys(p for _, p, _ in METHODS))
     surfaces = measure(options.programs, [p for _, p in SURFACE_METHODS])
-    nasty_curves = measure(options.programs, ["bench-nasty"])["bench-nasty"]
+    nasty_curves = measure(options.programs, ["bench-nasty"]).get("bench-nasty", {})
     hard = nasty(surfaces)
     longest = max(hard, key=lambda name: hard[name]["seconds"])
     write(options, "INTERSECT.md",
