@@ -1,6 +1,7 @@
 #include "solids.hpp"
 
 #include <freiform/io/document.hpp>
+#include <freiform/io/iges.hpp>
 #include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
@@ -23,7 +24,7 @@ SolidOutput solid_output(const Context& context, const std::string& command,
                          std::optional<double> tolerance) {
     SolidOutput out{output_ending(context, "json"), tolerance};
     if (out.is_mesh() && !mesh_format(out.format))
-        wrong_usage(text(command, " writes solids as .json, .step, .glb, .stl, .obj and .ply, not \"",
+        wrong_usage(text(command, " writes solids as .json, .step, .iges, .glb, .stl, .obj and .ply, not \"",
                          out.format, "\""));
     if (tolerance && !(*tolerance > 0)) wrong_usage("--tolerance needs a positive number");
     return out;
@@ -59,8 +60,9 @@ Result<void> emit_solids(const Context& context, const SolidOutput& output, cons
                      t->topology.open_edges, " open edges");
         bytes = mesh_bytes_of(t->mesh, output.format);
     } else {
-        bytes =
-            output.format == "step" ? write_step(document) : Result<std::string>(write_document(document));
+        bytes = output.format == "step" ? write_step(document)
+                : output.is_iges()      ? write_iges(document)
+                                        : Result<std::string>(write_document(document));
     }
     if (!bytes) return std::unexpected(bytes.error());
     if (auto ok = emit(context, *bytes); !ok) return ok;

@@ -6,10 +6,11 @@ namespace freiform::cli {
 
 // How `tessellate` would write it, for a command whose answer is a model.
 struct SolidOutput {
-    std::string format;               // "json", "step", "glb", "stl", "obj" or "ply"
+    std::string format;               // "json", "step", "iges", "igs", "glb", "stl", "obj" or "ply"
     std::optional<double> tolerance;  // of triangles; a thousandth of the model's box without
 
-    bool is_mesh() const { return format != "json" && format != "step"; }
+    bool is_mesh() const { return format != "json" && format != "step" && !is_iges(); }
+    bool is_iges() const { return format == "iges" || format == "igs"; }
 };
 // From -o and --to; other formats are wrong usage. The default is json.
 SolidOutput solid_output(const Context& context, const std::string& command, std::optional<double> tolerance);

@@ -150,8 +150,9 @@ Result<void> run_text(const Context& context, const TextArguments& options) {
     if (options.solid())
         solid = solid_output(context, "text", options.tolerance);
     else if (format != "svg" && format != "json" && format != "pdf" && format != "png")
-        wrong_usage(text("text writes .svg, .json, .pdf and .png, not \"", format,
-                         "\"; solids (--extrude, --revolve) go to .json, .step, .glb, .stl, .obj and .ply"));
+        wrong_usage(
+            text("text writes .svg, .json, .pdf and .png, not \"", format,
+                 "\"; solids (--extrude, --revolve) go to .json, .step, .iges, .glb, .stl, .obj and .ply"));
     const auto letters = letters_of(context, options);
     if (!letters) return std::unexpected(letters.error());
     json::Writer w;
@@ -224,7 +225,7 @@ void add_text(CommandLine& line) {
     command.number("--tolerance", options->tolerance,
                    "The largest distance of triangles from the solids (default: a thousandth of their box)");
     command.output(
-        "The file to write: .svg, .json, .pdf, .png; of solids .json, .step, .glb, .stl, .obj, .ply");
+        "The file to write: .svg, .json, .pdf, .png; of solids .json, .step, .iges, .glb, .stl, .obj, .ply");
     command.limits();
     command.triangle_limit();
     command.action(options, run_text);

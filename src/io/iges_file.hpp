@@ -1,4 +1,5 @@
-// Files of the Initial Graphics Exchange Specification: cards of 80 columns, entities, and splines among them.
+// Files of the Initial Graphics Exchange Specification: cards of 80 columns, entities, and splines among
+// them.
 #pragma once
 #include "step_detail.hpp"
 
@@ -170,8 +171,8 @@ private:
         directory_ +=
             card(fields({kind, text(first), "0", "0", "0", "0", "0", "0", std::string(kStatus[int(use)])}),
                  'D', entry);
-        directory_ +=
-            card(fields({kind, "0", "0", text(rows_ - first + 1), text(form), "", "", "", "0"}), 'D', entry + 1);
+        directory_ += card(fields({kind, "0", "0", text(rows_ - first + 1), text(form), "", "", "", "0"}),
+                           'D', entry + 1);
         ++entities_;
         return entry;
     }
@@ -180,7 +181,6 @@ private:
     std::string directory_, parameters_;
     int entities_ = 0, rows_ = 0;
 };
-
 
 // The solids of the model as B-rep objects (186), its other shells as 514.
 Result<void> add_model(IgesFile& file, const Model& model);

@@ -1,10 +1,10 @@
-// Idea. Vertices and edges of a model are lists (502, 504) that its loops (508) refer to by index, so what was
-// watertight stays so:
+// Idea. Vertices and edges of a model are lists (502, 504) that its loops (508) refer to by index, so what
+// was watertight stays so:
 //
 //     186 solid -> 514 shell -> 510 face -> 508 loop -> 504 edges -> 502 vertices
 //
-// Edges are splines in space, parts of conics as rational ones. Loops have no curves in the parameters, so
-// that surfaces need not keep theirs: flat ones are 190, revolutions and circular cylinders 120, all others
+// Edges are splines in space, parts of conics as rational ones. Loops on splines have curves in the parameters,
+// too; others have none, so that surfaces need not keep their parameters: flat ones are 190, revolutions and circular cylinders 120, all others
 // splines (128), of extrusions exact ones over what the face uses of them.
 //
 // Orientation. Loops run counter-clockwise about the normal of the surface; a shell says which of its faces
@@ -50,7 +50,8 @@ public:
 
     Result<void> write() {
         for (std::size_t f = 0; f < m_.faces.size(); ++f)
-            if (auto ok = find_edges(m_.faces[f]); !ok) return refuse_within(text("faces[", f, "]"), ok.error());
+            if (auto ok = find_edges(m_.faces[f]); !ok)
+                return refuse_within(text("faces[", f, "]"), ok.error());
         vertices_ = lists();
         std::vector<int> faces;
         for (std::size_t f = 0; f < m_.faces.size(); ++f) {
@@ -73,7 +74,7 @@ private:
                 if (e.degenerate || id != 0) continue;
                 const auto curve = curve_of(e, c, f.surface);
                 if (!curve) return refuse_within(text("edges[", c.edge, "]"), curve.error());
-                const auto made = spline(*curve);
+                const auto made = spline<3>(*curve);
                 if (!made) return refuse_within(text("edges[", c.edge, "]"), made.error());
                 id = *made;
             }
@@ -87,11 +88,12 @@ private:
         return image_curve(surface, *flat);
     }
 
-    Result<int> spline(const CurveGeometry<3>& curve) {
+    template <int D>
+    Result<int> spline(const CurveGeometry<D>& curve, IgesUse use = IgesUse::part) {
         return std::visit(
             [&](const auto& x) -> Result<int> {
                 if constexpr (requires { x.net(); })
-                    return file_.add(x, IgesUse::part);
+                    return file_.add(x, use);
                 else
                     return refuse(RefusalKind::unsupported, "", "a curve that is no spline");
             },
@@ -118,30 +120,43 @@ private:
         return vertices;
     }
 
-    int loop(const Loop& l) {
-        std::vector<std::string> values = {""};
-        int count = 0;
+    // Of splines with the curves in the parameters, which readers would otherwise have to find again.
+    Result<int> loop(const Loop& l, bool on_spline) {
+        std::vector<std::string> values = {text(l.coedges.size())};
         for (const Coedge& c : l.coedges) {
             const Edge& e = m_.edges[std::size_t(c.edge)];
-            const std::array<int, 4> entry = e.degenerate
-                                                 ? std::array{1, vertices_, e.start + 1, 1}
-                                                 : std::array{0, edges_, index_[std::size_t(c.edge)], c.reversed ? 0 : 1};
+            const std::array<int, 4> entry =
+                e.degenerate ? std::array{1, vertices_, e.start + 1, 1}
+                             : std::array{0, edges_, index_[std::size_t(c.edge)], c.reversed ? 0 : 1};
             for (const int x : entry) values.push_back(text(x));
-            values.emplace_back("0"), ++count;
+            if (!on_spline) {
+                values.emplace_back("0");
+                continue;
+            }
+            const auto flat = parameter_spline(c.curve, e.range);
+            if (!flat) return std::unexpected(flat.error());
+            const auto id = spline<2>(*flat, IgesUse::parameters);
+            if (!id) return id;
+            for (const int x : {1, 0, *id}) values.push_back(text(x));
         }
-        values[0] = text(count);
         return file_.entity("508", IgesUse::part, values, 1);
     }
 
     Result<int> face(const Face& f) {
         Box<2> used;
         for (const Loop& l : f.loops)
-            for (const Coedge& c : l.coedges)
-                add_extent(used, c.curve, m_.edges[std::size_t(c.edge)].range);
+            for (const Coedge& c : l.coedges) add_extent(used, c.curve, m_.edges[std::size_t(c.edge)].range);
         const auto surface = std::visit([&](const auto& s) { return one(s, used); }, f.surface);
         if (!surface) return surface;
-        std::vector<std::string> values = {text(*surface), text(f.loops.size()), f.loops.size() == 1 ? "1" : "0"};
-        for (const Loop& l : f.loops) values.push_back(text(loop(l)));
+        std::vector<std::string> values = {text(*surface), text(f.loops.size()),
+                                           f.loops.size() == 1 ? "1" : "0"};
+        const bool on_spline = std::holds_alternative<Surface<Vec<3>>>(f.surface) ||
+                               std::holds_alternative<Surface<Hom<3>>>(f.surface);
+        for (const Loop& l : f.loops) {
+            const auto id = loop(l, on_spline);
+            if (!id) return id;
+            values.push_back(text(*id));
+        }
         return file_.entity("510", IgesUse::part, values, 1);
     }
 
@@ -160,7 +175,8 @@ private:
         }
         if (!b.solid || shells.empty()) return;
         std::vector<std::string> values = {text(shells[0]), "1", text(shells.size() - 1)};
-        for (std::size_t i = 1; i < shells.size(); ++i) values.push_back(text(shells[i])), values.emplace_back("1");
+        for (std::size_t i = 1; i < shells.size(); ++i)
+            values.push_back(text(shells[i])), values.emplace_back("1");
         file_.entity("186", IgesUse::alone, values);
     }
 
@@ -203,7 +219,8 @@ private:
                                 rows.push_back(p + by);
                     const auto across = BSplineBasis::bezier(1, used.side(1));
                     if (!across) return std::unexpected(across.error());
-                    const auto made = Surface<P>::make({c.basis(), *across}, Net<2, P>({int(rows.size()) / 2, 2}, rows));
+                    const auto made =
+                        Surface<P>::make({c.basis(), *across}, Net<2, P>({int(rows.size()) / 2, 2}, rows));
                     if (!made) return std::unexpected(made.error());
                     return file_.add(*made, IgesUse::part);
                 } else {
@@ -224,7 +241,8 @@ private:
     }
 
     // The profile turned once about the axis: its angle is the first parameter.
-    Result<int> turned(const CurveGeometry<3>& profile, Interval on, const Vec<3>& origin, const Vec<3>& axis) {
+    Result<int> turned(const CurveGeometry<3>& profile, Interval on, const Vec<3>& origin,
+                       const Vec<3>& axis) {
         const auto curve = space_spline(profile, on);
         if (!curve) return std::unexpected(curve.error());
         const Line<3> along{origin, (-1 / norm(axis)) * axis};
@@ -232,7 +250,7 @@ private:
         for (const double t : {0.0, 1.0})
             for (const double x : (along.origin + t * along.direction).c) ends.push_back(real(x));
         const int about = file_.entity("110", IgesUse::part, ends);
-        const auto generatrix = spline(*curve);
+        const auto generatrix = spline<3>(*curve);
         if (!generatrix) return generatrix;
         return file_.entity("120", IgesUse::part, {text(about), text(*generatrix), "0.", real(kTwoPi)});
     }

@@ -1,8 +1,9 @@
 // Idea. An entity is a list of numbers: those of 126 and 128 are degrees, flags, knots, weights, points and
 // the domain. A trimmed surface (144) names its surface, its outer loop and its holes; a loop (142) is a
 // composite curve (102) in the parameters and one in space, whose curves are the images of those
-// (make/image_curve.hpp). Models: iges_model.cpp. The file is cards of 80 columns, each with the letter of its section and a number;
-// the directory says where the parameters of each entity begin, and these which directory entry they are of.
+// (make/image_curve.hpp). Models: iges_model.cpp. The file is cards of 80 columns, each with the letter of
+// its section and a number; the directory says where the parameters of each entity begin, and these which
+// directory entry they are of.
 //
 // References: the Initial Graphics Exchange Specification, version 5.3, 4.4, 4.23, 4.24, 4.34 and 4.36.
 #include "iges_file.hpp"
@@ -18,7 +19,8 @@ namespace {
 using detail::IgesFile;
 using detail::IgesUse;
 
-Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curves, const TrimmedSurface& t, int surface) {
+Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curves, const TrimmedSurface& t,
+                      int surface) {
     const SurfaceGeometry geometry = std::visit(
         [](const auto& s) -> SurfaceGeometry {
             const auto open = IgesFile::cut(s);  // which refused nothing when the surface was written
@@ -37,11 +39,9 @@ Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curve
             else
                 return refuse(RefusalKind::unsupported, "", "a curve that is no spline");
         };
-        const auto one =
-            std::visit([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
+        const auto one = std::visit([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
         if (!one) return one;
-        const auto other =
-            std::visit([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
+        const auto other = std::visit([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
         if (!other) return other;
         chains[0].push_back(*one), chains[1].push_back(*other);
     }

@@ -8,7 +8,9 @@
 
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/obj_freeform.hpp>
+#include <freiform/model/spline_faces.hpp>
 #include <freiform/spline/in_space.hpp>
+#include <freiform/trim/loops.hpp>
 
 namespace freiform {
 
@@ -137,6 +139,21 @@ Result<void> add_trimmed(ObjFreeformWriter& w, const std::string& name, const Tr
     return {};
 }
 
+Result<void> add_faces(ObjFreeformWriter& w, const std::string& name, const Model& model) {
+    for (std::size_t f = 0; f < model.faces.size(); ++f) {
+        auto face = spline_face(model, f);
+        if (!face) return refuse_within(text("faces[", f, "]"), face.error());
+        // Outer loops counter-clockwise, holes clockwise: what the format demands.
+        const auto sides = std::visit([](const auto& s) { return s.domain(); }, face->surface);
+        const double gap = TrimmedSurface::kSlack * std::hypot(sides[0].length(), sides[1].length());
+        if (auto turned = orient_loops(face->loops, {gap, gap})) face->loops = std::move(turned->loops);
+        const std::string& own = model.faces[f].name;
+        if (auto ok = add_trimmed(w, own.empty() ? text(name, ".", f) : own, *face); !ok)
+            return refuse_within(text("faces[", f, "]"), ok.error());
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<std::string> write_obj_freeform(const Document& document) {
@@ -148,17 +165,19 @@ Result<std::string> write_obj_freeform(const Document& document) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, TrimmedSurface>) {
                     return add_trimmed(w, o.name, s);
+                } else if constexpr (std::same_as<S, Model>) {
+                    return add_faces(w, o.name, s);
                 } else if constexpr (TensorPatch<S>) {
                     if constexpr (S::kParams == 1 && (S::Point::kCoords == 2 || S::Point::kCoords == 3))
                         return w.add_curve(o.name, s), Result<void>();
                     else if constexpr (S::kParams == 2 && S::Point::kCoords == 3)
                         return w.begin_surface(o.name, s), w.end(), Result<void>();
                 }
-                return refuse(
-                    RefusalKind::unsupported, "",
-                    text("is a ", type_name(o.shape),
-                         "; OBJ files hold curves, surfaces in space and trimmed ones (freiform tessellate "
-                         "writes triangles of all)"));
+                return refuse(RefusalKind::unsupported, "",
+                              text("is a ", type_name(o.shape),
+                                   "; OBJ files hold curves, surfaces in space, trimmed ones and models "
+                                   "(freiform tessellate "
+                                   "writes triangles of all)"));
             },
             o.shape);
         if (!done) return refuse_within(object_label(document, i), done.error());

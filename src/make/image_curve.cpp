@@ -214,8 +214,9 @@ Result<CurveGeometry<D>> spline_of_part(const CurveGeometry<D>& curve, Interval 
             if constexpr (std::same_as<C, Line<D>>) {
                 const auto basis = BSplineBasis::make(1, {on.lo, on.lo, on.hi, on.hi});
                 if (!basis) return std::unexpected(basis.error());
-                auto made = Curve<Vec<D>>::make({*basis}, Net<1, Vec<D>>({2}, {c.origin + on.lo * c.direction,
-                                                                               c.origin + on.hi * c.direction}));
+                auto made = Curve<Vec<D>>::make(
+                    {*basis},
+                    Net<1, Vec<D>>({2}, {c.origin + on.lo * c.direction, c.origin + on.hi * c.direction}));
                 if (!made) return std::unexpected(made.error());
                 return *std::move(made);
             } else if constexpr (std::same_as<C, Conic<D>>) {

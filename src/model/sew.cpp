@@ -280,7 +280,9 @@ Result<Sewing> sew(const Model& model, const SewOptions& options) {
                       text(options.tolerance, " is not a finite number"));
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not positive"));
-    return Sewer(model, options.tolerance).run();
+    Model with_curves = model;
+    give_images(with_curves);
+    return Sewer(with_curves, options.tolerance).run();
 }
 
 }  // namespace freiform

@@ -15,6 +15,9 @@ struct Owner {
 
 std::vector<Owner> owners_of(const Model& m);
 
+// Curves in space for edges of one face that have none, and poles named as such (sew_images.cpp).
+void give_images(Model& m);
+
 // Part of an open edge, between the ends of others; or all of it.
 struct Part {
     int edge = -1;

@@ -44,6 +44,25 @@ TEST_F(SolidProgram, of_closed_curves_are_extruded_and_revolved) {
         run({"extrude", badge, "--object", "plate", "--by", "0,0,2", "--solid", "-o", "plate.glb"}).code, 0);
 }
 
+TEST_F(SolidProgram, are_written_to_every_format_that_holds_models) {
+    auto d = SolidJson::parse(kRegion);
+    d["objects"].erase(2);
+    const std::string both = file("both.json", d.dump());
+    for (const char* name : {"a.iges", "a.igs", "a.step", "a.json"})
+        ASSERT_EQ(run({"extrude", both, "--by", "0,0,2", "--solid", "-o", name}).code, 0) << name;
+    EXPECT_NE(content(path("a.igs")).find("     186 "), std::string::npos) << "a solid, not its faces";
+    for (const char* name : {"b.igs", "b.obj", "b.step"})
+        ASSERT_EQ(run({"convert", "a.json", "-o", name}).code, 0) << name;
+    EXPECT_EQ(content(path("a.igs")), content(path("b.igs")));
+    const Ran info = run({"info", "b.obj", "--json"});
+    ASSERT_EQ(info.code, 0) << info.err;
+    EXPECT_EQ(SolidJson::parse(info.out)["objects"].size(), 9u) << "a trimmed surface for each face";
+    const Ran mesh =
+        run({"tessellate", "b.obj", "--sew", "1e-6", "--tolerance", "0.1", "-o", "b.stl", "--json"});
+    ASSERT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_EQ(SolidJson::parse(mesh.out)["open_edges"], 0);
+}
+
 TEST_F(SolidProgram, are_written_for_other_programs) {
     ASSERT_EQ(run({"convert", kTeapot, "-o", "teapot.obj"}).code, 0);
     ASSERT_EQ(run({"convert", "teapot.obj", "-o", "back.bpt"}).code, 0);

@@ -1,8 +1,14 @@
 #include <freiform/io/document.hpp>
 #include <freiform/io/obj_freeform.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/model/sew.hpp>
+#include <freiform/model/spline_faces.hpp>
+#include <freiform/model/swept_solid.hpp>
+#include <freiform/model/tessellate.hpp>
 
 #include <support/random.hpp>
 #include <support/refusal.hpp>
+#include <support/solids.hpp>
 
 namespace freiform::test {
 namespace {
@@ -26,6 +32,58 @@ TEST(ObjFreeform, comes_back_to_the_bit) {
     for (Object& o : same.objects) o.given_points.clear();
     EXPECT_EQ(write_document(back), write_document(same));
     EXPECT_EQ(must(write_obj_freeform(back)), obj);
+}
+
+double area_and_volume(const Model& m, double& volume) {
+    const auto t = tessellate(m, {.tolerance = 0.02});
+    if (!t || !t->refused.empty()) return 0;
+    double area = 0;
+    for (std::size_t i = 0; i < t->mesh.triangles.size(); ++i) {
+        const auto [a, b, c] = t->mesh.points_of(i);
+        const auto at = [&](int k) { return t->mesh.points[std::size_t(k)]; };
+        area += norm(cross(at(b) - at(a), at(c) - at(a))) / 2;
+    }
+    volume = std::abs(signed_volume(t->mesh));
+    return area;
+}
+
+// Faces that are read again are those of the solid, and sewn they are the solid where none has a seam.
+TEST(ObjFreeform, solids_come_back_as_faces_that_fit) {
+    const auto ring = loops_of({{ellipse({{5, 5}}, 2, 2), ellipse({{5.25, 5}}, 1, 0.5)}});
+    const Axis about{{{0, 0, 0}}, {{0, 1, 0}}};
+    const std::vector<Model> solids = {*prism(ring, {{1, 0.5, 2}}),
+                                       *solid_of_revolution(ring, about, 1.5),
+                                       *solid_of_revolution(ring, about, 2 * kPi),
+                                       torus(3, 1),
+                                       sphere({{1, 2, 3}}, 1),
+                                       frustum(2, 1, 3)};
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        const auto bytes = write_obj_freeform({"mm", {{"part", solids[i]}}});
+        ASSERT_TRUE(bytes) << bytes.error().where << ": " << bytes.error().message;
+        const auto back = read_obj_freeform(*bytes);
+        ASSERT_TRUE(back) << back.error().where << ": " << back.error().message;
+        ASSERT_EQ(back->objects.size(), solids[i].faces.size());
+        const auto faces = scene_of(*back);
+        ASSERT_TRUE(faces);
+        double volume = 0, sewn_volume = 0;
+        const double area = area_and_volume(solids[i], volume);
+        EXPECT_NEAR(area_and_volume(*faces, sewn_volume), area, 1e-2 * area) << i;
+        if (i > 1) continue;
+        const auto sewn = sew(*faces, {.tolerance = 1e-6});
+        ASSERT_TRUE(sewn);
+        EXPECT_EQ(summary(sewn->model).open_edges, 0);
+        area_and_volume(sewn->model, sewn_volume);
+        EXPECT_NEAR(sewn_volume, volume, 1e-2 * volume) << i;
+    }
+}
+
+// A parameter curve that climbs while it turns has no rational image.
+TEST(ObjFreeform, faces_cut_across_an_angle_are_refused) {
+    Model m = frustum(2, 1, 3);
+    m.faces.resize(1);
+    m.faces[0].loops = {{{{0, false, segment({0, 1}, {{0, 0}}, {{1, 0.5}})}}}};
+    test::expect_refusal(write_obj_freeform({"mm", {{"part", m}}}), RefusalKind::unsupported,
+                         "objects[0] \"part\".faces[0]", "crosses the angle");
 }
 
 TEST(ObjFreeform, closed_curves_are_cut_at_their_seam) {

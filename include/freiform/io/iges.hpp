@@ -1,5 +1,6 @@
-// IGES files (5.3) of splines: entities 126 (curves), 128 (surfaces) and 144 (trimmed surfaces, with 142 and
-// 102 for their loops), numbers as the shortest text that reads back as the same double.
+// IGES files (5.3): entities 126 (curves), 128 (surfaces), 144 (trimmed surfaces, with 142 and 102 for their
+// loops) and 186 (solids, with 514 to 502 for shells, faces, loops, edges and vertices), numbers as the
+// shortest text that reads back as the same double.
 #pragma once
 #include <freiform/shape.hpp>
 
@@ -11,8 +12,8 @@ namespace freiform {
 // others, and none, count as the millimetre. Loops of trimmed surfaces are written in the parameters and in
 // space, there as the images of the former (exact up to rounding), turned as orient_loops has them; a surface
 // with several outer loops becomes several. Refuses, with the object, what is neither a curve nor a surface
-// of two or three coordinates (unsupported; models go to STEP), images of degrees above 25, several outer
-// loops with holes, and documents without objects (no_answer).
+// of two or three coordinates nor a model (unsupported; of models offset surfaces and faces without loops),
+// images of degrees above 25, several outer loops with holes, and documents without objects (no_answer).
 Result<std::string> write_iges(const Document& document);
 
 }  // namespace freiform

@@ -17,8 +17,9 @@ Result<Document> read_obj_freeform(std::string_view text);
 
 // Curves of two and three coordinates (plane ones in z = 0), surfaces of three, trimmed surfaces: as
 // `bspline`, numbers exact, knots as they are (closed ones are cut at their seam), rational coefficients as
-// points and weights that give them back where such exist. Refuses (unsupported) other objects and loops with
-// ellipses.
+// points and weights that give them back where such exist. Models as their faces (model/spline_faces.hpp,
+// whose refusals are passed on), each by itself: the format knows no shared edges. Outer loops
+// counter-clockwise, holes clockwise. Refuses (unsupported) other objects and loops with ellipses.
 Result<std::string> write_obj_freeform(const Document& document);
 
 }  // namespace freiform

@@ -59,9 +59,11 @@ struct Sewing {
 // lie within the tolerance of each other (edge_gap), if that is small against the edges themselves, and if no
 // other edge would lose its length by it; nearest pairs first. An edge along which ends of others lie is cut
 // there. The face of an edge that is given up gets a parameter curve that follows the one that stays. Curves
-// and surfaces are not moved. Edges without a curve in space and degenerate ones are left alone. Numbers of
-// edges and vertices change, those of faces do not; texts of `approximations` name old numbers and say so.
-// Results do not depend on the number of threads. Refuses a tolerance that is not a positive number.
+// and surfaces are not moved. Edges without a curve in space get the image of their parameter curve first
+// (make/image_curve.hpp; what it refuses is left alone), those that are one point become degenerate, and
+// these are left alone. Numbers of edges and vertices change, those of faces do not; texts of
+// `approximations` name old numbers and say so. Results do not depend on the number of threads. Refuses a
+// tolerance that is not a positive number.
 //   auto sewn = sew(model, {.tolerance = 1e-3});
 Result<Sewing> sew(const Model& model, const SewOptions& options);
 
