@@ -142,7 +142,8 @@ void add_revolve(CommandLine& line) {
     command.flag("--solid", options->solid, "The solid that the region inside of closed plane curves sweeps");
     command.number("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
     command.output(
-        "Where the surfaces go (.json, .bpt, .step, .obj); solids: .json, .step, .iges, .glb, .stl, .obj, .ply");
+        "Where the surfaces go (.json, .bpt, .step, .obj); solids: .json, .step, .iges, .glb, .stl, .obj, "
+        ".ply");
     command.triangle_limit();
     command.limits();
     command.action(options, run_revolve);

@@ -3,9 +3,10 @@
 //
 //     186 solid -> 514 shell -> 510 face -> 508 loop -> 504 edges -> 502 vertices
 //
-// Edges are splines in space, parts of conics as rational ones. Loops on splines have curves in the parameters,
-// too; others have none, so that surfaces need not keep their parameters: flat ones are 190, revolutions and circular cylinders 120, all others
-// splines (128), of extrusions exact ones over what the face uses of them.
+// Edges are splines in space, parts of conics as rational ones. Loops on splines have curves in the
+// parameters, too; others have none, so that surfaces need not keep their parameters: flat ones are 190,
+// revolutions and circular cylinders 120, all others splines (128), of extrusions exact ones over what the
+// face uses of them.
 //
 // Orientation. Loops run counter-clockwise about the normal of the surface; a shell says which of its faces
 // are turned. Revolutions are parametrised by the profile first, ours by the angle: about the opposite axis

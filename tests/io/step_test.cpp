@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
 #include <support/solids.hpp>
@@ -205,6 +206,21 @@ TEST(StepText, is_measured_by_gmsh_as_it_should) {
         EXPECT_NEAR(m[0], area, 5e-3 * area);
         EXPECT_EQ(m[1], 1);
     }
+}
+
+// Fillets on splines of high degree, whose edges readers do not find in the parameters again.
+TEST(IgesText, of_a_part_with_fillets_is_measured_as_the_part) {
+    if (std::system("command -v gmsh >/dev/null 2>&1") != 0) GTEST_SKIP() << "gmsh is not installed";
+    const std::string name = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";
+    std::stringstream given;
+    given << std::ifstream(name).rdbuf();
+    const auto part = measured_by_gmsh(given.str(), ".step"),
+               m = measured_by_gmsh(must(write_iges(must(read_any(name, {})))), ".igs");
+    ASSERT_EQ(part.size(), 9u);
+    ASSERT_EQ(m.size(), 9u);
+    EXPECT_NEAR(m[0], part[0], 1e-3 * part[0]);
+    EXPECT_EQ(m[1], part[1]);
+    EXPECT_NEAR(m[2], part[2], 1e-3 * part[2]);
 }
 
 TEST_F(Step, units_are_written) {
