@@ -1,11 +1,13 @@
 // Surfaces by shaders against meshes and against the kernels of the processor, as a table in Markdown:
-//   bench-gpu FILE ..      (FREIFORM_SIZE=1600x1200 for another size of pictures)
-// Pictures of a file: by tessellation shaders and by instanced grids, from a renderer that is ready; as a
-// mesh that is there, by render(), which uploads it; and how long that mesh takes to make. Then points of one
-// surface.
+//   bench-gpu FILE ..
+// FREIFORM_SIZE=1600x1200: another size of pictures; FREIFORM_TIME=processor: what all threads of the program
+// take, instead of the clock on the wall: for renderers in software on a machine with other work. Pictures of
+// a file: by tessellation shaders and by instanced grids, from a renderer that is ready; as a mesh that is
+// there, by render(), which uploads it; and how long that mesh takes to make. Then points of one surface.
 #include <freiform/gpu/surfaces.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
+#include <freiform/model/assemble.hpp>
 #include <freiform/model/tessellate.hpp>
 #include <freiform/spline/prepared.hpp>
 
@@ -13,24 +15,32 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <numbers>
+#include <string_view>
 
 namespace {
 
 using namespace freiform;
 
 constexpr double kMeshTolerance = 1.0 / 2000;  // of the model: what `freiform draw` takes
-constexpr int kRuns = 9;
+constexpr int kRuns = 7;
+
+double now() {
+    static const char* const kind = std::getenv("FREIFORM_TIME");
+    if (kind && std::string_view(kind) == "processor") return double(std::clock()) / CLOCKS_PER_SEC;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 // The median; the first run, which compiles shaders, is left out.
 double seconds_of(const std::function<bool()>& job) {
     std::vector<double> t;
     for (int i = 0; i <= kRuns; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+        const double start = now();
         if (!job()) return -1;
-        t.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        t.push_back(now() - start);
     }
     t.erase(t.begin());
     std::nth_element(t.begin(), t.begin() + kRuns / 2, t.end());
@@ -75,10 +85,9 @@ void print_row(const std::string& name, const Model& model) {
                 (made + by_mesh) / by_patches);
 }
 
-// A rational bicubic surface of 20 x 20 control points at a million places.
-void print_points() {
+// A rational bicubic surface of 20 x 20 control points.
+Surface<Hom<3>> rational_surface() {
     constexpr int kSize = 20;
-    constexpr std::size_t kPoints = 1'000'000;
     const auto basis = *BSplineBasis::clamped_uniform(3, kSize);
     Net<2, Hom<3>> net({kSize, kSize});
     each_index(net.extent(), [&](const Index<2>& k) {
@@ -86,8 +95,14 @@ void print_points() {
             weighted(Vec<3>{{double(k[0]), double(k[1]), std::sin(k[0] * 1.7) * std::cos(k[1] * 0.9)}},
                      1 + 0.5 * ((k[0] + k[1]) % 2));
     });
-    const auto surface = *Surface<Hom<3>>::make({basis, basis}, net);
-    const Interval on = basis.domain();
+    return *Surface<Hom<3>>::make({basis, basis}, net);
+}
+
+// It at a million places.
+void print_points() {
+    constexpr std::size_t kPoints = 1'000'000;
+    const auto surface = rational_surface();
+    const Interval on = surface.domain()[0];
     std::vector<Param<2>> at(kPoints);
     for (std::size_t i = 0; i < kPoints; ++i) {
         const auto part = [&](double x) { return on.lo + on.length() * (x - std::floor(x)); };
@@ -134,5 +149,9 @@ int main(int argc, char** argv) {
         }
         print_row(std::filesystem::path(argv[i]).filename().string(), *model);
     }
+    ModelBuilder rational;
+    if (rational.add(rational_surface()))
+        if (const auto model = std::move(rational).finish())
+            print_row("rational bicubic, 17 x 17 pieces", *model);
     print_points();
 }

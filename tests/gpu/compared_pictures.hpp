@@ -3,6 +3,7 @@
 #include <freiform/core/image.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace freiform::test {
 
@@ -41,6 +42,14 @@ inline ComparedPictures compared(const Image& gpu, const Image& mesh, int by) {
             out.cracked += background(gpu, x, y) > 6;
             out.different += is_beyond(gpu, mesh, x, y) || is_beyond(mesh, gpu, x, y);
         }
+    return out;
+}
+
+// Black where they agree.
+inline Image difference(const Image& a, const Image& b) {
+    Image out = a;
+    for (std::size_t i = 0; i < out.rgb.size(); ++i)
+        out.rgb[i] = static_cast<unsigned char>(std::abs(int(a.rgb[i]) - int(b.rgb[i])));
     return out;
 }
 

@@ -82,6 +82,10 @@ protected:
             if (const char* folder = std::getenv("FREIFORM_PICTURES")) {
                 std::ofstream(std::string(folder) + "/" + name + "_" + view + "_gpu.png") << *to_png(*gpu);
                 std::ofstream(std::string(folder) + "/" + name + "_" + view + "_mesh.png") << *to_png(mesh);
+                std::ofstream(std::string(folder) + "/" + name + "_" + view + "_difference.png")
+                    << *to_png(test::difference(*gpu, mesh));
+                std::printf("%s %s: %d of %d pixels differ, %d cracked\n", name.c_str(), view, c.different,
+                            c.surface, c.cracked);
             }
         }
     }
