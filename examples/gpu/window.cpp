@@ -41,7 +41,7 @@ GLuint program_of(std::initializer_list<std::pair<GLenum, ff::SurfaceShader>> st
 }
 
 // The camera of docs/gpu.md: rotated coordinates x right, y up, z to the eye; parallel rays.
-void set_view(GLuint program, int width, int height) {
+void set_view(GLuint program, int width, int height, double edge_tolerance) {
     const double ca = std::cos(eye.azimuth), sa = std::sin(eye.azimuth), ce = std::cos(eye.elevation),
                  se = std::sin(eye.elevation);
     const float rotation[9] = {float(-sa), float(-se * ca), float(ce * ca),
@@ -59,8 +59,9 @@ void set_view(GLuint program, int width, int height) {
     constexpr double kDeviation = 0.2;  // pixels
     glUniform1f(at("density"), float(pixels / kDeviation));
     glUniform2f(at("half_size"), float(width) / 2, float(height) / 2);
-    glUniform1f(at("reach"), float(kDeviation + 0.05));
-    glUniform1f(at("slopes"), float(kDeviation + 0.05 + 1));
+    const double reach = kDeviation + edge_tolerance * pixels + 0.05;
+    glUniform1f(at("reach"), float(reach));
+    glUniform1f(at("slopes"), float(reach + 1));
     glUniform1f(at("farther"), 1e-4f);
 }
 
@@ -150,7 +151,7 @@ int main(int argc, char** argv) {
         glfwGetFramebufferSize(window, &width, &height);
         glViewport(0, 0, width, height);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        set_view(patches, width, height);
+        set_view(patches, width, height, surfaces->edge_tolerance);
         glUniform1i(glGetUniformLocation(patches, "pieces"), surfaces->pieces);
         glUniform1i(glGetUniformLocation(patches, "faces"), surfaces->faces);
         glUniform1f(glGetUniformLocation(patches, "hardware_level"), float(level));
@@ -166,7 +167,7 @@ int main(int argc, char** argv) {
         glPolygonOffset(1, 1);
         glDrawArraysInstanced(GL_PATCHES, 0, surfaces->tensor_pieces, cells * cells);
         glDisable(GL_POLYGON_OFFSET_FILL);
-        set_view(seam, width, height);
+        set_view(seam, width, height, surfaces->edge_tolerance);
         glBindVertexArray(seams);
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(surfaces->seams.size()));
         if (hidden) {
