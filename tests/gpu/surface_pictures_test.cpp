@@ -148,7 +148,7 @@ TEST_P(SurfacePictures, show_the_teapot_without_cracks) {
 TEST_P(SurfacePictures, show_models_of_the_corpus_without_cracks) {
     setenv("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY, 0);
     if (!std::getenv("FREIFORM_MODELS")) GTEST_SKIP() << "FREIFORM_MODELS=1 compares pictures of ten models";
-    options_.width = 400, options_.height = 300;
+    options_.width = 400, options_.height = 300, options_.supersampling = 2;
     for (const char* name :
          {"step/linkrods.step", "step/screw.step", "step/as1-oc-214.stp", "step/trj4_k1_geo-tc-214.stp",
           "step/conical-surface.step", "step/bug28414_bug_toroidal_surface.stp",
