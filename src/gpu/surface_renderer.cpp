@@ -39,6 +39,7 @@ namespace {
 
 constexpr double kMostCells = 1e7;          // of a picture
 constexpr double kRoundingReach = 0.05;     // pixels of the framebuffer
+constexpr double kUnsampledReach = 0.3;     // the same, where not each sample is trimmed by itself
 constexpr float kSeamFarther = 1e-4f;       // in depth from -1 to 1
 constexpr float kOrientationBow = 1.7321f;  // the scene reaches no nearer to the eye: the corner of a cube
 
@@ -134,8 +135,9 @@ void SurfaceRenderer::State::draw_grids(GLuint program, const GpuScene& scene, d
 Result<void> SurfaceRenderer::State::draw_seams(const GpuScene& scene, const RenderOptions& options,
                                                 double deviation) const {
     const double nearest = 1 / (1 - double(scene.inverse_distance) * kOrientationBow);
-    const double reach =
+    double reach =
         options.supersampling * (deviation + data.edge_tolerance * scene.pixels * nearest) + kRoundingReach;
+    if (pipeline == SurfacePipeline::grid) reach += kUnsampledReach * (options.supersampling - 1);
     glUseProgram(seam);
     set_camera(seam, scene);
     set_light(seam, scene, options, options.painting == Painting::normals ? 2 : 0);
