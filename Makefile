@@ -3,7 +3,7 @@ SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .DEFAULT_GOAL := help
-.PHONY: help setup build python demo test bench accuracy wasm studio format clean
+.PHONY: help setup build python demo test bench accuracy wasm wasm-tests studio format clean
 .NOTPARALLEL:
 
 help:
@@ -14,6 +14,7 @@ help:
 	@echo "make build   build the program: build/bin/freiform"
 	@echo "make python  build the Python package: build/python (PYTHONPATH=build/python python3 -c 'import freiform')"
 	@echo "make wasm    build the WebAssembly modules and test them in node (bindings/wasm/)"
+	@echo "make wasm-tests  the C++ tests of core, basis, spline and query as WebAssembly, in node"
 	@echo "make studio  build the page that freiform view serves (studio/dist); make build then puts it into the program"
 	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
 	@echo "make format  format the C++ files"
@@ -77,6 +78,13 @@ wasm:
 	step "Configure" cmake --preset wasm --log-level=WARNING; \
 	step "Build" cmake --build --preset wasm; \
 	step "Test in node" node --test bindings/wasm/test/module.test.js
+
+wasm-tests: wasm
+	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh test; \
+	step "Configure" cmake --preset wasm --log-level=WARNING; \
+	step "Build" cmake --build --preset wasm --target freiform-tests; \
+	step "Test in node" node bindings/wasm/test/corpus.js
 
 studio: wasm
 	@source tools/steps.sh; \

@@ -1,5 +1,6 @@
 // node browser.js [--speed]: the tests of cases.js, and all questions to the examples, in a page of Chromium. The page's
-// answers have to be those of node, bit for bit. Exit code 1 if something is wrong; 77 where there is no Chromium.
+// answers have to be those of node, bit for bit; the C++ tests (corpus.js) are run, too, where they were built.
+// FREIFORM_GTEST_FILTER chooses some. Exit code 1 if something is wrong; 77 where there is no Chromium.
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, readdirSync, rmSync, existsSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -22,10 +23,11 @@ const documents = Object.fromEntries(readdirSync(folder).filter((f) => f.endsWit
 const page = `<!doctype html><meta charset="utf-8"><script type="module">
 import { load } from '/freiform.js';
 import { tests } from '/test/cases.js';
+import { run } from '/test/corpus.js';
 import { speed } from '/test/speed.js';
 const tell = (body) => fetch('/answer', { method: 'POST', body: JSON.stringify(body) });
 try {
-  const { documents, questions, wantsSpeed } = await (await fetch('/task')).json();
+  const { documents, questions, wantsSpeed, filter } = await (await fetch('/task')).json();
   const ff = await load('/freiform.wasm'), failed = [], answers = {};
   for (const [name, run] of Object.entries(tests))
     try { run(ff); } catch (error) { failed.push(name + ': ' + error.stack); }
@@ -34,7 +36,10 @@ try {
       const args = [command, name, ...options], { code, stdout } = ff.command(args, { [name]: content });
       answers[args.join(' ')] = [code, new TextDecoder().decode(stdout)];
     }
-  await tell({ count: Object.keys(tests).length, failed, answers, speed: wantsSpeed ? speed(ff) : null });
+  const corpus = await fetch('/freiform-tests.wasm');
+  const tested = corpus.ok && !wantsSpeed ? await run(await WebAssembly.compile(await corpus.arrayBuffer()), ['--gtest_brief=1', '--gtest_filter=' + filter]) : null;
+  if (tested && tested.code !== 0) failed.push(tested.said);
+  await tell({ corpus: tested?.passed, count: Object.keys(tests).length, failed, answers, speed: wantsSpeed ? speed(ff) : null });
 } catch (error) { await tell({ count: 0, failed: [String(error.stack)], answers: {} }); }
 </script>`;
 
@@ -48,7 +53,9 @@ const server = createServer((request, reply) => {
   if (request.url === '/freiform.js') return send(script, readFileSync(join(root, 'bindings/wasm/freiform.js')));
   if (/^\/test\/\w+\.js$/.test(request.url)) return send(script, readFileSync(join(root, 'bindings/wasm', request.url)));
   if (request.url === '/freiform.wasm') return send('application/wasm', readFileSync(join(modules, 'freiform.wasm')));
-  if (request.url === '/task') return send('application/json', JSON.stringify({ documents, questions, wantsSpeed }));
+  const corpus = join(modules, 'freiform-tests.wasm');
+  if (request.url === '/freiform-tests.wasm' && existsSync(corpus)) return send('application/wasm', readFileSync(corpus));
+  if (request.url === '/task') return send('application/json', JSON.stringify({ documents, questions, wantsSpeed, filter: process.env.FREIFORM_GTEST_FILTER ?? '*' }));
   if (request.url !== '/answer') return reply.writeHead(404).end();
   let body = '';
   request.on('data', (part) => { body += part; });
@@ -59,7 +66,7 @@ await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
 const profile = mkdtempSync(join(tmpdir(), 'freiform-chromium-'));
 const browser = spawn(chromium, ['--headless=new', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--no-first-run',
   `--user-data-dir=${profile}`, `http://127.0.0.1:${server.address().port}/`], { stdio: 'ignore' });
-const late = setTimeout(() => answered({ count: 0, failed: ['no answer within 240 s'], answers: {} }), 240000);
+const late = setTimeout(() => answered({ count: 0, failed: ['no answer within 600 s'], answers: {} }), 600000);
 const found = await answer;
 clearTimeout(late);
 browser.kill();
@@ -78,6 +85,6 @@ for (const [name, content] of Object.entries(documents))
     else found.failed.push(`${args.join(' ')}: other than in node`);
   }
 if (wantsSpeed) console.log(JSON.stringify(found.speed));
-else console.log(`in Chromium: ${found.count} tests, ${same} answers equal to node's, ${found.failed.length} wrong`);
+else console.log(`in Chromium: ${found.count} tests, ${same} answers equal to node's, ${found.failed.length} wrong${found.corpus ? `; ${found.corpus} C++ tests` : ''}`);
 for (const line of found.failed) console.error(line);
 process.exit(found.failed.length > 0 || found.count === 0 ? 1 : 0);

@@ -1,0 +1,72 @@
+// node corpus.js [--gtest_filter=...]: the C++ tests of core, basis, spline and query, compiled to WebAssembly. The same
+// function runs them in a page (browser.js). Exit code 77 where they have not been built:
+//     cmake --build --preset wasm --target freiform-tests
+const kNoSuchFunction = 52, kNoSuchFile = 8;
+
+class Ended extends Error {
+  constructor(code) { super(`ended with ${code}`); this.code = code; }
+}
+
+// What the program says, and how it ended; a trap is code 134.
+export async function run(module, words = []) {
+  let memory, said = '';
+  const utf8 = new TextEncoder(), text = new TextDecoder();
+  const args = ['tests', ...words].map((w) => utf8.encode(w + '\0'));
+  const view = () => new DataView(memory.buffer);
+  const put = (at, ...values) => (values.forEach((v, i) => view().setUint32(at + 4 * i, v, true)), 0);
+  const wasi = {
+    args_sizes_get: (count, size) => put(count, args.length) || put(size, args.reduce((n, a) => n + a.length, 0)),
+    args_get: (at, to) => {
+      for (const [i, a] of args.entries()) {
+        put(at + 4 * i, to);
+        new Uint8Array(memory.buffer, to, a.length).set(a);
+        to += a.length;
+      }
+      return 0;
+    },
+    environ_sizes_get: (count, size) => put(count, 0) || put(size, 0),
+    environ_get: () => 0,
+    clock_time_get: (_id, _precision, at) => (view().setBigUint64(at, BigInt(Math.round(performance.now() * 1e6)), true), 0),
+    random_get: (at, size) => (crypto.getRandomValues(new Uint8Array(memory.buffer, at, size)), 0),
+    fd_prestat_get: () => kNoSuchFile,
+    fd_fdstat_get: (_fd, at) => (new Uint8Array(memory.buffer, at, 24).fill(0), view().setUint8(at, 2), 0),
+    fd_close: () => 0,
+    fd_write: (_fd, list, count, written) => {
+      let size = 0;
+      for (let i = 0; i < count; ++i) {
+        const n = view().getUint32(list + 8 * i + 4, true);
+        said += text.decode(new Uint8Array(memory.buffer, view().getUint32(list + 8 * i, true), n));
+        size += n;
+      }
+      return put(written, size);
+    },
+    proc_exit: (code) => { throw new Ended(code); },
+  };
+  const imports = { wasi_snapshot_preview1: {} };
+  for (const { name } of WebAssembly.Module.imports(module))
+    imports.wasi_snapshot_preview1[name] = wasi[name] ?? (() => kNoSuchFunction);
+  const { exports } = await WebAssembly.instantiate(module, imports);
+  memory = exports.memory;
+  let code = 0;
+  try {
+    exports._start();
+  } catch (error) {
+    code = error instanceof Ended ? error.code : 134;
+    if (code === 134) said += `${error.message}\n`;
+  }
+  return { code, said, passed: Number(/\[  PASSED  \] (\d+) tests?/.exec(said)?.[1] ?? 0) };
+}
+
+if (typeof process !== 'undefined' && process.argv[1] === decodeURIComponent(new URL(import.meta.url).pathname)) {
+  const { existsSync, readFileSync } = await import('node:fs');
+  const { join } = await import('node:path');
+  const folder = process.env.FREIFORM_WASM ?? new URL('../../../build-wasm/bin', import.meta.url).pathname;
+  const file = join(folder, 'freiform-tests.wasm');
+  if (!existsSync(file)) {
+    console.log(`${file} is not built`);
+    process.exit(77);
+  }
+  const { code, said } = await run(await WebAssembly.compile(readFileSync(file)), ['--gtest_brief=1', ...process.argv.slice(2)]);
+  process.stdout.write(said);
+  process.exit(code);
+}
