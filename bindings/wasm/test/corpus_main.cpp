@@ -1,7 +1,6 @@
 // Runs the C++ tests as a module (corpus.js calls it).
-#include <gtest/gtest.h>
-
 #include <cstdlib>
+#include <gtest/gtest.h>
 
 // Debian's library of builtins was compiled with a guard of the stack, which has no home here.
 extern "C" {

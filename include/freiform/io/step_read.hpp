@@ -8,7 +8,8 @@
 namespace freiform {
 
 struct StepReadOptions {
-    std::uint64_t memory_bytes = std::uint64_t(4) << 30;  // that the model may take; an estimate is kept below
+    // That the model may take; an estimate is kept below it.
+    std::uint64_t memory_bytes = std::uint64_t(4) << 30;
 };
 
 // The model in the file; coordinates in the unit of the file, which Model::unit names: that of the first
