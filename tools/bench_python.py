@@ -1,11 +1,11 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """tools/bench_python.py [CPP]: compares evaluation from NumPy with the C++ program bench-python (build/bin/, or CPP), and with
 scipy and geomdl where they are installed; writes bench/PYTHON.md. The package is that of build/python, or of PYTHONPATH.
 
     cmake --preset python -DFREIFORM_BENCH=ON && cmake --build build --target freiform_python_package bench-python
     tools/bench_python.py
 
-Takes a minute. Ends with 1 where what the report demands is not reached. The machine has to be idle: times of the clock mean
+Takes a minute (ROUNDS=1: a quick look). Ends with 1 where what the report demands is not reached. The machine has to be idle: times of the clock mean
 nothing on a loaded one (those of the processor, beside them, do)."""
 import datetime
 import os
@@ -24,7 +24,7 @@ import numpy as np  # noqa: E402
 
 import freiform as ff  # noqa: E402
 
-N, RUNS, ROUNDS = 1_000_000, 15, 5
+N, RUNS, ROUNDS = 1_000_000, 15, int(os.environ.get("ROUNDS", 5))
 SLACK, GAIN, MEGABYTES = 1.10, 1.8, 1.0  # what is demanded
 
 
@@ -48,17 +48,17 @@ def extra_memory(f):
     return peak / 1e6
 
 
-def in_two_threads(f):
-    """Two calls at the same time, one in each thread that is there already."""
+def in_two_threads(calls):
+    """Both calls at the same time, each in a thread that is there already."""
     rounds = RUNS + 1
     gate, done = threading.Barrier(3), threading.Barrier(3)
 
-    def work():
+    def work(f):
         for _ in range(rounds):
             gate.wait()
             f()
             done.wait()
-    threads = [threading.Thread(target=work) for _ in range(2)]
+    threads = [threading.Thread(target=work, args=(f,), daemon=True) for f in calls]
     for t in threads:
         t.start()
     times = []
@@ -149,14 +149,10 @@ def main():
     for name in ("curve", "surface"):
         for memory in ("fresh", "reused"):
             one = best(ours[name, "one", memory])[0]
-            mine = [np.empty((N, 3)) for _ in range(2)]
-            where = threading.local()
-
-            def call(name=name):
-                if not hasattr(where, "out"):
-                    where.out = mine.pop()
-                curve.evaluate(t, out=where.out) if name == "curve" else surface.evaluate(u, v, out=where.out)
-            gain = one / min(in_two_threads(calls[name, memory] if memory == "fresh" else call) for _ in range(ROUNDS))
+            patch, at = (curve, (t,)) if name == "curve" else (surface, (u, v))
+            into = [None, None] if memory == "fresh" else [np.empty((N, 3)), np.empty((N, 3))]
+            both = [lambda x=x: patch.evaluate(*at, out=x) for x in into]
+            gain = one / min(in_two_threads(both) for _ in range(ROUNDS))
             held.append(gain >= GAIN)
             lines.append(f"- {name}, {memory}: {gain:.2f} times as many points per second")
     lines += ["", "Beside other libraries, one thread:", ""] + others(curve, t)

@@ -105,13 +105,29 @@ def test_intersection_is_symmetric(a, b):
         assert np.linalg.norm(a(c.at[0]) - b(c.at[1])) <= c.gap + 1e-9
 
 
-@given(curves())
-def test_scaling_by_a_power_of_two_scales_every_answer_exactly(c):
-    big = ff.Curve.from_homogeneous(c.coefficients * np.r_[[1024.0] * c.dimension, [1.0]], c.degree, c.knots) \
-        if c.is_rational else ff.Curve(c.points * 1024, c.degree, c.knots)
-    assert np.array_equal(big(T), 1024 * c(T))
-    length = 1024 * c.length(1e-9).value
-    assert big.length(1024e-9).value == length or length < 1e-300  # underflow does not scale
+def scaled(c, factor):
+    if c.is_rational:
+        return ff.Curve.from_homogeneous(c.coefficients * np.r_[[factor] * c.dimension, [1.0]], c.degree, c.knots)
+    return ff.Curve(c.points * factor, c.degree, c.knots)
+
+
+@given(curves(), st.sampled_from([2.0**-30, 0.5, 1024.0]))
+def test_scaling_by_a_power_of_two_scales_every_answer_exactly(c, factor):
+    """All digits, but for what underflows: bounds have denormal parts that do not scale."""
+    big, point = scaled(c, factor), np.full(c.dimension, 0.3)
+
+    def exactly(ours, scaled_ours):
+        a, b = factor * np.asarray(ours), np.asarray(scaled_ours)
+        return (np.abs(a - b) <= np.where(np.abs(a) < 1e-290, 1e-290, 1e-300)).all()
+
+    assert np.array_equal(big(T), factor * c(T))
+    assert exactly(c.length(1e-9).value, big.length(factor * 1e-9).value)
+    for accuracy in (0.0, 1e-9, 0.125):
+        ours, theirs = c.bounds(accuracy), big.bounds(factor * accuracy)
+        assert exactly(ours.box.lo, theirs.box.lo) and exactly(ours.box.hi, theirs.box.hi)
+        assert exactly(ours.slack, theirs.slack)
+    near_one, near_other = ff.nearest(c, point), ff.nearest(big, factor * point)
+    assert exactly(near_one.distance, near_other.distance) and exactly(near_one.lower_bound, near_other.lower_bound)
 
 
 @given(curves())

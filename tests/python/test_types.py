@@ -1,10 +1,13 @@
 """The package, and what a user writes with it, pass mypy --strict."""
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 
 import pytest
+
+from conftest import ROOT
 
 import freiform as ff
 
@@ -46,3 +49,12 @@ def test_a_users_program_is_checked_and_mistakes_are_found(tmp_path):
     code, report = mypy(str(tmp_path / "bad.py"))
     assert code == 1 and "Incompatible types" in report
     assert sys.version_info >= (3, 9)
+
+
+@pytest.mark.parametrize("page", ["python", "coming-from"])
+def test_the_examples_of_a_page_are_strictly_typed(page, tmp_path):
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / f"{page}.md").read_text(), re.S)
+    assert len(blocks) >= 3
+    (tmp_path / "page.py").write_text("import numpy as np\nimport freiform as ff\n" + "\n".join(blocks))
+    code, report = mypy(str(tmp_path / "page.py"))
+    assert code == 0, report

@@ -7,7 +7,7 @@
 """
 from __future__ import annotations
 
-from typing import Any
+from typing import Sequence
 
 from . import _core
 from ._animate import *
@@ -54,7 +54,7 @@ def instruction_set() -> str:
 
 
 @_base.from_header("spline/prepared:evaluate_grids")
-def evaluate_grids(patches: list[AnyPatch], *axes: ArrayLike) -> Array:
+def evaluate_grids(patches: Sequence[AnyPatch], *axes: ArrayLike) -> Array:
     """The same grid on many patches of one kind: an array (len(patches), .., D)."""
     handles = _base.handles(patches, "patches")
     return _core.evaluate_grids(handles, [_base.points_array(a) for a in axes])

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import Any, Sequence, Union
+from typing import Any, Sequence, Union, overload
 
 import numpy as np
 
@@ -138,6 +138,11 @@ def hull_of_points(points: ArrayLike) -> list[Any] | Array:
     return _core.convex_hull_of_points(points_array(points))
 
 
+@overload
+def intersect(a: Curve, b: Curve | Surface, accuracy: float = 0.0, *, max_parts: int | None = None) -> Intersections: ...
+@overload
+def intersect(a: Surface, b: Surface, accuracy: float = 0.0, *, tolerance: float = 0.0,
+              max_parts: int | None = None) -> SurfaceIntersection: ...
 @from_header("intersect/curve_curve:intersect", "intersect/curve_surface:intersect", "intersect/surface_surface:intersect")
 def intersect(a: Curve | Surface, b: Curve | Surface, accuracy: float = 0.0, *, tolerance: float = 0.0,
               max_parts: int | None = None) -> Intersections | SurfaceIntersection:
