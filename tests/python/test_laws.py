@@ -1,9 +1,40 @@
 """Laws that the C++ tests check too, here through Python on random curves and surfaces."""
+import re
+
 import numpy as np
 import pytest
+from conftest import ROOT
 from hypothesis import assume, given, strategies as st
 
 import freiform as ff
+
+# Each law, and the C++ tests of the same.
+SHARED = {
+    "insertion_elevation_and_reversal_do_not_change_the_map": [
+        "InsertKnots, leaves_the_function_unchanged", "Elevate, leaves_the_function_unchanged_and_raises_every_multiplicity",
+        "Reverse, runs_through_the_function_backwards"],
+    "parts_are_the_whole": ["Splitting, of_splines_stays_within_its_bound_too"],
+    "removal_undoes_insertion_within_its_bound": ["RemoveKnots, undoes_insertion"],
+    "a_curve_is_in_its_box": ["TightBox, contains_curves_and_touches_them"],
+    "lengths_add_up_and_are_not_shorter_than_chords": ["Length, adds_up_reverses_scales_and_ignores_the_parametrisation"],
+    "no_sample_is_nearer_than_the_lower_bound": ["NearestRandom, nothing_is_nearer_than_the_bound_or_the_answer",
+                                                 "NearestExtent, farthest_and_within_agree_with_samples_of_curves"],
+    "flattening_stays_within_its_bound": ["Flatten, stays_within_its_bound_and_the_bound_within_the_tolerance"],
+    "intersection_is_symmetric": ["IntersectLaws, exchanging_the_curves_exchanges_the_answer"],
+    "scaling_by_a_power_of_two_scales_every_answer_exactly": [
+        "TightBox, scales_exactly_with_powers_of_two",
+        "Nearest, scaling_by_powers_of_two_scales_the_answer_and_changes_nothing_else"],
+    "documents_bring_back_the_same_curve": ["Document, gives_rational_points_back_as_they_were_given"],
+}
+
+
+def test_the_laws_are_those_of_the_tests_in_cpp():
+    tests = "\n".join(p.read_text() for p in (ROOT / "tests").rglob("*_test.cpp"))
+    known = set(re.findall(r"^TEST\((\w+,\s+\w+)\)", tests, re.M))
+    for law, same in SHARED.items():
+        assert f"test_{law}" in globals(), law
+        assert {re.sub(r"\s+", " ", s) for s in same} <= {re.sub(r"\s+", " ", k) for k in known}, same
+
 
 numbers = st.floats(-8, 8, allow_nan=False).map(lambda x: round(x * 64) / 64)
 
@@ -29,8 +60,11 @@ def near(a, b, scale=64.0):
 
 @given(curves(), st.lists(st.integers(1, 63), min_size=1, max_size=3, unique=True))
 def test_insertion_elevation_and_reversal_do_not_change_the_map(c, more):
-    assert near(c.insert_knots(sorted(m / 64 for m in more))(T), c(T))
-    assert near(c.insert_knot(more[0] / 64)(T), c(T))
+    finer = c.insert_knots(sorted(m / 64 for m in more))
+    assert near(finer(T), c(T))
+    assert sorted(finer.knots) == sorted([*c.knots, *(m / 64 for m in more)])
+    once = c.insert_knot(more[0] / 64)
+    assert near(once(T), c(T)) and len(once.points) == len(c.points) + 1
     assert near(c.elevate(2)(T), c(T)) and c.elevate(2).degree == c.degree + 2
     assert near(c.reverse()(T[::-1]), c(T))
 
