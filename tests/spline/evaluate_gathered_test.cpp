@@ -46,7 +46,7 @@ struct Gathered {
 
 TEST(EvaluateGathered, gives_the_same_bits_as_parameters_in_a_row) {
     for (const auto ends : {test::Ends::clamped, test::Ends::closed})
-        for (const std::size_t points : {0, 1, 7, 1024, 1025, 5000, 300'000}) {
+        for (const std::size_t points : {0uz, 1uz, 7uz, 4096uz, 4097uz, 300'000uz}) {
             const Gathered g = Gathered::make(ends, points);
             std::vector<Vec<3>> direct(points);
             ASSERT_TRUE(test::prepared(g.patch).evaluate(g.at, direct));
@@ -58,7 +58,7 @@ TEST(EvaluateGathered, gives_the_same_bits_as_parameters_in_a_row) {
 
 TEST(EvaluateGathered, names_the_first_bad_parameter_or_gives_nan_there) {
     Gathered g = Gathered::make(test::Ends::clamped, 100'000);
-    for (const std::size_t i : {99'999, 70'001, 2'500}) g.at[i][0] = 1e9;
+    for (const std::size_t i : {99'999uz, 70'001uz, 2'500uz}) g.at[i][0] = 1e9;
     const auto refused = g.values(Outside::refuse);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, RefusalKind::out_of_domain);
