@@ -36,7 +36,7 @@ public:
         auto t = on_curved();
         if (t && crosses_pole(t->curve)) t = through_pole();
         if (!t)
-            if (auto feet = nearest_feet()) return *feet;
+            if (auto feet = polygon_of_feet(chart_, c_, on_, rough_)) return *feet;
         return t;
     }
 
@@ -69,51 +69,6 @@ private:
         if (!start.regular) return through_pole();
         if (auto straight = line(start, middle)) return *straight;
         return spline(start, middle);
-    }
-
-    // At a pole that an edge runs to, not along, the other parameter is what it was beside it.
-    static void keep_at_pole(std::vector<Vec<2>>& net, const Pole& pole) {
-        double farthest = 0;
-        for (const Vec<2>& uv : net) farthest = std::max(farthest, std::abs(uv[pole.axis] - pole.at));
-        const auto keep = [&](Vec<2>& uv, const Vec<2>& beside) {
-            if (std::abs(uv[pole.axis] - pole.at) > 1e-7 * farthest || beside[pole.axis] == pole.at) return;
-            uv[pole.axis] = pole.at, uv[1 - pole.axis] = beside[1 - pole.axis];
-        };
-        if (farthest <= 1e-3 * (farthest + std::abs(net.front()[1 - pole.axis] - net.back()[1 - pole.axis])))
-            return;
-        for (std::size_t i = 1; i < net.size(); ++i) keep(net[i], net[i - 1]);
-        for (std::size_t i = net.size() - 1; i-- > 0;) keep(net[i], net[i + 1]);
-    }
-    // Where the surface shrinks to a point or folds, slopes mean nothing: a polygon of nearest points.
-    std::optional<Trace> nearest_feet() const {
-        constexpr int kFeet = 64;
-        std::vector<double> knots{on_.lo};
-        std::vector<Vec<2>> net;
-        for (int i = 0; i <= kFeet; ++i) {
-            const double t = i == kFeet ? on_.hi : on_.lo + on_.length() * i / kFeet;
-            const Vec<3> p = jet<0>(c_, t).value();
-            const Vec<2> guess = net.empty() ? chart_.locate(p) : net.back();
-            net.push_back(chart_.damped_foot(p, guess));
-            if (i > 0 && chart_.point(net.back()) == chart_.point(guess)) {  // stuck at a pole
-                const Vec<2> other = chart_.damped_foot(p, chart_.locate(p));
-                if (near(other, guess) && gap_at(other, t) < gap_at(net.back(), t)) net.back() = other;
-            }
-            knots.push_back(t);
-        }
-        knots.push_back(on_.hi);
-        for (const Pole& p : chart_.poles()) keep_at_pole(net, p);
-        auto basis = BSplineBasis::make(1, std::move(knots));
-        if (!basis) return std::nullopt;
-        Trace out;
-        out.fitted = true;
-        out.curve = Curve<Vec<2>>::trusted({*std::move(basis)}, Net<1, Vec<2>>({kFeet + 1}, std::move(net)));
-        for (int i = 0; i <= 3 * kFeet; ++i) {
-            const double t = on_.lo + on_.length() * i / (3 * kFeet);
-            const double gap = gap_at(jet<0>(out.curve, t).value(), t);
-            if (!(gap <= rough_)) return std::nullopt;
-            out.gap = std::max(out.gap, gap);
-        }
-        return out;
     }
 
     double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }

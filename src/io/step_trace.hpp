@@ -18,6 +18,11 @@ struct Trace {
 Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy,
                     double rough);
 
+// Where the surface shrinks to a point or folds, slopes mean nothing: a polygon of nearest points, if it is
+// nowhere further from the edge than `rough`.
+std::optional<Trace> polygon_of_feet(const Chart& chart, const CurveGeometry<3>& c, Interval on,
+                                     double rough);
+
 CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by);
 
 }  // namespace freiform::step

@@ -1,0 +1,153 @@
+// Boundaries that files get wrong by a little: what is mended is told, and nothing else is mended.
+#include <freiform/io/file.hpp>
+#include <freiform/io/step_read.hpp>
+#include <freiform/model/tessellate.hpp>
+
+#include <algorithm>
+#include <support/corpus.hpp>
+#include <support/random.hpp>
+#include <support/refusal.hpp>
+
+namespace freiform::test {
+namespace {
+
+std::string flat_file(std::string_view data) {
+    return text("ISO-10303-21;\nHEADER;FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;\nDATA;\n",
+                "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#3))"
+                "GLOBAL_UNIT_ASSIGNED_CONTEXT((#2))REPRESENTATION_CONTEXT('',''));\n"
+                "#2=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n"
+                "#3=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-4),#2,'','');\n"
+                "#5=AXIS2_PLACEMENT_3D('',#6,$,$);\n#6=CARTESIAN_POINT('',(0.,0.,0.));\n#7=PLANE('',#5);\n",
+                data, "ENDSEC;\nEND-ISO-10303-21;\n");
+}
+
+struct Corner {
+    double x, y;
+};
+
+// A plane face between corners: points #100.., vertices #200.., lines #300.., edges #400.., uses #500..
+std::string polygon_file(const std::vector<Corner>& corners) {
+    std::string s =
+        "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+        "#12=ADVANCED_FACE('',(#13),#7,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#14=EDGE_LOOP('',(";
+    const std::size_t n = corners.size();
+    for (std::size_t i = 0; i < n; ++i) s += text(i > 0 ? "," : "", "#", 500 + i);
+    s += "));\n";
+    for (std::size_t i = 0; i < n; ++i) {
+        const Corner a = corners[i], b = corners[(i + 1) % n];
+        s +=
+            text("#", 100 + i, "=CARTESIAN_POINT('',(", a.x, ",", a.y, ",0.));\n#", 200 + i,
+                 "=VERTEX_POINT('',#", 100 + i, ");\n#", 300 + i, "=LINE('',#", 100 + i, ",#", 600 + i,
+                 ");\n#", 600 + i, "=VECTOR('',#", 700 + i, ",1.);\n#", 700 + i, "=DIRECTION('',(", b.x - a.x,
+                 ",", b.y - a.y, ",0.));\n#", 400 + i, "=EDGE_CURVE('',#", 200 + i, ",#", 200 + (i + 1) % n,
+                 ",#", 300 + i, ",.T.);\n#", 500 + i, "=ORIENTED_EDGE('',*,*,#", 400 + i, ",.T.);\n");
+    }
+    return flat_file(s);
+}
+
+double area_of(const Model& m) {
+    const auto t = must(tessellate(m, {.tolerance = 1e-3}));
+    EXPECT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+    double sum = 0;
+    for (const auto& f : t.mesh.triangles) {
+        const auto& p = t.mesh.points;
+        sum += norm(cross(p[std::size_t(f[1])] - p[std::size_t(f[0])],
+                          p[std::size_t(f[2])] - p[std::size_t(f[0])])) /
+               2;
+    }
+    return sum;
+}
+
+std::ptrdiff_t told(const Model& m, std::string_view what) {
+    return std::count_if(m.approximations.begin(), m.approximations.end(),
+                         [&](const Approximation& a) { return a.what.find(what) != std::string::npos; });
+}
+
+TEST(StepLoops, edges_that_are_nearly_nothing_are_left_out_and_told) {
+    // The fourth edge is 2e-8 long and runs back; the tolerance is 1e-4.
+    const Model m = must(read_step(polygon_file({{0, 0}, {3, 0}, {3, 2}, {0, 2}, {2e-8, 2}})));
+    ASSERT_TRUE(m.refused.empty()) << m.refused[0].message;
+    EXPECT_EQ(summary(m).edges, 4);
+    EXPECT_EQ(told(m, "#403 EDGE_CURVE is shorter than a thousandth"), 1);
+    EXPECT_NEAR(area_of(m), 6, 1e-6);
+    // One of the size of the tolerance is there.
+    const Model wide = must(read_step(polygon_file({{0, 0}, {3, 0}, {3, 2}, {1e-4, 2}, {0, 1.9999}})));
+    EXPECT_EQ(summary(wide).edges, 5);
+    EXPECT_EQ(told(wide, "shorter"), 0);
+}
+
+TEST(StepLoops, segments_of_a_boundary_that_run_the_wrong_way_are_turned_and_told) {
+    const auto file = [](const char* third) {
+        std::string s =
+            "#8=SHAPE_REPRESENTATION('',(#9),#1);\n#9=GEOMETRIC_SET('',(#10));\n"
+            "#10=CURVE_BOUNDED_SURFACE('',#7,(#11),.F.);\n"
+            "#11=OUTER_BOUNDARY_CURVE('',(#500,#501,#502,#503),.F.);\n";
+        constexpr Corner kAt[] = {{0, 0}, {3, 0}, {3, 2}, {0, 2}};
+        for (int i = 0; i < 4; ++i) {
+            const Corner a = kAt[i], b = kAt[(i + 1) % 4];
+            s +=
+                text("#", 100 + i, "=CARTESIAN_POINT('',(", a.x, ",", a.y, ",0.));\n#", 300 + i,
+                     "=POLYLINE('',(#", 100 + i, ",#", 100 + (i + 1) % 4, "));\n#", 500 + i,
+                     "=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,", i == 2 ? third : ".T.", ",#", 300 + i, ");\n");
+            (void)b;
+        }
+        return flat_file(s);
+    };
+    const Model good = must(read_step(file(".T."))), turned = must(read_step(file(".F.")));
+    ASSERT_EQ(good.faces.size(), 1u);
+    ASSERT_EQ(turned.faces.size(), 1u) << (turned.refused.empty() ? "" : turned.refused[0].message);
+    EXPECT_EQ(told(good, "taken the other way"), 0);
+    EXPECT_EQ(told(turned, "#502 COMPOSITE_CURVE_SEGMENT runs against its boundary"), 1);
+    EXPECT_NEAR(area_of(good), 6, 1e-9);
+    EXPECT_NEAR(area_of(turned), 6, 1e-9);
+}
+
+// A sphere of radius 2 with the part below or above a circle, and a seam from there to a pole.
+std::string cap_file(bool south, bool circle_forward) {
+    const char* z = south ? "-2." : "2.";
+    return flat_file(text(
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+        "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n"
+        "#9=SPHERICAL_SURFACE('',#5,2.);\n#14=EDGE_LOOP('',(#15,#16,#17));\n#15=ORIENTED_EDGE('',*,*,#20,",
+        circle_forward ? ".T." : ".F.",
+        ");\n#16=ORIENTED_EDGE('',*,*,#21,.T.);\n#17=ORIENTED_EDGE('',*,*,#21,.F.);\n"
+        "#20=EDGE_CURVE('',#30,#30,#40,.T.);\n#21=EDGE_CURVE('',#30,#31,#41,",
+        south ? ".F." : ".T.",
+        ");\n#30=VERTEX_POINT('',#32);\n#31=VERTEX_POINT('',#33);\n#32=CARTESIAN_POINT('',(2.,0.,0.));\n"
+        "#33=CARTESIAN_POINT('',(0.,0.,",
+        z,
+        "));\n#40=CIRCLE('',#5,2.);\n#41=CIRCLE('',#42,2.);\n"
+        "#42=AXIS2_PLACEMENT_3D('',#6,#43,#44);\n#43=DIRECTION('',(0.,-1.,0.));\n"
+        "#44=DIRECTION('',(1.,0.,0.));\n"));
+}
+
+TEST(StepLoops, what_a_loop_with_a_seam_to_a_pole_encloses_is_on_the_side_of_the_pole) {
+    for (const bool south : {false, true})
+        for (const bool forward : {false, true}) {
+            const Model m = must(read_step(cap_file(south, forward)));
+            ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
+            EXPECT_EQ(told(m, "the wrong way around"), forward == south ? 1 : 0) << south << forward;
+            Box<3> box;
+            for (const Vec<3>& p : must(tessellate(m, {.tolerance = 1e-2})).mesh.points) box.add(p);
+            EXPECT_NEAR(south ? box.lo[2] : box.hi[2], south ? -2 : 2, 1e-12);
+            EXPECT_NEAR(south ? box.hi[2] : box.lo[2], 0, 1e-12);
+        }
+}
+
+// Files whose faces were refused once: edges at poles and folds, segments that run backwards, seams across
+// keyseats, edges of half a nanometre.
+TEST(StepLoops, faces_of_real_files_are_read_and_can_be_meshed) {
+    for (const char* name : {"step/bug24595_281390.stp", "step/plate_mode_samples_creo.stp", "step/t4mec.stp",
+                             "step/trj10_b2-oc-214.stp"}) {
+        FF_CORPUS_OR_SKIP(path, name);
+        const Model m = must(read_step(must(read_file(path.string(), 1 << 26))));
+        for (const Refusal& r : m.refused) EXPECT_EQ(r.where, "file") << name << r.message;
+        const auto t = must(tessellate(m, {.tolerance = 1e-3 * summary(m).box.diagonal()}));
+        EXPECT_TRUE(t.refused.empty()) << name << ": " << t.refused[0].reason.message;
+        if (summary(m).open_edges == 0) EXPECT_EQ(t.topology.open_edges, 0) << name;
+    }
+}
+
+}  // namespace
+}  // namespace freiform::test
