@@ -14,6 +14,16 @@ case $name in
     triangulate)
         sources=(src/mesh/triangulate*.cpp src/mesh/insertion_order.cpp src/poly/predicates*.cpp src/poly/integer.cpp
             src/core/text.cpp src/core/result.cpp) ;;
+    step)  # The layers below from the preset asan: what is mixed here has to come from one compiler.
+        cmake --preset asan >build-fuzz/configure.log
+        cmake --build --preset asan --target freiform_core
+        for file in src/io/step_*.cpp; do
+            case $file in *step_write.cpp) ;; *) printf '#include "%s"\n' "$PWD/$file" ;; esac
+        done >build-fuzz/unity/step.cpp
+        sources=(build-fuzz/unity/step.cpp)
+        libraries=(build-asan/lib/libfreiform_core.a -ltbb)
+        longest=16384 rss=1024
+        cp -n tests/data/step/*.stp ../shared/data/step_micro/*.stp "$corpus" 2>>build-fuzz/configure.log || true ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
         case $name in svg | font) own=path ;; gltf) own= ;; region) own="path query intersect region" ;; *) own=$name ;; esac
@@ -50,4 +60,4 @@ for source in "${sources[@]}" "tests/fuzz/${name}_fuzzer.cpp"; do compile "$sour
 cp -n tests/fuzz/seeds/"$name"/* "$corpus" 2>/dev/null || true
 export ASAN_OPTIONS=detect_container_overflow=0  # vectors that layers without checks have grown
 "${CXX:-clang++-22}" -fsanitize=fuzzer,address,undefined build-fuzz/"$name"-objects/*.o "${libraries[@]}" -o "build-fuzz/$name"
-"build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len="$longest" -rss_limit_mb=600 -malloc_limit_mb=256 "$corpus"
+"build-fuzz/$name" -max_total_time="$seconds" -artifact_prefix="build-fuzz/$name-" -max_len="$longest" -rss_limit_mb="${rss:-600}" -malloc_limit_mb=256 "$corpus"
