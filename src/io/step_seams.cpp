@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace freiform::step {
 
@@ -101,8 +102,9 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
             }
             pairs.push_back({cost, i, j});
         }
-    std::stable_sort(pairs.begin(), pairs.end(),
-                     [](const Pair& x, const Pair& y) { return x.cost < y.cost; });
+    std::sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
+        return std::tie(x.cost, x.i, x.j) < std::tie(y.cost, y.i, y.j);
+    });
     std::size_t best_i = pairs.front().i, best_j = pairs.front().j;
     for (std::size_t n = 0; n < pairs.size() && n < 64; ++n) {
         const Vec<2> from = a.uses[pairs[n].i].start;
