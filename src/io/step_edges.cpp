@@ -175,6 +175,8 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     if (end[0] != end[1] && length_at_most(c->curve, {lo, hi}, kTiny * tolerance_)) {
         report(-1, text(f_.label(i), " is shorter than a thousandth of the tolerance; its vertices are one"),
                0.0, 0);
+        // What was told of it is told of no edge.
+        for (int& e : out_.approximated) e = e < int(out_.model.edges.size()) ? e : -1;
         join_vertices(end[0], end[1]);
         made.empty = true;
         return made;
