@@ -55,7 +55,7 @@ std::unexpected<Refusal> Fields::refused(std::string_view message, RefusalKind k
 }
 
 std::unexpected<Refusal> Fields::expected(int i, std::string_view what, std::string_view kind) const {
-    if (i >= count_) return refused(text("its ", what, " is missing; ", kind, " is expected"));
+    if (i < 0 || i >= count_) return refused(text("its ", what, " is missing; ", kind, " is expected"));
     const Token& t = token(i);
     if (t.kind == TokenKind::reference)
         return refused(text("its ", what, " is #", t.size,
@@ -64,7 +64,7 @@ std::unexpected<Refusal> Fields::expected(int i, std::string_view what, std::str
 }
 
 bool Fields::is_omitted(int i) const {
-    return i >= count_ || token(i).kind == TokenKind::omitted || token(i).kind == TokenKind::derived;
+    return i < 0 || i >= count_ || token(i).kind == TokenKind::omitted || token(i).kind == TokenKind::derived;
 }
 
 Result<double> Fields::number_of(std::uint32_t at, std::string_view what) const {
@@ -80,7 +80,7 @@ Result<double> Fields::number_of(std::uint32_t at, std::string_view what) const 
 }
 
 Result<double> Fields::number(int i, std::string_view what) const {
-    if (i >= count_) return expected(i, what, "a number");
+    if (i < 0 || i >= count_) return expected(i, what, "a number");
     return number_of(at_[std::size_t(i)], what);
 }
 

@@ -28,7 +28,7 @@ public:
 
     int size() const { return count_; }
     bool is_omitted(int i) const;
-    bool is(int i, TokenKind kind) const { return i < count_ && token(i).kind == kind; }
+    bool is(int i, TokenKind kind) const { return i >= 0 && i < count_ && token(i).kind == kind; }
     Result<double> number(int i, std::string_view what) const;
     Result<int> integer(int i, std::string_view what) const;
     Result<std::uint32_t> reference(int i, std::string_view what) const;
