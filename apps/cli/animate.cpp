@@ -224,7 +224,6 @@ Result<void> sample_gltf(const Context& context, const AnimateArguments& o) {
 }
 
 Result<void> run_animate(const Context& context, const AnimateArguments& o) {
-    if (o.rate && !(*o.rate > 0 && std::isfinite(*o.rate))) wrong_usage("--rate needs a positive number");
     const bool limited = o.speed || o.acceleration || o.jerk;
     if (o.file.ends_with(".glb") || o.file.ends_with(".gltf")) {
         if (limited || o.duration || !o.speeds.empty())
@@ -261,22 +260,22 @@ void add_animate(CommandLine& line) {
         "  freiform animate walk.glb --rate 30                  # all channels, sampled\n"
         "Without -o a table (CSV) is printed; with --json what it comes to.");
     command.file(options->file);
-    command.number("--duration", options->duration, "Constant speed, for so many seconds");
+    command.positive("--duration", options->duration, "Constant speed, for so many seconds");
     command
         .numbers("--speeds", options->speeds,
                  "Speed by the way: control values of a spline from start to end, all positive")
         .shown_as("V,V,..");
-    command.number("--speed", options->speed, "From rest to rest as fast as limits allow: speed");
-    command.number("--acceleration", options->acceleration, "The same: acceleration along the way");
-    command.number("--jerk", options->jerk, "The same: change of the acceleration");
+    command.positive("--speed", options->speed, "From rest to rest as fast as limits allow: speed");
+    command.positive("--acceleration", options->acceleration, "The same: acceleration along the way");
+    command.positive("--jerk", options->jerk, "The same: change of the acceleration");
     command
         .word("--facing", options->facing,
               "How the body is turned: x along the way without turning about it, or z near --up")
         .one_of({"fixed", "least-turning", "upright"});
     command.numbers("--up", options->up, "Upwards (default 0,0,1)").shown_as("X,Y,Z");
-    command.number("--rate", options->rate, "Samples for a second (default 60; of glTF 30)");
-    command.number("--accuracy", options->accuracy,
-                   "What places may be off along the way (default 1e-9 of it)");
+    command.positive("--rate", options->rate, "Samples for a second (default 60; of glTF 30)");
+    command.positive("--accuracy", options->accuracy,
+                     "What places may be off along the way (default 1e-9 of it)");
     command.object(options->object);
     command.output("Where the motion goes (.csv, .glb, .svg, .html)");
     command.limits();

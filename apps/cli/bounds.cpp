@@ -182,7 +182,6 @@ std::string box_text(const BoundsAnswer& a) {
 
 Result<void> run_bounds(Context& context, const BoundsArguments& options) {
     if (options.accuracy && !(*options.accuracy >= 0)) wrong_usage("--accuracy needs a length >= 0");
-    if (options.hull && !(*options.hull > 0)) wrong_usage("--hull needs a length > 0");
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     if (options.oriented || options.hull)
@@ -236,9 +235,9 @@ void add_bounds(CommandLine& line) {
         "else 1e-7). The answer says what was reached");
     command.flag("--oriented", options->oriented,
                  "Instead: a small box in any orientation, as axes and the ranges along them");
-    command.number("--hull", options->hull,
-                   "Instead: the convex hull of each object, at most this much too large; -o with "
-                   "a name that ends in .stl, .obj, .ply or .glb writes a mesh");
+    command.positive("--hull", options->hull,
+                     "Instead: the convex hull of each object, at most this much too large; -o with "
+                     "a name that ends in .stl, .obj, .ply or .glb writes a mesh");
     command.object(options->object);
     command.answer_file();
     command.limits();

@@ -82,14 +82,17 @@ Result<std::vector<std::size_t>> selected(const Document& document, const std::s
     if (!found.empty() || object.empty()) return found;
     const auto index = scan_number<std::size_t>(object);
     if (index && *index < document.objects.size()) return std::vector{*index};
+    const std::size_t n = document.objects.size();
     std::vector<std::string_view> names;
     for (const Object& o : document.objects)
         if (!o.name.empty() && names.size() < 20) names.push_back(o.name);
-    return refuse(
-        RefusalKind::no_answer, "--object",
-        text("there is no object \"", object, "\"; the ", document.objects.size(), " objects are 0..",
-             (long long)(document.objects.size()) - 1, names.empty() ? "" : ", named ",
-             names.empty() ? "" : listed(names), did_you_mean(object, names)));
+    return refuse(RefusalKind::no_answer, "--object",
+                  text("there is no object \"", object, "\"; ",
+                       n == 0   ? "the file has none"
+                       : n == 1 ? "the only one is 0"
+                                : text("the ", n, " objects are 0..", n - 1),
+                       names.empty() ? "" : ", named ", names.empty() ? "" : listed(names),
+                       did_you_mean(object, names)));
 }
 
 std::string shown(const std::string& file) { return file == "-" ? "standard input" : file; }

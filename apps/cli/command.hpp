@@ -77,6 +77,7 @@ public:
     // All words up to the next option.
     Option words(std::string_view name, std::vector<std::string>& values, std::string_view help) const;
     Option number(std::string_view name, std::optional<double>& value, std::string_view help) const;
+    Option positive(std::string_view name, std::optional<double>& value, std::string_view help) const;
     Option count(std::string_view name, std::optional<int>& value, int least, int most,
                  std::string_view help) const;
     // The value may be left out where another option follows, or nothing; it is empty then.

@@ -12,7 +12,7 @@ namespace freiform::cli {
 
 namespace {
 
-double positive(const std::string& option, const std::string& s) {
+double above_zero(const std::string& option, const std::string& s) {
     const auto x = scan_number<double>(s);
     if (!x || !(*x > 0)) wrong_usage(text(option, " needs a positive number, found \"", s, "\""));
     return *x;
@@ -123,6 +123,13 @@ Option Command::number(std::string_view name, std::optional<double>& value, std:
     return use(name, read, help, "NUMBER");
 }
 
+Option Command::positive(std::string_view name, std::optional<double>& value, std::string_view help) const {
+    const auto read = [&value, name = std::string(name)](const std::string& s) {
+        value = above_zero(name, s);
+    };
+    return use(name, read, help, "NUMBER");
+}
+
 Option Command::optional_value(std::string_view name, std::function<void(const std::string&)> read,
                                std::string_view help, std::string_view shown_as) const {
     CLI::Option* option =
@@ -169,7 +176,7 @@ void Command::output(std::string_view what) const {
 void Command::limits() const {
     Limits& limits = context_->limits;
     use(
-        "--timeout", [&limits](const std::string& s) { limits.timeout = positive("--timeout", s); },
+        "--timeout", [&limits](const std::string& s) { limits.timeout = above_zero("--timeout", s); },
         "Stop after this many seconds", "SECONDS");
     use(
         "--max-memory", [&limits](const std::string& s) { limits.max_memory = bytes("--max-memory", s); },

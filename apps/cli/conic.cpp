@@ -186,6 +186,7 @@ Result<void> run_conic(const Context& context, const ConicArguments& options) {
     count("--equation", options.equation, 6,
           "six numbers A,B,C,D,E,F of A x^2 + B x y + C y^2 + D x + E y + F");
     count("--circle", options.circle, 3, "three numbers X,Y,R");
+    if (!options.circle.empty() && !(options.circle[2] > 0)) wrong_usage("--circle needs a radius above 0");
     count("--angles", options.angles, 2, "two numbers, in degrees");
     count("--box", options.box, 4, "four numbers X0,Y0,X1,Y1");
     if (!options.equation.empty() + !options.circle.empty() + !options.points.empty() != 1)

@@ -119,7 +119,7 @@ Result<ShadedPicture> picture(const Context& context, const DrawArguments& optio
         if (!parsed) wrong_usage(parsed.error().message);
         view = *parsed;
     }
-    if (mesh_format(options.file)) {
+    if (is_mesh_file(context, options.file)) {
         if (format != "png")
             return refuse(RefusalKind::no_answer, options.file,
                           text("a mesh has no curves to write as .", format, "; a mesh is drawn as .png"));
@@ -213,7 +213,7 @@ void add_draw(CommandLine& line) {
               "(default: plane curves as they are, others from iso)")
         .shown_as("VIEW");
     add_line_options(command, *options);
-    command.number("--tolerance", options->tolerance, "Of the mesh that is drawn (default: below a pixel)");
+    command.positive("--tolerance", options->tolerance, "Of the mesh that is drawn (default: below a pixel)");
     command.count("--isolines", options->isolines, 0, 1000,
                   "Isolines of every face in each direction (default: as the knots of surfaces suggest)");
     command.count("--width", options->width, 1, 16384, "Pixels");

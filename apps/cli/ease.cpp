@@ -192,7 +192,6 @@ Result<void> run_keys(const Context& context, const EaseArguments& o) {
 }
 
 Result<void> run_ease(const Context& context, const EaseArguments& o) {
-    if (o.rate && !(*o.rate > 0 && std::isfinite(*o.rate))) wrong_usage("--rate needs a positive number");
     if (!o.keys.empty()) return run_keys(context, o);
     if (!o.handles.empty() && o.handles.size() != 4) wrong_usage("--bezier needs four numbers: X1,Y1,X2,Y2");
     const std::vector<double>& h = o.handles;
@@ -236,7 +235,7 @@ void add_ease(CommandLine& line) {
     command.numbers("--bezier", options->handles, "The points of the curve").shown_as("X1,Y1,X2,Y2");
     command.word("--keys", options->keys, "A file of key frames");
     command.numbers("--at", options->at, "Shares of the time, of keys: times").shown_as("T,T,..");
-    command.number("--rate", options->rate, "Samples for a second of key frames (default 30)");
+    command.positive("--rate", options->rate, "Samples for a second of key frames (default 30)");
     command.answer_file();
     command.action(options, run_ease);
 }

@@ -35,6 +35,8 @@ Result<Parameters> parameters(const EvalArguments& options, const ReadOptions& l
     if (options.at.starts_with('@')) {
         auto lines = read_number_lines(options.at.substr(1), limits);
         if (!lines) return std::unexpected(lines.error());
+        if (lines->row.empty())
+            return refuse(RefusalKind::unreadable, shown(options.at.substr(1)), "no line has numbers");
         return std::move(lines->row);
     }
     Parameters all;

@@ -72,7 +72,7 @@ void add_extrude(CommandLine& line) {
     command.numbers("--by", options->by, "How far and whereto").shown_as("X,Y,Z").required();
     command.object(options->object);
     command.flag("--solid", options->solid, "The solid that the region inside of the curves sweeps");
-    command.number("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
+    command.positive("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
     command.output(
         "Where the surfaces go (.json, .bpt, .step, .obj); solids: .json, .step, .iges, .glb, .stl, .obj, "
         ".ply");

@@ -146,7 +146,6 @@ Result<void> look_at(Lists& lists, const Shape& shape, const FeaturesArguments& 
 }
 
 Result<void> run_features(const Context& context, const FeaturesArguments& options) {
-    if (options.accuracy && !(*options.accuracy > 0)) wrong_usage("--accuracy needs a length above 0");
     if (!options.line.empty() && options.line.size() != 3)
         wrong_usage("--line needs three numbers: A,B,C of A x + B y + C = 0");
     if (!options.plane.empty() && options.plane.size() != 4)
@@ -190,8 +189,8 @@ void add_features(CommandLine& line) {
     command.numbers("--line", options->line, "Only the crossings with A x + B y + C = 0").shown_as("A,B,C");
     command.numbers("--plane", options->plane, "Only the crossings with A x + B y + C z + D = 0")
         .shown_as("A,B,C,D");
-    command.number("--accuracy", options->accuracy,
-                   "How far a point may be from its place, in the unit of the file (1e-9 of the diagonal)");
+    command.positive("--accuracy", options->accuracy,
+                     "How far a point may be from its place, in the unit of the file (1e-9 of the diagonal)");
     command.object(options->object);
     command.answer_file();
     command.limits();

@@ -185,8 +185,6 @@ Result<void> run_flatten(const Context& context, const FlattenArguments& options
         wrong_usage(text("polylines are written as .json, .csv or .svg, not .", format));
     if (!options.compare && options.tolerance.has_value() == options.segments.has_value())
         wrong_usage("one of --tolerance and --segments says how fine the polyline is");
-    if (options.tolerance && !(*options.tolerance > 0))
-        wrong_usage(text("--tolerance needs a positive number, found ", *options.tolerance));
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     if (options.compare) return compare(context, options, *input);
@@ -216,8 +214,8 @@ void add_flatten(CommandLine& line) {
                  "  freiform flatten curve.json --segments 64 --method forward\n"
                  "  freiform flatten curve.json --compare 16");
     command.file(options->file);
-    command.number("--tolerance", options->tolerance,
-                   "Largest distance between curve and polyline, in the unit of the file");
+    command.positive("--tolerance", options->tolerance,
+                     "Largest distance between curve and polyline, in the unit of the file");
     command.count("--segments", options->segments, 1, 10'000'000,
                   "Number of segments instead of a tolerance; error_bound says what it reached");
     command

@@ -2,6 +2,7 @@
 #include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
+#include <freiform/io/mesh_file.hpp>
 
 #include <map>
 
@@ -243,11 +244,36 @@ std::string text_info(const Document& d, const std::string& file, const std::vec
     return s;
 }
 
+Result<std::string> mesh_info(const Context& context, const std::string& file) {
+    const auto mesh = read_mesh(file);
+    if (!mesh) return std::unexpected(mesh.error());
+    const MeshTopology t = topology(*mesh);
+    Box<3> box;
+    for (const Vec<3>& p : mesh->points) box.add(p);
+    if (!context.json)
+        return text(file, ": a mesh\n  triangles ", mesh->triangles.size(), ", ", t.degenerate_triangles,
+                    " of them degenerate\n  points   ", mesh->points.size(), "\n  edges    ", t.open_edges,
+                    " open, ", t.non_manifold_edges, " of more than two triangles, ", t.misoriented_edges,
+                    " of triangles that turn against each other\n", range_text(as_control_box(box)));
+    json::Writer w;
+    w.begin_object().field("file", file).field("type", "mesh").field("triangles", mesh->triangles.size());
+    w.field("vertices", mesh->points.size()).field("open_edges", t.open_edges);
+    w.field("non_manifold_edges", t.non_manifold_edges).field("misoriented_edges", t.misoriented_edges);
+    w.field("degenerate_triangles", t.degenerate_triangles);
+    write_range(w, as_control_box(box));
+    w.end_object();
+    return w.take() + "\n";
+}
+
 struct InfoArguments {
     std::string file, object;
 };
 
 Result<void> run_info(const Context& context, const InfoArguments& options) {
+    if (is_mesh_file(context, options.file)) {
+        const auto said = mesh_info(context, options.file);
+        return said ? emit(context, *said) : std::unexpected(said.error());
+    }
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     const Document& document = *input->document;
@@ -264,6 +290,7 @@ void add_info(CommandLine& line) {
         line.add("info", "What a file contains: counts, types, degrees, domains, boxes, unit",
                  "  freiform info teapot.bpt\n"
                  "  freiform info part.step --json\n"
+                 "  freiform info part.stl              whether the mesh is closed\n"
                  "  freiform info - < curve.json");
     command.file(options->file);
     command.object(options->object);

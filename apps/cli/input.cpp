@@ -1,6 +1,7 @@
 #include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
+#include <freiform/io/mesh_file.hpp>
 
 namespace freiform::cli {
 
@@ -13,8 +14,27 @@ std::unexpected<Refusal> Input::about(std::size_t i, Refusal r) const {
     return std::unexpected(std::move(r));
 }
 
+namespace {
+
+bool is_mesh_name(const std::string& file) {
+    const auto format = mesh_format(file);
+    return format && *format != MeshFormat::obj;
+}
+
+}  // namespace
+
+bool is_mesh_file(const Context& context, const std::string& file) {
+    if (!mesh_format(file) || is_mesh_name(file)) return is_mesh_name(file);
+    const auto read = read_any(file, context.read_options());
+    return !read && read.error().kind == RefusalKind::no_answer;
+}
+
 Result<Input> read_input(const Context& context, const std::string& file, const std::string& object) {
     auto document = read_any(file, context.read_options());
+    if (!document && document.error().kind == RefusalKind::unreadable && is_mesh_name(file))
+        return refuse(
+            RefusalKind::unreadable, shown(file),
+            "curves, surfaces or a model are expected, not triangles; info, draw and check read those");
     if (!document) return std::unexpected(document.error());
     auto chosen = selected(*document, object);
     if (!chosen) return std::unexpected(chosen.error());

@@ -17,6 +17,9 @@ struct Input {
 };
 Result<Input> read_input(const Context& context, const std::string& file, const std::string& object);
 
+// Whether a file is a triangle mesh: .stl, .ply, .glb, and .obj without curves and surfaces.
+bool is_mesh_file(const Context& context, const std::string& file);
+
 // Says on standard error what reading had to change in these objects, and by how much.
 void remark_changes(const Document& document, std::span<const std::size_t> objects);
 

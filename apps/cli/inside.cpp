@@ -54,8 +54,8 @@ public:
         if (loops.empty()) loops.push_back(rectangle(box));
         return in_loops(loops, TrimmedSurface::kSlack * box.diagonal());
     }
-    Result<std::vector<PointRow>> operator()(const Curve<Vec<2>>& c) const { return in_loops({{c}}, 0); }
-    Result<std::vector<PointRow>> operator()(const Curve<Hom<2>>& c) const { return in_loops({{c}}, 0); }
+    Result<std::vector<PointRow>> operator()(const Curve<Vec<2>>& c) const { return in_closed(c); }
+    Result<std::vector<PointRow>> operator()(const Curve<Hom<2>>& c) const { return in_closed(c); }
     Result<std::vector<PointRow>> operator()(const Model& m) const {
         const auto points = as_points<3>(points_);
         if (!points) return std::unexpected(points.error());
@@ -73,6 +73,11 @@ public:
     }
 
 private:
+    // Ends that rounding keeps apart close, as those of loops of trimmed surfaces do.
+    template <class P>
+    Result<std::vector<PointRow>> in_closed(const Curve<P>& c) const {
+        return in_loops({{c}}, TrimmedSurface::kSlack * control_box(c).diagonal);
+    }
     static std::vector<CurveGeometry<2>> rectangle(const Box<2>& b) {
         std::vector<CurveGeometry<2>> loop;
         const Vec<2> corner[5] = {b.lo, {{b.hi[0], b.lo[1]}}, b.hi, {{b.lo[0], b.hi[1]}}, b.lo};

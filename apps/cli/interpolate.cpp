@@ -99,7 +99,12 @@ Spacing spacing_called(const InterpolateArguments& options, Scheme way) {
 std::vector<std::vector<double>> given_tangents(const InterpolateArguments& options, Scheme way, int degree,
                                                 int dim) {
     auto given = parse_vectors("--tangents", options.tangents, dim);
-    if (way == Scheme::clamped && given.size() != 2 * std::size_t(degree / 2))
+    const std::size_t wanted = way == Scheme::clamped ? 2 * std::size_t(degree / 2) : 0;
+    if (wanted > 0 && options.tangents.empty()) {
+        remark("clamped without --tangents: the derivatives at both ends are 0");
+        given.assign(wanted, std::vector<double>(std::size_t(dim)));
+    }
+    if (way == Scheme::clamped && given.size() != wanted)
         wrong_usage(text("clamped ends of degree ", degree, " need --tangents with ", 2 * (degree / 2),
                          " vectors: the derivatives at the start, then those at the end"));
     return given;
@@ -288,7 +293,7 @@ void add_interpolate(CommandLine& line) {
         .shown_as("NUMBER,...");
     command
         .word("--tangents", options->tangents,
-              "With clamped: derivatives by the parameter at the start, then at the end")
+              "With clamped: derivatives by the parameter at the start, then at the end (default 0)")
         .shown_as("X,Y;X,Y");
     command.flag("--closed", options->closed, "Close a curve of a local scheme (catmull-rom, ...)");
     command

@@ -7,6 +7,7 @@
 #include <freiform/io/document.hpp>
 #include <freiform/io/scene.hpp>
 
+#include <algorithm>
 #include <variant>
 
 namespace freiform::cli {
@@ -270,13 +271,33 @@ Result<std::vector<Chosen>> operands(const Input& input) {
     return out;
 }
 
-Result<void> run_pairs(const Input& a, const Input& b, Meeting& meeting) {
+// The boxes of the control points, which hold the objects but for rounding; of models none.
+std::vector<ControlBox> boxes_of(const Input& input, const std::vector<Chosen>& chosen) {
+    std::vector<ControlBox> out;
+    for (const Chosen& c : chosen) out.push_back(control_box(input.object(c.index).shape));
+    return out;
+}
+
+// Whether two objects of as many coordinates are farther apart than that, beyond doubt.
+bool are_apart(const ControlBox& a, const ControlBox& b, double distance) {
+    if (a.lo.size() != b.lo.size()) return false;
+    for (std::size_t k = 0; k < a.lo.size(); ++k) {
+        const double largest = std::max({-a.lo[k], a.hi[k], -b.lo[k], b.hi[k]});
+        if (std::max(a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]) > distance + 0x1p-30 * largest) return true;
+    }
+    return false;
+}
+
+Result<void> run_pairs(const Input& a, const Input& b, double tolerance, Meeting& meeting) {
     const auto in_a = operands(a), in_b = operands(b);
     if (!in_a) return std::unexpected(in_a.error());
     if (!in_b) return std::unexpected(in_b.error());
-    for (const Chosen& x : *in_a)
-        for (const Chosen& y : *in_b)
-            if (auto done = meeting.meet(x, y); !done) return done;
+    const auto boxes_a = boxes_of(a, *in_a), boxes_b = boxes_of(b, *in_b);
+    for (std::size_t i = 0; i < in_a->size(); ++i)
+        for (std::size_t j = 0; j < in_b->size(); ++j) {
+            if (are_apart(boxes_a[i], boxes_b[j], 2 * tolerance)) continue;
+            if (auto done = meeting.meet((*in_a)[i], (*in_b)[j]); !done) return done;
+        }
     return {};
 }
 
@@ -298,7 +319,9 @@ Result<void> run_intersect(const Context& context, const IntersectArguments& opt
     const auto b = by_lines ? a : read_input(context, options.b, options.object_b);
     if (!b) return std::unexpected(b.error());
     Meeting meeting(*a, *b, options.tolerance);
-    if (auto done = by_lines ? run_lines(context, options, meeting) : run_pairs(*a, *b, meeting); !done)
+    if (auto done = by_lines ? run_lines(context, options, meeting)
+                             : run_pairs(*a, *b, options.tolerance.value_or(0), meeting);
+        !done)
         return done;
     if (const auto open = meeting.undecided(); !open.empty()) {
         std::string boxes;

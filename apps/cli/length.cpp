@@ -197,8 +197,6 @@ Result<void> run_length(const Context& context, const LengthArguments& given) {
             options.reparametrise.has_value() >
         1)
         wrong_usage("only one of --at, --equal, --spacing and --reparametrise");
-    if (options.reparametrise && !(*options.reparametrise > 0))
-        wrong_usage(text("--reparametrise needs a positive distance, found ", *options.reparametrise));
     if (options.accuracy && !(*options.accuracy >= 0))
         wrong_usage(text("--accuracy must not be negative, found ", *options.accuracy));
     const auto input = read_input(context, options.file, options.object);
@@ -208,6 +206,8 @@ Result<void> run_length(const Context& context, const LengthArguments& given) {
     const auto of_curve = [&](std::size_t i, const auto& curve) -> Result<void> {
         const auto m = measured(curve, options);
         if (!m) return std::unexpected(m.error());
+        if (!std::isfinite(m->length.value))
+            return refuse(RefusalKind::no_answer, "length", "leaves the range of double");
         lengths.add(i, *m);
         return {};
     };
@@ -244,13 +244,14 @@ void add_length(CommandLine& line) {
                "Lengths from the start of the curve, or of its part: prints the parameters and points there")
         .shown_as("S...");
     command.count("--equal", options->equal, 1, 1'000'000, "The ends of this many parts of equal length");
-    command.number("--spacing", options->spacing, "Places at this distance along the curve");
+    command.positive("--spacing", options->spacing, "Places at this distance along the curve");
     command.numbers("--range", options->range,
                     "Only the part between these two parameters: its length, and places on it");
     command.number("--accuracy", options->accuracy,
                    "What the length may be off (default 0: as little as rounding allows)");
-    command.number("--reparametrise", options->reparametrise,
-                   "Writes the curves as splines over their arc length, within this distance, as a document");
+    command.positive(
+        "--reparametrise", options->reparametrise,
+        "Writes the curves as splines over their arc length, within this distance, as a document");
     command.object(options->object);
     command.answer_file();
     command.limits();

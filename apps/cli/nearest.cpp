@@ -80,7 +80,8 @@ Result<void> answer_nearest(const NearestQuery& query, const std::vector<Vec<D>>
         const Nearest<D>& n = nearest[i];
         const auto same = query.as_near<D>(points[i], n);
         if (!same) return std::unexpected(same.error());
-        const bool many = same->regions.size() > 1 || std::ranges::any_of(same->regions, &NearRegion<D>::stretch);
+        const bool many =
+            same->regions.size() > 1 || std::ranges::any_of(same->regions, &NearRegion<D>::stretch);
         out.w.new_line(1).begin_object().key("query").array(points[i].c);
         place.write(out.w, n);
         out.w.field("lower_bound", n.lower_bound).field("point_error", n.point_error).field("many", many);

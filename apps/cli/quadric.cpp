@@ -104,10 +104,10 @@ void add_quadric(CommandLine& line) {
     command.word("KIND", options->kind, "What to make")
         .one_of({"sphere", "sphere-in-six", "sphere-in-eight", "cylinder", "cone", "torus", "ellipsoid"})
         .required();
-    command.number("--radius", options->radius, "Of a cone at its foot; of a torus that of its ring");
+    command.positive("--radius", options->radius, "Of a cone at its foot; of a torus that of its ring");
     command.numbers("--radii", options->radii, "Half-axes of an ellipsoid").shown_as("X,Y,Z");
     command.number("--top", options->top, "Radius of a cone at its top (default 0, an apex)");
-    command.number("--tube", options->tube, "Radius of the tube of a torus");
+    command.positive("--tube", options->tube, "Radius of the tube of a torus");
     command.number("--height", options->height, "Of a cylinder or cone, from the origin along the axis");
     command.number("--angle", options->angle, "Degrees of the turn about the axis (default 360)");
     command

@@ -133,14 +133,14 @@ void add_revolve(CommandLine& line) {
     command.number(
         "--angle", options->angle,
         "Degrees, counter-clockwise seen from the tip of the axis; negative ones clockwise (default 360)");
-    command.number("--polynomial", options->polynomial,
-                   "Not exact, but polynomial within this distance, of rational curves too; the bound "
-                   "reached is printed");
+    command.positive("--polynomial", options->polynomial,
+                     "Not exact, but polynomial within this distance, of rational curves too; the bound "
+                     "reached is printed");
     command.flag("--closed", options->closed,
                  "Write a full turn on closed knots instead of open ones whose ends coincide");
     command.object(options->object);
     command.flag("--solid", options->solid, "The solid that the region inside of closed plane curves sweeps");
-    command.number("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
+    command.positive("--tolerance", options->tolerance, "The largest distance of triangles from the solid");
     command.output(
         "Where the surfaces go (.json, .bpt, .step, .obj); solids: .json, .step, .iges, .glb, .stl, .obj, "
         ".ply");

@@ -247,9 +247,9 @@ void add_section(CommandLine& line) {
                  "the\nmodel is, with the area that they enclose.");
     command.file(options->file);
     command.numbers("--plane", options->plane, "A,B,C,D or PX,PY,PZ,NX,NY,NZ").required();
-    command.number("--tolerance", options->tolerance,
-                   "How far a curve may be from the section (default: 1e-6 of the size of the surface); of "
-                   "models, polylines from the faces (1e-4)");
+    command.positive("--tolerance", options->tolerance,
+                     "How far a curve may be from the section (default: 1e-6 of the size of the surface); of "
+                     "models, polylines from the faces (1e-4)");
     command.flag("--parameters", options->parameters,
                  "Behind each curve its curve in the parameters of the surface");
     command.object(options->object);

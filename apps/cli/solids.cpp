@@ -26,7 +26,6 @@ SolidOutput solid_output(const Context& context, const std::string& command,
     if (out.is_mesh() && !mesh_format(out.format))
         wrong_usage(text(command, " writes solids as .json, .step, .iges, .glb, .stl, .obj and .ply, not \"",
                          out.format, "\""));
-    if (tolerance && !(*tolerance > 0)) wrong_usage("--tolerance needs a positive number");
     return out;
 }
 

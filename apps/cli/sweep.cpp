@@ -96,7 +96,7 @@ void add_sweep(CommandLine& line) {
         "do\nnot turn about it.");
     command.word("FILE", options->profile, "Profiles; - is standard input").required();
     command.word("--rail", options->rail, "The file of one curve").required();
-    command.number("--tolerance", options->tolerance, "What the surface may be off; the bound is printed");
+    command.positive("--tolerance", options->tolerance, "What the surface may be off; the bound is printed");
     command.numbers("--x", options->x, "Where x of the profile points to at the start of the rail")
         .shown_as("X,Y,Z");
     command.flag("--translate", options->translate, "Move profiles without turning them: exact");

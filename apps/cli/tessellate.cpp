@@ -72,6 +72,9 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
     } else if (output == "-") {
         wrong_usage("-o - needs --to glb, stl, obj or ply");
     }
+    if (std::ranges::any_of(options.tolerances, [](double t) { return !(t > 0); }))
+        wrong_usage("--tolerance needs positive numbers");
+    if (options.aspect && !(*options.aspect > 1)) wrong_usage("--aspect needs a number above 1");
     if (options.tolerances.size() > 1 && !output.empty() && output.find('%') == std::string::npos)
         wrong_usage("several tolerances need a % in the name of the output, such as -o part-%.glb");
     if (output == "-" && context.json) wrong_usage("--json and -o - both want standard output");
@@ -150,11 +153,12 @@ void add_tessellate(CommandLine& line) {
         "--tolerance", options->tolerances,
         "The largest distance between mesh and model, in the file's unit (default: a thousandth of its box); "
         "several give a mesh each, with a % in the name of the output");
-    command.number("--max-edge", options->max_edge,
-                   "The longest side of a triangle, in the file's unit (default: none)");
-    command.number("--angle", options->angle,
-                   "The largest angle between a triangle and normals of its part of the surface, in degrees "
-                   "(default: none)");
+    command.positive("--max-edge", options->max_edge,
+                     "The longest side of a triangle, in the file's unit (default: none)");
+    command.positive(
+        "--angle", options->angle,
+        "The largest angle between a triangle and normals of its part of the surface, in degrees "
+        "(default: none)");
     command.number(
         "--aspect", options->aspect,
         "An aim: points inside faces lie in boxes at most so much longer than wide (default: none)");

@@ -211,8 +211,8 @@ void add_text(CommandLine& line) {
         .word("--font", options->font.font,
               "A file, or the family of an installed font (\"DejaVu Sans:bold\")")
         .required();
-    command.number("--size", options->size,
-                   "Of an em, in units of the output; of pictures pixels (default 72)");
+    command.positive("--size", options->size,
+                     "Of an em, in units of the output; of pictures pixels (default 72)");
     command.words("--axis", options->font.axes, "Axes of a variable font: wght=700,wdth=80")
         .shown_as("TAG=VALUE");
     command.count("--face", options->font.face, 0, 65535, "Which font of a collection (default 0)");
@@ -222,8 +222,9 @@ void add_text(CommandLine& line) {
     command.numbers("--revolve", options->revolve, "Solids of revolution about this axis in the plane")
         .shown_as("PX,PY,DX,DY");
     command.number("--angle", options->angle, "Degrees of the revolution (default 360)");
-    command.number("--tolerance", options->tolerance,
-                   "The largest distance of triangles from the solids (default: a thousandth of their box)");
+    command.positive(
+        "--tolerance", options->tolerance,
+        "The largest distance of triangles from the solids (default: a thousandth of their box)");
     command.output(
         "The file to write: .svg, .json, .pdf, .png; of solids .json, .step, .iges, .glb, .stl, .obj, .ply");
     command.limits();

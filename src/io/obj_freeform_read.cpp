@@ -45,9 +45,13 @@ public:
             std::string_view rest = line;
             const std::string_view key = next_word(rest);
             if (key.empty() || key[0] == '#') continue;
+            any_ = any_ || std::ranges::find(kWords, key) != std::end(kWords);
             if (auto ok = statement(key, rest); !ok) return std::unexpected(ok.error());
         }
         if (element_.kind != ObjElement::Kind::none) return wrong("the file ends before `end`");
+        if (document_.objects.empty() && !any_)
+            return refuse(RefusalKind::unreadable, "",
+                          "no line begins with a word of the format, such as v, f, curv or surf");
         if (document_.objects.empty())
             return refuse(RefusalKind::no_answer, "", "the file has no curves and surfaces (curv, surf)");
         return std::move(document_);
@@ -55,6 +59,9 @@ public:
 
 private:
     using Done = Result<void>;
+    // One of them is in every file of the format that is not empty.
+    static constexpr std::string_view kWords[] = {"v", "vp", "f",      "l",    "p",
+                                                  "o", "g",  "mtllib", "curv", "surf"};
 
     // Up to the end of a line that no backslash continues, without carriage returns.
     std::string logical_line(std::string_view bytes, std::size_t& at) {
@@ -344,6 +351,7 @@ private:
     std::string name_;
     std::set<std::string> named_;
     std::size_t line_ = 0, next_line_ = 1;
+    bool any_ = false;  // a word of the format
 };
 
 }  // namespace

@@ -141,7 +141,7 @@ Result<NumberLines> parse_number_lines(std::string_view s) {
         if (wrong.data() == nullptr) {
             out.row.push_back(std::move(values));
             out.line.push_back(line);
-        } else if (values.empty() && out.row.empty() && !heading) {
+        } else if (values.empty() && out.row.empty() && !heading && row[0] != '[' && row[0] != '{') {
             heading = true;
         } else {
             return refuse(

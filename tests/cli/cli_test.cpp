@@ -198,23 +198,32 @@ TEST_F(Cli, wrong_usage_is_told_from_wrong_files) {
         std::vector<std::string> arguments;
         std::string message;
     };
-    for (const Case& c : std::vector<Case>{{{}, "which command"},
-                                           {{"inof", "x"}, "did you mean \"info\"?"},
-                                           {{"info"}, "FILE is required"},
-                                           {{"info", "-", "--jason"}, "did you mean \"--json\"?"},
-                                           {{"eval", "-"}, "--at is required"},
-                                           {{"eval", "-", "--at", "x"}, "found \"x\""},
-                                           {{"eval", "-", "--at", "nan"}, "found \"nan\""},
-                                           {{"eval", "-", "--at", "0", "--derivatives", "-1"}, "from 0 to"},
-                                           {{"convert", "-", "--elevate", "1.5"}, "whole number"},
-                                           {{"convert", "-", "--axis", "x"}, "x not in {u,v,w}"},
-                                           {{"convert", "-", "--split", "left"}, "needs a number"},
-                                           {{"convert", "-", "--insert-knots", "0,,1"}, "commas, found"},
-                                           {{"convert", "-", "--split"}, "1 required NUMBER missing"},
-                                           {{"convert", "-", "-", "-"}, "(freiform convert --help)"},
-                                           {{"tessellate", "-", "--max-triangles", "-1"}, "whole number"},
-                                           {{"info", "-", "--timeout", "0"}, "positive number"},
-                                           {{"info", "-", "--max-memory", "x"}, "number of bytes"}}) {
+    for (const Case& c :
+         std::vector<Case>{{{}, "which command"},
+                           {{"inof", "x"}, "did you mean \"info\"?"},
+                           {{"info"}, "FILE is required"},
+                           {{"info", "-", "--jason"}, "did you mean \"--json\"?"},
+                           {{"eval", "-"}, "--at is required"},
+                           {{"eval", "-", "--at", "x"}, "found \"x\""},
+                           {{"eval", "-", "--at", "nan"}, "found \"nan\""},
+                           {{"eval", "-", "--at", "0", "--derivatives", "-1"}, "from 0 to"},
+                           {{"convert", "-", "--elevate", "1.5"}, "whole number"},
+                           {{"convert", "-", "--axis", "x"}, "x not in {u,v,w}"},
+                           {{"convert", "-", "--split", "left"}, "needs a number"},
+                           {{"convert", "-", "--insert-knots", "0,,1"}, "commas, found"},
+                           {{"convert", "-", "--split"}, "1 required NUMBER missing"},
+                           {{"convert", "-", "-", "-"}, "(freiform convert --help)"},
+                           {{"tessellate", "-", "--max-triangles", "-1"}, "whole number"},
+                           {{"info", "-", "--timeout", "0"}, "positive number"},
+                           {{"info", "-", "--max-memory", "x"}, "number of bytes"},
+                           {{"tessellate", "-", "--tolerance", "0"}, "positive"},
+                           {{"tessellate", "-", "--tolerance", "1", "--angle", "-1"}, "\"-1\""},
+                           {{"tessellate", "-", "--aspect", "1"}, "above 1"},
+                           {{"draw", "-", "-o", "d.png", "--tolerance", "0"}, "positive"},
+                           {{"section", "-", "--plane", "0,0,1,0", "--tolerance", "-1"}, "positive"},
+                           {{"revolve", "-", "--axis", "0,0,0,1,0,0", "--polynomial", "0"}, "positive"},
+                           {{"quadric", "sphere", "--radius", "-2"}, "positive"},
+                           {{"conic", "--circle", "0,0,0"}, "radius above 0"}}) {
         const Ran r = run(c.arguments, kCurve);
         EXPECT_EQ(r.code, 2) << r.err;
         EXPECT_EQ(r.out, "");
@@ -340,6 +349,11 @@ TEST_F(Cli, a_closed_pipe_is_quiet) {
         std::string(FREIFORM_BINARY) + " convert " + kTeapot + " 2> " + path("err") + " | true";
     EXPECT_EQ(std::system(command.c_str()), 0);
     EXPECT_EQ(content(path("err")), "");
+}
+
+TEST_F(Cli, a_file_of_parameters_has_parameters) {
+    for (const char* bytes : {"u\n", "[[0.5], [0.75]]", "{}"})
+        EXPECT_EQ(run({"eval", "-", "--at", "@" + file("at.csv", bytes)}, kCurve).code, 3) << bytes;
 }
 
 TEST_F(Cli, help_says_which_values_an_option_takes) {

@@ -35,6 +35,21 @@ TEST_F(Inside, a_closed_curve_is_asked_by_points_and_an_open_one_has_no_inside) 
     EXPECT_EQ(run({"inside", path("o.json")}).code, 2);
 }
 
+TEST_F(Inside, ends_that_rounding_keeps_apart_are_closed) {
+    const std::string points = file("p.csv", "0.5 0.2\n2 0\n");
+    for (const char* last : {"[1,-2.4e-16]], \"weights\": [1,2,3,1]", "[1,0]], \"weights\": [0.3,2,3,0.7]"}) {
+        const std::string curve =
+            std::string(R"({"type": "curve", "points": [[1,0],[1,3],[-4,1],)") + last + "}";
+        const Ran r = run({"inside", file("c.json", curve), "--points", points});
+        EXPECT_EQ(r.code, 0) << r.err;
+        EXPECT_EQ(r.out, "inside\noutside\n");
+    }
+    const Ran open =
+        run({"inside", file("o.json", R"({"type": "curve", "points": [[1,0],[1,3],[-4,1],[1,1e-6]]})"),
+             "--points", points});
+    EXPECT_EQ(open.code, 1);
+}
+
 TEST_F(Inside, a_solid_is_asked_by_points_of_space) {
 #ifdef FREIFORM_OCCT_BINARY
     const std::string model = std::string(FREIFORM_SOURCE_DIR) + "/examples/bracket.step";

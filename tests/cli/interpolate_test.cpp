@@ -46,6 +46,11 @@ TEST_F(Interpolate, ends_degree_and_parameters_are_chosen_by_options) {
         curve({"--ends", "clamped", "--tangents", "0,3;3,0", "--parameters", "uniform"}, kPoints);
     EXPECT_EQ(clamped["points"][1], Json::parse("[0,1]"));
     EXPECT_EQ(clamped["points"][4], Json::parse("[3,1]"));
+    const Json resting = curve({"--ends", "clamped", "--degree", "5"}, kPoints);  // without --tangents: zero
+    const std::size_t n = resting["points"].size();
+    for (const std::size_t i : {std::size_t(1), std::size_t(2)})
+        EXPECT_EQ(resting["points"][i], Json::parse("[0,0]"));
+    for (const std::size_t i : {n - 3, n - 2}) EXPECT_NEAR(resting["points"][i][0].get<double>(), 4, 1e-13);
 }
 
 TEST_F(Interpolate, reports_a_bound_and_writes_the_file) {
@@ -104,7 +109,7 @@ TEST_F(Interpolate, refuses_with_the_line) {
     expect({}, "1,2\n", 3, "1 point");
     expect({}, "", 3, "0 point");
     expect({"--ends", "not-a-knot"}, "0,0\n1,1\n2,0\n", 3, "need at least 4");
-    expect({"--ends", "clamped"}, kPoints, 2, "need --tangents");
+    expect({"--ends", "clamped", "--tangents", "1,0"}, kPoints, 2, "need --tangents");
     expect({"--ends", "clamped", "--tangents", "1,0,0;1,0,0"}, kPoints, 2,
            "has 3 numbers, the points have 2");
     expect({"--ends", "catmul-rom"}, kPoints, 2, "did you mean \"catmull-rom\"");

@@ -55,8 +55,7 @@ TEST(IntersectCoincident, a_circle_on_itself_is_one_overlap_and_meets_itself_at_
     const std::vector<Vec<2>> points{{{1, 0}},   {{1, 1}},  {{0, 1}},  {{-1, 1}}, {{-1, 0}},
                                      {{-1, -1}}, {{0, -1}}, {{1, -1}}, {{1, 0}}};
     const auto net = must(make_rational<2>(points, std::vector<double>{1, w, 1, w, 1, w, 1, w, 1}));
-    const auto basis =
-        must(BSplineBasis::make(2, {0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1}));
+    const auto basis = must(BSplineBasis::make(2, {0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1}));
     const auto circle = must(Curve<Hom<2>>::make({basis}, Net<1, Hom<2>>({9}, net)));
     for (const auto& other : {circle, reverse(circle, 0)}) {
         const auto x = must(intersect(circle, other));

@@ -28,6 +28,15 @@ TEST(R15, de_casteljau_of_a_cubic_at_one_half_has_these_intermediate_points) {
     EXPECT_EQ(c.flat().size(), 10u);
 }
 
+// The worked example of the lecture: (-1, 1), (0, -1), (1, 1) at 1/2.
+TEST(R15, de_casteljau_of_the_parabola_of_the_text_ends_at_the_origin) {
+    const std::vector<Vec<2>> b{{{-1, 1}}, {{0, -1}}, {{1, 1}}};
+    const auto c = must(de_casteljau(std::span(b), 0.5));
+    EXPECT_EQ(c(1, 0), (Vec<2>{{-0.5, 0}}));
+    EXPECT_EQ(c(1, 1), (Vec<2>{{0.5, 0}}));
+    EXPECT_EQ(c.point(), (Vec<2>{{0, 0}}));
+}
+
 TEST(R15, of_a_rational_curve_is_done_in_homogeneous_coordinates) {
     const double w = std::sqrt(0.5);
     const std::vector<Hom<2>> arc{{{1, 0, 1}}, {{w, w, w}}, {{0, 1, 1}}};
