@@ -126,9 +126,9 @@ TEST(ObjFreeform, refuses_with_the_line) {
                              std::string_view what) {
         expect_refusal(read_obj_freeform(head + rest), kind, where, what);
     };
-    refused("", RefusalKind::unreadable, "", "no line begins");
-    refused("\1\2 3\n", RefusalKind::unreadable, "", "no line begins");
-    refused("v 0 0 0\n", RefusalKind::no_answer, "", "no curves");
+    refused("", RefusalKind::no_answer, "", "no curves");
+    for (const char* none : {"", "\1\2 3\n"})
+        expect_refusal(read_obj_freeform(none), RefusalKind::unreadable, "", "no line begins");
     refused("curv 0 1 1 2\nparm u 0 0 1 1\n", RefusalKind::unreadable, "line 6", "end");
     refused("curv 0 1 1 3\n", RefusalKind::unreadable, "line 5", "no index");
     refused("curv 1 0 1 2\n", RefusalKind::unreadable, "line 5", "from 1 to 0");
