@@ -26,7 +26,7 @@ HEADER_EXCEPTIONS = {
     "mesh/segment_box": CPP, "mesh/visibility": CPP, "model/edge_gap": CPP, "query/checks": CPP,
     "query/hull_search": CPP, "query/pair_search": CPP, "spline/chain": CPP, "spline/derivative_bounds": CPP,
     "spline/jet": CPP, "io/json": CPP, "io/colour_bar": FIGURE, "io/figure": FIGURE, "io/paper": FIGURE,
-    "io/exchange": "read() calls it", "io/step_read": "read() calls it",
+    "io/exchange": "read() calls it",
     "gpu/surfaces": "of programs that draw with OpenGL", "intersect/curve_part": CPP, "make/image_curve": CPP,
     "model/spline_faces": CPP,
 }
