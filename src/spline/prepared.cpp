@@ -6,12 +6,11 @@
 #include <freiform/spline/evaluate_gathered.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
-#include <optional>
 
 namespace freiform {
 
@@ -161,23 +160,24 @@ Result<void> evaluate_gathered(const PreparedNet& net, std::size_t count, const 
     const std::size_t axes = t.axis.size(), dim = std::size_t(t.net.dim);
     const Inside inside(t);
     const bool past = goes_past(t, count, slots, to);
-    std::mutex mutex;
-    std::optional<std::pair<std::size_t, Refusal>> bad;  // and where its chunk begins
+    std::atomic<std::size_t> bad{count};  // where the first chunk with a bad parameter begins
     in_chunks(count, [&](std::size_t first, std::size_t n) {
         const auto some = std::make_unique_for_overwrite<double[]>(n * axes);
         gather(first, n, some.get());
         const std::span<const double> at(some.get(), n * axes);
         const bool plain = inside(at);
-        if (!plain && outside == Outside::refuse) {
-            if (auto ok = check(t, at, first); !ok) {
-                const std::scoped_lock lock(mutex);
-                if (!bad || first < bad->first) bad.emplace(first, ok.error());
-                return;
+        if (!plain && outside == Outside::refuse && !check(t, at, first)) {
+            for (std::size_t least = bad; first < least && !bad.compare_exchange_weak(least, first);) {
             }
+            return;
         }
         evaluate_chunk(t, t.ready, at, !plain, output(to, first, order, slots, dim, past));
     });
-    if (bad) return std::unexpected(std::move(bad->second));
+    std::array<double, 3> one;
+    for (std::size_t i = bad; i < count; ++i) {  // again, to say which: it is in that chunk
+        gather(i, 1, one.data());
+        if (auto ok = check(t, {one.data(), axes}, i); !ok) return ok;
+    }
     return {};
 }
 

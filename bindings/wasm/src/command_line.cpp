@@ -219,6 +219,10 @@ Option Command::number(std::string_view name, std::optional<double>& value, std:
     return use(name, read, help, "NUMBER");
 }
 
+Option Command::positive(std::string_view name, std::optional<double>& value, std::string_view help) const {
+    return use(name, positive_number(std::string(name), value), help, "NUMBER");
+}
+
 Option Command::optional_value(std::string_view name, std::function<void(const std::string&)> read,
                                std::string_view help, std::string_view shown_as) const {
     CLI::Option& o = app_->add(name, help, std::move(read));
