@@ -11,7 +11,7 @@ namespace {
 class PaintedSurface : public testing::Test {
 protected:
     void SetUp() override {
-        options_.width = 300, options_.height = 300, options_.supersampling = 1;
+        options_.width = 300, options_.height = 300;
         options_.outlines = false;
         options_.view = *parse_view("front");
         const auto r = render(TriangleMesh{}, options_);

@@ -16,7 +16,6 @@ protected:
     void SetUp() override {
         options_.width = 400;
         options_.height = 300;
-        options_.supersampling = 1;
         const auto r = render(TriangleMesh{}, options_);
         if (!r && r.error().kind == RefusalKind::unavailable) GTEST_SKIP() << r.error().message;
         ASSERT_TRUE(r) << r.error().message;

@@ -39,7 +39,7 @@ Model cut_roof() {
 class SurfacePictures : public testing::TestWithParam<SurfacePipeline> {
 protected:
     void SetUp() override {
-        options_.width = 200, options_.height = 150, options_.supersampling = 1;
+        options_.width = 200, options_.height = 150;
         options_.outlines = false;
         options_.top = options_.bottom = {1, 0, 1, 1};
         options_.colour = {0.6, 0.6, 0.6, 1};
@@ -63,7 +63,7 @@ protected:
         for (Face& f : model.faces) f.colour.reset();
         for (Body& b : model.bodies) b.colour.reset();
         TessellateOptions how;
-        how.tolerance = summary(model).box.diagonal() / 4000;
+        how.tolerance = summary(model).box.diagonal() / 10000;
         const auto t = test::must(tessellate(model, how));
         EXPECT_TRUE(t.refused.empty());
         return test::must(render(t.mesh, options_));
@@ -77,7 +77,7 @@ protected:
             const Image mesh = mesh_picture(model);
             const test::ComparedPictures c = test::compared(*gpu, mesh, by);
             EXPECT_EQ(c.cracked, 0) << name << " " << view;
-            EXPECT_LE(c.different, c.surface / 800) << name << " " << view;
+            EXPECT_LE(c.different, c.surface / 1000) << name << " " << view;
             EXPECT_GT(c.surface, 200) << name << " " << view;
             if (const char* folder = std::getenv("FREIFORM_PICTURES")) {
                 std::ofstream(std::string(folder) + "/" + name + "_" + view + "_gpu.png") << *to_png(*gpu);
