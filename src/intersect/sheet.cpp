@@ -5,9 +5,22 @@ namespace freiform::detail {
 
 namespace {
 
+// f(n, m) with the degrees; as constants where both are 3, the commonest, so that loops over them unroll.
+template <class F>
+auto with_degrees(const std::array<int, 2>& degree, F&& f) {
+    using Cubic = std::integral_constant<int, 3>;
+    if (degree[0] == 3 && degree[1] == 3) return f(Cubic{}, Cubic{});
+    return f(degree[0], degree[1]);
+}
+
 // Values and derivatives of the Bernstein polynomials of degree n.
 struct BernsteinRow {
     std::array<double, kMaxDegree + 1> b, d;
+    BernsteinRow(std::integral_constant<int, 3>, double t) {
+        const double s = 1 - t, ss = s * s, st = 2 * s * t, tt = t * t;
+        b[0] = s * ss, b[1] = 3 * t * ss, b[2] = 3 * s * tt, b[3] = t * tt;
+        d[0] = -3 * ss, d[1] = 3 * (ss - st), d[2] = 3 * (st - tt), d[3] = 3 * tt;
+    }
     BernsteinRow(int n, double t) {
         const double s = 1 - t;
         b[0] = 1;
@@ -26,6 +39,15 @@ struct BernsteinRow {
         }
         if (n == 0) d[0] = 0;
     }
+};
+
+// Four coordinates, two at once: what every processor has.
+struct Four {
+    using Two [[gnu::vector_size(16)]] = double;
+    Two lo{}, hi{};
+    void add(double by, const Hom<3>& p) { lo += by * Two{p.c[0], p.c[1]}, hi += by * Two{p.c[2], p.c[3]}; }
+    void add(double by, const Four& x) { lo += by * x.lo, hi += by * x.hi; }
+    double operator[](std::size_t k) const { return k < 2 ? lo[k] : hi[k - 2]; }
 };
 
 bool is_joined_sheet(const Surface<Hom<3>>& s, int axis) {
@@ -68,7 +90,9 @@ void divide_row(Hom<3>* left, Hom<3>* right, int n, int stride, double t) {
 }
 
 // The row over [lo, hi] of [0, 1], or beyond.
-void restrict_row(Hom<3>* p, int n, int stride, Interval on) {
+template <class Degree>
+void restrict_row(Hom<3>* p, Degree degree, int stride, Interval on) {
+    const int n = degree;
     const auto blend = [&](int i, int j, double t) {
         for (int c = 0; c < 4; ++c) p[i * stride][c] = (1 - t) * p[i * stride][c] + t * p[j * stride][c];
     };
@@ -84,6 +108,34 @@ void restrict_row(Hom<3>* p, int n, int stride, Interval on) {
         for (int r = 1; r <= n; ++r)
             for (int i = 0; i <= n - r; ++i) blend(i, i + 1, t);
     }
+}
+
+// Of one axis, from control points within the middle m and reach; the weights are within w.
+template <std::size_t axis, class N, class M>
+SlopeBox slope_box(const Hom<3>* net, N n, M m, const Vec<3>& middle, const Vec<3>& reach, Interval w,
+                   double width, double rounding) {
+    SlopeBox own;
+    const int stride = m + 1, step = axis == 0 ? stride : 1, degree = axis == 0 ? int(n) : int(m);
+    const double w_mid = w.middle(), factor = degree / (w_mid * width);
+    double dw = 0;
+    for (int r = 0; r <= n - (axis == 0); ++r)
+        for (int s = 0; s <= m - (axis == 1); ++s) {
+            const Hom<3>&p = net[r * stride + s], &q = net[r * stride + s + step];
+            const double dv = q.weight() - p.weight();
+            dw = std::max(dw, std::abs(dv));
+            for (int k = 0; k < 3; ++k) {
+                const double d = factor * ((q[k] - p[k]) - middle[k] * dv);
+                own.lo[k] = std::min(own.lo[k], d), own.hi[k] = std::max(own.hi[k], d);
+            }
+        }
+    if (degree == 0) own.lo = own.hi = Vec<3>{};
+    const double varies = w.length() / (2 * w.lo);
+    for (int k = 0; k < 3; ++k) {
+        const double more = 1.01 * (varies * std::max(std::abs(own.lo[k]), std::abs(own.hi[k])) +
+                                    reach[k] * dw * factor * w_mid / w.lo + degree * rounding / width);
+        own.lo[k] -= more, own.hi[k] += more;
+    }
+    return own;
 }
 
 }  // namespace
@@ -111,9 +163,9 @@ Sheet::Sheet(const Surface<Hom<3>>& surface) {
     }
     unit_ = 2.1 * kUnitRoundoff * (most / least) * scale_;
     // Outside of [0, 1] by kMargin the polynomials are at most (1 + 2 kMargin)^n times as large.
-    const double stretch = std::pow(1 + 2 * kMargin, degree_[0] + degree_[1]);
+    stretch_ = std::pow(1 + 2 * kMargin, degree_[0] + degree_[1]);
     inner_error_ = unit_ * (roundings + 16 * (degree_[0] + degree_[1] + 2));
-    value_error_ = stretch * inner_error_;
+    value_error_ = stretch_ * inner_error_;
     // Address space more than memory: what is not used is not touched.
     const std::size_t parts =
         std::clamp<std::size_t>(192 * pieces_.size() / std::size_t(block_), 1024, 65536);
@@ -139,24 +191,25 @@ Sheet::Piece Sheet::locate(std::size_t axis, double x) const {
 
 Sheet::At Sheet::at(double u, double v) const {
     const Piece i = locate(0, u), j = locate(1, v);
-    const BernsteinRow bu(degree_[0], i.t), bv(degree_[1], j.t);
     const Hom<3>* p = pieces_.data() + std::size_t(i.index * count_[1] + j.index) * std::size_t(block_);
-    std::array<double, 4> x{}, du{}, dv{};
-    for (std::size_t r = 0; r <= std::size_t(degree_[0]); ++r) {
-        std::array<double, 4> c{}, d{};
-        for (std::size_t s = 0; s <= std::size_t(degree_[1]); ++s, ++p)
-            for (std::size_t k = 0; k < 4; ++k) c[k] += bv.b[s] * p->c[k], d[k] += bv.d[s] * p->c[k];
-        for (std::size_t k = 0; k < 4; ++k)
-            x[k] += bu.b[r] * c[k], du[k] += bu.d[r] * c[k], dv[k] += bu.b[r] * d[k];
-    }
-    At out;
-    const double w = 1 / x[3], wu = w / width(0, i.index), wv = w / width(1, j.index);
-    for (std::size_t k = 0; k < 3; ++k) {
-        out.point.c[k] = x[k] * w;
-        out.d[0].c[k] = (du[k] - out.point.c[k] * du[3]) * wu;
-        out.d[1].c[k] = (dv[k] - out.point.c[k] * dv[3]) * wv;
-    }
-    return out;
+    const double wide_u = width(0, i.index), wide_v = width(1, j.index);
+    return with_degrees(degree_, [&](auto n, auto m) {
+        const BernsteinRow bu(n, i.t), bv(m, j.t);
+        Four x{}, du{}, dv{};
+        for (std::size_t r = 0; r <= std::size_t(n); ++r) {
+            Four c{}, d{};
+            for (std::size_t s = 0; s <= std::size_t(m); ++s, ++p) c.add(bv.b[s], *p), d.add(bv.d[s], *p);
+            x.add(bu.b[r], c), du.add(bu.d[r], c), dv.add(bu.b[r], d);
+        }
+        At out;
+        const double w = 1 / x[3], wu = w / wide_u, wv = w / wide_v;
+        for (std::size_t k = 0; k < 3; ++k) {
+            out.point.c[k] = x[k] * w;
+            out.d[0].c[k] = (du[k] - out.point.c[k] * du[3]) * wu;
+            out.d[1].c[k] = (dv[k] - out.point.c[k] * dv[3]) * wv;
+        }
+        return out;
+    });
 }
 
 bool Sheet::has_piece_of(int part, const Sheet& other, int part_of_other) const {
@@ -287,63 +340,39 @@ bool Sheet::split(int index) {
 
 void Sheet::add_slopes_of(const Hom<3>* net, const std::array<double, 2>& width, double roundings,
                           Slopes& out) const {
-    Box<3> box;
-    double w_lo = kInfinity, w_hi = 0;
-    for (int k = 0; k < block_; ++k) {
-        w_lo = std::min(w_lo, net[k].weight()), w_hi = std::max(w_hi, net[k].weight());
-        if (!(net[k].weight() > 0)) {
-            w_lo = -1;
-            break;
+    const double rounding = 8 * roundings * unit_;
+    with_degrees(degree_, [&](auto n, auto m) {
+        Interval w{kInfinity, 0};
+        bool positive = true;
+        for (int k = 0; k < (n + 1) * (m + 1); ++k) {
+            positive = positive && net[k].weight() > 0;
+            w = {std::min(w.lo, net[k].weight()), std::max(w.hi, net[k].weight())};
         }
-        box.add(Space<Hom<3>>::project(net[k]));
-    }
-    const int stride = degree_[1] + 1;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        SlopeBox own;
-        if (!(w_lo > 0)) {
-            own.lo = Box<3>::filled(-kInfinity), own.hi = Box<3>::filled(kInfinity);
-            out[axis].include(own);
-            continue;
+        if (!positive) {
+            for (SlopeBox& o : out) o.include({Box<3>::filled(-kInfinity), Box<3>::filled(kInfinity)});
+            return;
         }
-        const Vec<3> m = 0.5 * (box.lo + box.hi), reach = 0.5 * (box.hi - box.lo);
-        const double w_mid = 0.5 * (w_lo + w_hi), factor = degree_[axis] / (w_mid * width[axis]);
-        const int step = axis == 0 ? stride : 1;
-        double dw = 0;
-        for (int r = 0; r <= degree_[0] - (axis == 0); ++r)
-            for (int s = 0; s <= degree_[1] - (axis == 1); ++s) {
-                const Hom<3>&p = net[r * stride + s], &q = net[r * stride + s + step];
-                const double w = q.weight() - p.weight();
-                dw = std::max(dw, std::abs(w));
-                for (int k = 0; k < 3; ++k) {
-                    const double d = factor * ((q[k] - p[k]) - m[k] * w);
-                    own.lo[k] = std::min(own.lo[k], d), own.hi[k] = std::max(own.hi[k], d);
-                }
-            }
-        if (degree_[axis] == 0) own.lo = own.hi = Vec<3>{};
-        const double varies = (w_hi - w_lo) / (2 * w_lo),
-                     rounding = 8 * degree_[axis] * roundings * unit_ / width[axis];
-        for (int k = 0; k < 3; ++k) {
-            const double more = 1.01 * (varies * std::max(std::abs(own.lo[k]), std::abs(own.hi[k])) +
-                                        reach[k] * dw * factor * w_mid / w_lo + rounding);
-            own.lo[k] -= more, own.hi[k] += more;
-        }
-        out[axis].include(own);
-    }
+        Box<3> box;
+        for (int k = 0; k < (n + 1) * (m + 1); ++k) box.add(Space<Hom<3>>::project(net[k]));
+        const Vec<3> middle = 0.5 * (box.lo + box.hi), reach = 0.5 * (box.hi - box.lo);
+        out[0].include(slope_box<0>(net, n, m, middle, reach, w, width[0], rounding));
+        out[1].include(slope_box<1>(net, n, m, middle, reach, w, width[1], rounding));
+    });
 }
 
 // Over a rectangle of the parameters of one piece, or beyond.
-void Sheet::add_slopes(int piece, const std::array<Interval, 2>& local, Slopes& out) const {
-    std::array<Hom<3>, 64> small;
-    std::vector<Hom<3>> large(block_ > 64 ? std::size_t(block_) : 0);
-    Hom<3>* net = block_ > 64 ? large.data() : small.data();
-    std::copy_n(pieces_.data() + std::size_t(piece) * std::size_t(block_), block_, net);
-    const int n = degree_[0], m = degree_[1], w = m + 1;
-    for (int s = 0; s <= m; ++s) restrict_row(net + s, n, w, local[0]);
-    for (int r = 0; r <= n; ++r) restrict_row(net + r * w, m, 1, local[1]);
+void Sheet::add_slopes(int piece, const std::array<Interval, 2>& local, Slopes& out) {
+    const auto first = pieces_.begin() + std::ptrdiff_t(piece) * block_;
+    restricted_.assign(first, first + block_);
+    Hom<3>* net = restricted_.data();
+    with_degrees(degree_, [&](auto n, auto m) {
+        const int w = m + 1;
+        for (int s = 0; s <= m; ++s) restrict_row(net + s, n, w, local[0]);
+        for (int r = 0; r <= n; ++r) restrict_row(net + r * w, m, 1, local[1]);
+    });
     const std::array<double, 2> size{local[0].length() * width(0, piece / count_[1]),
                                      local[1].length() * width(1, piece % count_[1])};
-    const double stretch = std::pow(1 + 2 * kMargin, n + m);
-    add_slopes_of(net, size, stretch * (12 * (n + m) + 16 + 12 * (n + m)), out);
+    add_slopes_of(net, size, stretch_ * (24 * (degree_[0] + degree_[1]) + 16), out);
 }
 
 const Sheet::Slopes& Sheet::slopes(int index, bool around) {

@@ -86,7 +86,7 @@ private:
     int add(SheetPart part);
     void finish(SheetPart& part) const;
     Piece locate(std::size_t axis, double x) const;
-    void add_slopes(int piece, const std::array<Interval, 2>& local, Slopes& out) const;
+    void add_slopes(int piece, const std::array<Interval, 2>& local, Slopes& out);
     void add_slopes_of(const Hom<3>* net, const std::array<double, 2>& width, double roundings,
                        Slopes& out) const;
     double width(std::size_t axis, int piece) const {
@@ -99,8 +99,8 @@ private:
     std::array<std::vector<double>, 2> cuts_;
     std::array<bool, 2> cyclic_{};
     int block_ = 0;
-    double scale_ = 0, unit_ = 0, inner_error_ = 0, value_error_ = 0;
-    std::vector<Hom<3>> pieces_, nets_;
+    double scale_ = 0, unit_ = 0, stretch_ = 1, inner_error_ = 0, value_error_ = 0;
+    std::vector<Hom<3>> pieces_, nets_, restricted_;
     std::vector<Vec<3>> hull_;
     std::vector<SheetPart> parts_;
     std::deque<Slopes> slopes_;
