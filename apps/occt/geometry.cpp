@@ -16,6 +16,8 @@
 // just the knots and coefficients that act on the range is the same function there.
 #include "geometry.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_BezierCurve.hxx>
 #include <Geom2d_Circle.hxx>
@@ -96,6 +98,10 @@ Result<Unwound> unwind(int degree, bool periodic, const TColStd_Array1OfReal& kn
         std::abs(range.lo) > 1e6 * (period + std::abs(last)))
         return refuse(RefusalKind::limit, "periodic spline",
                       text("the range [", range.lo, ", ", range.hi, "] is too many periods of ", period));
+    // What is beyond a knot by rounding asks for no span more: a surface over more than its period would
+    // overlap itself, which other programs do not understand.
+    const double slack = 64 * kUnitRoundoff * (std::abs(range.lo) + std::abs(range.hi) + period);
+    range = range.length() > 4 * slack ? Interval{range.lo + slack, range.hi - slack} : range;
     long long from = (long long)(std::floor((range.lo - knots(1)) / period)) * n;
     while (knot(from) > range.lo) --from;
     while (knot(from + 1) <= range.lo) ++from;

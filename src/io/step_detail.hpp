@@ -136,8 +136,7 @@ public:
 
     template <class P>
     Result<int> one(const Curve<P>& given) {
-        const auto c = given.basis().is_closed() ? restrict_to(given, 0, given.basis().domain())
-                                                 : Result<Curve<P>>(given);
+        const auto c = over_domain(given);
         if (!c) return std::unexpected(c.error());
         const auto k = knots(c->basis());
         if (!k) return std::unexpected(k.error());
@@ -180,6 +179,15 @@ private:
     template <class Coefficients>
     static std::string weights_of(const Coefficients& list) {
         return listed_as(list, [](const auto& p) { return real(p.weight()); });
+    }
+
+    // Closed ones end where they begin.
+    template <class Patch>
+    static Result<Patch> over_domain(const Patch& given) {
+        Result<Patch> out = given;
+        for (int axis = 0; axis < int(Patch::kParams) && out; ++axis)
+            if (given.basis(axis).is_closed()) out = restrict_to(*out, axis, given.basis(axis).domain());
+        return out;
     }
 
     // Multiplicities and knots.
@@ -256,7 +264,10 @@ private:
     }
 
     template <class P>
-    Result<int> one(const Surface<P>& s) {
+    Result<int> one(const Surface<P>& given) {
+        const auto clamped = over_domain(given);
+        if (!clamped) return std::unexpected(clamped.error());
+        const Surface<P>& s = *clamped;
         const auto u = knot_lists(s.basis(0)), v = knot_lists(s.basis(1));
         if (!u) return std::unexpected(u.error());
         if (!v) return std::unexpected(v.error());

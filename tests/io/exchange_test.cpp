@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 #include <random>
+#include <set>
 #include <support/corpus.hpp>
 #include <support/sanitizer.hpp>
 #include <unistd.h>
@@ -228,6 +229,37 @@ TEST_F(Exchange, reads_the_solid_among_the_examples) {
     expect_consistent(*m, 1e-5);
     // The file has no parameter curves; those that were made follow the edges.
     for (const Edge& e : m->edges) EXPECT_LT(e.tolerance, 2e-5) << e.tolerance;
+}
+
+// Parameters that are beyond a seam by rounding ask for no more of the surface.
+TEST_F(Exchange, periodic_splines_are_read_over_one_period) {
+    const auto m = read_with_occt(FREIFORM_SOURCE_DIR "/examples/bracket.step");
+    ASSERT_TRUE(m.has_value()) << m.error().message;
+    int rings = 0;
+    for (const Face& f : m->faces) {
+        if (f.loops.size() != 1 || f.loops[0].coedges.size() != 4) continue;
+        std::set<int> edges;
+        for (const Coedge& c : f.loops[0].coedges) edges.insert(c.edge);
+        if (edges.size() == 4) continue;
+        const auto within = [&](const auto& s) {
+            if constexpr (requires { s.net(); }) {
+                ++rings;
+                // The two sides of the seam are apart by all of one axis.
+                std::vector<Vec<2>> sides;
+                for (const Coedge& c : f.loops[0].coedges)
+                    if (std::ranges::count(f.loops[0].coedges, c.edge, &Coedge::edge) == 2)
+                        sides.push_back(
+                            jet<0>(c.curve, m->edges[std::size_t(c.edge)].range.middle()).value());
+                ASSERT_EQ(sides.size(), 2u);
+                const Vec<2> apart = sides[1] - sides[0];
+                const int axis = std::abs(apart[1]) > std::abs(apart[0]);
+                const double period = s.basis(axis).domain().length();
+                EXPECT_NEAR(std::abs(apart[axis]), period, 1e-9 * period);
+            }
+        };
+        std::visit(within, f.surface);
+    }
+    EXPECT_EQ(rings, 4);
 }
 
 TEST_F(Exchange, keeps_colours_and_names) {
