@@ -232,7 +232,7 @@ Result<void> draw_user_lines(GlPrograms& programs, const GpuScene& scene, const 
     return {};
 }
 
-Result<void> Canvas::begin(const RenderOptions& options) {
+Result<void> Canvas::begin(const RenderOptions& options, int samples) {
     const int width = options.width * options.supersampling, height = options.height * options.supersampling;
     GLint most_pixels = 0, most_samples = 0;
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most_pixels);
@@ -246,7 +246,7 @@ Result<void> Canvas::begin(const RenderOptions& options) {
         glDeleteRenderbuffers(GLsizei(renderbuffers_.size()), renderbuffers_.data());
         renderbuffers_.clear();
         framebuffers_ = {make_framebuffer(width, height, 0, false, renderbuffers_),
-                         make_framebuffer(width, height, std::min(most_samples, 4), true, renderbuffers_)};
+                         make_framebuffer(width, height, std::min(most_samples, samples), true, renderbuffers_)};
         width_ = width, height_ = height;
     }
     if (framebuffers_[0] == 0 || framebuffers_[1] == 0)

@@ -39,7 +39,6 @@ namespace {
 
 constexpr double kMostCells = 1e7;          // of a picture
 constexpr double kRoundingReach = 0.05;     // pixels of the framebuffer
-constexpr double kUnsampledReach = 0.3;     // the same, where not each sample is trimmed by itself
 constexpr float kSeamFarther = 1e-4f;       // in depth from -1 to 1
 constexpr float kOrientationBow = 1.7321f;  // the scene reaches no nearer to the eye: the corner of a cube
 
@@ -135,9 +134,8 @@ void SurfaceRenderer::State::draw_grids(GLuint program, const GpuScene& scene, d
 Result<void> SurfaceRenderer::State::draw_seams(const GpuScene& scene, const RenderOptions& options,
                                                 double deviation) const {
     const double nearest = 1 / (1 - double(scene.inverse_distance) * kOrientationBow);
-    double reach =
+    const double reach =
         options.supersampling * (deviation + data.edge_tolerance * scene.pixels * nearest) + kRoundingReach;
-    if (pipeline == SurfacePipeline::grid) reach += kUnsampledReach * (options.supersampling - 1);
     glUseProgram(seam);
     set_camera(seam, scene);
     set_light(seam, scene, options, options.painting == Painting::normals ? 2 : 0);
@@ -152,11 +150,23 @@ Result<void> SurfaceRenderer::State::draw_seams(const GpuScene& scene, const Ren
     return {};
 }
 
+// OpenGL ES trims whole pixels. Where several samples belong to one, the samples of a pixel whose middle lies
+// between two faces would stay open, farther away than seams reach. So each sample is a pixel there.
+RenderOptions SurfaceRenderer::State::sampled(const RenderOptions& options) const {
+    RenderOptions out = options;
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
+    if (middles && 2 * options.supersampling * std::max(options.width, options.height) <= most)
+        out.supersampling *= 2;
+    return out;
+}
+
+// `options` as sampled() has them.
 Result<void> SurfaceRenderer::State::draw(const RenderOptions& options, double deviation) {
     const GpuScene scene = make_scene(data, options);
     const double dense = density(scene, deviation);
     if (auto r = check_work(dense); !r) return r;
-    if (auto r = canvas.begin(options); !r) return r;
+    if (auto r = canvas.begin(options, middles ? 0 : 4); !r) return r;
     if (auto r = draw_background(programs, options); !r) return r;
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(float(options.supersampling), 1);
@@ -215,8 +225,9 @@ Result<Image> SurfaceRenderer::draw(const RenderOptions& options, double deviati
     if (auto r = check_surface_options(options, deviation); !r) return std::unexpected(r.error());
     if (!state_->context->use())
         return refuse(RefusalKind::unavailable, "OpenGL", "the context cannot be used again");
-    const auto drawn = state_->draw(options, deviation);
-    auto image = drawn ? state_->canvas.finish(options) : Result<Image>(std::unexpected(drawn.error()));
+    const RenderOptions sampled = state_->sampled(options);
+    const auto drawn = state_->draw(sampled, deviation);
+    auto image = drawn ? state_->canvas.finish(sampled) : Result<Image>(std::unexpected(drawn.error()));
     state_->context->release();
     return image;
 }

@@ -14,6 +14,7 @@ struct SurfaceRenderer::State {
     GLuint patches = 0, triangle_patches = 0, grid = 0, seam = 0, captured = 0, captured_triangles = 0;
     GLuint texture = 0, buffer = 0;
     GLint hardware_level = 64;
+    bool middles = false;  // of pixels decide what is trimmed
     VertexArray none, seams;
     std::vector<SceneLine> outlines;
     Canvas canvas;
@@ -33,6 +34,7 @@ struct SurfaceRenderer::State {
     void draw_patches(bool triangular, int cells) const;
     void draw_grids(GLuint program, const GpuScene& scene, double density) const;
     Result<void> draw_seams(const GpuScene& scene, const RenderOptions& options, double deviation) const;
+    RenderOptions sampled(const RenderOptions& options) const;
     Result<void> draw(const RenderOptions& options, double deviation);
     Result<std::vector<SurfaceVertex>> capture(const RenderOptions& options, double deviation);
 };

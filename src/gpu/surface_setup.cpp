@@ -56,6 +56,8 @@ Result<void> SurfaceRenderer::State::prepare() {
         return {};
     };
     if (pipeline == SurfacePipeline::grid) {
+        for (int i = 0; i < data.tensor_pieces + data.triangles; ++i)
+            middles = middles || data.texels[std::size_t(data.pieces + 4 * i + 2)][3] > 0.5f;
         if (auto r =
                 keep(grid, link({{GL_VERTEX_SHADER, grid_vertex}, {GL_FRAGMENT_SHADER, surface_fragment}}));
             !r)

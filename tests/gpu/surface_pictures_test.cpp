@@ -6,7 +6,6 @@
 #include <freiform/gpu/surfaces.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
-#include <freiform/trim/inside.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -43,47 +42,47 @@ protected:
         options_.outlines = false;
         options_.top = options_.bottom = {1, 0, 1, 1};
         options_.colour = {0.6, 0.6, 0.6, 1};
-        const auto probe = picture(test::sphere(Vec<3>{}, 1.0));
+        const auto probe = renderer_of(test::sphere(Vec<3>{}, 1.0));
         if (!probe && probe.error().kind == RefusalKind::unavailable) GTEST_SKIP() << probe.error().message;
         ASSERT_TRUE(probe) << probe.error().message;
     }
-    Result<Image> picture(Model model, double deviation = 0.2) {
+    Result<SurfaceRenderer> renderer_of(Model model) {
         for (Face& f : model.faces) f.colour.reset();
         for (Body& b : model.bodies) b.colour.reset();
         auto b = surface_buffers(
             model, {.edge_tolerance = summary(model).box.diagonal() / 16000, .colour = options_.colour});
         if (!b) return std::unexpected(b.error());
-        extent_ = b->extent;
-        options_.frame = extent_;
-        auto renderer = SurfaceRenderer::make(std::move(*b), GetParam());
-        if (!renderer) return std::unexpected(renderer.error());
-        return renderer->draw(options_, deviation);
+        options_.frame = extent_ = b->extent;
+        return SurfaceRenderer::make(std::move(*b), GetParam());
     }
-    Image mesh_picture(Model model) {
+    static TriangleMesh mesh_of(Model model) {
         for (Face& f : model.faces) f.colour.reset();
         for (Body& b : model.bodies) b.colour.reset();
         TessellateOptions how;
         how.tolerance = summary(model).box.diagonal() / 10000;
-        const auto t = test::must(tessellate(model, how));
+        auto t = test::must(tessellate(model, how));
         EXPECT_TRUE(t.refused.empty());
-        return test::must(render(t.mesh, options_));
+        return std::move(t.mesh);
     }
     void expect_same(const Model& model, const std::string& name, std::initializer_list<const char*> views,
                      int by = 16) {
+        auto renderer = renderer_of(model);
+        ASSERT_TRUE(renderer) << name << ": " << renderer.error().where << ": " << renderer.error().message;
+        const TriangleMesh fine = mesh_of(model);
         for (const char* view : views) {
             options_.view = *parse_view(view);
-            const auto gpu = picture(model);
+            const auto gpu = renderer->draw(options_);
             ASSERT_TRUE(gpu) << name << ": " << gpu.error().where << ": " << gpu.error().message;
-            const Image mesh = mesh_picture(model);
+            const Image mesh = test::must(render(fine, options_));
             const test::ComparedPictures c = test::compared(*gpu, mesh, by);
             EXPECT_EQ(c.cracked, 0) << name << " " << view;
             EXPECT_LE(c.different, c.surface / 1000) << name << " " << view;
             EXPECT_GT(c.surface, 200) << name << " " << view;
             if (const char* folder = std::getenv("FREIFORM_PICTURES")) {
-                std::ofstream(std::string(folder) + "/" + name + "_" + view + "_gpu.png") << *to_png(*gpu);
-                std::ofstream(std::string(folder) + "/" + name + "_" + view + "_mesh.png") << *to_png(mesh);
-                std::ofstream(std::string(folder) + "/" + name + "_" + view + "_difference.png")
-                    << *to_png(test::difference(*gpu, mesh));
+                const auto keep = [&](const char* which, const Image& image) {
+                    std::ofstream(text(folder, "/", name, "_", view, "_", which, ".png")) << *to_png(image);
+                };
+                keep("gpu", *gpu), keep("mesh", mesh), keep("difference", test::difference(*gpu, mesh));
                 std::printf("%s %s: %d of %d pixels differ, %d cracked\n", name.c_str(), view, c.different,
                             c.surface, c.cracked);
             }
@@ -119,9 +118,11 @@ TEST_P(SurfacePictures, seams_fill_what_coarse_triangles_leave_open) {
     ASSERT_TRUE(builder.add(strip({0, -0.5, 0}, {-0.8, -2.8, -0.8})));
     const Model model = *std::move(builder).finish();
     options_.view = *parse_view("top");
-    const auto fine = picture(model);
+    auto renderer = renderer_of(model);
+    ASSERT_TRUE(renderer);
+    const auto fine = renderer->draw(options_);
     ASSERT_TRUE(fine);
-    const auto coarse = picture(model, 6);
+    const auto coarse = renderer->draw(options_, 6);
     ASSERT_TRUE(coarse);
     int inside = 0, open = 0;
     constexpr int kFar = 14;  // the outline itself is coarse
@@ -160,81 +161,6 @@ TEST_P(SurfacePictures, show_models_of_the_corpus_without_cracks) {
         const auto model = scene_of(*document);
         ASSERT_TRUE(model) << name;
         expect_same(*model, path.stem().string(), {"iso", "200,35", "top"});
-    }
-}
-
-// The picture of a trimmed square from above against the exact region: wherever a pixel is more than half a
-// pixel inside or outside, it is so in the picture, and the areas agree by less than four tenths along the
-// boundary.
-TEST_P(SurfacePictures, trim_within_half_a_pixel) {
-    test::Random random(7);
-    for (int round = 0; round < 2; ++round) {
-        ModelBuilder builder;
-        const auto basis = *BSplineBasis::bezier(1);
-        const auto ring = *BSplineBasis::periodic(3, [] {
-            std::vector<double> b;
-            for (int i = 0; i <= 9; ++i) b.push_back(i);
-            return b;
-        }());
-        std::vector<Vec<2>> net;
-        for (int i = 0; i < 9; ++i) {
-            const double r = random.real(0.15, 0.48), a = 2 * test::kPi * i / 9;
-            net.push_back({{0.5 + r * std::cos(a), 0.5 + r * std::sin(a)}});
-        }
-        std::vector<std::vector<CurveGeometry<2>>> loops{
-            {Curve<Vec<2>>::trusted({ring}, Net<1, Vec<2>>({9}, net))},
-            {Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.07, 0.02}}, {{-0.01, 0.05}}}}};
-        const auto square = *Surface<Vec<3>>::make(
-            {basis, basis}, Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
-        ASSERT_TRUE(builder.add_trimmed(square, loops));
-        options_.view = *parse_view("top");
-        options_.supersampling = 1;
-        options_.width = 160, options_.height = 120;
-        const auto drawn = picture(*std::move(builder).finish());
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        const auto query = test::must(InsideQuery::make(loops, 1e-12));
-        // The frame fills the picture but for the margin, in one direction or the other.
-        Box<3> box;
-        for (const Vec<3>& p : extent_) box.add(p);
-        const double margin = 2 * options_.margin * options_.height;
-        const double scale = std::min((options_.width - margin) / (box.hi[0] - box.lo[0]),
-                                      (options_.height - margin) / (box.hi[1] - box.lo[1]));
-        const auto plane_at = [&](double x, double y) {
-            return Vec<2>{{(x - options_.width / 2.0) / scale + (box.lo[0] + box.hi[0]) / 2,
-                           (options_.height / 2.0 - y) / scale + (box.lo[1] + box.hi[1]) / 2}};
-        };
-        // Nine places in a pixel, and those half a pixel around it.
-        constexpr int kPer = 3, kAround = 2;
-        const int columns = kPer * options_.width + 2 * kAround, rows = kPer * options_.height + 2 * kAround;
-        std::vector<char> is_in(std::size_t(columns) * std::size_t(rows));
-        for (int i = 0; i < columns; ++i)
-            for (int j = 0; j < rows; ++j)
-                is_in[std::size_t(j * columns + i)] =
-                    query.at(plane_at((i - kAround + 0.5) / kPer, (j - kAround + 0.5) / kPer)).place !=
-                    Place::outside;
-        const auto count = [&](int x, int y, int from, int to) {
-            int n = 0;
-            for (int i = from; i < to; ++i)
-                for (int j = from; j < to; ++j)
-                    n += is_in[std::size_t((kPer * y + kAround + j) * columns + kPer * x + kAround + i)];
-            return n;
-        };
-        const int full = test::background(*drawn, 0, 0);
-        double covered = 0, exact = 0;
-        int boundary = 0;
-        for (int y = 0; y < options_.height; ++y)
-            for (int x = 0; x < options_.width; ++x) {
-                const double drawn_share = 1 - double(test::background(*drawn, x, y)) / full;
-                covered += drawn_share;
-                const int in = count(x, y, 0, kPer), around = count(x, y, -kAround, kPer + kAround);
-                exact += double(in) / (kPer * kPer);
-                boundary += in > 0 && in < kPer * kPer;
-                if (around == 0) EXPECT_LT(drawn_share, 0.02) << x << " " << y;
-                if (around == (kPer + 2 * kAround) * (kPer + 2 * kAround))
-                    EXPECT_GT(drawn_share, 0.9) << x << " " << y;
-            }
-        EXPECT_GT(boundary, 150);
-        EXPECT_LT(std::abs(covered - exact), 0.4 * boundary);
     }
 }
 
