@@ -245,8 +245,9 @@ Result<void> Canvas::begin(const RenderOptions& options, int samples) {
         glDeleteFramebuffers(2, framebuffers_.data());
         glDeleteRenderbuffers(GLsizei(renderbuffers_.size()), renderbuffers_.data());
         renderbuffers_.clear();
-        framebuffers_ = {make_framebuffer(width, height, 0, false, renderbuffers_),
-                         make_framebuffer(width, height, std::min(most_samples, samples), true, renderbuffers_)};
+        framebuffers_ = {
+            make_framebuffer(width, height, 0, false, renderbuffers_),
+            make_framebuffer(width, height, std::min(most_samples, samples), true, renderbuffers_)};
         width_ = width, height_ = height;
     }
     if (framebuffers_[0] == 0 || framebuffers_[1] == 0)

@@ -73,8 +73,8 @@ Result<void> draw_user_lines(GlPrograms& programs, const GpuScene& scene, const 
 // Framebuffers of one size.
 class Canvas {
 public:
-    // Makes them, unless they are there, and binds the one to draw on; depth is cleared. `samples`: at most so
-    // many for each of its pixels, the same in all calls; 0: their middles alone.
+    // Makes them, unless they are there, and binds the one to draw on; depth is cleared. `samples`: at most
+    // so many for each of its pixels, the same in all calls; 0: their middles alone.
     Result<void> begin(const RenderOptions& options, int samples = 4);
     Result<Image> finish(const RenderOptions& options);
 

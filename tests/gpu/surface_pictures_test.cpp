@@ -35,6 +35,27 @@ Model cut_roof() {
     return *std::move(builder).finish();
 }
 
+// One surface as two faces: what is within an ellipse, and what is around it.
+Model disc_in_hill() {
+    const auto basis = *BSplineBasis::bezier(2);
+    Net<2, Vec<3>> net({3, 3});
+    each_index(net.extent(), [&](const Index<2>& at) {
+        net.view()(at) = Vec<3>{{0.5 * at[0], 0.5 * at[1], at[0] == 1 && at[1] == 1 ? 0.8 : 0.0}};
+    });
+    const auto hill = *Surface<Vec<3>>::make({basis, basis}, net);
+    const auto line = *BSplineBasis::bezier(1);
+    const auto side = [&](Vec<2> a, Vec<2> b) -> CurveGeometry<2> {
+        return Curve<Vec<2>>::trusted({line}, Net<1, Vec<2>>({2}, {a, b}));
+    };
+    const CurveGeometry<2> ellipse = Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{0.3, 0.1}}, {{-0.1, 0.25}}};
+    ModelBuilder builder;
+    const std::vector<CurveGeometry<2>> square{side({{0, 0}}, {{1, 0}}), side({{1, 0}}, {{1, 1}}),
+                                               side({{1, 1}}, {{0, 1}}), side({{0, 1}}, {{0, 0}})};
+    EXPECT_TRUE(builder.add_trimmed(hill, std::vector<std::vector<CurveGeometry<2>>>{square, {ellipse}}));
+    EXPECT_TRUE(builder.add_trimmed(hill, std::vector<std::vector<CurveGeometry<2>>>{{ellipse}}));
+    return *std::move(builder).finish();
+}
+
 class SurfacePictures : public testing::TestWithParam<SurfacePipeline> {
 protected:
     void SetUp() override {
@@ -101,6 +122,24 @@ TEST_P(SurfacePictures, show_what_the_mesh_shows) {
     expect_same(cut_roof(), "roof", {"iso", "100,20"}, 48);
     options_.perspective = true;
     expect_same(test::frustum(1, 0.6, 1), "frustum_perspective", {"20,50"});
+}
+
+// Many small triangles, narrow seams: a pixel whose samples are of several triangles must not be decided on
+// by one place for one face and by another for its neighbour.
+TEST_P(SurfacePictures, have_no_open_pixels_between_trimmed_faces_with_narrow_seams) {
+    options_.supersampling = 1;
+    options_.view = *parse_view("37,61");
+    auto renderer = renderer_of(disc_in_hill());
+    ASSERT_TRUE(renderer) << renderer.error().message;
+    const auto drawn = renderer->draw(options_, 0.01);
+    ASSERT_TRUE(drawn) << drawn.error().message;
+    int open = 0, inside = 0;
+    for (int y = 45; y < 105; ++y)
+        for (int x = 60; x < 140; ++x) ++inside, open += test::background(*drawn, x, y) > 6;
+    EXPECT_EQ(open, 0);
+    EXPECT_GT(inside, 4000);
+    if (const char* folder = std::getenv("FREIFORM_PICTURES"))
+        std::ofstream(text(folder, "/disc_in_hill_", int(GetParam()), ".png")) << *to_png(*drawn);
 }
 
 // Neighbours that are cut into different numbers of cells along their common edge, coarsely: without seams
