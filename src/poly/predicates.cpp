@@ -72,6 +72,32 @@ namespace {
 
 int sign_of(double x) { return (x > 0) - (x < 0); }
 
+// Whether d = fl(a - b) is a - b.
+bool is_difference(double d, double a, double b) {
+    const double b1 = d - a;
+    return (a - (d - b1)) - (b + b1) == 0;
+}
+
+// The filters of stage 1 and 2: the sign, or 0 where they say nothing.
+int clear_orientation(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
+    const double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
+    const double det = left - right, size = std::abs(left) + std::abs(right);
+    if (!(std::abs(det) > 4 * kUnitRoundoff * size && size > 0x1p-900)) return 0;
+    return det > 0 ? 1 : -1;
+}
+// `det`: the rounded determinant.
+int clear_place(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d, double& det) {
+    const double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
+                 cy = c[1] - d[1];
+    const double bc = bx * cy, cb = by * cx, ca = cx * ay, ac = cy * ax, ab = ax * by, ba = ay * bx;
+    const double la = ax * ax + ay * ay, lb = bx * bx + by * by, lc = cx * cx + cy * cy;
+    det = la * (bc - cb) + lb * (ca - ac) + lc * (ab - ba);
+    const double size = la * (std::abs(bc) + std::abs(cb)) + lb * (std::abs(ca) + std::abs(ac)) +
+                        lc * (std::abs(ab) + std::abs(ba));
+    if (!(std::abs(det) > 16 * kUnitRoundoff * size && size > 0x1p-960 * (1 + la + lb + lc))) return 0;
+    return det > 0 ? 1 : -1;
+}
+
 // --- expansions --------------------------------------------------------------------------------------------
 
 struct Two {
@@ -188,12 +214,38 @@ int sign_of_determinant(const PlanePoints<N>& p) {
 
 std::optional<int> filtered_sign(const PlanePoints<3>& p) {
     const auto& [a, b, c] = p;
+    if (const int s = clear_orientation(a, b, c); s != 0) return s;
     const double ax = a[0] - c[0], ay = a[1] - c[1], bx = b[0] - c[0], by = b[1] - c[1];
-    const double left = ax * by, right = ay * bx, det = left - right;
-    const double size = std::abs(left) + std::abs(right);
-    if (std::abs(det) > 4 * kUnitRoundoff * size && size > 0x1p-900) return sign_of(det);
-    if (size == 0 && (ax == 0 || by == 0) && (ay == 0 || bx == 0)) return 0;
+    if ((ax == 0 || by == 0) && (ay == 0 || bx == 0)) return 0;
+    const bool exact = is_difference(ax, a[0], c[0]) && is_difference(ay, a[1], c[1]) &&
+                       is_difference(bx, b[0], c[0]) && is_difference(by, b[1], c[1]);
+    const Two left = two_product(ax, by), right = two_product(ay, bx);
+    const auto is_whole = [](const Two& t) {
+        return t.low == 0 && (t.high == 0 || std::abs(t.high) > 0x1p-900);
+    };
+    if (exact && is_whole(left) && is_whole(right) && !(left.high == 0 && ax != 0 && by != 0) &&
+        !(right.high == 0 && ay != 0 && bx != 0))
+        return (left.high > right.high) - (left.high < right.high);
     return std::nullopt;
+}
+
+// Whether these few differences are exact and so short that no rounding can happen in in_circle: multiples of
+// 2^(e - 11), e the largest exponent among them, so below 2^12 of these. Lifts and minors are below 2^25,
+// their products below 2^50, and all sums below 2^52 of their units.
+bool are_short(const PlanePoints<4>& p) {
+    std::array<double, 6> difference;
+    double most = 0;
+    for (std::size_t i = 0; i < 6; ++i) {
+        difference[i] = p[i / 2].c[i % 2] - p[3].c[i % 2];
+        most = std::max(most, std::abs(difference[i]));
+    }
+    if (!(most > 0x1p-200 && most < 0x1p200)) return false;
+    const double c = std::ldexp(1.5, std::ilogb(most) - 11 + 52);
+    for (std::size_t i = 0; i < 6; ++i)
+        if ((difference[i] + c) - c != difference[i] ||
+            !is_difference(difference[i], p[i / 2].c[i % 2], p[3].c[i % 2]))
+            return false;
+    return true;
 }
 
 // Corners of an axis-parallel rectangle in any order: one pairing has equal x, another equal y. They lie on a
@@ -210,17 +262,10 @@ bool is_rectangle(const PlanePoints<4>& p) {
 }
 
 std::optional<int> filtered_sign(const PlanePoints<4>& p) {
-    const auto& [a, b, c, d] = p;
-    const double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
-                 cy = c[1] - d[1];
-    const double bc = bx * cy, cb = by * cx, ca = cx * ay, ac = cy * ax, ab = ax * by, ba = ay * bx;
-    const double la = ax * ax + ay * ay, lb = bx * bx + by * by, lc = cx * cx + cy * cy;
-    const double det = la * (bc - cb) + lb * (ca - ac) + lc * (ab - ba);
-    const double size = la * (std::abs(bc) + std::abs(cb)) + lb * (std::abs(ca) + std::abs(ac)) +
-                        lc * (std::abs(ab) + std::abs(ba));
-    if (std::abs(det) > 16 * kUnitRoundoff * size && size > 0x1p-960 * (1 + la + lb + lc))
-        return sign_of(det);
+    double det = 0;
+    if (const int s = clear_place(p[0], p[1], p[2], p[3], det); s != 0) return s;
     if (is_rectangle(p)) return 0;
+    if (are_short(p)) return sign_of(det);
     return std::nullopt;
 }
 
@@ -255,10 +300,13 @@ std::optional<int> expansion_sign(PlanePoints<4> p) {
 }  // namespace detail
 
 int orient2d(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
+    if (const int s = detail::clear_orientation(a, b, c); s != 0) return s;
     return detail::sign_of_determinant<3>({a, b, c});
 }
 
 int in_circle(const Vec<2>& a, const Vec<2>& b, const Vec<2>& c, const Vec<2>& d) {
+    double det = 0;
+    if (const int s = detail::clear_place(a, b, c, d, det); s != 0) return s;
     return detail::sign_of_determinant<4>({a, b, c, d});
 }
 

@@ -130,6 +130,9 @@ int wrong_answers(int n, const char* name) {
         "scattered about 2^-1000 (subnormal too)", [&] { return cases.scattered<N>(-1000, 60); }, n);
     tally(
         "grid", [&] { return cases.grid<N>(5, 0); }, n);
+    for (const int size : {1000, 2047, 4095, 1 << 20, 1 << 26, 1 << 28})
+        tally(
+            text("grid of ", size).c_str(), [&] { return cases.grid<N>(size, -20); }, n / 2);
     tally(
         "grid of step 2^-1074", [&] { return cases.grid<N>(5, -1074); }, n);
     tally(
@@ -171,6 +174,25 @@ TEST(Predicates, corners_of_rectangles_are_on_a_circle_and_nothing_beside_them_i
                 EXPECT_EQ(s, detail::integer_sign({at(0), at(1), at(2), q}));
             }
     } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(Predicates, short_differences_from_anywhere_are_signed_without_expansions) {
+    Cases cases{std::mt19937_64(7)};
+    for (int i = 0; i < 20000; ++i) {
+        // Half of them on one circle: images of a point under the symmetries of the grid.
+        const Vec<2> from{{cases.integer(-500, 500) * 0x1p-10, cases.integer(-500, 500) * 0x1p-10}};
+        auto p = cases.grid<4>(900, -20);
+        if (i % 2) {
+            const double x = p[0][0], y = p[0][1];
+            p = {{{{x, y}}, {{-y, x}}, {{y, x}}, {{-x, y}}}};
+        }
+        for (Vec<2>& q : p) q += from;
+        ASSERT_TRUE(detail::filtered_sign(p));
+        ASSERT_EQ(*detail::filtered_sign(p), exact_sign(p));
+        const detail::PlanePoints<3> line{p[0], 0.5 * (p[0] + p[1]), p[1]};
+        ASSERT_TRUE(detail::filtered_sign(line));
+        ASSERT_EQ(*detail::filtered_sign(line), 0);
+    }
 }
 
 TEST(Predicates, in_circle_is_never_wrong) { EXPECT_EQ(wrong_answers<4>(8000, "in_circle"), 0); }
