@@ -17,6 +17,9 @@
 //     (a short edge along a long one, where the other face has one edge for both);
 //   - ends that would make both ends of an edge one vertex, or put vertices of one chain farther apart than
 //     the tolerance.
+// But if the two are opposite sides of one face, the edges of its loop between them may become closed: the
+// face is a full turn, and the two its seam. Such edges have to be four times as large as the tolerance, so
+// strips that are narrower than it are not rolled up.
 //
 // Accuracy. The bounds of joined edges are proven; that no pair is missed is not: feet and places are
 // samples. What is left is reported, so a miss is seen.

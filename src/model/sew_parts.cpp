@@ -143,6 +143,28 @@ std::vector<Pair> Sewer::candidates(const std::vector<Part>& parts) const {
     return pairs;
 }
 
+// Are the two sides of one face that its loop runs through in opposite directions, the face closed by them?
+bool Sewer::is_seam(const Part& a, const Part& b, const Pair& p) const {
+    const Owner &x = owners_[std::size_t(a.edge)], &y = owners_[std::size_t(b.edge)];
+    if (x.uses != 1 || y.uses != 1 || x.face != y.face || x.loop != y.loop) return false;
+    const auto& coedges = m_.faces[std::size_t(x.face)].loops[std::size_t(x.loop)].coedges;
+    return coedges[std::size_t(x.index)].reversed == (coedges[std::size_t(y.index)].reversed == p.reversed);
+}
+
+// May joining the sides of a face make both ends of the edge one? A rim of that face, far larger than the
+// tolerance.
+bool Sewer::may_close(int edge, const Part& side) const {
+    const Owner& o = owners_[std::size_t(side.edge)];
+    const auto stays = [&](int e) {
+        for (auto it = given_.find(e); it != given_.end(); it = given_.find(e)) e = it->second.stays;
+        return e;
+    };
+    const auto& coedges = m_.faces[std::size_t(o.face)].loops[std::size_t(o.loop)].coedges;
+    return extent_[std::size_t(edge)] > kExtents * tolerance_ &&
+           std::any_of(coedges.begin(), coedges.end(),
+                       [&](const Coedge& c) { return stays(c.edge) == stays(edge); });
+}
+
 // Why the pair may not be joined although it is near enough.
 std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair& p) const {
     const double bound = p.match->bound;
@@ -176,7 +198,8 @@ std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair&
             }
         }
     }
-    // Ends of one edge that are different vertices stay different.
+    // Ends of one edge that are different vertices stay different, but for rims that a seam closes.
+    const bool seam = is_seam(a, b, p);
     const auto is_closed = [&](const Part& x) {
         return x.ends[0] >= 0 && x.ends[1] >= 0 && vertex(x.ends[0]) == vertex(x.ends[1]);
     };
@@ -195,7 +218,8 @@ std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair&
             if (edges == edges_at_.end()) continue;
             for (const int e : edges->second) {
                 const Edge& edge = m_.edges[std::size_t(e)];
-                if (vertex(edge.start) != vertex(edge.end) && name(edge.start) == name(edge.end))
+                if (vertex(edge.start) != vertex(edge.end) && name(edge.start) == name(edge.end) &&
+                    !(seam && may_close(e, a)))
                     return Refusal{RefusalKind::ill_conditioned, text("edges[", e, "]"),
                                    "both its ends would become one vertex"};
             }

@@ -58,6 +58,8 @@ private:
                                    std::span<const Vec<3>> at) const;
     std::vector<Part> parts(bool cut) const;
     std::vector<Pair> candidates(const std::vector<Part>& parts) const;
+    bool is_seam(const Part& a, const Part& b, const Pair& p) const;
+    bool may_close(int edge, const Part& side) const;
     std::optional<Refusal> obstacle(const Part& a, const Part& b, const Pair& p) const;
     void measure_extents();
     bool pass(bool cut);

@@ -1,5 +1,6 @@
 // Loose faces joined: cubes with every side drawn anew, edges of other speed, cut otherwise, of wrong
 // direction, and what must not be joined.
+#include "support/sewn.hpp"
 #include "support/shapes.hpp"
 #include "support/solids.hpp"
 
@@ -87,38 +88,6 @@ Model loose_cube(double noise, bool turned = false) {
             p.add({corner(q[0]), corner(q[1]), corner(q[2]), corner(q[3])});
     }
     return p.model();
-}
-
-// What every answer keeps, whatever was sewn.
-void expect_sound(const Sewing& s, const Model& before) {
-    ASSERT_TRUE(make_model(s.model)) << make_model(s.model).error().message;
-    EXPECT_EQ(s.model.faces.size(), before.faces.size());
-    EXPECT_EQ(std::size_t(summary(s.model).open_edges), s.remaining.size());
-    std::vector<int> uses(s.model.edges.size());
-    for (const Face& f : s.model.faces)
-        for (const Loop& l : f.loops)
-            for (std::size_t c = 0; c < l.coedges.size(); ++c) {
-                const Coedge& here = l.coedges[c];
-                const Coedge& next = l.coedges[(c + 1) % l.coedges.size()];
-                const Edge &e = s.model.edges[std::size_t(here.edge)],
-                           &n = s.model.edges[std::size_t(next.edge)];
-                EXPECT_EQ(here.reversed ? e.start : e.end, next.reversed ? n.end : n.start) << "chains";
-                ++uses[std::size_t(here.edge)];
-                // Samples keep the bound of the join.
-                for (const SewnEdge& j : s.joined) {
-                    if (j.edge != here.edge) continue;
-                    for (int k = 0; k <= 50; ++k) {
-                        const double t = k == 50 ? e.range.hi : e.range.lo + e.range.length() * k / 50;
-                        const Vec<2> uv = jet<0>(here.curve, t).value();
-                        EXPECT_LE(norm(jet<0>(f.surface, uv.c).value() - jet<0>(*e.curve, t).value()),
-                                  std::max(j.face_bound, e.tolerance) * (1 + 1e-12));
-                    }
-                }
-            }
-    for (const SewnEdge& j : s.joined) {
-        EXPECT_LE(j.bound, s.tolerance);
-        EXPECT_EQ(std::size_t(uses[std::size_t(j.edge)]), j.faces.size());
-    }
 }
 
 TEST(Sew, loose_sides_become_a_cube) {
@@ -294,6 +263,18 @@ TEST(Sew, closed_edges_with_different_seams_and_speeds_meet) {
         EXPECT_EQ(t->topology.open_edges + t->topology.misoriented_edges + t->topology.non_manifold_edges, 0);
         EXPECT_LE(sampled_deviation(s->model, *t), t->error_bound + t->boundary_gap);
     }
+}
+
+TEST(Sew, a_strip_that_is_narrower_than_the_tolerance_does_not_close_on_itself) {
+    Patchwork p;
+    const double w = 1e-3;
+    p.add({Vec<3>{{0, 0, 0}}, Vec<3>{{w, 0, 0}}, Vec<3>{{0, 1, 0}}, Vec<3>{{w, 1, 0}}});
+    const Model loose = p.model();
+    const auto s = sew(loose, {.tolerance = 2 * w});
+    ASSERT_TRUE(s);
+    expect_sound(*s, loose);
+    EXPECT_TRUE(s->joined.empty());
+    EXPECT_EQ(s->remaining.size(), 4u);
 }
 
 TEST(Sew, scales_exactly_with_powers_of_two) {
