@@ -20,7 +20,7 @@ constexpr double kMostSamples = 1e6;
 struct AnimateArguments {
     std::string file, object, facing = "fixed";
     std::vector<double> speeds, up;
-    std::optional<double> speed, acceleration, jerk, duration, rate, accuracy;
+    std::optional<double> speed, acceleration, across, jerk, duration, rate, accuracy;
 };
 
 std::string output_ending(const Context& context) {
@@ -139,7 +139,11 @@ Result<void> animate_curve(const Context& context, const AnimateArguments& o, co
     if (!(rough.value > 0))
         return refuse(RefusalKind::no_answer, "", "the curve has no length to move along");
     const double accuracy = o.accuracy.value_or(1e-9 * rough.value);
-    auto motion = motion_of(o, rough.value, accuracy);
+    auto motion =
+        o.across ? Motion::along(curve,
+                                 {o.speed.value_or(kInfinity), o.acceleration.value_or(kInfinity), *o.across},
+                                 accuracy)
+                 : motion_of(o, rough.value, accuracy);
     if (!motion) return std::unexpected(motion.error());
     TrajectoryOptions how{accuracy, Facing::fixed, {{0, 0, 1}}};
     if (o.facing != "fixed") how.facing = o.facing == "upright" ? Facing::upright : Facing::least_turning;
@@ -224,14 +228,17 @@ Result<void> sample_gltf(const Context& context, const AnimateArguments& o) {
 }
 
 Result<void> run_animate(const Context& context, const AnimateArguments& o) {
-    const bool limited = o.speed || o.acceleration || o.jerk;
+    const bool limited = o.speed || o.acceleration || o.across || o.jerk;
     if (o.file.ends_with(".glb") || o.file.ends_with(".gltf")) {
         if (limited || o.duration || !o.speeds.empty())
             wrong_usage("the animations of glTF files bring their own times");
         return sample_gltf(context, o);
     }
     if (int(limited) + int(o.duration.has_value()) + int(!o.speeds.empty()) != 1)
-        wrong_usage("one of --duration, --speeds, or limits (--speed, --acceleration, --jerk) is expected");
+        wrong_usage(
+            "one of --duration, --speeds, or limits (--speed, --acceleration, --across, --jerk) is expected");
+    if (o.across && o.jerk)
+        wrong_usage("--across and --jerk do not go together: with bends the jerk has no limit");
     if (!o.up.empty() && o.up.size() != 3) wrong_usage("--up needs three numbers: X,Y,Z");
     const std::string format = output_ending(context);
     if (format != "csv" && format != "glb" && format != "svg" && format != "html")
@@ -255,6 +262,7 @@ void add_animate(CommandLine& line) {
     const Command command = line.add(
         "animate", "A body that moves along a curve, or the animations of a glTF file",
         "  freiform animate way.json --speed 2 --acceleration 1 --jerk 4 -o motion.csv\n"
+        "  freiform animate way.json --speed 20 --acceleration 3 --across 4 -o drive.csv\n"
         "  freiform animate way.json --duration 5 --facing least-turning -o motion.glb\n"
         "  freiform animate drawing.svg --object rim --speeds 1,3,1 --facing upright -o motion.html\n"
         "  freiform animate walk.glb --rate 30                  # all channels, sampled\n"
@@ -267,6 +275,8 @@ void add_animate(CommandLine& line) {
         .shown_as("V,V,..");
     command.positive("--speed", options->speed, "From rest to rest as fast as limits allow: speed");
     command.positive("--acceleration", options->acceleration, "The same: acceleration along the way");
+    command.positive("--across", options->across,
+                     "The same: acceleration across the way, so that it is slow where the curve bends");
     command.positive("--jerk", options->jerk, "The same: change of the acceleration");
     command
         .word("--facing", options->facing,

@@ -257,12 +257,12 @@ Motion::State Motion::by_speed(double time) const {
 // Of a time that was met up to `left`. Sums of times carry one rounding a piece, integrals a dozen.
 double Motion::time_bound(double left) const {
     const double rounding = kUnitRoundoff * (double(times_.size()) + 64) * duration();
-    return (speeds_->bound + left + rounding) * (1 + 0x1p-40);
+    return ((speeds_ ? speeds_->bound : 0) + left + rounding) * (1 + 0x1p-40);
 }
 
 Motion::State Motion::at(double time) const {
     if (std::isnan(time)) return {time, time, time, kInfinity};
-    const double bound = 0x1p-44 * length_;
+    const double bound = 0x1p-44 * length_ + (fastest_ > 0 ? time_bound(0) * fastest_ : 0);
     if (time < 0) return {0, 0, 0, 0};
     if (time > duration()) return {length_, 0, 0, speeds_ ? time_bound(0) * speeds_->fastest : bound};
     if (speeds_) return by_speed(time);

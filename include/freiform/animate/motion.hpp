@@ -17,6 +17,14 @@ struct MotionLimits {
            jerk = std::numeric_limits<double>::infinity();
 };
 
+// Of the motion along a curve that bends: v^2 times the curvature is the acceleration across it. Each > 0;
+// infinite ones do not count.
+struct BendLimits {
+    double speed = std::numeric_limits<double>::infinity(),
+           acceleration = std::numeric_limits<double>::infinity(),  // along the way
+        across = std::numeric_limits<double>::infinity();
+};
+
 // The distance s(t) that was covered at time t, 0 <= t <= duration. Const and safe to share.
 class Motion {
 public:
@@ -36,6 +44,16 @@ public:
     // not proven positive, (limit) more than 2^16 pieces.
     static Result<Motion> with_speed(const Curve<Vec<1>>& v, double accuracy);
 
+    // From rest to rest along the curve, slow where it bends. The curve is cut into parts on each of which
+    // the curvature has a proven bound, the speed is held below what that allows (but for `accuracy` beyond
+    // the ends of parts, a distance > 0), and among such motions this is the fastest. Bounds are within some
+    // 2 % of the curvature, or parts are 1/256 of a polynomial piece long. At corners the body stops. Without
+    // a limit of the acceleration the speed jumps. P as for Trajectory. Refuses (invalid) limits and
+    // accuracies that are not positive, and limits none of which holds everywhere; (ill_conditioned) curves
+    // that stand still; (limit) more than 2^16 parts.
+    template <class P>
+    static Result<Motion> along(const Curve<P>& curve, const BendLimits& limits, double accuracy);
+
     double duration() const { return times_.back(); }
     double length() const { return length_; }
     // At rest before 0 and after the duration.
@@ -54,7 +72,10 @@ private:
     std::size_t phase(double time) const;
     double time_bound(double left) const;
 
-    double length_ = 0;
+    struct BendPart;
+    void pass(const BendPart& part, double w0, double w1, double acceleration);
+
+    double length_ = 0, fastest_ = 0;  // the latter where many times are added up
     std::vector<double> times_{0};
     std::vector<Phase> phases_;
     std::shared_ptr<const SpeedTable> speeds_;
