@@ -16,11 +16,11 @@ namespace freiform::cli {
 
 namespace {
 
-constexpr double kSvgTolerance = 1e-6;  // unless given; of the largest object
+constexpr double kUsualTolerance = 1e-6;  // unless given; of the largest object
 
 struct Report {
     double bound = 0;  // the largest of all objects
-    double drawn = 0;  // of what SVG has no curve for
+    double drawn = 0;  // of what SVG and OBJ have no curve for
     int removed = 0;
     std::vector<std::string> turned;  // loops, as objects[i].loops[j]
 };
@@ -92,11 +92,16 @@ Result<std::string> written(const Document& document, std::string_view format,
     if (format == "bpt") return write_bpt(document);
     if (format == "step" || format == "stp") return write_step(document);
     if (format == "iges" || format == "igs") return write_iges(document);
-    if (format == "obj") return write_obj_freeform(document);
     double size = 0;
     for (const Object& o : document.objects) size = std::max(size, control_box(o.shape).diagonal);
-    const auto picture =
-        picture_of(document, options.tolerance.value_or(size > 0 ? kSvgTolerance * size : 1));
+    const double tolerance = options.tolerance.value_or(size > 0 ? kUsualTolerance * size : 1);
+    if (format == "obj") {
+        auto obj = write_obj_freeform(document, tolerance);
+        if (!obj) return std::unexpected(obj.error());
+        report.drawn = obj->bound;
+        return std::move(obj->text);
+    }
+    const auto picture = picture_of(document, tolerance);
     if (!picture) return std::unexpected(picture.error());
     report.drawn = picture->bound;
     return write_svg(picture->picture);
@@ -145,7 +150,7 @@ Result<void> run_convert(const Context& context, const ConvertArguments& options
     if (!context.json || context.output.empty() || context.output == "-") return {};
     json::Writer w;
     w.begin_object().field("output", context.output).field("format", format).field("objects", objects);
-    if (format == "svg") w.field("error_bound", report.drawn);
+    if (format == "svg" || format == "obj") w.field("error_bound", report.drawn);
     if (options.reduce) w.field("removed_knots", report.removed).field("bound", report.bound);
     if (options.orient_loops) {
         w.key("turned_loops").begin_array();
@@ -195,10 +200,10 @@ void add_convert(CommandLine& line) {
         "turned");
     command.flag("--reverse", options->reverse, "Run through the parameter backwards");
     command.word("--axis", options->axis, "Which parameter the changes are for").one_of({"u", "v", "w"});
-    command.number("--tolerance", options->tolerance,
-                   "How far what SVG has no curve for may be off (default: a millionth of the largest "
-                   "object); the bound "
-                   "reached is reported");
+    command.number(
+        "--tolerance", options->tolerance,
+        "How far what SVG and OBJ have no curve for may be off (default: a millionth of the largest "
+        "object); the bound reached is reported");
     command.limits();
     command.action(options, run_convert);
 }

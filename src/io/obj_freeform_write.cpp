@@ -12,6 +12,9 @@
 #include <freiform/spline/in_space.hpp>
 #include <freiform/trim/loops.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace freiform {
 
 namespace {
@@ -85,6 +88,8 @@ public:
     }
 
     std::string out = "# freiform\n";
+    double tolerance = 0;  // 0: nothing is approximated
+    double bound = 0;
 
 private:
     template <class P>
@@ -139,9 +144,17 @@ Result<void> add_trimmed(ObjFreeformWriter& w, const std::string& name, const Tr
     return {};
 }
 
+Result<TrimmedSurface> spline_face_of(ObjFreeformWriter& w, const Model& model, std::size_t f) {
+    if (w.tolerance == 0) return spline_face(model, f);
+    auto near = spline_face_within(model, f, w.tolerance);
+    if (!near) return std::unexpected(near.error());
+    w.bound = std::max(w.bound, near->bound);
+    return std::move(near->face);
+}
+
 Result<void> add_faces(ObjFreeformWriter& w, const std::string& name, const Model& model) {
     for (std::size_t f = 0; f < model.faces.size(); ++f) {
-        auto face = spline_face(model, f);
+        auto face = spline_face_of(w, model, f);
         if (!face) return refuse_within(text("faces[", f, "]"), face.error());
         // Outer loops counter-clockwise, holes clockwise: what the format demands.
         const auto sides = std::visit([](const auto& s) { return s.domain(); }, face->surface);
@@ -154,10 +167,7 @@ Result<void> add_faces(ObjFreeformWriter& w, const std::string& name, const Mode
     return {};
 }
 
-}  // namespace
-
-Result<std::string> write_obj_freeform(const Document& document) {
-    ObjFreeformWriter w;
+Result<void> add_objects(ObjFreeformWriter& w, const Document& document) {
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
         const auto done = std::visit(
@@ -182,7 +192,24 @@ Result<std::string> write_obj_freeform(const Document& document) {
             o.shape);
         if (!done) return refuse_within(object_label(document, i), done.error());
     }
+    return {};
+}
+
+}  // namespace
+
+Result<std::string> write_obj_freeform(const Document& document) {
+    ObjFreeformWriter w;
+    if (auto ok = add_objects(w, document); !ok) return std::unexpected(ok.error());
     return std::move(w.out);
+}
+
+Result<WrittenObj> write_obj_freeform(const Document& document, double tolerance) {
+    if (!(tolerance > 0 && std::isfinite(tolerance)))
+        return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a positive number"));
+    ObjFreeformWriter w;
+    w.tolerance = tolerance;
+    if (auto ok = add_objects(w, document); !ok) return std::unexpected(ok.error());
+    return WrittenObj{std::move(w.out), w.bound};
 }
 
 }  // namespace freiform

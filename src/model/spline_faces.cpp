@@ -6,13 +6,20 @@
 // Parameter lines stay parameter lines under this map of one axis; what else runs across the angle has no
 // rational image. Axes that are not angles keep their parameters, and so do curves on surfaces of two such.
 //
-// Cost: linear in the control points.
-// Why not an approximation of loops that cross the angle: neighbours would then need the same one, and no
-// tolerance has been given.
+// Where a tolerance is given, a loop that crosses the angle is followed by Hermite's cubics c through places
+// of the image q(t) = (map(p(t))), with its slopes, between breaks of p and the joints of arcs; more of them
+// until it is proven (edge_gap) that the written surface along c is no farther from the edge than the given
+// one along p is proven to be, and the tolerance. Errors fall with the fourth power of the steps. Neighbours
+// follow the same edge.
+//
+// Cost: linear in the control points; a proof for each loop that is followed.
+// Why not always: the numbers of other loops are exact, and without a tolerance nothing says how near is
+// enough.
 #include <freiform/core/constants.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/make/revolve.hpp>
+#include <freiform/model/edge_gap.hpp>
 #include <freiform/model/spline_faces.hpp>
 #include <freiform/spline/in_space.hpp>
 
@@ -37,6 +44,15 @@ struct AxisMap {
         const double half = step / 2, tan = std::tan((u - on.lo - k * step) / 2);
         const double t = tan / (std::sin(half) + tan * (1 - std::cos(half)));
         return (k + std::clamp(t, 0.0, 1.0)) / arcs;
+    }
+    // Continuous: arcs meet with equal speed.
+    double slope(double u) const {
+        if (arcs == 0) return 1;
+        const double step = on.length() / arcs;
+        const int k = std::clamp(int((u - on.lo) / step), 0, arcs - 1);
+        const double half = step / 2, tan = std::tan((u - on.lo - k * step) / 2);
+        const double down = std::sin(half) + tan * (1 - std::cos(half));
+        return (1 + tan * tan) * std::sin(half) / (2 * down * down) / arcs;
     }
 };
 
@@ -155,14 +171,114 @@ Result<CurveGeometry<2>> mapped(const CurveGeometry<2>& curve, const std::array<
             return refuse(
                 RefusalKind::unsupported, "",
                 "a loop that crosses the angle of a surface of revolution or of a conic has no rational "
-                "image; STEP and IGES files keep it");
+                "image, only one within a tolerance; STEP and IGES files keep it");
         },
         curve);
 }
 
-Result<CurveGeometry<2>> in_direction(const Coedge& c, const Edge& e) {
-    auto curve = parameter_spline(c.curve, e.range);
-    if (!curve || !c.reversed) return curve;
+constexpr int kPlacesBetween = 16;  // where joints of arcs are looked for
+constexpr int kMostCubics = 4096;   // a backstop
+
+// The ends of the range, breaks of the curve, and where it crosses the joints of arcs.
+std::vector<double> steps_of(const CurveGeometry<2>& curve, Interval on, const std::array<AxisMap, 2>& map) {
+    std::vector<double> t{on.lo, on.hi};
+    std::visit(
+        [&](const auto& c) {
+            if constexpr (requires { c.net(); })
+                for (const double b : c.basis().breaks())
+                    if (on.lo < b && b < on.hi) t.push_back(b);
+        },
+        curve);
+    std::sort(t.begin(), t.end());
+    std::vector<double> joints;
+    for (int axis = 0; axis < 2; ++axis)
+        for (int k = 1; k < map[std::size_t(axis)].arcs; ++k) {
+            const AxisMap& m = map[std::size_t(axis)];
+            const double joint = m.on.lo + m.on.length() * k / m.arcs;
+            const auto beyond = [&](double at) { return jet<0>(curve, at).value()[axis] > joint; };
+            for (std::size_t i = 0; i + 1 < t.size(); ++i)
+                for (int j = 0; j < kPlacesBetween; ++j) {
+                    const double step = (t[i + 1] - t[i]) / kPlacesBetween;
+                    Interval within{t[i] + j * step, t[i] + (j + 1) * step};
+                    const bool before = beyond(within.lo);
+                    if (before == beyond(within.hi)) continue;
+                    for (int halving = 0; halving < 50; ++halving)
+                        (beyond(within.middle()) == before ? within.lo : within.hi) = within.middle();
+                    joints.push_back(within.middle());
+                }
+        }
+    t.insert(t.end(), joints.begin(), joints.end());
+    std::sort(t.begin(), t.end());
+    const double same = 0x1p-30 * on.length();
+    std::erase_if(t, [&, last = -kInfinity](double x) mutable {
+        const bool again = x - last <= same && x < on.hi;
+        if (!again) last = x;
+        return again;
+    });
+    return t;
+}
+
+// Hermite's cubics of the image over `parts` parts of every step.
+CurveGeometry<2> cubics_along(const CurveGeometry<2>& curve, const std::array<AxisMap, 2>& map,
+                              const std::vector<double>& steps, int parts) {
+    const auto at = [&](double t, bool before, Interval on) {
+        const auto j = jet<1>(curve, before ? clamped(std::nextafter(t, -kInfinity), on) : t);
+        const Vec<2> p = j(0), d = j(1);
+        return std::pair{Vec<2>{{map[0](p[0]), map[1](p[1])}},
+                         Vec<2>{{map[0].slope(p[0]) * d[0], map[1].slope(p[1]) * d[1]}}};
+    };
+    std::vector<double> knots{steps.front()};
+    std::vector<Vec<2>> net;
+    for (std::size_t i = 0; i + 1 < steps.size(); ++i)
+        for (int k = 0; k < parts; ++k) {
+            const double width = (steps[i + 1] - steps[i]) / parts;
+            const double lo = steps[i] + k * width, hi = k + 1 == parts ? steps[i + 1] : lo + width;
+            const auto [p, dp] = at(lo, false, {lo, hi});
+            const auto [q, dq] = at(hi, true, {lo, hi});
+            if (net.empty()) net.push_back(p);
+            net.push_back(net.back() + ((hi - lo) / 3) * dp);
+            net.push_back(q - ((hi - lo) / 3) * dq);
+            net.push_back(q);
+            knots.insert(knots.end(), 3, lo);
+        }
+    knots.insert(knots.end(), 4, steps.back());
+    const int size = int(net.size());
+    return Curve<Vec<2>>::trusted({*BSplineBasis::make(3, std::move(knots))},
+                                  Net<1, Vec<2>>({size}, std::move(net)));
+}
+
+struct Across {
+    const SurfaceGeometry& given;
+    const MappedSurface& made;
+    double tolerance = 0;
+    double bound = 0;  // of all loops so far
+};
+
+// The coedge's curve where the spline has it, within the tolerance.
+Result<CurveGeometry<2>> along(const Coedge& c, const Edge& e, Across& how) {
+    if (!e.curve)
+        return refuse(RefusalKind::unsupported, "",
+                      "a loop that crosses an angle, without a curve in space that it could follow");
+    const SurfaceGeometry spline =
+        std::visit([](const auto& s) { return SurfaceGeometry(s); }, how.made.surface);
+    const DerivativeQuery<2, 3> before(how.given), after(spline);
+    const EdgeGapOptions fine{.target = how.tolerance / 8};
+    const double own = edge_gap(before, c.curve, *e.curve, e.range, fine).bound;
+    const auto steps = steps_of(c.curve, e.range, how.made.map);
+    double reached = kInfinity;
+    for (int parts = 1; parts * int(steps.size()) <= kMostCubics; parts *= 2) {
+        auto curve = cubics_along(c.curve, how.made.map, steps, parts);
+        reached = edge_gap(after, curve, *e.curve, e.range, fine).bound;
+        if (!(reached <= own + how.tolerance)) continue;
+        how.bound = std::max(how.bound, reached);
+        return curve;
+    }
+    return refuse(RefusalKind::not_converged, "",
+                  text("a loop that crosses an angle follows its edge only within ", reached));
+}
+
+Result<CurveGeometry<2>> in_direction(Result<CurveGeometry<2>> curve, bool reversed) {
+    if (!curve || !reversed) return curve;
     return std::visit(
         [](const auto& x) -> Result<CurveGeometry<2>> {
             if constexpr (requires { x.net(); })
@@ -173,16 +289,12 @@ Result<CurveGeometry<2>> in_direction(const Coedge& c, const Edge& e) {
         *curve);
 }
 
-}  // namespace
-
-Result<TrimmedSurface> spline_face(const Model& model, std::size_t face) {
+Result<SplineFace> converted(const Model& model, std::size_t face, double tolerance) {
     const Face& f = model.faces[face];
     Box<2> used;
-    std::vector<std::vector<CurveGeometry<2>>> loops;
-    for (const Loop& l : f.loops) {
-        auto& loop = loops.emplace_back();
+    for (const Loop& l : f.loops)
         for (const Coedge& c : l.coedges) {
-            auto curve = in_direction(c, model.edges[std::size_t(c.edge)]);
+            const auto curve = parameter_spline(c.curve, model.edges[std::size_t(c.edge)].range);
             if (!curve) return std::unexpected(curve.error());
             std::visit(
                 [&](const auto& x) {
@@ -190,19 +302,40 @@ Result<TrimmedSurface> spline_face(const Model& model, std::size_t face) {
                         for (const auto& p : x.net().flat()) used.add(project(p));
                 },
                 *curve);
+        }
+    if (f.loops.empty()) return refuse(RefusalKind::unsupported, "loops", "a face without boundary");
+    auto made = std::visit([&](const auto& s) { return spline_of(s, used); }, f.surface);
+    if (!made) return std::unexpected(made.error());
+    Across across{f.surface, *made, tolerance};
+    std::vector<std::vector<CurveGeometry<2>>> loops;
+    for (const Loop& l : f.loops) {
+        auto& loop = loops.emplace_back();
+        for (const Coedge& c : l.coedges) {
+            const Edge& e = model.edges[std::size_t(c.edge)];
+            auto there = mapped(*parameter_spline(c.curve, e.range), made->map);
+            if (!there && tolerance > 0) there = along(c, e, across);
+            auto curve = in_direction(std::move(there), c.reversed);
+            if (!curve) return std::unexpected(curve.error());
             loop.push_back(*std::move(curve));
         }
     }
-    if (loops.empty()) return refuse(RefusalKind::unsupported, "loops", "a face without boundary");
-    auto made = std::visit([&](const auto& s) { return spline_of(s, used); }, f.surface);
+    auto trimmed = TrimmedSurface::make(made->surface, std::move(loops));
+    if (!trimmed) return std::unexpected(trimmed.error());
+    return SplineFace{*std::move(trimmed), across.bound};
+}
+
+}  // namespace
+
+Result<TrimmedSurface> spline_face(const Model& model, std::size_t face) {
+    auto made = converted(model, face, 0);
     if (!made) return std::unexpected(made.error());
-    for (auto& loop : loops)
-        for (auto& curve : loop) {
-            auto there = mapped(curve, made->map);
-            if (!there) return std::unexpected(there.error());
-            curve = *std::move(there);
-        }
-    return TrimmedSurface::make(std::move(made->surface), std::move(loops));
+    return std::move(made->face);
+}
+
+Result<SplineFace> spline_face_within(const Model& model, std::size_t face, double tolerance) {
+    if (!(tolerance > 0 && std::isfinite(tolerance)))
+        return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a positive number"));
+    return converted(model, face, tolerance);
 }
 
 }  // namespace freiform

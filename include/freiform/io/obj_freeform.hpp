@@ -22,4 +22,13 @@ Result<Document> read_obj_freeform(std::string_view text);
 // counter-clockwise, holes clockwise. Refuses (unsupported) other objects and loops with ellipses.
 Result<std::string> write_obj_freeform(const Document& document);
 
+struct WrittenObj {
+    std::string text;
+    double bound =
+        0;  // no point of a loop that had to be approximated is farther than this from its edge: proven
+};
+// The same, but loops of models that have no rational image are followed within `tolerance` > 0
+// (spline_face_within).
+Result<WrittenObj> write_obj_freeform(const Document& document, double tolerance);
+
 }  // namespace freiform

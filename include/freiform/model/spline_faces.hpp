@@ -13,4 +13,15 @@ namespace freiform {
 // than along its parameter lines: no rational curve is their image; and what TrimmedSurface::make refuses.
 Result<TrimmedSurface> spline_face(const Model& model, std::size_t face);
 
+struct SplineFace {
+    TrimmedSurface face;
+    // Of loops that cross an angle, in space: |face.surface(written(t)) - edge.curve(t)| is nowhere above
+    // this, a bound; 0 without such loops.
+    double bound = 0;
+};
+// The same, but loops that cross an angle are followed by cubics, no farther from their edges than the
+// model's own curves are proven to be and `tolerance` (a distance in model units, > 0). Refuses (unsupported)
+// those whose edges have no curve in space, (not_converged) what does not come near enough.
+Result<SplineFace> spline_face_within(const Model& model, std::size_t face, double tolerance);
+
 }  // namespace freiform

@@ -1,0 +1,57 @@
+// What a call took, in a process of its own: hostile input must neither take much memory nor long.
+#pragma once
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace freiform::test {
+
+// Sanitizers have measures of their own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kIsMeasured = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+inline constexpr bool kIsMeasured = false;
+#else
+inline constexpr bool kIsMeasured = true;
+#endif
+#else
+inline constexpr bool kIsMeasured = true;
+#endif
+
+struct Effort {
+    bool ended = false;  // by itself, and what was asked held
+    double mebibytes = 0, seconds = 0;
+};
+
+// `f` says whether the answer is right; what it prints is not kept. Seconds are those of the processor.
+template <class F>
+Effort effort_of(F&& f) {
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(60);
+        _exit(f() ? 0 : 1);
+    }
+    int status = 0;
+    rusage used{};
+    Effort e;
+    if (child < 0 || wait4(child, &status, 0, &used) != child) return e;
+    e.ended = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    e.mebibytes = double(used.ru_maxrss) / 1024;
+    e.seconds = double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+                1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+    return e;
+}
+
+// Within 256 MiB, what the process had before included, and a second.
+#define FF_EXPECT_LITTLE_EFFORT(...)                                \
+    do {                                                            \
+        const auto effort = freiform::test::effort_of(__VA_ARGS__); \
+        EXPECT_TRUE(effort.ended);                                  \
+        if (!freiform::test::kIsMeasured) break;                    \
+        EXPECT_LT(effort.mebibytes, 256);                           \
+        EXPECT_LT(effort.seconds, 1);                               \
+    } while (false)
+
+}  // namespace freiform::test
