@@ -5,8 +5,12 @@
 // used is walked again at its place. What cannot be shown is named with its line, the rest is delivered.
 //
 // Limits. The tree takes some 72 bytes for an element and 48 for an attribute: their number is bounded by
-// counting '<' and '=' first. `use` multiplies: what is shown is counted, nesting ends at kMostNested, and an
-// element that is inside itself is not walked again. Entities and document types are not looked at.
+// counting '<' and '=' first, and lines, whose ends are kept. `use` multiplies: nesting ends at kMostNested,
+// and an element that is inside itself is not walked again. Small causes may be shown, copied and looked at
+// again without end, so three things are counted: elements that are shown; the memory of the picture, with
+// the texts that every shape has of its own; and the characters of attributes and declarations that are
+// looked at, of which a file may cause ten times as many as it has and kMostAgain more. A path is not read
+// beyond what the picture may still take. Entities and document types are not looked at.
 #include "svg_detail.hpp"
 
 #include <freiform/core/scan.hpp>
@@ -22,8 +26,10 @@ namespace {
 
 using namespace svg;
 
-constexpr std::size_t kMostMemory = std::size_t(200) << 20, kMostShown = 1000000, kMostSegments = 10000000,
-                      kMostLeftOut = 1000;
+constexpr std::size_t kMostMemory = std::size_t(96) << 20, kMostPicture = std::size_t(80) << 20,
+                      kMostShown = 1000000, kMostLeftOut = 1000, kMostAgain = std::size_t(8) << 20;
+constexpr std::size_t kLongestName = 60;  // of what messages quote
+constexpr std::size_t kMostDeclarations = 10000;
 constexpr int kMostNested = 200;
 
 std::string_view local_name(std::string_view name) {
@@ -49,7 +55,8 @@ struct SvgState {
 
 class SvgReader {
 public:
-    SvgReader(const pugi::xml_document& xml, std::string_view bytes) : xml_(xml) {
+    SvgReader(const pugi::xml_document& xml, std::string_view bytes)
+        : xml_(xml), may_look_at_(10 * bytes.size() + kMostAgain) {
         for (std::size_t i = 0; i < bytes.size(); ++i)
             if (bytes[i] == '\n') lines_.push_back(i);
     }
@@ -60,6 +67,9 @@ public:
             return refuse(RefusalKind::unreadable, place(root),
                           text("<svg> was expected, not <", root.name(), ">"));
         collect(root);
+        if (sheet_.is_full())
+            return refuse(RefusalKind::limit, place(root),
+                          text("its style sheets say more than ", StyleSheet::kMost, " things"));
         if (sheet_.ignored() > 0)
             leave_out(RefusalKind::unsupported, root,
                       text(sheet_.ignored(),
@@ -76,9 +86,18 @@ private:
     std::string place(pugi::xml_node node) const {
         const auto at =
             std::ranges::lower_bound(lines_, std::size_t(std::max<std::ptrdiff_t>(0, node.offset_debug())));
-        const std::string_view id = node.attribute("id").value();
-        return text("line ", at - lines_.begin() + 1, ": <", node.name(), id.empty() ? "" : " id=\"", id,
+        const std::string_view id = std::string_view(node.attribute("id").value()).substr(0, kLongestName);
+        return text("line ", at - lines_.begin() + 1, ": <",
+                    std::string_view(node.name()).substr(0, kLongestName), id.empty() ? "" : " id=\"", id,
                     id.empty() ? ">" : "\">");
+    }
+    // Counts what is looked at; false where it is too much.
+    bool look_at(std::size_t characters, pugi::xml_node node) {
+        looked_at_ += characters;
+        if (looked_at_ > may_look_at_ && !stopped_)
+            stopped_ =
+                Refusal{RefusalKind::limit, place(node), "what is used again and again would take too long"};
+        return !stopped_;
     }
     void leave_out(RefusalKind kind, pugi::xml_node node, std::string why) {
         if (out_.left_out.size() < kMostLeftOut)
@@ -141,10 +160,22 @@ private:
                 leave_out(RefusalKind::invalid, node,
                           text(property, ": \"", value.substr(0, 40), "\" has no meaning and is ignored"));
         };
+        std::size_t characters = 64 + sheet_.cost_of(local_name(node.name()), node.attribute("id").value(),
+                                                     node.attribute("class").value());
+        for (const pugi::xml_attribute& a : node.attributes())
+            characters += 16 + std::string_view(a.value()).size();
+        const std::string_view given = node.attribute("style").value();
+        characters += 7 * given.size();  // every declaration takes memory
+        if (!look_at(characters, node)) return false;
+        if (std::size_t(std::ranges::count(given, ';')) > kMostDeclarations) {
+            leave_out(RefusalKind::limit, node,
+                      text("its style says more than ", kMostDeclarations, " things"));
+            return style.shown = false;
+        }
         // Lengths in em want the size first.
         const Declarations css = sheet_.of(local_name(node.name()), node.attribute("id").value(),
                                            node.attribute("class").value()),
-                           own = declarations(node.attribute("style").value());
+                           own = declarations(given);
         for (const bool size : {true, false}) {
             const auto wanted = [&](std::string_view property) { return (property == "font-size") == size; };
             for (const pugi::xml_attribute& a : node.attributes())
@@ -240,8 +271,10 @@ private:
             return leave_out(RefusalKind::unreadable, node,
                              text("\"", to.substr(0, 60), "\" is no element of this file"));
         const pugi::xml_node found = target->second;
-        for (pugi::xml_node n = node; n; n = n.parent())
+        std::size_t depth = 0;
+        for (pugi::xml_node n = node; n; n = n.parent(), ++depth)
             if (n == found) return leave_out(RefusalKind::invalid, node, "refers to what it is inside of");
+        if (!look_at(depth + used_.size(), node)) return;
         if (std::ranges::find(used_, found) != used_.end())
             return leave_out(RefusalKind::invalid, node, "refers to itself by way of others");
         const auto value = [&](const char* name, Along along) {
@@ -263,7 +296,14 @@ private:
         const auto path = outline(
             name,
             [&](const char* attribute) -> std::string_view { return node.attribute(attribute).value(); },
-            state.metrics, [&](RefusalKind kind, std::string why) { leave_out(kind, node, std::move(why)); });
+            state.metrics,
+            [&](RefusalKind kind, std::string why) {
+                if (kind == RefusalKind::limit)
+                    stopped_ = Refusal{kind, place(node), std::move(why)};
+                else
+                    leave_out(kind, node, std::move(why));
+            },
+            kMostPicture / sizeof(PathSegment));
         if (path) add(node, name, *path, state);
     }
 
@@ -284,11 +324,13 @@ private:
             if (!finite)
                 return leave_out(RefusalKind::nonfinite, node,
                                  "its coordinates are larger than a double holds");
-            segments_ += s.segments.size() + 1;
+            memory_ += sizeof(Subpath) + s.segments.size() * sizeof(PathSegment);
         }
-        if (segments_ > kMostSegments) {
+        memory_ += sizeof(SvgShape) + out.id.size() + out.element.size() + out.fill.size() +
+                   out.stroke.size() + sizeof(double) * out.line.dashes.size();
+        if (memory_ > kMostPicture) {
             stopped_ = Refusal{RefusalKind::limit, place(node),
-                               text("more than ", kMostSegments, " segments are shown")};
+                               text("what is shown would take more than ", kMostPicture >> 20, " MiB")};
             return;
         }
         for (const char* cut : kCuts)
@@ -309,7 +351,7 @@ private:
     StyleSheet sheet_;
     SvgPicture out_;
     std::vector<pugi::xml_node> used_;
-    std::size_t shown_ = 0, segments_ = 0, unnamed_ = 0;
+    std::size_t shown_ = 0, memory_ = 0, unnamed_ = 0, looked_at_ = 0, may_look_at_ = 0;
     std::optional<Refusal> stopped_;
 };
 
@@ -317,7 +359,8 @@ private:
 
 Result<SvgPicture> read_svg(std::string_view bytes) {
     const std::size_t needed = 72 * std::size_t(std::ranges::count(bytes, '<')) +
-                               48 * std::size_t(std::ranges::count(bytes, '=')) + 2 * bytes.size();
+                               48 * std::size_t(std::ranges::count(bytes, '=')) +
+                               8 * std::size_t(std::ranges::count(bytes, '\n')) + 2 * bytes.size();
     if (needed > kMostMemory)
         return refuse(RefusalKind::limit, "",
                       text("the elements of the file would take about ", needed >> 20, " MiB; the limit is ",

@@ -41,11 +41,12 @@ Affinity<2> fitted(const ViewBox& box, double width, double height, std::string_
 bool is_silent(std::string_view element);
 
 // The outline of a path or a basic shape whose attributes have these texts (empty where they are absent);
-// nothing if the element is neither. What has no meaning is reported.
+// nothing if the element is neither. What has no meaning is reported; after `most_segments` a path ends.
 std::optional<Path> outline(std::string_view element,
                             const std::function<std::string_view(const char*)>& attribute,
                             const Metrics& metrics,
-                            const std::function<void(RefusalKind, std::string)>& report);
+                            const std::function<void(RefusalKind, std::string)>& report,
+                            std::size_t most_segments);
 
 using Declarations = std::vector<std::pair<std::string, std::string>>;  // property, value
 Declarations declarations(std::string_view s);
@@ -58,12 +59,20 @@ public:
     // Rules with other selectors are counted and ignored.
     void add(std::string_view css);
     int ignored() const { return ignored_; }
+    // Selectors and declarations, each for each, are held up to this number.
+    static constexpr std::size_t kMost = 200000;
+    bool is_full() const { return held_ > kMost; }
+    // How many characters `of` and who goes through its answer look at, roughly.
+    std::size_t cost_of(std::string_view element, std::string_view id, std::string_view classes) const;
     // What applies to the element, weakest first.
     Declarations of(std::string_view element, std::string_view id, std::string_view classes) const;
 
 private:
     std::map<std::string, Declarations, std::less<>> rules_[4];  // by "*", type, class, id
+    template <class F>
+    void each_rule(std::string_view element, std::string_view id, std::string_view classes, F&& f) const;
     int ignored_ = 0;
+    std::size_t held_ = 0;
 };
 
 // What elements hand on to those inside them.

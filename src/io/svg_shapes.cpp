@@ -2,6 +2,7 @@
 #include "svg_detail.hpp"
 
 #include <freiform/core/text.hpp>
+#include <freiform/path/path_data.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,8 @@ bool is_silent(std::string_view element) {
 std::optional<Path> outline(std::string_view element,
                             const std::function<std::string_view(const char*)>& attribute,
                             const Metrics& metrics,
-                            const std::function<void(RefusalKind, std::string)>& report) {
+                            const std::function<void(RefusalKind, std::string)>& report,
+                            std::size_t most_segments) {
     const auto given = [&](const char* name, Along along) -> std::optional<double> {
         const std::string_view s = attribute(name);
         if (s.empty() || s == "auto") return std::nullopt;
@@ -73,7 +75,11 @@ std::optional<Path> outline(std::string_view element,
     const auto x = [&](const char* name) { return given(name, Along::x).value_or(0); };
     const auto y = [&](const char* name) { return given(name, Along::y).value_or(0); };
     if (element == "path") {
-        PathData data = parse_path_data(attribute("d"));
+        PathData data = parse_path_data_up_to(attribute("d"), most_segments);
+        if (data.stopped && data.stopped->kind == RefusalKind::limit) {
+            report(RefusalKind::limit, data.stopped->message);
+            return std::nullopt;
+        }
         if (data.stopped)
             report(RefusalKind::unreadable, text("d, ", data.stopped->where, ": ", data.stopped->message,
                                                  "; what comes before is shown"));

@@ -215,7 +215,10 @@ void StyleSheet::add(std::string_view css) {
     for (std::string_view rest = plain; !rest.empty();) {
         const std::size_t open = rest.find('{'), close = rest.find('}', std::min(open, rest.size()));
         if (open == std::string_view::npos || close == std::string_view::npos) return;
-        const Declarations all = declarations(rest.substr(open + 1, close - open - 1));
+        const std::string_view inside = rest.substr(open + 1, close - open - 1);
+        held_ += std::size_t(std::ranges::count(inside, ';'));
+        if (is_full()) return;
+        const Declarations all = declarations(inside);
         for (std::string_view selectors = rest.substr(0, open); !selectors.empty();) {
             std::string_view one = stripped(next_part(selectors, ','));
             const int kind = one == "*" ? 0 : one.starts_with('.') ? 2 : one.starts_with('#') ? 3 : 1;
@@ -224,6 +227,8 @@ void StyleSheet::add(std::string_view css) {
                 ++ignored_;
                 continue;
             }
+            held_ += 1 + all.size();
+            if (is_full()) return;
             auto& to = rules_[kind][std::string(one)];
             to.insert(to.end(), all.begin(), all.end());
         }
@@ -232,11 +237,11 @@ void StyleSheet::add(std::string_view css) {
     }
 }
 
-Declarations StyleSheet::of(std::string_view element, std::string_view id, std::string_view classes) const {
-    Declarations out;
+template <class F>
+void StyleSheet::each_rule(std::string_view element, std::string_view id, std::string_view classes,
+                           F&& f) const {
     const auto take = [&](int kind, std::string_view name) {
-        if (const auto it = rules_[kind].find(name); it != rules_[kind].end())
-            out.insert(out.end(), it->second.begin(), it->second.end());
+        if (const auto it = rules_[kind].find(name); it != rules_[kind].end()) f(it->second);
     };
     take(0, "*");
     take(1, element);
@@ -246,7 +251,20 @@ Declarations StyleSheet::of(std::string_view element, std::string_view id, std::
         classes.remove_prefix(end);
     }
     if (!id.empty()) take(3, id);
+}
+
+Declarations StyleSheet::of(std::string_view element, std::string_view id, std::string_view classes) const {
+    Declarations out;
+    each_rule(element, id, classes,
+              [&](const Declarations& rule) { out.insert(out.end(), rule.begin(), rule.end()); });
     return out;
+}
+
+std::size_t StyleSheet::cost_of(std::string_view element, std::string_view id,
+                                std::string_view classes) const {
+    std::size_t cost = 0;
+    each_rule(element, id, classes, [&](const Declarations& rule) { cost += 16 * rule.size(); });
+    return cost;
 }
 
 bool Style::set(std::string_view property, std::string_view value, const Style& parent,
@@ -261,6 +279,9 @@ bool Style::set(std::string_view property, std::string_view value, const Style& 
             if (name == value) return to = meaning, true;
         return false;
     };
+    constexpr std::size_t kLongestPaint = 1000;  // every shape has its own
+    if ((property == "fill" || property == "stroke" || property == "color") && value.size() > kLongestPaint)
+        return false;
     if (property == "fill") return inherit(&Style::fill) || (fill = value, !value.empty());
     if (property == "stroke") return inherit(&Style::stroke) || (stroke = value, !value.empty());
     if (property == "color") return inherit(&Style::colour) || (colour = value, !value.empty());

@@ -13,9 +13,11 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/scan.hpp>
+#include <freiform/path/path_data.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace freiform {
@@ -27,7 +29,7 @@ constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 class PathReader {
 public:
-    explicit PathReader(std::string_view text) : text_(text) {}
+    PathReader(std::string_view text, std::size_t most) : text_(text), most_(most) {}
 
     PathData read() {
         for (skip_space(); at_ < text_.size() && !out_.stopped; skip_space()) {
@@ -113,22 +115,30 @@ private:
         current_ = start_ = at;
     }
     Subpath& subpath() {
-        if (!open_) out_.path.subpaths.push_back({start_, {}, false}), open_ = true;
+        if (!open_) out_.path.subpaths.push_back({start_, {}, false}), open_ = true, ++segments_;
         return out_.path.subpaths.back();
+    }
+    void count(std::size_t segments) {
+        segments_ += segments;
+        if (segments_ > most_ && !out_.stopped)
+            out_.stopped = Refusal{RefusalKind::limit, text("character ", at_ + 1),
+                                   text("there are more than ", most_, " segments")};
     }
     void add(int degree, const Vec<2>& a, const Vec<2>& b, const Vec<2>& end) {
         if (out_.stopped) return;
         PathSegment s{degree, {current_, a, b, end}, 1};
         if (degree < 3) s.points[std::size_t(degree)] = end;
         subpath().segments.push_back(s);
+        count(1);
         current_ = end;
     }
     // The mirror image of the last control point, if the command before was of that kind.
     Vec<2> reflected(int degree) const { return last_ == degree ? 2.0 * current_ - control_ : current_; }
 
     void close() {
-        Subpath& s = subpath();
+        count(subpath().segments.empty() ? 1 : 0);
         if (!(current_ == start_)) add(1, {}, {}, start_);
+        Subpath& s = subpath();
         s.closed = true;
         open_ = false;
         last_ = 0;
@@ -180,7 +190,7 @@ private:
         Subpath& s = subpath();
         for (const PathSegment& part :
              elliptic_arc(current_, to, rx, ry, angle * (std::numbers::pi / 180), large, sweep))
-            s.segments.push_back(part);
+            s.segments.push_back(part), count(1);
         current_ = to;
     }
 
@@ -191,6 +201,7 @@ private:
     int last_ = 0;        // the degree of the command before, if it was a Bezier curve
     bool begins_ = true;  // nothing has been read
     bool open_ = false;   // the last subpath of out_ is being added to
+    std::size_t segments_ = 0, most_;
 };
 
 // The radii, the angle in degrees and the direction of the ellipse of a segment with weight < 1.
@@ -240,7 +251,13 @@ void append(std::string& out, const PathSegment& s) {
 
 }  // namespace
 
-PathData parse_path_data(std::string_view text) { return PathReader(text).read(); }
+PathData parse_path_data(std::string_view text) {
+    return PathReader(text, std::numeric_limits<std::size_t>::max()).read();
+}
+
+PathData parse_path_data_up_to(std::string_view text, std::size_t most_segments) {
+    return PathReader(text, most_segments).read();
+}
 
 std::string path_data(const Path& path) {
     std::string out;

@@ -38,8 +38,8 @@ struct SvgPicture {
 // id). What is in defs or hidden is not shown. References to other files and entities of a document type are
 // not followed. Where something is and how large is read from attributes alone: elements whose styles say it
 // are left out and named. Clips and masks are not applied, and named. Refuses (unreadable) what is not XML or
-// not SVG, (limit) more elements than 200 MiB hold, 10^6 shown elements or 10^7 segments (as nested `use`
-// makes them).
+// not SVG, (limit) elements above 96 MiB, 10^6 shown ones, pictures above 80 MiB (a million lines) and more
+// work than a few looks at the file (as nested `use` makes it): all stays below 256 MiB.
 Result<SvgPicture> read_svg(std::string_view bytes);
 
 // Each subpath that has a segment as a curve, called as its shape, "/2" and so on after the first.
