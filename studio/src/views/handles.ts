@@ -7,8 +7,10 @@ import { round125, type Point, type View } from "./view";
 export interface Handle {
     readonly label: string;
     readonly at: () => Point;
-    readonly move: (to: number[]) => void;
-    readonly shape?: "circle" | "square" | "diamond";
+    readonly move: (to: number[], event?: PointerEvent) => void;
+    /** What arrow keys do instead of moving it on the screen: steps to the right and up, ten with Shift. */
+    readonly onStep?: (right: number, up: number) => void;
+    readonly shape?: "circle" | "square" | "diamond" | "arrow";
     readonly colour?: string;
     readonly chosen?: () => boolean;
     readonly onPress?: (event: PointerEvent) => void;
@@ -27,6 +29,7 @@ const kShapes = {
     circle: () => s("circle", { r: 5.5 }),
     square: () => s("rect", { x: -5, y: -5, width: 10, height: 10 }),
     diamond: () => s("path", { d: "M0-7 7 0 0 7-7 0Z" }),
+    arrow: () => s("g", {}, s("path", { d: "M-7-6 9 0-7 6Z" })),
 };
 
 const kSteps: Record<string, readonly [number, number]> = {
@@ -90,7 +93,7 @@ export class Handles {
             if (!begun && Math.hypot(e.clientX - event.clientX, e.clientY - event.clientY) < 2) return;
             if (!begun) { begun = true; events.begin?.(); }
             const to = this.view.unproject(e.clientX - frame.left + dx, e.clientY - frame.top + dy, handle.at());
-            handle.move(events.snap ? events.snap(to, e) : to);
+            handle.move(events.snap ? events.snap(to, e) : to, e);
             this.place();
         };
         const released = (e: PointerEvent): void => {
@@ -113,6 +116,14 @@ export class Handles {
         }
         event.preventDefault();
         event.stopPropagation();
+        if (handle.onStep) {
+            const far = event.shiftKey ? 10 : 1;
+            events.begin?.();
+            handle.onStep(step[0] * far, -step[1] * far);
+            this.place();
+            events.end?.();
+            return;
+        }
         // About four pixels, but a round number of model units, so that places stay easy to name.
         const at = handle.at();
         const [x, y] = this.view.project(at);

@@ -73,7 +73,7 @@ export class Space implements View {
     private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
     private readonly renderer: THREE.WebGLRenderer;
     private readonly controls: OrbitControls;
-    private readonly overlay = s("svg", { class: "overlay" });
+    readonly overlay = s("svg", { class: "overlay" });
     private readonly labels = s("g");
     private readonly picture = new THREE.Group();
     private texts: { at: Point; text: string; colour: string }[] = [];
@@ -88,6 +88,8 @@ export class Space implements View {
     /** The theme changed: what was drawn has the colours of the old one. */
     onColours: (() => void) | undefined;
     onMoved: (() => void) | undefined;
+    /** A picture was drawn: what stands over it follows. */
+    onDrawn: (() => void) | undefined;
 
     constructor(label: string) {
         this.camera = this.eye;
@@ -246,10 +248,16 @@ export class Space implements View {
         return like.length === 2 ? [v.x, v.y] : [v.x, v.y, v.z];
     }
 
-    /** The triangle of `mesh` under a pixel: where the ray meets it, and its number. */
-    pick(x: number, y: number, mesh: THREE.Object3D): { point: number[]; triangle: number } | undefined {
+    /** The line of sight through a pixel. */
+    sight(x: number, y: number): { from: [number, number, number]; along: [number, number, number] } {
         const at = new THREE.Vector2((x / this.element.clientWidth) * 2 - 1, 1 - (y / this.element.clientHeight) * 2);
         this.ray.setFromCamera(at, this.camera);
+        return { from: this.ray.ray.origin.toArray(), along: this.ray.ray.direction.toArray() };
+    }
+
+    /** The triangle of `mesh` under a pixel: where the ray meets it, and its number. */
+    pick(x: number, y: number, mesh: THREE.Object3D): { point: number[]; triangle: number } | undefined {
+        this.sight(x, y);
         const hit = this.ray.intersectObject(mesh, false)[0];
         return hit ? { point: hit.point.toArray(), triangle: hit.faceIndex ?? 0 } : undefined;
     }
@@ -364,6 +372,7 @@ export class Space implements View {
             return s("text", { x: (x + 8).toFixed(1), y: (y - 8).toFixed(1), fill: `var(--${colour})`, class: "label" }, text);
         }));
         this.handles.place();
+        this.onDrawn?.();
     }
 }
 

@@ -1,0 +1,26 @@
+// The document as a picture: control polygons and nets, curves, surfaces.
+
+import { curve, lattice, net, polygon, surface } from "../explore/draw";
+import { arena } from "../kernel/module";
+import { Space } from "../views/space";
+import type { View } from "../views/view";
+import { extent, type Document } from "./document";
+
+export function show(view: View, document: Document, chosen: ReadonlySet<number>): void {
+    arena((make) => {
+        document.objects.forEach((o, i) => {
+            const shape = make(o), lit = chosen.has(i);
+            if (shape.type === "curve") {
+                polygon(view, net(shape), { colour: lit ? "hot" : "control", width: lit ? 1.6 : 1.1 });
+                curve(view, shape, { colour: "curve", width: lit ? 4 : 2.8 });
+            } else if (view instanceof Space && shape.type === "surface") {
+                const points = net(shape), columns = shape.size[1] ?? 1;
+                surface(view, shape, { colour: lit ? "lit" : "surface" }, 36);
+                lattice(view, Array.from({ length: shape.size[0] ?? 0 }, (_, k) => points.slice(k * columns, (k + 1) * columns)), { colour: lit ? "hot" : "control", width: 1 });
+            } else if (view instanceof Space && shape.type !== "volume") {
+                const mesh = shape.mesh({ tolerance: 0.003 * extent(document) });
+                view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "lit" : "surface" });
+            }
+        });
+    });
+}
