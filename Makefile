@@ -7,7 +7,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .NOTPARALLEL:
 
 help:
-	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/); name the page of the studio"
+	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/); then build the page of the studio (PAGE=no: without)"
 	@echo "make test    build everything and run all tests"
 	@echo "make bench   compare tessellation and curves with other libraries (bench/*.md)"
 	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"

@@ -26,7 +26,8 @@ interface Part { readonly kind: Kind; /** undefined: all axes at once. */ readon
 /** A drag: where the middle was, the part that is held, and how far it was taken. */
 interface Hold { readonly part: Part; readonly middle: Three; readonly start: Three; readonly unit: number; by: number }
 
-const kArm = 112, kBox = 82, kArc = 54, kSquare = 34;
+/** Pixels from the middle to the heads of arrows, the boxes, the arcs, and the square (to the left and down). */
+const kArm = 124, kBox = 94, kArc = 66, kSquare = 34;
 const kColours = ["axis-x", "axis-y", "axis-z"] as const;
 const kNames: Record<Kind, Text> = { move: t("Verschieben", "move"), turn: t("Drehen", "turn"), scale: t("Vergrößern", "scale") };
 const kShapes = { move: "arrow", turn: "circle", scale: "square" } as const;

@@ -268,6 +268,99 @@ export const cases = [
         const made = (await points(page)).objects[4];
         assert.equal(made.type, "surface");
     }],
+    ["edit: in space the gizmo moves, turns and scales what is chosen, by mouse and keyboard, in both languages", async ({ page, url, write, picture }) => {
+        const net = [0, 1, 2].map((i) => [0, 1, 2].map((j) => [i, j, i === 1 && j === 1 ? 1.5 : 0]));
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("net.json", JSON.stringify({ freiform: 1, objects: [{ type: "surface", name: "net", points: net }] })));
+        await page.waitForSelector(".view.space canvas");
+        const part = (name) => page.locator(`.parts .handle[aria-label="${name}"]`), parts = page.locator(".parts .handle");
+        const now = async () => (await points(page)).objects[0].points.flat();
+        const middle = async (name) => { const box = await part(name).locator(":nth-child(2)").first().boundingBox(); return [box.x + box.width / 2, box.y + box.height / 2]; };
+        const apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+        const close = (a, b, within = 1e-9) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
+        assert.equal(await parts.count(), 0, "nothing is chosen");
+        await page.keyboard.press("Control+a");
+        await settle(page);
+        assert.equal(await parts.count(), 11);
+        await picture("gizmo");
+        await axe(page);
+
+        // Along an axis: that coordinate of all points alone, and what is held stays under the cursor.
+        await page.getByLabel("Snap").uncheck();
+        const [cx, cy] = await middle("move, freely"), [ax, ay] = await middle("move, axis x"), far = Math.hypot(ax - cx, ay - cy);
+        const first = await now();
+        await drag(page, part("move, axis x"), (70 * (ax - cx)) / far, (70 * (ay - cy)) / far);
+        const right = await now(), dx = right[0][0] - first[0][0];
+        assert.ok(dx > 0.05, `moved by ${dx}`);
+        right.forEach((p, i) => { close(p[0] - first[i][0], dx); assert.deepEqual(p.slice(1), first[i].slice(1)); });
+        const [bx, by] = await middle("move, axis x");
+        close(bx, ax + (70 * (ax - cx)) / far, 8);
+        close(by, ay + (70 * (ay - cy)) / far, 8);
+        await page.keyboard.press("Control+z");
+        assert.deepEqual(await now(), first, "a drag is one step back");
+
+        // A turn keeps distances, heights and the middle; with snapping it is by multiples of 5 degrees.
+        await page.getByLabel("Snap").check();
+        await drag(page, part("turn, axis z"), 40, -12);
+        const turned = await now();
+        turned.forEach((p, i) => { close(apart(p, turned[4]), apart(first[i], first[4])); close(p[2], first[i][2]); });
+        const angle = (Math.atan2(turned[3][1] - turned[0][1], turned[3][0] - turned[0][0]) * 180) / Math.PI;
+        assert.ok(Math.abs(angle) > 1);
+        close(angle / 5, Math.round(angle / 5));
+        close(turned.reduce((sum, p) => sum + p[0], 0) / 9, 1);
+        await page.keyboard.press("Control+z");
+        assert.deepEqual(await now(), first);
+
+        // A box scales one axis, the square all three.
+        const [sx, sy] = await middle("scale, axis y"), [mx, my] = await middle("move, freely");
+        await drag(page, part("scale, axis y"), 0.5 * (sx - mx), 0.5 * (sy - my));
+        const wide = await now(), k = (wide[2][1] - wide[0][1]) / 2;
+        assert.ok(k > 1.2 && k < 2, `scaled by ${k}`);
+        wide.forEach((p, i) => { close(p[0], first[i][0]); close(p[1], 1 + k * (first[i][1] - 1)); close(p[2], first[i][2]); });
+        await page.keyboard.press("Control+z");
+        await drag(page, part("scale, as a whole"), -20, 20);
+        const large = await now(), all = (large[2][1] - large[0][1]) / 2;
+        assert.ok(all > 1.1);
+        large.forEach((p, i) => { close(apart(p, large[0]), all * apart(first[i], first[0])); });
+        await page.keyboard.press("Control+z");
+
+        // By keyboard: a degree, ten with Shift; a round length.
+        await part("turn, axis z").focus();
+        await page.keyboard.press("ArrowRight");
+        await page.keyboard.press("Shift+ArrowUp");
+        await settle(page);
+        const keyed = await now();
+        close((Math.atan2(keyed[3][1] - keyed[0][1], keyed[3][0] - keyed[0][0]) * 180) / Math.PI, 11);
+        assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "turn, axis z", "focus stays");
+        await page.keyboard.press("Control+z");
+        await page.keyboard.press("Control+z");
+        await part("move, axis z").focus();
+        await page.keyboard.press("ArrowUp");
+        await settle(page);
+        const lifted = (await now())[0][2];
+        assert.ok(lifted > 0 && /^[125]0*$/.test(lifted.toString().replace("0.", "").replace(/^0+/, "")), `lifted by ${lifted}`);
+        await page.keyboard.press("Control+z");
+        assert.deepEqual(await now(), first);
+
+        // One point is moved and nothing else; T takes the gizmo away.
+        await page.keyboard.press("Escape");
+        await page.locator(".handle[aria-label*='point 4']").focus();
+        await page.keyboard.press("Enter");
+        assert.equal(await parts.count(), 3);
+        await page.keyboard.press("t");
+        await settle(page);
+        assert.equal(await parts.count(), 0);
+        await page.getByRole("button", { name: "Deutsch" }).click();
+        await until(page, () => document.querySelectorAll(".handle[aria-label*='Punkt']").length === 9);
+        await page.keyboard.press("Control+a");
+        await settle(page);
+        assert.equal(await part("Drehen, Achse z").count(), 1);
+        assert.equal(await part("Vergrößern, ganz").count(), 1);
+        await page.getByRole("button", { name: "Hell oder dunkel" }).click();
+        await settle(page);
+        await picture("gizmo-german-dark");
+        assert.equal(await refused(page), "");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
