@@ -7,7 +7,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
 .NOTPARALLEL:
 
 help:
-	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/); then build the page of the studio (PAGE=no: without)"
+	@echo "make demo    build the program, tessellate and draw two models, check the reports (out/); then the page of the studio, if five minutes are enough (PAGE=yes, PAGE=no)"
 	@echo "make test    build everything and run all tests"
 	@echo "make bench   compare tessellation and curves with other libraries (bench/*.md)"
 	@echo "make accuracy  compare values of curves, digit by digit, with other libraries (docs/accuracy.md)"
@@ -41,7 +41,7 @@ demo:
 	step "Configure" cmake --preset demo --log-level=WARNING; \
 	step "Build" cmake --build --preset demo; \
 	step "Demo" env FREIFORM=build-demo/bin/freiform tools/demo.sh; \
-	step "Page" env FREIFORM=build-demo/bin/freiform tools/demo_page.sh
+	step "Page" env FREIFORM=build-demo/bin/freiform DEMO_BEGAN=$$steps_began tools/demo_page.sh
 
 test:
 	@source tools/steps.sh; \
