@@ -31,7 +31,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <unordered_set>
 
 namespace freiform {
 
@@ -126,15 +125,19 @@ std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Box<2>& box, int axis
     return out;
 }
 
-// Whether the two triangles of a leaf keep the tolerance, without a shift or with one.
-bool CurvatureTree::accept(Node& node, double error, double tolerance) const {
-    node.flat = error <= tolerance;
-    if (!knows_normals_) return node.flat;
-    const Vec<2> size = node.box.hi - node.box.lo;
-    const Shift shift = meets_kink(node.box) ? Shift{} : shift_of(node.bending, error, node.bending.full, 1);
-    return node.flat ||
-           (shift.exists &&
-            shift.across(node.bending.seen(shift.turn).along(size[0], size[1]) / 8, error) <= tolerance);
+// Whether the two triangles of the box keep the tolerance, without a shift or with one.
+bool CurvatureTree::keeps(const Bending& b, const Box<2>& box, double error, double tolerance) const {
+    if (error <= tolerance) return true;
+    if (!knows_normals_) return false;
+    const Vec<2> size = box.hi - box.lo;
+    const Shift shift = meets_kink(box) ? Shift{} : shift_of(b, error, b.full, 1);
+    return shift.exists && shift.across(b.seen(shift.turn).along(size[0], size[1]) / 8, error) <= tolerance;
+}
+
+bool CurvatureTree::accept(int node, double error, double tolerance) {
+    Node& n = nodes_[std::size_t(node)];
+    n.flat = error <= tolerance;
+    return keeps(bending(node), n.box, error, tolerance);
 }
 
 bool CurvatureTree::meets_kink(const Box<2>& box) const {
@@ -172,7 +175,7 @@ int CurvatureTree::place_of(const Box<2>& box, int near) const {
 
 const Curvature* CurvatureTree::all_in(int place, const Box<2>& box) const {
     const Node& n = nodes_[std::size_t(place)];
-    return n.whole && n.box.contains(box.lo) && n.box.contains(box.hi) ? &n.bending.full : nullptr;
+    return n.whole && n.box.contains(box.lo) && n.box.contains(box.hi) ? &bending(place).full : nullptr;
 }
 
 Bending CurvatureTree::over(const Box<2>& box, int place) const {
@@ -181,11 +184,12 @@ Bending CurvatureTree::over(const Box<2>& box, int place) const {
     int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
-        const Node& n = nodes_[std::size_t(stack[--size])];
+        const int i = stack[--size];
+        const Node& n = nodes_[std::size_t(i)];
         if (n.outside || !has_common_part(n.box, box)) continue;
         if (n.child < 0 || (box.contains(n.box.lo) && box.contains(n.box.hi))) {
-            if (any) all.include(n.bending);
-            if (!any) all = n.bending;
+            if (any) all.include(bending(i));
+            if (!any) all = bending(i);
             any = true;
             continue;
         }
@@ -201,11 +205,12 @@ std::optional<Curvature> CurvatureTree::all_over(const Box<2>& box, int place) c
     int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
-        const Node& n = nodes_[std::size_t(stack[--size])];
+        const int i = stack[--size];
+        const Node& n = nodes_[std::size_t(i)];
         if (!has_common_part(n.box, box)) continue;
         if (n.outside) return std::nullopt;
         if (n.child < 0) {
-            all.include(n.bending.full);
+            all.include(bending(i).full);
             continue;
         }
         stack[size++] = n.child;
@@ -228,16 +233,40 @@ std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& bo
     return worst;
 }
 
-void CurvatureTree::find_corners() {
-    struct Hash {
-        std::size_t operator()(const Vec<2>& p) const {
-            const auto mix = [](double x) {
-                return std::bit_cast<std::uint64_t>(x + 0.0) * 0x9e3779b97f4a7c15u;
-            };
-            return std::size_t(mix(p[0]) ^ (mix(p[1]) >> 17));
+namespace {
+
+// Points that have been seen: a table at most half full.
+class SeenPoints {
+public:
+    explicit SeenPoints(std::size_t most) : at_(std::bit_ceil(2 * most + 2), -1) { points_.reserve(most); }
+    // False if it has been there.
+    bool add(const Vec<2>& p) {
+        // Coordinates with few digits differ in their upper bits alone: these are brought down each time.
+        std::uint64_t h = 0;
+        for (const double x : p.c) {
+            h = (h ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;
+            h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+            h ^= h >> 32;
         }
-    };
-    std::unordered_set<Vec<2>, Hash> seen;
+        for (std::size_t i = std::size_t(h);; ++i) {
+            int& there = at_[i & (at_.size() - 1)];
+            if (there >= 0 && points_[std::size_t(there)] == p) return false;
+            if (there >= 0) continue;
+            there = int(points_.size());
+            points_.push_back(p);
+            return true;
+        }
+    }
+
+private:
+    std::vector<int> at_;
+    std::vector<Vec<2>> points_;
+};
+
+}  // namespace
+
+void CurvatureTree::find_corners() {
+    SeenPoints seen(nodes_.size() + 4);  // each cut of a box in two adds two corners at most
     std::vector<int> stack{0};
     while (!stack.empty()) {
         const Node& n = nodes_[std::size_t(stack.back())];
@@ -250,7 +279,7 @@ void CurvatureTree::find_corners() {
         }
         for (int k = 0; k < 4; ++k) {
             const Vec<2> corner{{k & 1 ? n.box.hi[0] : n.box.lo[0], k & 2 ? n.box.hi[1] : n.box.lo[1]}};
-            if (seen.insert(corner).second) corners_.push_back({corner, n.box.hi - n.box.lo});
+            if (seen.add(corner)) corners_.push_back({corner, n.box.hi - n.box.lo});
         }
     }
 }

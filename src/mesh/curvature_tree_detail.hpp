@@ -148,9 +148,8 @@ public:
 
 private:
     class Grower;
-    struct Node {
+    struct Node {  // small: walks pass many of them
         Box<2> box;
-        Bending bending;
         int parent = 0;
         int child = -1;      // the first of two neighbours in nodes_; -1: a leaf
         int variation = -1;  // over it, in variations_
@@ -162,13 +161,18 @@ private:
         int axis;
         double at;
     };
-    bool accept(Node& node, double error, double tolerance) const;
+    bool keeps(const Bending& b, const Box<2>& box, double error, double tolerance) const;
+    bool accept(int node, double error, double tolerance);
+    std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
+                                      double tolerance) const;
+    const Bending& bending(int node) const { return bendings_[std::size_t(node)]; }
     std::optional<Cut> cut(const Box<2>& box, int axis) const;
     void find_corners();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
     std::span<const std::array<int, 2>> segments_;  // while it is made
     std::vector<Node> nodes_;
+    std::vector<Bending> bendings_;  // of nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;
     bool knows_normals_ = true;

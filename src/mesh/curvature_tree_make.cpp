@@ -68,7 +68,7 @@ public:
     std::optional<Refusal> grow_parts(std::vector<Item> items);
 
 private:
-    bool is_leaf(Node& node, const BoxBending& known);
+    bool is_leaf(int of, const BoxBending& known);
     void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
@@ -82,15 +82,16 @@ private:
 };
 
 // What is known of the box decides; whether it is fine, and whether it stays whole.
-bool CurvatureTree::Grower::is_leaf(Node& node, const BoxBending& known) {
+bool CurvatureTree::Grower::is_leaf(int of, const BoxBending& known) {
     const double tolerance = task_.demands.tolerance;
-    const Vec<2> size = node.box.hi - node.box.lo;
-    node.bending = known;
-    const double error = known.full.along(size[0], size[1]) / 8 + tree_.kink_bound(node.box);
+    const Box<2>& box = tree_.nodes_[std::size_t(of)].box;
+    const Vec<2> size = box.hi - box.lo;
+    tree_.bendings_[std::size_t(of)] = known;
+    const double error = known.full.along(size[0], size[1]) / 8 + tree_.kink_bound(box);
     for (int d = 0; d < 2; ++d) length_[d] = known.first[d] * size[d];
     const double longer = std::max(length_[0], length_[1]), shorter = std::min(length_[0], length_[1]);
     const bool round = longer <= task_.demands.max_aspect * shorter || longer <= tolerance;
-    fine_ = tree_.accept(node, error, tolerance);
+    fine_ = tree_.accept(of, error, tolerance);
     return fine_ && longer <= task_.demands.max_edge && round;
 }
 
@@ -122,7 +123,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     }
     node.variation = item.variation;
     // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
-    if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(node, item.outer))
+    if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(item.node, item.outer))
         return std::nullopt;
     // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but the
     // last boxes, they need not be found.
@@ -144,10 +145,10 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         ask(node, box, middle, outer);
     }
     if (!cut) {
-        if (is_leaf(node, outer) || !(size[0] > 0) || !(size[1] > 0)) return std::nullopt;
+        if (is_leaf(item.node, outer) || !(size[0] > 0) || !(size[1] > 0)) return std::nullopt;
         if (item.variation >= 0) {
             ask(node, box, middle, outer);
-            if (is_leaf(node, outer)) return std::nullopt;
+            if (is_leaf(item.node, outer)) return std::nullopt;
         }
         const double error = outer.full.along(size[0], size[1]);
         if (item.depth == kMaxTreeDepth) {
@@ -174,19 +175,18 @@ void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, con
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
     const int child = int(tree_.nodes_.size()), variation = tree_.nodes_[std::size_t(item.node)].variation;
     tree_.nodes_[std::size_t(item.node)].child = child;
-    Item both[2];
-    for (int half = 0; half < 2; ++half) {
-        Box<2> part = box;
-        (half == 0 ? part.hi : part.lo)[cut.axis] = cut.at;
-        Item next{child + half, item.depth + 1, outer, {}, inside, variation};
-        for (const auto& s : item.near)
-            if (meets(part, task_.polygon[std::size_t(s[0])], task_.polygon[std::size_t(s[1])]))
-                next.near.push_back(s);
-        both[half] = std::move(next);
-        tree_.nodes_.push_back({part, {}, item.node});
+    Box<2> part[2] = {box, box};
+    part[0].hi[cut.axis] = part[1].lo[cut.axis] = cut.at;
+    for (const Box<2>& p : part) {
+        tree_.nodes_.push_back({p, item.node});
+        tree_.bendings_.emplace_back();
     }
-    items.push_back(std::move(both[1]));
-    items.push_back(std::move(both[0]));
+    for (const int half : {1, 0}) {
+        items.push_back({child + half, item.depth + 1, outer, {}, inside, variation});
+        for (const auto& s : item.near)
+            if (meets(part[half], task_.polygon[std::size_t(s[0])], task_.polygon[std::size_t(s[1])]))
+                items.back().near.push_back(s);
+    }
 }
 
 std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std::size_t enough) {
@@ -223,6 +223,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         part.kinks_ = tree_.kinks_;
         part.segments_ = tree_.segments_;
         part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
+        part.bendings_.emplace_back();
         std::vector<Item> own{items[i]};
         own.front().node = 0;
         if (own.front().variation >= 0) {
@@ -247,10 +248,13 @@ void CurvatureTree::Grower::add(const CurvatureTree& part, const Item& item) {
                                    : nodes + n.parent;
         if (n.child >= 0) n.child += nodes;
         if (n.variation >= 0) n.variation += variations;
-        if (k == 0)
+        if (k == 0) {
             tree_.nodes_[std::size_t(item.node)] = n;
-        else
+            tree_.bendings_[std::size_t(item.node)] = part.bendings_[0];
+        } else {
             tree_.nodes_.push_back(n);
+            tree_.bendings_.push_back(part.bendings_[k]);
+        }
     }
 }
 
@@ -274,7 +278,9 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
     Box<2> root;
     for (const Vec<2>& p : polygon) root.add(p);
-    tree.nodes_.push_back({root, {}, 0});
+    tree.nodes_.push_back({root, 0});
+    tree.bendings_.emplace_back();
+    if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
@@ -288,8 +294,9 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
         if (auto& n = tree.nodes_[i]; n.child >= 0) {
             const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];
-            n.bending = a.outside ? b.bending : a.bending;
-            if (!a.outside && !b.outside) n.bending.include(b.bending);
+            Bending& both = tree.bendings_[i];
+            both = tree.bending(a.outside ? n.child + 1 : n.child);
+            if (!a.outside && !b.outside) both.include(tree.bending(n.child + 1));
             n.outside = a.outside && b.outside;
             n.whole = a.whole && b.whole;
         } else if (!n.outside) {

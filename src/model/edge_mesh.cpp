@@ -223,6 +223,24 @@ std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int
     return !last.empty() ? last : !best.empty() ? best : now;
 }
 
+// Where a part that cannot be halved does not keep the demands, if the worst half of each leads there: see
+// curvature_tree_torn.cpp. Asked about edges whose weights are far apart alone.
+std::optional<double> EdgeMesher::torn_place(int edge, Interval on, const EdgeDemands& demands) const {
+    const EdgeMesh& mesh = edges_[std::size_t(edge)];
+    bool apart = mesh.curve && mesh.curve->query().weight_spread() > kWeightsFarApart;
+    for (const auto& use : mesh.uses)
+        apart = apart || use->curve->weight_spread() > kWeightsFarApart ||
+                faces_[std::size_t(use->face)]->weight_spread() > kWeightsFarApart;
+    if (!apart) return std::nullopt;
+    for (Part worst = part(edge, on.lo, on.hi, demands); !(worst.needs <= 1);) {
+        const double middle = worst.a + (worst.b - worst.a) / 2;
+        if (!(worst.a < middle && middle < worst.b)) return worst.a;
+        const Part lower = part(edge, worst.a, middle, demands), upper = part(edge, middle, worst.b, demands);
+        worst = lower.needs > upper.needs ? lower : upper;
+    }
+    return std::nullopt;
+}
+
 Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::size_t max_segments) {
     EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
@@ -238,10 +256,15 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
     mesh.parameters = {e.range.lo};
     mesh.bound = 0;
     const int pieces = int(must.size()) - 1;
+    const auto too_steep = [&](double at) {
+        return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
+                      text("cannot be brought within ", tolerance, " near parameter ", at));
+    };
     const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / pieces, 1) : 1;
     for (int i = 0; i < pieces; ++i) {
-        auto stack =
-            equal_parts(edge, {must[std::size_t(i)], must[std::size_t(i) + 1]}, least, demands, max_segments);
+        const Interval on{must[std::size_t(i)], must[std::size_t(i) + 1]};
+        if (const auto torn = torn_place(edge, on, demands)) return too_steep(*torn);
+        auto stack = equal_parts(edge, on, least, demands, max_segments);
         std::reverse(stack.begin(), stack.end());
         while (!stack.empty()) {
             const Part p = stack.back();
@@ -252,9 +275,7 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
                 continue;
             }
             const double middle = p.a + (p.b - p.a) * first_part(p.needs);
-            if (!(p.a < middle && middle < p.b))
-                return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
-                              text("cannot be brought within ", tolerance, " near parameter ", p.a));
+            if (!(p.a < middle && middle < p.b)) return too_steep(p.a);
             if (mesh.parameters.size() + stack.size() > max_segments)
                 return refuse(
                     RefusalKind::limit, "max_triangles",

@@ -85,6 +85,7 @@ private:
                                std::size_t most) const;
     std::vector<Part> equal_parts(int edge, Interval on, int least, const EdgeDemands& demands,
                                   std::size_t max_segments) const;
+    std::optional<double> torn_place(int edge, Interval on, const EdgeDemands& demands) const;
 
     const Model& model_;
     std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces_;

@@ -162,6 +162,24 @@ typename DerivativeQuery<N, D>::Both bounds_along(const BezierPieces<N, P>& piec
     return out;
 }
 
+template <std::size_t N, class P>
+double spread_of_weights(const BezierPieces<N, P>& pieces) {
+    if (!Space<P>::kRational) return 1;
+    Index<N> count{};
+    for (std::size_t d = 0; d < N; ++d) count[d] = int(pieces.breaks(int(d)).size()) - 1;
+    double most = 1;
+    each_index(count, [&](const Index<N>& piece) {
+        const NetView<N, const P> net = pieces.net(piece);
+        double least = kInfinity, largest = 0;
+        each_index(net.extent, [&](const Index<N>& at) {
+            const double w = Space<P>::weight(net(at));
+            least = std::min(least, w), largest = std::max(largest, w);
+        });
+        most = std::max(most, largest / least);
+    });
+    return most;
+}
+
 using detail::bounds_along;
 using detail::bounds_of;
 
@@ -184,6 +202,7 @@ DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&ge
                         thinnest_[d] = std::min(thinnest_[d], b[i] - b[i - 1]);
                 }
                 second_rounding_ = second_rounding_of(g);
+                weight_spread_ = spread_of_weights(pieces);
                 piece_numbers_ = count_of(pieces.net({}).extent) * G::Coefficients::kCoords;
                 pieces_ = std::move(pieces);
             } else if constexpr (requires { g.profile; }) {
@@ -191,8 +210,10 @@ DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&ge
                 constexpr std::size_t axis = std::same_as<G, Revolution>;
                 kinks_[axis].assign(profile_->kinks(0).begin(), profile_->kinks(0).end());
                 thinnest_[axis] = profile_->thinnest_piece(0);
+                weight_spread_ = profile_->weight_spread();
             } else if constexpr (requires { g.base; }) {
                 base_ = std::make_shared<const DerivativeQuery<2, 3>>(*g.base);
+                weight_spread_ = base_->weight_spread();
                 for (std::size_t d = 0; d < N; ++d) {
                     thinnest_[d] = base_->thinnest_piece(int(d));
                     for (Kink k : base_->kinks(int(d)))  // where the base has a kink, its offset is torn

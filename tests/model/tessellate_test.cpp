@@ -214,6 +214,50 @@ TEST(Tessellate, refuses_tolerances_that_ask_for_too_much_at_once) {
     EXPECT_EQ(tessellate(model, {.tolerance = NAN}).error().kind, RefusalKind::nonfinite);
 }
 
+// A spline of degree 2 with n x n control points and one weight per control point.
+Model weighted(int n, const std::vector<double>& weights) {
+    std::vector<double> knots{0, 0, 0};
+    for (int i = 1; i + 2 < n; ++i) knots.push_back(double(i) / (n - 2));
+    knots.insert(knots.end(), 3, 1.0);
+    const auto basis = *BSplineBasis::make(2, knots);
+    std::vector<Hom<3>> c;
+    for (int i = 0; i < n * n; ++i) {
+        const double w = weights[std::size_t(i)];
+        c.push_back({{(i / n) * w, (i % n) * w, (i % 5 == 4) * w, w}});
+    }
+    ModelBuilder builder;
+    EXPECT_TRUE(builder.add(*Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({n, n}, c))));
+    return *std::move(builder).finish();
+}
+
+TEST(Tessellate, weights_that_parameters_cannot_follow_are_refused_at_once) {
+    std::vector<double> inner(64, 1.0), light = inner;
+    inner[9 * 4] = 1e300;
+    light[9 * 4] = 1e-300;
+    const double m = 1e150, l = 1e-150;
+    const Model torn[] = {weighted(3, {m, 1, 1, 1, l, 1, 1, 1, m}),
+                          weighted(3, {1, 1, 1, 1, 1e300, 1, 1, 1, 1}),
+                          weighted(3, {m, m, m, l, l, l, l, l, l}),
+                          weighted(3, {1, 1, 1, 1, 1e20, 1, 1, 1, 1}), weighted(8, inner)};
+    for (const Model& model : torn) {
+        const auto start = std::clock();
+        const auto t = tessellate(model, {.tolerance = 0.01});
+        EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 2);
+        ASSERT_TRUE(t) << t.error().message;
+        ASSERT_EQ(t->refused.size(), 1u);
+        EXPECT_EQ(t->refused[0].reason.kind, RefusalKind::ill_conditioned);
+        EXPECT_FALSE(t->refused[0].reason.message.empty());
+    }
+    // One light point among others does no harm, and neither do weights that are all as large.
+    for (const Model& model : {weighted(3, {1, 1, 1, 1, 1e-300, 1, 1, 1, 1}), weighted(8, light),
+                               weighted(3, {m, m, m, m, m, m, m, m, m})}) {
+        const auto t = tessellate(model, {.tolerance = 0.01});
+        ASSERT_TRUE(t) << t.error().message;
+        EXPECT_TRUE(t->refused.empty());
+        EXPECT_LE(sampled_deviation(model, *t), t->error_bound);
+    }
+}
+
 TEST(Tessellate, knots_a_rounding_apart_end_in_a_mesh_or_a_refusal) {
     std::mt19937 rng(13);
     const double twin = std::nextafter(0.5, 1);

@@ -40,6 +40,10 @@ struct FaceMesh {
 // Of the tolerance: where normals cannot be bounded, triangles as small as this are left as they are.
 inline constexpr double kAngleFloor = 1;
 
+// Quotient of two weights of a piece, above which places are looked for where no triangles and chords are
+// small enough because parameters are doubles.
+inline constexpr double kWeightsFarApart = 0x1p40;
+
 // Ascending parameters for each axis: the lines of a grid.
 using GridLines = std::array<std::vector<double>, 2>;
 

@@ -93,6 +93,8 @@ public:
     std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
     // How many numbers the control points of a polynomial or rational piece are; 0 where there is no spline.
     long long piece_numbers() const { return piece_numbers_; }
+    // The largest quotient of two weights of one piece; 1 where there are none.
+    double weight_spread() const { return weight_spread_; }
     // Whether the box is one of a spline and within its domain, and second derivatives are continuous in it.
     bool is_twice_smooth(const std::array<Interval, N>& box) const;
     // Of such a spline: |jet<2> - exact| of the second derivative along both axes is at most this.
@@ -107,6 +109,7 @@ private:
     // Of a spline: its ends, and where second derivatives may jump.
     std::array<std::vector<double>, N> bends_;
     long long piece_numbers_ = 0;
+    double weight_spread_ = 1;
     double second_rounding_ = 0;  // times two sides of the thinnest piece
     std::array<double, N> thinnest_;
     std::optional<double> value_error_;
