@@ -55,12 +55,13 @@ bench:
 	step "Packages" tools/setup.sh bench; \
 	step "Configure" cmake --preset release -DFREIFORM_BENCH=ON --log-level=WARNING; \
 	step "Build" cmake --build --preset release --target bench-tessellate bench-interpolate bench-tessellate-occt freiform-occt-import \
-		bench-curves bench-curves-occt bench-curves-boost bench-intersect bench-intersect-occt bench-intersect-sisl bench-nasty bench-surface_pairs bench-surface_pairs-occt bench-nearest bench-nearest-sisl \
+		bench-curves bench-curves-occt bench-curves-boost bench-intersect bench-intersect-occt bench-intersect-sisl bench-nasty bench-surface_pairs bench-surface_pairs-occt bench-nearest bench-nearest-sisl bench-uses \
 		bench-evaluation bench-evaluation-occt bench-evaluation-sisl bench-micro-evaluation bench-thresholds-evaluation; \
 	step "Compare" tools/bench_report.py; \
 	step "Compare curves" tools/bench_curves.py; \
 	step "Compare intersections" tools/bench_intersect.py; \
 	step "Compare nearest points" tools/bench_nearest.py; \
+	step "Measure letters and Boolean operations" tools/bench_uses.py; \
 	step "Compare evaluation" tools/bench_evaluation.py; \
 	step "Measure kernels" tools/bench_micro.py; \
 	step "Measure thresholds" tools/bench_thresholds.py

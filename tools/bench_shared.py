@@ -14,8 +14,9 @@ processors (more than 1 per processor: others were at work, and times are too lo
 
 
 def run(program, text=None):
-    """task -> numbers, from lines "task seconds [name=number ..]" or "task failed" (None)."""
-    done = subprocess.run([str(program)], input=text, capture_output=True, text=True, timeout=600, check=True)
+    """The program, or a list with its arguments: task -> numbers, from lines "task seconds [name=number ..]" or "task failed" (None)."""
+    command = [str(word) for word in program] if isinstance(program, list) else [str(program)]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=600, check=True)
     out = {}
     for line in done.stdout.splitlines():
         task, *words = line.split()

@@ -93,7 +93,11 @@ Result<std::string> written(const Document& document, std::string_view format,
     if (format == "step" || format == "stp") return write_step(document);
     if (format == "iges" || format == "igs") return write_iges(document);
     double size = 0;
-    for (const Object& o : document.objects) size = std::max(size, control_box(o.shape).diagonal);
+    for (const Object& o : document.objects) {
+        // Curves and surfaces of models may go on far beyond what is used of them.
+        const auto* model = std::get_if<Model>(&o.shape);
+        size = std::max(size, model ? summary(*model).box.diagonal() : control_box(o.shape).diagonal);
+    }
     const double tolerance = options.tolerance.value_or(size > 0 ? kUsualTolerance * size : 1);
     if (format == "obj") {
         auto obj = write_obj_freeform(document, tolerance);
