@@ -38,9 +38,6 @@ constexpr int kHalvings = 8;
 constexpr std::size_t kMostParts = 1 << 16;
 constexpr double kNear = 1.02, kBendSlack = 0x1p-30, kSameDirection = 1e-9;
 
-template <class P>
-using PointOf = typename Space<P>::Point;
-
 template <int D>
 Vec<D> unit_or_zero(const Vec<D>& v) {
     const double n = norm(v);

@@ -255,7 +255,7 @@ struct Across {
 };
 
 // The coedge's curve where the spline has it, within the tolerance.
-Result<CurveGeometry<2>> along(const Coedge& c, const Edge& e, Across& how) {
+Result<CurveGeometry<2>> followed_across(const Coedge& c, const Edge& e, Across& how) {
     if (!e.curve)
         return refuse(RefusalKind::unsupported, "",
                       "a loop that crosses an angle, without a curve in space that it could follow");
@@ -313,7 +313,7 @@ Result<SplineFace> converted(const Model& model, std::size_t face, double tolera
         for (const Coedge& c : l.coedges) {
             const Edge& e = model.edges[std::size_t(c.edge)];
             auto there = mapped(*parameter_spline(c.curve, e.range), made->map);
-            if (!there && tolerance > 0) there = along(c, e, across);
+            if (!there && tolerance > 0) there = followed_across(c, e, across);
             auto curve = in_direction(std::move(there), c.reversed);
             if (!curve) return std::unexpected(curve.error());
             loop.push_back(*std::move(curve));
