@@ -15,7 +15,6 @@ ReadOptions Context::read_options() const {
     o.timeout = limits.timeout;
     o.max_memory = limits.max_memory;
     if (limits.reader == "occt") o.step_reader = StepReader::occt;
-    if (limits.reader == "freiform") o.step_reader = StepReader::own;
     if (limits.max_memory != 0) o.max_bytes = std::min(o.max_bytes, limits.max_memory);
     return o;
 }

@@ -39,7 +39,7 @@ namespace freiform::cli {
 struct Limits {
     double timeout = 0;            // seconds, 0: none
     std::uint64_t max_memory = 0;  // bytes, 0: none
-    std::string reader;            // of STEP files: "occt", "freiform"; else what is there
+    std::string reader;            // of STEP files: "occt", else the library
     std::uint64_t max_triangles = 20'000'000;
 };
 

@@ -182,8 +182,7 @@ void Command::limits() const {
         "--max-memory", [&limits](const std::string& s) { limits.max_memory = bytes("--max-memory", s); },
         "Stop when more memory would be needed, such as 500M or 4G", "BYTES");
     word("--reader", limits.reader,
-         "What reads STEP files: Open CASCADE in a process of its own, or freiform (default: the first that "
-         "is there)")
+         "What reads STEP files: freiform (default), or Open CASCADE in a process of its own")
         .shown_as("READER")
         .one_of({"freiform", "occt"});
 }

@@ -68,7 +68,7 @@ namespace {
 
 // What the program of its own reads.
 bool is_exchange(FileFormat f, const ReadOptions& options) {
-    return (f == FileFormat::step && options.step_reader != StepReader::own) || f == FileFormat::iges ||
+    return (f == FileFormat::step && options.step_reader == StepReader::occt) || f == FileFormat::iges ||
            f == FileFormat::brep;
 }
 
@@ -146,13 +146,7 @@ Result<Document> within(const std::string& label, Result<Document> document) {
 Result<Document> read_any(const std::string& path, const ReadOptions& options) {
     const std::string label = path == "-" ? "standard input" : path;
     auto format = options.format ? options.format : format_of_name(path);
-    // Without the program that reads STEP files the library reads them.
-    const auto missing = [&](const Result<Document>& read) {
-        return !read && read.error().kind == RefusalKind::unavailable && format == FileFormat::step &&
-               options.step_reader == StepReader::available;
-    };
-    if (format && is_exchange(*format, options) && path != "-")
-        if (auto read = import(path, options); !missing(read)) return within(label, std::move(read));
+    if (format && is_exchange(*format, options) && path != "-") return within(label, import(path, options));
     auto bytes = read_file(path, options.max_bytes);
     if (!bytes) return std::unexpected(bytes.error());
     if (!format) format = format_of_content(*bytes);
@@ -162,8 +156,7 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                           ? "the file is empty"
                           : text("neither its name nor its content says a format that is known: ", kKnown));
     if (is_exchange(*format, options))
-        if (auto read = path == "-" ? import_bytes(*bytes, options) : import(path, options); !missing(read))
-            return within(label, std::move(read));
+        return within(label, path == "-" ? import_bytes(*bytes, options) : import(path, options));
     return within(label, *format == FileFormat::json         ? read_document(*bytes)
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)

@@ -2,6 +2,7 @@
 // the flag `reversed` turns its normal. So the edges of a face whose normal is against that of its surface
 // are run through the other way.
 #include "step_shape.hpp"
+#include "step_tangles.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/model/edge_gap.hpp>
@@ -20,6 +21,9 @@ constexpr double kFollows = 1e-9, kFollowsRoughly = 1e-7, kHopeless = 0.25, kRou
 // Samples miss the largest value of a smooth function by little: below the tolerance by this factor they are
 // believed, of what the file promises.
 constexpr double kMargin = 1.5;
+// Edges that are off by more than this, of what their parameter curves are asked for, lie beside the surface.
+// Those that follow them loosely are off by at most so many times as much (step_trace.cpp).
+constexpr double kBeside = 10, kPlain = 2.2;
 
 }  // namespace
 
@@ -39,10 +43,18 @@ double ShapeReader::accuracy_for(double size) const {
     return std::max(kFollows * size, std::min(kFollowsRoughly * size, 1e-3 * tolerance_));
 }
 
-Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size) {
+bool ShapeReader::is_beside(double gap, double size) const { return gap > kBeside * accuracy_for(size); }
+
+Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
+                                bool loosely) {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
-    auto t = trace(chart, *e.curve, e.range, accuracy_for(size), std::max(tolerance_, kRough * size));
+    const double rough = std::max(tolerance_, kRough * size);
+    auto t = trace(chart, *e.curve, e.range, accuracy_for(size), rough);
     if (!t) return std::unexpected(t.error());
+    if (loosely && is_beside(t->gap, size))
+        if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough);
+            plain && plain->gap <= kPlain * t->gap)
+            t = std::move(plain);
     if (size > 0 && !(t->gap < kHopeless * size))
         return refuse(RefusalKind::ill_conditioned, "edge",
                       text("lies ", t->gap, " beside the surface; the face has a size of ", size));
@@ -53,7 +65,7 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
 }
 
 Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
-                                    LoopBuilder& loops) {
+                                    bool loosely, LoopBuilder& loops) {
     const bool outer = f_.is(i, Type::FACE_OUTER_BOUND);
     const auto f = Fields::of(f_, i, outer ? Type::FACE_OUTER_BOUND : Type::FACE_BOUND, 3);
     if (!f) return std::unexpected(f.error());
@@ -63,7 +75,7 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
     std::vector<Use> uses;
     const auto append = [&](const EdgeMade& made, bool along, std::uint32_t of) -> Result<void> {
         if (made.empty) return {};
-        auto u = use_of(made, along, chart, size);
+        auto u = use_of(made, along, chart, size, loosely);
         if (!u) return refuse(u.error().kind, f_.label(of), text(u.error().where, ": ", u.error().message));
         uses.push_back(std::move(*u));
         return {};
@@ -126,11 +138,22 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
     return {};
 }
 
-// The loops of the face, its surface over all of them, and what its parameter curves miss.
+// The loops of the face, its surface over all of them, and what its parameter curves miss. `tangled`: asks
+// whether they run into themselves where edges lie beside the surface; if so, nothing is made.
 Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i,
-                                     double size) {
+                                     double size, bool* tangled) {
+    Model& m = out_.model;
+    const std::size_t edges = m.edges.size(), vertices = m.vertices.size();
     auto made = loops.finish();
     if (!made) return std::unexpected(made.error());
+    const bool beside = std::ranges::any_of(*made, [&](const auto& uses) {
+        return std::ranges::any_of(uses, [&](const Use& u) { return is_beside(u.gap, size); });
+    });
+    if (tangled != nullptr && beside && is_tangled(*made, m)) {
+        *tangled = true;
+        m.edges.resize(edges), m.vertices.resize(vertices);  // without its seams
+        return refuse(RefusalKind::invalid, f_.label(i), "has a boundary that runs into itself");
+    }
     Box<2> box;
     bool prove = false;
     for (const auto& uses : *made)
@@ -255,14 +278,29 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
     std::vector<Vec<3>> on_edges;
     const auto size = size_of(*f, on_edges);
     if (!size) return std::unexpected(size.error());
-    const auto attempt = [&](const Chart& chart) -> Result<Face> {
+    const auto once = [&](const Chart& chart, bool loosely, bool* tangled) -> Result<Face> {
         LoopBuilder loops(chart, out_.model, tolerance_);
         for (const std::uint32_t b : *bounds)
-            if (auto ok = add_bound(b, same, chart, *size, loops); !ok) return std::unexpected(ok.error());
+            if (auto ok = add_bound(b, same, chart, *size, loosely, loops); !ok)
+                return std::unexpected(ok.error());
         Face face;
         face.reversed = !same;
         face.tolerance = tolerance_;
-        return close_face(std::move(face), loops, chart, i, *size);
+        return close_face(std::move(face), loops, chart, i, *size, tangled);
+    };
+    const auto attempt = [&](const Chart& chart) -> Result<Face> {
+        bool tangled = false;
+        auto made = once(chart, false, &tangled);
+        if (!tangled) return made;
+        tangled = false;
+        made = once(chart, true, &tangled);
+        if (!made) return once(chart, false, nullptr);
+        report(-1,
+               text(f_.label(i),
+                    ": its boundary runs into itself where edges lie beside the surface; its "
+                    "parameter curves follow those less closely"),
+               0.0, 0);
+        return made;
     };
     auto made = attempt(*(*s)->chart);
     if (!made) {

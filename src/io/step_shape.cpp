@@ -1,9 +1,18 @@
 // Items of a representation: solids, shells, faces, sets of curves and surfaces.
 #include "step_shape.hpp"
 
+#include "step_tangles.hpp"
+
 #include <algorithm>
 
 namespace freiform::step {
+
+namespace {
+
+// Of the tolerance: a vertex nearer to an edge than this is on it.
+constexpr double kTouches = 1e-3;
+
+}  // namespace
 
 void ShapeReader::refuse_item(std::uint32_t item, Refusal why) {
     const std::string label = f_.label(item);
@@ -226,6 +235,16 @@ void ShapeReader::merge_vertices() {
 Part ShapeReader::finish() {
     Model& m = out_.model;
     if (!same_.empty()) merge_vertices();
+    cut_touched_edges(m, kTouches * tolerance_, [&](int edge, int parts, int first) {
+        const std::size_t known = out_.approximated.size();
+        for (std::size_t i = 0; i < known; ++i)  // what is told of the edge is true of its parts
+            for (int k = 1; k < parts && out_.approximated[i] == edge; ++k) {
+                m.approximations.push_back(m.approximations[i]);
+                out_.approximated.push_back(first + k - 1);
+            }
+        report(edge, text("is one of ", parts, " parts of an edge that another loop of its face touches"),
+               0.0, 0);
+    });
     if (!out_.loose.empty()) {
         Shell s;
         for (const int i : out_.loose) s.faces.push_back({i, false});

@@ -64,16 +64,20 @@ private:
     }
     void merge_vertices();
     Result<EdgeMade> segment_edge(std::uint32_t curve, std::vector<int>& corners);
-    Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
+    Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size, bool loosely,
                            LoopBuilder& loops);
-    Result<Face> close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i, double size);
+    Result<Face> close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i, double size,
+                            bool* tangled = nullptr);
     Result<SurfaceMade*> surface(std::uint32_t i);
     Result<EdgeMade> edge(std::uint32_t i);
     Result<EdgeMade> make_edge(std::uint32_t i);
     Result<EdgeMade> straight_edge(int from, int to);
     Result<int> vertex(std::uint32_t i);
     int vertex_at(std::uint32_t point, const Vec<3>& p);
-    Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size);
+    bool is_beside(double gap, double size) const;
+    // `loosely`: an edge beside the surface is followed no closer than it lies beside it.
+    Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
+                       bool loosely = false);
     Result<double> size_of(const Fields& f, std::vector<Vec<3>>& seen);
     double accuracy_for(double size) const;
     static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,

@@ -19,6 +19,7 @@ namespace freiform::step {
 namespace {
 
 constexpr int kMostPieces = 600;  // backstop
+constexpr double kApart = 1e-6;   // of the range: places where pieces begin
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
 struct TraceNode {
@@ -215,11 +216,19 @@ private:
         std::sort(all.begin(), all.end());
         std::vector<double> out;
         for (const double t : all)
-            if (out.empty() || t - out.back() > 1e-6 * on_.length()) out.push_back(t);
+            if (out.empty() || t - out.back() > kApart * on_.length()) out.push_back(t);
         if (out.size() > 1) out.back() = on_.hi;
         return out;
     }
 
+    // A node at out.t, where the nearest point is.
+    void place(const Foot& f, TraceNode& out) const {
+        out.at = f.at;
+        out.before = out.after = f.slope;
+        if (!has_corner(out.t)) return;
+        const auto left = jet<1>(c_, std::nextafter(out.t, on_.lo));
+        if (const Foot g = chart_.foot(left.d[0], left.d[1], f.at); g.regular) out.before = g.slope;
+    }
     // From a known node to the next place. False where the surface has no tangent plane there.
     bool node(double t, const TraceNode& from, TraceNode& out) const {
         const double h = t - from.t;
@@ -228,13 +237,7 @@ private:
         Foot f = chart_.foot(j.d[0], j.d[1], guess);
         out.t = t;
         if (f.regular && near(f.at, guess)) {
-            out.at = f.at;
-            out.before = out.after = f.slope;
-            if (has_corner(t)) {
-                const double back = std::nextafter(t, on_.lo);
-                const auto left = jet<1>(c_, back);
-                if (const Foot g = chart_.foot(left.d[0], left.d[1], f.at); g.regular) out.before = g.slope;
-            }
+            place(f, out);
             return true;
         }
         if (t != on_.lo && t != on_.hi) return false;
@@ -270,25 +273,33 @@ private:
                (-h * x * x * y) * b.before;
     }
 
+    // Near the middle, and not beside a place: derivatives of a piece as short as rounding have no bound.
+    TraceNode first_node(const Foot& start, double middle, const std::vector<double>& all) const {
+        TraceNode first;
+        first.t = middle;
+        place(start, first);
+        for (const double t : all)
+            if (TraceNode n; std::abs(t - middle) <= kApart * on_.length() && node(t, first, n)) return n;
+        return first;
+    }
+
     Result<Trace> spline(const Foot& start, double middle) const {
         const auto lost = [] {
             return refuse(
                 RefusalKind::not_converged, "parameter curve",
                 "cannot be followed on the surface: it runs through a pole or a fold, or far beside it");
         };
-        TraceNode first;
-        first.t = middle;
-        first.at = start.at;
-        first.before = first.after = start.slope;
+        const auto all = places();
+        const TraceNode first = first_node(start, middle, all);
+        middle = first.t;
         std::vector<TraceNode> left, right{first};
-        for (const double t : places()) {
+        for (const double t : all) {
             if (t < middle) continue;
             TraceNode n;
             if (!advance(right.back(), t, n)) return lost();
             if (t > middle) right.push_back(n);
         }
         left.push_back(first);
-        const auto all = places();
         for (auto t = all.rbegin(); t != all.rend(); ++t) {
             if (*t >= middle) continue;
             TraceNode n;

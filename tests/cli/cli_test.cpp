@@ -282,8 +282,6 @@ TEST_F(Cli, files_that_cannot_be_read_or_written_are_failures_of_their_own) {
 
 TEST_F(Cli, info_counts_what_a_solid_model_has) {
     FF_CORPUS_OR_SKIP(step, "step/xr1-tu-rod.stp");
-    if (!std::filesystem::exists(FREIFORM_OCCT_BINARY))
-        GTEST_SKIP() << "the reader of STEP files is not built";
     const Ran r = run({"info", step.string(), "--json"});
     ASSERT_EQ(r.code, 0) << r.err;
     const Json model = Json::parse(r.out)["objects"][0];
@@ -300,7 +298,7 @@ TEST_F(Cli, info_counts_what_a_solid_model_has) {
     ASSERT_EQ(run({"convert", "m.json", "-o", "n.json"}).code, 0);
     EXPECT_EQ(content(path("m.json")), content(path("n.json")));
     EXPECT_EQ(Json::parse(run({"info", "m.json", "--json"}).out)["objects"][0], model);
-    expect_error(run({"info", file("x.step", "garbage"), "--json"}), 3, "unreadable", "x.step",
+    expect_error(run({"info", file("x.step", "garbage"), "--json"}), 3, "unreadable", "x.step: byte 0",
                  "ISO-10303-21");
 }
 

@@ -23,10 +23,6 @@ protected:
         EXPECT_EQ(r.code, 0) << r.out << r.err;
         return r.code == 0 ? Json::parse(r.out) : Json();
     }
-    bool has_occt() {
-        const Ran r = run({"info", bracket_, "--json"});
-        return r.code == 0 || r.out.find("unavailable") == std::string::npos;
-    }
 };
 
 TEST_F(ModelQuestions, a_trimmed_square_has_edges_a_nearest_face_a_farthest_corner_and_a_box) {
@@ -67,7 +63,6 @@ TEST_F(ModelQuestions, what_they_do_not_answer_says_what_is_accepted) {
 }
 
 TEST_F(ModelQuestions, joints_of_a_part_are_bounded_and_sorted) {
-    if (!has_occt()) GTEST_SKIP() << "built without Open CASCADE";
     const Json object = answer({"continuity", bracket_})["objects"][0];
     const Json edges = object["edges"];
     ASSERT_GT(edges.size(), 30u);

@@ -126,7 +126,7 @@ class Document(Sequence[Shape]):
 def read(path: str | os.PathLike[str], *, format: str | None = None, timeout: float = 0.0, max_bytes: int = 0,
          max_memory: int = 0, reader: str | None = None) -> Document:
     """Any file that freiform can read: json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj. STEP files by
-    ``reader`` "freiform" or "occt", or the latter where it is there."""
+    ``reader`` "freiform" (the library itself, the default) or "occt" (Open CASCADE in a process of its own)."""
     return Document._of(_core.read(os.fspath(path), format, timeout, max_bytes, max_memory, reader))
 
 

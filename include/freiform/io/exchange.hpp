@@ -1,5 +1,6 @@
-// STEP, IGES and BREP files as models, read by a program of its own (freiform-occt-import): its library
-// crashes or hangs on a good part of damaged files, and must not take the caller along.
+// IGES and BREP files, and STEP files where that is wanted, as models, read by a program of its own
+// (freiform-occt-import): its library crashes or hangs on a good part of damaged files, and must not take the
+// caller along.
 #pragma once
 #include <freiform/model/model.hpp>
 

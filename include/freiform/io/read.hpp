@@ -17,15 +17,14 @@ std::optional<FileFormat> format_of_name(std::string_view file_name);
 // By what the content begins with.
 std::optional<FileFormat> format_of_content(std::string_view bytes);
 
-// What reads STEP files: Open CASCADE in a process of its own where its program is there, else the library
-// (docs/step.md); or one of them.
-enum class StepReader { available, own, occt };
+// What reads STEP files: the library (docs/step.md), or Open CASCADE in a process of its own.
+enum class StepReader { own, occt };
 
 struct ReadOptions {
     std::optional<FileFormat> format;  // else the ending decides, and where it says nothing, the content
     std::uint64_t max_bytes = std::uint64_t(2) << 30;
-    StepReader step_reader = StepReader::available;
-    double timeout = 0;            // seconds, 0: none; for the program that reads STEP, IGES and BREP
+    StepReader step_reader = StepReader::own;
+    double timeout = 0;            // seconds, 0: none; for the program that reads IGES and BREP
     std::uint64_t max_memory = 0;  // bytes, 0: none; likewise, and for models in STEP files
 };
 

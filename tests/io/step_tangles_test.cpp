@@ -1,0 +1,205 @@
+// Boundaries that run into themselves where edges lie beside the surface, holes that touch what is around
+// them, parameter curves whose pieces have bounded derivatives, and every file that was once a finding.
+#include <freiform/io/file.hpp>
+#include <freiform/io/step_read.hpp>
+#include <freiform/model/tessellate.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+#include <support/corpus.hpp>
+#include <support/refusal.hpp>
+
+namespace freiform::test {
+namespace {
+
+std::string tangle_file(double tolerance, std::string_view data) {
+    return text("ISO-10303-21;\nHEADER;FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;\nDATA;\n",
+                "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#3))"
+                "GLOBAL_UNIT_ASSIGNED_CONTEXT((#2))REPRESENTATION_CONTEXT('',''));\n"
+                "#2=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));\n"
+                "#3=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(",
+                tolerance,
+                "),#2,'','');\n#5=AXIS2_PLACEMENT_3D('',#6,$,$);\n#6=CARTESIAN_POINT('',(0.,0.,0.));\n"
+                "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n",
+                data, "ENDSEC;\nEND-ISO-10303-21;\n");
+}
+
+std::string point_at(int i, double x, double y, double z) {
+    return text("#", i, "=CARTESIAN_POINT('',(", x, ",", y, ",", z, "));\n");
+}
+
+// Straight edges around a polygon in z = 0: the loop #`loop`; vertices #loop+1.., edges behind them.
+std::string straight_loop(int loop, const std::vector<Vec<2>>& corners) {
+    const int n = int(corners.size());
+    std::string s, uses;
+    for (int i = 0; i < n; ++i) {
+        const Vec<2> a = corners[std::size_t(i)], b = corners[std::size_t((i + 1) % n)];
+        const int v = loop + 1 + i, at = loop + 20 + 8 * i;
+        s += text(point_at(at, a[0], a[1], 0), "#", v, "=VERTEX_POINT('',#", at, ");\n#", at + 1,
+                  "=LINE('',#", at, ",#", at + 2, ");\n#", at + 2, "=VECTOR('',#", at + 3, ",1.);\n#", at + 3,
+                  "=DIRECTION('',(", b[0] - a[0], ",", b[1] - a[1], ",0.));\n#", at + 4, "=EDGE_CURVE('',#",
+                  v, ",#", loop + 1 + (i + 1) % n, ",#", at + 1, ",.T.);\n#", at + 5,
+                  "=ORIENTED_EDGE('',*,*,#", at + 4, ",.T.);\n");
+        uses += text(i > 0 ? "," : "", "#", at + 5);
+    }
+    return text(s, "#", loop, "=EDGE_LOOP('',(", uses, "));\n");
+}
+
+double meshed_area(const Model& m, double tolerance) {
+    const auto t = must(tessellate(m, {.tolerance = tolerance}));
+    EXPECT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+    double sum = 0;
+    for (const auto& f : t.mesh.triangles) {
+        const auto at = [&](int k) {
+            return t.mesh.points[std::size_t(t.mesh.vertices[std::size_t(k)].point)];
+        };
+        sum += norm(cross(at(f[1]) - at(f[0]), at(f[2]) - at(f[0]))) / 2;
+    }
+    return sum;
+}
+
+std::ptrdiff_t times_told(const Model& m, std::string_view what) {
+    return std::count_if(m.approximations.begin(), m.approximations.end(),
+                         [&](const Approximation& a) { return a.what.find(what) != std::string::npos; });
+}
+
+// A triangle on the unit square as a spline; its corners at x = `x` lie beside the square. The nearest points
+// of two of its edges share a piece of the side x = 0.
+std::string beside_a_side(double x, double tolerance) {
+    return tangle_file(tolerance,
+                       text("#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#20,.T.);\n#13=FACE_OUTER_"
+                            "BOUND('',#100,.T.);\n",
+                            "#20=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,((#21,#22),(#23,#24)),.UNSPECIFIED.,.F.,."
+                            "F.,.F.,(2,2),(2,2),"
+                            "(0.,1.),(0.,1.),.UNSPECIFIED.);\n",
+                            point_at(21, 0, 0, 0), point_at(22, 0, 1, 0), point_at(23, 1, 0, 0),
+                            point_at(24, 1, 1, 0), straight_loop(100, {{{x, 0.1}}, {{1, 0.9}}, {{x, 1}}})));
+}
+
+TEST(StepTangles,
+     edges_beside_the_end_of_a_surface_that_cover_each_other_are_followed_less_closely_and_told) {
+    const Model m = must(read_step(beside_a_side(-0.001, 0.01)));
+    ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
+    EXPECT_EQ(times_told(m, "runs into itself where edges lie beside the surface"), 1);
+    EXPECT_NEAR(meshed_area(m, 1e-3), 0.45, 2e-3);
+    for (const Edge& e : m.edges) EXPECT_LE(e.tolerance, 0.01) << "no worse than the file says";
+    // On the square nothing is changed.
+    const Model on = must(read_step(beside_a_side(0, 0.01)));
+    EXPECT_EQ(times_told(on, "runs into itself"), 0);
+    EXPECT_NEAR(meshed_area(on, 1e-3), 0.45, 1e-12);
+}
+
+// A disc of radius 2 with a wall above its rim, and a square hole with a corner at (x, 2).
+std::string touched_disc(double x) {
+    return tangle_file(
+        1e-4,
+        text("#11=OPEN_SHELL('',(#12,#40));\n#12=ADVANCED_FACE('',(#13,#14),#15,.T.);\n#15=PLANE('',#5);\n",
+             "#13=FACE_BOUND('',#16,.T.);\n#14=FACE_BOUND('',#100,.T.);\n#16=EDGE_LOOP('',(#17));\n",
+             "#17=ORIENTED_EDGE('',*,*,#18,.T.);\n#18=EDGE_CURVE('',#19,#19,#20,.T.);\n#19=VERTEX_POINT('',#"
+             "21);\n",
+             point_at(21, 2, 0, 0), "#20=CIRCLE('',#5,2.);\n",
+             straight_loop(100, {{{x, 2}}, {{1, 1}}, {{0, 0}}, {{-1, 1}}}),
+             "#40=ADVANCED_FACE('',(#41,#42),#43,.T.);\n#43=CYLINDRICAL_SURFACE('',#5,2.);\n",
+             "#41=FACE_BOUND('',#44,.T.);\n#42=FACE_BOUND('',#45,.T.);\n#44=EDGE_LOOP('',(#46));\n",
+             "#46=ORIENTED_EDGE('',*,*,#18,.T.);\n#45=EDGE_LOOP('',(#47));\n#47=ORIENTED_EDGE('',*,*,#48,.F.)"
+             ";\n",
+             "#48=EDGE_CURVE('',#49,#49,#50,.T.);\n#49=VERTEX_POINT('',#51);\n", point_at(51, 2, 0, 3),
+             "#50=CIRCLE('',#52,2.);\n#52=AXIS2_PLACEMENT_3D('',#53,$,$);\n", point_at(53, 0, 0, 3)));
+}
+
+TEST(StepTangles, an_edge_that_a_vertex_of_another_loop_touches_is_cut_there_in_all_its_faces_and_told) {
+    const Model m = must(read_step(touched_disc(0)));
+    ASSERT_EQ(m.faces.size(), 2u);
+    EXPECT_EQ(times_told(m, "one of 2 parts of an edge that another loop of its face touches"), 1);
+    const ModelSummary s = summary(m);
+    EXPECT_EQ(s.edges, 2 + 4 + 1 + 1) << "two parts of the rim, the hole, the upper rim, a seam";
+    EXPECT_EQ(s.open_edges, 5) << "the hole and the upper rim";
+    EXPECT_NEAR(meshed_area(m, 1e-5), 4 * std::numbers::pi - 2 + 12 * std::numbers::pi, 1e-3);
+    // Where the hole keeps away there is nothing to cut.
+    const Model apart = must(read_step(touched_disc(-0.3)));
+    EXPECT_EQ(summary(apart).edges, 1 + 4 + 1 + 1);
+}
+
+// A piece of a cylinder whose upper edge is a spline with a knot beside the place where its parameter curve
+// begins to be made.
+TEST(StepTangles, parameter_curves_have_no_piece_as_short_as_rounding) {
+    constexpr double kLength = 0.0211161248213826;
+    for (const int ulps : {0, 1, -1, 2, -3}) {
+        double knot = 0.46875 * kLength;
+        for (int i = 0; i < std::abs(ulps); ++i) knot = std::nextafter(knot, ulps > 0 ? 1.0 : 0.0);
+        std::string s =
+            "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#14,.T.);\n#13=FACE_OUTER_BOUND('',#15,.T."
+            ");\n"
+            "#14=CYLINDRICAL_SURFACE('',#5,2.);\n#15=EDGE_LOOP('',(#16,#17,#18,#19));\n"
+            "#16=ORIENTED_EDGE('',*,*,#20,.T.);\n#17=ORIENTED_EDGE('',*,*,#21,.T.);\n"
+            "#18=ORIENTED_EDGE('',*,*,#22,.T.);\n#19=ORIENTED_EDGE('',*,*,#23,.F.);\n"
+            "#20=EDGE_CURVE('',#30,#31,#40,.T.);\n#21=EDGE_CURVE('',#31,#32,#41,.T.);\n"
+            "#22=EDGE_CURVE('',#32,#33,#42,.T.);\n#23=EDGE_CURVE('',#30,#33,#43,.T.);\n"
+            "#30=VERTEX_POINT('',#50);\n#31=VERTEX_POINT('',#51);\n#32=VERTEX_POINT('',#52);\n"
+            "#33=VERTEX_POINT('',#53);\n#40=CIRCLE('',#5,2.);\n#41=LINE('',#51,#44);\n#43=LINE('',#50,#44);\n"
+            "#44=VECTOR('',#45,1.);\n#45=DIRECTION('',(0.,0.,1.));\n";
+        s += text(point_at(50, 2, 0, 0), point_at(51, 0, 2, 0), point_at(52, 0, 2, 1), point_at(53, 2, 0, 1));
+        s += text(
+            point_at(60, 0.5, 2.05, 1.1), point_at(61, 1.2, 1.7, 1.3), point_at(62, 1.9, 0.8, 1.1),
+            "#42=B_SPLINE_CURVE_WITH_KNOTS('',3,(#52,#60,#61,#62,#53),.UNSPECIFIED.,.F.,.F.,(4,1,4),(0.,",
+            knot, ",", kLength, "),.UNSPECIFIED.);\n");
+        const Model m = must(read_step(tangle_file(1e-3, s)));
+        ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
+        int splines = 0;
+        for (const Coedge& c : m.faces[0].loops[0].coedges) {
+            const auto* curve = std::get_if<Curve<Vec<2>>>(&c.curve);
+            if (curve == nullptr) continue;
+            ++splines;
+            const auto breaks = curve->basis().breaks();
+            for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+                EXPECT_GT(breaks[i + 1] - breaks[i], 1e-8 * kLength) << ulps;
+        }
+        EXPECT_EQ(splines, 1);
+        EXPECT_LT(summary(m).box.diagonal(), 10) << ulps;
+    }
+}
+
+// Files with faces that were refused once: fillets that end beside their surface, a hole that touches its
+// rim, edges that wander near a pole; and one whose box had no end.
+TEST(StepTangles, faces_of_real_files_whose_boundaries_ran_into_themselves_are_meshed) {
+    for (const char* name : {"step/bug27693_cornetta-step.stp", "step/ec_turbine-A.stp",
+                             "step/trj7_b1-ec-214.stp", "step/bug28414_bug_toroidal_surface.stp"}) {
+        FF_CORPUS_OR_SKIP(path, name);
+        const Model m = must(read_step(must(read_file(path.string(), 1 << 26))));
+        EXPECT_TRUE(m.refused.empty()) << name << m.refused[0].message;
+        const double size = summary(m).box.diagonal();
+        EXPECT_LT(size, 1000) << name;
+        const auto t = must(tessellate(m, {.tolerance = 1e-3 * size}));
+        for (const auto& r : t.refused) ADD_FAILURE() << name << ": " << r.face << ": " << r.reason.message;
+        if (summary(m).open_edges == 0) EXPECT_EQ(t.topology.open_edges, 0) << name;
+    }
+}
+
+// Each was once read wrongly or not in time. What is in it must be a model that can be meshed, or a refusal.
+TEST(StepFindings, every_file_that_was_one_is_read_or_refused_and_meshed) {
+    int files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(FREIFORM_SOURCE_DIR) /
+                                                                 "tests/data/step")) {
+        SCOPED_TRACE(entry.path().filename().string());
+        ++files;
+        const auto m =
+            read_step(must(read_file(entry.path().string(), 1 << 26)), {.memory_bytes = 100 << 20});
+        if (!m) {
+            EXPECT_FALSE(m.error().message.empty());
+            continue;
+        }
+        for (const Refusal& r : m->refused) EXPECT_FALSE(r.message.empty());
+        for (const Approximation& a : m->approximations)
+            if (a.where.starts_with("edges["))
+                EXPECT_LT(std::size_t(std::atoi(a.where.c_str() + 6)), m->edges.size()) << a.what;
+        EXPECT_TRUE(std::isfinite(summary(*m).box.diagonal()) || m->faces.empty());
+        const auto t =
+            tessellate(*m, {.tolerance = 1e-2 * summary(*m).box.diagonal(), .max_triangles = 1'000'000});
+        if (!t) EXPECT_FALSE(t.error().message.empty());
+    }
+    EXPECT_GE(files, 1);
+}
+
+}  // namespace
+}  // namespace freiform::test
