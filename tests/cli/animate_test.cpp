@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -47,6 +48,40 @@ TEST_F(AnimateProgram, moves_along_a_curve) {
     const auto said = AnimateJson::parse(run({"animate", "way.json", "--duration", "5", "--json"}).out);
     EXPECT_EQ(said["duration"], 5.0);
     EXPECT_NEAR(said["speed"].get<double>() * 5, said["length"]["value"].get<double>(), 1e-9);
+}
+
+// The acceleration across the way from three places each, whose second difference is off by the change of it.
+TEST_F(AnimateProgram, is_slow_where_the_way_bends) {
+    file("way.json", kWay);
+    const auto rows_of = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"animate",        "way.json", "--speed", "2",
+                                       "--acceleration", "1",        "--rate",  "100"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ran ran = run(words);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return table(ran.out);
+    };
+    const auto most_across = [](const std::vector<std::vector<double>>& rows) {
+        double most = 0;
+        for (std::size_t i = 1; i + 2 < rows.size(); ++i) {
+            const double dt = rows[i][0] - rows[i - 1][0];
+            std::array<double, 2> v{}, a{};
+            for (std::size_t k = 0; k < 2; ++k) {
+                v[k] = (rows[i + 1][4 + k] - rows[i - 1][4 + k]) / (2 * dt);
+                a[k] = (rows[i + 1][4 + k] - 2 * rows[i][4 + k] + rows[i - 1][4 + k]) / (dt * dt);
+            }
+            const double speed = std::hypot(v[0], v[1]);
+            if (speed > 0.1) most = std::max(most, std::abs(v[0] * a[1] - v[1] * a[0]) / speed);
+        }
+        return most;
+    };
+    const auto free = rows_of({}), limited = rows_of({"--across", "0.5"});
+    EXPECT_GT(most_across(free), 1);
+    EXPECT_LT(most_across(limited), 0.51);
+    EXPECT_GT(most_across(limited), 0.4);
+    EXPECT_GT(limited.back()[0], free.back()[0]);
+    EXPECT_NEAR(limited.back()[4], 4, 1e-9);
+    EXPECT_EQ(run({"animate", "way.json", "--across", "1", "--jerk", "1"}).code, 2);
 }
 
 TEST_F(AnimateProgram, writes_pictures_that_move_and_gltf_that_it_reads_back) {
