@@ -59,6 +59,11 @@ std::vector<PathSegment> elliptic_arc(const Vec<2>& from, const Vec<2>& to, doub
     if (!(rx > 0) || !(ry > 0)) return {line(from, to)};
     const double c = std::cos(angle), s = std::sin(angle);
     const Vec<2> half = 0.5 * (from - to), middle = 0.5 * (from + to);
+    // Radii that are far too small are made to fit below anyway; their quotients must not overflow.
+    if (max_abs(half) > 0x1p400 * std::max(rx, ry)) {
+        const int less = std::ilogb(max_abs(half)) - std::ilogb(std::max(rx, ry));
+        rx = std::ldexp(rx, less - 4), ry = std::ldexp(ry, less - 4);
+    }
     Vec<2> d{{(c * half[0] + s * half[1]) / rx, (c * half[1] - s * half[0]) / ry}};
     const double length = norm(d);
     if (length > 1) rx *= length, ry *= length, d = (1 / length) * d;
@@ -69,6 +74,9 @@ std::vector<PathSegment> elliptic_arc(const Vec<2>& from, const Vec<2>& to, doub
     };
     const Vec<2> first = d - center, last = Vec<2>{} - d - center;
     double turn = std::atan2(cross(first, last), dot(first, last));
+    // Radii beyond what doubles tell from infinity.
+    const auto is_lost = [](const Vec<2>& p) { return !std::isfinite(p[0] + p[1]); };
+    if (!std::isfinite(turn)) return {line(from, to)};
     if (sweep && turn < 0) turn += 2 * std::numbers::pi;
     if (!sweep && turn > 0) turn -= 2 * std::numbers::pi;
     const int pieces = std::max(1, int(std::ceil(std::abs(turn) / (std::numbers::pi / 2) - 1e-9)));
@@ -79,6 +87,7 @@ std::vector<PathSegment> elliptic_arc(const Vec<2>& from, const Vec<2>& to, doub
         const double mid = start + (2 * i + 1) * t, end = start + (2 * i + 2) * t;
         const Vec<2> next = i + 1 == pieces ? to : image(center + Vec<2>{{std::cos(end), std::sin(end)}});
         const Vec<2> corner = image(center + (1 / weight) * Vec<2>{{std::cos(mid), std::sin(mid)}});
+        if (is_lost(corner) || is_lost(next)) return {line(from, to)};
         out.push_back({2, {at, corner, next}, weight});
         at = next;
     }

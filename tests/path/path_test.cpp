@@ -156,6 +156,22 @@ TEST(Path, is_written_so_that_it_is_read_back_the_same) {
 
 // Segments may become several on the way, but none is lost: the way around is as long, and ends in the same
 // points.
+TEST(Path, arcs_of_radii_beyond_all_bounds_are_half_ellipses_or_lines) {
+    const Vec<2> from{{0, 0}}, to{{2, 0}};
+    for (const double tiny : {1e-320, 1e-200, 1e-100}) {
+        const auto arc = elliptic_arc(from, to, 4 * tiny, 2 * tiny, 0, false, true);
+        ASSERT_EQ(arc.size(), 2u) << tiny;
+        EXPECT_NEAR(arc[0].points[2][0], 1, 1e-3);
+        EXPECT_NEAR(std::abs(arc[0].points[2][1]), 0.5, 1e-3) << "half as high as it is long";
+    }
+    for (const bool large : {false, true}) {
+        const auto line = elliptic_arc(from, to, 1e308, 1e308, 0, large, true);
+        for (const PathSegment& s : line)
+            for (int i = 0; i <= s.degree; ++i) EXPECT_TRUE(std::isfinite(max_abs(s.points[std::size_t(i)])));
+        EXPECT_EQ(line.back().points[std::size_t(line.back().degree)], to);
+    }
+}
+
 TEST(Path, arcs_far_from_the_origin_or_of_thin_ellipses_are_written_too) {
     const auto length_of = [](const Path& p) {
         return std::visit([](const auto& c) { return length(c, 1e-9).value; }, curve_of(p.subpaths[0]));

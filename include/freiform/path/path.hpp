@@ -40,9 +40,9 @@ Path transformed(const Path& path, const Affinity<2>& map);
 // The arc from `from` to `to` of the ellipse with the radii rx, ry whose first axis is turned by `angle`
 // (radians) from x: of the four such arcs the one that is `large` (more than half of the ellipse) or not and
 // turns by `sweep` from x to y or back; as at most four rational quadratics of equal angles. Radii that are
-// too small are enlarged until there is one arc; with a radius of 0 it is a line; with equal ends it is
-// nothing. The ends are exactly the given ones; the rest is off by the rounding of some 30 operations.
-// Source: the rules for elliptical arcs of the SVG specification.
+// too small are enlarged until there is one arc; with a radius of 0, or so large that its middle is at
+// infinity, it is a line; with equal ends it is nothing. The ends are exactly the given ones; the rest is off
+// by the rounding of some 30 operations. Source: the rules for elliptical arcs of the SVG specification.
 std::vector<PathSegment> elliptic_arc(const Vec<2>& from, const Vec<2>& to, double rx, double ry,
                                       double angle, bool large, bool sweep);
 
