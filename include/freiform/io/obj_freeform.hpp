@@ -24,8 +24,7 @@ Result<std::string> write_obj_freeform(const Document& document);
 
 struct WrittenObj {
     std::string text;
-    double bound =
-        0;  // no point of a loop that had to be approximated is farther than this from its edge: proven
+    double bound = 0;  // proven: of any point of a loop that had to be approximated to its edge
 };
 // The same, but loops of models that have no rational image are followed within `tolerance` > 0
 // (spline_face_within).
