@@ -1,6 +1,6 @@
 // Sums over the control points of one Bezier piece of a sheet (sheet_detail.hpp): values, halves,
-// restrictions and boxes of derivatives. Searches spend their time here, and nearly all of it on bicubic
-// pieces, so the degrees are constants there; the same text does for all others.
+// restrictions and boxes of derivatives. Of pairs of bicubic surfaces, the commonest, about a third of the
+// time went here, so for these the degrees are constants; the same text does for all others.
 #pragma once
 #include "sheet_detail.hpp"
 
