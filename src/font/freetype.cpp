@@ -34,7 +34,7 @@ namespace {
 
 constexpr long kMostRequests = 2'000'000;  // of memory, for one glyph or for opening a font
 
-// What FreeType may use. Each block begins with its size.
+// What FreeType may use. Each block begins with the room that it takes.
 struct Allowance {
     std::size_t most = 0, used = 0;
     long requests = 0;
@@ -43,11 +43,22 @@ struct Allowance {
 };
 
 constexpr std::size_t kHead = alignof(std::max_align_t);
+static_assert(kHead >= sizeof(std::size_t));
 
 bool granted(Allowance& a, std::size_t more) {
     if (++a.requests <= kMostRequests && more <= a.most - a.used) return true;
     a.exceeded = true;
     return false;
+}
+
+std::size_t room_of(const char* block) {
+    std::size_t room = 0;
+    std::memcpy(&room, block, sizeof room);
+    return room;
+}
+void* with_room(char* block, std::size_t room) {
+    std::memcpy(block, &room, sizeof room);
+    return block + kHead;
 }
 
 void* ft_take(FT_Memory memory, long size) {
@@ -56,33 +67,31 @@ void* ft_take(FT_Memory memory, long size) {
     if (size < 0 || !granted(a, n)) return nullptr;
     auto* block = static_cast<char*>(std::malloc(n));
     if (block == nullptr) return nullptr;
-    std::memcpy(block, &n, sizeof n);
     a.used += n;
-    return block + kHead;
+    return with_room(block, n);
 }
 
 void ft_give_back(FT_Memory memory, void* p) {
     if (p == nullptr) return;
     char* block = static_cast<char*>(p) - kHead;
-    std::size_t n = 0;
-    std::memcpy(&n, block, sizeof n);
-    static_cast<Allowance*>(memory->user)->used -= n;
+    static_cast<Allowance*>(memory->user)->used -= room_of(block);
     std::free(block);
 }
 
+// FreeType lengthens lists by a few entries at a time. By half at least, what is moved stays a multiple of
+// what there is, whichever allocator moves it.
 void* ft_resize(FT_Memory memory, long, long size, void* p) {
     if (p == nullptr) return ft_take(memory, size);
     auto& a = *static_cast<Allowance*>(memory->user);
     char* block = static_cast<char*>(p) - kHead;
-    std::size_t before = 0;
-    std::memcpy(&before, block, sizeof before);
-    const std::size_t n = std::size_t(size) + kHead;
-    if (size < 0 || !granted(a, n > before ? n - before : 0)) return nullptr;
-    auto* moved = static_cast<char*>(std::realloc(block, n));
+    const std::size_t room = room_of(block), n = std::size_t(size) + kHead;
+    const std::size_t wanted = n <= room ? room : std::max(n, room + room / 2);
+    if (size < 0 || !granted(a, wanted - room)) return nullptr;
+    if (wanted == room) return p;
+    auto* moved = static_cast<char*>(std::realloc(block, wanted));
     if (moved == nullptr) return nullptr;
-    std::memcpy(moved, &n, sizeof n);
-    a.used = a.used - before + n;
-    return moved + kHead;
+    a.used += wanted - room;
+    return with_room(moved, wanted);
 }
 
 std::string error_text(FT_Error e) {
