@@ -233,7 +233,7 @@ std::expected<std::string, std::string> CommandLine::understand(std::vector<std:
         return "";
     } catch (const CLI::CallForHelp&) {
         const auto used = app_->get_subcommands();
-        return used.empty() ? app_->help() : used.front()->help();
+        return used.empty() ? app_->help() : used.front()->help(app_->get_name());
     } catch (const CLI::CallForAllHelp&) {
         return app_->help("", CLI::AppFormatMode::All);
     } catch (const CLI::ValidationError& e) {

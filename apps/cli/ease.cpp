@@ -197,7 +197,9 @@ Result<void> run_ease(const Context& context, const EaseArguments& o) {
     const std::vector<double>& h = o.handles;
     const auto easing =
         h.empty() ? CubicBezierEasing::named(o.name) : CubicBezierEasing::make(h[0], h[1], h[2], h[3]);
-    if (!easing) return refuse_within(h.empty() ? "--named" : "--bezier", easing.error());
+    if (!easing)
+        wrong_usage(text(h.empty() ? "--named" : "--bezier", " ", easing.error().where, ": ",
+                         easing.error().message));
     std::vector<double> at = o.at;
     if (at.empty())
         for (int i = 0; i <= 10; ++i) at.push_back(i / 10.0);

@@ -238,7 +238,7 @@ Result<void> run_gradient(const Context& context, const GradientArguments& o) {
         if (!o.at.empty() && o.at.size() != o.colours.size())
             wrong_usage("--at needs a place for each colour");
         const auto gradient = gradient_of(o);
-        if (!gradient) return std::unexpected(gradient.error());
+        if (!gradient) wrong_usage(text(gradient.error().where, ": ", gradient.error().message));
         const auto stops = gradient->stops_in_srgb(kUnseen);
         if (!stops) return std::unexpected(stops.error());
         if (!o.along.empty()) {

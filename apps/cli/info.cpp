@@ -197,8 +197,8 @@ std::string patch_text(const Facts& f) {
         domains = "u >= 0, v >= 0, u + v <= 1";
     }
     return text("  degree   ", degrees, ", ", counts, " points of ", f.dimension,
-                f.rational ? " coordinates, rational" : " coordinates", closed, "\n  domain   ", domains,
-                "\n");
+                f.dimension == 1 ? " coordinate" : " coordinates", f.rational ? ", rational" : "", closed,
+                "\n  domain   ", domains, "\n");
 }
 
 std::string kinds_text(const Counts& counts) {

@@ -379,6 +379,7 @@ TEST_F(Cli, help_and_version_go_to_standard_output) {
         EXPECT_EQ(r.err, "");
         EXPECT_GT(r.out.size(), 10u);
     }
+    EXPECT_NE(run({"eval", "--help"}).out.find("Usage: freiform eval "), std::string::npos);
     EXPECT_NE(run({"eval", "--help"}).out.find("freiform eval curve.json --at 0.5"), std::string::npos);
     EXPECT_NE(run({"--version", "--verbose"}).out.find("compiler"), std::string::npos);
 }

@@ -35,8 +35,8 @@ TEST_F(GradientProgram, refuses_what_is_no_gradient) {
     EXPECT_EQ(run({"gradient"}).code, 2);
     EXPECT_EQ(run({"gradient", "#f00", "#00f", "--at", "0"}).code, 2);
     EXPECT_EQ(run({"gradient", "#f00", "#00f", "-o", "x.gif"}).code, 2);
-    EXPECT_EQ(run({"gradient", "#f00", "blue"}).code, 3);
-    EXPECT_EQ(run({"gradient", "#f00"}).code, 3);
+    EXPECT_EQ(run({"gradient", "#f00", "blue"}).code, 2);
+    EXPECT_EQ(run({"gradient", "#f00"}).code, 2);
     EXPECT_EQ(run({"gradient", "--mesh", kTeapot, "-o", "x.svg"}).code, 3);
 }
 
