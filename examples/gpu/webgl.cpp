@@ -1,11 +1,13 @@
 // The surfaces of a file as one page, for any browser that has WebGL 2: buffers and shaders of the library,
 // and a renderer of 150 lines in JavaScript (webgl.html).
 //   gpu-webgl teapot.bpt teapot.html
-// With a third file, teapot.ppm, the library draws the same view there, in OpenGL ES, before magenta.
+// With a third file, teapot.ppm, a fine mesh is drawn there from the same side, 2560 x 1920 pixels before
+// magenta: what tests compare the page with.
 #include <freiform/gpu/surfaces.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
+#include <freiform/model/tessellate.hpp>
 
 #include <charconv>
 #include <iostream>
@@ -109,14 +111,17 @@ int main(int argc, char** argv) {
     if (auto ok = ff::write_file(argv[2], *page); !ok) return refused(ok.error());
     if (argc == 3) return 0;
 
-    options.width = 320, options.height = 240, options.supersampling = 1;
+    ff::TessellateOptions fine;
+    fine.tolerance = ff::summary(*model).box.diagonal() / 20000;
+    const auto mesh = ff::tessellate(*model, fine);
+    if (!mesh) return refused(mesh.error());
+    options.width = 2560, options.height = 1920, options.supersampling = 1;
     options.outlines = false;
     options.top = options.bottom = {1, 0, 1, 1};
-    auto renderer = ff::SurfaceRenderer::make(std::move(*buffers), ff::SurfacePipeline::grid);
-    if (!renderer) return refused(renderer.error());
-    const auto image = renderer->draw(options);
+    options.frame = buffers->extent;
+    const auto image = ff::render(mesh->mesh, options);
     if (!image) return refused(image.error());
-    const std::string head = "P6\n320 240\n255\n";
+    const std::string head = "P6\n2560 1920\n255\n";
     if (auto ok = ff::write_file(argv[3], head + std::string(image->rgb.begin(), image->rgb.end())); !ok)
         return refused(ok.error());
 }
