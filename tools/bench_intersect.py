@@ -6,6 +6,7 @@ Runs bench-intersect, bench-surface_pairs and the same with Open CASCADE and SIS
 """
 import argparse
 
+import oracle_intersect
 from bench_shared import duration, head, keep_shortest, parse, ratio, run, verdicts, write
 
 ROUNDS = 3
@@ -50,6 +51,13 @@ interval each, and nothing else, proven; the number that is none is refused. The
 | case | pairs | right | open | wrong | time |
 |---|---:|---:|---:|---:|---:|
 {known}
+
+The pairs of dhermes/bezier's functional tests, whose common points are known exactly, by the command line: as many points as there are, each at its
+parameters within 1e-8 and of its kind, proven (`tools/oracle_intersect.py`).
+
+| kind | pairs | right | open | wrong |
+|---|---:|---:|---:|---:|
+{oracle}
 
 1,000 nasty pairs whose number of common points is counted by Sturm's theorem in integers, up to degree 4 and 4. Open: the answer says that it does
 not know, and the truth is within what it says.
@@ -129,7 +137,8 @@ def main():
     longest = max(hard, key=lambda name: hard[name]["seconds"])
     write(options, "INTERSECT.md",
           PAGE.format(head=top, rounds=ROUNDS, rows=table(curves), surfaces=surface_table(surfaces), nasty=nasty_table(hard),
-                      known=verdicts(nasty_curves, "known"), curves=verdicts(nasty_curves, "curves"),
+                      known=verdicts(nasty_curves, "known"), oracle=oracle_intersect.rows(options.programs / "freiform"),
+                      curves=verdicts(nasty_curves, "curves"),
                       nasty_count=len(hard),
                       nasty_longest=f"{duration(hard[longest]['seconds'])} ({longest.replace('_', ' ')})"))
 
