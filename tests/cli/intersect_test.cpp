@@ -156,6 +156,134 @@ TEST_F(IntersectCommand, curves_lines_and_rays_meet_faces) {
     EXPECT_EQ(run({"intersect", face, face, "--rays", rays}).code, 2);
 }
 
+// The parts of the arch over [3/4, 1/4], backwards, and over [1/2, 3/2], beyond its end.
+TEST_F(IntersectCommand, curves_with_a_common_part_overlap_there_and_nowhere_else) {
+    const std::string arch = file("arch.json", R"({"type": "curve", "points": [[0,0],[1,2],[3,2],[4,0]]})");
+    const auto part = [&](const char* name, const char* points) {
+        const Ran r = run(
+            {"intersect", arch, file(name, text(R"({"type": "curve", "points": )", points, "}")), "--json"});
+        EXPECT_EQ(r.code, 0) << r.err;
+        const auto all = nlohmann::json::parse(r.out);
+        EXPECT_TRUE(all["points"].empty() && all["possible"].empty()) << r.out;
+        EXPECT_EQ(all["overlaps"].size(), 1u) << r.out;
+        return all["overlaps"][0];
+    };
+    using Range = std::vector<double>;
+    const auto back = part("back.json", "[[3.09375,1.125],[2.40625,1.625],[1.59375,1.625],[0.90625,1.125]]");
+    EXPECT_EQ(back["a"], (Range{0.25, 0.75}));
+    EXPECT_EQ(back["b"], (Range{0, 1}));
+    EXPECT_EQ(back["reversed"], true);
+    EXPECT_EQ(back["gap"], 0.0);
+    const auto on = part("on.json", "[[2,1.5],[3.5,1.5],[5,-0.5],[4.5,-4.5]]");
+    EXPECT_EQ(on["a"], (Range{0.5, 1}));
+    EXPECT_EQ(on["b"], (Range{0, 0.5}));
+    EXPECT_EQ(on["reversed"], false);
+    EXPECT_NE(run({"intersect", arch, path("on.json")}).out.find("overlap over [0.5, 1] and [0, 0.5]"),
+              std::string::npos);
+}
+
+// Rectangles of one plane: [0, 2] x [0, 1] and [1, 3] x [1/2, 2].
+TEST_F(IntersectCommand, surfaces_that_overlap_say_over_which_parameters) {
+    const std::string low = file("low.json", R"({"type": "surface", "degrees": [1, 1],
+        "points": [[[0,0,0],[0,1,0]],[[2,0,0],[2,1,0]]]})");
+    const std::string high = file("high.json", R"({"type": "surface", "degrees": [1, 1],
+        "points": [[[1,0.5,0],[1,2,0]],[[3,0.5,0],[3,2,0]]]})");
+    const Ran r = run({"intersect", low, high, "--tolerance", "1e-6", "--json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const auto all = nlohmann::json::parse(r.out);
+    EXPECT_TRUE(all["curves"].empty());
+    int regions = 0;
+    for (const auto& node : all["nodes"]) {
+        EXPECT_EQ(node["kind"] == "overlap", !node["overlaps"].empty()) << node;
+        for (const auto& o : node["overlaps"]) {
+            ++regions;
+            EXPECT_LE(o["gap"], 1e-6);
+            for (const auto& [side, lo, hi] : {std::tuple("a", std::array{0.5, 0.5}, std::array{1.0, 1.0}),
+                                               {"b", std::array{0.0, 0.0}, std::array{0.5, 1.0 / 3}}})
+                for (std::size_t d = 0; d < 2; ++d) {
+                    double least = 9, most = -9;
+                    for (const auto& corner : o[side]) {
+                        least = std::min(least, corner[d].get<double>());
+                        most = std::max(most, corner[d].get<double>());
+                    }
+                    EXPECT_NEAR(least, lo[d], 1e-12) << side << d;
+                    EXPECT_NEAR(most, hi[d], 1e-12) << side << d;
+                }
+        }
+    }
+    EXPECT_GT(regions, 0);
+    EXPECT_NE(run({"intersect", low, high}).out.find("overlap at"), std::string::npos);
+}
+
+// A box [0, 2] x [0, 1] x [0, 1] of six faces.
+class IntersectBox : public IntersectCommand {
+protected:
+    std::string box() {
+        const std::string outline = file("outline.json", R"({"type": "curve", "degree": 1,
+            "knots": [0,0,1,2,3,4,4], "points": [[0,0],[2,0],[2,1],[0,1],[0,0]]})");
+        EXPECT_EQ(run({"extrude", outline, "--by", "0,0,1", "--solid", "-o", "box.step"}).code, 0);
+        return path("box.step");
+    }
+};
+
+TEST_F(IntersectBox, branches_over_its_faces_are_one_closed_chain) {
+    const std::string wall = file("wall.json", R"({"type": "surface", "degrees": [1, 1],
+        "points": [[[-1,-1,0.25],[-1,2,0.5]],[[3,-1,0.25],[3,2,0.5]]]})");
+    const Ran r = run({"intersect", box(), wall, "--tolerance", "1e-6", "--json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const auto all = nlohmann::json::parse(r.out);
+    ASSERT_EQ(all["curves"].size(), 4u);
+    ASSERT_EQ(all["chains"].size(), 1u);
+    const auto& chain = all["chains"][0];
+    EXPECT_EQ(chain["closed"], true);
+    EXPECT_LE(chain["gap"], 1e-6);
+    // Each begins where the one before it ends.
+    std::vector<int> order = chain["curves"];
+    ASSERT_EQ(order.size(), 4u);
+    const std::vector<int> turned = chain["reversed"];
+    using Point = std::array<double, 3>;
+    const auto end = [&](int c, bool last) -> Point {
+        const auto& points = all["curves"][std::size_t(c)]["curve"]["points"];
+        return last != (std::ranges::find(turned, c) != turned.end()) ? points.back() : points.front();
+    };
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Point here = end(order[i], true), next = end(order[(i + 1) % 4], false);
+        for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(here[d], next[d], 1e-9);
+    }
+    std::ranges::sort(order);
+    EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3}));
+    EXPECT_NE(run({"intersect", box(), wall}).out.find("4 branches are one closed curve"), std::string::npos);
+}
+
+// From above through two faces; from inside through one; beside; along the upper face.
+TEST_F(IntersectBox, rays_begin_at_their_point_and_overlap_the_face_that_they_run_in) {
+    const std::string rays = file("rays.csv",
+                                  "px,py,pz,dx,dy,dz\n0.5,0.5,3,0,0,-2\n0.5,0.5,0.5,1,0,0\n"
+                                  "5,5,5,1,0,0\n-1,0.5,1,2,0,0\n");
+    const auto places = [&](const char* mode) {
+        const Ran r = run({"intersect", box(), mode, rays, "--json"});
+        EXPECT_EQ(r.code, 0) << r.err;
+        const auto all = nlohmann::json::parse(r.out);
+        EXPECT_EQ(all["overlaps"].size(), 1u) << r.out;
+        EXPECT_EQ(all["overlaps"][0]["ray"], 3);
+        EXPECT_NEAR(all["overlaps"][0]["b"][0].get<double>(), 0.5, 1e-9);
+        EXPECT_NEAR(all["overlaps"][0]["b"][1].get<double>(), 1.5, 1e-9);
+        std::vector<std::vector<double>> at(4);
+        for (const auto& p : all["points"]) {
+            at[p["ray"].get<std::size_t>()].push_back(p["b"][0]);
+            EXPECT_EQ(p["kind"], p["ray"] == 3 ? "end" : "crossing") << p;
+            EXPECT_EQ(p["proven"], p["ray"] != 3) << p;
+        }
+        for (auto& list : at) std::ranges::sort(list);
+        return at;
+    };
+    const auto by_rays = places("--rays"), by_lines = places("--lines");
+    EXPECT_EQ(by_rays[0], (std::vector<double>{1, 1.5}));
+    EXPECT_EQ(by_rays[1], (std::vector<double>{1.5}));
+    EXPECT_EQ(by_lines[1], (std::vector<double>{-0.5, 1.5}));
+    EXPECT_TRUE(by_rays[2].empty() && by_lines[2].empty());
+}
+
 TEST_F(IntersectCommand, says_what_is_not_answered) {
     const std::string a = file("a.json", kArches);
     const std::string bowl = file("bowl.json", kBowl);
