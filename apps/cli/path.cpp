@@ -30,7 +30,7 @@ bool changes_each(std::string_view operation) {
     return operation == "stroke" || operation == "offset" || operation == "simplify";
 }
 constexpr std::string_view kCapNames[] = {"butt", "round", "square"},
-                           kJoinNames[] = {"miter", "miter-clip", "round", "bevel"};
+                           kJoinNames[] = {"miter", "miter-clip", "round", "bevel", "arcs"};
 
 // Shapes, how far they are from what they should be, and the area of those that were made here.
 struct Shapes {
@@ -288,7 +288,7 @@ void add_path(CommandLine& line) {
     command.number("--width", options->width, "stroke: all shapes with this width");
     command.word("--cap", options->cap, "stroke: ends of lines").one_of({"butt", "round", "square"});
     command.word("--join", options->join, "Corners (offset: round)")
-        .one_of({"miter", "miter-clip", "round", "bevel"});
+        .one_of({"miter", "miter-clip", "round", "bevel", "arcs"});
     command.number("--miter-limit", options->miter_limit, "Longest miter, in half widths");
     command.numbers("--dashes", options->dashes, "stroke: lengths of dashes and gaps");
     command.number("--dash-offset", options->dash_offset, "stroke: where in the dashes each subpath begins");

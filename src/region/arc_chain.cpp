@@ -173,10 +173,12 @@ public:
             segments.push_back({1, {segments.back().back(), subpath.start}, 1});
         const std::size_t n = segments.size();
         std::vector<Vec<2>> begin(n), end(n);
-        std::vector<bool> smooth(n, false);  // at the end of each
+        std::vector<std::array<double, 2>> bends(n);  // at the start and the end of each
+        std::vector<bool> smooth(n, false);           // at the end of each
         for (std::size_t i = 0; i < n; ++i) {
             begin[i] = unit(end_tangent(segments[i], false));
             end[i] = unit(end_tangent(segments[i], true));
+            bends[i] = {end_bend(segments[i]), -end_bend(reversed(segments[i]))};
         }
         for (std::size_t i = 0; i < n; ++i) {
             if (i + 1 == n && !subpath.closed) continue;
@@ -189,7 +191,9 @@ public:
         }
         out_.closed = subpath.closed;
         for (std::size_t i = 0; i < n; ++i) {
-            joint_ = smooth[(i + n - 1) % n] ? PieceJoint::smooth : PieceJoint::corner;
+            const std::size_t previous = (i + n - 1) % n;
+            joint_ = smooth[previous] ? PieceJoint::smooth : PieceJoint::corner;
+            bends_ = {bends[previous][1], bends[i][0]};
             if (segments[i].degree == 1) {
                 add({segments[i].points[0], segments[i].points[1], begin[i], begin[i], 0, {}});
                 if (smooth[i]) out_.pieces.back().tb = end[i];
@@ -206,6 +210,7 @@ private:
     void add(const ArcPiece& piece) {
         out_.pieces.push_back(piece);
         out_.before.push_back(joint_);
+        out_.bends.push_back(bends_);
         joint_ = PieceJoint::smooth;
     }
     static Vec<2> end_tangent(const PathSegment& s, bool at_end) {
@@ -215,6 +220,16 @@ private:
             if (max_abs(d) > 0) return d;
         }
         return {};
+    }
+
+    // The curvature at the start; 0 where the curve stands still there.
+    static double end_bend(const PathSegment& s) {
+        if (s.degree == 1 || s.points[0] == s.points[1]) return 0;
+        const Vec<2> d = s.points[1] - s.points[0], next = s.points[2] - s.points[1];
+        const double length = norm(d), w = s.degree == 2 ? s.weight : 1;
+        const double bend =
+            (s.degree - 1.0) / s.degree * cross(unit(d), (1 / length) * next) / length / (w * w);
+        return std::isfinite(bend) ? bend : 0;
     }
 
     struct Part {
@@ -332,6 +347,7 @@ private:
     double h_, tolerance_, bend_ = 0;
     ArcChain out_;
     PieceJoint joint_ = PieceJoint::smooth;
+    std::array<double, 2> bends_{};
 };
 
 }  // namespace

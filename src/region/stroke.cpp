@@ -22,6 +22,7 @@
 // Why not the outline of both sides at once, with the rule nonzero? Where the radius is below h the inner
 // side runs backwards, and takes away from what other parts cover.
 #include "arc_chain_detail.hpp"
+#include "arcs_join_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/region/stroke.hpp>
@@ -66,6 +67,15 @@ public:
         for (const PathSegment& s : elliptic_arc(at(), q, radius, radius, 0, false, counter_clockwise))
             loop_.segments.push_back(s);
     }
+    // By half a turn at most, in the direction with which it leaves; the other, opposite to that in its end.
+    void arc_from(const Vec<2>& direction, const Vec<2>& q) {
+        const Vec<2> from = at();
+        bend_in_parts(from, direction, q, on_arc(from, direction, q, 0.5), q, true);
+    }
+    void arc_into(const Vec<2>& q, const Vec<2>& direction) {
+        const Vec<2> from = at();
+        bend_in_parts(q, direction, from, on_arc(q, direction, from, 0.5), q, false);
+    }
     // The points of the frame from index i to j, both included.
     void along(const Frame& f, std::size_t i, std::size_t j) {
         for (std::size_t k = i; k != j; i < j ? ++k : --k) line_to(f.points[k]);
@@ -77,6 +87,13 @@ public:
     }
 
 private:
+    void bend_in_parts(const Vec<2>& start, const Vec<2>& direction, const Vec<2>& end, const Vec<2>& middle,
+                       const Vec<2>& to, bool forward) {
+        const double half = half_turn(start, direction, end), sine = std::abs(std::sin(half));
+        if (std::abs(half) < 0.5) return bend_to(to, sine, (half > 0) == forward);
+        bend_to(middle, std::abs(std::sin(half / 2)), (half > 0) == forward);
+        bend_to(to, std::abs(std::sin(half / 2)), (half > 0) == forward);
+    }
     const Vec<2>& at() const { return loop_.segments.empty() ? loop_.start : loop_.segments.back().back(); }
     Subpath loop_;
 };
@@ -111,7 +128,7 @@ public:
                 join(end[i], x.tb, begin[k], y.ta, LineJoin::round),
                     join(end[i], x.tb, begin[k], y.ta, LineJoin::round, true);
             else if (joined)
-                join(end[i], x.tb, begin[k], y.ta, style_.join);
+                join(end[i], x.tb, begin[k], y.ta, style_.join, false, chain.bends[k]);
         }
         if (!chain.closed)
             cap(begin[0], -chain.pieces[0].ta, true), cap(end[n - 1], chain.pieces[n - 1].tb, false);
@@ -208,7 +225,7 @@ private:
 
     // On the outside of the corner, between the pens before and after it; or on the inside.
     void join(const Frame& f, const Vec<2>& in, const Frame& g, const Vec<2>& out, LineJoin how,
-              bool inside = false) {
+              bool inside = false, const std::array<double, 2>& bends = {}) {
         const bool left = cross(in, out) > 0 || (cross(in, out) == 0 && freiform::dot(in, out) < 0);
         if (cross(in, out) == 0 && freiform::dot(in, out) > 0) return;
         const Frame &first = left ? f : g, &last = left ? g : f;
@@ -220,6 +237,21 @@ private:
         loop.along(first, first.p, edge(first));
         const Vec<2> middle = unit((a - p) + (b - p));
         const double half = freiform::dot(middle, a - p) / h_;  // the cosine of half the turn
+        if (how == LineJoin::arcs) {
+            const double bend_in = (left ? h_ : -h_) * bends[0], bend_out = (left ? h_ : -h_) * bends[1];
+            const JoinSide incoming{(left ? -1.0 : 1.0) * Vec<2>{{-in[1], in[0]}}, in, bend_in},
+                outgoing{(left ? -1.0 : 1.0) * Vec<2>{{-out[1], out[0]}}, -out, bend_out};
+            const JoinSide &x = left ? incoming : outgoing, &y = left ? outgoing : incoming;
+            const ArcsJoin arcs = arcs_join(x, y, style_.miter_limit);
+            how = arcs.kind == ArcsJoinKind::round        ? LineJoin::round
+                  : arcs.kind == ArcsJoinKind::miter_clip ? LineJoin::miter_clip
+                                                          : LineJoin::arcs;
+            if (how == LineJoin::arcs) {
+                loop.arc_from(x.direction, p + h_ * arcs.from_first);
+                loop.line_to(p + h_ * arcs.from_last);
+                loop.arc_into(b, y.direction);
+            }
+        }
         const bool miter = how == LineJoin::miter || how == LineJoin::miter_clip;
         if (how == LineJoin::round) {
             loop.arc_to(b, h_, true);
@@ -245,9 +277,6 @@ Result<void> check(const StrokeStyle& style, const RegionOptions& options) {
         return refuse(RefusalKind::invalid, "width", text(style.width, " is not a width > 0"));
     if (!(style.miter_limit >= 1))
         return refuse(RefusalKind::invalid, "miter_limit", text(style.miter_limit, " is not at least 1"));
-    if (style.join == LineJoin::arcs)
-        return refuse(RefusalKind::unsupported, "join",
-                      "joins by arcs are not known; miter, miter-clip, round and bevel are");
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not a length > 0"));
     return {};

@@ -125,7 +125,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (kind % 16 == 3) {
         StrokeStyle style;
         style.width = 0.25 * (1 + bytes.next() % 16);
-        style.cap = LineCap(bytes.next() % 3), style.join = LineJoin(bytes.next() % 4);
+        style.cap = LineCap(bytes.next() % 3), style.join = LineJoin(bytes.next() % 5);
         if (bytes.next() % 4 == 0) style.dashes = {1.0 + bytes.next() % 8, double(bytes.next() % 8)};
         const auto r = stroked(p, style, {.tolerance = 0.01});
         demand(r ? signed_area(r->path).value >= 0 : !r.error().message.empty());

@@ -249,7 +249,6 @@ TEST(Stroked, refuses_what_makes_no_sense) {
     const auto with = [&](StrokeStyle s) { return stroked(line, s, kUsual); };
     expect_refusal(with({.width = 0, .dashes = {}}), RefusalKind::invalid, "width");
     expect_refusal(with({.miter_limit = 0.5, .dashes = {}}), RefusalKind::invalid, "miter_limit");
-    expect_refusal(with({.join = LineJoin::arcs, .dashes = {}}), RefusalKind::unsupported, "join");
     expect_refusal(with({.dashes = {1, -1}}), RefusalKind::invalid, "dashes[1]");
     expect_refusal(with({.dashes = {0, 0}}), RefusalKind::invalid, "dashes");
     expect_refusal(with({.dashes = {1e-6, 1e-6}}), RefusalKind::limit, "path.subpaths[0].dashes");

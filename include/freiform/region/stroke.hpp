@@ -15,8 +15,12 @@ namespace freiform {
 // way round. (Dashes begin and end where they should up to an eighth of the tolerance along the path; the pen
 // is that between those places.)
 //
+// Joins `arcs` go on with the curvature of the outer edges until these meet, as SVG 2 says, miter-clip
+// where they do not. Their curvatures are off by at most 2^-40 of themselves, or of 1 / width, which the
+// bound does not count: where two circles almost touch, it moves the tip by more.
+//
 // Refuses (invalid) a width, a miter limit, dashes or a tolerance that make no sense, and what region_of
-// refuses; (unsupported) the join `arcs`; (limit) more than 100,000 arcs, or more than 100,000 dashes.
+// refuses; (limit) more than 100,000 arcs, or more than 100,000 dashes.
 //   auto outline = stroked(path, {.width = 2, .cap = LineCap::round}, {.tolerance = 1e-3});
 Result<Region> stroked(const Path& path, const StrokeStyle& style, const RegionOptions& options);
 
