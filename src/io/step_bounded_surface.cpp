@@ -38,6 +38,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std
     e.end = corner(on.hi);
     EdgeMade made;
     made.flipped = c->reversed;
+    made.curve = curve;
     made.edge = int(out_.model.edges.size());
     out_.model.edges.push_back(std::move(e));
     edges_.emplace(curve, made);

@@ -98,6 +98,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     const auto c = geometry_.curve(*at);
     if (!c) return std::unexpected(c.error());
     EdgeMade made;
+    made.curve = *at;
     made.flipped = f->flag(4) == c->reversed;
     if (made.flipped) std::swap(end[0], end[1]);
     const Vec<3> a = out_.model.vertices[std::size_t(end[0])].point,

@@ -36,6 +36,7 @@ Result<ShapeReader::SurfaceMade*> ShapeReader::surface(std::uint32_t i) {
     made->chart = std::make_unique<Chart>(made->surface, tolerance_);
     SurfaceMade* at = made.get();
     surfaces_.emplace(i, std::move(made));
+    charts_.emplace(at->chart.get(), i);
     return at;
 }
 
@@ -49,10 +50,13 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
                                 bool loosely) {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
     const double rough = std::max(tolerance_, kRough * size);
-    auto t = trace(chart, *e.curve, e.range, accuracy_for(size), rough);
+    std::vector<CurveGeometry<3>> images;
+    if (const auto on = charts_.find(&chart); on != charts_.end() && made.curve != kMissing)
+        images = geometry_.images(made.curve, on->second);
+    auto t = trace(chart, *e.curve, e.range, accuracy_for(size), rough, images);
     if (!t) return std::unexpected(t.error());
     if (loosely && is_beside(t->gap, size))
-        if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough);
+        if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough, images);
             plain && plain->gap <= kPlain * t->gap)
             t = std::move(plain);
     if (size > 0 && !(t->gap < kHopeless * size))
@@ -60,7 +64,7 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
                       text("lies ", t->gap, " beside the surface; the face has a size of ", size));
     Use u = make_use({made.edge, forward == made.flipped, std::move(t->curve)}, e);
     u.gap = t->gap;
-    u.fitted = t->fitted;
+    u.fitted = t->fitted, u.told = t->told;
     return u;
 }
 

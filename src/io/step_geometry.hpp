@@ -5,6 +5,7 @@
 #include <freiform/spline/geometry.hpp>
 
 #include <unordered_map>
+#include <vector>
 
 namespace freiform::step {
 
@@ -39,6 +40,9 @@ public:
 
     Result<BoundedCurve> curve(std::uint32_t i);
     Result<SurfaceGeometry> surface(std::uint32_t i);
+    // What the file says of a curve in the parameters of a surface (PCURVE); their third coordinate is 0.
+    // What cannot be read of it is left out.
+    std::vector<CurveGeometry<3>> images(std::uint32_t curve, std::uint32_t surface);
 
 private:
     Result<Vec<3>> triple(const Fields& f, int i, std::string_view what) const;

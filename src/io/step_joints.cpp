@@ -14,7 +14,7 @@ namespace {
 
 bool is_straight(const Use& u) { return std::holds_alternative<Line<2>>(u.coedge.curve); }
 bool can_move(const Use& u) {
-    return is_straight(u) || (u.fitted && std::holds_alternative<Curve<Vec<2>>>(u.coedge.curve));
+    return is_straight(u) || ((u.fitted || u.told) && std::holds_alternative<Curve<Vec<2>>>(u.coedge.curve));
 }
 
 }  // namespace

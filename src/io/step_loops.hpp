@@ -12,7 +12,7 @@ struct Use {
     int from = -1, to = -1;  // vertices, in the direction of the loop
     Vec<2> start{}, end{};   // likewise
     double gap = 0;
-    bool fitted = false;
+    bool fitted = false, told = false;
 };
 Use make_use(Coedge coedge, const Edge& edge);
 

@@ -48,6 +48,7 @@ namespace freiform::step {
     X(CURVE_BOUNDED_SURFACE)                           \
     X(CURVE_REPLICA)                                   \
     X(CYLINDRICAL_SURFACE)                             \
+    X(DEFINITIONAL_REPRESENTATION)                     \
     X(DEGENERATE_TOROIDAL_SURFACE)                     \
     X(DIRECTION)                                       \
     X(DRAUGHTING_PRE_DEFINED_COLOUR)                   \

@@ -42,6 +42,7 @@ private:
         int edge = -1;
         bool flipped = false;  // the edge of the model runs from the second vertex to the first
         bool empty = false;    // no longer than the tolerance: left out of loops
+        std::uint32_t curve = kMissing;
     };
     struct SurfaceMade {
         SurfaceGeometry surface;
@@ -96,6 +97,7 @@ private:
     std::unordered_map<std::uint32_t, EdgeMade> edges_;
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
+    std::unordered_map<const Chart*, std::uint32_t> charts_;
 };
 
 // The surface with a spline that closes continued by whole turns, so that `on` is inside its domain.

@@ -22,6 +22,17 @@ constexpr int kMostPieces = 600;  // backstop
 constexpr double kApart = 1e-6;   // of the range: places where pieces begin
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
+int spans_of(const CurveGeometry<3>& c) {
+    return std::visit(
+        [](const auto& g) {
+            if constexpr (requires { g.net(); })
+                return std::min(2 * int(g.net().flat().size()), 400);
+            else
+                return 0;
+        },
+        c);
+}
+
 struct TraceNode {
     double t = 0;
     Vec<2> at{}, before{}, after{};  // the slopes on both sides: the edge may have a corner here
@@ -29,11 +40,12 @@ struct TraceNode {
 
 class Tracer {
 public:
-    Tracer(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough)
-        : chart_(chart), c_(c), on_(on), accuracy_(accuracy), rough_(rough) {}
+    Tracer(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough,
+           std::span<const CurveGeometry<3>> images)
+        : chart_(chart), c_(c), on_(on), accuracy_(accuracy), rough_(rough), images_(images) {}
 
     Result<Trace> run() {
-        if (auto flat = on_plane()) return *flat;
+        if (auto flat = trace_on_plane(chart_.surface(), c_, on_)) return *flat;
         auto t = on_curved();
         if (t && crosses_pole(t->curve)) t = through_pole();
         if (!t)
@@ -64,64 +76,44 @@ private:
     }
 
     Result<Trace> on_curved() {
+        if (auto told = image()) return *told;
         const double middle = on_.lo + 0.46875 * on_.length();
         const auto j = jet<1>(c_, middle);
-        const Foot start = chart_.foot(j.d[0], j.d[1], chart_.locate(j.d[0]));
+        const Foot start = foot_by_images(chart_, j.d[0], j.d[1], middle, on_, accuracy_, images_);
         if (!start.regular) return through_pole();
         if (auto straight = line(start, middle)) return *straight;
         return spline(start, middle);
     }
 
-    double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }
-
-    // bound of the gap, in exact arithmetic: the distance from a plane is convex, so that of the control
-    // points bounds that of a spline.
-    std::optional<Trace> on_plane() const {
-        const auto* s = std::get_if<Extrusion>(&chart_.surface());
-        const auto* l = s != nullptr ? std::get_if<Line<3>>(&s->profile) : nullptr;
-        if (l == nullptr) return std::nullopt;
-        const Vec<3> x = l->direction, y = s->direction, n = unit(cross(x, y));
-        const bool square = std::abs(dot(x, y)) <= 1e-15 * norm(x) * norm(y);
-        const Vec<3> gu = square ? (1 / dot(x, x)) * x : (1 / dot(x, cross(y, n))) * cross(y, n);
-        const Vec<3> gv = square ? (1 / dot(y, y)) * y : (1 / dot(y, cross(n, x))) * cross(n, x);
-        const auto direction = [&](const Vec<3>& d) { return Vec<2>{{dot(d, gu), dot(d, gv)}}; };
-        const auto point = [&](const Vec<3>& p) { return direction(p - l->origin); };
-        const auto height = [&](const Vec<3>& p) { return std::abs(dot(p - l->origin, n)); };
-        Trace out;
-        std::visit(
+    // Straight, or with its first and last control point there: joints are closed by moving those.
+    bool begins_and_ends_with_edge(const CurveGeometry<3>& image) const {
+        return std::visit(
             [&](const auto& g) {
-                using G = std::remove_cvref_t<decltype(g)>;
-                if constexpr (std::same_as<G, Line<3>>) {
-                    out.curve = Line<2>{point(g.origin), direction(g.direction)};
-                    out.gap =
-                        std::max(height(jet<0>(c_, on_.lo).value()), height(jet<0>(c_, on_.hi).value()));
-                } else if constexpr (std::same_as<G, Conic<3>>) {
-                    out.curve = Conic<2>{g.kind, point(g.centre), direction(g.x), direction(g.y)};
-                    if (g.kind == ConicKind::ellipse)
-                        out.gap = height(g.centre) + std::hypot(dot(g.x, n), dot(g.y, n));
-                    else
-                        for (int i = 0; i <= 8; ++i)
-                            out.gap =
-                                std::max(out.gap, height(jet<0>(c_, on_.lo + on_.length() * i / 8).value()));
-                } else if constexpr (std::same_as<G, Curve<Vec<3>>>) {
-                    Net<1, Vec<2>> net(g.net().extent());
-                    for (std::size_t i = 0; i < net.flat().size(); ++i)
-                        net.flat()[i] = point(g.net().flat()[i]);
-                    out.curve = Curve<Vec<2>>::trusted(g.bases(), std::move(net));
-                    for (const auto& p : g.net().flat()) out.gap = std::max(out.gap, height(p));
+                if constexpr (requires { g.net(); }) {
+                    const BSplineBasis& b = g.basis();
+                    return b.domain() == on_ && b.multiplicity(on_.lo) >= b.degree() &&
+                           b.multiplicity(on_.hi) >= b.degree();
                 } else {
-                    Net<1, Hom<2>> net(g.net().extent());
-                    for (std::size_t i = 0; i < net.flat().size(); ++i) {
-                        const Hom<3>& h = g.net().flat()[i];
-                        net.flat()[i] = weighted(point(project(h)), h.weight());
-                        out.gap = std::max(out.gap, height(project(h)));
-                    }
-                    out.curve = Curve<Hom<2>>::trusted(g.bases(), std::move(net));
+                    return requires { g.direction; };
                 }
             },
-            c_);
-        return out;
+            image);
     }
+    // An image that has the parameter of the edge is the answer, if it is as near to the edge everywhere as
+    // others have to be; one with another parameter says where to begin.
+    std::optional<Trace> image() {
+        if (!chart_.is_spline(0) || !chart_.is_spline(1)) return std::nullopt;
+        for (const CurveGeometry<3>& c : images_) {
+            if (!begins_and_ends_with_edge(c)) continue;
+            const auto flat = without_last_coordinate(c);
+            if (!flat) continue;
+            Trace out{*flat, 0, false, true};
+            if (holds_everywhere(out, std::max(spans_of(c_), spans_of(c)))) return out;
+        }
+        return std::nullopt;
+    }
+
+    double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }
 
     // An end of the straight line: where the edge itself says it, rather than continued from the middle.
     Vec<2> end(double t, const Vec<2>& guess) const {
@@ -156,17 +148,17 @@ private:
         if (max_abs(d) == 0) return std::nullopt;
         Trace out;
         out.curve = Line<2>{a - on_.lo * d, d};
-        for (const double x : kPlacesOfLine)
-            if (!holds(jet<0>(out.curve, on_.lo + x * on_.length()).value(), on_.lo + x * on_.length(),
-                       out.gap))
-                return std::nullopt;
-        // Splines have more places to look at.
-        const int more = spans();
-        for (int i = 0; i < more; ++i) {
-            const double t = on_.lo + on_.length() * (i + 0.5) / more;
-            if (!holds(jet<0>(out.curve, t).value(), t, out.gap)) return std::nullopt;
-        }
+        if (!holds_everywhere(out, spans_of(c_))) return std::nullopt;
         return out;
+    }
+    // At `more` places besides those that lines have: splines need them.
+    bool holds_everywhere(Trace& out, int more) const {
+        const auto at = [&](double t) { return holds(jet<0>(out.curve, t).value(), t, out.gap); };
+        for (const double x : kPlacesOfLine)
+            if (!at(x == 1 ? on_.hi : on_.lo + x * on_.length())) return false;
+        for (int i = 0; i < more; ++i)
+            if (!at(on_.lo + on_.length() * (i + 0.5) / more)) return false;
+        return true;
     }
     // Along the end of a spline exactly so.
     void snap(Vec<2>& a, Vec<2>& b) const {
@@ -176,16 +168,6 @@ private:
             for (const double x : {on.lo, on.hi})
                 if (a[k] == b[k] && std::abs(a[k] - x) <= 1e-9 * on.length()) a[k] = b[k] = x;
         }
-    }
-    int spans() const {
-        return std::visit(
-            [](const auto& g) {
-                if constexpr (requires { g.net(); })
-                    return std::min(2 * int(g.net().flat().size()), 400);
-                else
-                    return 0;
-            },
-            c_);
     }
     // Whether uv is as near to the edge as the surface is, or almost.
     bool holds(const Vec<2>& uv, double t, double& worst) const {
@@ -376,13 +358,14 @@ private:
     const CurveGeometry<3>& c_;
     Interval on_;
     double accuracy_, rough_;
+    std::span<const CurveGeometry<3>> images_;
 };
 
 }  // namespace
 
-Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy,
-                    double rough) {
-    return Tracer(chart, c, on, accuracy, rough).run();
+Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough,
+                    std::span<const CurveGeometry<3>> images) {
+    return Tracer(chart, c, on, accuracy, rough, images).run();
 }
 
 }  // namespace freiform::step

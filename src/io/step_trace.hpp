@@ -4,24 +4,40 @@
 
 #include <freiform/core/result.hpp>
 
+#include <span>
+
 namespace freiform::step {
 
 struct Trace {
     CurveGeometry<2> curve;
     double gap = 0;       // the largest distance from the edge that was seen
     bool fitted = false;  // a spline that follows the edge, and not a curve of closed form
+    bool told = false;    // of the file
 };
 
 // The curve over `on` whose image on the surface follows `c` with the same parameter, as near as the surface
 // comes to it, plus `accuracy`. It is continuous where parameters are periodic. Refuses where it runs through
-// a pole or fold and a polygon of nearest points is further off than `rough`.
-Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy,
-                    double rough);
+// a pole or fold and a polygon of nearest points is further off than `rough`. Where the surface has several
+// points that are as near, as one that folds has, it is where one of the `images` is: curves that are said to
+// be this one in the parameters, wherever they are, their third coordinate being 0.
+Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough,
+                    std::span<const CurveGeometry<3>> images = {});
+
+// Nothing if the surface is no plane. The gap is a bound, in exact arithmetic.
+std::optional<Trace> trace_on_plane(const SurfaceGeometry& surface, const CurveGeometry<3>& c, Interval on);
 
 // Where the surface shrinks to a point or folds, slopes mean nothing: a polygon of nearest points, if it is
 // nowhere further from the edge than `rough`.
 std::optional<Trace> polygon_of_feet(const Chart& chart, const CurveGeometry<3>& c, Interval on,
                                      double rough);
+
+// The foot from the nearest point of the surface; of those that are about as near, as where it folds, the one
+// by an image, which may have a parameter of its own. `t`: that of the edge, over `on`.
+Foot foot_by_images(const Chart& chart, const Vec<3>& p, const Vec<3>& motion, double t, Interval on,
+                    double accuracy, std::span<const CurveGeometry<3>> images);
+
+// None of conics.
+std::optional<CurveGeometry<2>> without_last_coordinate(const CurveGeometry<3>& c);
 
 CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by);
 

@@ -125,8 +125,24 @@ private:
         return id;
     }
 
+    // Where a surface folds, a curve in space does not say which part of it is meant. Splines that a reader
+    // made to follow an edge have many more control points than it: another will make its own.
+    static bool is_worth_writing(const CurveGeometry<2>& image, const CurveGeometry<3>& edge,
+                                 const SurfaceGeometry& surface) {
+        const auto points = [](const auto& g) -> std::size_t {
+            if constexpr (requires { g.net(); })
+                return g.net().flat().size();
+            else
+                return 0;
+        };
+        const std::size_t n = std::visit(points, image);
+        return n > 0 && n <= std::visit(points, edge) && std::visit(points, surface) > 0;
+    }
+
     // The curve in space, or the image of the parameter curve with that beside it.
     Result<int> curve_of(const Edge& e, const Coedge& c, const SurfaceGeometry& surface, int of_surface) {
+        if (e.curve && is_worth_writing(c.curve, *e.curve, surface))
+            return geometry_.surface_curve(*e.curve, c.curve, of_surface);
         if (const auto shape = e.curve ? e.curve : lifted(c.curve, surface)) return geometry_.curve(*shape);
         const auto parameters = parameter_spline(c.curve, e.range);
         if (!parameters) return std::unexpected(parameters.error());

@@ -184,7 +184,7 @@ Shape random_shape(Random& r, TrimmedFaces& trimmed, int i) {
 
 TEST(StepRoundTrip, random_models_come_back_equal_to_the_last_bit) {
     const char* named = std::getenv("FREIFORM_STEP_ROUND_TRIPS");
-    const int count = named != nullptr ? std::atoi(named) : 80;
+    const int count = named != nullptr ? std::atoi(named) : 400;
     Random r(1299);
     TrimmedFaces trimmed(77);
     for (int i = 0; i < count; ++i) {
