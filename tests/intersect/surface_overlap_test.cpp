@@ -1,3 +1,4 @@
+#include "intersect/same_map_detail.hpp"
 #include "random.hpp"
 #include "shapes.hpp"
 
@@ -193,6 +194,84 @@ TEST(SurfaceOverlaps, spheres_with_other_poles_overlap_and_those_of_another_size
     const auto apart =
         must(intersect(a, ball({{1, 2, 3}}, 1 + 1e-4), SurfaceIntersectOptions{.tolerance = 1e-6}));
     for (const SurfaceNode& n : apart.nodes) EXPECT_NE(n.kind, SurfaceNodeKind::overlap);
+}
+
+class OneSphere : public testing::Test {
+protected:
+    static Surface<Hom<3>> ball(const Vec<3>& centre, double r, const Vec<3>& axis = {{1, 2, 3}}) {
+        return must(sphere(must(frame_about(centre, axis)), r)).surface;
+    }
+    static Surface<Hom<3>> with(const Surface<Hom<3>>& s, std::size_t i, const Hom<3>& p) {
+        auto net = s.net();
+        net.flat()[i] = p;
+        return must(Surface<Hom<3>>::make(s.bases(), net));
+    }
+    static bool both_ways(const Surface<Hom<3>>& a, const Surface<Hom<3>>& b, double tolerance) {
+        const bool forth = detail::are_one_sphere(a, b, tolerance);
+        EXPECT_EQ(forth, detail::are_one_sphere(b, a, tolerance));
+        return forth;
+    }
+    static constexpr double kTolerance = 1e-6;
+};
+
+// Twice the distance, divided by the square of the least weight: a tenth of the tolerance is near enough, all
+// of it is not.
+TEST_F(OneSphere, is_told_within_the_tolerance_and_never_beyond_it) {
+    for (const Vec<3>& centre : {Vec<3>{}, Vec<3>{{40, -20, 10}}}) {
+        const auto a = ball(centre, 2, {{0, 0, 1}});
+        EXPECT_TRUE(both_ways(a, ball(centre, 2), kTolerance));
+        for (const double d : {-0.1, 0.1}) {
+            EXPECT_TRUE(both_ways(a, ball(centre, 2 + d * kTolerance), kTolerance)) << d;
+            EXPECT_TRUE(both_ways(a, ball(centre + Vec<3>{{0, d * kTolerance, 0}}, 2), kTolerance)) << d;
+        }
+        for (const double d : {-1.05, 1.05, 20.0}) {
+            EXPECT_FALSE(both_ways(a, ball(centre, 2 + d * kTolerance), kTolerance)) << d;
+            EXPECT_FALSE(both_ways(a, ball(centre + Vec<3>{{0, d * kTolerance, 0}}, 2), kTolerance)) << d;
+        }
+    }
+}
+
+// A control point that only the middle of one surface knows; all corners stay.
+TEST_F(OneSphere, is_refused_where_only_the_inside_of_one_surface_leaves_it) {
+    const auto a = ball({}, 1, {{0, 0, 1}}), b = ball({}, 1);
+    const std::size_t row = std::size_t(b.net().extent()[1]), i = row + row / 2;
+    const Hom<3> p = b.net().flat()[i];
+    EXPECT_TRUE(both_ways(a, with(b, i, p), kTolerance));
+    for (const double by : {1 + 1e-4, 1 - 1e-4}) {
+        const auto moved = with(b, i, weighted(by * project(p), p.weight()));
+        EXPECT_FALSE(both_ways(a, moved, kTolerance));
+        EXPECT_TRUE(both_ways(a, moved, 1e-3));
+    }
+}
+
+// Homogeneous coefficients say the same if all are multiplied.
+TEST_F(OneSphere, does_not_depend_on_a_factor_of_all_weights) {
+    const auto a = ball({}, 1, {{0, 0, 1}});
+    for (const double factor : {0x1p-12, 0x1p12}) {
+        for (const double r : {1.0, 1 + 1e-3}) {
+            const auto b = ball({}, r);
+            auto net = b.net();
+            for (Hom<3>& p : net.flat()) p = factor * p;
+            const auto same = must(Surface<Hom<3>>::make(b.bases(), net));
+            EXPECT_EQ(both_ways(a, same, kTolerance), r == 1) << factor;
+        }
+    }
+}
+
+// What rounding leaves open is no proof; neither is a plane, on which any sphere is large enough.
+TEST_F(OneSphere, is_not_told_below_rounding_nor_of_what_is_no_sphere) {
+    const auto a = ball({{1e3, 0, 0}}, 1, {{0, 0, 1}}), b = ball({{1e3, 0, 0}}, 1);
+    EXPECT_TRUE(both_ways(a, b, 1e-6));
+    EXPECT_FALSE(both_ways(a, b, 1e-10));
+    const auto pipe = must(cylinder(must(frame_about({}, {{0, 0, 1}})), 1, {-1, 1})).surface;
+    EXPECT_FALSE(both_ways(pipe, pipe, 1e-3));
+    EXPECT_FALSE(both_ways(ball({}, 1), pipe, 1e-3));
+    const auto line = must(BSplineBasis::bezier(1));
+    const auto flat = must(Surface<Hom<3>>::make(
+        {line, line},
+        Net<2, Hom<3>>({2, 2}, {weighted(Vec<3>{{0, 0, 0}}, 1), weighted(Vec<3>{{0, 1, 0}}, 1),
+                                weighted(Vec<3>{{1, 0, 0}}, 1), weighted(Vec<3>{{1, 1, 0}}, 1)})));
+    EXPECT_FALSE(detail::are_one_sphere(flat, flat, 1e-3));
 }
 
 TEST(SurfaceOverlaps, powers_of_two_scale_them) {

@@ -194,5 +194,99 @@ TEST(OrientedBox, encloses_and_leaves_no_more_than_its_slack) {
     }
 }
 
+// The faces of a box of sides 1, 2 and 5 that is turned: the least box is that one, and no coordinate axis
+// helps to find it.
+class TurnedBox : public testing::Test {
+protected:
+    static std::array<Vec<3>, 3> axes() {
+        const Vec<3> a = unit(Vec<3>{{1, 2, 3}}), b = unit(cross(a, Vec<3>{{0, 0, 1}}));
+        return {a, b, cross(a, b)};
+    }
+    static NearestQuery faces(double scale) {
+        const auto turned = axes();
+        const std::array sides{1.0, 2.0, 5.0};
+        const auto line = must(BSplineBasis::bezier(1));
+        std::vector<Surface<Vec<3>>> all;
+        for (std::size_t k = 0; k < 3; ++k)
+            for (const double at : {0.0, 1.0}) {
+                const auto corner = [&](double u, double v) {
+                    const Vec<3> p = at * sides[k] * turned[k] +
+                                     u * sides[(k + 1) % 3] * turned[(k + 1) % 3] +
+                                     v * sides[(k + 2) % 3] * turned[(k + 2) % 3];
+                    return scale * (p + Vec<3>{{3, -4, 7}});
+                };
+                all.push_back(must(Surface<Vec<3>>::make(
+                    {line, line},
+                    Net<2, Vec<3>>({2, 2}, {corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)}))));
+            }
+        std::vector<NearestObject> objects;
+        for (const auto& s : all) objects.push_back(NearestObject::of(s));
+        return must(NearestQuery::make(objects));
+    }
+};
+
+TEST_F(TurnedBox, is_found_with_its_sides_its_middle_and_in_any_unit) {
+    const auto turned = axes();
+    Vec<3> middle{{3, -4, 7}};
+    for (std::size_t k = 0; k < 3; ++k) middle += (k == 0 ? 0.5 : k == 1 ? 1.0 : 2.5) * turned[k];
+    for (const double scale : {1.0, 0x1p200, 0x1p-200}) {
+        const auto box = must(oriented_box<3>(faces(scale), 0));
+        std::array<double, 3> sides{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            sides[k] = box.range[k].length() / scale;
+            EXPECT_LE(std::abs(box.half()[int(k)] / scale - sides[k] / 2), 1e-12);
+            EXPECT_GE(box.half()[int(k)], box.range[k].length() / 2);
+        }
+        std::ranges::sort(sides);
+        EXPECT_NEAR(sides[0], 1, 1e-12);
+        EXPECT_NEAR(sides[1], 2, 1e-12);
+        EXPECT_NEAR(sides[2], 5, 1e-12);
+        EXPECT_LE(norm((1 / scale) * box.middle() - middle), 1e-12);
+        EXPECT_GE(box.slack, 0);
+        EXPECT_LE(box.slack / scale, 1e-12);
+    }
+    EXPECT_NEAR(must(oriented_box<3>(faces(1), 0)).volume(), 10, 1e-11);
+}
+
+TEST(OrientedBox, of_a_flat_object_lies_in_its_plane) {
+    const auto square = must(Surface<Vec<3>>::make(
+        {must(BSplineBasis::bezier(1)), must(BSplineBasis::bezier(1))},
+        Net<2, Vec<3>>({2, 2}, {Vec<3>{{0, 0, 0}}, {{1, 1, 1}}, {{1, -1, 0}}, {{2, 0, 1}}})));
+    const auto box =
+        must(oriented_box<3>(must(NearestQuery::make(std::array{NearestObject::of(square)})), 0));
+    std::array<double, 3> sides{};
+    for (std::size_t k = 0; k < 3; ++k) sides[k] = box.range[k].length();
+    std::ranges::sort(sides);
+    EXPECT_LE(sides[0], 1e-13);
+    EXPECT_NEAR(sides[1], std::sqrt(2.0), 1e-13);
+    EXPECT_NEAR(sides[2], std::sqrt(3.0), 1e-13);
+}
+
+// With little work the box is larger, and its slack says by how much at most.
+TEST(OrientedBox, encloses_with_a_slack_that_holds_after_any_work_and_refuses_wrong_numbers) {
+    Random random(8);
+    const auto basis = must(BSplineBasis::bezier(5));
+    const auto s = random_patch_on<2, Hom<3>>(random, {basis, basis});
+    const auto query = must(NearestQuery::make(std::array{NearestObject::of(s)}));
+    const auto best = must(oriented_box<3>(query, 0));
+    double before = kInfinity;
+    for (const int parts : {1, 30, 20000}) {
+        const auto box = must(oriented_box<3>(query, 0, parts));
+        ASSERT_EQ(box.axes, best.axes);
+        for (std::size_t d = 0; d < 3; ++d) {
+            EXPECT_TRUE(box.range[d].contains(best.range[d].lo + best.slack));
+            EXPECT_TRUE(box.range[d].contains(best.range[d].hi - best.slack));
+            EXPECT_LE(best.range[d].lo - box.range[d].lo, box.slack);
+            EXPECT_LE(box.range[d].hi - best.range[d].hi, box.slack);
+        }
+        EXPECT_LT(box.slack, before);
+        before = box.slack;
+    }
+    EXPECT_LT(before, 1e-9);
+    expect_refusal(oriented_box<3>(query, -1), RefusalKind::invalid, "accuracy");
+    expect_refusal(oriented_box<3>(query, std::nan("")), RefusalKind::invalid, "accuracy");
+    expect_refusal(oriented_box<3>(query, 0, 0), RefusalKind::invalid, "max_parts");
+}
+
 }  // namespace
 }  // namespace freiform::test
