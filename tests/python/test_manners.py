@@ -39,7 +39,7 @@ OBJECTS = [
     ff.Gradient([(0, "#ff0000"), (1, "#0000ff")]),
     ff.MeshGradient(ff.Surface([[[0, 0], [0, 1]], [[1, 0], [1, 1]]]), ["#ff0000"] * 4),
     ff.Frame(), ff.frame_about([0, 0, 1], [1, 1, 0]), SOLID, SOLID.faces[0], SOLID.edges[0], ff.ModelNearestQuery(SOLID),
-    SOLID.tessellate(0.1).mesh,
+    SOLID.tessellate(0.1).mesh, SOLID.nearest([[0.5, 0.5, 3], [2, 2, 2]]),
 ]
 try:
     OBJECTS.append(ff.Font("DejaVu Sans"))

@@ -193,6 +193,36 @@ def test_paths_and_regions():
         ff.Path("M 0 0 L x")
 
 
+def test_nearest_points_of_models_are_arrays():
+    grid = np.moveaxis(np.mgrid[-1:3:4j, -1:2:3j, -1:4:3j], 0, -1)
+    found = BOX.nearest(grid)
+    assert isinstance(found, ff.ModelNearestPoints) and found.distance.shape == (4, 3, 3) and found.uv.shape == (4, 3, 3, 2)
+    nearest = np.clip(grid, 0, [2, 1, 3])
+    outside = (nearest != grid).any(axis=-1)
+    assert outside.sum() > 30 and np.allclose(found.point[outside], nearest[outside], atol=1e-9)
+    assert np.allclose(found.distance, np.linalg.norm(grid - found.point, axis=-1), atol=1e-12)
+    assert (found.lower_bound <= found.distance).all() and (found.distance - found.lower_bound < 1e-6).all()
+    assert set(found.face.flat) <= set(range(len(BOX.faces))) and found.face.dtype == np.int64
+    # Before a corner, an edge and a face.
+    three = BOX.nearest([[-1, -1, -1], [1, -1, -1], [1, 0.5, 4]])
+    assert (three.vertex >= 0).tolist() == [True, False, False] and (three.edge >= 0).tolist() == [True, True, False]
+    # As one at a time, and one of them.
+    for i, p in enumerate([[-1, -1, -1], [1, -1, -1], [1, 0.5, 4]]):
+        alone = BOX.nearest(p)
+        assert alone.distance.shape == () and alone.point.shape == (3,) and alone.distance == three.distance[i]
+        assert isinstance(three[i], ff.ModelNearest) and three[i].distance == three.distance[i] and three[i].face == three.face[i]
+        assert three[i].edge == three.edge[i] and np.array_equal(three[i].point, three.point[i]) and np.array_equal(three[i].uv, three.uv[i])
+    assert len(three) == 3 and [x.distance for x in three] == three.distance.tolist() and three == BOX.nearest(np.array(
+        [[-1, -1, -1], [1, -1, -1], [1, 0.5, 4]]))
+    assert BOX.nearest(np.zeros((0, 3))).distance.shape == (0,)
+    with pytest.raises(ff.InvalidError, match="last extent is 2 and not 3"):
+        BOX.nearest([[0, 0]])
+    with pytest.raises(ff.NonFiniteError):
+        BOX.nearest([[0, 0, np.nan]])
+    with pytest.raises(TypeError, match=r"\(4, 3, 3\)"):
+        found[0]
+
+
 def test_models_and_meshes(tmp_path):
     t = BOX.tessellate(0.01)
     assert t.topology.open_edges == 0 and len(t.mesh) == 12 and t.error_bound <= 0.01

@@ -1,13 +1,14 @@
 """Solid models and trimmed surfaces."""
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf, tau
 from typing import Any, NamedTuple, Sequence, Union
 
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, from_header, handles, pair, points_array
+from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, Record, from_header, handles, pair, points_array
 from ._meshes import Mesh
 from ._patches import Curve, Surface
 from ._paths import Path
@@ -16,7 +17,7 @@ from ._records import (Approximation, Conic, ConvexHull, EdgeContinuity, FieldVa
                        ModelSummary, NearestFaces, OrientedBox, Sewing, SolidInside, SurfaceLine, Tessellation, TightBox)
 from ._refusals import Refusal
 
-__all__ = ["Model", "ModelFace", "ModelEdge", "ModelNearestQuery", "TrimmedSurface", "inside_loops", "orient_loops"]
+__all__ = ["Model", "ModelFace", "ModelEdge", "ModelNearestPoints", "ModelNearestQuery", "TrimmedSurface", "inside_loops", "orient_loops"]
 
 
 class ModelFace(NamedTuple):
@@ -241,8 +242,8 @@ class Model:
     def silhouettes(self, mesh: Mesh, eye: ArrayLike) -> list[SurfaceLine]:
         return _core.silhouettes(self._c, mesh._c, points_array(eye))
 
-    def nearest(self, points: ArrayLike, accuracy: float = 0.0, max_parts: int = 20000) -> list[ModelNearest]:
-        """The nearest points of the faces; for many questions: ModelNearestQuery."""
+    def nearest(self, points: ArrayLike, accuracy: float = 0.0, max_parts: int = 20000) -> ModelNearestPoints:
+        """The nearest points of the faces, for points of shape (.., 3); for many questions: ModelNearestQuery."""
         return ModelNearestQuery(self).nearest(points, accuracy, max_parts)
 
     def __eq__(self, other: object) -> bool:
@@ -275,6 +276,36 @@ class Model:
         return png_of(self)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class ModelNearestPoints(Record):
+    """The nearest points of a model, one for each of the points asked for: every field is an array. ``nearest[i]`` is that of
+    one point.
+
+    No point of any face is nearer than ``lower_bound``; the true distance lies in [lower_bound, distance + point_error]. ``uv``:
+    the parameters on the face. ``edge`` and ``vertex``: where the point is on the boundary of its face, else -1; ``t``: the
+    parameter of the edge.
+    """
+
+    face: Array
+    uv: Array
+    edge: Array
+    vertex: Array
+    t: Array
+    point: Array
+    distance: Array
+    point_error: Array
+    lower_bound: Array
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+    def __getitem__(self, i: int) -> ModelNearest:
+        if self.distance.ndim != 1:
+            raise TypeError(f"the answers have the shape {self.distance.shape}: an index is for those of points of shape (n, 3)")
+        one = [x[i] for x in self._values()]  # type: ignore[index]
+        return ModelNearest(*(x if x.ndim else x.item() for x in one))
+
+
 @from_header("model/nearest:ModelNearestQuery")
 class ModelNearestQuery:
     """The faces of a model, prepared for questions about nearest points."""
@@ -285,8 +316,9 @@ class ModelNearestQuery:
         self.model = model
         self._c = _core.ModelNearestHandle(model._c)
 
-    def nearest(self, points: ArrayLike, accuracy: float = 0.0, max_parts: int = 20000) -> list[ModelNearest]:
-        return self._c.nearest(np.atleast_2d(points_array(points)), accuracy, max_parts)
+    def nearest(self, points: ArrayLike, accuracy: float = 0.0, max_parts: int = 20000) -> ModelNearestPoints:
+        """For points of shape (.., 3): arrays of shape (..)."""
+        return ModelNearestPoints(*self._c.nearest(points_array(points), accuracy, max_parts))
 
     def farthest(self, point: ArrayLike, accuracy: float = 0.0, max_parts: int = 20000) -> ModelFarthest:
         return self._c.farthest(points_array(point), accuracy, max_parts)

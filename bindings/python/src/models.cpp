@@ -60,6 +60,30 @@ TessellateOptions tessellate_options(double tolerance, double max_edge, double m
     return {tolerance, max_edge, max_angle, max_aspect, quads, max_triangles};
 }
 
+// One answer for each point, as arrays in the order of the record's fields.
+py::tuple columns(std::span<const ModelNearest> found, const std::vector<py::ssize_t>& shape) {
+    const auto with = [&](py::ssize_t n) {
+        auto s = shape;
+        s.push_back(n);
+        return py::array_t<double>(s);
+    };
+    py::array_t<std::int64_t> face(shape), edge(shape), vertex(shape);
+    py::array_t<double> uv = with(2), t(shape), point = with(3), distance(shape), error(shape), bound(shape);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const ModelNearest& x = found[i];
+        face.mutable_data()[i] = x.face;
+        for (std::size_t k = 0; k < 2; ++k) uv.mutable_data()[2 * i + k] = x.uv[int(k)];
+        edge.mutable_data()[i] = x.edge;
+        vertex.mutable_data()[i] = x.vertex;
+        t.mutable_data()[i] = x.t;
+        for (std::size_t k = 0; k < 3; ++k) point.mutable_data()[3 * i + k] = x.point[int(k)];
+        distance.mutable_data()[i] = x.distance;
+        error.mutable_data()[i] = x.point_error;
+        bound.mutable_data()[i] = x.lower_bound;
+    }
+    return py::make_tuple(face, uv, edge, vertex, t, point, distance, error, bound);
+}
+
 void bind_model_making(py::module_& m) {
     py::class_<TrimmedHandle>(m, "TrimmedHandle")
         .def(py::init([](const SurfaceHandle& s, const std::vector<std::vector<CurveHandle>>& loops) {
@@ -260,7 +284,7 @@ void bind_model_questions(py::module_& m) {
                 take(unlocked([&] {
                     return q.nearest(p, std::span<ModelNearest>(found), {accuracy, max_parts});
                 }));
-                return to_py(found);
+                return columns(found, {points.shape(), points.shape() + points.ndim() - 1});
             },
             py::arg("points"), py::arg("accuracy"), py::arg("max_parts"))
         .def(
