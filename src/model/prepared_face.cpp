@@ -33,6 +33,7 @@ std::array<AxisKind, 2> axes_of(const SurfaceGeometry& s) {
         if (across == AxisKind::angle && r->kind != SurfaceKind::torus) across = AxisKind::latitude;
         return {AxisKind::angle, across};
     }
+    if (const auto* o = std::get_if<OffsetSurface>(&s)) return axes_of(*o->base);  // which is no offset
     return {AxisKind::given, AxisKind::given};
 }
 

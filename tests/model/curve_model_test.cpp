@@ -226,5 +226,52 @@ TEST(CurveModel, refuses_lines_that_are_none_and_leaves_offsets_open) {
     EXPECT_EQ(out.open[0].reason->kind, RefusalKind::unsupported);
 }
 
+TEST(CurveModel, refusals_name_the_line_and_what_is_wrong_with_it) {
+    const IntersectModel query(sphere({}, 1));
+    const double nan = std::nan("");
+    const StraightLine good{{}, {{1, 0, 0}}};
+    const auto refusal = [&](const StraightLine& bad, double accuracy = 0) -> Result<void> {
+        const std::array lines{good, bad};
+        std::array<ModelContacts, 2> out;
+        return query.intersect(lines, out, {.accuracy = accuracy});
+    };
+    EXPECT_TRUE(refusal(good));
+    expect_refusal(refusal({{}, {}}), RefusalKind::invalid, "lines[1]", "no direction");
+    expect_refusal(refusal({{{nan, 0, 0}}, {{1, 0, 0}}}), RefusalKind::nonfinite, "lines[1]");
+    expect_refusal(refusal({{}, {{1, kInfinity, 0}}}), RefusalKind::nonfinite, "lines[1]");
+    expect_refusal(refusal({{}, {{1, 0, 0}}, {1, 1}}), RefusalKind::invalid, "lines[1]", "[1, 1]");
+    expect_refusal(refusal({{}, {{1, 0, 0}}, {2, nan}}), RefusalKind::invalid, "lines[1]");
+    expect_refusal(refusal(good, nan), RefusalKind::invalid, "accuracy");
+    const auto curve = must(Curve<Hom<3>>::make(
+        {must(BSplineBasis::bezier(1))},
+        Net<1, Hom<3>>({2}, {weighted(Vec<3>{{-2, 0, 0}}, 1), weighted(Vec<3>{{2, 0, 0}}, 1)})));
+    for (const double accuracy : {-1.0, nan})
+        expect_refusal(query.intersect(curve, {.accuracy = accuracy}), RefusalKind::invalid, "accuracy");
+    EXPECT_EQ(must(query.intersect(curve)).contacts.size(), 2u);
+}
+
+// One face of three cannot be met: the others are, and it is named.
+TEST(CurveModel, faces_that_cannot_be_met_are_open_and_the_others_are_met) {
+    Model tube = frustum(1, 1, 2);
+    const StraightLine down{{{0.25, 0.25, 5}}, {{0, 0, -1}}};
+    ASSERT_EQ(met_by(IntersectModel(tube), down).contacts.size(), 2u);
+    int wall = -1;
+    for (std::size_t f = 0; f < tube.faces.size(); ++f) {
+        const auto* e = std::get_if<Extrusion>(&tube.faces[f].surface);
+        if (!e || e->kind != SurfaceKind::plane) wall = int(f);
+    }
+    ASSERT_GE(wall, 0);
+    auto& surface = tube.faces[std::size_t(wall)].surface;
+    surface = OffsetSurface{std::make_shared<SurfaceGeometry>(surface), 0.5};
+    ModelContacts out;
+    ASSERT_TRUE(IntersectModel(tube).intersect(std::span(&down, 1), std::span(&out, 1)));
+    EXPECT_EQ(out.contacts.size(), 2u);
+    ASSERT_EQ(out.open.size(), 1u);
+    EXPECT_EQ(out.open[0].face, wall);
+    EXPECT_TRUE(out.open[0].boxes.empty());
+    ASSERT_TRUE(out.open[0].reason);
+    EXPECT_EQ(out.open[0].reason->kind, RefusalKind::unsupported);
+}
+
 }  // namespace
 }  // namespace freiform::test
