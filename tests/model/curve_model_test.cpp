@@ -245,8 +245,13 @@ TEST(CurveModel, refusals_name_the_line_and_what_is_wrong_with_it) {
     const auto curve = must(Curve<Hom<3>>::make(
         {must(BSplineBasis::bezier(1))},
         Net<1, Hom<3>>({2}, {weighted(Vec<3>{{-2, 0, 0}}, 1), weighted(Vec<3>{{2, 0, 0}}, 1)})));
+    const auto beside = must(Curve<Hom<3>>::make(
+        {must(BSplineBasis::bezier(1))},
+        Net<1, Hom<3>>({2}, {weighted(Vec<3>{{5, 5, 5}}, 1), weighted(Vec<3>{{9, 5, 5}}, 1)})));
     for (const double accuracy : {-1.0, nan})
-        expect_refusal(query.intersect(curve, {.accuracy = accuracy}), RefusalKind::invalid, "accuracy");
+        for (const auto& c : {curve, beside})
+            expect_refusal(query.intersect(c, {.accuracy = accuracy}), RefusalKind::invalid, "accuracy");
+    EXPECT_TRUE(must(query.intersect(beside)).contacts.empty());
     EXPECT_EQ(must(query.intersect(curve)).contacts.size(), 2u);
 }
 
