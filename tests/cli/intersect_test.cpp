@@ -160,8 +160,9 @@ TEST_F(IntersectCommand, curves_lines_and_rays_meet_faces) {
 TEST_F(IntersectCommand, curves_with_a_common_part_overlap_there_and_nowhere_else) {
     const std::string arch = file("arch.json", R"({"type": "curve", "points": [[0,0],[1,2],[3,2],[4,0]]})");
     const auto part = [&](const char* name, const char* points) {
-        const Ran r = run(
-            {"intersect", arch, file(name, text(R"({"type": "curve", "points": )", points, "}")), "--json"});
+        const Ran r =
+            run({"intersect", arch, file(name, R"({"type": "curve", "points": )" + std::string(points) + "}"),
+                 "--json"});
         EXPECT_EQ(r.code, 0) << r.err;
         const auto all = nlohmann::json::parse(r.out);
         EXPECT_TRUE(all["points"].empty() && all["possible"].empty()) << r.out;
