@@ -311,6 +311,14 @@ def test_animation():
     assert np.allclose(ff.rotated(turns(0.5), [1, 0, 0]), [2**-0.5, 2**-0.5, 0])
     motion = ff.Motion.limited(10, 2, 1, 4)
     assert abs(motion(motion.duration).distance - 10) < 1e-9
+    # Round a quarter of the unit circle: v^2 <= across, and the ends take v / acceleration each.
+    quarter = ff.Curve([[1, 0], [1, 1], [0, 1]], weights=[1, 2**-0.5, 1])
+    slow = ff.Motion.along(quarter, 1e-9, acceleration=8, across=1)
+    assert abs(slow(slow.duration / 2).speed - 1) < 0.02 and slow(slow.duration / 2).speed <= 1
+    assert abs(slow.duration - (pi / 2 + 1 / 8)) < 0.03
+    assert ff.Motion.along(quarter, 1e-9, speed=0.5).duration == pytest.approx(pi, 1e-9)
+    with pytest.raises(ff.Refusal):
+        ff.Motion.along(quarter, 1e-9)
     way = ff.Trajectory(WAVE, ff.Motion.uniform(WAVE.length(1e-9).value, 2), 1e-6, facing="upright")
     assert np.allclose(way(2).point, [4, 0, 0], atol=1e-5)
 

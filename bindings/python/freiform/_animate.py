@@ -167,7 +167,8 @@ def angle_between(a: Sequence[float], b: Sequence[float]) -> float:
 
 @from_header("animate/motion:Motion")
 class Motion(_Made):
-    """The distance that was covered at a time: ``Motion.uniform``, ``Motion.limited``, ``Motion.with_speed``."""
+    """The distance that was covered at a time: ``Motion.uniform``, ``Motion.limited``, ``Motion.with_speed``,
+    ``Motion.along``."""
 
     __slots__ = ("_c",)
 
@@ -177,6 +178,8 @@ class Motion(_Made):
             self._c = _core.MotionHandle.uniform(*arguments)
         elif how == "limited":
             self._c = _core.MotionHandle.limited(*arguments)
+        elif how == "along":
+            self._c = _core.MotionHandle.along(arguments[0]._c, *arguments[1:])
         else:
             self._c = _core.MotionHandle.with_speed(arguments[0]._c, arguments[1])
 
@@ -196,6 +199,13 @@ class Motion(_Made):
     def with_speed(speed: Curve, accuracy: float) -> Motion:
         """With the speed v(s) where s has been covered."""
         return Motion("with_speed", speed, accuracy)
+
+    @staticmethod
+    @from_header("animate/motion:along", "animate/motion:BendLimits")
+    def along(curve: Curve, accuracy: float, *, speed: float = inf, acceleration: float = inf,
+              across: float = inf) -> Motion:
+        """The fastest motion from rest to rest along a curve, slow where it bends."""
+        return Motion("along", curve, speed, acceleration, across, accuracy)
 
     @property
     def duration(self) -> float:

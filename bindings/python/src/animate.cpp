@@ -171,6 +171,19 @@ void bind_motion(py::module_& m) {
                 return take(unlocked([&] { return Motion::with_speed(curve, accuracy); }));
             },
             py::arg("speed"), py::arg("accuracy"))
+        .def_static(
+            "along",
+            [](const CurveHandle& h, double speed, double acceleration, double across, double accuracy) {
+                const BendLimits limits{speed, acceleration, across};
+                std::optional<Motion> made;
+                visit_dims<2, 3>(*h.patch, "curve", [&](const auto& p) -> py::object {
+                    made = take(unlocked([&] { return Motion::along(p, limits, accuracy); }));
+                    return py::none();
+                });
+                return *made;
+            },
+            py::arg("curve"), py::arg("speed"), py::arg("acceleration"), py::arg("across"),
+            py::arg("accuracy"))
         .def_property_readonly("duration", &Motion::duration)
         .def_property_readonly("length", &Motion::length)
         .def(
