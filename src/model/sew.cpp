@@ -284,7 +284,7 @@ Result<Sewing> sew(const Model& model, const SewOptions& options) {
     if (!(options.tolerance > 0))
         return refuse(RefusalKind::invalid, "tolerance", text(options.tolerance, " is not positive"));
     Model with_curves = model;
-    give_images(with_curves);
+    give_images(with_curves, options.tolerance);
     return Sewer(with_curves, options.tolerance).run();
 }
 

@@ -33,8 +33,11 @@ namespace {
 constexpr int kFewestPlaces = 32, kMostPlaces = 2000, kPlacesPerSpan = 4;
 constexpr int kFeetFirst = 9;
 constexpr int kNewtonSteps = 24;
-constexpr int kMostNodes = 256;    // a backstop
-constexpr double kSlack = 1.5;     // a bound up to this times what was measured is good enough
+constexpr int kMostNodes = 256;  // a backstop
+constexpr double kSlack = 1.5;   // a bound up to this times what was measured is good enough
+// Slopes are those so far (of the step) inside of a node: at the ends of pieces without a length to speak of,
+// which images have where a break lies beside a knot of the surface, derivatives are noise.
+constexpr double kBeside = 0x1p-30;
 constexpr double kFine = 1.0 / 8;  // so is one up to this times the tolerance
 
 template <int D>
@@ -52,15 +55,8 @@ std::vector<double> breaks_inside(const CurveGeometry<D>& curve, Interval on, bo
     return inside;
 }
 
-// Value and first two derivatives; before: their limits from the left.
-Jet<1, 2, Vec<3>> jet_beside(const EdgeTrace& edge, double t, bool before) {
-    return jet<2>(*edge.curve, before ? clamped(std::nextafter(t, -kInfinity), edge.on) : t);
-}
-
-double slope_of_foot(const EdgeTrace& stays, const EdgeTrace& other, double t, double s, bool before,
-                     bool reversed) {
-    const auto a = jet_beside(stays, t, before);
-    const auto b = jet_beside(other, s, before != reversed);
+double slope_of_foot(const EdgeTrace& stays, const EdgeTrace& other, double t, double s) {
+    const auto a = jet<2>(*stays.curve, t), b = jet<2>(*other.curve, s);
     const double down = dot(b(1), b(1)) - dot(a(0) - b(0), b(2));
     return dot(a(1), b(1)) / down;
 }
@@ -118,9 +114,11 @@ std::optional<EdgeMap> map_with(const EdgeTrace& stays, const EdgeTrace& other, 
         map.nodes[0].after = map.nodes[1].before = chord;
         return map;
     }
-    for (EdgeMap::Node& n : map.nodes) {
-        n.before = slope_of_foot(stays, other, n.t, n.s, true, reversed);
-        n.after = slope_of_foot(stays, other, n.t, n.s, false, reversed);
+    for (std::size_t k = 0; k + 1 < map.nodes.size(); ++k) {
+        EdgeMap::Node &a = map.nodes[k], &b = map.nodes[k + 1];
+        const double dt = kBeside * (b.t - a.t), ds = kBeside * (b.s - a.s);
+        a.after = slope_of_foot(stays, other, a.t + dt, a.s + ds);
+        b.before = slope_of_foot(stays, other, b.t - dt, b.s - ds);
     }
     tame(map.nodes);
     return map;

@@ -16,7 +16,7 @@ struct Owner {
 std::vector<Owner> owners_of(const Model& m);
 
 // Curves in space for edges of one face that have none, and poles named as such (sew_images.cpp).
-void give_images(Model& m);
+void give_images(Model& m, double tolerance);
 
 // Part of an open edge, between the ends of others; or all of it.
 struct Part {
