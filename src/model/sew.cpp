@@ -255,7 +255,10 @@ Sewing Sewer::run() {
     owners_ = owners_of(m_);
     for (std::size_t e = 0; e < m_.edges.size(); ++e)
         out_.open_before += owners_[e].uses == 1 && !m_.edges[e].degenerate;
-    pass(false);
+    // Whole edges first, as long as there are some: a rim can be joined once the seam has closed it, and is
+    // not to be cut where its start is a little beside that of its twin.
+    for (int i = 0; i < kPasses && pass(false); ++i) {
+    }
     for (int i = 1; i < kPasses && pass(true); ++i) {
     }
     rebuild();

@@ -81,7 +81,11 @@ TEST_F(AnimateProgram, is_slow_where_the_way_bends) {
     EXPECT_GT(most_across(limited), 0.4);
     EXPECT_GT(limited.back()[0], free.back()[0]);
     EXPECT_NEAR(limited.back()[4], 4, 1e-9);
-    EXPECT_EQ(run({"animate", "way.json", "--across", "1", "--jerk", "1"}).code, 2);
+    const Ran jerky = run({"animate", "way.json", "--across", "1", "--acceleration", "1", "--jerk", "1"});
+    EXPECT_EQ(jerky.code, 2);
+    EXPECT_NE(jerky.err.find("--across and --jerk do not go together: with bends the jerk has no limit"),
+              jerky.err.npos)
+        << jerky.err;
 }
 
 TEST_F(AnimateProgram, writes_pictures_that_move_and_gltf_that_it_reads_back) {

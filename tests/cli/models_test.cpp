@@ -102,5 +102,35 @@ TEST_F(ModelQuestions, hulls_come_as_numbers_and_as_a_mesh) {
     EXPECT_EQ(run({"bounds", curve, "--hull", "0.01", "-o", path("hull.stl")}).code, 1);
 }
 
+// Cylinders that end on a free-form face: their loops climb while they turn, which no rational curve does.
+TEST_F(ModelQuestions, loops_that_climb_while_they_turn_are_written_to_obj_within_the_tolerance) {
+    double last = 1;
+    std::size_t bytes = 0;
+    for (const char* tolerance : {"0.1", "0.001", "0.00001"}) {
+        const Json r = answer({"convert", bracket_, "--tolerance", tolerance, "-o", "b.obj"});
+        const double bound = r["error_bound"].get<double>();
+        EXPECT_GT(bound, 0);
+        EXPECT_LE(bound, std::stod(tolerance));
+        EXPECT_LT(bound, last);
+        const std::size_t size = content(path("b.obj")).size();
+        EXPECT_GT(size, bytes);  // the nearer, the more knots
+        last = bound, bytes = size;
+    }
+    const Ran said = run({"convert", bracket_, "--tolerance", "0.001", "-o", "b.obj"});
+    EXPECT_NE(said.err.find("approximated, no point moved by more than 0.0001"), said.err.npos) << said.err;
+    const Ran none = run({"convert", bracket_, "--tolerance", "0", "-o", "none.obj"});
+    EXPECT_NE(none.code, 0);
+}
+
+// Parameter curves of degree 3 on faces of degrees 5 x 4 and 14 x 3 have images of degrees 27 and 51.
+TEST_F(ModelQuestions, a_model_that_obj_took_apart_is_sewn_together_again) {
+    ASSERT_EQ(run({"convert", bracket_, "-o", "apart.obj"}).code, 0);
+    const Json r =
+        answer({"tessellate", "apart.obj", "--tolerance", "0.05", "--sew", "0.001", "-o", "b.stl"});
+    EXPECT_EQ(r["sewing"]["remaining_gaps"].size(), 0u) << r["sewing"].dump();
+    EXPECT_EQ(r["open_edges"], 0);
+    EXPECT_LE(r["sewing"]["bound"].get<double>(), 0.001);
+}
+
 }  // namespace
 }  // namespace freiform::test
