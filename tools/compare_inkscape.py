@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""tools/compare_inkscape.py [--freiform PROGRAM] [--out FOLDER] [--pairs N] [DRAWING.svg ...]
+"""tools/compare_inkscape.py [--freiform PROGRAM] [--out FOLDER] [--pairs N] [--text WORDS] [--font FAMILY] [DRAWING.svg ...]
 
 Pictures of drawings by Inkscape beside pictures of what freiform made of them, also by Inkscape:
   written   the drawing read and written again
   stroke    its strokes as filled outlines (freiform path stroke): the pen of Inkscape against ours
   union     all of its shapes as one (freiform path union), against the shapes in one colour
-and of random pairs of shapes the Boolean operations against Inkscape's own, and offsets against its round pen.
+and of random pairs of shapes the Boolean operations against Inkscape's own, and offsets against its round pen; a line of text
+as outlines against the text that Inkscape sets.
 
 A row says which share of the pixels differs by more than a quarter of the range in some channel (`wrong`) and
 the mean difference (`mean`, of 255), which is above 0 along edges, where pixels are covered in part. Without
@@ -211,6 +212,16 @@ class Comparison:
         else:
             self.refused("offset", f"pair-{number}", done)
 
+    def text(self, words, font):
+        name = f"{words}-{font}".replace(" ", "-")
+        ours, theirs = self.out / f"text-{name}.svg", self.out / f"text-{name}-set.svg"
+        done = self.run("text", words, "--font", font, "-o", ours)
+        if done is not True:
+            return self.refused("text", name, done)
+        page = re.search(r"<svg[^>]*>", ours.read_text())[0]
+        theirs.write_text(f'{page}<text x="0" y="0" font-family="{font}" font-size="72px">{words}</text></svg>')
+        self.beside("text", name, theirs, ours)
+
     def compare(self):
         """The number of pairs of pictures that differ and should not."""
         subprocess.run(["inkscape", "--shell"], input="\n".join(self.actions) + "\n", capture_output=True, text=True,
@@ -273,6 +284,8 @@ def main():
     parser.add_argument("--freiform", default=str(ROOT / "build/bin/freiform"))
     parser.add_argument("--out")
     parser.add_argument("--pairs", type=int, default=20)
+    parser.add_argument("--text", default="Wavy Tiger, 0.5")
+    parser.add_argument("--font", default="DejaVu Sans")
     parser.add_argument("drawings", nargs="*", type=pathlib.Path)
     options = parser.parse_args()
     if shutil.which("inkscape") is None:
@@ -287,6 +300,8 @@ def main():
     source = random.Random(8)
     for number in range(options.pairs):
         comparison.pair(number, source)
+    if options.text:
+        comparison.text(options.text, options.font)
     bad = comparison.compare()
     print(f"\npictures in {folder}")
     return 1 if bad else 0
