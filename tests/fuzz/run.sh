@@ -26,7 +26,7 @@ case $name in
         cp -n tests/data/step/*.stp ../shared/data/step_micro/*.stp "$corpus" 2>>build-fuzz/configure.log || true ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
-        case $name in svg | font) own=path ;; gltf) own= ;; region) own="path query intersect region" ;; *) own=$name ;; esac
+        case $name in svg | font) own=path ;; gltf) own= ;; region) own="make path query intersect region" ;; intersect) own="make intersect" ;; *) own=$name ;; esac
         for layer in core poly basis spline $own; do
             printf '#include "%s"\n' "$PWD"/src/"$layer"/*.cpp >"build-fuzz/unity/$layer.cpp"
             sources+=("build-fuzz/unity/$layer.cpp")
@@ -49,7 +49,7 @@ esac
 compile() {
     local extra=()
     case $1 in  # layers below take many minutes with sanitizers, and are not what is fuzzed
-        src/kernel/* | */spline.cpp | */basis.cpp | */core.cpp | */query.cpp) extra=(-O1) ;;
+        src/kernel/* | */spline.cpp | */basis.cpp | */core.cpp | */query.cpp | */make.cpp) extra=(-O1) ;;
         *) extra=("${checks[@]}") ;;
     esac
     case $1 in *_avx2.cpp) extra+=(-mavx2 -mfma) ;; *_avx512.cpp) extra+=(-mavx512f -mavx512dq -mavx512vl -mfma) ;; esac
