@@ -169,14 +169,18 @@ constexpr std::string_view kVertexFields[] = {"point", "tolerance"};
 constexpr std::string_view kEdgeFields[] = {"curve", "degenerate", "range", "start",
                                             "end",   "tolerance",  "name"};
 constexpr std::string_view kCoedgeFields[] = {"edge", "reversed", "curve"};
-constexpr std::string_view kFaceFields[] = {"surface", "reversed", "loops", "tolerance", "name", "colour"};
+constexpr std::string_view kFaceFields[] = {"surface", "reversed", "loops", "tolerance",
+                                            "name",    "colour",   "layers"};
 constexpr std::string_view kFaceUseFields[] = {"face", "reversed"};
 constexpr std::string_view kShellFields[] = {"faces", "closed"};
-constexpr std::string_view kBodyFields[] = {"shells", "solid", "name", "colour"};
+constexpr std::string_view kBodyFields[] = {"shells", "solid", "name", "colour", "layers"};
 constexpr std::string_view kRefusedFields[] = {"kind", "where", "message"};
 constexpr std::string_view kApproximationFields[] = {"where", "what", "bound", "estimate"};
-constexpr std::string_view kModelFields[] = {"type",  "name",   "unit",   "vertices", "edges",
-                                             "faces", "shells", "bodies", "refused",  "approximations"};
+constexpr std::string_view kLayerFields[] = {"name", "description"};
+constexpr std::string_view kRepairFields[] = {"where", "what", "distance"};
+constexpr std::string_view kModelFields[] = {"type",    "name",           "unit",   "vertices",
+                                             "edges",   "faces",          "shells", "bodies",
+                                             "refused", "approximations", "layers", "repairs"};
 constexpr std::string_view kRefusalKinds[] = {
     "invalid", "nonfinite",     "out_of_domain",   "unreadable", "unsupported", "unavailable",
     "limit",   "not_converged", "ill_conditioned", "no_answer",  "io"};
@@ -220,6 +224,8 @@ Result<Loop> read_loop(json::Value v) {
     return Loop{std::move(*coedges)};
 }
 
+Result<std::vector<int>> read_indices(json::Value v) { return read_list(v, read_int); }
+
 Result<Face> read_face(json::Value v) {
     return read_entity<Face>(v, "a face", kFaceFields, [](Into& in, const Fields& f, Face& x) {
         in.needed(f, "surface", x.surface, read_surface_geometry)
@@ -227,7 +233,8 @@ Result<Face> read_face(json::Value v) {
             .field(f, "loops", x.loops, [](json::Value l) { return read_list(l, read_loop); })
             .field(f, "tolerance", x.tolerance, read_number)
             .field(f, "name", x.name, read_string)
-            .field(f, "colour", x.colour, read_colour);
+            .field(f, "colour", x.colour, read_colour)
+            .field(f, "layers", x.layers, read_indices);
     });
 }
 
@@ -248,10 +255,11 @@ Result<Shell> read_shell(json::Value v) {
 
 Result<Body> read_body(json::Value v) {
     return read_entity<Body>(v, "a body", kBodyFields, [](Into& in, const Fields& f, Body& x) {
-        in.needed(f, "shells", x.shells, [](json::Value l) { return read_list(l, read_int); })
+        in.needed(f, "shells", x.shells, read_indices)
             .field(f, "solid", x.solid, read_bool)
             .field(f, "name", x.name, read_string)
-            .field(f, "colour", x.colour, read_colour);
+            .field(f, "colour", x.colour, read_colour)
+            .field(f, "layers", x.layers, read_indices);
     });
 }
 
@@ -274,6 +282,20 @@ Result<Approximation> read_approximation(json::Value v) {
                                           if (f.has("bound") || !f.has("estimate"))
                                               in.needed(f, "bound", x.bound, read_number);
                                       });
+}
+
+Result<Layer> read_layer(json::Value v) {
+    return read_entity<Layer>(v, "a layer", kLayerFields, [](Into& in, const Fields& f, Layer& x) {
+        in.needed(f, "name", x.name, read_string).field(f, "description", x.description, read_string);
+    });
+}
+
+Result<Repair> read_repair(json::Value v) {
+    return read_entity<Repair>(v, "a repair", kRepairFields, [](Into& in, const Fields& f, Repair& x) {
+        in.field(f, "where", x.where, read_string)
+            .needed(f, "what", x.what, read_string)
+            .field(f, "distance", x.distance, read_number);
+    });
 }
 
 }  // namespace
@@ -317,7 +339,9 @@ Result<Shape> read_model(json::Value v) {
             .field(f, "shells", x.shells, list(read_shell))
             .field(f, "bodies", x.bodies, list(read_body))
             .field(f, "refused", x.refused, list(read_refusal))
-            .field(f, "approximations", x.approximations, list(read_approximation));
+            .field(f, "approximations", x.approximations, list(read_approximation))
+            .field(f, "layers", x.layers, list(read_layer))
+            .field(f, "repairs", x.repairs, list(read_repair));
     });
     if (!m) return std::unexpected(m.error());
     auto checked = make_model(std::move(*m));

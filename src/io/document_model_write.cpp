@@ -60,6 +60,10 @@ void write_optional(json::Writer& w, const std::optional<Colour>& c) {
     if (c) w.key("colour").array(std::array{c->r, c->g, c->b, c->a});
 }
 
+void write_layers(json::Writer& w, const std::vector<int>& layers) {
+    if (!layers.empty()) w.key("layers").array(layers);
+}
+
 void write_entity(json::Writer& w, const Vertex& v) {
     w.key("point").array(v.point.c);
     write_optional(w, false, v.tolerance, "");
@@ -91,6 +95,7 @@ void write_entity(json::Writer& w, const Face& f) {
     w.end_array();
     write_optional(w, f.reversed, f.tolerance, f.name);
     write_optional(w, f.colour);
+    write_layers(w, f.layers);
 }
 void write_entity(json::Writer& w, const Shell& s) {
     w.key("faces").begin_array();
@@ -107,6 +112,7 @@ void write_entity(json::Writer& w, const Body& b) {
     if (b.solid) w.field("solid", true);
     write_optional(w, false, 0, b.name);
     write_optional(w, b.colour);
+    write_layers(w, b.layers);
 }
 void write_entity(json::Writer& w, const Refusal& r) {
     w.field("kind", name_of(r.kind)).field("where", r.where).field("message", r.message);
@@ -117,6 +123,14 @@ void write_entity(json::Writer& w, const Approximation& a) {
         w.field("bound", *a.bound);
     else
         w.field("estimate", a.estimate);
+}
+
+void write_entity(json::Writer& w, const Layer& l) {
+    w.field("name", l.name);
+    if (!l.description.empty()) w.field("description", l.description);
+}
+void write_entity(json::Writer& w, const Repair& r) {
+    w.field("where", r.where).field("what", r.what).field("distance", r.distance);
 }
 
 template <class T>
@@ -152,6 +166,8 @@ void write_model(json::Writer& w, const Model& m) {
     write_entities(w, "bodies", m.bodies);
     write_entities(w, "refused", m.refused);
     write_entities(w, "approximations", m.approximations);
+    write_entities(w, "layers", m.layers);
+    write_entities(w, "repairs", m.repairs);
 }
 
 }  // namespace freiform::document_detail

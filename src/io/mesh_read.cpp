@@ -1,6 +1,8 @@
 #include "io/mesh_builder.hpp"
 
 #include <freiform/io/file.hpp>
+#include <freiform/io/read.hpp>
+#include <freiform/io/step_read.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -172,6 +174,13 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, MeshFormat format, const
 
 Result<TriangleMesh> read_mesh(const std::string& path, std::optional<MeshFormat> format,
                                const MeshReadOptions& options) {
+    if (!format && format_of_name(path) == FileFormat::step) {
+        const auto bytes = read_file(path, options.max_bytes);
+        if (!bytes) return std::unexpected(bytes.error());
+        auto mesh = read_step_mesh(*bytes, options);
+        if (!mesh) return refuse_within(path, mesh.error());
+        return mesh;
+    }
     if (!format) {
         auto found = mesh_format(path);
         if (!found) return std::unexpected(found.error());

@@ -20,7 +20,7 @@ namespace freiform {
 namespace {
 
 constexpr std::string_view kMagic{"FFMODEL\0", 8};
-constexpr std::uint32_t kFormatVersion = 2;
+constexpr std::uint32_t kFormatVersion = 3;
 
 struct Writer {
     static constexpr bool kReading = false;
@@ -303,67 +303,54 @@ void describe(A& a, SurfaceGeometry& surface, int alternatives = 5) {
     if (kind == 1) describe(a, std::get<1>(surface));
 }
 
+template <class A, class... Parts>
+void describe_parts(A& a, Parts&... parts) {
+    (describe(a, parts), ...);
+}
 template <class A>
 void describe(A& a, Vertex& v) {
-    describe(a, v.point);
-    describe(a, v.tolerance);
+    describe_parts(a, v.point, v.tolerance);
 }
 template <class A>
 void describe(A& a, Edge& e) {
-    describe(a, e.curve);
-    describe(a, e.degenerate);
-    describe(a, e.range);
-    describe(a, e.start);
-    describe(a, e.end);
-    describe(a, e.tolerance);
-    describe(a, e.name);
+    describe_parts(a, e.curve, e.degenerate, e.range, e.start, e.end, e.tolerance, e.name);
 }
 template <class A>
 void describe(A& a, Coedge& c) {
-    describe(a, c.edge);
-    describe(a, c.reversed);
-    describe(a, c.curve);
+    describe_parts(a, c.edge, c.reversed, c.curve);
 }
 template <class A>
 void describe(A& a, Loop& l) {
-    describe(a, l.coedges);
+    describe_parts(a, l.coedges);
 }
 template <class A>
 void describe(A& a, Face& f) {
-    describe(a, f.surface);
-    describe(a, f.reversed);
-    describe(a, f.loops);
-    describe(a, f.tolerance);
-    describe(a, f.name);
-    describe(a, f.colour);
+    describe_parts(a, f.surface, f.reversed, f.loops, f.tolerance, f.name, f.colour, f.layers);
 }
 template <class A>
 void describe(A& a, FaceUse& f) {
-    describe(a, f.face);
-    describe(a, f.reversed);
+    describe_parts(a, f.face, f.reversed);
 }
 template <class A>
 void describe(A& a, Shell& s) {
-    describe(a, s.faces);
-    describe(a, s.closed);
+    describe_parts(a, s.faces, s.closed);
 }
 template <class A>
 void describe(A& a, Body& b) {
-    describe(a, b.shells);
-    describe(a, b.solid);
-    describe(a, b.name);
-    describe(a, b.colour);
+    describe_parts(a, b.shells, b.solid, b.name, b.colour, b.layers);
+}
+template <class A>
+void describe(A& a, Layer& l) {
+    describe_parts(a, l.name, l.description);
+}
+template <class A>
+void describe(A& a, Repair& r) {
+    describe_parts(a, r.where, r.what, r.distance);
 }
 template <class A>
 void describe(A& a, Model& m) {
-    describe(a, m.unit);
-    describe(a, m.vertices);
-    describe(a, m.edges);
-    describe(a, m.faces);
-    describe(a, m.shells);
-    describe(a, m.bodies);
-    describe(a, m.refused);
-    describe(a, m.approximations);
+    describe_parts(a, m.unit, m.vertices, m.edges, m.faces, m.shells, m.bodies, m.refused, m.approximations,
+                   m.layers, m.repairs);
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ Document document_with(Model model) {
 Result<Document> read_step_document(std::string_view bytes, const ReadOptions& options) {
     StepReadOptions limits;
     if (options.max_memory > 0) limits.memory_bytes = options.max_memory;
+    limits.repair = options.repair, limits.repair_limit = options.repair_limit;
     auto model = read_step(bytes, limits);
     if (!model) return std::unexpected(model.error());
     return document_with(std::move(*model));

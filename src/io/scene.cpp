@@ -4,9 +4,25 @@
 #include <freiform/spline/in_space.hpp>
 #include <freiform/spline/simplex_convert.hpp>
 
+#include <unordered_map>
+
 namespace freiform {
 
 namespace {
+
+// The layers of `from` among those of `to`, by their names.
+std::vector<int> joined_layers(Model& to, std::vector<Layer>&& from) {
+    std::vector<int> at;
+    std::unordered_map<std::string, int> known;
+    for (std::size_t i = 0; i < to.layers.size() && !from.empty(); ++i)
+        known.emplace(to.layers[i].name, int(i));
+    for (Layer& l : from) {
+        const auto [found, fresh] = known.emplace(l.name, int(to.layers.size()));
+        at.push_back(found->second);
+        if (fresh) to.layers.push_back(std::move(l));
+    }
+    return at;
+}
 
 // Appends a model; indices move up by what is there.
 void append(Model& to, Model from) {
@@ -20,6 +36,11 @@ void append(Model& to, Model from) {
         for (FaceUse& u : s.faces) u.face += faces;
     for (Body& b : from.bodies)
         for (int& s : b.shells) s += shells;
+    const std::vector<int> layers = joined_layers(to, std::move(from.layers));
+    for (Face& f : from.faces)
+        for (int& l : f.layers) l = layers[std::size_t(l)];
+    for (Body& b : from.bodies)
+        for (int& l : b.layers) l = layers[std::size_t(l)];
     const auto move_all = [](auto& a, auto& b) {
         a.insert(a.end(), std::make_move_iterator(b.begin()), std::make_move_iterator(b.end()));
     };
@@ -30,6 +51,7 @@ void append(Model& to, Model from) {
     move_all(to.bodies, from.bodies);
     move_all(to.refused, from.refused);
     move_all(to.approximations, from.approximations);
+    move_all(to.repairs, from.repairs);
 }
 
 class SceneBuilder {

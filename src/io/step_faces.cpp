@@ -81,6 +81,7 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
         if (made.empty) return {};
         auto u = use_of(made, along, chart, size, loosely);
         if (!u) return refuse(u.error().kind, f_.label(of), text(u.error().where, ": ", u.error().message));
+        if (auto ok = accept_gap(of, *u, chart, size); !ok) return ok;
         uses.push_back(std::move(*u));
         return {};
     };
@@ -127,17 +128,7 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
         }
     }
     if (uses.empty()) return {};
-    for (std::size_t k = 0; k < uses.size(); ++k) {
-        const Use &a = uses[k], &b = uses[(k + 1) % uses.size()];
-        if (a.to == b.from) continue;
-        const double apart = norm(out_.model.vertices[std::size_t(a.to)].point -
-                                  out_.model.vertices[std::size_t(b.from)].point);
-        if (apart > std::max(tolerance_, 1e-6 * size))
-            return refuse(
-                RefusalKind::invalid, f_.label(*at),
-                text("is not closed: its edge ", k + 1, " ends ", apart, " from where the next one begins"));
-        join_vertices(a.to, b.from);
-    }
+    if (auto ok = close_loop(*at, uses, chart, size, loosely); !ok) return ok;
     loops.add(std::move(uses));
     return {};
 }
@@ -150,6 +141,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
     const std::size_t edges = m.edges.size(), vertices = m.vertices.size();
     auto made = loops.finish();
     if (!made) return std::unexpected(made.error());
+    tell_turn(i, loops);
     const bool beside = std::ranges::any_of(*made, [&](const auto& uses) {
         return std::ranges::any_of(uses, [&](const Use& u) { return is_beside(u.gap, size); });
     });
@@ -282,8 +274,12 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
     std::vector<Vec<3>> on_edges;
     const auto size = size_of(*f, on_edges);
     if (!size) return std::unexpected(size.error());
+    const std::size_t repairs = out_.model.repairs.size();
     const auto once = [&](const Chart& chart, bool loosely, bool* tangled) -> Result<Face> {
         LoopBuilder loops(chart, out_.model, tolerance_);
+        loops.wrong_way = options_.repair ? LoopBuilder::WrongWay::turned : LoopBuilder::WrongWay::told;
+        out_.model.repairs.resize(repairs);  // without those of another attempt
+        turned_now_.reset();
         for (const std::uint32_t b : *bounds)
             if (auto ok = add_bound(b, same, chart, *size, loosely, loops); !ok)
                 return std::unexpected(ok.error());
@@ -312,6 +308,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
             if (auto again = attempt(Chart(*turned, tolerance_))) return again;
         }
     }
+    if (!made) out_.model.repairs.resize(repairs), turned_now_.reset();
     return made;
 }
 
@@ -371,7 +368,9 @@ int ShapeReader::face(std::uint32_t i) {
         made->name = f.string(0);
         if (made->name == "NONE") made->name.clear();
         made->colour = colour_of(i);
+        styles_.add_layers(made->layers, i);
         at = int(out_.model.faces.size());
+        if (turned_now_) turned_.emplace(at, *std::exchange(turned_now_, std::nullopt));
         out_.model.faces.push_back(std::move(*made));
     }
     faces_.emplace(i, at);

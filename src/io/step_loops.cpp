@@ -258,6 +258,16 @@ void LoopBuilder::into_domain() {
     for (Chain& c : chains_) move(c, by);
 }
 
+// The largest loop is the outer one, and runs counter-clockwise; the others are its holes.
+void LoopBuilder::set_right(double all) {
+    const auto outer = std::ranges::max_element(chains_, {}, [](const Chain& c) { return std::abs(c.area); });
+    if (outer == chains_.end() || !(outer->area < 0) || outer->area < -all * (1 - 1e-6)) return;
+    is_wrong = true;
+    if (wrong_way != WrongWay::turned) return;
+    for (Chain& c : chains_)
+        if ((c.area < 0) == (&c == &*outer)) turn_around(c);
+}
+
 Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
     for (const Chain& c : chains_)
         if (c.winding[0] != 0 && c.winding[1] != 0)
@@ -276,6 +286,7 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
     const bool only_holes = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
         return c.area < 0 && !(c.area < -all * (1 - 1e-6));
     });
+    if (!is_closed_surface()) set_right(all);
     if (only_holes && (is_closed_surface() || chains_.empty())) {
         std::array<Interval, 2> on = chart_.whole();
         for (std::size_t k = 0; k < 2; ++k) {

@@ -31,6 +31,12 @@ public:
     Result<std::vector<std::vector<Use>>> finish();
     std::string note;
 
+    // Where the surface ends, or goes on for ever, and the largest loop is a hole, the loops run the wrong
+    // way.
+    enum class WrongWay { taken, told, turned };
+    WrongWay wrong_way = WrongWay::taken;  // what is to be done about it
+    bool is_wrong = false;                 // finish() found it
+
 private:
     struct Chain {
         std::vector<Use> uses;
@@ -55,6 +61,7 @@ private:
     void join_pole(Chain& c, const Pole& pole);
     std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);
     bool is_closed_surface() const;
+    void set_right(double all);
     bool rounds_pole(const Chain& c) const;
     void place_holes();
     void into_domain();

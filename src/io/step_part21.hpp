@@ -87,6 +87,7 @@ namespace freiform::step {
     X(PLANE_ANGLE_UNIT)                                \
     X(POLYLINE)                                        \
     X(POLY_LOOP)                                       \
+    X(PRESENTATION_LAYER_ASSIGNMENT)                   \
     X(PRODUCT)                                         \
     X(PRODUCT_DEFINITION)                              \
     X(PRODUCT_DEFINITION_SHAPE)                        \
@@ -110,6 +111,7 @@ namespace freiform::step {
     X(SURFACE_OF_LINEAR_EXTRUSION)                     \
     X(SURFACE_OF_REVOLUTION)                           \
     X(SURFACE_REPLICA)                                 \
+    X(TESSELLATED_GEOMETRIC_SET)                       \
     X(TESSELLATED_SHELL)                               \
     X(TESSELLATED_SOLID)                               \
     X(TOROIDAL_SURFACE)                                \

@@ -1,20 +1,18 @@
 // Idea. Text, structure, shapes, places: each representation is converted once, and then put where the
-// assembly has it, as often as it does. Nothing recurses on what the file says; a list of visits with the
-// product of the places on the way takes the place of the stack.
-#include "step_structure.hpp"
+// assembly has it, as often as it does (step_walk.hpp).
+#include "step_walk.hpp"
 
 #include <freiform/io/step_read.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 namespace freiform {
 
 namespace step {
 
 namespace {
-
-constexpr int kMostDepth = 200;
 
 class Placer {
 public:
@@ -26,41 +24,38 @@ public:
         largest_ = largest_uncertainty(f_);
         model_.refused = f_.refused;
         append(model_.refused, structure_.refused);
-        const bool products = std::any_of(structure_.nodes.begin(), structure_.nodes.end(),
-                                          [&](const Node& n) { return n.product && has_shapes(n); });
-        for (const Node& n : structure_.nodes)
-            if (model_.unit.empty() && has_items(n)) model_.unit = n.context.unit, length_ = n.context.length;
-        std::vector<Visit> todo;
-        for (std::size_t n = structure_.nodes.size(); n-- > 0;)
-            if (!structure_.nodes[n].has_parent && (!products || structure_.nodes[n].product))
-                todo.push_back({std::uint32_t(n), {}, {}, {}, 0});
-        while (!todo.empty()) {
-            Visit v = std::move(todo.back());
-            todo.pop_back();
-            if (auto ok = visit(std::move(v), todo); !ok) return std::unexpected(ok.error());
-        }
+        model_.layers = structure_.styles.layers;
+        if (const Context* c = context_of_model(structure_)) model_.unit = c->unit, length_ = c->length;
+        if (auto ok = each_place(structure_, length_, options_.memory_bytes / 256,
+                                 [this](const Place& p) { return visit(p); });
+            !ok)
+            return std::unexpected(ok.error());
+        tell_tessellated();
         take_curves();
         if (model_.faces.empty() && model_.edges.empty()) return nothing();
         return make_model(std::move(model_));
     }
 
 private:
-    struct Visit {
-        std::uint32_t node = 0;
-        Motion at;
-        std::string name;
-        std::optional<Colour> colour;
-        int depth = 0;
-    };
-
     static void append(std::vector<Refusal>& to, const std::vector<Refusal>& more) {
         for (const Refusal& r : more)
             if (to.size() < 1000) to.push_back(r);
     }
-    static bool has_items(const Node& n) { return !n.items.empty() || !n.replicas.empty(); }
-    static bool has_shapes(const Node& n) { return has_items(n) || !n.children.empty(); }
+
+    // Triangles that stand beside what is exact are not needed; where there is nothing else, they are a mesh.
+    void tell_tessellated() {
+        if (tessellated_ == 0 || (model_.faces.empty() && free_.empty())) return;
+        model_.refused.push_back(
+            {RefusalKind::unsupported, "file",
+             text(tessellated_, tessellated_ == 1 ? " tessellated item is" : " tessellated items are",
+                  " left out, beside shapes that are exact")});
+    }
 
     Result<Model> nothing() const {
+        if (tessellated_ > 0 && model_.refused.empty())
+            return refuse(RefusalKind::no_answer, "file",
+                          text("the file has triangles (", tessellated_,
+                               " tessellated items), but no faces and no curves; they are read as a mesh"));
         if (model_.refused.empty())
             return refuse(
                 RefusalKind::no_answer, "file",
@@ -69,49 +64,33 @@ private:
         return refuse(last.kind, last.where, text("nothing of the file could be taken over: ", last.message));
     }
 
-    Part& part_of(std::uint32_t n) {
-        if (!parts_[n]) {
-            const Node& node = structure_.nodes[n];
-            ShapeReader reader(f_, structure_.styles, node.context.angle,
-                               std::min(node.context.tolerance, largest_));
-            for (const std::uint32_t i : node.items) reader.add(i);
-            parts_[n] = reader.finish();
-            append(model_.refused, parts_[n]->model.refused);
+    Part read_items(const Node& node, std::span<const std::uint32_t> items) {
+        ShapeReader reader(f_, structure_.styles, node.context.angle,
+                           std::min(node.context.tolerance, largest_), options_);
+        for (const std::uint32_t i : items) reader.add(i);
+        Part part = reader.finish();
+        append(model_.refused, part.model.refused);
+        if (!told_.insert(items[0]).second) return part;
+        tessellated_ += part.tessellated;
+        for (Repair& r : part.model.repairs) {
+            r.distance *= node.context.length / length_;
+            model_.repairs.push_back(std::move(r));
         }
-        return *parts_[n];
+        return part;
     }
 
-    Result<void> visit(Visit v, std::vector<Visit>& todo) {
-        const Node& node = structure_.nodes[v.node];
-        if (v.depth > kMostDepth)
-            return refuse(RefusalKind::invalid, "assembly", "contains itself, or is nested too deep");
-        if (++visits_ > options_.memory_bytes / 256)
-            return refuse(RefusalKind::limit, "assembly", text("has more than ", visits_, " places"));
-        if (!node.name.empty()) v.name = node.name;
-        Motion scale;
-        scale.scale = node.context.length / length_;
-        const Motion here = v.at * scale;
-        if (!node.items.empty())
-            if (auto ok = place(part_of(v.node), here, v); !ok) return ok;
-        for (const auto& [item, by] : node.replicas) {
-            ShapeReader reader(f_, structure_.styles, node.context.angle,
-                               std::min(node.context.tolerance, largest_));
-            reader.add(item);
-            const Part part = reader.finish();
-            append(model_.refused, part.model.refused);
-            if (auto ok = place(part, here * by, v); !ok) return ok;
+    Result<void> visit(const Place& p) {
+        const Node& node = structure_.nodes[p.node];
+        if (!node.items.empty()) {
+            if (!parts_[p.node]) parts_[p.node] = read_items(node, node.items);
+            if (auto ok = place(*parts_[p.node], p.at, p); !ok) return ok;
         }
-        for (std::size_t k = node.children.size(); k-- > 0;) {
-            const Node::Child& c = node.children[k];
-            // The place is said in the unit of the parent.
-            Motion at = c.at;
-            at.to.o = scale.scale * at.to.o;
-            todo.push_back({c.node, v.at * at, v.name, v.colour ? v.colour : c.colour, v.depth + 1});
-        }
+        for (const auto& [item, by] : node.replicas)
+            if (auto ok = place(read_items(node, {&item, 1}), p.at * by, p); !ok) return ok;
         return {};
     }
 
-    Result<void> place(const Part& part, const Motion& at, const Visit& v) {
+    Result<void> place(const Part& part, const Motion& at, const Place& v) {
         bytes_ += part.bytes;
         if (bytes_ > options_.memory_bytes)
             return refuse(RefusalKind::limit, "file",
@@ -120,8 +99,7 @@ private:
         const bool same = at.is_identity();
         const Model& m = part.model;
         Model& out = model_;
-        const int vertices = int(out.vertices.size()), edges = int(out.edges.size()),
-                  faces = int(out.faces.size()), shells = int(out.shells.size());
+        const int faces = int(out.faces.size()), shells = int(out.shells.size());
         // Edges that a face or nothing else has; free ones come last, if there is nothing else at all.
         std::vector<char> used(m.edges.size(), 0);
         for (const Face& f : m.faces)
@@ -154,7 +132,6 @@ private:
             to[i] = int(out.edges.size());
             out.edges.push_back(moved_edge(m.edges[i]));
         }
-        (void)vertices, (void)edges;
         for (const Face& f : m.faces) {
             Face x = f;
             if (!same) x.surface = moved(f.surface, at);
@@ -174,6 +151,7 @@ private:
             for (int& s : x.shells) s += shells;
             if (!v.name.empty()) x.name = v.name;
             if (!x.colour) x.colour = v.colour;
+            x.layers = joined_layers(x.layers, v.layers);
             out.bodies.push_back(std::move(x));
         }
         for (std::size_t i = 0; i < m.approximations.size(); ++i) {
@@ -225,7 +203,9 @@ private:
     std::vector<Free> free_;
     Model model_;
     double length_ = 1, largest_ = 0;
-    std::uint64_t visits_ = 0, bytes_ = 0;  // also where addresses have 32 bits
+    std::uint64_t bytes_ = 0;  // also where addresses have 32 bits
+    std::size_t tessellated_ = 0;
+    std::unordered_set<std::uint32_t> told_;  // the first items of what has been read, also as a replica
 };
 
 }  // namespace

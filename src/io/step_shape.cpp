@@ -69,11 +69,13 @@ Result<int> ShapeReader::shell(std::uint32_t i, bool closed) {
     made.closed = closed;
     if (auto ok = shell_faces(i, true, made, 0); !ok) return std::unexpected(ok.error());
     if (made.faces.empty()) return -1;
+    settle_turned(made);
     out_.model.shells.push_back(std::move(made));
     return int(out_.model.shells.size()) - 1;
 }
 
-void ShapeReader::body_of(std::uint32_t item, std::vector<int> shells, bool solid) {
+void ShapeReader::body_of(std::uint32_t item, std::vector<int> shells, bool solid,
+                          const std::vector<std::uint32_t>& made_of) {
     if (shells.empty()) return;
     Body b;
     b.shells = std::move(shells);
@@ -81,6 +83,8 @@ void ShapeReader::body_of(std::uint32_t item, std::vector<int> shells, bool soli
     b.name = Fields(f_, item, f_.instances[item].first + 1).string(0);
     if (b.name == "NONE") b.name.clear();
     b.colour = colour_of(item);
+    styles_.add_layers(b.layers, item);
+    for (const std::uint32_t i : made_of) styles_.add_layers(b.layers, i);
     out_.model.bodies.push_back(std::move(b));
 }
 
@@ -103,13 +107,13 @@ void ShapeReader::solid(std::uint32_t item) {
         else if (*made >= 0)
             shells.push_back(*made);
     }
-    body_of(item, std::move(shells), true);
+    body_of(item, std::move(shells), true, list);
 }
 
 void ShapeReader::sheet(std::uint32_t item, std::uint32_t of, bool closed) {
     const auto made = shell(of, closed);
     if (!made) return refuse_item(item, made.error());
-    if (*made >= 0) body_of(item, {*made}, false);
+    if (*made >= 0) body_of(item, {*made}, false, {of});
 }
 
 void ShapeReader::free_curve(std::uint32_t item) {
@@ -177,7 +181,10 @@ void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
                            Type::SURFACE_OF_LINEAR_EXTRUSION, Type::SURFACE_OF_REVOLUTION,
                            Type::OFFSET_SURFACE, Type::RECTANGULAR_TRIMMED_SURFACE,
                            Type::CURVE_BOUNDED_SURFACE, Type::SURFACE_REPLICA})) {
-            if (const int made = face(i); made >= 0) out_.loose.push_back(made);
+            if (const int made = face(i); made >= 0) {
+                styles_.add_layers(out_.model.faces[std::size_t(made)].layers, item);
+                out_.loose.push_back(made);
+            }
         } else {
             free_curve(i);
         }
@@ -201,11 +208,12 @@ void ShapeReader::add(std::uint32_t item) {
     } else if (is(Type::GEOMETRIC_SET) || is(Type::GEOMETRIC_CURVE_SET) ||
                is(Type::EDGE_BASED_WIREFRAME_MODEL) || is(Type::SHELL_BASED_WIREFRAME_MODEL)) {
         set_items(item, item);
+    } else if (is_tessellated(f_, item)) {
+        ++out_.tessellated;
     } else {
         const std::string_view name = f_.text_of(f_.tokens[f_.instances[item].first]);
-        for (const std::string_view shape :
-             {"SOLID", "BREP", "SHELL", "TESSELLATED", "TRIANGULATED", "CSG", "BLOCK", "RIGHT_", "BOOLEAN",
-              "SPHERE", "TORUS", "HALF_SPACE", "FACE"})
+        for (const std::string_view shape : {"SOLID", "BREP", "SHELL", "CSG", "BLOCK", "RIGHT_", "BOOLEAN",
+                                             "SPHERE", "TORUS", "HALF_SPACE", "FACE"})
             if (name.find(shape) != std::string_view::npos) {
                 refuse_item(item, {RefusalKind::unsupported, "", "is an item of a type that is not read"});
                 return;

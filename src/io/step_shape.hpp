@@ -3,6 +3,7 @@
 #include "step_geometry.hpp"
 #include "step_loops.hpp"
 
+#include <freiform/io/step_read.hpp>
 #include <freiform/model/model.hpp>
 
 #include <functional>
@@ -11,9 +12,17 @@
 
 namespace freiform::step {
 
-// What a file says about names and colours of its items.
+// Of one item: so that many things on many layers take no memory beyond a multiple of the file.
+inline constexpr std::size_t kMostLayers = 64;
+
+// What a file says about colours and layers of its items.
 struct Styles {
     std::unordered_map<std::uint32_t, Colour> colours;
+    std::vector<Layer> layers;
+    std::unordered_map<std::uint32_t, std::vector<int>> on_layers;  // ascending
+
+    // Those of one more item among those that are known already, up to kMostLayers.
+    void add_layers(std::vector<int>& to, std::uint32_t item) const;
 };
 
 struct Part {
@@ -22,13 +31,15 @@ struct Part {
     std::vector<CurveGeometry<3>> curves;  // that bound no face
     std::size_t bytes = 0;                 // an estimate of the memory that it takes
     std::vector<int> loose;                // faces of no shell
+    std::size_t tessellated = 0;           // items of triangles, which are not read here
 };
 
 class ShapeReader {
 public:
     // `tolerance`: the uncertainty of lengths that the context states.
-    ShapeReader(const File& file, const Styles& styles, double angle, double tolerance)
-        : f_(file), styles_(styles), geometry_(file), tolerance_(tolerance) {
+    ShapeReader(const File& file, const Styles& styles, double angle, double tolerance,
+                const StepReadOptions& options)
+        : f_(file), styles_(styles), geometry_(file), tolerance_(tolerance), options_(options) {
         geometry_.angle = angle;
     }
     // An item of a representation. Items that are no shapes are passed over.
@@ -55,7 +66,9 @@ private:
     void free_curve(std::uint32_t item);
     Result<int> shell(std::uint32_t i, bool closed);
     Result<void> shell_faces(std::uint32_t i, bool forward, Shell& out, int depth);
-    void body_of(std::uint32_t item, std::vector<int> shells, bool solid);
+    // `made_of`: its shells in the file.
+    void body_of(std::uint32_t item, std::vector<int> shells, bool solid,
+                 const std::vector<std::uint32_t>& made_of);
     int face(std::uint32_t i);
     Result<Face> make_face(std::uint32_t i, Type type);
     Result<Face> bare_face(std::uint32_t i);
@@ -79,6 +92,16 @@ private:
     // `loosely`: an edge beside the surface is followed no closer than it lies beside it.
     Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
                        bool loosely = false);
+    // step_repair.cpp: what contradicts itself beyond the tolerance, refused or made right.
+    Result<void> close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart, double size,
+                            bool loosely);
+    Result<void> accept_gap(std::uint32_t edge, const Use& use, const Chart& chart, double size);
+    void tell_turn(std::uint32_t face, const LoopBuilder& loops);
+    void settle_turned(const Shell& shell);
+    double repair_limit(double size) const;
+    void repaired(std::uint32_t i, std::string what, double distance) {
+        out_.model.repairs.push_back({f_.label(i), std::move(what), distance});
+    }
     Result<double> size_of(const Fields& f, std::vector<Vec<3>>& seen);
     double accuracy_for(double size) const;
     static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
@@ -91,7 +114,11 @@ private:
     const Styles& styles_;
     GeometryReader geometry_;
     double tolerance_;
+    const StepReadOptions& options_;
     Part out_;
+    // Faces whose loops were turned, with what was said of it, until those beside them have been asked.
+    std::unordered_map<int, std::size_t> turned_;
+    std::optional<std::size_t> turned_now_;  // of the face that is being made
     std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
     std::unordered_map<std::uint32_t, EdgeMade> edges_;
@@ -99,6 +126,9 @@ private:
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
     std::unordered_map<const Chart*, std::uint32_t> charts_;
 };
+
+// Whether an item of a representation is of triangles, or of what stands beside them.
+bool is_tessellated(const File& file, std::uint32_t item);
 
 // The surface with a spline that closes continued by whole turns, so that `on` is inside its domain.
 // `slack`: of a turn, by which `on` may leave the domain.

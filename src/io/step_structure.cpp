@@ -21,6 +21,7 @@ public:
 
     Structure run() {
         out_.styles = styles_of(f_);
+        read_layers(f_, out_.styles, out_.refused);
         find_representations();
         join_equals();
         make_nodes();
@@ -156,7 +157,9 @@ private:
             return g->refused("maps what is no representation of shapes", RefusalKind::unsupported);
         const auto by = motion_of(*origin, *target);
         if (!by) return std::unexpected(by.error());
-        link(n, node_[*of], *by, colour_of(item));
+        std::vector<int> layers;
+        out_.styles.add_layers(layers, item);
+        link(n, node_[*of], *by, colour_of(item), std::move(layers));
         return {};
     }
     std::optional<Colour> colour_of(std::uint32_t item) const {
@@ -164,12 +167,13 @@ private:
         return at == out_.styles.colours.end() ? std::nullopt : std::optional<Colour>(at->second);
     }
 
-    void link(std::uint32_t parent, std::uint32_t child, const Motion& at, std::optional<Colour> colour) {
+    void link(std::uint32_t parent, std::uint32_t child, const Motion& at, std::optional<Colour> colour,
+              std::vector<int> layers) {
         if (parent == child) {
             out_.refused.push_back({RefusalKind::invalid, "representation", "contains itself"});
             return;
         }
-        out_.nodes[parent].children.push_back({child, at, colour});
+        out_.nodes[parent].children.push_back({child, at, colour, std::move(layers)});
         out_.nodes[child].has_parent = true;
     }
 
@@ -289,7 +293,7 @@ private:
             std::swap(from, to);
         const auto motion = motion_of(from, to);
         if (!motion) return std::unexpected(motion.error());
-        link(parent, child, *motion, std::nullopt);
+        link(parent, child, *motion, std::nullopt, {});
         return {};
     }
     bool contains(std::uint32_t representation, std::uint32_t item) const {

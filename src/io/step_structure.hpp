@@ -21,6 +21,7 @@ struct Node {
         std::uint32_t node = 0;
         Motion at;
         std::optional<Colour> colour;
+        std::vector<int> layers;
     };
     std::vector<Child> children;
     std::vector<std::pair<std::uint32_t, Motion>> replicas;  // items in another place
@@ -40,5 +41,7 @@ double largest_uncertainty(const File& file);
 // Of a representation context.
 Context context_of(const File& file, std::uint32_t context);
 Styles styles_of(const File& file);
+// Into the styles of the file: the layers, and what lies on them.
+void read_layers(const File& file, Styles& styles, std::vector<Refusal>& refused);
 
 }  // namespace freiform::step

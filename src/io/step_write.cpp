@@ -73,7 +73,8 @@ public:
           geometry_(entities),
           m_(model),
           vertices_(model.vertices.size()),
-          edges_(model.edges.size()) {}
+          edges_(model.edges.size()),
+          on_layers_(model.layers.size()) {}
 
     // The solids, and all other shells.
     Result<void> write() {
@@ -82,6 +83,7 @@ public:
             const auto id = face(m_.faces[f]);
             if (!id) return refuse_within(text("faces[", f, "]"), id.error());
             faces.push_back(*id);
+            put_on_layers(m_.faces[f].layers, *id);
         }
         for (const Body& b : m_.bodies) {
             std::vector<int> shells;
@@ -92,20 +94,32 @@ public:
                 shells.push_back(
                     e_.add(text(b.solid ? "CLOSED_SHELL(''," : "OPEN_SHELL('',", Entities::refs(used), ")")));
             }
-            add_body(b, shells);
+            const int id = add_body(b, shells);
+            if (id > 0) put_on_layers(b.layers, id);
         }
+        for (std::size_t l = 0; l < m_.layers.size(); ++l)
+            if (!on_layers_[l].empty())
+                e_.add(text("PRESENTATION_LAYER_ASSIGNMENT(", quoted(m_.layers[l].name), ",",
+                            quoted(m_.layers[l].description), ",", Entities::refs(on_layers_[l]), ")"));
         return {};
     }
 
     std::vector<int> solids, sheets;
 
 private:
-    void add_body(const Body& b, const std::vector<int>& shells) {
-        if (shells.empty()) return;
+    void put_on_layers(const std::vector<int>& layers, int id) {
+        for (const int l : layers) on_layers_[std::size_t(l)].push_back(id);
+    }
+
+    // Its entity; 0 if it has no shells.
+    int add_body(const Body& b, const std::vector<int>& shells) {
+        if (shells.empty()) return 0;
         if (!b.solid) {
             sheets.push_back(
                 e_.add(text("SHELL_BASED_SURFACE_MODEL(", quoted(b.name), ",", Entities::refs(shells), ")")));
-        } else if (shells.size() == 1) {
+            return sheets.back();
+        }
+        if (shells.size() == 1) {
             solids.push_back(e_.add(text("MANIFOLD_SOLID_BREP(", quoted(b.name), ",#", shells[0], ")")));
         } else {
             std::vector<int> voids;
@@ -114,6 +128,7 @@ private:
             solids.push_back(e_.add(
                 text("BREP_WITH_VOIDS(", quoted(b.name), ",#", shells[0], ",", Entities::refs(voids), ")")));
         }
+        return solids.back();
     }
 
     int vertex(int v) {
@@ -193,7 +208,8 @@ private:
     Entities& e_;
     StepGeometry geometry_;
     const Model& m_;
-    std::vector<int> vertices_, edges_;  // their entities, 0 until they are written
+    std::vector<int> vertices_, edges_;        // their entities, 0 until they are written
+    std::vector<std::vector<int>> on_layers_;  // the entities of each
 };
 
 // What every file says once.

@@ -60,9 +60,17 @@ Result<void> check_edge(const Model& m, const Edge& e, std::string_view where) {
     return check_curve(*e.curve, e.range, text(where, ".curve"));
 }
 
+Result<void> check_layers(const Model& m, const std::vector<int>& layers, std::string_view where) {
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (auto ok = check_index(layers[i], m.layers.size(), text(where, ".layers[", i, "]")); !ok)
+            return ok;
+    return {};
+}
+
 Result<void> check_face(const Model& m, const Face& f, std::string_view where) {
     if (auto ok = check(f.surface); !ok) return refuse_within(text(where, ".surface"), ok.error());
     if (auto ok = check_tolerance(f.tolerance, text(where, ".tolerance")); !ok) return ok;
+    if (auto ok = check_layers(m, f.layers, where); !ok) return ok;
     for (std::size_t l = 0; l < f.loops.size(); ++l) {
         const auto& coedges = f.loops[l].coedges;
         const std::string loop = text(where, ".loops[", l, "]");
@@ -223,6 +231,9 @@ Result<Model> make_model(Model m) {
                                       text("bodies[", i, "].shells[", k, "]"));
                 !ok)
                 return std::unexpected(ok.error());
+    for (std::size_t i = 0; i < m.bodies.size(); ++i)
+        if (auto ok = check_layers(m, m.bodies[i].layers, text("bodies[", i, "]")); !ok)
+            return std::unexpected(ok.error());
     return m;
 }
 

@@ -83,6 +83,7 @@ Result<Model> rescaled(const Model& model, int exponent) {
         if (a.bound) a.bound = scale(*a.bound);
         a.estimate = scale(a.estimate);
     }
+    for (Repair& r : out.repairs) r.distance = scale(r.distance);
     return out;
 }
 

@@ -71,6 +71,9 @@ Model everything() {
     face(OffsetSurface{std::make_shared<const SurfaceGeometry>(plane), -0.1});
     m.shells = {{{{0, false}, {4, true}}, true}, {{{1, false}}, false}};
     m.bodies = {{{0, 1}, true, "solid", Colour{1, 0, 0, 1}}, {{1}, false, "", std::nullopt}};
+    m.layers = {{"walls", "outside"}, {"2", ""}};
+    m.faces[1].layers = {0, 1}, m.bodies[0].layers = {1};
+    m.repairs = {{"#14 EDGE_LOOP", "was open", 0.01}};
     m.refused = {{RefusalKind::unsupported, "#12 FACE", "has no counterpart"}, {RefusalKind::io, "", ""}};
     m.approximations = {{"edges[3]", "moved", 1e-5}, {"edges[4]", "sampled", std::nullopt, 2e-5}};
     return m;
@@ -118,6 +121,12 @@ TEST(ModelBinary, gives_back_every_part_to_the_last_bit) {
     EXPECT_EQ(back->approximations[0].bound, 1e-5);
     EXPECT_EQ(back->approximations[1].bound, std::nullopt);
     EXPECT_EQ(back->approximations[1].estimate, 2e-5);
+    ASSERT_EQ(back->layers.size(), 2u);
+    EXPECT_EQ(back->layers[0].description, "outside");
+    EXPECT_EQ(back->faces[1].layers, (std::vector{0, 1}));
+    EXPECT_EQ(back->bodies[0].layers, (std::vector{1}));
+    ASSERT_EQ(back->repairs.size(), 1u);
+    EXPECT_EQ(back->repairs[0].distance, 0.01);
     EXPECT_TRUE(back->bodies[0].solid);
     EXPECT_EQ(back->shells[0].faces[1].face, 4);
     EXPECT_TRUE(back->shells[0].faces[1].reversed);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <numbers>
 #include <support/corpus.hpp>
+#include <support/random.hpp>
 #include <support/refusal.hpp>
 
 namespace freiform::test {

@@ -32,7 +32,7 @@ inline constexpr const char* kEverything = R"({"freiform": 1, "unit": "mm", "obj
              {"curve": {"degree": 1, "points": [[0,0,0],[1,2,3]]}, "range": [0,1], "start": 0, "end": 1}],
    "faces": [{"surface": {"type": "extrusion", "profile": {"type": "line", "origin": [0,0,0], "direction": [1,0,0]},
                           "direction": [0,1,0], "kind": "plane"}, "reversed": true, "tolerance": 1, "name": "f",
-              "colour": [1,0.5,0,1],
+              "colour": [1,0.5,0,1], "layers": [0,1],
               "loops": [[{"edge": 0, "reversed": true,
                           "curve": {"type": "ellipse", "centre": [0,0], "x": [1,0], "y": [0,1]}}]]},
              {"surface": {"type": "revolution", "profile": {"type": "line", "origin": [1,0,0], "direction": [0,0,1]},
@@ -40,10 +40,12 @@ inline constexpr const char* kEverything = R"({"freiform": 1, "unit": "mm", "obj
              {"surface": {"type": "offset", "base": {"degrees": [1,1],
                           "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}, "distance": -2}}],
    "shells": [{"faces": [{"face": 0}, {"face": 1, "reversed": true}], "closed": true}],
-   "bodies": [{"shells": [0], "solid": true, "name": "b", "colour": [0,0,0,0.5]}],
+   "bodies": [{"shells": [0], "solid": true, "name": "b", "colour": [0,0,0,0.5], "layers": [1]}],
    "refused": [{"kind": "unsupported", "where": "#12", "message": "why"}],
    "approximations": [{"where": "#13", "what": "a curve", "bound": 1e-9},
-                      {"where": "", "what": "another", "estimate": 0.25}]}
+                      {"where": "", "what": "another", "estimate": 0.25}],
+   "layers": [{"name": "walls", "description": "outside"}, {"name": "2"}],
+   "repairs": [{"where": "#14 EDGE_LOOP", "what": "was open", "distance": 0.01}]}
 ]})";
 
 inline Document must_read(std::string_view text) {

@@ -60,7 +60,8 @@ struct MeshReadOptions {
 // What the functions above write, and plain files of other programs: STL (binary, text), PLY (little-endian,
 // text; polygons are cut into fans), OBJ (v, vn, f, g, o), glTF binary without extensions, in its default
 // scene, turned to Z up. Points of equal coordinates become one point, so that `topology` says whether the
-// mesh is closed. Triangles that have no area are kept. `name` stands in refusals.
+// mesh is closed. Triangles that have no area are kept. `name` stands in refusals. `read_mesh` without a
+// format also takes STEP files, as read_step_mesh does.
 Result<TriangleMesh> parse_mesh(std::string_view bytes, MeshFormat format, const std::string& name,
                                 const MeshReadOptions& options = {});
 Result<TriangleMesh> read_mesh(const std::string& path, std::optional<MeshFormat> format = std::nullopt,

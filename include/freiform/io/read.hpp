@@ -24,6 +24,8 @@ struct ReadOptions {
     std::optional<FileFormat> format;  // else the ending decides, and where it says nothing, the content
     std::uint64_t max_bytes = std::uint64_t(2) << 30;
     StepReader step_reader = StepReader::own;
+    bool repair = false;           // StepReadOptions of the library's own reader
+    double repair_limit = 0;       // likewise
     double timeout = 0;            // seconds, 0: none; for the program that reads IGES and BREP
     std::uint64_t max_memory = 0;  // bytes, 0: none; likewise, and for models in STEP files
 };

@@ -1,5 +1,6 @@
 // STEP files (ISO 10303-21, editions 1 to 3; AP203, AP214, AP242) as models.
 #pragma once
+#include <freiform/io/mesh_file.hpp>
 #include <freiform/model/model.hpp>
 
 #include <cstdint>
@@ -10,6 +11,13 @@ namespace freiform {
 struct StepReadOptions {
     // That the model may take; an estimate is kept below it.
     std::uint64_t memory_bytes = std::uint64_t(4) << 30;
+    // What contradicts itself beyond the tolerance of the file is made right where that is possible, and
+    // listed in Model::repairs; else it is refused. Open loops are closed by straight edges, faces whose
+    // loops run the wrong way are turned, edges far beside their surface are taken with that as their
+    // tolerance.
+    bool repair = false;
+    // The longest gap of a loop that is closed, in the unit of the file; 0: a hundredth of the face.
+    double repair_limit = 0;
 };
 
 // The model in the file; coordinates in the unit of the file, which Model::unit names: that of the first
@@ -25,5 +33,13 @@ struct StepReadOptions {
 // Refuses: unreadable (with the byte) what is no such file or ends too early, no_answer where nothing in it
 // has a shape, limit. Whatever the bytes are, the answer comes, in time proportional to their number.
 Result<Model> read_step(std::string_view bytes, const StepReadOptions& options = {});
+
+// The tessellated items of a file (AP242) as a mesh, in its unit, each where the assembly has it:
+// triangulated faces and surface sets, also of strips and fans, in solids, shells and sets; a part for each
+// face. Refuses, with the number of the instance, indices and counts that contradict each other (invalid) and
+// items of other types (unsupported); no_answer where there are no triangles.
+Result<TriangleMesh> read_step_mesh(std::string_view bytes, const MeshReadOptions& options = {});
+// Whether every shape of a STEP file is of tessellated items; what is no such file has none.
+bool has_only_triangles(std::string_view bytes);
 
 }  // namespace freiform

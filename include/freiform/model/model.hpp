@@ -49,6 +49,7 @@ struct Face {
     double tolerance = 0;
     std::string name;
     std::optional<Colour> colour;
+    std::vector<int> layers = {};  // those that it is on
 };
 
 struct FaceUse {
@@ -66,6 +67,13 @@ struct Body {
     bool solid = false;
     std::string name;
     std::optional<Colour> colour;
+    std::vector<int> layers = {};  // likewise; its faces need not say them again
+};
+
+// What programs show and hide together; faces and bodies say which ones they are on.
+struct Layer {
+    std::string name;
+    std::string description = {};
 };
 
 // Something that a reader had to approximate: never silent, always with a number.
@@ -73,6 +81,12 @@ struct Approximation {
     std::string where, what;
     std::optional<double> bound;  // no point moved by more than this: proven, rounding included
     double estimate = 0;          // without a bound: what is believed instead; nothing proves it
+};
+
+// Something of a file that is wrong, and that a reader made right because it was asked to.
+struct Repair {
+    std::string where, what;  // the entity of the file; what was done to it
+    double distance = 0;      // by which something is elsewhere now, or was apart
 };
 
 struct Model {
@@ -84,6 +98,8 @@ struct Model {
     std::vector<Body> bodies;
     std::vector<Refusal> refused;  // entities of the file that are not in the model, each with its reason
     std::vector<Approximation> approximations;
+    std::vector<Layer> layers;  // in the order of the file; no name twice
+    std::vector<Repair> repairs;
 };
 
 struct ModelSummary {

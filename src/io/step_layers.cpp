@@ -1,0 +1,52 @@
+// Layers. A PRESENTATION_LAYER_ASSIGNMENT names a layer and lists items; the same name elsewhere is the same
+// layer. Items are shapes, or styles of shapes, which stand for what they style.
+//
+// Cost: linear in the file. Items carry numbers of layers, not names, so that a long name on many faces is
+// kept once; an item is on kMostLayers at most.
+#include "step_structure.hpp"
+
+#include <algorithm>
+
+namespace freiform::step {
+
+void Styles::add_layers(std::vector<int>& to, std::uint32_t item) const {
+    const auto known = on_layers.find(item);
+    if (known == on_layers.end()) return;
+    std::vector<int> all;
+    std::ranges::set_union(to, known->second, std::back_inserter(all));
+    if (all.size() > kMostLayers) all.resize(kMostLayers);
+    to = std::move(all);
+}
+
+void read_layers(const File& f, Styles& styles, std::vector<Refusal>& refused) {
+    std::unordered_map<std::string, int> known;
+    for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
+        if (f.type(i) != Type::PRESENTATION_LAYER_ASSIGNMENT) continue;
+        const Fields g(f, i, f.part(i, Type::PRESENTATION_LAYER_ASSIGNMENT));
+        const auto items = g.references(2, "items");
+        if (!items) {
+            refused.push_back(items.error());
+            continue;
+        }
+        const auto [at, fresh] = known.emplace(g.string(0), int(styles.layers.size()));
+        if (fresh) styles.layers.push_back({at->first, {}});
+        std::string& description = styles.layers[std::size_t(at->second)].description;
+        if (description.empty()) description = g.string(1);
+        for (std::uint32_t item : *items) {
+            for (const Type t : {Type::STYLED_ITEM, Type::OVER_RIDING_STYLED_ITEM})
+                if (const std::uint32_t list = f.part(item, t); list != kMissing)
+                    if (const auto styled = Fields(f, item, list).reference(2, "item")) item = *styled;
+            styles.on_layers[item].push_back(at->second);
+        }
+    }
+    for (auto& [item, layers] : styles.on_layers) {
+        std::ranges::sort(layers);
+        layers.erase(std::ranges::unique(layers).begin(), layers.end());
+        if (layers.size() <= kMostLayers) continue;
+        refused.push_back({RefusalKind::limit, f.label(item),
+                           text("is on ", layers.size(), " layers; ", kMostLayers, " of them are kept")});
+        layers.resize(kMostLayers);
+    }
+}
+
+}  // namespace freiform::step

@@ -1,0 +1,93 @@
+// Layers of STEP files: read, kept in documents and scenes, written again.
+#include <freiform/io/document.hpp>
+#include <freiform/io/scene.hpp>
+#include <freiform/io/step.hpp>
+#include <freiform/io/step_read.hpp>
+
+#include <support/random.hpp>
+#include <support/refusal.hpp>
+#include <support/step_polygons.hpp>
+
+namespace freiform::test {
+namespace {
+
+const std::vector<Corner> kSquare{{0, 0}, {3, 0}, {3, 2}, {0, 2}};
+
+std::vector<std::string> names_of(const Model& m, const std::vector<int>& layers) {
+    std::vector<std::string> names;
+    for (const int l : layers) names.push_back(m.layers[std::size_t(l)].name);
+    return names;
+}
+using Names = std::vector<std::string>;
+
+Model layered_model(std::string_view assignments) {
+    auto m = read_step(polygon_file(kSquare, assignments));
+    EXPECT_TRUE(m) << m.error().where << ": " << m.error().message;
+    return m ? *m : Model{};
+}
+
+TEST(StepLayers, faces_and_bodies_are_on_the_layers_that_name_them_or_their_styles) {
+    const Model m = layered_model(
+        "#900=PRESENTATION_LAYER_ASSIGNMENT('walls','outside',(#12,#11));\n"
+        "#901=PRESENTATION_LAYER_ASSIGNMENT('2','',(#950));\n"
+        "#902=PRESENTATION_LAYER_ASSIGNMENT('walls','again',(#12));\n"
+        "#903=PRESENTATION_LAYER_ASSIGNMENT('empty hands','',(#6));\n"
+        "#950=STYLED_ITEM('',(),#12);\n");
+    ASSERT_EQ(m.layers.size(), 3u);
+    EXPECT_EQ(m.layers[0].description, "outside");
+    ASSERT_EQ(m.faces.size(), 1u);
+    EXPECT_EQ(names_of(m, m.faces[0].layers), (Names{"walls", "2"}));
+    // The shell is on a layer, and so is the body that it makes.
+    ASSERT_EQ(m.bodies.size(), 1u);
+    EXPECT_EQ(names_of(m, m.bodies[0].layers), (Names{"walls"}));
+    EXPECT_TRUE(m.refused.empty());
+}
+
+TEST(StepLayers, what_is_written_is_read_again_the_same) {
+    const Model m = layered_model(
+        "#900=PRESENTATION_LAYER_ASSIGNMENT('it''s','d',(#12,#10));\n"
+        "#901=PRESENTATION_LAYER_ASSIGNMENT('b','',(#10));\n");
+    const auto bytes = write_step({"mm", {{"", m}}});
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const auto again = read_step(*bytes);
+    ASSERT_TRUE(again) << again.error().message;
+    ASSERT_EQ(again->layers.size(), 2u);
+    EXPECT_EQ(again->layers[0].name, "it's");
+    EXPECT_EQ(again->layers[0].description, "d");
+    EXPECT_EQ(again->faces.at(0).layers, m.faces.at(0).layers);
+    EXPECT_EQ(again->bodies.at(0).layers, m.bodies.at(0).layers);
+    EXPECT_EQ(again->bodies.at(0).layers.size(), 2u);
+}
+
+TEST(StepLayers, models_that_are_joined_have_layers_of_one_name_once) {
+    const Model a = layered_model("#900=PRESENTATION_LAYER_ASSIGNMENT('x','',(#12));\n");
+    const Model b = layered_model(
+        "#900=PRESENTATION_LAYER_ASSIGNMENT('y','',(#12));\n"
+        "#901=PRESENTATION_LAYER_ASSIGNMENT('x','',(#12,#10));\n");
+    const auto both = scene_of({"mm", {{"", a}, {"", b}}});
+    ASSERT_TRUE(both) << both.error().message;
+    ASSERT_EQ(both->layers.size(), 2u);
+    EXPECT_EQ(names_of(*both, both->faces.at(0).layers), (Names{"x"}));
+    EXPECT_EQ(names_of(*both, both->faces.at(1).layers), (Names{"y", "x"}));
+    EXPECT_EQ(names_of(*both, both->bodies.at(1).layers), (Names{"x"}));
+}
+
+TEST(StepLayers, layers_that_are_not_there_and_items_on_too_many_are_refused_by_their_place) {
+    Model m = layered_model("");
+    m.faces.at(0).layers = {0};
+    expect_refusal(make_model(m), RefusalKind::invalid, "faces[0].layers[0]", "index 0");
+    m.faces[0].layers.clear(), m.bodies.at(0).layers = {-1};
+    expect_refusal(make_model(m), RefusalKind::invalid, "bodies[0].layers[0]", "index -1");
+    std::string many;
+    for (int i = 0; i < 100; ++i)
+        many += text("#", 1000 + i, "=PRESENTATION_LAYER_ASSIGNMENT('", i, "','',(#12));\n");
+    const Model full = layered_model(many);
+    EXPECT_EQ(full.layers.size(), 100u);
+    EXPECT_EQ(full.faces.at(0).layers.size(), 64u);
+    ASSERT_EQ(full.refused.size(), 1u);
+    EXPECT_EQ(full.refused[0].where, "#12 ADVANCED_FACE");
+    EXPECT_EQ(full.refused[0].message, "is on 100 layers; 64 of them are kept");
+}
+
+}  // namespace
+}  // namespace freiform::test
