@@ -15,6 +15,7 @@ ReadOptions Context::read_options() const {
     o.timeout = limits.timeout;
     o.max_memory = limits.max_memory;
     if (limits.reader == "occt") o.step_reader = StepReader::occt;
+    o.repair = limits.repair, o.repair_limit = limits.repair_limit.value_or(0);
     if (limits.max_memory != 0) o.max_bytes = std::min(o.max_bytes, limits.max_memory);
     return o;
 }
@@ -53,6 +54,19 @@ std::string approximation_text(const Approximation& a) {
     return text(
         a.where, a.where.empty() ? "" : ": ", a.what,
         a.bound ? text(", within ", *a.bound) : text(", about ", a.estimate, ", which nothing proves"));
+}
+
+std::string repair_text(const Repair& r) { return text(r.where, ": ", r.what, " (", r.distance, ")"); }
+
+void write_repairs(json::Writer& w, const std::vector<Repair>& list) {
+    w.key("repairs").begin_array();
+    for (const Repair& r : list)
+        w.begin_object()
+            .field("where", r.where)
+            .field("what", r.what)
+            .field("distance", r.distance)
+            .end_object();
+    w.end_array();
 }
 
 #if !defined(__wasm__)

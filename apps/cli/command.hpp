@@ -40,6 +40,8 @@ struct Limits {
     double timeout = 0;            // seconds, 0: none
     std::uint64_t max_memory = 0;  // bytes, 0: none
     std::string reader;            // of STEP files: "occt", else the library
+    bool repair = false;           // of STEP files, by the library's reader
+    std::optional<double> repair_limit;
     std::uint64_t max_triangles = 20'000'000;
 };
 
@@ -180,6 +182,10 @@ class WrongUsage : public std::runtime_error {
 Result<void> emit(const Context& context, std::string_view bytes);
 // A remark for people, on standard error.
 void remark(std::string_view message);
+
+// What a reader was asked to make right: "#12 EDGE_LOOP: ... (0.01)".
+std::string repair_text(const Repair& r);
+void write_repairs(json::Writer& w, const std::vector<Repair>& list);
 
 // What a model says about its approximations: a proven bound is told from an estimate.
 void write_approximation(json::Writer& w, const Approximation& a);

@@ -129,6 +129,29 @@ void write_approximations(json::Writer& w, const std::vector<Approximation>& lis
     w.end_array();
 }
 
+// How many faces and bodies are on each layer.
+std::vector<std::array<int, 2>> layer_counts(const Model& m) {
+    std::vector<std::array<int, 2>> counts(m.layers.size());
+    for (const Face& f : m.faces)
+        for (const int l : f.layers) ++counts[std::size_t(l)][0];
+    for (const Body& b : m.bodies)
+        for (const int l : b.layers) ++counts[std::size_t(l)][1];
+    return counts;
+}
+
+void write_layers(json::Writer& w, const Model& m) {
+    const auto counts = layer_counts(m);
+    w.key("layers").begin_array();
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        w.begin_object()
+            .field("name", m.layers[i].name)
+            .field("description", m.layers[i].description)
+            .field("faces", counts[i][0])
+            .field("bodies", counts[i][1])
+            .end_object();
+    w.end_array();
+}
+
 void write_model_info(json::Writer& w, const Model& m) {
     const ModelSummary s = summary(m);
     if (!m.unit.empty()) w.field("unit", m.unit);
@@ -139,6 +162,8 @@ void write_model_info(json::Writer& w, const Model& m) {
     write_counts(w, "edge_kinds", edge_kinds(m));
     write_refusals(w, "refused", m.refused);
     write_approximations(w, m.approximations);
+    if (!m.layers.empty()) write_layers(w, m);
+    if (!m.repairs.empty()) write_repairs(w, m.repairs);
     write_range(w, as_control_box(s.box));
 }
 
@@ -223,6 +248,12 @@ std::string model_text(const Model& m) {
     t += range_text(as_control_box(s.box));
     for (const Refusal& r : m.refused)
         t += text("  refused  ", r.where, ": ", r.message, " (", name_of(r.kind), ")\n");
+    for (const Repair& r : m.repairs) t += text("  repaired ", repair_text(r), "\n");
+    const auto counts = layer_counts(m);
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        t += text("  layer    ", m.layers[i].name,
+                  m.layers[i].description.empty() ? "" : text(" (", m.layers[i].description, ")"), ": ",
+                  counts[i][1], " bodies, ", counts[i][0], " faces by themselves\n");
     return t + approximations_text(m.approximations);
 }
 

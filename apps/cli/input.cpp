@@ -1,7 +1,9 @@
 #include "input.hpp"
 
 #include <freiform/io/bpt.hpp>
+#include <freiform/io/file.hpp>
 #include <freiform/io/mesh_file.hpp>
+#include <freiform/io/step_read.hpp>
 
 namespace freiform::cli {
 
@@ -24,6 +26,10 @@ bool is_mesh_name(const std::string& file) {
 }  // namespace
 
 bool is_mesh_file(const Context& context, const std::string& file) {
+    if (format_of_name(file) == FileFormat::step) {
+        const auto bytes = read_file(file, context.read_options().max_bytes);
+        return bytes && has_only_triangles(*bytes);
+    }
     if (!mesh_format(file) || is_mesh_name(file)) return is_mesh_name(file);
     const auto read = read_any(file, context.read_options());
     return !read && read.error().kind == RefusalKind::no_answer;
@@ -35,6 +41,8 @@ Result<Input> read_input(const Context& context, const std::string& file, const 
         return refuse(
             RefusalKind::unreadable, shown(file),
             "curves, surfaces or a model are expected, not triangles; info, draw and check read those");
+    if (!document && document.error().kind == RefusalKind::no_answer && is_mesh_file(context, file))
+        document.error().message += ": info, draw and check do that";
     if (!document) return std::unexpected(document.error());
     auto chosen = selected(*document, object);
     if (!chosen) return std::unexpected(chosen.error());
@@ -47,6 +55,15 @@ void remark_changes(const Document& document, std::span<const std::size_t> objec
     for (const std::size_t i : objects)
         for (const Approximation& a : document.objects[i].approximations)
             remark(text(object_label(document, i), ": ", approximation_text(a)));
+    constexpr std::size_t kMost = 20;
+    for (const std::size_t i : objects) {
+        const auto* model = std::get_if<Model>(&document.objects[i].shape);
+        if (!model) continue;
+        for (std::size_t k = 0; k < std::min(kMost, model->repairs.size()); ++k)
+            remark(text("repaired ", repair_text(model->repairs[k])));
+        if (model->repairs.size() > kMost)
+            remark(text("repaired ", model->repairs.size() - kMost, " more: info lists them"));
+    }
 }
 
 void remark_left_out(const Input& input, std::size_t i) {

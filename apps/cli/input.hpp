@@ -17,7 +17,8 @@ struct Input {
 };
 Result<Input> read_input(const Context& context, const std::string& file, const std::string& object);
 
-// Whether a file is a triangle mesh: .stl, .ply, .glb, and .obj without curves and surfaces.
+// Whether a file is a triangle mesh: .stl, .ply, .glb, .obj without curves and surfaces, and STEP files whose
+// shapes are all tessellated.
 bool is_mesh_file(const Context& context, const std::string& file);
 
 // Says on standard error what reading had to change in these objects, and by how much.

@@ -90,7 +90,9 @@ void write_report(json::Writer& w, const TessellateReport& r) {
             .end_object();
     w.end_array().key("approximations").begin_array();
     for (const Approximation& a : model.approximations) write_approximation(w, a);
-    w.end_array().end_object();
+    w.end_array();
+    if (!model.repairs.empty()) write_repairs(w, model.repairs);
+    w.end_object();
 }
 
 std::string report_text(const TessellateReport& r) {
@@ -116,6 +118,7 @@ std::string report_text(const TessellateReport& r) {
         s += text("refused face ", f.face, f.name.empty() ? "" : text(" '", f.name, "'"), ": ",
                   f.reason.where, ": ", f.reason.message, "\n");
     for (const Refusal& x : model.refused) s += text("refused ", x.where, ": ", x.message, "\n");
+    for (const Repair& x : model.repairs) s += text("repaired ", repair_text(x), "\n");
     for (const Approximation& a : model.approximations)
         s += text("approximated ", approximation_text(a), "\n");
     if (!r.output.empty()) s += text("written to ", r.output, "\n");

@@ -117,7 +117,13 @@ public:
             if (const auto* model = std::get_if<Model>(&o.shape))
                 for (const Approximation& a : model->approximations) write_approximation(w, a);
         }
-        w.end_array().end_object();
+        w.end_array();
+        std::vector<Repair> repairs;
+        for (const Object& o : input_.document->objects)
+            if (const auto* model = std::get_if<Model>(&o.shape))
+                repairs.insert(repairs.end(), model->repairs.begin(), model->repairs.end());
+        write_repairs(w, repairs);
+        w.end_object();
         return as_json(w);
     }
 

@@ -72,7 +72,7 @@ RECORDS = {
     "region/boolean": ["Region", "PathArea"],
     "mesh/triangle_mesh": ["MeshPart", "MeshEdge", "MeshTopology"],
     "mesh/level_lines": ["EdgePlace", "LevelLine", "Outline"],
-    "model/model": ["Approximation", "ModelSummary"],
+    "model/model": ["Approximation", "Layer", "ModelSummary", "Repair"],
     "model/deviation": ["FaceDeviation", "MeshDeviation"],
     "model/nearest": ["ModelNearest", "ModelFarthest", "NearestFaces"],
     "model/distance": ["ModelDistance"],

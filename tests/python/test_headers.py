@@ -57,6 +57,8 @@ FUNCTION_EXCEPTIONS = {
     "curve_of_curves": "Surface.iso",
     "distances_from_model": "Model.deviation, Model.nearest",
     "dot": "numpy",
+    "has_only_triangles": "Mesh.read says so by what it gives",
+    "read_step_mesh": "Mesh.read",
     "each_fibre": "for C++",
     "edge_at": "for C++",
     "elevation_error": "a bound within algorithms",

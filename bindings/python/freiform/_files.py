@@ -124,10 +124,12 @@ class Document(Sequence[Shape]):
 
 @from_header("io/read:read_any", "io/exchange:read_with_occt")
 def read(path: str | os.PathLike[str], *, format: str | None = None, timeout: float = 0.0, max_bytes: int = 0,
-         max_memory: int = 0, reader: str | None = None) -> Document:
+         max_memory: int = 0, reader: str | None = None, repair: bool = False,
+         repair_limit: float = 0.0) -> Document:
     """Any file that freiform can read: json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj. STEP files by
-    ``reader`` "freiform" (the library itself, the default) or "occt" (Open CASCADE in a process of its own)."""
-    return Document._of(_core.read(os.fspath(path), format, timeout, max_bytes, max_memory, reader))
+    ``reader`` "freiform" (the library itself, the default) or "occt" (Open CASCADE in a process of its own).
+    ``repair``: what is wrong in a STEP file beyond its tolerance is made right (`Model.repairs`), gaps up to ``repair_limit``."""
+    return Document._of(_core.read(os.fspath(path), format, timeout, max_bytes, max_memory, reader, repair, repair_limit))
 
 
 @from_header("io/step_read:read_step")

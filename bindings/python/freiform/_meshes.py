@@ -36,7 +36,7 @@ class Mesh:
     @classmethod
     @from_header("io/mesh_file:read_mesh")
     def read(cls, path: str | os.PathLike[str]) -> Mesh:
-        """From a .glb, .stl, .obj or .ply file."""
+        """From a .glb, .stl, .obj, .ply or tessellated .step file."""
         return cls._of(_core.MeshHandle.read(os.fspath(path)))
 
     @classmethod

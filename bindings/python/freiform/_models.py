@@ -12,9 +12,10 @@ from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, Record, fro
 from ._meshes import Mesh
 from ._patches import Curve, Surface
 from ._paths import Path
-from ._records import (Approximation, Conic, ConvexHull, EdgeContinuity, FieldValues, Line, Measure, MeshDeviation,
-                       ModelContacts, ModelDistance, ModelFarthest, ModelIntersection, ModelNearest, ModelSection,
-                       ModelSummary, NearestFaces, OrientedBox, Sewing, SolidInside, SurfaceLine, Tessellation, TightBox)
+from ._records import (Approximation, Conic, ConvexHull, EdgeContinuity, FieldValues, Layer, Line, Measure,
+                       MeshDeviation, ModelContacts, ModelDistance, ModelFarthest, ModelIntersection, ModelNearest,
+                       ModelSection, ModelSummary, NearestFaces, OrientedBox, Repair, Sewing, SolidInside,
+                       SurfaceLine, Tessellation, TightBox)
 from ._refusals import Refusal
 
 __all__ = ["Model", "ModelFace", "ModelEdge", "ModelNearestPoints", "ModelNearestQuery", "TrimmedSurface", "inside_loops", "orient_loops"]
@@ -159,6 +160,26 @@ class Model:
     def approximations(self) -> list[Approximation]:
         """What a reader had to change, with bounds."""
         return self._c.approximations()
+
+    @property
+    def layers(self) -> list[Layer]:
+        """What programs show and hide together."""
+        return self._c.layers()
+
+    @property
+    def face_layers(self) -> list[list[int]]:
+        """For each face the layers that it is on by itself."""
+        return self._c.face_layers()
+
+    @property
+    def body_layers(self) -> list[list[int]]:
+        """For each body the layers that it is on."""
+        return self._c.body_layers()
+
+    @property
+    def repairs(self) -> list[Repair]:
+        """What a reader was asked to make right."""
+        return self._c.repairs()
 
     @from_header("model/model:ModelSummary")
     def summary(self) -> ModelSummary:

@@ -123,18 +123,20 @@ void bind_files(py::module_& m) {
     m.def(
         "read",
         [](const std::string& path, const std::optional<std::string>& format, double timeout,
-           std::uint64_t max_bytes, std::uint64_t max_memory, const std::optional<std::string>& reader) {
+           std::uint64_t max_bytes, std::uint64_t max_memory, const std::optional<std::string>& reader,
+           bool repair, double repair_limit) {
             ReadOptions options;
             if (format) options.format = enum_of<FileFormat>(*format, "format");
             if (reader && reader != "freiform" && reader != "occt")
                 reject(RefusalKind::invalid, "reader", text("\"", *reader, "\" is not freiform or occt"));
             if (reader) options.step_reader = reader == "occt" ? StepReader::occt : StepReader::own;
             options.timeout = timeout, options.max_memory = max_memory;
+            options.repair = repair, options.repair_limit = repair_limit;
             if (max_bytes > 0) options.max_bytes = max_bytes;
             return document_handle(take(unlocked([&] { return read_any(path, options); })));
         },
         py::arg("path"), py::arg("format"), py::arg("timeout"), py::arg("max_bytes"), py::arg("max_memory"),
-        py::arg("reader"));
+        py::arg("reader"), py::arg("repair"), py::arg("repair_limit"));
     m.def(
         "parse",
         [](std::string_view bytes, std::optional<std::string> format) {

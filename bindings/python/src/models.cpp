@@ -353,6 +353,20 @@ void bind_models(py::module_& m) {
         .def_property_readonly("unit", [](const ModelHandle& h) { return h.model->unit; })
         .def("refused", [](const ModelHandle& h) { return to_py(h.model->refused); })
         .def("approximations", [](const ModelHandle& h) { return to_py(h.model->approximations); })
+        .def("layers", [](const ModelHandle& h) { return to_py(h.model->layers); })
+        .def("face_layers",
+             [](const ModelHandle& h) {
+                 std::vector<std::vector<int>> all;
+                 for (const Face& f : h.model->faces) all.push_back(f.layers);
+                 return all;
+             })
+        .def("body_layers",
+             [](const ModelHandle& h) {
+                 std::vector<std::vector<int>> all;
+                 for (const Body& b : h.model->bodies) all.push_back(b.layers);
+                 return all;
+             })
+        .def("repairs", [](const ModelHandle& h) { return to_py(h.model->repairs); })
         .def("vertices",
              [](const ModelHandle& h) {
                  std::vector<Vec<3>> p;

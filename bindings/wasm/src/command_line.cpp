@@ -278,6 +278,8 @@ void Command::limits() const {
     word("--reader", limits.reader, "What reads STEP files: freiform; there is no other reader here")
         .shown_as("READER")
         .one_of({"freiform", "occt"});
+    flag("--repair", limits.repair, "Make right what is wrong in a STEP file, and say what was done");
+    positive("--repair-limit", limits.repair_limit, "The longest gap that --repair closes");
 }
 
 void Command::triangle_limit() const {

@@ -1,0 +1,95 @@
+// STEP files that need a decision: repairs that are asked for, triangles instead of faces, layers.
+#include "run.hpp"
+
+#include <freiform/io/step.hpp>
+
+#include <nlohmann/json.hpp>
+#include <support/step_polygons.hpp>
+
+namespace freiform::test {
+namespace {
+
+using Json = nlohmann::json;
+using CliStep = Program;
+
+// A square with a gap of 0.01 in its boundary.
+std::string gaping_file() {
+    std::string s = polygon_file({{0, 0}, {3, 0}, {3, 2}, {2.99, 2}, {0, 2}});
+    return s.erase(s.find("#502,"), 5);
+}
+
+TEST_F(CliStep, repair_is_asked_for_and_says_what_it_did) {
+    const std::string open = file("open.step", gaping_file());
+    const Ran without = run({"info", open, "--json"});
+    ASSERT_EQ(without.code, 0) << without.err;
+    const Json model = Json::parse(without.out)["objects"][0];
+    EXPECT_EQ(model["faces"], 0);
+    ASSERT_EQ(model["refused"].size(), 1u);
+    const std::string message = model["refused"][0]["message"];
+    EXPECT_NE(message.find("#14 EDGE_LOOP"), std::string::npos) << message;
+    EXPECT_NE(message.find("--repair"), std::string::npos) << message;
+    EXPECT_FALSE(model.contains("repairs"));
+
+    const Ran r = run({"info", open, "--repair", "--json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    EXPECT_NE(r.err.find("repaired #14 EDGE_LOOP"), std::string::npos) << r.err;
+    const Json repairs = Json::parse(r.out)["objects"][0]["repairs"];
+    ASSERT_EQ(repairs.size(), 1u);
+    EXPECT_EQ(repairs[0]["where"], "#14 EDGE_LOOP");
+    EXPECT_NEAR(repairs[0]["distance"].get<double>(), 0.01, 1e-12);
+
+    const Ran mesh =
+        run({"tessellate", open, "--repair", "--tolerance", "0.1", "-o", path("open.stl"), "--json"});
+    ASSERT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_EQ(Json::parse(mesh.out)["repairs"].size(), 1u);
+    EXPECT_NE(mesh.err.find("repaired #14 EDGE_LOOP"), std::string::npos) << mesh.err;
+
+    // A document keeps it.
+    ASSERT_EQ(run({"convert", open, "--repair", "-o", path("open.json")}).code, 0);
+    EXPECT_EQ(Json::parse(content(path("open.json")))["objects"][0]["repairs"].size(), 1u);
+
+    const Ran narrow = run({"info", open, "--repair", "--repair-limit", "0.001", "--json"});
+    EXPECT_EQ(Json::parse(narrow.out)["objects"][0]["faces"], 0);
+    EXPECT_EQ(run({"info", open, "--repair", "--repair-limit", "0"}).code, 2);
+}
+
+TEST_F(CliStep, a_file_of_triangles_alone_is_a_mesh) {
+    const std::string mesh =
+        file("mesh.step", flat_file("#8=TESSELLATED_SHAPE_REPRESENTATION('',(#10),#1);\n"
+                                    "#10=TESSELLATED_SHELL('',(#11),$);\n"
+                                    "#11=TRIANGULATED_FACE('f',#20,3,(),$,(),((1,2,3)));\n"
+                                    "#20=COORDINATES_LIST('',3,((0.,0.,0.),(1.,0.,0.),(0.,1.,0.)));\n"));
+    const Ran info = run({"info", mesh, "--json"});
+    ASSERT_EQ(info.code, 0) << info.err << info.out;
+    const Json j = Json::parse(info.out);
+    EXPECT_EQ(j["type"], "mesh");
+    EXPECT_EQ(j["triangles"], 1);
+    EXPECT_EQ(j["open_edges"], 3);
+    ASSERT_EQ(run({"draw", mesh, "-o", path("mesh.png"), "--view", "top"}).code, 0);
+    const Ran other = run({"tessellate", mesh, "--tolerance", "0.1", "-o", path("m.stl")});
+    EXPECT_EQ(other.code, 1);
+    EXPECT_NE(other.err.find("info, draw and check"), std::string::npos) << other.err;
+    const std::string bad = file("bad.step", flat_file("#8=TESSELLATED_SHAPE_REPRESENTATION('',(#11),#1);\n"
+                                                       "#11=TRIANGULATED_FACE('f',#20,1,(),$,(),((1,2,3)));\n"
+                                                       "#20=COORDINATES_LIST('',1,((0.,0.,0.)));\n"));
+    const Ran lies = run({"info", bad});
+    EXPECT_EQ(lies.code, 3);
+    EXPECT_NE(lies.err.find("#11 TRIANGULATED_FACE"), std::string::npos) << lies.err;
+}
+
+TEST_F(CliStep, info_says_what_lies_on_each_layer) {
+    const std::string layered = file(
+        "layers.step", polygon_file({{0, 0}, {3, 0}, {3, 2}},
+                                    "#900=PRESENTATION_LAYER_ASSIGNMENT('walls','outside',(#12,#10));\n"));
+    const Ran r = run({"info", layered, "--json"});
+    ASSERT_EQ(r.code, 0) << r.err;
+    const Json layers = Json::parse(r.out)["objects"][0]["layers"];
+    ASSERT_EQ(layers.size(), 1u);
+    EXPECT_EQ(layers[0],
+              Json::parse(R"({"name": "walls", "description": "outside", "faces": 1, "bodies": 1})"));
+    EXPECT_NE(run({"info", layered}).out.find("layer    walls (outside): 1 bodies, 1 faces"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace freiform::test
