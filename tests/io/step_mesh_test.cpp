@@ -57,9 +57,9 @@ TEST(StepMesh, a_solid_of_one_face_is_a_closed_mesh_with_its_name_and_unit) {
 }
 
 TEST(StepMesh, a_table_of_indices_stands_between_corners_and_coordinates) {
-    // The table turns the list of points around, and so does the list of corners.
+    // The table exchanges two points, and so does the list of corners.
     const TriangleMesh m = must_mesh(triangles_file(
-        "#11", "#11=TRIANGULATED_SURFACE_SET('',#20,4,(),(4,3,2,1),((4,2,3),(4,3,1),(3,2,1),(2,4,1)));\n"));
+        "#11", "#11=TRIANGULATED_SURFACE_SET('',#20,4,(),(2,1,3,4),((2,3,1),(2,1,4),(1,3,4),(3,2,4)));\n"));
     EXPECT_NEAR(volume_of(m), 1.0 / 6, 1e-15);
     expect_closed(m);
 }
