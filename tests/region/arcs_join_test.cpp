@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <region_laws.hpp>
+#include <sanitizer.hpp>
 
 namespace freiform {
 namespace {
