@@ -169,12 +169,12 @@ class Model:
     @property
     def face_layers(self) -> list[list[int]]:
         """For each face the layers that it is on by itself."""
-        return self._c.face_layers()
+        return [list(x) for x in self._c.face_layers()]
 
     @property
     def body_layers(self) -> list[list[int]]:
         """For each body the layers that it is on."""
-        return self._c.body_layers()
+        return [list(x) for x in self._c.body_layers()]
 
     @property
     def repairs(self) -> list[Repair]:
