@@ -185,10 +185,10 @@ void Command::limits() const {
          "What reads STEP files: freiform (default), or Open CASCADE in a process of its own")
         .shown_as("READER")
         .one_of({"freiform", "occt"});
-    flag("--repair", limits.repair,
-         "Make right what is wrong in a STEP file beyond its own tolerance, and say what was done; without "
-         "it, "
-         "such faces are refused");
+    flag(
+        "--repair", limits.repair,
+        "Make right what is wrong in a STEP file beyond its own tolerance, and say what was done; without it "
+        "faces are refused for it, or, if only their loops run the wrong way, told");
     positive("--repair-limit", limits.repair_limit,
              "The longest gap that --repair closes, in the file's unit (default: a hundredth of the face)");
 }

@@ -157,7 +157,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
             const Edge& e = out_.model.edges[std::size_t(u.coedge.edge)];
             for (int k = 0; k <= 4; ++k)
                 box.add(jet<0>(u.coedge.curve, e.range.lo + e.range.length() * k / 4).value());
-            prove = prove || u.fitted || kMargin * u.gap > e.tolerance;
+            prove = prove || u.fitted || u.told || kMargin * u.gap > e.tolerance;
         }
     face.surface = unwound(chart.surface(), chart, box);
     std::optional<DerivativeQuery<2, 3>> query;
@@ -168,7 +168,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
         for (Use& u : uses) {
             Edge& e = out_.model.edges[std::size_t(u.coedge.edge)];
             const bool beyond = kMargin * u.gap > e.tolerance;
-            if ((u.fitted || beyond) && e.curve) {
+            if ((u.fitted || u.told || beyond) && e.curve) {
                 EdgeGapOptions options;
                 options.target = std::max(e.tolerance, u.fitted ? accuracy_for(size) : 0);
                 options.factor = 2;

@@ -12,10 +12,14 @@ namespace freiform::step {
 void Styles::add_layers(std::vector<int>& to, std::uint32_t item) const {
     const auto known = on_layers.find(item);
     if (known == on_layers.end()) return;
-    std::vector<int> all;
-    std::ranges::set_union(to, known->second, std::back_inserter(all));
-    if (all.size() > kMostLayers) all.resize(kMostLayers);
-    to = std::move(all);
+    to = joined_layers(to, known->second);
+}
+
+std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b) {
+    std::vector<int> out;
+    std::ranges::set_union(a, b, std::back_inserter(out));
+    if (out.size() > kMostLayers) out.resize(kMostLayers);
+    return out;
 }
 
 void read_layers(const File& f, Styles& styles, std::vector<Refusal>& refused) {

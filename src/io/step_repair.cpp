@@ -2,16 +2,13 @@
 // asks for it (StepReadOptions::repair). What a repair did is listed in Model::repairs; without it, this
 // happens:
 //
-//     open loop           refused, with the gap. A repair puts a straight edge between the end of one edge
-//     and
-//                         the start of the next. Nothing else moves, and faces whose loops have the same gap
-//                         share the edge.
-//     edge far beside     refused, with the distance. A repair takes it: its parameter curve follows it as
-//     near its surface         as the surface comes to it, and its tolerance is what is left. loops the wrong
-//     the face is what they enclose, which is told: some programs write them so, and where a way around
-//     surface is not closed no other face can be meant. A repair turns them, or, where the
-//                         faces beside this one run through shared edges in the sense that asks for it, the
-//                         normal.
+// - Open loops are refused, with the gap. A repair puts a straight edge between the end of one edge and the
+//   start of the next. Nothing else moves, and faces whose loops have the same gap share the edge.
+// - Edges far beside their surface are refused, with the distance. A repair takes them: the parameter curve
+//   follows the edge as near as the surface comes to it, and what is left is the tolerance of the edge.
+// - Of loops that run the wrong way around a face, where the surface is not closed, it is told: some programs
+//   write them so, and no other face can be meant than what they enclose. A repair turns them, or, where the
+//   faces beside this one run through shared edges in the sense that asks for it, the normal.
 //
 // What is far: edges of real files lie up to a hundredth of the face beside its surface (bench/STEP.md), and
 // are taken, and told, as ever.

@@ -25,6 +25,9 @@ struct Styles {
     void add_layers(std::vector<int>& to, std::uint32_t item) const;
 };
 
+// The layers on either list, both ascending, up to kMostLayers.
+std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b);
+
 struct Part {
     Model model;                           // lengths in the unit of its context
     std::vector<int> approximated;         // the edge that each approximation is about; -1: none

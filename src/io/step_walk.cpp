@@ -18,13 +18,6 @@ struct Visit {
 
 }  // namespace
 
-std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b) {
-    std::vector<int> out;
-    std::ranges::set_union(a, b, std::back_inserter(out));
-    if (out.size() > kMostLayers) out.resize(kMostLayers);
-    return out;
-}
-
 const Context* context_of_model(const Structure& structure) {
     for (const Node& n : structure.nodes)
         if (!n.context.unit.empty() && has_items(n)) return &n.context;

@@ -15,8 +15,6 @@ struct Place {
 };
 
 inline bool has_items(const Node& n) { return !n.items.empty() || !n.replicas.empty(); }
-// Of several layers the first kMostLayers.
-std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b);
 
 // The context whose unit the model has: of the first node with items; nullptr if there is none.
 const Context* context_of_model(const Structure& structure);
