@@ -1,8 +1,8 @@
 // The surfaces of a file as one page, for any browser that has WebGL 2: buffers and shaders of the library,
 // and a renderer of 150 lines in JavaScript (webgl.html).
 //   gpu-webgl teapot.bpt teapot.html
-// With a third file, teapot.ppm, a fine mesh is drawn there from the same side, 2560 x 1920 pixels before
-// magenta: what tests compare the page with.
+// With two more files, fine.ppm and es.ppm, the same view before magenta, which tests compare the page with:
+// of a fine mesh with 2560 x 1920 pixels, and as the library draws it in OpenGL ES with 320 x 240.
 #include <freiform/gpu/surfaces.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/read.hpp>
@@ -90,8 +90,8 @@ std::string script_of(const ff::SurfaceBuffers& b, const ff::View& view) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 3 && argc != 4) {
-        std::cerr << "usage: gpu-webgl FILE PAGE.html [PICTURE.ppm]\n";
+    if (argc != 3 && argc != 5) {
+        std::cerr << "usage: gpu-webgl FILE PAGE.html [FINE.ppm ES.ppm]\n";
         return 2;
     }
     const auto document = ff::read_any(argv[1]);
@@ -115,13 +115,22 @@ int main(int argc, char** argv) {
     fine.tolerance = ff::summary(*model).box.diagonal() / 20000;
     const auto mesh = ff::tessellate(*model, fine);
     if (!mesh) return refused(mesh.error());
-    options.width = 2560, options.height = 1920, options.supersampling = 1;
+    options.supersampling = 1;
     options.outlines = false;
     options.top = options.bottom = {1, 0, 1, 1};
-    options.frame = buffers->extent;
-    const auto image = ff::render(mesh->mesh, options);
-    if (!image) return refused(image.error());
-    const std::string head = "P6\n2560 1920\n255\n";
-    if (auto ok = ff::write_file(argv[3], head + std::string(image->rgb.begin(), image->rgb.end())); !ok)
-        return refused(ok.error());
+    const auto write = [&](const char* file, const ff::Result<ff::Image>& image) -> ff::Result<void> {
+        if (!image) return std::unexpected(image.error());
+        const std::string head =
+            "P6\n" + std::to_string(options.width) + " " + std::to_string(options.height) + "\n255\n";
+        return ff::write_file(file, head + std::string(image->rgb.begin(), image->rgb.end()));
+    };
+    options.width = 320, options.height = 240;
+    ff::RenderOptions framed = options;
+    framed.frame = buffers->extent;
+    auto renderer = ff::SurfaceRenderer::make(std::move(*buffers), ff::SurfacePipeline::grid);
+    if (!renderer) return refused(renderer.error());
+    if (auto ok = write(argv[4], renderer->draw(options)); !ok) return refused(ok.error());
+    options = framed;
+    options.width = 2560, options.height = 1920;
+    if (auto ok = write(argv[3], ff::render(mesh->mesh, options)); !ok) return refused(ok.error());
 }

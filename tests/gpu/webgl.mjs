@@ -1,6 +1,6 @@
-// node webgl.mjs gpu-webgl FILE..: the page that examples/gpu/webgl.cpp writes, drawn by WebGL 2 in Chromium, against a
-// picture of a fine mesh of eight times the size: surfaces, cracks, and how far edges lie from their places. Exit code 1 if
-// they differ; 77 where there is no Chromium or no OpenGL.
+// node webgl.mjs gpu-webgl FILE..: the page that examples/gpu/webgl.cpp writes, drawn by WebGL 2 in Chromium, against the
+// library's picture by OpenGL ES, and against one of a fine mesh of eight times the size: surfaces, cracks, and how far edges lie
+// from their places. Exit code 1 if they differ; 77 where there is no Chromium or no OpenGL.
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
@@ -134,17 +134,19 @@ function edgeErrors(a, shares) {
 
 let wrong = 0;
 for (const file of files) {
-  const page = join(folder, 'page.html'), picture = join(folder, 'picture.ppm');
-  const made = spawnSync(program, [file, page, picture], { encoding: 'utf8' });
+  const page = join(folder, 'page.html'), picture = join(folder, 'picture.ppm'), es = join(folder, 'es.ppm');
+  const made = spawnSync(program, [file, page, picture, es], { encoding: 'utf8' });
   if (made.status !== 0 && /OpenGL/.test(made.stderr)) skip(made.stderr);
   if (made.status !== 0) throw new Error(`${program} ${file}: ${made.stderr}`);
   const html = readFileSync(page, 'utf8'), ppm = readFileSync(picture);
   const { says, rgba } = await drawnInChromium(html);
+  const small = readFileSync(es), library = small.subarray(small.length - 3 * kWidth * kHeight);
   const rgb = ppm.subarray(ppm.length - 3 * kFiner ** 2 * kWidth * kHeight);
   let found = null;
   if (rgba.length === 4 * kWidth * kHeight) {
     const page = ofPage(rgba), mesh = ofMesh(rgb);
-    found = { ...compared(page, mesh), ...edgeErrors(page, coverage(rgb)) };
+    const same = (x, y) => library.subarray(3 * (y * kWidth + x));
+    found = { ...compared(page, mesh), ...edgeErrors(page, coverage(rgb)), library: compared(page, { mean: same, low: same, high: same }) };
     const keep = (name, colour) => {
       const bytes = [];
       for (let y = 0; y < kHeight; ++y) for (let x = 0; x < kWidth; ++x) for (let c = 0; c < 3; ++c) bytes.push(colour(x, y, c));
@@ -157,8 +159,9 @@ for (const file of files) {
       keep(`${name}_difference.ppm`, (x, y, c) => Math.abs(page(x, y)[c] - Math.round(mesh.mean(x, y)[c])));
     }
   }
+  const isOne = ({ cracked, different, surface }) => cracked === 0 && different <= surface / 1000 && surface > 5000;
   // Seams show half of their reach beyond an edge.
-  const good = found && found.cracked === 0 && found.different <= found.surface / 1000 && found.surface > 5000 &&
+  const good = found && isOne(found) && isOne(found.library) &&
     found.beyond === 0 && found.boundary > 150 && Math.abs(found.area) < 0.4 * found.boundary;
   console.log(`${file}: ${says}: ${found ? JSON.stringify(found) : 'no picture'}`);
   wrong += !good;

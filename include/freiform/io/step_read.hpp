@@ -12,9 +12,9 @@ struct StepReadOptions {
     // That the model may take; an estimate is kept below it.
     std::uint64_t memory_bytes = std::uint64_t(4) << 30;
     // What contradicts itself beyond the tolerance of the file is made right where that is possible, and
-    // listed in Model::repairs; else it is refused. Open loops are closed by straight edges, faces whose
-    // loops run the wrong way are turned, edges far beside their surface are taken with that as their
-    // tolerance.
+    // listed in Model::repairs: open loops are closed by straight edges, edges far beside their surface are
+    // taken with that as their tolerance, loops that run the wrong way are turned. Without it the face is
+    // refused; of loops that run the wrong way, where the surface is not closed, it is only told.
     bool repair = false;
     // The longest gap of a loop that is closed, in the unit of the file; 0: a hundredth of the face.
     double repair_limit = 0;
