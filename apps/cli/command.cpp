@@ -11,6 +11,8 @@
 namespace freiform::cli {
 
 ReadOptions Context::read_options() const {
+    if (limits.repair_limit && !limits.repair) wrong_usage("--repair-limit is for --repair");
+    if (limits.repair && limits.reader == "occt") wrong_usage("--repair is not for --reader occt");
     ReadOptions o;
     o.timeout = limits.timeout;
     o.max_memory = limits.max_memory;

@@ -252,8 +252,8 @@ std::string model_text(const Model& m) {
     const auto counts = layer_counts(m);
     for (std::size_t i = 0; i < counts.size(); ++i)
         t += text("  layer    ", m.layers[i].name,
-                  m.layers[i].description.empty() ? "" : text(" (", m.layers[i].description, ")"), ": ",
-                  counts[i][1], " bodies, ", counts[i][0], " faces by themselves\n");
+                  m.layers[i].description.empty() ? "" : text(" (", m.layers[i].description, ")"),
+                  ": bodies ", counts[i][1], ", faces by themselves ", counts[i][0], "\n");
     return t + approximations_text(m.approximations);
 }
 

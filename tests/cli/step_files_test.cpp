@@ -51,6 +51,9 @@ TEST_F(CliStep, repair_is_asked_for_and_says_what_it_did) {
     const Ran narrow = run({"info", open, "--repair", "--repair-limit", "0.001", "--json"});
     EXPECT_EQ(Json::parse(narrow.out)["objects"][0]["faces"], 0);
     EXPECT_EQ(run({"info", open, "--repair", "--repair-limit", "0"}).code, 2);
+    // Nothing that was asked for is silently not done.
+    EXPECT_EQ(run({"info", open, "--repair-limit", "0.1"}).code, 2);
+    EXPECT_EQ(run({"info", open, "--repair", "--reader", "occt"}).code, 2);
 }
 
 TEST_F(CliStep, a_file_of_triangles_alone_is_a_mesh) {
@@ -87,7 +90,7 @@ TEST_F(CliStep, info_says_what_lies_on_each_layer) {
     ASSERT_EQ(layers.size(), 1u);
     EXPECT_EQ(layers[0],
               Json::parse(R"({"name": "walls", "description": "outside", "faces": 1, "bodies": 1})"));
-    EXPECT_NE(run({"info", layered}).out.find("layer    walls (outside): 1 bodies, 1 faces"),
+    EXPECT_NE(run({"info", layered}).out.find("layer    walls (outside): bodies 1, faces by themselves 1"),
               std::string::npos);
 }
 
