@@ -149,7 +149,7 @@ TEST(ArcsJoin, covers_the_bevel_and_obeys_the_laws_of_regions) {
         const auto refusal = break_laws({arcs->path}, {other}, random, {.tolerance = 1e-3});
         EXPECT_FALSE(refusal) << i << ' ' << refusal->where << ": " << refusal->message;
     }
-    EXPECT_GT(sharper, 5);
+    EXPECT_GT(12 * sharper, 5 * cases(12));
 }
 
 }  // namespace
