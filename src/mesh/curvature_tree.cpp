@@ -22,14 +22,13 @@
 // radius), [Filip Magedson Markot 1986] (second derivatives). Why not sampling: a bump between the samples is
 // missed, see the adversarial bump in the tests.
 #include "curvature_tree_detail.hpp"
+#include "parameter_table_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 
 namespace freiform {
@@ -125,19 +124,18 @@ std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Box<2>& box, int axis
     return out;
 }
 
-// Whether the two triangles of the box keep the tolerance, without a shift or with one.
-bool CurvatureTree::keeps(const Bending& b, const Box<2>& box, double error, double tolerance) const {
+bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, double error,
+                          double tolerance) const {
     if (error <= tolerance) return true;
-    if (!knows_normals_) return false;
-    const Vec<2> size = box.hi - box.lo;
-    const Shift shift = meets_kink(box) ? Shift{} : shift_of(b, error, b.full, 1);
+    if (!knows_normals_ || kinks) return false;
+    const Shift shift = shift_of(b, error, b.full, 1);
     return shift.exists && shift.across(b.seen(shift.turn).along(size[0], size[1]) / 8, error) <= tolerance;
 }
 
 bool CurvatureTree::accept(int node, double error, double tolerance) {
     Node& n = nodes_[std::size_t(node)];
     n.flat = error <= tolerance;
-    return keeps(bending(node), n.box, error, tolerance);
+    return n.flat || keeps(bending(node), n.box.hi - n.box.lo, meets_kink(n.box), error, tolerance);
 }
 
 bool CurvatureTree::meets_kink(const Box<2>& box) const {
@@ -233,48 +231,21 @@ std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& bo
     return worst;
 }
 
-namespace {
-
-// Points that have been seen: a table at most half full.
-class SeenPoints {
-public:
-    explicit SeenPoints(std::size_t most) : at_(std::bit_ceil(2 * most + 2), -1) { points_.reserve(most); }
-    // False if it has been there.
-    bool add(const Vec<2>& p) {
-        // Coordinates with few digits differ in their upper bits alone: these are brought down each time.
-        std::uint64_t h = 0;
-        for (const double x : p.c) {
-            h = (h ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;
-            h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
-            h ^= h >> 32;
-        }
-        for (std::size_t i = std::size_t(h);; ++i) {
-            int& there = at_[i & (at_.size() - 1)];
-            if (there >= 0 && points_[std::size_t(there)] == p) return false;
-            if (there >= 0) continue;
-            there = int(points_.size());
-            points_.push_back(p);
-            return true;
-        }
-    }
-
-private:
-    std::vector<int> at_;
-    std::vector<Vec<2>> points_;
-};
-
-}  // namespace
-
 void CurvatureTree::find_corners() {
-    SeenPoints seen(nodes_.size() + 4);  // each cut of a box in two adds two corners at most
+    ParameterTable seen(nodes_.size() + 4);  // each cut of a box in two adds two corners at most
     std::vector<int> stack{0};
     while (!stack.empty()) {
-        const Node& n = nodes_[std::size_t(stack.back())];
+        const int at = stack.back();
+        const Node& n = nodes_[std::size_t(at)];
         stack.pop_back();
         if (n.outside) continue;
         if (n.child >= 0) {
             stack.push_back(n.child + 1);
             stack.push_back(n.child);
+            continue;
+        }
+        if (n.block >= 0) {
+            blocks_[std::size_t(n.block)].node = at;
             continue;
         }
         for (int k = 0; k < 4; ++k) {
@@ -288,7 +259,12 @@ Vec<2> CurvatureTree::mean_leaf() const {
     Vec<2> sum{};
     double count = 0;
     for (const Node& n : nodes_)
-        if (n.child < 0 && !n.outside) sum += n.box.hi - n.box.lo, count += 1;
+        if (n.child < 0 && !n.outside) {
+            const Vec<2> size = n.box.hi - n.box.lo;
+            const Halves halves = n.block < 0 ? Halves{} : blocks_[std::size_t(n.block)].halves;
+            const double along[2] = {std::ldexp(1.0, halves[0]), std::ldexp(1.0, halves[1])};
+            sum += Vec<2>{{along[1] * size[0], along[0] * size[1]}}, count += along[0] * along[1];
+        }
     return (1 / std::max(count, 1.0)) * sum;
 }
 

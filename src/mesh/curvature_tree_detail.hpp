@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -101,18 +102,30 @@ Shift shift_of(const Bending& at, double e, const Curvature& near, double reflec
 // (bending.cpp).
 bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance);
 
+// The ends of the parts of an interval that is halved so many times.
+std::vector<double> halved(const Interval& on, int times);
+
 inline constexpr int kMaxTreeDepth = 100;  // backstop: 2^-50 of the box in both directions
 
 class CurvatureTree {
 public:
+    // How a tree is made: without normals triangles are judged by all of their error; blocks are leaves that
+    // stand for many.
+    struct Ways {
+        bool knows_normals = true, blocks = false;
+    };
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut
     // into two triangles whose interpolation bound is at most demands.tolerance, with sides along the axes of
     // at most demands.max_edge. Boxes wholly outside by the odd-even rule are left. Refuses (limit) when more
     // than `max_leaves` are needed, (ill_conditioned) where no bound is finite.
     static Result<CurvatureTree> make(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       std::span<const std::array<int, 2>> segments,
-                                      const FaceDemands& demands, std::size_t max_leaves,
-                                      bool knows_normals = true);
+                                      const FaceDemands& demands, std::size_t max_leaves, Ways ways);
+    static Result<CurvatureTree> make(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
+                                      std::span<const std::array<int, 2>> segments,
+                                      const FaceDemands& demands, std::size_t max_leaves) {
+        return make(surface, polygon, segments, demands, max_leaves, {});
+    }
 
     bool is_outside(const Box<2>& box) const;  // wholly, and known to be
     // Over the part of the tree at `place`, or nothing.
@@ -141,9 +154,26 @@ public:
     struct Corner {
         Vec<2> at{}, leaf{};  // leaf: side lengths of a leaf that has it
     };
-    // Corners of the leaves that are not outside, each once, neighbours near each other in the list.
+    // A leaf whose sides are to be halved so many times: all cells have the bounds of the leaf, and keep the
+    // tolerance. Nothing of it or of its border is outside the polygon or on its segments.
+    using Halves = std::array<std::uint8_t, 2>;
+    struct Block {
+        Box<2> box;
+        Halves halves{}, parts{};  // into cells, and into parts of some cells
+        int first_part = 0;
+        int node = 0;
+    };
+    std::span<const Block> blocks() const { return blocks_; }
+    // Of its parts, row by row.
+    std::span<const Bending> part_bendings(const Block& b) const {
+        return std::span(part_bendings_)
+            .subspan(std::size_t(b.first_part), std::size_t(1) << (b.parts[0] + b.parts[1]));
+    }
+
+    // Corners of the leaves that are not outside and not blocks, each once, neighbours near each other in the
+    // list.
     std::span<const Corner> corners() const { return corners_; }
-    // Mean side lengths of those leaves.
+    // Mean side lengths of all leaves that are not outside, and of the cells of blocks.
     Vec<2> mean_leaf() const;
 
 private:
@@ -153,6 +183,7 @@ private:
         int parent = 0;
         int child = -1;      // the first of two neighbours in nodes_; -1: a leaf
         int variation = -1;  // over it, in variations_
+        int block = -1;      // in blocks_
         bool outside = false;
         bool whole = false;  // nothing of it is outside
         bool flat = false;   // fine without a shift
@@ -161,10 +192,19 @@ private:
         int axis;
         double at;
     };
-    bool keeps(const Bending& b, const Box<2>& box, double error, double tolerance) const;
+    // Whether the two triangles of a box of this size keep the tolerance, without a shift or with one, which
+    // kinks do not allow.
+    bool keeps(const Bending& b, const Vec<2>& size, bool kinks, double error, double tolerance) const;
     bool accept(int node, double error, double tolerance);
     std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       double tolerance) const;
+    // curvature_tree_blocks.cpp
+    double cells_seen(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
+                      const Jet<2, 2, Vec<3>>& middle, double tolerance) const;
+    bool make_block(const DerivativeQuery<2, 3>& surface, int node, const Jet<2, 2, Vec<3>>& middle,
+                    double cells, double tolerance, BoxBending& known);
+    void bound_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
+                     const BoxBending& all, const Variation* varies, std::vector<Bending>& out) const;
     const Bending& bending(int node) const { return bendings_[std::size_t(node)]; }
     std::optional<Cut> cut(const Box<2>& box, int axis) const;
     void find_corners();
@@ -175,6 +215,8 @@ private:
     std::vector<Bending> bendings_;  // of nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;
+    std::vector<Block> blocks_;
+    std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;
 };

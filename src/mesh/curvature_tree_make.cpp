@@ -58,6 +58,7 @@ public:
         std::span<const Vec<2>> polygon;
         const FaceDemands& demands;
         std::size_t max_leaves;
+        bool blocks = false;
         std::atomic<std::size_t> leaves{1};
     };
 
@@ -66,10 +67,16 @@ public:
     std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
     // Each of them by itself.
     std::optional<Refusal> grow_parts(std::vector<Item> items);
+    Refusal too_many_leaves() const {
+        return {RefusalKind::limit, "max_triangles",
+                text("the tolerance ", task_.demands.tolerance, " needs more than ", 2 * task_.max_leaves,
+                     " triangles")};
+    }
 
 private:
     bool is_leaf(int of, const BoxBending& known);
     void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
+    bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
                std::vector<Item>& items);
@@ -110,6 +117,18 @@ void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, V
     tree_.variations_.push_back(variation);
 }
 
+// Whether the box, which is inside, is a leaf that stands for many.
+bool CurvatureTree::Grower::is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer) {
+    const double tolerance = task_.demands.tolerance;
+    const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
+    const double cells = tree_.cells_seen(task_.surface, box, middle, tolerance);
+    if (!(cells > 0)) return false;
+    if (!tree_.make_block(task_.surface, item.node, middle, cells, tolerance, outer)) return false;
+    const auto& halves = tree_.blocks_.back().halves;
+    task_.leaves += (std::size_t(1) << (halves[0] + halves[1])) - 1;
+    return true;
+}
+
 std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector<Item>& items) {
     const double tolerance = task_.demands.tolerance;
     Node& node = tree_.nodes_[std::size_t(item.node)];
@@ -137,6 +156,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     // Where control points are many, they are asked about boxes of some leaves, and within these the middle
     // and what varies tell.
     BoxBending outer = item.outer;
+    if (task_.blocks && inside && cut && is_block(item, middle, outer)) return std::nullopt;
     if (item.variation >= 0) {
         outer = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
                                     tree_.variations_[std::size_t(item.variation)]);
@@ -162,10 +182,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         cut = tree_.cut(box, axis);
         if (!cut) return std::nullopt;  // no double between the ends
     }
-    if (++task_.leaves > task_.max_leaves)
-        return Refusal{
-            RefusalKind::limit, "max_triangles",
-            text("the tolerance ", tolerance, " needs more than ", 2 * task_.max_leaves, " triangles")};
+    if (++task_.leaves > task_.max_leaves) return too_many_leaves();
     split(item, outer, *cut, inside, items);
     return std::nullopt;
 }
@@ -239,7 +256,14 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
 
 // A part that has been grown from the item.
 void CurvatureTree::Grower::add(const CurvatureTree& part, const Item& item) {
-    const int nodes = int(tree_.nodes_.size()) - 1, variations = int(tree_.variations_.size());
+    const int nodes = int(tree_.nodes_.size()) - 1, variations = int(tree_.variations_.size()),
+              blocks = int(tree_.blocks_.size()), parts = int(tree_.part_bendings_.size());
+    for (Block b : part.blocks_) {
+        b.first_part += parts;
+        tree_.blocks_.push_back(b);
+    }
+    tree_.part_bendings_.insert(tree_.part_bendings_.end(), part.part_bendings_.begin(),
+                                part.part_bendings_.end());
     tree_.variations_.insert(tree_.variations_.end(), part.variations_.begin(), part.variations_.end());
     for (std::size_t k = 0; k < part.nodes_.size(); ++k) {
         Node n = part.nodes_[k];
@@ -248,6 +272,7 @@ void CurvatureTree::Grower::add(const CurvatureTree& part, const Item& item) {
                                    : nodes + n.parent;
         if (n.child >= 0) n.child += nodes;
         if (n.variation >= 0) n.variation += variations;
+        if (n.block >= 0) n.block += blocks;
         if (k == 0) {
             tree_.nodes_[std::size_t(item.node)] = n;
             tree_.bendings_[std::size_t(item.node)] = part.bendings_[0];
@@ -269,10 +294,9 @@ bool CurvatureTree::holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygo
 Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                                           std::span<const Vec<2>> polygon,
                                           std::span<const std::array<int, 2>> segments,
-                                          const FaceDemands& demands, std::size_t max_leaves,
-                                          bool knows_normals) {
+                                          const FaceDemands& demands, std::size_t max_leaves, Ways ways) {
     CurvatureTree tree;
-    tree.knows_normals_ = knows_normals;
+    tree.knows_normals_ = ways.knows_normals;
     tree.segments_ = segments;
     for (std::size_t d = 0; d < 2; ++d)
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
@@ -284,11 +308,12 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
-    Grower::Task task{surface, polygon, demands, max_leaves};
+    Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks};
     Grower grower(tree, task);
     std::vector<Grower::Item> items{{0, 0, any, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.alone ? kPartsOfTree : 0);
     if (!bad && demands.alone) bad = grower.grow_parts(std::move(items));
+    if (!bad && task.leaves > max_leaves) bad = grower.too_many_leaves();
     if (bad) return std::unexpected(*bad);
     bool all_flat = true;                               // enough to do without normals
     for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents

@@ -38,7 +38,7 @@ std::optional<Refusal> CurvatureTree::torn_place(const DerivativeQuery<2, 3>& su
         w.bending = bending_of(surface, w.box, knows_normals_);
         w.error = w.bending.full.along(size[0], size[1]) / 8 + kink_bound(w.box);
         if (std::isnan(w.error)) w.error = kInfinity;
-        return !keeps(w.bending, w.box, w.error, tolerance);
+        return !keeps(w.bending, w.box.hi - w.box.lo, meets_kink(w.box), w.error, tolerance);
     };
     const auto half_of = [&](const WorstBox& whole, int axis, double at, bool upper) {
         WorstBox part{whole.box, {}, whole.inside, {}, 0};

@@ -1,7 +1,8 @@
 // Filling a polygon with triangles that a proof accepts.
 //
-// Method: a tree of boxes with curvature bounds (curvature_tree.cpp) says how dense points have to be; the
-// corners of its leaves are inserted into the constrained Delaunay triangulation of the boundary; every
+// Method: a tree of boxes with curvature bounds (curvature_tree.cpp) says how dense points have to be. Boxes
+// inside that bend evenly are cut into cells, which become triangles as they are (blocks.cpp). Around them
+// the corners of leaves are inserted into the constrained Delaunay triangulation of the boundary; every
 // triangle is then judged by its own bound, and one that fails gets a point: the middle of its longest side,
 // or of the next one that is not part of the boundary, or where the side crosses a kink of the surface. Only
 // inner points are added, so that the neighbours across the boundary never notice. Metric: Delaunay in the
@@ -10,6 +11,7 @@
 // nothing is rounded. Cost: one bound per created triangle, from leaves near those of the triangle before.
 // Accuracy: `bound` is the largest over all triangles, collapsed ones (at poles) included, because the
 // surface there has to be near something too.
+#include "blocks_detail.hpp"
 #include "filler_detail.hpp"
 #include "simple_polygons_detail.hpp"
 
@@ -159,48 +161,77 @@ Vec<2> mean_cell(const GridLines& lines) {
     return {{mean(lines[0]), mean(lines[1])}};
 }
 
+// `outline`: the vertex of the first point of the outline; others are added.
+void add_blocks(FaceMesh& out, const BlockMesh& blocks, int outline) {
+    const int others = int(out.uv.size()) - blocks.on_outline;
+    out.uv.insert(out.uv.end(), blocks.points.begin() + blocks.on_outline, blocks.points.end());
+    out.point.resize(out.uv.size(), -1);
+    out.bound = std::max(out.bound, blocks.bound);
+    out.triangles.reserve(2 * blocks.triangles.size());
+    for (std::array<int, 3> t : blocks.triangles) {
+        for (int& p : t) p += p < blocks.on_outline ? outline : others;
+        out.triangles.push_back(t);
+    }
+}
+
 Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
                         const FaceDemands& demands, long long max_triangles, std::span<const Vec<2>> extra,
-                        bool knows_normals) {
+                        CurvatureTree::Ways ways) {
     const double tolerance = demands.tolerance;
     auto polygon = merged(boundary);
     if (!polygon) return refuse(RefusalKind::invalid, "loops", polygon.error().message);
     std::vector<std::array<int, 2>> segments;
     for (const auto& s : polygon->segments) segments.push_back({s.a, s.b});
     auto tree = CurvatureTree::make(surface, polygon->points, segments, demands,
-                                    std::size_t(max_triangles) / 2 + 1, knows_normals);
+                                    std::size_t(max_triangles) / 2 + 1, ways);
     if (!tree) return std::unexpected(tree.error());
 
     const int merged_corners = int(polygon->points.size());
+    Box<2> box;
+    for (const Vec<2>& p : polygon->points) box.add(p);
+    const Judge judge(*tree, surface, box, tolerance);
+    const BlockMesh blocks = mesh_blocks(*tree, judge, tolerance);
     const auto grid = grid_of(surface, *tree, *polygon, demands, max_triangles);
     const std::vector<CurvatureTree::Corner> crossings =
         grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
-    const std::span<const CurvatureTree::Corner> corners = grid ? crossings : tree->corners();
+    const std::span<const CurvatureTree::Corner> corners = grid ? crossings : blocks.corners;
     const Vec<2> leaf = grid ? mean_cell(*grid) : tree->mean_leaf();
     cut_poles(*polygon, boundary, corners, leaf);
     const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
+    // What lies outside the blocks is triangulated; their outline is a boundary as the polygon is.
+    const int first_outline = int(polygon->points.size());
     std::vector<Vec<2>> points = polygon->points;
+    points.insert(points.end(), blocks.points.begin(), blocks.points.begin() + blocks.on_outline);
+    for (const auto& [a, b] : blocks.outline)
+        polygon->segments.push_back({first_outline + a, first_outline + b});
     for (Vec<2>& p : points) p = {{p[0] * scale[0], p[1] * scale[1]}};
     auto triangulation = Triangulation::make(points, polygon->segments);
     if (!triangulation) return std::unexpected(triangulation.error());
 
-    Filler filler(*triangulation, *tree, surface, scale, demands);
+    Filler filler(*triangulation, *tree, judge, surface, scale, demands);
+    filler.keep_feet(first_outline, blocks.needs_foot);
     for (const Vec<2>& p : extra) triangulation->insert({{p[0] * scale[0], p[1] * scale[1]}});
     filler.insert_corners(corners);
     // Corners that stand for the same mesh point, numbered by the first of them.
     std::vector<int> place(points.size());
     std::map<int, int> first;
     for (std::size_t i = 0; i < place.size(); ++i)
-        place[i] = first.try_emplace(boundary.point[std::size_t(polygon->corner[i])], int(i)).first->second;
+        place[i] =
+            i < polygon->corner.size()
+                ? first.try_emplace(boundary.point[std::size_t(polygon->corner[i])], int(i)).first->second
+                : int(i);
     // Leaves and boundary say how many points to expect; many times as many mean that something does not
     // converge.
     const std::size_t limit = std::size_t(max_triangles) / 2 + points.size();
     const std::size_t expected = points.size() + corners.size() + 600;
-    const std::size_t most =
-        demands.shapes_triangles() ? limit : std::min(limit, (knows_normals ? kHope : kPatience) * expected);
+    const std::size_t most = demands.shapes_triangles()
+                                 ? limit
+                                 : std::min(limit, (ways.knows_normals ? kHope : kPatience) * expected);
     for (int round = 0; round < kSeparateRounds; ++round) {
         if (!filler.refine(most))
-            return most == limit
+            return filler.is_stuck()
+                       ? refuse(RefusalKind::not_converged, "mesh", "triangles beside a block need no foot")
+                   : most == limit
                        ? refuse(RefusalKind::limit, "max_triangles",
                                 text("more than ", max_triangles, " triangles are needed within ", tolerance))
                        : refuse(RefusalKind::not_converged, "mesh",
@@ -217,9 +248,10 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     const int shift = int(boundary.uv.size()) - merged_corners;
     for (int v = merged_corners; v < int(triangulation->points().size()); ++v) {
         out.uv.push_back(filler.uv(v));
-        out.point.push_back(
-            v < int(points.size()) ? boundary.point[std::size_t(polygon->corner[std::size_t(v)])] : -1);
+        out.point.push_back(v < first_outline ? boundary.point[std::size_t(polygon->corner[std::size_t(v)])]
+                                              : -1);
     }
+    add_blocks(out, blocks, first_outline + shift);
     for (int i = 0; i < triangulation->size(); ++i) {
         if (!triangulation->is_inside(i)) continue;
         const double bound = filler.bound(i);
@@ -249,9 +281,11 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
     Box<2> box;
     for (const Vec<2>& p : boundary.uv) box.add(p);
     const bool smooth = kinks_are_rounding(surface, box, demands.tolerance);
-    auto mesh = filled(surface, boundary, demands, max_triangles, extra, smooth);
-    if (smooth && !mesh && mesh.error().kind == RefusalKind::not_converged)
-        mesh = filled(surface, boundary, demands, max_triangles, extra, false);
+    const bool blocks = !demands.quads && !demands.shapes_triangles();
+    auto mesh = filled(surface, boundary, demands, max_triangles, extra, {smooth, blocks});
+    const auto failed = [&] { return !mesh && mesh.error().kind == RefusalKind::not_converged; };
+    if (blocks && failed()) mesh = filled(surface, boundary, demands, max_triangles, extra, {smooth, false});
+    if (smooth && failed()) mesh = filled(surface, boundary, demands, max_triangles, extra, {false, false});
     return mesh;
 }
 

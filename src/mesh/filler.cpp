@@ -2,6 +2,7 @@
 #include "filler_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
@@ -12,31 +13,21 @@ namespace freiform {
 namespace {
 
 constexpr double kPole = 1.0 / 64;
+constexpr std::size_t kTrianglesAtOnce = 4096;
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
-constexpr double kMargin = 0.125;               // of the box of the face: what is looked at beyond it
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
 
 }  // namespace
 
-Filler::Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface,
-               Vec<2> scale, const FaceDemands& demands)
-    : t_(t), tree_(tree), surface_(surface), scale_(scale), demands_(demands) {
+Filler::Filler(Triangulation& t, const CurvatureTree& tree, const Judge& judge,
+               const DerivativeQuery<2, 3>& surface, Vec<2> scale, const FaceDemands& demands)
+    : t_(t), tree_(tree), judge_(judge), surface_(surface), scale_(scale), demands_(demands) {
     Box<2> box;
     for (const Vec<2>& p : t.points()) box.add(unscaled(p));
     least_ = kLeastLength * (box.hi - box.lo);
-    limits_ = limits(surface.geometry());
-    if (tree.is_all_plain()) return;
-    const Vec<2> margin = kMargin * (box.hi - box.lo);
-    whole_ = {clamped(box.lo - margin, limits_), clamped(box.hi + margin, limits_)};
-    whole_bends_ = over_clamped(whole_);
-}
-
-Curvature Filler::over_clamped(const Box<2>& box) const {
-    const auto own = surface_({box.side(0), box.side(1)});
-    return {own(2, 0), own(1, 1), own(0, 2)};
 }
 
 Vec<3> Filler::position(int vertex) {
@@ -133,7 +124,14 @@ bool Filler::is_plain(int vertex) const {
     return tree_.is_all_plain() || (std::size_t(vertex) < plain_.size() && plain_[std::size_t(vertex)]);
 }
 
+void Filler::keep_feet(int first, std::span<const char> marked) {
+    first_kept_ = first;
+    kept_.assign(marked.begin(), marked.end());
+}
+
 bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
+    for (const int v : t_.vertices(triangle)) stuck_ = stuck_ || (!is_plain(v) && has_kept_foot(v));
+    if (stuck_) return false;
     bool any = false;
     for (const int v : t_.vertices(triangle)) {
         if (is_plain(v)) continue;
@@ -150,55 +148,6 @@ bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
     return any;
 }
 
-// See bending.cpp for what is claimed here.
-Filler::Known Filler::judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
-                             int plain, int near_place) const {
-    const auto& [a, b, c] = corner;
-    const double e = linear_interpolation_bound(at.full, a, b, c) + tree_.kink_bound(box);
-    Known k{0, true, false, kInfinity, e, at.full};
-    if (plain == 3) {
-        k.bound = e;
-        return k;
-    }
-    if (!(at.least > 0)) return k;
-    // Where a foot straight below would not do, none will.
-    const Curvature straight = plain > 0 ? at.full : at.seen(0);
-    if (e > demands_.tolerance &&
-        (plain > 0 || linear_interpolation_bound(straight, a, b, c) > demands_.tolerance)) {
-        k.curvature = straight;
-        return k;
-    }
-    const Vec<2> reach = reach_of(at, e);
-    const Box<2> around{box.lo - reach, box.hi + reach};
-    if (tree_.meets_kink(around)) return k;
-    double reflected = 1;
-    for (int d = 0; d < 2; ++d)
-        if (around.lo[d] < limits_[std::size_t(d)].lo || around.hi[d] > limits_[std::size_t(d)].hi) {
-            reflected = 3;
-            if (reach[d] > limits_[std::size_t(d)].length()) return k;
-        }
-    // True if it is enough to know that `near` bounds second derivatives around.
-    const auto is_enough = [&](const Curvature& near) {
-        const Shift shift = shift_of(at, e, near, reflected);
-        if (!shift.exists) return false;
-        k.shifted = true;
-        const Curvature seen = at.seen(shift.turn);
-        const double bound = plain > 0
-                                 ? shift.way(e)
-                                 : std::min(e, shift.across(linear_interpolation_bound(seen, a, b, c), e));
-        if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : seen;
-        return k.bound <= demands_.tolerance;
-    };
-    // What holds everywhere first, then what holds in the part of the tree that has all of it.
-    const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
-    if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_)) return k;
-    const int place = tree_.place_of(around, near_place);
-    if (const Curvature* all = tree_.all_in(place, around); all && is_enough(*all)) return k;
-    const auto near = tree_.all_over(around, place);
-    is_enough(near ? *near : over_clamped(inside));
-    return k;
-}
-
 // What the tree says of the leaves that the triangle meets; where that is not enough, what can be said of its
 // own box, which may be much smaller than a leaf.
 Filler::Known Filler::found(int triangle, int& place) const {
@@ -209,11 +158,12 @@ Filler::Known Filler::found(int triangle, int& place) const {
     const int plain = is_plain(v[0]) + is_plain(v[1]) + is_plain(v[2]);
     place = tree_.place_of(box, place);
     const Bending over = tree_.over(box, place);
-    Known k = judged(over, box, corner, plain, place);
+    Known k{judge_(over, box, corner, plain, place), t_.stamp(triangle), true};
     if (k.bound <= demands_.tolerance) return k;
     const auto judge_by = [&](Bending own) {
         own.full.restrict_to(over.full);
-        if (const Known second = judged(own, box, corner, plain, place); second.bound <= k.bound) k = second;
+        if (const Judgement second = judge_(own, box, corner, plain, place); second.bound <= k.bound)
+            static_cast<Judgement&>(k) = second;
     };
     bool hopeless = false;  // by what is seen in the middle already
     if (const Variation* varies = tree_.variation_in(place)) {
@@ -229,10 +179,8 @@ Filler::Known Filler::found(int triangle, int& place) const {
 const Filler::Known& Filler::known(int triangle) {
     const std::size_t i = std::size_t(triangle);
     if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
-    const auto stamp = t_.stamp(triangle);
-    if (known_[i].any && known_[i].stamp == stamp) return known_[i];
+    if (known_[i].any && known_[i].stamp == t_.stamp(triangle)) return known_[i];
     known_[i] = found(triangle, place_);
-    known_[i].stamp = stamp;
     return known_[i];
 }
 
@@ -287,7 +235,20 @@ bool Filler::improve(int triangle) {
     return attempt((1.0 / 3) * (corner[0] + corner[1] + corner[2]));
 }
 
+// Most triangles that there are at first are the last ones: a face that is alone has them judged by all
+// threads.
+void Filler::judge_all() {
+    known_.resize(std::size_t(t_.size()));
+    parallel_for((known_.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce, 1, [&](std::size_t part) {
+        int place = 0;
+        const std::size_t end = std::min(known_.size(), (part + 1) * kTrianglesAtOnce);
+        for (std::size_t i = part * kTrianglesAtOnce; i < end; ++i)
+            if (t_.is_inside(int(i)) && !known_[i].any) known_[i] = found(int(i), place);
+    });
+}
+
 bool Filler::refine(std::size_t max_points) {
+    if (demands_.alone && known_.empty()) judge_all();
     struct Entry {
         int triangle;
         std::uint32_t stamp;
@@ -306,6 +267,7 @@ bool Filler::refine(std::size_t max_points) {
                 for (const int i : again) queue.push_back({i, t_.stamp(i)});
                 continue;
             }
+            if (stuck_) return false;
         }
         if (t_.points().size() >= max_points) return false;
         if (!improve(entry.triangle)) continue;  // its bound stands, and the caller will see it

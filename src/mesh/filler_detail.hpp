@@ -1,6 +1,6 @@
 // Inner points of a face: placed where a proof asks for them.
 #pragma once
-#include "curvature_tree_detail.hpp"
+#include "judge_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/mesh/triangulate.hpp>
@@ -9,11 +9,16 @@ namespace freiform {
 
 class Filler {
 public:
-    Filler(Triangulation& t, const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, Vec<2> scale,
-           const FaceDemands& demands);
+    Filler(Triangulation& t, const CurvatureTree& tree, const Judge& judge,
+           const DerivativeQuery<2, 3>& surface, Vec<2> scale, const FaceDemands& demands);
+
+    // Vertices [first, first + so many) have triangles beyond the region: those marked count on their foot.
+    void keep_feet(int first, std::span<const char> marked);
+    // A vertex would have to do without a foot that other triangles count on: nothing more was tried.
+    bool is_stuck() const { return stuck_; }
 
     void insert_corners(std::span<const CurvatureTree::Corner> corners);
-    // False when more than `max_points` are needed.
+    // False when more than `max_points` are needed, or it is stuck.
     bool refine(std::size_t max_points);
     // Of the interpolation error of the triangle; computed once for each.
     double bound(int triangle);
@@ -44,13 +49,11 @@ private:
     std::pair<double, int> longest_side(int triangle);
 
     // What was found about the triangle with this index when it had this stamp.
-    struct Known {
+    struct Known : Judgement {
         std::uint32_t stamp = 0;
         bool any = false;
-        bool shifted = false;         // a foot exists for each of its points
-        double bound = 0, whole = 0;  // whole: of the whole interpolation error
-        Curvature curvature;          // that matters
     };
+    void judge_all();
     const Known& known(int triangle);
     Known found(int triangle, int& place) const;  // `place`: in the tree, where to begin, and where it is
 
@@ -59,18 +62,20 @@ private:
     bool is_plain(int vertex) const;
     // Makes all corners plain; false if they are.
     bool make_plain(int triangle, std::vector<int>& judge_again);
-    Known judged(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain,
-                 int near_place) const;
-    Curvature over_clamped(const Box<2>& box) const;
+    bool has_kept_foot(int vertex) const {
+        return vertex >= first_kept_ && vertex - first_kept_ < int(kept_.size()) &&
+               kept_[std::size_t(vertex - first_kept_)];
+    }
     const CurvatureTree& tree_;
+    const Judge& judge_;
     const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
     int place_ = 0;  // in the tree, of the triangle that was last judged
     std::size_t most_for_angles_ = 0;
-    std::array<Interval, 2> limits_;
-    Box<2> whole_;                   // somewhat more than the face, within the limits
-    Curvature whole_bends_;          // over it
+    int first_kept_ = 0;
+    std::vector<char> kept_;
+    bool stuck_ = false;
     std::vector<char> plain_;        // of vertices, as far as one is
     std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
 };

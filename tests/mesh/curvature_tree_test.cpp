@@ -25,8 +25,8 @@ TEST(CurvatureTree, says_the_same_from_any_place) {
     const std::vector<Vec<2>> polygon{{{0, 0}}, {{5, 0}}, {{5, 3}}, {{0, 5}}};
     const std::vector<std::array<int, 2>> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
     for (const bool knows_normals : {true, false}) {
-        const auto tree = must(
-            CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3}, 100'000, knows_normals));
+        const auto tree = must(CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3}, 100'000,
+                                                   {knows_normals, false}));
         int place = 0, inner = 0, whole = 0;
         for (int k = 0; k < 3000; ++k) {
             const double w = random.chance(0.3) ? 1 : 0.05;

@@ -1,0 +1,163 @@
+// Leaves that stand for many: where a surface bends about as much everywhere in a box, all of it is cut into
+// equal cells.
+//
+// Idea: most of what a mesh of a large face costs is to bound, insert and judge what is the same a thousand
+// times. Away from the boundary a box is cut into equal cells instead, and these become triangles as they are
+// (blocks.cpp). Whether that is worth it depends on how evenly the surface bends: samples say how many cells
+// are needed, on average, and bounds say how many there would be. Samples decide about the number of
+// triangles only; that cells keep the tolerance is proven. Bounds of what is seen along normals are poor over
+// a box in which normals turn, so there is one for each part of some cells: from a sample in its middle and
+// what third derivatives in the whole box say, as for leaves of large nets (curvature_tree_make.cpp), or from
+// control points where these are not continuous, or where there are none.
+//
+// Cells are halved sides, as leaves are, so that the corners of both are the same where they meet.
+#include "curvature_tree_detail.hpp"
+
+namespace freiform {
+
+namespace {
+
+constexpr double kFewCells = 12, kManyCells = 2048;  // seen: not worth a block, too large for one
+constexpr double kWaste = 2;                         // more cells than are seen
+constexpr double kEven = 2.5;                        // likewise, once sides are halved
+constexpr double kUneven = 3;                        // samples that differ by more: no need for others
+constexpr int kMostHalves = 12;                      // of both sides together
+constexpr double kPartError = 4;                     // of a part, times the tolerance
+constexpr int kPartHalves = 8;                       // likewise, into parts
+constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
+
+// Cells of a box of this size whose triangles are off by the tolerance: sides are chosen so that the
+// derivatives along both count equally.
+double cells_for(const Curvature& c, const Vec<2>& size, double tolerance) {
+    return (std::sqrt(c.uu * c.vv) + c.uv) * size[0] * size[1] / (4 * tolerance);
+}
+
+void halve_longer(const Curvature& c, Vec<2>& size, CurvatureTree::Halves& halves) {
+    const std::size_t axis = c.uu * size[0] * size[0] >= c.vv * size[1] * size[1] ? 0 : 1;
+    size[int(axis)] /= 2, ++halves[axis];
+}
+
+// Some cells each; `size` becomes theirs.
+CurvatureTree::Halves parts_for(const Curvature& c, Vec<2>& size, double tolerance) {
+    CurvatureTree::Halves parts{};
+    while (c.along(size[0], size[1]) / 8 > kPartError * tolerance && parts[0] + parts[1] < kPartHalves)
+        halve_longer(c, size, parts);
+    return parts;
+}
+
+}  // namespace
+
+std::vector<double> halved(const Interval& on, int times) {
+    std::vector<double> out{on.lo, on.hi};
+    for (int k = 0; k < times; ++k) {
+        std::vector<double> finer;
+        finer.reserve(2 * out.size());
+        for (std::size_t i = 0; i + 1 < out.size(); ++i) {
+            finer.push_back(out[i]);
+            finer.push_back(Interval{out[i], out[i + 1]}.middle());
+        }
+        finer.push_back(out.back());
+        out = std::move(finer);
+    }
+    return out;
+}
+
+// By samples, their mean; 0 where there are too few or too many, or the surface does not bend evenly, or its
+// normals turn so much within a part that bounds would see other things than samples.
+double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
+                                 const Jet<2, 2, Vec<3>>& middle, double tolerance) const {
+    const Vec<2> size = box.hi - box.lo;
+    const Curvature bent = seen_at(middle, knows_normals_);
+    const double here = cells_for(bent, size, tolerance);
+    if (!(here >= kFewCells / kWaste) || !(here <= kManyCells)) return 0;
+    if (knows_normals_) {
+        Vec<2> part = size;
+        parts_for(bent, part, tolerance);
+        const double turn = std::hypot((bent.uu * part[0] + bent.uv * part[1]) / norm(middle(1, 0)),
+                                       (bent.uv * part[0] + bent.vv * part[1]) / norm(middle(0, 1)));
+        const Curvature bounded = bent.plus(turn / 2, seen_at(middle, false));
+        if (!(cells_for(bounded, size, tolerance) <= kWaste * here)) return 0;
+    }
+    double most = here, sum = here;
+    for (int k = 0; k < 4; ++k) {
+        const Vec<2> at{
+            {box.lo[0] + (k & 1 ? 0.875 : 0.125) * size[0], box.lo[1] + (k & 2 ? 0.875 : 0.125) * size[1]}};
+        const double cells =
+            cells_for(seen_at(jet<2>(surface.geometry(), at.c), knows_normals_), size, tolerance);
+        if (!(cells <= kUneven * here) || !(here <= kUneven * cells)) return 0;
+        most = std::max(most, cells), sum += cells;
+    }
+    const double mean = sum / 5;
+    return mean >= kFewCells && most <= kWaste * mean ? mean : 0;
+}
+
+// Of each part of the box, row by row.
+void CurvatureTree::bound_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
+                                const BoxBending& all, const Variation* varies,
+                                std::vector<Bending>& out) const {
+    const auto lines = std::array{halved(box.side(0), halves[0]), halved(box.side(1), halves[1])};
+    for (std::size_t i = 0; i + 1 < lines[0].size(); ++i)
+        for (std::size_t j = 0; j + 1 < lines[1].size(); ++j) {
+            const Box<2> part{{{lines[0][i], lines[1][j]}}, {{lines[0][i + 1], lines[1][j + 1]}}};
+            if (!varies) {
+                out.push_back(bending_of(surface, part, knows_normals_));
+            } else {
+                const auto middle =
+                    jet<2>(surface.geometry(), {part.side(0).middle(), part.side(1).middle()});
+                out.push_back(bending_from_middle(surface, part, knows_normals_, middle, *varies));
+            }
+            out.back().full.restrict_to(all.full);
+        }
+}
+
+// Makes a block of a leaf, if cells keep the tolerance and are not many more than are seen to be needed.
+// `known`: of a box around it; then of the leaf.
+bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
+                               const Jet<2, 2, Vec<3>>& middle, double cells, double tolerance,
+                               BoxBending& known) {
+    const Box<2> box = nodes_[std::size_t(node)].box;
+    const Curvature seen = seen_at(middle, knows_normals_), before = known.full;
+    if (meets_kink(box)) return false;
+    const bool is_smooth = surface.is_twice_smooth({box.side(0), box.side(1)});
+    Variation varies;
+    known = bending_of(surface, box, knows_normals_, {{middle.d[0], middle.d[1], middle.d[2]}},
+                       is_smooth ? &varies : nullptr);
+    known.full.restrict_to(before);
+    if (!known.full.is_finite()) return false;
+
+    Halves halves{};
+    Vec<2> size = box.hi - box.lo;
+    const Halves parts = parts_for(seen, size, tolerance);
+    const std::size_t first = part_bendings_.size();
+    bound_parts(surface, box, parts, known, is_smooth ? &varies : nullptr, part_bendings_);
+    const auto of_parts = std::span(part_bendings_).subspan(first);
+    Curvature matters;
+    for (const Bending& b : of_parts) matters.include(b.least > 0 && knows_normals_ ? b.seen(0) : b.full);
+
+    size = box.hi - box.lo;
+    const auto is_fine = [&] {
+        if (matters.along(size[0], size[1]) / 8 > kAlmost * tolerance) return false;
+        for (const Bending& b : of_parts)
+            if (!keeps(b, size, false, b.full.along(size[0], size[1]) / 8, tolerance)) return false;
+        return true;
+    };
+    bool worth = cells_for(matters, size, tolerance) <= kWaste * cells;
+    while (worth && !is_fine()) {
+        halve_longer(matters, size, halves);
+        worth = halves[0] + halves[1] <= kMostHalves;
+    }
+    for (std::size_t d = 0; d < 2; ++d) halves[d] = std::max(halves[d], parts[d]);
+    const bool even = std::ldexp(1.0, halves[0] + halves[1]) <= kEven * cells;
+    if (!worth || !even || halves[0] == 0 || halves[1] == 0) {
+        part_bendings_.resize(first);
+        return false;
+    }
+    Node& n = nodes_[std::size_t(node)];
+    n.block = int(blocks_.size());
+    n.flat = known.full.along(size[0], size[1]) / 8 <= tolerance;
+    bendings_[std::size_t(node)] = known;
+    blocks_.push_back({box, halves, parts, int(first), node});
+    return true;
+}
+
+}  // namespace freiform

@@ -1,0 +1,77 @@
+// See bending.cpp for what is claimed, and face_mesh.cpp for the whole.
+#include "judge_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kMargin = 0.125;  // of the box of the face: what is looked at beyond it
+
+}  // namespace
+
+Judge::Judge(const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, const Box<2>& face,
+             double tolerance)
+    : tree_(tree), surface_(surface), tolerance_(tolerance), limits_(limits(surface.geometry())) {
+    if (tree.is_all_plain()) return;
+    const Vec<2> margin = kMargin * (face.hi - face.lo);
+    whole_ = {clamped(face.lo - margin, limits_), clamped(face.hi + margin, limits_)};
+    whole_bends_ = over_clamped(whole_);
+}
+
+Curvature Judge::over_clamped(const Box<2>& box) const {
+    const auto own = surface_({box.side(0), box.side(1)});
+    return {own(2, 0), own(1, 1), own(0, 2)};
+}
+
+Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
+                            int plain, int near_place) const {
+    const auto& [a, b, c] = corner;
+    const double e = linear_interpolation_bound(at.full, a, b, c) + tree_.kink_bound(box);
+    Judgement k{false, kInfinity, e, at.full};
+    if (plain == 3) {
+        k.bound = e;
+        return k;
+    }
+    if (!(at.least > 0)) return k;
+    // Where a foot straight below would not do, none will.
+    const Curvature straight = plain > 0 ? at.full : at.seen(0);
+    if (e > tolerance_ && (plain > 0 || linear_interpolation_bound(straight, a, b, c) > tolerance_)) {
+        k.curvature = straight;
+        return k;
+    }
+    const Vec<2> reach = reach_of(at, e);
+    const Box<2> around{box.lo - reach, box.hi + reach};
+    if (tree_.meets_kink(around)) return k;
+    double reflected = 1;
+    for (int d = 0; d < 2; ++d)
+        if (around.lo[d] < limits_[std::size_t(d)].lo || around.hi[d] > limits_[std::size_t(d)].hi) {
+            reflected = 3;
+            if (reach[d] > limits_[std::size_t(d)].length()) return k;
+        }
+    // True if it is enough to know that `near` bounds second derivatives around.
+    const auto is_enough = [&](const Curvature& near) {
+        const Shift shift = shift_of(at, e, near, reflected);
+        if (!shift.exists) return false;
+        k.shifted = true;
+        const Curvature seen = at.seen(shift.turn);
+        const double bound = plain > 0
+                                 ? shift.way(e)
+                                 : std::min(e, shift.across(linear_interpolation_bound(seen, a, b, c), e));
+        if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : seen;
+        return k.bound <= tolerance_;
+    };
+    // What holds everywhere first, then what holds in the part of the tree that has all of it.
+    const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
+    if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_)) return k;
+    const int place = tree_.place_of(around, near_place);
+    if (const Curvature* all = tree_.all_in(place, around); all && is_enough(*all)) return k;
+    const auto near = tree_.all_over(around, place);
+    is_enough(near ? *near : over_clamped(inside));
+    return k;
+}
+
+}  // namespace freiform

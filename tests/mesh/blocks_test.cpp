@@ -1,0 +1,181 @@
+// Cells of blocks and the triangles around them are one mesh that keeps the bound.
+#include "mesh/curvature_tree_detail.hpp"
+#include "support/random.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/core/parallel.hpp>
+#include <freiform/mesh/face_mesh.hpp>
+
+#include <gtest/gtest.h>
+#include <map>
+#include <numbers>
+
+namespace freiform {
+namespace {
+
+using test::must;
+using test::Random;
+
+// Smooth in [0, n - degree]^2, or with kinks on some lines.
+template <class P>
+SurfaceGeometry hill(Random& random, int degree, bool kinks) {
+    constexpr int kSize = 9;
+    std::vector<double> knots(std::size_t(degree) + 1, 0.0);
+    for (int i = 1; i < kSize - degree; ++i) knots.push_back(kinks && i == 3 ? 2.0 : double(i));
+    knots.insert(knots.end(), std::size_t(degree) + 1, double(kSize - degree));
+    const auto basis = must(BSplineBasis::make(degree, knots));
+    const double bend = random.real(0.2, 0.8), lean = random.real(-0.3, 0.3), rough = random.real(0, 0.002);
+    std::vector<P> c;
+    for (int i = 0; i < kSize; ++i)
+        for (int k = 0; k < kSize; ++k) {
+            const double x = i / 3.0, y = k / 3.0;
+            const Vec<3> p{{x, y + lean * x, bend * std::sin(x) * std::cos(y) + rough * random.real(-1, 1)}};
+            if constexpr (Space<P>::kRational)
+                c.push_back(weighted(p, std::exp2(random.real(-0.1, 0.1))));
+            else
+                c.push_back(p);
+        }
+    return must(Surface<P>::make({basis, basis}, Net<2, P>({kSize, kSize}, std::move(c))));
+}
+
+// A square, with corners on all knots, and two round holes if they are asked for.
+FaceBoundary square_of(int knots, bool holes = true) {
+    const double side = knots;
+    FaceBoundary out;
+    const auto add = [&](const std::vector<Vec<2>>& ring) {
+        const int first = int(out.uv.size()), n = int(ring.size());
+        for (int i = 0; i < n; ++i) {
+            out.uv.push_back(ring[std::size_t(i)]);
+            out.point.push_back(first + i);
+            out.segments.push_back({first + i, first + (i + 1) % n});
+        }
+    };
+    std::vector<Vec<2>> square;
+    for (int s = 0; s < 4; ++s)
+        for (int k = 0; k < 32 * knots; ++k) {
+            const double t = k / 32.0;
+            square.push_back(s == 0   ? Vec<2>{{t, 0}}
+                             : s == 1 ? Vec<2>{{side, t}}
+                             : s == 2 ? Vec<2>{{side - t, side}}
+                                      : Vec<2>{{0, side - t}});
+        }
+    add(square);
+    if (!holes) return out;
+    for (const Vec<2>& centre : {Vec<2>{{0.3 * side, 0.4 * side}}, Vec<2>{{0.75 * side, 0.7 * side}}}) {
+        std::vector<Vec<2>> ring;
+        for (int k = 0; k < 128; ++k) {
+            const double a = -2 * std::numbers::pi * k / 128;
+            ring.push_back(centre + 0.07 * side * Vec<2>{{std::cos(a), std::sin(a)}});
+        }
+        add(ring);
+    }
+    return out;
+}
+
+double twice_area(const std::vector<Vec<2>>& uv, const std::array<int, 3>& t) {
+    const Vec<2>&a = uv[std::size_t(t[0])], &b = uv[std::size_t(t[1])], &c = uv[std::size_t(t[2])];
+    return cross(b - a, c - a);
+}
+
+// Every side is that of two triangles that run through it in both directions, or of the boundary.
+void expect_covers_once(const FaceMesh& mesh, const FaceBoundary& boundary) {
+    double expected = 0, area = 0;
+    for (const auto& [a, b] : boundary.segments)
+        expected += cross(boundary.uv[std::size_t(a)], boundary.uv[std::size_t(b)]);
+    std::map<std::array<int, 2>, int> sides;
+    for (const auto& t : mesh.triangles) {
+        EXPECT_GT(twice_area(mesh.uv, t), 0);
+        area += twice_area(mesh.uv, t);
+        for (std::size_t k = 0; k < 3; ++k) ++sides[{t[k], t[(k + 1) % 3]}];
+    }
+    EXPECT_NEAR(area, expected, 1e-12 * expected);
+    std::size_t once = 0;
+    for (const auto& [side, count] : sides) {
+        EXPECT_EQ(count, 1);
+        once += !sides.contains({side[1], side[0]});
+    }
+    EXPECT_EQ(once, boundary.segments.size());
+    for (const auto& s : boundary.segments) EXPECT_TRUE(sides.contains(s));
+}
+
+// The largest distance between samples inside triangles and the nearest point of the surface around.
+double sampled_distance(const SurfaceGeometry& s, const FaceMesh& mesh) {
+    double most = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 7) {
+        const auto& t = mesh.triangles[i];
+        const auto uv = [&](std::size_t k) { return mesh.uv[std::size_t(t[k])]; };
+        Vec<2> x = (1.0 / 3) * (uv(0) + uv(1) + uv(2));
+        Vec<3> p{};
+        for (std::size_t k = 0; k < 3; ++k) p += (1.0 / 3) * jet<0>(s, uv(k).c).value();
+        for (int step = 0; step < 4; ++step) {  // to the foot, by Gauss and Newton
+            const auto j = jet<1>(s, x.c);
+            const Vec<3> d = p - j.value();
+            const double uu = dot(j.d[1], j.d[1]), u_v = dot(j.d[1], j.d[2]), vv = dot(j.d[2], j.d[2]),
+                         du = dot(d, j.d[1]), dv = dot(d, j.d[2]), det = uu * vv - u_v * u_v;
+            x += Vec<2>{{(vv * du - u_v * dv) / det, (uu * dv - u_v * du) / det}};
+        }
+        most = std::max(most, norm(p - jet<0>(s, x.c).value()));
+    }
+    return most;
+}
+
+TEST(Blocks, and_what_is_around_them_cover_a_face_once_within_the_bound) {
+    Random random(11);
+    int with_blocks = 0;
+    for (int round = 0; round < 24; ++round) {
+        const int degree = 2 + round % 3;
+        const bool kinks = round % 4 == 3 && degree == 2;
+        const SurfaceGeometry s =
+            round % 2 ? hill<Vec<3>>(random, degree, kinks) : hill<Hom<3>>(random, degree, kinks);
+        const DerivativeQuery<2, 3> surface(s);
+        const FaceBoundary boundary = square_of(9 - degree, !kinks);
+        const FaceDemands demands{.tolerance = std::exp2(random.real(-13.5, -11))};
+        const auto mesh = must(mesh_face(surface, boundary, demands, 1'000'000));
+        EXPECT_LE(mesh.bound, demands.tolerance);
+        expect_covers_once(mesh, boundary);
+        const double found = sampled_distance(s, mesh);
+        EXPECT_LE(found, mesh.bound) << round;
+        EXPECT_GE(found, 0.25 * mesh.bound) << round;
+        const auto tree = must(
+            CurvatureTree::make(surface, boundary.uv, boundary.segments, demands, 1'000'000, {true, true}));
+        with_blocks += !tree.blocks().empty();
+    }
+    EXPECT_GT(with_blocks, 16);
+}
+
+TEST(Blocks, take_no_more_triangles_than_leaves_would_by_much) {
+    Random random(12);
+    for (int round = 0; round < 6; ++round) {
+        const SurfaceGeometry s = hill<Hom<3>>(random, 3, false);
+        const DerivativeQuery<2, 3> surface(s);
+        const FaceBoundary boundary = square_of(6);
+        const FaceDemands demands{.tolerance = 2e-4};
+        const auto by_blocks = must(mesh_face(surface, boundary, demands, 1'000'000));
+        // Shapes are asked for, though any will do: then there are none.
+        FaceDemands shaped = demands;
+        shaped.max_aspect = 1e9;
+        const auto by_leaves = must(mesh_face(surface, boundary, shaped, 1'000'000));
+        EXPECT_NE(by_blocks.triangles.size(), by_leaves.triangles.size());
+        EXPECT_LE(double(by_blocks.triangles.size()), 1.25 * double(by_leaves.triangles.size()));
+    }
+}
+
+TEST(Blocks, are_the_same_for_any_number_of_threads) {
+    Random random(13);
+    const SurfaceGeometry s = hill<Hom<3>>(random, 3, false);
+    const DerivativeQuery<2, 3> surface(s);
+    const FaceBoundary boundary = square_of(6);
+    const FaceDemands demands{.tolerance = 1e-4, .alone = true};
+    set_max_threads(1);
+    const auto one = must(mesh_face(surface, boundary, demands, 1'000'000));
+    set_max_threads(2);
+    const auto two = must(mesh_face(surface, boundary, demands, 1'000'000));
+    set_max_threads(0);
+    EXPECT_EQ(one.uv, two.uv);
+    EXPECT_EQ(one.triangles, two.triangles);
+    EXPECT_EQ(one.bound, two.bound);
+    expect_covers_once(one, boundary);
+}
+
+}  // namespace
+}  // namespace freiform
