@@ -1,6 +1,7 @@
 // What callers ask for: options checked, hopeless demands refused, and models of any size brought to a size
 // where products of a few lengths neither overflow nor vanish. Powers of two do that without rounding, so the
 // mesh is that of the model as it was.
+#include "copies_detail.hpp"
 #include "tessellator_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
@@ -75,12 +76,29 @@ std::vector<Result<Tessellation>> tessellate_far(const Model& model,
 
 }  // namespace
 
+namespace {
+
+constexpr double kCopiesApart = 0x1p-21;  // of the tolerance
+
+// What tessellations of one model share.
+struct Shared {
+    std::optional<SharedWork> work;
+    Result<Tessellation> run(const Model& model, const TessellateOptions& how) {
+        if (!work) work.emplace(model);
+        return Tessellator(model, *work, how).run();
+    }
+};
+
+}  // namespace
+
 std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const TessellateOptions> options) {
     const bool fine = std::all_of(options.begin(), options.end(),
                                   [](const TessellateOptions& o) { return check_options(o).has_value(); });
     if (const int exponent = far_exponent(model); exponent != 0 && fine)
         return tessellate_far(model, options, exponent);
-    std::optional<SharedWork> shared;
+    Shared whole, originals;
+    std::optional<Copies> copies;
+    std::optional<Model> reduced;
     std::vector<Result<Tessellation>> all;
     for (const TessellateOptions& how : options) {
         auto ok = check_options(how);
@@ -89,8 +107,19 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
             all.push_back(std::unexpected(ok.error()));
             continue;
         }
-        if (!shared) shared.emplace(model);
-        all.push_back(Tessellator(model, *shared, how).run());
+        // Normals of copies are not bounded, only what is seen of them in distances.
+        const bool may_copy = !std::isfinite(how.max_angle) && model.faces.size() > 1;
+        if (may_copy && !copies) copies = copies_in(model);
+        if (!may_copy || !copies->any() || copies->apart() > kCopiesApart * how.tolerance) {
+            all.push_back(whole.run(model, how));
+            continue;
+        }
+        if (!reduced) reduced = originals_of(model, *copies);
+        TessellateOptions inner = how;  // what is moved is rounded
+        inner.max_edge *= 1 - 0x1p-40;
+        inner.tolerance *= 1 - 0x1p-20;
+        auto few = originals.run(*reduced, inner);
+        all.push_back(few ? with_copies(model, *copies, std::move(*few), how) : std::move(few));
     }
     return all;
 }

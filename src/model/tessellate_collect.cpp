@@ -99,6 +99,16 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
     return out;
 }
 
+std::vector<const Colour*> body_colours(const Model& model) {
+    std::vector<const Colour*> out(model.faces.size(), nullptr);
+    for (const Body& b : model.bodies)
+        if (b.colour)
+            for (int s : b.shells)
+                for (const FaceUse& u : model.shells[std::size_t(s)].faces)
+                    out[std::size_t(u.face)] = &*b.colour;
+    return out;
+}
+
 Tessellation Tessellator::collect() {
     Tessellation out;
     out.mesh.unit = model_.unit;
@@ -106,12 +116,7 @@ Tessellation Tessellator::collect() {
     std::vector<char> flipped(faces(), 0);
     for (const Shell& s : model_.shells)
         for (const FaceUse& u : s.faces) flipped[std::size_t(u.face)] = u.reversed;
-    std::vector<const Colour*> body_colour(faces(), nullptr);
-    for (const Body& b : model_.bodies)
-        if (b.colour)
-            for (int s : b.shells)
-                for (const FaceUse& u : model_.shells[std::size_t(s)].faces)
-                    body_colour[std::size_t(u.face)] = &*b.colour;
+    const auto body_colour = body_colours(model_);
     std::vector<FaceLook> looks(faces());
     parallel_for(faces(), 1, [&](std::size_t f) {
         if (!is_refused(f)) looks[f] = look_of(f, model_.faces[f].reversed != bool(flipped[f]));

@@ -19,6 +19,9 @@ struct SharedWork {
     EdgeMesher edges;
 };
 
+// For each face the colour of its body; null where there is none.
+std::vector<const Colour*> body_colours(const Model& model);
+
 class Tessellator {
 public:
     Tessellator(const Model& model, SharedWork& shared, const TessellateOptions& options)

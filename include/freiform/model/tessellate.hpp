@@ -69,7 +69,8 @@ struct Tessellation {
 // that cannot be meshed is listed in `refused`; the others are delivered. Refuses the whole for a tolerance
 // that is not a positive number, a longest side or angle that is not positive, an aspect up to 1, and for
 // limits: before any work if an estimate says that they are far away. Sides between boundary points can
-// exceed max_edge by twice the gap. Results do not depend on the number of threads.
+// exceed max_edge by twice the gap. Results do not depend on the number of threads. Parts that are copies of
+// another part, moved and turned, get its mesh, moved and turned; where max_angle is given, each its own.
 Result<Tessellation> tessellate(const Model& model, const TessellateOptions& options);
 
 // One after the other for all options, with the work shared that does not depend on them: what the single
