@@ -6,8 +6,9 @@
 // contact with it.
 //
 // What runs in a plane is not found by roots: the search leaves a long box in which nothing is proven. A
-// plane is S = O + u U + v V, so the parameters of control points are those of the curve's image, the
-// difference of both is a mean of those of the control points, and the loops clip the image.
+// plane is S = O + u U + v V, splines with evenly spaced control points included, so the parameters of
+// control points are those of the curve's image, the difference of both is a mean of those of the control
+// points, and the loops clip the image.
 //
 // Cost. A test of boxes for each face; a search for those that the curve may meet.
 //
@@ -42,6 +43,67 @@ double length_over(const StraightLine& line, const Interval& on) {
 double length_over(const Curve<Hom<3>>& curve, const Interval& on) {  // of a chord, or two
     const Vec<3> middle = curve(on.middle());
     return norm(middle - curve(on.lo)) + norm(curve(on.hi) - middle);
+}
+
+// The plane o + a u + b v that the surface is over the same parameters (a, b), within `off`, rounding
+// included. Splines of any degree are one where their control points lie as evenly as the means of knots at
+// which linear functions have theirs; `off` is how far one is from there.
+struct Evenly {
+    Vec<3> o{}, u{}, v{};
+    double off = 0;
+};
+
+// Of each basis function: the mean of its inner knots; none of degree 0.
+std::vector<double> means_of_knots(const BSplineBasis& basis) {
+    const auto& knots = basis.knots();
+    const std::size_t p = std::size_t(basis.degree());
+    std::vector<double> out;
+    if (p == 0) return out;
+    for (std::size_t i = 0; i + p + 1 < knots.size(); ++i) {
+        double sum = 0;
+        for (std::size_t k = 1; k <= p; ++k) sum += knots[i + k];
+        out.push_back(sum / double(p));
+    }
+    return out;
+}
+
+std::optional<Evenly> evenly(const SurfaceGeometry& surface) {
+    Evenly out;
+    double scale = 0;
+    const auto differ = [&](const Vec<3>& p, double a, double b) {
+        out.off = std::max(out.off, norm(p - (out.o + a * out.u + b * out.v)));
+        scale = std::max(
+            {scale, max_abs(p), max_abs(out.o), std::abs(a) * max_abs(out.u), std::abs(b) * max_abs(out.v)});
+    };
+    if (const auto* e = std::get_if<Extrusion>(&surface)) {
+        out.v = e->direction;
+        if (const auto* line = std::get_if<Line<3>>(&e->profile)) {
+            out.o = line->origin, out.u = line->direction;
+            return out;
+        }
+        const auto* spline = std::get_if<Curve<Vec<3>>>(&e->profile);
+        if (!spline) return std::nullopt;
+        const auto points = spline->net().flat();
+        const auto at = means_of_knots(spline->basis());
+        if (at.size() != points.size()) return std::nullopt;  // closed, or of degree 0
+        out.u = (1 / (at.back() - at.front())) * (points.back() - points.front());
+        out.o = points.front() - at.front() * out.u;
+        for (std::size_t i = 0; i < at.size(); ++i) differ(points[i], at[i], 0);
+    } else if (const auto* s = std::get_if<Surface<Vec<3>>>(&surface)) {
+        const auto points = s->net().flat();
+        const auto a = means_of_knots(s->basis(0)), b = means_of_knots(s->basis(1));
+        const std::size_t n = b.size();
+        if (a.size() * n != points.size()) return std::nullopt;
+        out.u = (1 / (a.back() - a.front())) * (points[(a.size() - 1) * n] - points[0]);
+        out.v = (1 / (b.back() - b.front())) * (points[n - 1] - points[0]);
+        out.o = points[0] - a.front() * out.u - b.front() * out.v;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            for (std::size_t k = 0; k < n; ++k) differ(points[i * n + k], a[i], b[k]);
+    } else {
+        return std::nullopt;
+    }
+    out.off += 64 * kUnitRoundoff * scale;
+    return out;
 }
 
 struct MetFace {
@@ -144,8 +206,8 @@ struct IntersectModel::Prepared {
     template <class Line>
     std::optional<std::vector<ModelOverlap>> runs_in(int face, const Line& line,
                                                      const Intersections<3, 3>& found) const {
-        const auto* plane = std::get_if<Extrusion>(&model.faces[std::size_t(face)].surface);
-        if (!plane || plane->kind != SurfaceKind::plane) return std::nullopt;
+        const auto plane = evenly(model.faces[std::size_t(face)].surface);
+        if (!plane || !(plane->off <= kOnePlace * size)) return std::nullopt;
         std::optional<Interval> on;
         const auto take = [&](const Interval& t) { on = on ? hull(*on, t) : t; };
         for (const Contact<3, 3>& c : found.contacts)
@@ -153,10 +215,8 @@ struct IntersectModel::Prepared {
         for (const auto& box : found.undecided) take(box[0]);
         if (!on || !(on->lo < on->hi)) return std::nullopt;
         const Curve<Hom<3>>& curve = part_of(line, *on);
-        const auto at = [&](double u, double v) {
-            return jet<0>(model.faces[std::size_t(face)].surface, std::array{u, v}).value();
-        };
-        const Vec<3> o = at(0, 0), u = at(1, 0) - o, v = at(0, 1) - o, n = cross(u, v);
+        const auto at = [&](double a, double b) { return plane->o + a * plane->u + b * plane->v; };
+        const Vec<3>&o = plane->o, &u = plane->u, &v = plane->v, n = cross(u, v);
         double gap = 0;
         std::vector<Vec<2>> image;
         for (const Hom<3>& p : curve.net().flat()) {
@@ -165,7 +225,8 @@ struct IntersectModel::Prepared {
             image.push_back({{dot(cross(d, v), n) / dot(n, n), dot(cross(u, d), n) / dot(n, n)}});
             const double scale = max_abs(x) + max_abs(o) + std::abs(image.back()[0]) * max_abs(u) +
                                  std::abs(image.back()[1]) * max_abs(v);
-            gap = std::max(gap, norm(at(image.back()[0], image.back()[1]) - x) + 64 * kUnitRoundoff * scale);
+            gap = std::max(gap, norm(at(image.back()[0], image.back()[1]) - x) + 64 * kUnitRoundoff * scale +
+                                    plane->off);
         }
         if (!(gap <= kOnePlace * size)) return std::nullopt;
         const int count = int(image.size());

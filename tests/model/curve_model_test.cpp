@@ -1,4 +1,5 @@
 #include <freiform/core/constants.hpp>
+#include <freiform/model/assemble.hpp>
 #include <freiform/model/curve_model.hpp>
 #include <freiform/model/rescale.hpp>
 
@@ -195,6 +196,45 @@ TEST(CurveModel, a_line_in_a_plane_face_overlaps_it_as_far_as_its_loops_reach) {
     EXPECT_EQ(along.overlaps[0].on.lo, 0);
     const Vec<3> out = arc(along.overlaps[0].on.hi);
     EXPECT_NEAR(std::hypot(out[0], out[1]), 1, 1e-9);
+}
+
+// Sides of extruded outlines, and flat patches: splines that are planes, evenly.
+TEST(CurveModel, lines_in_flat_splines_are_overlaps_too) {
+    const auto basis = must(BSplineBasis::make(3, {0, 0, 0, 0, 0.25, 1, 1, 1, 1}));
+    const std::array at{0.0, 0.25 / 3, 1.25 / 3, 2.25 / 3, 1.0};  // means of three knots
+    const Vec<3> o{{1, 2, 3}}, u{{4, 0, 1}}, v{{0, 2, -1}};
+    std::vector<Vec<3>> points, row;
+    for (const double a : at) {
+        row.push_back(o + a * u);
+        for (const double b : at) points.push_back(o + a * u + b * v);
+    }
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(must(Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({5, 5}, points)))));
+    Model flat = must(std::move(builder).finish());
+    const Extrusion side{must(Curve<Vec<3>>::make({basis}, Net<1, Vec<3>>({5}, row))), v};
+    for (const bool extruded : {false, true}) {
+        if (extruded) flat.faces[0].surface = side;
+        const IntersectModel query(flat);
+        // At (a, b) = (-0.5 + t, 0.1 + 0.3 t): in the face from t = 0.5 to 1.5.
+        const StraightLine line{o - 0.5 * u + 0.1 * v, u + 0.3 * v};
+        const auto found = met_by(query, line);
+        ASSERT_EQ(found.overlaps.size(), 1u) << extruded;
+        EXPECT_NEAR(found.overlaps[0].on.lo, 0.5, 1e-9);
+        EXPECT_NEAR(found.overlaps[0].on.hi, 1.5, 1e-9);
+        EXPECT_LE(found.overlaps[0].gap, 1e-12);
+        EXPECT_TRUE(met_by(query, {line.point + 0.01 * cross(u, v), line.direction}).overlaps.empty());
+        EXPECT_TRUE(met_by(query, {line.point + 2 * v, line.direction}).overlaps.empty());
+    }
+    // Flat, but not evenly: what is not known is said.
+    points[7] = points[7] + 0.1 * u;
+    ModelBuilder other;
+    ASSERT_TRUE(other.add(must(Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({5, 5}, points)))));
+    const StraightLine line{o - 0.5 * u + 0.1 * v, u + 0.3 * v};
+    ModelContacts out;
+    ASSERT_TRUE(IntersectModel(must(std::move(other).finish()))
+                    .intersect(std::span(&line, 1), std::span(&out, 1), {.max_parts = 2000}));
+    EXPECT_TRUE(out.overlaps.empty());
+    EXPECT_FALSE(out.open.empty());
 }
 
 // Where it is not decided whether it lies in the face, that is said: a line in the wall of the tube.
