@@ -9,6 +9,7 @@
 #include <freiform/region/stroke.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace freiform::cli {
@@ -82,19 +83,49 @@ Result<void> choose(SvgPicture& picture, const std::vector<std::string>& names) 
     return {};
 }
 
+// What a refusal says of shapes is "path 3" for the third one, or its id.
+std::string name_of_shape(std::span<const SvgShape> shapes, std::size_t i) {
+    return shapes[i].id.empty() ? text(shapes[i].element, " ", i + 1) : shapes[i].id;
+}
+
+// "a.subpaths[7]" of loops that come from several shapes, as these.
+std::string with_shapes_named(std::string said, std::span<const SvgShape> shapes,
+                              std::span<const std::size_t> shape_of_loop) {
+    constexpr std::string_view kLoop = "a.subpaths[";
+    std::size_t at = 0;
+    while ((at = said.find(kLoop, at)) != std::string::npos) {
+        const std::size_t digits = at + kLoop.size(), end = said.find(']', digits);
+        std::size_t loop = shape_of_loop.size();
+        std::from_chars(said.data() + digits, said.data() + std::min(end, said.size()), loop);
+        if (end == std::string::npos || loop >= shape_of_loop.size()) break;
+        const std::string name = name_of_shape(shapes, shape_of_loop[loop]);
+        const auto first = std::ranges::find(shape_of_loop, shape_of_loop[loop]) - shape_of_loop.begin();
+        const std::string named = text(name, ": loops[", loop - std::size_t(first), "]");
+        said.replace(at, end + 1 - at, named);
+        at += named.size();
+    }
+    return said;
+}
+
 // Several shapes as one region.
 Result<Region> united(std::span<const SvgShape> shapes, const RegionOptions& options) {
     Path all;
+    std::vector<std::size_t> shape_of_loop;
     double bound = 0;
-    for (const SvgShape& s : shapes) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const SvgShape& s = shapes[i];
         auto one = region_of({s.path, s.fill_rule}, options);
-        if (!one) return refuse_within(s.id.empty() ? s.element : s.id, one.error());
+        if (!one) return refuse_within(name_of_shape(shapes, i), one.error());
         bound = std::max(bound, one->bound);
-        for (Subpath& loop : one->path.subpaths) all.subpaths.push_back(std::move(loop));
+        for (Subpath& loop : one->path.subpaths)
+            all.subpaths.push_back(std::move(loop)), shape_of_loop.push_back(i);
     }
     if (shapes.size() < 2) return Region{std::move(all), bound};
     auto out = region_of({all}, options);
-    if (out) out->bound += bound;
+    if (!out)
+        return refuse(out.error().kind, with_shapes_named(out.error().where, shapes, shape_of_loop),
+                      with_shapes_named(out.error().message, shapes, shape_of_loop));
+    out->bound += bound;
     return out;
 }
 

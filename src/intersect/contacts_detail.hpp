@@ -159,4 +159,16 @@ std::vector<Contact<D, N>> joined(std::vector<Raw<D, N>> all) {
     return contacts;
 }
 
+// The answer of the curves in the other order.
+template <int D>
+void exchange(Intersections<D, 2>& all) {
+    for (auto& c : all.contacts) std::swap(c.at[0], c.at[1]), std::swap(c.box[0], c.box[1]);
+    for (auto& o : all.overlaps) std::swap(o.a, o.b);
+    for (auto& u : all.undecided) std::swap(u[0], u[1]);
+    std::sort(all.contacts.begin(), all.contacts.end(),
+              [](const auto& x, const auto& y) { return x.at < y.at; });
+    std::sort(all.overlaps.begin(), all.overlaps.end(),
+              [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
+}
+
 }  // namespace freiform::detail

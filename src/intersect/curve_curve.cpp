@@ -18,10 +18,10 @@
 //     beside a common end of parts is so found by both, and counted once, because it is unique in both.
 //   - given up: parts that are flat within rounding, or as small. Neighbours are united to clusters.
 //   - otherwise the larger part is halved.
-// Clusters, and zeros within rounding of an end, are decided in integers where the coefficients are those
-// given (exact_pair.cpp). Curves that run along each other would be cut into parts that are flat within
-// rounding, 10^8 of them: if a pair of pieces takes long, overlaps are looked for and set aside
-// (overlap_detail.hpp).
+// Clusters, zeros within rounding of an end, and those whose box is wider than kWidest since the curves cross
+// at a small angle, are decided in integers where the coefficients are those given (exact_pair.cpp). Curves
+// that run along each other would be cut into parts that are flat within rounding, 10^8 of them: if a pair of
+// pieces takes long, overlaps are looked for and set aside (overlap_detail.hpp).
 //   Pieces on both sides of a knot find the same zero, or both a zero beyond their end: if both cross the
 //   same
 // way, one follows from continuity.
@@ -62,6 +62,9 @@ std::string_view name_of(ContactKind kind) {
 namespace {
 
 using namespace detail;
+
+constexpr double kWidest =
+    0x1p-38;  // box of a zero in parameters of pieces; wider ones are a case in thousands
 
 template <class P>
 class CurvePair {
@@ -106,15 +109,21 @@ private:
         return piece + 1 == n ? !c.closed[0] : c.jump[std::size_t(piece) + 1];
     }
 
+    static bool is_at_end(const Simple<2>& s) {
+        return s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
+    }
+    static bool is_unclear(const Simple<2>& s) {
+        return is_at_end(s) || std::max(s.box[0].length(), s.box[1].length()) > kWidest;
+    }
+
     void take(int i, int j, Overlaps<P>& overlaps) {
         exact_.clear();
         std::vector<Boxes> unclear;
         for (const Simple<2>& s : search_.found()) {
-            const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
-            if (D == 3 || (at_end && overlaps.exact(i, j)))
+            if (D == 3 || (is_unclear(s) && overlaps.exact(i, j)))
                 unclear.push_back(s.box);
             else
-                add_simple(i, j, s, at_end);
+                add_simple(i, j, s, is_at_end(s));
         }
         std::vector<Boxes> undecided;
         // Parts that coincide are settled only after overlaps were looked for.
@@ -181,8 +190,7 @@ private:
     }
     bool is_known(const ExactContact& c) const {
         return std::any_of(search_.found().begin(), search_.found().end(), [&](const Simple<2>& s) {
-            const bool at_end = s.box[0].lo <= 0 || s.box[0].hi >= 1 || s.box[1].lo <= 0 || s.box[1].hi >= 1;
-            return !at_end && s.box[0].overlaps(c.a) && s.box[1].overlaps(c.b);
+            return !is_unclear(s) && s.box[0].overlaps(c.a) && s.box[1].overlaps(c.b);
         });
     }
     bool reaches_end(int i, int j, const Boxes& t) const {
@@ -330,17 +338,6 @@ bool is_before(const ArcPieces<1, P>& a, const ArcPieces<1, P>& b) {
     for (std::size_t i = 0; i < a.points.size(); ++i)
         if (a.points[i] != b.points[i]) return a.points[i].c < b.points[i].c;
     return a.breaks < b.breaks;
-}
-
-template <int D>
-void exchange(Intersections<D, 2>& all) {
-    for (auto& c : all.contacts) std::swap(c.at[0], c.at[1]), std::swap(c.box[0], c.box[1]);
-    for (auto& o : all.overlaps) std::swap(o.a, o.b);
-    for (auto& u : all.undecided) std::swap(u[0], u[1]);
-    std::sort(all.contacts.begin(), all.contacts.end(),
-              [](const auto& x, const auto& y) { return x.at < y.at; });
-    std::sort(all.overlaps.begin(), all.overlaps.end(),
-              [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
 }
 
 template <class P>

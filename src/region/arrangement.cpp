@@ -11,6 +11,9 @@
 // of the other one, where it meets a cut that is there for the same reason. Then the edges of both go in
 // pairs, which become bundles. If they do not, the arcs are too near to each other to tell.
 //
+// Lenses. Two arcs may cross twice, at proven places, with less than rounding between them: edges between the
+// same places whose control points differ by less than kTwin of the coordinates are a bundle, too.
+//
 // Accuracy. `moved` bounds the distance from the point of a place to all that belongs to it, by boxes of
 // control points, and the gaps of bundles.
 #include "arrangement_detail.hpp"
@@ -27,6 +30,10 @@ namespace {
 // Parts of arcs that are smaller than this times the largest coordinate are drawn together.
 constexpr double kSmallest = 0x1p-44;
 constexpr double kCarryPad = 0x1p-48;
+// So are parts that begin and end at one place, below this times the tolerance.
+constexpr double kLoop = 0x1p-10;
+// Edges between the same places may be called the same this times the largest coordinate apart.
+constexpr double kTwin = 0x1p-42;
 
 // The parameter in `on` nearest to p, by halving; an estimate.
 double nearest_parameter(const PathSegment& s, Interval on, const Vec<2>& p) {
@@ -76,10 +83,12 @@ public:
         if (!m) return std::unexpected(m.error());
         carry_over(out_.arcs, *m);
         for (std::size_t i = 0; i < out_.arcs.size(); ++i) unite_cuts(i, *m);
+        for (std::size_t i = 0; i < out_.arcs.size(); ++i) close_short_loops(i, *m);
         if (const auto ok = measure(*m); !ok) return std::unexpected(ok.error());
         add_edges(*m);
         for (const SharedStretch& s : m->shared)
             if (const auto ok = bundle(s); !ok) return std::unexpected(ok.error());
+        bundle_twins();
         finish_bundles();
         return std::move(out_);
     }
@@ -107,6 +116,23 @@ private:
         cuts = std::move(united);
     }
 
+    // Of an arc that leaves a place and comes back to it at once: two cuts that others have united.
+    void close_short_loops(std::size_t i, Meetings& m) const {
+        std::vector<Cut> closed;
+        for (const Cut& c : m.cuts[i]) {
+            if (!closed.empty() && m.places.find(closed.back().place) == m.places.find(c.place)) {
+                Cut& last = closed.back();
+                const Box<2> between = box_of(part_of(out_.arcs[i].s, last.at.hi, c.at.lo));
+                if (norm(between.hi - between.lo) <= std::max(near_.smallest, kLoop * options_.tolerance)) {
+                    last.at = hull(last.at, c.at);
+                    continue;
+                }
+            }
+            closed.push_back(c);
+        }
+        m.cuts[i] = std::move(closed);
+    }
+
     // How far what belongs to a place is from its point.
     Result<void> measure(Meetings& m) {
         for (std::size_t i = 0; i < out_.arcs.size(); ++i)
@@ -121,8 +147,9 @@ private:
                 if (2 * out_.moved + kSmallest * out_.scale > options_.tolerance)
                     return refuse(
                         RefusalKind::ill_conditioned, place_text(out_.arcs[i]),
-                        text("near ", place_text(p), " segments are so near to each other over ", out_.moved,
-                             " that they are not told apart; the tolerance is ", options_.tolerance));
+                        text("and ", other_at(m, c.place, i), " are so near to each other near ",
+                             place_text(p), ", over ", out_.moved,
+                             ", that they are not told apart; the tolerance is ", options_.tolerance));
             }
         for (std::size_t k = 0; k < m.places.size(); ++k) out_.places.push_back(m.places.point(int(k)));
         for (const SharedStretch& s : m.shared) {
@@ -133,6 +160,16 @@ private:
                                    " away; the tolerance is ", options_.tolerance));
         }
         return {};
+    }
+
+    // Another arc through the place.
+    std::string other_at(Meetings& m, int place, std::size_t than) const {
+        for (std::size_t i = 0; i < out_.arcs.size(); ++i)
+            if (i != than && std::ranges::any_of(m.cuts[i], [&](const Cut& c) {
+                    return m.places.find(c.place) == m.places.find(place);
+                }))
+                return place_text(out_.arcs[i]);
+        return "itself";
     }
 
     void add_edges(const Meetings& m) {
@@ -188,6 +225,57 @@ private:
                                place_text(point_of(out_.arcs[s.i].s, s.a.middle())),
                                ", and where others cross them is not told"));
         return {};
+    }
+
+    // Edges between the same two places, as near to each other as rounding or as what may be called the same:
+    // between places that are proven, lenses are longer than the tolerance and thinner than numbers.
+    void bundle_twins() {
+        std::vector<std::array<std::size_t, 3>> between;
+        for (std::size_t e = 0; e < out_.edges.size(); ++e) {
+            const RegionEdge& x = out_.edges[e];
+            if (x.from != x.to && !out_.arcs[x.arc].is_rational())
+                between.push_back(
+                    {std::size_t(std::min(x.from, x.to)), std::size_t(std::max(x.from, x.to)), e});
+        }
+        std::ranges::sort(between);
+        const double most = std::max(near_.accuracy, kTwin * out_.scale);
+        for (std::size_t i = 0; i < between.size(); ++i)
+            for (std::size_t k = i + 1;
+                 k < between.size() && between[k][0] == between[i][0] && between[k][1] == between[i][1];
+                 ++k) {
+                const std::size_t a = between[i][2], b = between[k][2];
+                const auto [p, sp] = root(a);
+                const auto [q, sq] = root(b);
+                const double gap = p == q ? kInfinity : apart(a, b);
+                if (!(gap <= most) || 2 * gap + kSmallest * out_.scale > options_.tolerance) continue;
+                const int against = out_.edges[a].from == out_.edges[b].from ? 1 : -1;
+                root_[std::max(p, q)] = {std::min(p, q), sp * sq * against};
+                out_.edges[a].gap = std::max(out_.edges[a].gap, gap);
+                out_.moved = std::max(out_.moved, gap);
+            }
+    }
+
+    // A bound of the distance of points of equal parameters of two edges between the same places: that of
+    // control points of one degree, and the rounding of parts.
+    double apart(std::size_t a, std::size_t b) const {
+        const auto part = [&](const RegionEdge& e, bool against) {
+            PathSegment s = part_of(out_.arcs[e.arc].s, e.on.lo, e.on.hi);
+            if (against) s = reversed(s);
+            for (; s.degree < 3; ++s.degree) {
+                const double n = s.degree + 1;
+                auto raised = s.points;
+                raised[std::size_t(n)] = s.back();
+                for (std::size_t i = 1; i <= std::size_t(s.degree); ++i)
+                    raised[i] = (double(i) / n) * s.points[i - 1] + (1 - double(i) / n) * s.points[i];
+                s.points = raised;
+            }
+            return s;
+        };
+        const RegionEdge &x = out_.edges[a], &y = out_.edges[b];
+        const PathSegment s = part(x, false), t = part(y, x.from != y.from);
+        double most = 0;
+        for (std::size_t i = 0; i < 4; ++i) most = std::max(most, norm(s.points[i] - t.points[i]));
+        return most + 4 * kPartError * out_.scale;
     }
 
     void finish_bundles() {

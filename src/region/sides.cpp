@@ -116,8 +116,23 @@ private:
         }
         const RegionEdge& e = a_.edges[order[0].second.edge];
         return Refusal{RefusalKind::ill_conditioned, place_text(a_.arcs[e.arc]),
-                       text("near ", place_text(on_edge(e, 0.5)),
-                            " other segments are so near that its sides are not told apart")};
+                       text("and ", neighbour(order[0].second.edge), " are so near to each other near ",
+                            place_text(on_edge(e, 0.5)), " that its sides are not told apart")};
+    }
+
+    // An arc that is in the way of the shortest probe.
+    std::string neighbour(std::size_t index) const {
+        const RegionEdge& e = a_.edges[index];
+        const double at = e.on.middle(), d = std::max(2 * kTouchError * a_.scale, 4 * e.gap);
+        const Vec<2> middle = point_of(a_.arcs[e.arc].s, at), along = unit(tangent_of(a_.arcs[e.arc].s, at));
+        const Vec<2> left{{-along[1], along[0]}}, p = middle + d * left, q = middle - d * left;
+        std::string name = "other segments";
+        a_.tree.each_near(p, q, d, [&](std::size_t i) {
+            if (i == e.arc || !may_touch(a_.arcs[i], {0, 1}, p, q, kTouchError * a_.scale)) return true;
+            name = place_text(a_.arcs[i]);
+            return false;
+        });
+        return name;
     }
 
     void spread(const std::vector<Link>& chain, const Link& from, const EdgeSides& found) {

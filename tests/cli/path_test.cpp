@@ -1,4 +1,5 @@
 #include "run.hpp"
+#include "support/corpus.hpp"
 
 #include <freiform/io/svg.hpp>
 #include <freiform/region/boolean.hpp>
@@ -86,6 +87,27 @@ TEST_F(PathCommand, takes_documents_and_writes_them) {
     const Ran r = command({"union", f, "--to", "json"});
     EXPECT_EQ(r.code, 0) << r.err;
     EXPECT_EQ(nlohmann::json::parse(r.out)["objects"][0]["points"].size(), 4u) << r.out;
+}
+
+// Copies that are a last bit beside each other, crossings at small angles, lenses thinner than numbers tell.
+TEST_F(PathCommand, unites_the_shapes_of_the_tiger_at_a_billionth_of_its_size) {
+    FF_CORPUS_OR_SKIP(tiger, "svg/Ghostscript_Tiger.svg");
+    const auto fine = report({"union", tiger.string()});
+    const auto coarse = report({"union", tiger.string(), "--tolerance", "1e-4"});
+    EXPECT_LT(fine["tolerance"], 3e-7);
+    EXPECT_LE(fine["error_bound"], fine["tolerance"]);
+    EXPECT_EQ(fine["loops"], 8);
+    EXPECT_NEAR(fine["area"], coarse["area"], 1e-3);
+}
+
+TEST_F(PathCommand, names_both_shapes_that_are_not_told_apart) {
+    FF_CORPUS_OR_SKIP(tiger, "svg/Ghostscript_Tiger.svg");
+    const Ran r = command({"union", tiger.string(), "--tolerance", "1e-8", "-o", path("none.svg")});
+    EXPECT_EQ(r.code, 1);
+    EXPECT_NE(r.err.find("path 78: loops[2].segments[0]: and path 78: loops[2].segments[1] are so near"),
+              std::string::npos)
+        << r.err;
+    EXPECT_NE(r.err.find("near (82.14"), std::string::npos) << r.err;
 }
 
 TEST_F(PathCommand, says_what_is_wrong) {

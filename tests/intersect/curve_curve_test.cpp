@@ -27,6 +27,24 @@ TEST(IntersectCurves, tangent_parabolas_touch_once) {
     EXPECT_EQ(a.contacts[0].at, (std::array{0.5, 0.5}));
 }
 
+// Two cubics of a drawing; rounding over the sine of the angle made the boxes of zeros as wide as 1e-7.
+TEST(IntersectCurves, crossings_at_small_angles_are_found_once_and_known_as_exactly_as_others) {
+    const Plane a = plane_bezier(
+                    {{{55.774, -190.434}}, {{55.774, -190.434}}, {{61.738, -183.999}}, {{59.227, -189.021}}}),
+                b = plane_bezier(
+                    {{{59.698, -187.373}}, {{59.698, -187.373}}, {{59.502, -186}}, {{55.97, -190.12}}});
+    const PlaneAnswer once = meet(a, b);
+    ASSERT_NO_FATAL_FAILURE(expect_nothing_else(once, 1, 0));
+    EXPECT_TRUE(once.contacts[0].is_proven());
+    EXPECT_NEAR(once.contacts[0].at[0], 0.66654015815898, 1e-13);
+    EXPECT_LT(once.contacts[0].box[1].length(), 1e-14);
+    for (const double d : {1e-9, 1e-10, 1e-11, 1e-12}) {
+        const PlaneAnswer two = meet(cup(-d), cap());
+        ASSERT_NO_FATAL_FAILURE(expect_nothing_else(two, 2, 0));
+        for (const auto& c : two.contacts) EXPECT_LT(c.box[0].length(), 0x1p-38);
+    }
+}
+
 TEST(IntersectCurves, nearly_tangent_parabolas_meet_twice_or_not) {
     for (const double d : {1e-9, 1e-12, 1e-14}) {
         const PlaneAnswer two = meet(cup(-d), cap());
