@@ -1,8 +1,11 @@
 // The surfaces of a file in a window, by a renderer of its own: what the library gives are buffers and
 // shaders. Drag to turn, scroll to zoom; the triangles are made anew for every picture.
 //   gpu-window teapot.bpt
-// With --hidden one picture is drawn into a window that is not shown, and its middle is printed.
+// With --hidden one picture is drawn into a window that is not shown, and its middle is printed. With
+// --picture NAME three are shown, what the window has then is written as NAME-window.png, and what the
+// library's own renderer makes of the same view as NAME-offscreen.png.
 #include <freiform/gpu/surfaces.hpp>
+#include <freiform/io/file.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
 
@@ -70,12 +73,59 @@ int refused(const ff::Refusal& r) {
     return 1;
 }
 
+// What the window shows, before it is exchanged: its samples are averaged on the way to pixels that can be
+// read.
+ff::Image shown(int width, int height) {
+    GLuint pixels = 0, target = 0;
+    glGenRenderbuffers(1, &pixels);
+    glBindRenderbuffer(GL_RENDERBUFFER, pixels);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+    glGenFramebuffers(1, &target);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target);
+    glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, pixels);
+    glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target);
+    const std::size_t row = 3 * std::size_t(width);
+    std::vector<unsigned char> rows(row * std::size_t(height));
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, rows.data());
+    ff::Image image{width, height, {}};
+    for (std::size_t y = std::size_t(height); y-- > 0;)
+        image.rgb.insert(image.rgb.end(), rows.begin() + long(y * row), rows.begin() + long((y + 1) * row));
+    return image;
+}
+
+// The same view by the library: a frame of the size of the window about the middle of the scene.
+ff::Result<ff::Image> offscreen(const ff::SurfaceBuffers& surfaces, int width, int height) {
+    const double ca = std::cos(eye.azimuth), sa = std::sin(eye.azimuth), ce = std::cos(eye.elevation),
+                 se = std::sin(eye.elevation), pixels = eye.zoom * std::min(width, height) / 2;
+    const ff::Vec<3> right{{-sa, ca, 0}}, up{{-se * ca, -se * sa, ce}}, to_eye{{ce * ca, ce * sa, se}},
+        x = surfaces.size * width / 2 / pixels * right, y = surfaces.size * height / 2 / pixels * up,
+        z = 2 * surfaces.size * to_eye;
+    const std::array<ff::Vec<3>, 4> frame{surfaces.middle - x - y - z, surfaces.middle + x + y - z,
+                                          surfaces.middle - x - y + z, surfaces.middle + x + y + z};
+    auto renderer = ff::SurfaceRenderer::make(surfaces);
+    if (!renderer) return std::unexpected(renderer.error());
+    ff::RenderOptions options{.width = width, .height = height, .view = {eye.azimuth, eye.elevation}};
+    options.outlines = false, options.supersampling = 1, options.margin = 0, options.frame = frame;
+    options.top = options.bottom = {0.94f, 0.95f, 0.96f, 1};
+    return renderer->draw(options);
+}
+
+ff::Result<void> write(const ff::Result<ff::Image>& image, const std::string& file) {
+    if (!image) return std::unexpected(image.error());
+    const auto png = ff::to_png(*image);
+    if (!png) return std::unexpected(png.error());
+    return ff::write_file(file, *png);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     const bool hidden = argc == 3 && std::string_view(argv[2]) == "--hidden";
-    if (argc != 2 && !hidden) {
-        std::cerr << "usage: gpu-window FILE [--hidden]\n";
+    const std::string picture = argc == 4 && std::string_view(argv[2]) == "--picture" ? argv[3] : "";
+    if (argc != 2 && !hidden && picture.empty()) {
+        std::cerr << "usage: gpu-window FILE [--hidden | --picture NAME]\n";
         return 2;
     }
     const auto document = ff::read_any(argv[1]);
@@ -146,8 +196,9 @@ int main(int argc, char** argv) {
     });
     glEnable(GL_DEPTH_TEST);
     glClearColor(0.94f, 0.95f, 0.96f, 1);
-    while (!glfwWindowShouldClose(window)) {
-        int width = 0, height = 0;
+    int width = 0, height = 0;
+    ff::Image image;
+    for (int frames = 1; !glfwWindowShouldClose(window); ++frames) {
         glfwGetFramebufferSize(window, &width, &height);
         glViewport(0, 0, width, height);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -176,8 +227,16 @@ int main(int argc, char** argv) {
             std::cout << int(middle[0]) << ' ' << int(middle[1]) << ' ' << int(middle[2]) << '\n';
             break;
         }
+        if (!picture.empty() && frames == 3) {
+            image = shown(width, height);
+            break;
+        }
         glfwSwapBuffers(window);
-        glfwWaitEvents();
+        picture.empty() ? glfwWaitEvents() : glfwPollEvents();
     }
     glfwTerminate();
+    if (picture.empty()) return 0;
+    if (const auto ok = write(image, picture + "-window.png"); !ok) return refused(ok.error());
+    if (const auto ok = write(offscreen(*surfaces, width, height), picture + "-offscreen.png"); !ok)
+        return refused(ok.error());
 }

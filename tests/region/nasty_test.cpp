@@ -57,7 +57,7 @@ TEST(Combine, lenses_that_are_thinner_than_numbers_and_longer_than_the_tolerance
             areas[std::size_t(o)] = signed_area(r->path).value;
         }
         EXPECT_NEAR(areas[0] - areas[1], areas[3], 1e-12);
-        EXPECT_NEAR(areas[2] + areas[1], signed_area(a).value, 1e-10);
+        EXPECT_NEAR(areas[2] + areas[1], -signed_area(a).value, 1e-10);  // clockwise
     }
 }
 
