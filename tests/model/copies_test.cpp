@@ -145,7 +145,7 @@ TEST(Copies, of_splines_have_their_knots_and_weights) {
         const auto t = tessellate(m, {.tolerance = 1e-2});
         ASSERT_TRUE(t);
         EXPECT_LE(t->error_bound, 1e-2);
-        EXPECT_LE(sampled_deviation(m, *t), t->error_bound + t->boundary_gap);
+        EXPECT_LE(test::sampled_deviation(m, *t), t->error_bound + t->boundary_gap);
         // Another weight, another control point: another surface.
         if (auto* s = std::get_if<Surface<Hom<3>>>(&m.faces[1].surface)) {
             auto points = s->net();
@@ -171,7 +171,7 @@ TEST(Copies, are_meshed_as_the_part_was_and_keep_the_bound) {
         EXPECT_EQ(t->topology.open_edges + t->topology.misoriented_edges, 0);
         EXPECT_EQ(t->topology.non_manifold_edges + t->topology.degenerate_triangles, 0);
         EXPECT_LE(t->error_bound, tolerance);
-        EXPECT_LE(sampled_deviation(m, *t), t->error_bound + t->boundary_gap);
+        EXPECT_LE(test::sampled_deviation(m, *t), t->error_bound + t->boundary_gap);
         ASSERT_EQ(t->mesh.parts.size(), m.faces.size());
         const std::size_t each = m.faces.size() / 3;
         for (std::size_t f = 0; f < m.faces.size(); ++f) {
