@@ -154,9 +154,9 @@ public:
     struct Corner {
         Vec<2> at{}, leaf{};  // leaf: side lengths of a leaf that has it
     };
-    // A leaf whose sides are to be halved so many times: all cells have the bounds of the leaf, and keep the
-    // tolerance. Nothing of it or of its border is outside the polygon or on its segments.
-    using Halves = std::array<std::uint8_t, 2>;
+    using Halves = std::array<std::uint8_t, 2>;  // how often each side is halved
+    // A leaf that is to be cut into cells, which by the bounds of their part are as fine as leaves. Nothing
+    // of it or of its border is outside the polygon or on its segments.
     struct Block {
         Box<2> box;
         Halves halves{}, parts{};  // into cells, and into parts of some cells

@@ -9,6 +9,7 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -107,6 +108,7 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
             all.push_back(std::unexpected(ok.error()));
             continue;
         }
+        const auto start = std::chrono::steady_clock::now();
         // Normals of copies are not bounded, only what is seen of them in distances.
         const bool may_copy = !std::isfinite(how.max_angle) && model.faces.size() > 1;
         if (may_copy && !copies) copies = copies_in(model);
@@ -120,6 +122,9 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
         inner.tolerance *= 1 - 0x1p-20;
         auto few = originals.run(*reduced, inner);
         all.push_back(few ? with_copies(model, *copies, std::move(*few), how) : std::move(few));
+        if (all.back())
+            all.back()->seconds.total =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     return all;
 }

@@ -33,7 +33,7 @@ public:
         for (std::size_t f = 0; f < faces; ++f) {
             const int of = copies_.faces[f].of < 0 ? int(f) : copies_.faces[f].of;
             if (const int r = refusal[std::size_t(of)]; r >= 0)
-                out_.refused.push_back({int(f), model_.faces[f].name, in_.refused[std::size_t(r)].reason});
+                refuse_face(int(f), in_.refused[std::size_t(r)].reason);
             else
                 add(int(f), std::size_t(part[std::size_t(of)]), colours[f]);
         }
@@ -48,6 +48,13 @@ public:
     }
 
 private:
+    // Edges that a reason names are those of the original.
+    void refuse_face(int face, Refusal reason) {
+        if (const int of = copies_.faces[std::size_t(face)].of; of >= 0)
+            reason.message = text("a copy of faces[", of, "]: ", reason.message);
+        out_.refused.push_back({face, model_.faces[std::size_t(face)].name, std::move(reason)});
+    }
+
     // The point of the mesh that the motion makes of one of the originals'.
     int point(int motion, int of) {
         if (motion < 0) return of;

@@ -2,43 +2,20 @@
 """window.py PROGRAM FILE..: examples/gpu/window.cpp in a window of a virtual screen (Xvfb, Mesa's llvmpipe), against what
 the library's renderer makes of the same view. Exit code 1 if they differ; 77 where there is no xvfb-run or no window."""
 import os
+import pathlib
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from compare_inkscape import read_png
 
 WIDTH, HEIGHT = 1000, 750
 
 
-def read_png(path):
-    """Rows of RGB bytes; 8 bits, three or four channels, not interlaced."""
-    data = open(path, "rb").read()
-    at, packed = 8, b""
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at : at + 8])
-        body = data[at + 8 : at + 8 + size]
-        if kind == b"IHDR":
-            width, height, bits, colour = struct.unpack(">IIBB", body[:10])
-        elif kind == b"IDAT":
-            packed += body
-        at += 12 + size
-    step = {2: 3, 6: 4}[colour]
-    assert bits == 8, path
-    raw, before, rows = zlib.decompress(packed), bytearray(width * step), []
-    for y in range(height):
-        start = y * (width * step + 1)
-        method, row = raw[start], bytearray(raw[start + 1 : start + 1 + width * step])
-        for i in range(len(row) if method else 0):
-            left, up, corner = (row[i - step] if i >= step else 0), before[i], (before[i - step] if i >= step else 0)
-            if method == 4:
-                guess = left + up - corner
-                near = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))[2]
-            row[i] = (row[i] + {1: left, 2: up, 3: (left + up) // 2, 4: near if method == 4 else 0}[method]) & 255
-        rows.append([tuple(row[step * x : step * x + 3]) for x in range(width)])
-        before = row
-    return rows
+def pixels_of(path):
+    return [list(zip(row[0::4], row[1::4], row[2::4])) for row in read_png(path)]
 
 
 def compare(window, other):
@@ -81,7 +58,7 @@ def main():
             if "error" in ran.stderr.lower() or "warning" in ran.stderr.lower():
                 print(ran.stderr)
                 bad = 1
-            surface, different, cracked = compare(read_png(name + "-window.png"), read_png(name + "-offscreen.png"))
+            surface, different, cracked = compare(pixels_of(name + "-window.png"), pixels_of(name + "-offscreen.png"))
             print(f"{os.path.basename(file)}: {surface} pixels of surfaces, {different} differ, {cracked} cracked")
             if surface < 20000 or different > surface // 2000 or cracked:
                 bad = 1

@@ -1,5 +1,5 @@
 // Cells of blocks and the triangles around them are one mesh that keeps the bound.
-#include "mesh/curvature_tree_detail.hpp"
+#include "mesh/filler_detail.hpp"
 #include "support/random.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -175,6 +175,39 @@ TEST(Blocks, are_the_same_for_any_number_of_threads) {
     EXPECT_EQ(one.triangles, two.triangles);
     EXPECT_EQ(one.bound, two.bound);
     expect_covers_once(one, boundary);
+}
+
+// Triangles of blocks may count on feet that those beside them would do without, as at poles: that is told
+// before more points are tried.
+TEST(Blocks, that_count_on_feet_stop_triangles_beside_them_from_doing_without) {
+    const Conic<3> meridian{ConicKind::ellipse, {}, {{1, 0, 0}}, {{0, 0, 1}}};
+    const SurfaceGeometry s = Revolution{meridian, {}, {{0, 0, 1}}, SurfaceKind::sphere};
+    const DerivativeQuery<2, 3> surface(s);
+    constexpr double kTop = std::numbers::pi / 2;  // the pole
+    std::vector<Vec<2>> polygon;
+    for (int k = 0; k < 24; ++k) polygon.push_back({{k / 24.0, 0.5}});
+    for (int k = 0; k < 24; ++k) polygon.push_back({{1, 0.5 + (kTop - 0.5) * k / 24}});
+    for (int k = 24; k > 0; --k) polygon.push_back({{k / 24.0, kTop}});
+    for (int k = 24; k > 0; --k) polygon.push_back({{0, 0.5 + (kTop - 0.5) * k / 24}});
+    std::vector<std::array<int, 2>> segments;
+    std::vector<Triangulation::Segment> sides;
+    Box<2> box;
+    for (int k = 0; k < 96; ++k) {
+        segments.push_back({k, (k + 1) % 96});
+        sides.push_back({k, (k + 1) % 96});
+        box.add(polygon[std::size_t(k)]);
+    }
+    const FaceDemands demands{.tolerance = 1e-3};
+    const auto tree = must(CurvatureTree::make(surface, polygon, segments, demands, 100'000));
+    const Judge judge(tree, surface, box, demands.tolerance);
+    for (const bool count_on_feet : {false, true}) {
+        auto t = must(Triangulation::make(polygon, sides));
+        Filler filler(t, tree, judge, surface, {{1, 1}}, demands);
+        filler.keep_feet(0, std::vector<char>(polygon.size(), count_on_feet));
+        filler.insert_corners(tree.corners());
+        EXPECT_EQ(filler.refine(100'000), !count_on_feet);
+        EXPECT_EQ(filler.is_stuck(), count_on_feet);
+    }
 }
 
 }  // namespace

@@ -229,6 +229,7 @@ TEST(Copies, count_for_the_budget_and_are_refused_with_their_part) {
     ASSERT_EQ(open->refused.size(), 3u);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(open->refused[std::size_t(k)].face, k);
     EXPECT_EQ(open->refused[2].name, "face 2");
+    EXPECT_EQ(open->refused[2].reason.message, "a copy of faces[0]: " + open->refused[0].reason.message);
 }
 
 TEST(Copies, are_the_same_for_any_number_of_threads_and_in_company) {
