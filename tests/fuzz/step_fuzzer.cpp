@@ -1,4 +1,5 @@
-// Any bytes as a STEP file: a model whose indices hold, or a refusal that says something.
+// Any bytes as a STEP file: a model whose indices hold, or a refusal that says something; with repairs for half
+// of the files; and the triangles of the file, likewise.
 //
 // Half of the mutations are of bytes. The others know the grammar: they put one parameter of the file where
 // another one stands, change references, numbers and flags for ones that files have, and move statements.
@@ -155,12 +156,23 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace freiform;
-    const auto model = read_step({reinterpret_cast<const char*>(data), size}, {.memory_bytes = 64 << 20});
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    const auto within = [](int i, const auto& list) { return i >= 0 && std::size_t(i) < list.size(); };
+    if (const auto mesh = read_step_mesh(bytes, {.max_triangles = 100'000})) {
+        for (const auto& triangle : mesh->triangles)
+            for (const int corner : triangle) demand(within(corner, mesh->vertices));
+        for (const MeshVertex& vertex : mesh->vertices) demand(within(vertex.point, mesh->points));
+    } else {
+        demand(!mesh.error().message.empty());
+    }
+    // Which of the two is of the bytes alone, so that a finding stays one.
+    const bool repair = size > 0 && data[size / 2] % 2 == 1;
+    const auto model = read_step(bytes, {.memory_bytes = 64 << 20, .repair = repair});
     if (!model) {
         demand(!model.error().message.empty());
         return 0;
     }
-    const auto within = [](int i, const auto& list) { return i >= 0 && std::size_t(i) < list.size(); };
+    demand(repair || model->repairs.empty());
     for (const Edge& e : model->edges)
         demand(within(e.start, model->vertices) && within(e.end, model->vertices) &&
                e.range.lo <= e.range.hi);
