@@ -17,7 +17,7 @@ case $name in
     step)  # The layers below from the preset asan: what is mixed here has to come from one compiler.
         cmake --preset asan >build-fuzz/configure.log
         cmake --build --preset asan --target freiform_core
-        for file in src/io/step_*.cpp; do
+        for file in src/io/step_*.cpp src/io/mesh_builder.cpp; do
             case $file in *step_write.cpp) ;; *) printf '#include "%s"\n' "$PWD/$file" ;; esac
         done >build-fuzz/unity/step.cpp
         sources=(build-fuzz/unity/step.cpp)
