@@ -1,5 +1,6 @@
 // Entities of STEP files, and the geometry among them.
 #pragma once
+#include "step_part21.hpp"
 #include "written_point.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -22,15 +23,7 @@ inline std::string real(double x) {
     return e == std::string::npos ? mantissa : mantissa + "E" + s.substr(e + 1);
 }
 
-// Names: apostrophes doubled, what is not printable ASCII left out.
-inline std::string quoted(std::string_view s) {
-    std::string out = "'";
-    for (const char c : s) {
-        if (c == '\'' || c == '\\') out += c;
-        if (c >= ' ' && c <= '~') out += c;
-    }
-    return out + "'";
-}
+inline std::string quoted(std::string_view name) { return "'" + step::encoded(name) + "'"; }
 
 // The parts between knots where only the place goes on: readers take edges to be smooth.
 inline Result<std::vector<CurveGeometry<2>>> without_corners(const CurveGeometry<2>& curve) {

@@ -189,5 +189,8 @@ Result<File> parse(std::string_view bytes);
 // The characters that a string token stands for, as UTF-8: with the escapes \S\, \P.\, \X\, \X2\, \X4\ and
 // doubled apostrophes and reverse solidi.
 std::string decoded(std::string_view string);
+// UTF-8 as the characters of a string token: what is not printable ASCII is an escape, and bytes that are not
+// UTF-8 are taken as ISO 8859-1.
+std::string encoded(std::string_view utf8);
 
 }  // namespace freiform::step

@@ -1,6 +1,8 @@
 // Strings of STEP files. The basic alphabet is ASCII; what else occurs is an escape, or the bytes themselves:
-// UTF-8 (edition 3), or else ISO 8859-1, which older programs write against the standard.
+// UTF-8 (edition 3), or else ISO 8859-1, which older programs write against the standard. What is written
+// here is ASCII with escapes, which every edition has.
 #include "step_part21.hpp"
+#include "utf8.hpp"
 
 #include <optional>
 
@@ -27,21 +29,6 @@ void append_utf8(std::string& out, std::uint32_t c) {
     }
 }
 
-// How many bytes the UTF-8 character at the beginning has; 0 if there is none.
-std::size_t utf8_length(std::string_view s) {
-    const auto at = [&](std::size_t i) { return (unsigned char)(s[i]); };
-    const std::size_t n = at(0) < 0x80   ? 1
-                          : at(0) < 0xc2 ? 0
-                          : at(0) < 0xe0 ? 2
-                          : at(0) < 0xf0 ? 3
-                          : at(0) < 0xf5 ? 4
-                                         : 0;
-    if (n > s.size()) return 0;
-    for (std::size_t i = 1; i < n; ++i)
-        if ((at(i) & 0xc0) != 0x80) return 0;
-    return n;
-}
-
 std::optional<std::uint32_t> hexadecimal(std::string_view digits, std::size_t count) {
     if (digits.size() < count) return std::nullopt;
     std::uint32_t x = 0;
@@ -59,19 +46,31 @@ std::optional<std::uint32_t> hexadecimal(std::string_view digits, std::size_t co
 // \X2\ or \X4\ with `digits` for each character, up to \X0\. How many bytes it takes.
 std::size_t wide(std::string_view s, std::size_t digits, std::string& out) {
     std::size_t i = 4;
-    std::uint32_t high = 0;  // the first half of a surrogate pair
     while (const auto c = hexadecimal(s.substr(i), digits)) {
         i += digits;
-        if (digits == 4 && *c >= 0xd800 && *c < 0xdc00) {
-            high = *c;
-        } else if (high != 0 && *c >= 0xdc00 && *c < 0xe000) {
-            append_utf8(out, 0x10000 + ((high - 0xd800) << 10) + (*c - 0xdc00));
-            high = 0;
+        const bool high = digits == 4 && *c >= 0xd800 && *c < 0xdc00;  // the first half of a surrogate pair
+        const auto low = high ? hexadecimal(s.substr(i), digits) : std::nullopt;
+        if (low && *low >= 0xdc00 && *low < 0xe000) {
+            append_utf8(out, 0x10000 + ((*c - 0xd800) << 10) + (*low - 0xdc00));
+            i += digits;
         } else {
             append_utf8(out, *c);
         }
     }
     return s.substr(i).starts_with("\\X0\\") ? i + 4 : i;
+}
+
+// The character that begins with the n bytes, which are UTF-8; or a byte that is not, as ISO 8859-1.
+std::uint32_t character(std::string_view s, std::size_t n) {
+    const auto first = std::uint32_t((unsigned char)(s[0]));
+    if (n < 2) return first;
+    std::uint32_t c = first & (0x7fu >> n);
+    for (std::size_t i = 1; i < n; ++i) c = (c << 6) | ((unsigned char)(s[i]) & 63u);
+    return c;
+}
+
+void append_hexadecimal(std::string& out, std::uint32_t x, int digits) {
+    for (int k = digits - 1; k >= 0; --k) out += "0123456789ABCDEF"[(x >> (4 * k)) & 15];
 }
 
 }  // namespace
@@ -106,6 +105,34 @@ std::string decoded(std::string_view s) {
             ++i;
         }
     }
+    return out;
+}
+
+std::string encoded(std::string_view s) {
+    std::string out;
+    int digits = 0;  // of each character of \X2\ or \X4\, as long as one is open
+    const auto want = [&](int d) {
+        if (digits == d) return;
+        if (digits > 0) out += "\\X0\\";
+        if (d > 0) out += d == 4 ? "\\X2\\" : "\\X4\\";
+        digits = d;
+    };
+    for (std::size_t i = 0; i < s.size();) {
+        const std::size_t n = utf8_length(s.substr(i));
+        const std::uint32_t c = character(s.substr(i), n);
+        i += n > 0 ? n : 1;
+        want(c < 0x80 ? 0 : c < 0x10000 ? 4 : 8);
+        if (digits > 0) {
+            append_hexadecimal(out, c, digits);
+        } else if (c < ' ' || c > '~') {
+            out += "\\X\\";
+            append_hexadecimal(out, c, 2);
+        } else {
+            if (c == '\'' || c == '\\') out += char(c);
+            out += char(c);
+        }
+    }
+    want(0);
     return out;
 }
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <io/step_part21.hpp>
 #include <map>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
@@ -198,6 +199,65 @@ TEST(StepRoundTrip, random_models_come_back_equal_to_the_last_bit) {
         // Once read, it is what was written in everything that is not made anew.
         const Model again = must(read_step(must(write_step(Document{"mm", {{"", read, {}}}}))));
         expect_equal(read, again, true);
+        if (HasFailure()) break;
+    }
+}
+
+// Of all planes of Unicode, with what strings of the format treat apart.
+std::string random_name(Random& r) {
+    std::string name;
+    for (int n = r.integer(1, 12); n > 0; --n) {
+        const int kind = r.integer(0, 5);
+        char32_t c = kind == 0   ? U"'\\\n\0\x7f/*S\x80"[std::size_t(r.integer(0, 8))]
+                     : kind <= 2 ? char32_t(r.integer(0x20, 0x7e))
+                     : kind == 3 ? char32_t(r.integer(0x80, 0xd7ff))
+                     : kind == 4 ? char32_t(r.integer(0xe000, 0xffff))
+                                 : char32_t(r.integer(0x10000, 0x10ffff));
+        if (c < 0x80) {
+            name += char(c);
+        } else if (c < 0x800) {
+            name += {char(0xc0 | c >> 6), char(0x80 | (c & 63))};
+        } else if (c < 0x10000) {
+            name += {char(0xe0 | c >> 12), char(0x80 | (c >> 6 & 63)), char(0x80 | (c & 63))};
+        } else {
+            name += {char(0xf0 | c >> 18), char(0x80 | (c >> 12 & 63)), char(0x80 | (c >> 6 & 63)),
+                     char(0x80 | (c & 63))};
+        }
+    }
+    return name;
+}
+
+TEST(StepRoundTrip, names_are_written_in_ascii_with_escapes) {
+    EXPECT_EQ(step::encoded("it's \\ a"), "it''s \\\\ a");
+    EXPECT_EQ(step::encoded("a\tb\x7f"), "a\\X\\09b\\X\\7F");
+    EXPECT_EQ(step::encoded("\u00e4\u4e2dx"), "\\X2\\00E44E2D\\X0\\x");
+    EXPECT_EQ(step::encoded("\u00e4\U0001F600"), "\\X2\\00E4\\X0\\\\X4\\0001F600\\X0\\");
+    EXPECT_EQ(step::encoded("\xe4"), "\\X2\\00E4\\X0\\") << "not UTF-8: ISO 8859-1";
+    EXPECT_EQ(step::decoded("\\X2\\D83D0041DE00\\X0\\"), "\ufffdA\ufffd") << "halves of pairs";
+    EXPECT_EQ(step::decoded("\xed\xa0\x80"), "\u00ed\u00a0\u0080") << "a surrogate is no UTF-8";
+}
+
+TEST(StepRoundTrip, names_of_any_characters_come_back) {
+    Random r(1300);
+    const Model plain = must(prism(random_region(r, {}), {{0, 0, 2}}));
+    for (int i = 0; i < 200; ++i) {
+        Model m = plain;
+        m.layers = {{random_name(r), random_name(r)}, {"2 " + random_name(r), ""}};
+        for (Body& b : m.bodies) b.name = random_name(r), b.layers = {1};
+        for (Face& f : m.faces) f.name = random_name(r), f.layers = {0};
+        const std::string bytes = must(write_step(Document{"mm", {{"", m, {}}}}));
+        EXPECT_TRUE(std::ranges::all_of(bytes, [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }));
+        const Model read = must(read_step(bytes));
+        ASSERT_EQ(read.faces.size(), m.faces.size());
+        for (std::size_t k = 0; k < m.faces.size(); ++k) EXPECT_EQ(read.faces[k].name, m.faces[k].name);
+        EXPECT_EQ(read.bodies.at(0).name, m.bodies.at(0).name);
+        ASSERT_EQ(read.layers.size(), 2u);
+        for (std::size_t k = 0; k < 2; ++k) {
+            EXPECT_EQ(read.layers[k].name, m.layers[k].name);
+            EXPECT_EQ(read.layers[k].description, m.layers[k].description);
+        }
+        const Model named = must(read_step(must(write_step(Document{"mm", {{m.bodies[0].name, m, {}}}}))));
+        EXPECT_EQ(named.bodies.at(0).name, m.bodies[0].name) << "of the product";
         if (HasFailure()) break;
     }
 }
