@@ -10,11 +10,15 @@ namespace freiform::step {
 
 Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std::vector<int>& corners) {
     if (const auto known = edges_.find(curve); known != edges_.end()) {
-        const Edge& e = out_.model.edges[std::size_t(known->second.edge)];
+        if (!known->second) return known->second;
+        if (known->second->edge < 0)
+            return refuse(RefusalKind::invalid, f_.label(curve),
+                          "is a segment of a boundary without a length");
+        const Edge& e = out_.model.edges[std::size_t(known->second->edge)];
         corners.insert(corners.end(), {e.start, e.end});
         return known->second;
     }
-    const auto c = geometry_.curve(curve);
+    const auto c = curve_in_space(curve, nullptr);
     if (!c) return std::unexpected(c.error());
     const Interval on = c->range.value_or(domain(c->curve)[0]);
     if (!std::isfinite(on.length()) || !(on.lo < on.hi))
@@ -66,8 +70,9 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
         const auto g = Fields::of(f_, s, Type::COMPOSITE_CURVE_SEGMENT, 3);
         const auto parent = g ? g->reference(2, "curve") : Result<std::uint32_t>(std::unexpected(g.error()));
         if (!parent) return std::unexpected(parent.error());
-        if (const auto known = edges_.find(*parent); known != edges_.end()) {
-            const Edge& e = out_.model.edges[std::size_t(known->second.edge)];
+        const auto known = edges_.find(*parent);
+        if (known != edges_.end() && known->second && known->second->edge >= 0) {
+            const Edge& e = out_.model.edges[std::size_t(known->second->edge)];
             corners.insert(corners.end(), {e.start, e.end});
         }
     }

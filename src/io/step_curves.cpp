@@ -202,6 +202,7 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
     if (!f) return std::unexpected(f.error());
     const bool conic = std::holds_alternative<Conic<3>>(basis.curve);
     const bool ellipse = conic && std::get<Conic<3>>(basis.curve).kind == ConicKind::ellipse;
+    const double unit = ellipse || basis.has_angles ? angle : 1.0;  // of the parameter
     const bool prefers_points = f->enumeration(5) == "CARTESIAN";
     std::array<double, 2> t{};
     for (int end = 0; end < 2; ++end) {
@@ -215,10 +216,9 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
                 if (!x)
                     bad = x.error();
                 else if (!x->empty())
-                    parameter = x->front() * (conic && ellipse ? angle : 1.0);
+                    parameter = x->front() * unit;
             } else if (token.kind == TokenKind::number) {  // without its type, against the standard
-                if (const auto x = Fields(f_, i, f->list(2 + end)).number(0, "trim"))
-                    parameter = *x * (conic && ellipse ? angle : 1.0);
+                if (const auto x = Fields(f_, i, f->list(2 + end)).number(0, "trim")) parameter = *x * unit;
             } else if (token.kind == TokenKind::reference && token.at != kMissing) {
                 if (const auto p = point(token.at)) {
                     double distance = 0;
@@ -240,8 +240,24 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
     return basis;
 }
 
-Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
-    if (const auto known = curves_.find(i); known != curves_.end()) return known->second;
+Result<BoundedCurve> GeometryReader::wrapped_curve(std::uint32_t wrapping, BoundedCurve c) const {
+    if (f_.is(wrapping, Type::TRIMMED_CURVE)) return trimmed(wrapping, std::move(c));
+    if (f_.is(wrapping, Type::OFFSET_CURVE_3D)) return offset_of(wrapping, std::move(c));
+    if (!f_.is(wrapping, Type::CURVE_REPLICA)) return c;
+    const auto f = Fields::of(f_, wrapping, Type::CURVE_REPLICA, 3);
+    if (!f) return std::unexpected(f.error());
+    const auto by = f->reference(2, "transformation");
+    if (!by) return std::unexpected(by.error());
+    const auto to = transformation(*by);
+    if (!to) return std::unexpected(to.error());
+    Motion m = motion_to(to->to);
+    m.scale = to->scale;
+    c.curve = moved(c.curve, m);
+    c.bound *= m.scale;
+    return c;
+}
+
+Result<BoundedCurve> GeometryReader::unwrapped_curve(std::uint32_t i) {
     std::vector<std::uint32_t> wrappings;
     std::uint32_t at = i;
     for (;;) {
@@ -249,7 +265,7 @@ Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
             return refuse(RefusalKind::invalid, f_.label(i), "is a curve that refers to itself, or too deep");
         int field = -1;
         for (const Type t : {Type::TRIMMED_CURVE, Type::SURFACE_CURVE, Type::SEAM_CURVE,
-                             Type::INTERSECTION_CURVE, Type::CURVE_REPLICA})
+                             Type::INTERSECTION_CURVE, Type::CURVE_REPLICA, Type::OFFSET_CURVE_3D})
             if (f_.is(at, t) && field < 0) {
                 const Fields f(f_, at, f_.part(at, t));
                 field = f_.type(at) == Type::unknown ? 0 : 1;
@@ -261,26 +277,17 @@ Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
         if (field < 0) break;
     }
     auto c = basic_curve(at);
-    for (; c && !wrappings.empty(); wrappings.pop_back()) {
-        const std::uint32_t w = wrappings.back();
-        if (f_.is(w, Type::TRIMMED_CURVE)) {
-            c = trimmed(w, std::move(*c));
-        } else if (f_.is(w, Type::CURVE_REPLICA)) {
-            const auto f = Fields::of(f_, w, Type::CURVE_REPLICA, 3);
-            if (!f) return std::unexpected(f.error());
-            const auto by = f->reference(2, "transformation");
-            if (!by) return std::unexpected(by.error());
-            const auto to = transformation(*by);
-            if (!to) return std::unexpected(to.error());
-            Motion m = motion_to(to->to);
-            m.scale = to->scale;
-            c->curve = moved(c->curve, m);
-        }
-    }
-    if (c) {
+    for (; c && !wrappings.empty(); wrappings.pop_back()) c = wrapped_curve(wrappings.back(), std::move(*c));
+    if (c)
         if (auto ok = check(c->curve); !ok) return refuse(ok.error().kind, f_.label(i), ok.error().message);
-        curves_.emplace(i, *c);
-    }
+    return c;
+}
+
+Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
+    auto known = curves_.find(i);
+    if (known == curves_.end()) known = curves_.emplace(i, unwrapped_curve(i)).first;
+    const Result<BoundedCurve>& c = known->second;
+    if (c && c->approximated != kMissing) approximated.push_back({c->approximated, c->bound});
     return c;
 }
 

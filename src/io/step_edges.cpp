@@ -77,9 +77,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::straight_edge(int from, int to) {
 
 Result<ShapeReader::EdgeMade> ShapeReader::edge(std::uint32_t i) {
     if (const auto known = edges_.find(i); known != edges_.end()) return known->second;
-    auto made = make_edge(i);
-    if (made) edges_.emplace(i, *made);
-    return made;
+    return edges_.emplace(i, make_edge(i)).first->second;
 }
 
 Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
@@ -95,7 +93,9 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     }
     const auto at = f->reference(3, "curve");
     if (!at) return std::unexpected(at.error());
-    const auto c = geometry_.curve(*at);
+    const std::array<Vec<3>, 2> ends{out_.model.vertices[std::size_t(end[0])].point,
+                                     out_.model.vertices[std::size_t(end[1])].point};
+    const auto c = curve_in_space(*at, &ends);
     if (!c) return std::unexpected(c.error());
     EdgeMade made;
     made.curve = *at;

@@ -19,6 +19,11 @@ struct BoundedCurve {
     CurveGeometry<3> curve;
     bool reversed = false;          // the entity runs against `curve`
     std::optional<Interval> range;  // of the parameters of `curve`; none: all of it
+    // `curve` is a spline within `bound` of the instance `approximated`, if there is one; its parameter may
+    // be an angle.
+    std::uint32_t approximated = kMissing;
+    double bound = 0;
+    bool has_angles = false;
 };
 
 // Geometry by instance, converted once. Lengths are in the unit of the file, angles times `angle` are
@@ -27,6 +32,16 @@ class GeometryReader {
 public:
     explicit GeometryReader(const File& file) : f_(file) {}
     double angle = 1;
+    double tolerance = 0;  // of the file: what is a spline near something may be off by a part of it
+
+    // What curves and surfaces that were asked for rest on: instances that splines stand for, and the bounds
+    // of their distances.
+    struct Approximated {
+        std::uint32_t instance;
+        double bound;
+        friend auto operator<=>(const Approximated&, const Approximated&) = default;
+    };
+    std::vector<Approximated> approximated;
 
     Result<Vec<3>> point(std::uint32_t i) const;
     Result<Vec<3>> direction(std::uint32_t i) const;  // of length 1
@@ -39,10 +54,15 @@ public:
     Result<Operator> transformation(std::uint32_t i) const;
 
     Result<BoundedCurve> curve(std::uint32_t i);
+    // Of curves that splines stand for, by their size: how near those are to be, and have to be.
+    double lift_accuracy(double size) const;
+    double lift_limit(double size) const;
     Result<SurfaceGeometry> surface(std::uint32_t i);
     // What the file says of a curve in the parameters of a surface (PCURVE); their third coordinate is 0.
     // What cannot be read of it is left out.
     std::vector<CurveGeometry<3>> images(std::uint32_t curve, std::uint32_t surface);
+    std::vector<std::uint32_t> pcurves(std::uint32_t curve) const;
+    Result<std::vector<std::uint32_t>> items_of_pcurve(std::uint32_t pcurve) const;
 
 private:
     Result<Vec<3>> triple(const Fields& f, int i, std::string_view what) const;
@@ -50,14 +70,17 @@ private:
     Result<BoundedCurve> basic_curve(std::uint32_t i);
     Result<CurveGeometry<3>> spline_curve(std::uint32_t i) const;
     Result<CurveGeometry<3>> conic(std::uint32_t i, Type type) const;
+    Result<BoundedCurve> unwrapped_curve(std::uint32_t i);
+    Result<BoundedCurve> wrapped_curve(std::uint32_t wrapping, BoundedCurve basis) const;
     Result<BoundedCurve> trimmed(std::uint32_t i, BoundedCurve basis) const;
+    Result<BoundedCurve> offset_of(std::uint32_t i, BoundedCurve basis) const;
     Result<SurfaceGeometry> basic_surface(std::uint32_t i);
     Result<SurfaceGeometry> elementary(std::uint32_t i, Type type, double offset) const;
     Result<SurfaceGeometry> spline_surface(std::uint32_t i) const;
     Result<CurveGeometry<3>> profile(std::uint32_t i);
 
     const File& f_;
-    std::unordered_map<std::uint32_t, BoundedCurve> curves_;
+    std::unordered_map<std::uint32_t, Result<BoundedCurve>> curves_;
 };
 
 // The parameter of the point of the curve that is nearest to `p`, among some tries; `distance` to it.

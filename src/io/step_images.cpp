@@ -32,11 +32,7 @@ std::vector<CurveGeometry<3>> GeometryReader::images(std::uint32_t curve, std::u
             const auto p = Fields::of(f_, id, Type::PCURVE, 3);
             const auto on = p ? p->reference(1, "surface") : Result<std::uint32_t>(kMissing);
             if (!p || !on || *on != surface) continue;
-            const auto by = p->reference(2, "representation");
-            const auto d = by ? Fields::of(f_, *by, Type::DEFINITIONAL_REPRESENTATION, 3)
-                              : Result<Fields>(std::unexpected(by.error()));
-            const auto items = d ? d->references(1, "items")
-                                 : Result<std::vector<std::uint32_t>>(std::unexpected(d.error()));
+            const auto items = items_of_pcurve(id);
             if (!items) continue;
             for (const std::uint32_t item : *items)
                 if (auto c = this->curve(item)) found.push_back(std::move(c->curve));

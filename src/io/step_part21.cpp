@@ -349,6 +349,7 @@ private:
         if (dense)
             for (std::size_t k = order.size(); k-- > 0;) place[all[order[k]].id] = order[k];
         for (Token& t : f_.tokens) {
+            f_.offset_curves += t.kind == TokenKind::keyword && t.type == Type::OFFSET_CURVE_3D;
             if (t.kind != TokenKind::reference) continue;
             if (dense) {
                 t.at = t.size <= last ? place[t.size] : kMissing;

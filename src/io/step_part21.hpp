@@ -73,6 +73,7 @@ namespace freiform::step {
     X(MANIFOLD_SOLID_BREP)                             \
     X(MAPPED_ITEM)                                     \
     X(NEXT_ASSEMBLY_USAGE_OCCURRENCE)                  \
+    X(OFFSET_CURVE_3D)                                 \
     X(OFFSET_SURFACE)                                  \
     X(OPEN_SHELL)                                      \
     X(ORIENTED_CLOSED_SHELL)                           \
@@ -165,8 +166,9 @@ struct File {
     std::vector<Instance> instances;  // of the data sections, in their order
     std::vector<Instance> header;
     std::vector<Refusal>
-        refused;         // what could not be read, up to a number of them; the last one counts the rest
-    std::string schema;  // the first one that FILE_SCHEMA names
+        refused;  // what could not be read, up to a number of them; the last one counts the rest
+    std::uint32_t offset_curves = 0;  // how many OFFSET_CURVE_3D there are
+    std::string schema;               // the first one that FILE_SCHEMA names
 
     std::string_view text_of(const Token& t) const { return bytes.substr(t.at, t.size); }
     // Of a simple instance its type, of a complex one unknown.

@@ -121,7 +121,7 @@ void ShapeReader::free_curve(std::uint32_t item) {
         if (const auto made = edge(item); !made) refuse_item(item, made.error());
         return;
     }
-    const auto c = geometry_.curve(item);
+    const auto c = curve_in_space(item, nullptr);
     if (!c) return refuse_item(item, c.error());
     const Interval on = c->range.value_or(domain(c->curve)[0]);
     if (!std::isfinite(on.length()) || !(on.lo < on.hi))
@@ -239,9 +239,20 @@ void ShapeReader::merge_vertices() {
     for (Edge& e : out_.model.edges) e.start = root(e.start), e.end = root(e.end);
 }
 
+// Curves of the file that splines stand for, each once.
+void ShapeReader::tell_approximated() {
+    auto& all = geometry_.approximated;
+    std::ranges::sort(all);
+    const auto rest = std::ranges::unique(all);
+    all.erase(rest.begin(), rest.end());
+    for (const auto& [instance, bound] : all)
+        report(-1, text(f_.label(instance), ": a spline near it stands for it"), bound, 0);
+}
+
 // Loose faces make a body; edges and vertices that only refused faces had are left out.
 Part ShapeReader::finish() {
     Model& m = out_.model;
+    tell_approximated();
     if (!same_.empty()) merge_vertices();
     cut_touched_edges(m, kTouches * tolerance_, [&](int edge, int parts, int first) {
         const std::size_t known = out_.approximated.size();

@@ -7,6 +7,7 @@
 #include <freiform/model/model.hpp>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <unordered_map>
 
@@ -44,6 +45,7 @@ public:
                 const StepReadOptions& options)
         : f_(file), styles_(styles), geometry_(file), tolerance_(tolerance), options_(options) {
         geometry_.angle = angle;
+        geometry_.tolerance = tolerance;
     }
     // An item of a representation. Items that are no shapes are passed over.
     void add(std::uint32_t item);
@@ -89,6 +91,11 @@ private:
     Result<EdgeMade> edge(std::uint32_t i);
     Result<EdgeMade> make_edge(std::uint32_t i);
     Result<EdgeMade> straight_edge(int from, int to);
+    // step_pcurve.cpp: `ends` are those of the edge, if they are known.
+    Result<BoundedCurve> curve_in_space(std::uint32_t i, const std::array<Vec<3>, 2>* ends);
+    Result<BoundedCurve> lifted_curve(std::uint32_t pcurve, const std::array<Vec<3>, 2>* ends);
+    Result<BoundedCurve> lift_one(const Chart& chart, const CurveGeometry<2>& flat, const BoundedCurve& given,
+                                  const std::array<Vec<3>, 2>* ends, std::uint32_t pcurve);
     Result<int> vertex(std::uint32_t i);
     int vertex_at(std::uint32_t point, const Vec<3>& p);
     bool is_beside(double gap, double size) const;
@@ -110,6 +117,7 @@ private:
     static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
                                                       const std::vector<Vec<3>>& on);
     void refuse_item(std::uint32_t item, Refusal why);
+    void tell_approximated();
     void report(int edge, std::string what, std::optional<double> bound, double estimate);
     std::optional<Colour> colour_of(std::uint32_t i) const;
 
@@ -124,7 +132,8 @@ private:
     std::optional<std::size_t> turned_now_;  // of the face that is being made
     std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
-    std::unordered_map<std::uint32_t, EdgeMade> edges_;
+    std::unordered_map<std::uint32_t, Result<EdgeMade>> edges_;
+    std::map<std::pair<std::uint32_t, bool>, Result<BoundedCurve>> lifts_;  // of PCURVEs, by unit of angles
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
     std::unordered_map<const Chart*, std::uint32_t> charts_;

@@ -205,6 +205,7 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
         if (!basis) return std::unexpected(basis.error());
         at = *basis;
     }
+    const std::size_t known = approximated.size();
     auto made = [&]() -> Result<SurfaceGeometry> {
         if (offset != 0 && !by)
             for (const Type t :
@@ -213,7 +214,12 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
                     if (auto simple = elementary(at, t, offset)) return simple;
         auto base = basic_surface(at);
         if (base && by) base = moved(*base, *by);
+        for (std::size_t k = known; by && k < approximated.size(); ++k) approximated[k].bound *= by->scale;
         if (!base || offset == 0) return base;
+        if (approximated.size() > known)
+            return refuse(RefusalKind::unsupported, f_.label(i),
+                          text("is the offset of a surface that rests on ",
+                               f_.label(approximated.back().instance), ", which is taken as a spline"));
         return OffsetSurface{std::make_shared<const SurfaceGeometry>(std::move(*base)), offset};
     }();
     if (made)
