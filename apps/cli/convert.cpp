@@ -7,6 +7,7 @@
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/iges.hpp>
+#include <freiform/io/mesh_file.hpp>
 #include <freiform/io/obj_freeform.hpp>
 #include <freiform/io/step.hpp>
 #include <freiform/io/svg.hpp>
@@ -111,12 +112,30 @@ Result<std::string> written(const Document& document, std::string_view format,
     return write_svg(picture->picture);
 }
 
+// A file of triangles, as another one.
+Result<void> convert_mesh(const Context& context, const ConvertArguments& options, MeshFormat format) {
+    if (options.changes() || options.orient_loops || !options.object.empty())
+        wrong_usage(
+            text(shown(options.file), " has triangles, which no option of convert changes or chooses"));
+    const auto mesh = read_mesh(options.file);
+    if (!mesh) return std::unexpected(mesh.error());
+    const std::string output = context.output.empty() ? "-" : context.output;
+    if (auto ok = write_mesh(*mesh, output, format); !ok) return ok;
+    if (!context.json || output == "-") return {};
+    json::Writer w;
+    w.begin_object().field("output", output).field("format", output_format(context));
+    w.field("triangles", mesh->triangles.size()).field("vertices", mesh->points.size()).end_object();
+    return emit({}, w.take() + "\n");
+}
+
 Result<void> run_convert(const Context& context, const ConvertArguments& options) {
     if (options.reduce && !(*options.reduce >= 0))
         wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
     static constexpr std::string_view kFormats[] = {"json", "bpt",  "svg", "step",
                                                     "stp",  "iges", "igs", "obj"};
+    if (const auto mesh = mesh_format(format); mesh && is_mesh_file(context, options.file))
+        return convert_mesh(context, options, *mesh);
     if (std::ranges::find(kFormats, format) == std::end(kFormats))
         wrong_usage(text(
             "convert writes .json, .bpt, .svg, .step, .iges and (free-form) .obj, not \"", format, "\"",
@@ -185,7 +204,9 @@ void add_convert(CommandLine& line) {
         "opposite\n"
         "edge: --axis u, v or w.");
     command.file(options->file);
-    command.output("The file to write: .json, .bpt, .svg, .step, .iges or .obj (free-form, no triangles)");
+    command.output(
+        "The file to write: .json, .bpt, .svg, .step, .iges or .obj (free-form); of files of triangles, also "
+        "STEP files that have nothing else, .stl, .ply, .glb or .obj");
     command.object(options->object);
     command.flag("--to-bezier", options->to_bezier,
                  "Cut splines into their Bezier pieces, an object for each");

@@ -42,7 +42,8 @@ Result<Input> read_input(const Context& context, const std::string& file, const 
             RefusalKind::unreadable, shown(file),
             "curves, surfaces or a model are expected, not triangles; info, draw and check read those");
     if (!document && document.error().kind == RefusalKind::no_answer && is_mesh_file(context, file))
-        document.error().message += ": info, draw and check do that";
+        document.error().message +=
+            ": info, draw and check do that, and convert writes them as .stl, .ply, .glb or .obj";
     if (!document) return std::unexpected(document.error());
     auto chosen = selected(*document, object);
     if (!chosen) return std::unexpected(chosen.error());

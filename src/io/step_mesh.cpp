@@ -4,9 +4,12 @@
 // into those; triangles, strips and fans count into the table, or into the coordinates where there is none.
 // All count from 1. Normals belong to the entries: none, one for all, or one for each.
 //
+// An item that is repositioned (a complex instance) has a placement: the frame that it, and what it contains,
+// is in.
+//
 // Cost. A face is read once, and keeps only the points that it uses; a place of it costs its triangles. How
-// often items may be looked into is limited, so that lists that repeat each other take no more than linear
-// time.
+// often lists may name items is limited, so that those that repeat each other take no more than linear time
+// and memory.
 //
 // References: ISO 10303-42:2014, 11 (tessellated shape).
 #include "mesh_builder.hpp"
@@ -50,6 +53,12 @@ struct TriangleFace {
 
 using Corners = std::vector<std::array<int, 3>>;
 
+// A face of an item, in the frame of that number.
+struct FaceUsed {
+    const TriangleFace* face;
+    std::size_t frame;
+};
+
 class TriangleReader {
 public:
     TriangleReader(const File& file, const MeshReadOptions& options)
@@ -72,50 +81,75 @@ private:
     Result<void> place(const Place& p) {
         const Node& node = structure_.nodes[p.node];
         if (const auto at = per_node_.find(p.node); at == per_node_.end()) {
-            std::vector<const TriangleFace*> all;
+            std::vector<FaceUsed> all;
             for (const std::uint32_t item : node.items)
                 if (auto ok = collect(item, all); !ok) return ok;
             per_node_.emplace(p.node, std::move(all));
         }
-        for (const TriangleFace* face : per_node_[p.node])
-            if (auto ok = put(*face, p); !ok) return ok;
+        for (const FaceUsed& u : per_node_[p.node])
+            if (auto ok = put(*u.face, p, u.frame == 0 ? p.at : p.at * frames_[u.frame]); !ok) return ok;
         return {};
     }
 
     // The faces of an item, in their order, with a stack of our own.
-    Result<void> collect(std::uint32_t item, std::vector<const TriangleFace*>& all) {
-        std::vector<std::uint32_t> todo{item};
+    Result<void> collect(std::uint32_t item, std::vector<FaceUsed>& all) {
+        std::vector<std::pair<std::uint32_t, std::size_t>> todo{{item, 0}};
         while (!todo.empty()) {
-            const std::uint32_t i = todo.back();
+            auto [i, frame] = todo.back();
             todo.pop_back();
-            if (steps_-- == 0) return refuse(RefusalKind::invalid, f_.label(item), "contains itself");
+            if (f_.is(i, Type::REPOSITIONED_TESSELLATED_ITEM)) {
+                const auto moved = frame_of(i, frame);
+                if (!moved) return std::unexpected(moved.error());
+                frame = *moved;
+            }
             if (face_fields(f_, i) != nullptr) {
+                if (f_.type(i) == Type::unknown)
+                    return refuse(RefusalKind::unsupported, f_.label(i),
+                                  "is a complex instance of triangles");
                 const auto made = face(i);
                 if (!made) return std::unexpected(made.error());
-                all.push_back(*made);
+                all.push_back({*made, frame});
                 continue;
             }
-            bool list = false;
+            std::uint32_t list = kMissing;
             for (const Type t :
                  {Type::TESSELLATED_SOLID, Type::TESSELLATED_SHELL, Type::TESSELLATED_GEOMETRIC_SET})
-                list = list || f_.type(i) == t;
-            if (list) {
-                const auto ids = Fields(f_, i, f_.instances[i].first + 1).references(1, "items");
+                if (list == kMissing) list = f_.part(i, t);
+            if (list != kMissing) {  // a part of a complex instance has no name
+                const auto ids = Fields(f_, i, list).references(f_.type(i) == Type::unknown ? 0 : 1, "items");
                 if (!ids) return std::unexpected(ids.error());
-                todo.insert(todo.end(), ids->rbegin(), ids->rend());
+                if (ids->size() > steps_)
+                    return refuse(RefusalKind::invalid, f_.label(item), "contains itself");
+                steps_ -= ids->size();
+                for (auto id = ids->rbegin(); id != ids->rend(); ++id) todo.push_back({*id, frame});
             } else if (is_tessellated(f_, i) && !has_no_area(i)) {
                 return refuse(RefusalKind::unsupported, f_.label(i),
-                              "is of triangles of a type that is not read");
+                              f_.type(i) == Type::CUBIC_BEZIER_TRIANGULATED_FACE
+                                  ? "is of curved triangles, which are not read"
+                                  : "is of triangles of a type that is not read");
             }
         }
         return {};
     }
 
+    Result<std::size_t> frame_of(std::uint32_t i, std::size_t outer) {
+        const Fields f(f_, i, f_.part(i, Type::REPOSITIONED_TESSELLATED_ITEM));
+        const auto at = f.reference(f.size() - 1, "location");
+        if (!at) return std::unexpected(at.error());
+        const auto p = GeometryReader(f_).placement(*at);
+        if (!p) return std::unexpected(p.error());
+        frames_.push_back(frames_[outer] * motion_to(*p));
+        return frames_.size() - 1;
+    }
+
     // Edges, curves and points.
     bool has_no_area(std::uint32_t i) const {
-        const std::string_view name = f_.text_of(f_.tokens[f_.instances[i].first]);
-        for (const std::string_view word : {"EDGE", "CURVE", "POINT", "VERTEX", "WIRE"})
-            if (name.starts_with("TESSELLATED_") && name.find(word) != name.npos) return true;
+        const Instance& x = f_.instances[i];
+        for (std::uint32_t k = x.first; k + 1 < x.first + x.tokens; k += 2 + f_.tokens[k + 1].size) {
+            const std::string_view name = f_.text_of(f_.tokens[k]);
+            for (const std::string_view word : {"EDGE", "CURVE", "POINT", "VERTEX", "WIRE"})
+                if (name.starts_with("TESSELLATED_") && name.find(word) != name.npos) return true;
+        }
         return false;
     }
 
@@ -247,7 +281,7 @@ private:
         return face;
     }
 
-    Result<void> put(const TriangleFace& face, const Place& p) {
+    Result<void> put(const TriangleFace& face, const Place& p, const Motion& by) {
         if (face.triangles.empty()) return {};
         any_ = true;
         if (!builder_.room_for(face.triangles.size()))
@@ -258,17 +292,17 @@ private:
                                                                         : p.colour);
         std::vector<int> vertices;
         for (std::size_t k = 0; k < face.points.size(); ++k) {
-            const Vec<3> at = p.at.point(face.points[k]);
+            const Vec<3> at = by.point(face.points[k]);
             if (!is_finite(at))
                 return refuse(RefusalKind::nonfinite, f_.label(face.instance),
                               "has a point beyond the largest double");
-            const Vec<3> normal = face.normals.empty() ? Vec<3>{} : p.at.turned(face.normals[k]);
+            const Vec<3> normal = face.normals.empty() ? Vec<3>{} : by.turned(face.normals[k]);
             vertices.push_back(builder_.vertex(builder_.point(at), normal));
         }
         for (const auto& t : face.triangles) {
             std::array<int, 3> at{};
             for (std::size_t k = 0; k < 3; ++k)
-                at[k] = vertices[std::size_t(t[p.at.mirrored && k > 0 ? 3 - k : k])];
+                at[k] = vertices[std::size_t(t[by.mirrored && k > 0 ? 3 - k : k])];
             if (auto ok = builder_.triangle(f_.label(face.instance), at[0], at[1], at[2]); !ok) return ok;
         }
         return {};
@@ -281,7 +315,8 @@ private:
     bool any_ = false;
     std::unordered_map<std::uint32_t, std::vector<Vec<3>>> coordinates_;
     std::unordered_map<std::uint32_t, std::unique_ptr<TriangleFace>> faces_;
-    std::unordered_map<std::uint32_t, std::vector<const TriangleFace*>> per_node_;
+    std::unordered_map<std::uint32_t, std::vector<FaceUsed>> per_node_;
+    std::vector<Motion> frames_{Motion{}};  // the first one: none
 };
 
 }  // namespace

@@ -45,6 +45,7 @@ namespace freiform::step {
     X(CONTEXT_DEPENDENT_SHAPE_REPRESENTATION)          \
     X(CONVERSION_BASED_UNIT)                           \
     X(COORDINATES_LIST)                                \
+    X(CUBIC_BEZIER_TRIANGULATED_FACE)                  \
     X(CURVE_BOUNDED_SURFACE)                           \
     X(CURVE_REPLICA)                                   \
     X(CYLINDRICAL_SURFACE)                             \
@@ -97,6 +98,7 @@ namespace freiform::step {
     X(RATIONAL_B_SPLINE_CURVE)                         \
     X(RATIONAL_B_SPLINE_SURFACE)                       \
     X(RECTANGULAR_TRIMMED_SURFACE)                     \
+    X(REPOSITIONED_TESSELLATED_ITEM)                   \
     X(REPRESENTATION_RELATIONSHIP)                     \
     X(REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION) \
     X(SEAM_CURVE)                                      \

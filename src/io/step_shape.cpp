@@ -144,17 +144,20 @@ void ShapeReader::free_curve(std::uint32_t item) {
 // The curves and surfaces of sets, wires and edge models, with a stack of our own.
 void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
     std::vector<std::uint32_t> todo{first};
-    std::size_t budget = f_.tokens.size();
+    std::size_t budget = 2 * f_.tokens.size();
     while (!todo.empty()) {
         const std::uint32_t i = todo.back();
         todo.pop_back();
-        if (budget-- == 0) return refuse_item(item, {RefusalKind::invalid, "", "contains itself"});
+        if (budget == 0) return refuse_item(item, {RefusalKind::invalid, "", "contains itself"});
+        --budget;
+        // What is put on the stack is paid for there: lists that name themselves take no more memory.
         const auto descend = [&](int field) {
             const Fields f(f_, i, f_.instances[i].first + 1);
-            if (const auto ids = f.references(field, "items"))
-                todo.insert(todo.end(), ids->rbegin(), ids->rend());
-            else
-                refuse_item(i, ids.error());
+            const auto ids = f.references(field, "items");
+            if (!ids) return refuse_item(i, ids.error());
+            if (ids->size() > budget) return void(budget = 0);
+            budget -= ids->size();
+            todo.insert(todo.end(), ids->rbegin(), ids->rend());
         };
         const auto is_any = [&](std::initializer_list<Type> types) {
             return std::any_of(types.begin(), types.end(), [&](Type t) { return f_.is(i, t); });

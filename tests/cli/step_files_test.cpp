@@ -72,6 +72,17 @@ TEST_F(CliStep, a_file_of_triangles_alone_is_a_mesh) {
     const Ran other = run({"tessellate", mesh, "--tolerance", "0.1", "-o", path("m.stl")});
     EXPECT_EQ(other.code, 1);
     EXPECT_NE(other.err.find("info, draw and check"), std::string::npos) << other.err;
+    for (const std::string name : {"c.stl", "c.ply", "c.glb", "c.obj"}) {
+        const Ran made = run({"convert", mesh, "-o", name, "--json"});
+        ASSERT_EQ(made.code, 0) << made.err;
+        EXPECT_EQ(Json::parse(made.out)["triangles"], 1);
+        EXPECT_EQ(Json::parse(run({"info", name, "--json"}).out)["triangles"], 1);
+    }
+    EXPECT_EQ(run({"convert", "c.stl", "-o", "again.ply"}).code, 0);
+    EXPECT_EQ(run({"convert", mesh, "--elevate", "1", "-o", "c.stl"}).code, 2);
+    const Ran no_mesh = run({"convert", mesh, "-o", "c.json"});
+    EXPECT_EQ(no_mesh.code, 1);
+    EXPECT_NE(no_mesh.err.find("convert writes them as .stl"), std::string::npos) << no_mesh.err;
     const std::string bad = file("bad.step", flat_file("#8=TESSELLATED_SHAPE_REPRESENTATION('',(#11),#1);\n"
                                                        "#11=TRIANGULATED_FACE('f',#20,1,(),$,(),((1,2,3)));\n"
                                                        "#20=COORDINATES_LIST('',1,((0.,0.,0.)));\n"));

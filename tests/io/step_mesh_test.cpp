@@ -8,6 +8,7 @@
 #include <support/corpus.hpp>
 #include <support/refusal.hpp>
 #include <support/step_polygons.hpp>
+#include <sys/resource.h>
 
 namespace freiform::test {
 namespace {
@@ -122,6 +123,32 @@ TEST(StepMesh, mapped_items_put_triangles_where_they_are_and_mirrors_keep_them_o
     EXPECT_EQ(least, -2);
 }
 
+TEST(StepMesh, repositioned_items_are_in_the_frame_that_they_name_and_frames_nest) {
+    // Up by 5 in a frame whose z points along x: that is along x.
+    const TriangleMesh m = must_mesh(triangles_file(
+        "#10", text("#10=(GEOMETRIC_REPRESENTATION_ITEM()REPOSITIONED_TESSELLATED_ITEM(#50)"
+                    "REPRESENTATION_ITEM('')TESSELLATED_GEOMETRIC_SET((#12,#13))TESSELLATED_ITEM());\n"
+                    "#12=(GEOMETRIC_REPRESENTATION_ITEM()REPOSITIONED_TESSELLATED_ITEM(#60)"
+                    "REPRESENTATION_ITEM('')TESSELLATED_GEOMETRIC_SET((#13))TESSELLATED_ITEM());\n"
+                    "#50=AXIS2_PLACEMENT_3D('',#6,#51,#52);\n#51=DIRECTION('',(1.,0.,0.));\n"
+                    "#52=DIRECTION('',(0.,1.,0.));\n#60=AXIS2_PLACEMENT_3D('',#61,$,$);\n"
+                    "#61=CARTESIAN_POINT('',(0.,0.,5.));\n#13=TRIANGULATED_FACE('',#20,4,((0.,0.,1.)),$,(),",
+                    kTetrahedron, ");\n")));
+    ASSERT_EQ(m.triangles.size(), 8u);
+    EXPECT_NEAR(volume_of(m), 2.0 / 6, 1e-14);
+    expect_closed(m);
+    Box<3> box;
+    for (const Vec<3>& p : m.points) box.add(p);
+    EXPECT_EQ(box.lo, (Vec<3>{{0, 0, 0}}));
+    EXPECT_EQ(box.hi, (Vec<3>{{6, 1, 1}}));
+    for (const MeshVertex& v : m.vertices) EXPECT_EQ(v.normal, (Vec<3>{{1, 0, 0}}));
+    expect_refusal(
+        read_step_mesh(triangles_file("#10",
+                                      "#10=(REPOSITIONED_TESSELLATED_ITEM(#20)REPRESENTATION_ITEM('')"
+                                      "TESSELLATED_GEOMETRIC_SET(())TESSELLATED_ITEM());\n")),
+        RefusalKind::unreadable, "#20 COORDINATES_LIST", "not of the type");
+}
+
 TEST(StepMesh, where_there_are_exact_faces_the_triangles_are_counted_and_not_used) {
     const std::string file =
         polygon_file({{0, 0}, {3, 0}, {3, 2}, {0, 2}},
@@ -170,10 +197,29 @@ TEST(StepMesh, what_contradicts_itself_is_refused_by_the_number_of_the_instance)
     refused("#11=TRIANGULATED_FACE('',#99,4,(),$,(),((1,2,3)));\n", RefusalKind::unreadable,
             "#11 TRIANGULATED_FACE", "#99, which is not in the file");
     refused("#11=CUBIC_BEZIER_TRIANGULATED_FACE('',#20,4,(),$,((1,2,3,4,1,2,3,4,1,2)));\n",
-            RefusalKind::unsupported, "#11 CUBIC_BEZIER_TRIANGULATED_FACE", "not read");
+            RefusalKind::unsupported, "#11 CUBIC_BEZIER_TRIANGULATED_FACE", "curved triangles");
     refused("#11=TESSELLATED_SHELL('',(#12),$);\n#12=TESSELLATED_SHELL('',(#11),$);\n", kBad,
             "#11 TESSELLATED_SHELL", "contains itself");
     refused("#11=TESSELLATED_CURVE_SET('',#20,((1,2,3)));\n", RefusalKind::no_answer, "file", "no triangles");
+}
+
+long peak_kilobytes() {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    return used.ru_maxrss;
+}
+
+TEST(StepMesh, sets_that_name_themselves_many_times_take_little_memory) {
+    std::string many = "#10";
+    for (int i = 0; i < 5000; ++i) many += ",#10";
+    const long before = peak_kilobytes();
+    expect_refusal(
+        read_step_mesh(triangles_file("#10", text("#10=TESSELLATED_GEOMETRIC_SET('',(", many, "));\n"))),
+        RefusalKind::invalid, "#10 TESSELLATED_GEOMETRIC_SET", "contains itself");
+    expect_refusal(read_step(flat_file(
+                       text("#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=GEOMETRIC_SET('',(", many, "));\n"))),
+                   RefusalKind::invalid, "#10 GEOMETRIC_SET", "contains itself");
+    EXPECT_LT(peak_kilobytes() - before, 32'000);
 }
 
 TEST(StepMesh, limits_hold) {
