@@ -32,6 +32,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std
             return *at;
         out_.model.vertices.push_back({p, tolerance_});
         corners.push_back(int(out_.model.vertices.size()) - 1);
+        vertex_of_.emplace(corners.back(), curve);
         return corners.back();
     };
     Edge e;

@@ -32,7 +32,10 @@ bool length_at_most(const CurveGeometry<3>& c, Interval on, double most) {
 
 int ShapeReader::vertex_at(std::uint32_t point, const Vec<3>& p) {
     const auto [at, fresh] = points_.emplace(point, int(out_.model.vertices.size()));
-    if (fresh) out_.model.vertices.push_back({p, 0});
+    if (fresh) {
+        vertex_of_.emplace(at->second, point);
+        out_.model.vertices.push_back({p, 0});
+    }
     return at->second;
 }
 
@@ -47,6 +50,7 @@ Result<int> ShapeReader::vertex(std::uint32_t i) {
     const int v = int(out_.model.vertices.size());
     out_.model.vertices.push_back({*p, 0});
     vertices_.emplace(i, v);
+    vertex_of_.emplace(v, i);
     return v;
 }
 
@@ -174,8 +178,11 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
         }
     }
     if (end[0] != end[1] && length_at_most(c->curve, {lo, hi}, kTiny * tolerance_)) {
+        // That no part of a curved one is further off is seen at some points only.
+        const bool straight = std::holds_alternative<Line<3>>(c->curve);
         report(-1, text(f_.label(i), " is shorter than a thousandth of the tolerance; its vertices are one"),
-               0.0, 0);
+               straight ? std::optional<double>(norm(a - b) * (1 + 8 * kUnitRoundoff)) : std::nullopt,
+               kTiny * tolerance_);
         // What was told of it is told of no edge.
         for (int& e : out_.approximated) e = e < int(out_.model.edges.size()) ? e : -1;
         join_vertices(end[0], end[1]);

@@ -3,6 +3,8 @@
 
 #include "step_tangles.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 
 namespace freiform::step {
@@ -11,6 +13,43 @@ namespace {
 
 // Of the tolerance: a vertex nearer to an edge than this is on it.
 constexpr double kTouches = 1e-3;
+
+// What an item is that would be a shape if it were read; empty: no shape.
+std::string_view unread_shape(const File& f, std::uint32_t item) {
+    struct Kind {
+        std::string_view part, words;
+    };
+    constexpr std::string_view kSwept = "a swept solid", kCsg = "a CSG solid or a part of one",
+                               kVolume = "a volume";
+    static constexpr Kind kKinds[] = {{"AREA_SOLID", kSwept},
+                                      {"FACE_SOLID", kSwept},
+                                      {"SWEPT_", kSwept},
+                                      {"SECTIONED_", kSwept},
+                                      {"CSG", kCsg},
+                                      {"BOOLEAN", kCsg},
+                                      {"BLOCK", kCsg},
+                                      {"SPHERE", kCsg},
+                                      {"TORUS", kCsg},
+                                      {"RIGHT_", kCsg},
+                                      {"ELLIPSOID", kCsg},
+                                      {"FACETED_PRIMITIVE", kCsg},
+                                      {"ECCENTRIC_CONE", kCsg},
+                                      {"CYCLIDE_SEGMENT", kCsg},
+                                      {"TETRAHEDRON", kCsg},
+                                      {"HEXAHEDRON", kCsg},
+                                      {"PYRAMID", kCsg},
+                                      {"HALF_SPACE", kCsg},
+                                      {"_VOLUME", kVolume},
+                                      {"SOLID", "a solid of another type"},
+                                      {"BREP", "a solid of another type"},
+                                      {"SHELL", "a shell of another type"},
+                                      {"SURFACE", "a surface that no face bounds"},
+                                      {"FACE", "a face of another type"}};
+    const std::string names = f.label(item);
+    for (const Kind& k : kKinds)
+        if (names.find(k.part) != names.npos) return k.words;
+    return {};
+}
 
 }  // namespace
 
@@ -214,13 +253,9 @@ void ShapeReader::add(std::uint32_t item) {
     } else if (is_tessellated(f_, item)) {
         ++out_.tessellated;
     } else {
-        const std::string_view name = f_.text_of(f_.tokens[f_.instances[item].first]);
-        for (const std::string_view shape : {"SOLID", "BREP", "SHELL", "CSG", "BLOCK", "RIGHT_", "BOOLEAN",
-                                             "SPHERE", "TORUS", "HALF_SPACE", "FACE"})
-            if (name.find(shape) != std::string_view::npos) {
-                refuse_item(item, {RefusalKind::unsupported, "", "is an item of a type that is not read"});
-                return;
-            }
+        const std::string_view kind = unread_shape(f_, item);
+        if (!kind.empty())
+            refuse_item(item, {RefusalKind::unsupported, "", text("is ", kind, ", which is not read")});
     }
 }
 
@@ -238,6 +273,20 @@ void ShapeReader::merge_vertices() {
         auto& v = out_.model.vertices;
         v[std::size_t(x)].tolerance = std::max({v[std::size_t(x)].tolerance, v[std::size_t(y)].tolerance,
                                                 norm(v[std::size_t(x)].point - v[std::size_t(y)].point)});
+    }
+    const auto label = [&](int v) {
+        const auto of = vertex_of_.find(v);
+        return of == vertex_of_.end() ? std::string("an end") : f_.label(of->second);
+    };
+    for (int i = 0; i < int(to.size()); ++i) {
+        const int r = root(i);
+        const auto& v = out_.model.vertices;
+        const double apart = norm(v[std::size_t(i)].point - v[std::size_t(r)].point);
+        if (r != i && apart > 0)
+            report(-1,
+                   text(label(i), " is taken for ", label(r), ", ", apart,
+                        " from it: loops say that they are one"),
+                   apart * (1 + 8 * kUnitRoundoff), 0);
     }
     for (Edge& e : out_.model.edges) e.start = root(e.start), e.end = root(e.end);
 }

@@ -132,6 +132,7 @@ private:
     std::optional<std::size_t> turned_now_;  // of the face that is being made
     std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
+    std::unordered_map<int, std::uint32_t> vertex_of_;  // what the file calls a vertex
     std::unordered_map<std::uint32_t, Result<EdgeMade>> edges_;
     std::map<std::pair<std::uint32_t, bool>, Result<BoundedCurve>> lifts_;  // of PCURVEs, by unit of angles
     std::unordered_map<std::uint64_t, EdgeMade> straight_;

@@ -1,4 +1,5 @@
-// Curves of STEP files that have no counterpart, or are given in the parameters of a surface alone.
+// Curves of STEP files that have no counterpart, or are given in the parameters of a surface alone; shapes
+// that are not read.
 #include <freiform/io/step_read.hpp>
 #include <freiform/model/tessellate.hpp>
 
@@ -193,6 +194,34 @@ TEST(StepCurves, curves_in_parameters_that_miss_their_vertices_are_refused_with_
     EXPECT_EQ(m.refused[0].where, "#12 ADVANCED_FACE");
     EXPECT_NE(m.refused[0].message.find("#302 PCURVE: passes 0.7"), std::string::npos)
         << m.refused[0].message;
+}
+
+TEST(StepShapes, solids_of_other_kinds_are_refused_with_their_number_and_kind) {
+    const auto refused = [](std::string_view item, std::string_view kind) {
+        const std::string_view name = item.substr(0, item.find('('));
+        const auto m = read_step(flat_file(text("#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=", item, ";\n")));
+        expect_refusal(m, RefusalKind::unsupported, text("#10 ", name), kind);
+        EXPECT_NE(m.error().message.find("which is not read"), std::string::npos);
+    };
+    for (const std::string_view swept :
+         {"EXTRUDED_AREA_SOLID('',#7,#6,3.)", "REVOLVED_AREA_SOLID('',#7,#5,3.)",
+          "SWEPT_DISK_SOLID('',#6,1.,$,0.,1.)", "EXTRUDED_FACE_SOLID('',#7,#6,3.)",
+          "SURFACE_CURVE_SWEPT_AREA_SOLID('',#7,#6,0.,1.,#7)"})
+        refused(swept, "a swept solid");
+    for (const std::string_view csg :
+         {"BLOCK('',#5,1.,1.,1.)", "SPHERE('',1.,#6)", "TORUS('',#5,2.,1.)", "CSG_SOLID('',#11)",
+          "RIGHT_CIRCULAR_CYLINDER('',#5,1.,1.)", "RIGHT_CIRCULAR_CONE('',#5,1.,1.,0.2)",
+          "RIGHT_ANGULAR_WEDGE('',#5,1.,1.,1.,0.5)", "BOOLEAN_RESULT('',.UNION.,#5,#5)",
+          "ELLIPSOID('',#5,1.,2.,3.)", "HALF_SPACE_SOLID('',#7,.T.)", "TETRAHEDRON('',(#6))"})
+        refused(csg, "a CSG solid");
+    refused("TRIMMED_VOLUME('',#5,0.,1.,0.,1.,0.,1.,.T.,.T.,.T.)", "a volume");
+    // Beside shapes that are read, they are told.
+    const auto beside = read_step(polygon_file(
+        {{0, 0}, {3, 0}, {3, 2}}, "#60=SHAPE_REPRESENTATION('',(#61),#1);\n#61=BLOCK('',#5,1.,1.,1.);\n"));
+    ASSERT_TRUE(beside) << beside.error().message;
+    EXPECT_EQ(beside->faces.size(), 1u);
+    ASSERT_EQ(beside->refused.size(), 1u);
+    EXPECT_EQ(beside->refused[0].where, "#61 BLOCK");
 }
 
 }  // namespace

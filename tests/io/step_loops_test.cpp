@@ -36,11 +36,40 @@ TEST(StepLoops, edges_that_are_nearly_nothing_are_left_out_and_told) {
     ASSERT_TRUE(m.refused.empty()) << m.refused[0].message;
     EXPECT_EQ(summary(m).edges, 4);
     EXPECT_EQ(told(m, "#403 EDGE_CURVE is shorter than a thousandth"), 1);
+    EXPECT_EQ(told(m, "#204 VERTEX_POINT is taken for #203 VERTEX_POINT, 2e-08 from it"), 1);
+    for (const Approximation& a : m.approximations) {
+        ASSERT_TRUE(a.bound) << a.what;
+        EXPECT_GE(*a.bound, 2e-8);
+        EXPECT_LT(*a.bound, 2.001e-8);
+    }
     EXPECT_NEAR(area_of(m), 6, 1e-6);
     // One of the size of the tolerance is there.
     const Model wide = must(read_step(polygon_file({{0, 0}, {3, 0}, {3, 2}, {1e-4, 2}, {0, 1.9999}})));
     EXPECT_EQ(summary(wide).edges, 5);
     EXPECT_EQ(told(wide, "shorter"), 0);
+}
+
+TEST(StepLoops, vertices_that_loops_take_for_one_are_told_with_their_numbers_and_how_far_they_are_apart) {
+    const auto apart = [](std::string_view x) {
+        std::string s =
+            polygon_file({{0, 0}, {3, 0}, {3, 2}, {0, 2}},
+                         text("#950=VERTEX_POINT('',#951);\n#951=CARTESIAN_POINT('',(", x, ",0.,0.));\n"));
+        const std::string_view edge = "EDGE_CURVE('',#200,#201,";
+        return must(read_step(s.replace(s.find(edge), edge.size(), "EDGE_CURVE('',#200,#950,")));
+    };
+    const Model m = apart("3.00001");
+    EXPECT_EQ(m.faces.size(), 1u);
+    EXPECT_EQ(summary(m).vertices, 4);
+    ASSERT_EQ(m.approximations.size(), 1u);
+    const std::string& what = m.approximations[0].what;
+    EXPECT_TRUE(what.starts_with("#201 VERTEX_POINT is taken for #950 VERTEX_POINT, 1.00") ||
+                what.starts_with("#950 VERTEX_POINT is taken for #201 VERTEX_POINT, 1.00"))
+        << what;
+    ASSERT_TRUE(m.approximations[0].bound);
+    EXPECT_GE(*m.approximations[0].bound, 3.00001 - 3);
+    EXPECT_LT(*m.approximations[0].bound, 1.1e-5);
+    // Two names of one place are nothing to tell.
+    EXPECT_TRUE(apart("3.").approximations.empty());
 }
 
 TEST(StepLoops, segments_of_a_boundary_that_run_the_wrong_way_are_turned_and_told) {
