@@ -24,6 +24,9 @@ constexpr double kMargin = 1.5;
 // Edges that are off by more than this, of what their parameter curves are asked for, lie beside the surface.
 // Those that follow them loosely are off by at most so many times as much (step_trace.cpp).
 constexpr double kBeside = 10, kPlain = 2.2;
+// Of the tolerance: how far polygons may be from edges that run into themselves, one try after the other.
+constexpr double kLoose[] = {1, 4, 16};
+constexpr int kLoosest = 1 + int(std::size(kLoose));
 
 }  // namespace
 
@@ -47,7 +50,7 @@ double ShapeReader::accuracy_for(double size) const {
 bool ShapeReader::is_beside(double gap, double size) const { return gap > kBeside * accuracy_for(size); }
 
 Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
-                                bool loosely) {
+                                int loosely) {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
     const double rough = std::max(tolerance_, kRough * size);
     std::vector<CurveGeometry<3>> images;
@@ -55,7 +58,11 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
         images = geometry_.images(made.curve, on->second);
     auto t = trace(chart, *e.curve, e.range, accuracy_for(size), rough, images);
     if (!t) return std::unexpected(t.error());
-    if (loosely && is_beside(t->gap, size))
+    if (loosely > 1 && is_beside(t->gap, size))
+        if (auto polygon = coarse_polygon(chart, *e.curve, e.range, t->curve, t->gap,
+                                          std::max(t->gap, kLoose[loosely - 2] * tolerance_)))
+            t = std::move(*polygon);
+    if (loosely == 1 && is_beside(t->gap, size))
         if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough, images);
             plain && plain->gap <= kPlain * t->gap)
             t = std::move(plain);
@@ -69,7 +76,7 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
 }
 
 Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& chart, double size,
-                                    bool loosely, LoopBuilder& loops) {
+                                    int loosely, LoopBuilder& loops) {
     const bool outer = f_.is(i, Type::FACE_OUTER_BOUND);
     const auto f = Fields::of(f_, i, outer ? Type::FACE_OUTER_BOUND : Type::FACE_BOUND, 3);
     if (!f) return std::unexpected(f.error());
@@ -145,7 +152,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
     const bool beside = std::ranges::any_of(*made, [&](const auto& uses) {
         return std::ranges::any_of(uses, [&](const Use& u) { return is_beside(u.gap, size); });
     });
-    if (tangled != nullptr && beside && is_tangled(*made, m)) {
+    if (tangled != nullptr && beside && is_tangled(*made, m, chart)) {
         *tangled = true;
         m.edges.resize(edges), m.vertices.resize(vertices);  // without its seams
         return refuse(RefusalKind::invalid, f_.label(i), "has a boundary that runs into itself");
@@ -274,11 +281,12 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
     std::vector<Vec<3>> on_edges;
     const auto size = size_of(*f, on_edges);
     if (!size) return std::unexpected(size.error());
-    const std::size_t repairs = out_.model.repairs.size();
-    const auto once = [&](const Chart& chart, bool loosely, bool* tangled) -> Result<Face> {
+    const std::size_t repairs = out_.model.repairs.size(), told = out_.approximated.size();
+    const auto once = [&](const Chart& chart, int loosely, bool* tangled) -> Result<Face> {
         LoopBuilder loops(chart, out_.model, tolerance_);
         loops.wrong_way = options_.repair ? LoopBuilder::WrongWay::turned : LoopBuilder::WrongWay::told;
-        out_.model.repairs.resize(repairs);  // without those of another attempt
+        out_.model.repairs.resize(repairs);  // without what another attempt said
+        out_.model.approximations.resize(told), out_.approximated.resize(told);
         turned_now_.reset();
         for (const std::uint32_t b : *bounds)
             if (auto ok = add_bound(b, same, chart, *size, loosely, loops); !ok)
@@ -290,11 +298,10 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
     };
     const auto attempt = [&](const Chart& chart) -> Result<Face> {
         bool tangled = false;
-        auto made = once(chart, false, &tangled);
+        auto made = once(chart, 0, &tangled);
         if (!tangled) return made;
-        tangled = false;
-        made = once(chart, true, &tangled);
-        if (!made) return once(chart, false, nullptr);
+        for (int loosely = 1; loosely <= kLoosest && !made; ++loosely) made = once(chart, loosely, &tangled);
+        if (!made) return once(chart, 0, nullptr);
         report(-1,
                text(f_.label(i),
                     ": its boundary runs into itself where edges lie beside the surface; its "

@@ -1,6 +1,8 @@
 // A polygon of nearest points as parameter curve: the last resort at poles and folds. Each point is looked
 // for from the one before it, so that the polygon is continuous where parameters are periodic. At a pole,
-// where all values of one parameter are the same point, it keeps the value that it came with.
+// where all values of one parameter are the same point, it keeps the value that it came with. And a polygon
+// with few corners, for edges that run into themselves within the distance by which they lie beside the
+// surface.
 #include "step_trace.hpp"
 
 #include <algorithm>
@@ -11,8 +13,9 @@ namespace freiform::step {
 namespace {
 
 constexpr int kFeet = 64;
-constexpr double kAtPole = 1e-7;     // of the way that an edge goes from a pole
-constexpr double kAlongPole = 1e-3;  // of its parameters: less is an edge along the pole
+constexpr int kPlacesOfPolygon = 48;  // where corners may be
+constexpr double kAtPole = 1e-7;      // of the way that an edge goes from a pole
+constexpr double kAlongPole = 1e-3;   // of its parameters: less is an edge along the pole
 
 void keep_at_pole(std::vector<Vec<2>>& net, const Pole& pole) {
     const int free = 1 - pole.axis;
@@ -65,6 +68,53 @@ std::optional<Trace> polygon_of_feet(const Chart& chart, const CurveGeometry<3>&
         if (!(gap <= rough)) return std::nullopt;
         out.gap = std::max(out.gap, gap);
     }
+    return out;
+}
+
+std::optional<Trace> coarse_polygon(const Chart& chart, const CurveGeometry<3>& c, Interval on,
+                                    const CurveGeometry<2>& fine, double beside, double accuracy) {
+    constexpr int n = kPlacesOfPolygon;
+    std::array<double, n + 1> t{};
+    std::array<Vec<2>, n + 1> uv{};
+    std::array<Vec<3>, n + 1> at{};
+    for (int i = 0; i <= n; ++i) {
+        const auto k = std::size_t(i);
+        t[k] = i == n ? on.hi : on.lo + on.length() * i / n;
+        uv[k] = chart.inside(jet<0>(fine, t[k]).value());
+        at[k] = jet<0>(c, t[k]).value();
+    }
+    double gap = 0;  // of the last polygon that was looked at
+    const auto follows = [&](std::size_t i, std::size_t j) {
+        gap = 0;
+        for (std::size_t k = i; k < j && gap <= accuracy; ++k)
+            for (const double y : {0.0, 0.5}) {
+                const double s = t[k] + y * (t[k + 1] - t[k]), x = (s - t[i]) / (t[j] - t[i]);
+                const Vec<3> p = y == 0 ? at[k] : jet<0>(c, s).value();
+                gap = std::max(gap, norm(chart.point(uv[i] + x * (uv[j] - uv[i])) - p));
+            }
+        return gap <= accuracy;
+    };
+    const auto may_be_corner = [&](std::size_t k) {
+        const Vec<3> p = chart.point(uv[k]);
+        return norm(p - chart.point(uv[0])) > beside && norm(p - chart.point(uv[n])) > beside;
+    };
+    std::vector<double> knots{on.lo, on.lo};
+    std::vector<Vec<2>> net{uv[0]};
+    Trace out;
+    for (std::size_t i = 0; i < n;) {
+        std::size_t j = n;
+        while (j > i && !((j == n || may_be_corner(j)) && follows(i, j))) --j;
+        if (j == i || uv[i] == uv[j]) return std::nullopt;
+        out.gap = std::max(out.gap, gap);
+        knots.push_back(t[j]), net.push_back(uv[j]);
+        i = j;
+    }
+    knots.push_back(on.hi);
+    auto basis = BSplineBasis::make(1, std::move(knots));
+    if (!basis) return std::nullopt;
+    out.fitted = true;
+    const int size = int(net.size());
+    out.curve = Curve<Vec<2>>::trusted({*std::move(basis)}, Net<1, Vec<2>>({size}, std::move(net)));
     return out;
 }
 

@@ -34,7 +34,7 @@ double ShapeReader::repair_limit(double size) const {
 }
 
 Result<void> ShapeReader::close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart,
-                                     double size, bool loosely) {
+                                     double size, int loosely) {
     std::vector<Use> closed;
     const double limit = repair_limit(size);
     for (std::size_t k = 0; k < uses.size(); ++k) {

@@ -83,7 +83,7 @@ private:
     }
     void merge_vertices();
     Result<EdgeMade> segment_edge(std::uint32_t curve, std::vector<int>& corners);
-    Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size, bool loosely,
+    Result<void> add_bound(std::uint32_t i, bool forward, const Chart& chart, double size, int loosely,
                            LoopBuilder& loops);
     Result<Face> close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i, double size,
                             bool* tangled = nullptr);
@@ -99,12 +99,12 @@ private:
     Result<int> vertex(std::uint32_t i);
     int vertex_at(std::uint32_t point, const Vec<3>& p);
     bool is_beside(double gap, double size) const;
-    // `loosely`: an edge beside the surface is followed no closer than it lies beside it.
-    Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
-                       bool loosely = false);
+    // `loosely`: 1, an edge beside the surface is followed no closer than it lies beside it; more, by
+    // polygons within more and more times the tolerance.
+    Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size, int loosely = 0);
     // step_repair.cpp: what contradicts itself beyond the tolerance, refused or made right.
     Result<void> close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart, double size,
-                            bool loosely);
+                            int loosely);
     Result<void> accept_gap(std::uint32_t edge, const Use& use, const Chart& chart, double size);
     void tell_turn(std::uint32_t face, const LoopBuilder& loops);
     void settle_turned(const Shell& shell);

@@ -31,6 +31,12 @@ std::optional<Trace> trace_on_plane(const SurfaceGeometry& surface, const CurveG
 std::optional<Trace> polygon_of_feet(const Chart& chart, const CurveGeometry<3>& c, Interval on,
                                      double rough);
 
+// As few corners on a parameter curve `fine` of the edge, moved into the surface where that ends, as keep the
+// polygon through them within `accuracy` of the edge, if some do. What the edge does within `beside` of its
+// ends, such as run to and fro past a corner of the surface, is left out.
+std::optional<Trace> coarse_polygon(const Chart& chart, const CurveGeometry<3>& c, Interval on,
+                                    const CurveGeometry<2>& fine, double beside, double accuracy);
+
 // The foot from the nearest point of the surface; of those that are about as near, as where it folds, the one
 // by an image, which may have a parameter of its own. `t`: that of the edge, over `on`.
 Foot foot_by_images(const Chart& chart, const Vec<3>& p, const Vec<3>& motion, double t, Interval on,

@@ -91,6 +91,43 @@ TEST(StepTangles,
     EXPECT_NEAR(meshed_area(on, 1e-3), 0.45, 1e-12);
 }
 
+// The unit square as a spline; its side from (0, 0) to (1, 0) is a curve that first runs past the corner and
+// back, by `past` at its beginning.
+std::string past_a_corner(double past) {
+    const auto edge = [](int i, int from, int to, int curve) {
+        return text("#", 100 + i, "=ORIENTED_EDGE('',*,*,#", 110 + i, ",.T.);\n#", 110 + i,
+                    "=EDGE_CURVE('',#", 120 + from, ",#", 120 + to, ",#", curve, ",.T.);\n#", 120 + i,
+                    "=VERTEX_POINT('',#", 21 + i, ");\n#", 130 + i, "=POLYLINE('',(#", 21 + from, ",#",
+                    21 + to, "));\n");
+    };
+    return tangle_file(
+        1e-4, text("#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#20,.T.);\n",
+                   "#13=FACE_OUTER_BOUND('',#14,.T.);\n#14=EDGE_LOOP('',(#100,#101,#102,#103));\n",
+                   "#20=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,((#21,#24),(#22,#23)),.UNSPECIFIED.,.F.,.F.,.F.,"
+                   "(2,2),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.);\n",
+                   point_at(21, 0, 0, 0), point_at(22, 1, 0, 0), point_at(23, 1, 1, 0), point_at(24, 0, 1, 0),
+                   edge(0, 0, 1, 30), edge(1, 1, 2, 131), edge(2, 2, 3, 132), edge(3, 3, 0, 133),
+                   "#30=B_SPLINE_CURVE_WITH_KNOTS('',3,(#21,#31,#32,#22),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),"
+                   ".UNSPECIFIED.);\n",
+                   point_at(31, -past, -past / 50, 0), point_at(32, 2.0 / 3, 0, 0),
+                   // Far away, so that the tolerance can pass for one.
+                   "#40=VERTEX_POINT('',#41);\n", point_at(41, 100, 0, 0)));
+}
+
+TEST(StepTangles, edges_that_run_past_a_corner_of_the_surface_and_back_are_followed_less_closely_and_told) {
+    for (const double past : {0.015, 0.02}) {
+        const Model m = must(read_step(past_a_corner(past)));
+        ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
+        EXPECT_EQ(times_told(m, "#12 ADVANCED_FACE: its boundary runs into itself"), 1);
+        for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-5})
+            EXPECT_NEAR(meshed_area(m, tolerance), 1, 2e-3);
+        for (const Edge& e : m.edges) EXPECT_LE(e.tolerance, 2 * 16e-4) << "which is told, with a bound";
+        for (const Approximation& a : m.approximations) EXPECT_TRUE(a.bound) << a.what;
+    }
+    // One that does not turn back is followed as it is.
+    EXPECT_EQ(times_told(must(read_step(past_a_corner(-0.02))), "runs into itself"), 0);
+}
+
 // A disc of radius 2 with a wall above its rim, and a square hole with a corner at (x, 2).
 std::string touched_disc(double x) {
     return tangle_file(
@@ -165,7 +202,7 @@ TEST(StepTangles, parameter_curves_have_no_piece_as_short_as_rounding) {
 // rim, edges that wander near a pole; and one whose box had no end.
 TEST(StepTangles, faces_of_real_files_whose_boundaries_ran_into_themselves_are_meshed) {
     for (const char* name : {"step/bug27693_cornetta-step.stp", "step/ec_turbine-A.stp",
-                             "step/bug28414_bug_toroidal_surface.stp"}) {
+                             "step/bug28414_bug_toroidal_surface.stp", "step/trj7_b1-ec-214.stp"}) {
         FF_CORPUS_OR_SKIP(path, name);
         const Model m = must(read_step(must(read_file(path.string(), 1 << 26))));
         EXPECT_TRUE(m.refused.empty()) << name << m.refused[0].message;
