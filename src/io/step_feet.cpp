@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kFeet = 64;
 constexpr int kPlacesOfPolygon = 48;  // where corners may be
+constexpr int kMostLooks = 8000;      // at a polygon and its edge
 constexpr double kAtPole = 1e-7;      // of the way that an edge goes from a pole
 constexpr double kAlongPole = 1e-3;   // of its parameters: less is an edge along the pole
 
@@ -84,10 +85,12 @@ std::optional<Trace> coarse_polygon(const Chart& chart, const CurveGeometry<3>& 
         at[k] = jet<0>(c, t[k]).value();
     }
     double gap = 0;  // of the last polygon that was looked at
+    int looks = 0;
     const auto follows = [&](std::size_t i, std::size_t j) {
         gap = 0;
         for (std::size_t k = i; k < j && gap <= accuracy; ++k)
             for (const double y : {0.0, 0.5}) {
+                ++looks;
                 const double s = t[k] + y * (t[k + 1] - t[k]), x = (s - t[i]) / (t[j] - t[i]);
                 const Vec<3> p = y == 0 ? at[k] : jet<0>(c, s).value();
                 gap = std::max(gap, norm(chart.point(uv[i] + x * (uv[j] - uv[i])) - p));
@@ -103,8 +106,8 @@ std::optional<Trace> coarse_polygon(const Chart& chart, const CurveGeometry<3>& 
     Trace out;
     for (std::size_t i = 0; i < n;) {
         std::size_t j = n;
-        while (j > i && !((j == n || may_be_corner(j)) && follows(i, j))) --j;
-        if (j == i || uv[i] == uv[j]) return std::nullopt;
+        while (j > i && looks <= kMostLooks && !((j == n || may_be_corner(j)) && follows(i, j))) --j;
+        if (j == i || uv[i] == uv[j] || looks > kMostLooks) return std::nullopt;
         out.gap = std::max(out.gap, gap);
         knots.push_back(t[j]), net.push_back(uv[j]);
         i = j;

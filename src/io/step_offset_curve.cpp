@@ -74,7 +74,7 @@ Result<BoundedCurve> GeometryReader::offset_of(std::uint32_t i, BoundedCurve bas
     const double size = box.diagonal() + std::abs(d);
     const SurfaceGeometry sheet = OffsetSurface{
         std::make_shared<const SurfaceGeometry>(Extrusion{basis.curve, *v, SurfaceKind::general}), -d};
-    const auto samples = int(std::clamp(kOffsetSamples / std::max(f_.offset_curves, 1u), 4000u, 40'000u));
+    const auto samples = int(std::clamp(kOffsetSamples / std::max(f_.offset_curves, 1u), 500u, 40'000u));
     auto made = lift(sheet, Line<2>{{}, {{1, 0}}}, on, lift_accuracy(size), lift_limit(size), samples);
     if (!made) return f->refused(made.error().message, made.error().kind);
     basis.has_angles = std::holds_alternative<Conic<3>>(basis.curve) &&
