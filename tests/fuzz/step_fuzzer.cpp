@@ -1,5 +1,5 @@
-// Any bytes as a STEP file: a model whose indices hold, or a refusal that says something; with repairs for half
-// of the files; and the triangles of the file, likewise.
+// Any bytes as a STEP file: a model whose indices hold, or a refusal that says something; with repairs for
+// half of the files; and the triangles of the file, likewise.
 //
 // Half of the mutations are of bytes. The others know the grammar: they put one parameter of the file where
 // another one stands, change references, numbers and flags for ones that files have, and move statements.
