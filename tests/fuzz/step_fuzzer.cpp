@@ -93,7 +93,11 @@ constexpr std::string_view kNames[] = {"PLANE",
                                        "DEGENERATE_TOROIDAL_SURFACE",
                                        "RECTANGULAR_TRIMMED_SURFACE",
                                        "CURVE_BOUNDED_SURFACE",
-                                       "MAPPED_ITEM"};
+                                       "MAPPED_ITEM",
+                                       "OFFSET_CURVE_3D",
+                                       "PCURVE",
+                                       "SURFACE_CURVE",
+                                       "REPOSITIONED_TESSELLATED_ITEM"};
 
 void mutate(std::string& s, Random& r) {
     const auto replace = [&](const Piece& p, const std::string& by) {
