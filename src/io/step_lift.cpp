@@ -9,6 +9,8 @@
 // degrees up to 25 elsewhere.
 #include "step_lift.hpp"
 
+#include "step_trace.hpp"
+
 #include <freiform/model/edge_gap.hpp>
 
 #include <algorithm>
@@ -76,19 +78,7 @@ private:
 
     // The ends, the breaks, and a few between them.
     std::vector<double> places() const {
-        std::vector<double> all;
-        for (int i = 0; i <= 4; ++i) all.push_back(i == 4 ? on_.hi : on_.lo + on_.length() * i / 4);
-        std::visit(
-            [&](const auto& g) {
-                if constexpr (requires { g.net(); }) {
-                    const auto breaks = g.basis().breaks();
-                    const std::size_t stride = 1 + breaks.size() / (kMostLiftPieces / 2);
-                    for (std::size_t i = 0; i < breaks.size(); i += stride)
-                        if (on_.lo < breaks[i] && breaks[i] < on_.hi) all.push_back(breaks[i]);
-                }
-            },
-            c_);
-        std::ranges::sort(all);
+        std::vector<double> all = places_along(c_, on_, 4, kMostLiftPieces / 2);
         all.erase(std::ranges::unique(all).begin(), all.end());
         return all;
     }

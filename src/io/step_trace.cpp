@@ -183,19 +183,7 @@ private:
 
     // Where pieces begin: at the knots of the edge, and often enough.
     std::vector<double> places() const {
-        std::vector<double> all;
-        for (int i = 0; i <= 6; ++i) all.push_back(i == 6 ? on_.hi : on_.lo + on_.length() * i / 6);
-        std::visit(
-            [&](const auto& g) {
-                if constexpr (requires { g.net(); }) {
-                    const auto breaks = g.basis().breaks();
-                    const std::size_t stride = 1 + breaks.size() / 200;
-                    for (std::size_t i = 0; i < breaks.size(); i += stride)
-                        if (on_.lo < breaks[i] && breaks[i] < on_.hi) all.push_back(breaks[i]);
-                }
-            },
-            c_);
-        std::sort(all.begin(), all.end());
+        const std::vector<double> all = places_along(c_, on_, 6, 200);
         std::vector<double> out;
         for (const double t : all)
             if (out.empty() || t - out.back() > kApart * on_.length()) out.push_back(t);

@@ -4,7 +4,9 @@
 
 #include <freiform/core/result.hpp>
 
+#include <algorithm>
 #include <span>
+#include <vector>
 
 namespace freiform::step {
 
@@ -30,6 +32,26 @@ std::optional<Trace> trace_on_plane(const SurfaceGeometry& surface, const CurveG
 // nowhere further from the edge than `rough`.
 std::optional<Trace> polygon_of_feet(const Chart& chart, const CurveGeometry<3>& c, Interval on,
                                      double rough);
+
+// The ends of equal parts of an interval, and the breaks of a spline inside it, or every so many of them
+// where they are more than `most`; in increasing order.
+template <int D>
+std::vector<double> places_along(const CurveGeometry<D>& c, Interval on, int parts, std::size_t most) {
+    std::vector<double> all;
+    for (int i = 0; i <= parts; ++i) all.push_back(i == parts ? on.hi : on.lo + on.length() * i / parts);
+    std::visit(
+        [&](const auto& g) {
+            if constexpr (requires { g.net(); }) {
+                const auto breaks = g.basis().breaks();
+                const std::size_t stride = 1 + breaks.size() / most;
+                for (std::size_t i = 0; i < breaks.size(); i += stride)
+                    if (on.lo < breaks[i] && breaks[i] < on.hi) all.push_back(breaks[i]);
+            }
+        },
+        c);
+    std::ranges::sort(all);
+    return all;
+}
 
 // As few corners on a parameter curve `fine` of the edge, moved into the surface where that ends, as keep the
 // polygon through them within `accuracy` of the edge, if some do. What the edge does within `beside` of its
