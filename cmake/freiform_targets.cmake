@@ -98,7 +98,7 @@ function(freiform_library name)
 endfunction()
 
 # src/kernel/*_avx2.cpp and *_avx512.cpp are compiled for the instructions that their name says; the precompiled
-# header is for other flags. In kernels products and sums are contracted where the processor can. Nothing that takes
+# header is for other flags. In kernels that evaluate, products and sums are contracted where the processor can. Nothing that takes
 # a vector is called from another file, so how vectors are passed (psabi) does not matter.
 function(freiform_isa)
     foreach(file IN LISTS ARGN)
@@ -110,8 +110,11 @@ function(freiform_isa)
                 set(flags -mavx512f -mavx512dq -mavx512vl -mfma)
             endif()
         endif()
+        if(file MATCHES "/src/kernel/(evaluate|blocks)_")
+            list(APPEND flags -Wno-psabi)
+        endif()
         if(file MATCHES "/src/kernel/evaluate_")
-            list(APPEND flags -ffp-contract=fast -Wno-psabi)
+            list(APPEND flags -ffp-contract=fast)
         endif()
         # Modules are compiled for size, but for what evaluates.
         if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32 AND file MATCHES "/src/(kernel|spline/prepared[a-z_]*\\.cpp)")

@@ -1,4 +1,5 @@
 // Which of the compiled kernels run.
+#include "blocks.hpp"
 #include "evaluate.hpp"
 
 #include <algorithm>
@@ -60,6 +61,13 @@ bool scaled(const double* a, double* out) {
 
 const Kernels& kernels() { return *chosen().load(std::memory_order_relaxed); }
 void choose(const Kernels& other) { chosen().store(&other); }
+
+const BlockKernels& block_kernels() {
+#if defined(__x86_64__)
+    if (&kernels() != &kBase) return kAvx2Blocks;  // what has AVX-512 has AVX2
+#endif
+    return kBaseBlocks;
+}
 
 void careful_normal(const double* a, const double* b, double* out) {
     double u[3], v[3], n[3];

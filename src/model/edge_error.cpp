@@ -133,13 +133,13 @@ std::optional<std::pair<double, double>> OnFace::across() const {
         return Vec<2>{{seen.uu * half[0] + seen.uv * half[1] + torn[0],
                        seen.uv * half[0] + seen.vv * half[1] + torn[1]}};
     };
-    const auto seen_along = [&](const Vec<3>& f) {
-        const auto b = surface.along(f, sides);
+    const auto second_of = [](const DerivativeBounds<2>& b) {
         return SecondBounds{b(2, 0), b(1, 1), b(0, 2)};
     };
+    const auto beside = surface.along_two(std::array{(*frame)[1], (*frame)[2]}, sides);
     double aside = 0, on_chord = 0, on_curve = 0;
     for (std::size_t i = 1; i < 3; ++i) {
-        const SecondBounds seen = seen_along((*frame)[i]);
+        const SecondBounds seen = second_of(beside[i - 1]);
         const Vec<2> g{{dot((*frame)[i], j(1, 0)), dot((*frame)[i], j(0, 1))}}, varies = vary(seen);
         aside =
             std::hypot(aside, std::abs(dot(g, chord)) + varies[0] * std::abs(x) + varies[1] * std::abs(y));
@@ -162,7 +162,7 @@ std::optional<std::pair<double, double>> OnFace::across() const {
         return slope;
     };
     auto slope = slope_by(vary(second));  // all of S'' will do, as a rule
-    if (!slope) slope = slope_by(vary(seen_along((*frame)[0])));
+    if (!slope) slope = slope_by(vary(second_of(surface.along((*frame)[0], sides))));
     if (!slope) return std::nullopt;
     const double rounding = 0x1p-44 * (along(speed) + first[0] * change[0] + first[1] * change[1]);
     return std::pair{(std::max(on_chord, on_curve) / 8 + rounding) * kDirectionSlack + kinks(),

@@ -20,27 +20,33 @@
 // Differences of an order come from those of the order before: one subtraction each. Rounding of the
 // subtractions is within the 2^k e above, of which twice as much is added.
 //
+// Of a coordinate n . S along a vector n of length 1: the numbers n . A^_a are those of the differences A^_a,
+// so one table serves both. They are off by at most 2 times what coordinates of A^_a are off by, as no more
+// than four of them are added, and by 8 u |A^_a| from the products. Of the coordinates themselves nothing is
+// added.
+//
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
-#include "room_detail.hpp"
+#include "block_detail.hpp"
 
 #include <freiform/core/constants.hpp>
-#include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace freiform {
 
 namespace {
 
-constexpr int kMostBernstein = kMaxDegree + 1;
+constexpr std::size_t kMostBernstein = kMaxDegree + 1, kHalfStride = kernel::lanes_of(kMaxDegree + 1);
 
-// C(a, b) for the orders of derivatives, and the Bernstein polynomials of each degree at 1/2.
-constexpr double kChoose[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
-static_assert(kBoundOrder == 3);
+constexpr std::size_t slot_of(int i, int j) { return std::size_t((i + j) * (i + j + 1) / 2 + j); }
+static_assert(slot_of(2, 0) == jet_slot(Index<2>{2, 0}) && slot_of(1, 2) == jet_slot(Index<2>{1, 2}));
+static_assert(kBoundOrder == kernel::kBlockOrder);
+
+// The Bernstein polynomials of each degree at 1/2.
 constexpr auto kAtHalf = [] {
-    std::array<std::array<double, kMostBernstein>, kMostBernstein> b{};
+    std::array<std::array<double, kHalfStride>, kMostBernstein> b{};
     b[0][0] = 1;
     for (std::size_t n = 1; n < b.size(); ++n)
         for (std::size_t i = 0; i <= n; ++i)
@@ -48,308 +54,339 @@ constexpr auto kAtHalf = [] {
     return b;
 }();
 
-template <std::size_t N>
-constexpr std::size_t slot_of(int i, int j) {
-    return N == 1 ? std::size_t(i) : std::size_t((i + j) * (i + j + 1) / 2 + j);
-}
-static_assert(slot_of<2>(2, 0) == jet_slot(Index<2>{2, 0}) && slot_of<2>(1, 2) == jet_slot(Index<2>{1, 2}) &&
-              slot_of<1>(3, 0) == jet_slot(Index<1>{3}));
-
-// The net of differences of one order, of the numerator about c0 and of the weight: the largest of them, and
-// of rational blocks the values in the middle of the block.
-template <int D>
-struct Differences {
-    double most = 0, weight_most = 0;
-    Vec<D> middle{};
-    double weight_middle = 0;
+// The terms of Leibniz' rule of each derivative but the one with the derivative itself: `choose` times the
+// one in slot `part` times the one in slot `rest`.
+struct Term {
+    double choose = 0;
+    std::size_t part = 0, rest = 0;
 };
+constexpr double kChoose[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+template <int I, int J>
+constexpr auto kTerms = [] {
+    std::array<Term, std::size_t((I + 1) * (J + 1) - 1)> out{};
+    std::size_t n = 0;
+    for (int k = 0; k <= I; ++k)
+        for (int l = k == 0 ? 1 : 0; l <= J; ++l)
+            out[n++] = {kChoose[I][k] * kChoose[J][l], slot_of(k, l), slot_of(I - k, J - l)};
+    return out;
+}();
 
-// Calls f(coefficient) for each, row by row.
-template <std::size_t N, class P, class F>
-void each_entry(const NetView<N, const P>& net, F&& f) {
-    const int rows = N == 1 ? 1 : net.extent[0], columns = net.extent[N - 1];
-    for (int r = 0; r < rows; ++r) {
-        const P* p = net.data + r * net.stride[0];
-        for (int k = 0; k < columns; ++k, p += net.stride[N - 1]) f(*p);
-    }
+// Calls f.operator()<i, j>() for the derivatives of order kSum, of curves only for those along v.
+template <int kSum, class F>
+void each_of_order(bool curve, F&& f) {
+    if constexpr (kSum > 0)
+        if (!curve) [&]<int... J>(std::integer_sequence<int, J...>) {
+                (f.template operator()<kSum - J, J>(), ...);
+            }
+    (std::make_integer_sequence<int, kSum>{});
+    f.template operator()<0, kSum>();
 }
-
-// All differences up to order `top`, each from the one before: one subtraction for each number. Curves are
-// blocks of one column.
-template <std::size_t N, class P>
-class DifferenceTable {
-public:
-    static constexpr int D = Space<P>::kDim;
-    static constexpr bool kRational = Space<P>::kRational;
-
-    DifferenceTable(const NetView<N, const P>& net, const PointOf<P>& c0, int top)
-        : rows_(net.extent[0]), columns_(N == 1 ? 1 : net.extent[N - 1]) {
-        const std::size_t count = std::size_t(rows_) * std::size_t(columns_);
-        Room<Entry, 128> room;
-        Entry* const down = room.of(2 * count);
-        Entry* const work = down + count;
-        Entry* to = down;
-        each_entry(net, [&](const P& p) {
-            const double w = Space<P>::weight(p);
-            for (int i = 0; i < D; ++i) (*to)[std::size_t(i)] = p[i] - w * c0[i];
-            if constexpr (kRational) (*to)[D] = w;
-            ++to;
-        });
-        for (int i = 0; i <= top && i < rows_; ++i) {
-            const int rows = rows_ - i;
-            if (i > 0) subtract(down, rows * columns_, columns_);
-            std::copy_n(down, rows * columns_, work);
-            for (int j = 0; i + j <= top && j < columns_; ++j) {
-                if (j > 0)
-                    for (int r = 0; r < rows; ++r) subtract(work + r * columns_, columns_ - j, 1);
-                found_[slot_of<N>(i, j)] = seen(work, rows, columns_ - j);
-            }
-        }
-    }
-
-    const Differences<D>& operator[](std::size_t slot) const { return found_[slot]; }
-
-private:
-    using Entry = std::array<double, std::size_t(D + (kRational ? 1 : 0))>;
-
-    static void subtract(Entry* e, int n, int step) {
-        for (int k = 0; k < n; ++k)
-            for (std::size_t c = 0; c < e[0].size(); ++c) e[k][c] = e[k + step][c] - e[k][c];
-    }
-    Differences<D> seen(const Entry* e, int rows, int columns) const {
-        Differences<D> out;
-        double most = 0;
-        Entry middle{};
-        for (int r = 0; r < rows; ++r) {
-            Entry row{};
-            for (int k = 0; k < columns; ++k) {
-                const Entry& x = e[r * columns_ + k];
-                double square = 0;
-                for (std::size_t c = 0; c < std::size_t(D); ++c) square += x[c] * x[c];
-                most = most < square ? square : most;
-                if constexpr (kRational) {
-                    const double w = std::abs(x[D]);
-                    out.weight_most = out.weight_most < w ? w : out.weight_most;
-                    const double share = kAtHalf[std::size_t(columns - 1)][std::size_t(k)];
-                    for (std::size_t c = 0; c < x.size(); ++c) row[c] += share * x[c];
-                }
-            }
-            if constexpr (kRational) {
-                const double share = kAtHalf[std::size_t(rows - 1)][std::size_t(r)];
-                for (std::size_t c = 0; c < row.size(); ++c) middle[c] += share * row[c];
-            }
-        }
-        if constexpr (kRational) {
-            for (int c = 0; c < D; ++c) out.middle[c] = middle[std::size_t(c)];
-            out.weight_middle = middle[D];
-        }
-        out.most = std::sqrt(most) * (1 + 8 * kUnitRoundoff);
-        return out;
-    }
-
-    int rows_, columns_;
-    std::array<Differences<D>, jet_size(N, kBoundOrder)> found_{};
-};
-
-}  // namespace
-
-namespace {
-
-// Of A_v, A_vv, .. about multiples of the weights, which are those of the first column: differences along u.
-// found[slot of (i, j)] for j > 0; (0, j): the largest quotient by the weight.
-template <class P>
-std::array<double, jet_size(2, kBoundOrder)> ruled_differences(const NetView<2, const P>& net, int top) {
-    constexpr int D = Space<P>::kDim;
-    std::array<double, jet_size(2, kBoundOrder)> found{};
-    const int rows = net.extent[0], columns = net.extent[1];
-    const std::size_t count = std::size_t(rows) * std::size_t(columns);
-    Room<Vec<D>, 128> room;
-    Vec<D>* const across = room.of(2 * count);
-    Vec<D>* const e = across + count;
-    const auto weight = [&](int r) { return Space<P>::weight(net({r, 0})); };
-    const auto at = [&](int r, int c) { return std::size_t(r * columns + c); };
-    for (int r = 0; r < rows; ++r)
-        for (int c = 0; c < columns; ++c)
-            for (int i = 0; i < D; ++i) across[at(r, c)][i] = net({r, c})[i];
-    for (int j = 1; j <= top && j < columns; ++j) {
-        for (int r = 0; r < rows; ++r)
-            for (int c = 0; c < columns - j; ++c) across[at(r, c)] = across[at(r, c + 1)] - across[at(r, c)];
-        const Vec<D> c0 = (1 / weight(rows / 2)) * across[at(rows / 2, (columns - j) / 2)];
-        for (int r = 0; r < rows; ++r)
-            for (int c = 0; c < columns - j; ++c) e[at(r, c)] = across[at(r, c)] - weight(r) * c0;
-        for (int i = 0; i + j <= top && i < rows; ++i) {
-            double& most = found[slot_of<2>(i, j)];
-            for (int r = 0; r < rows - i; ++r)
-                for (int c = 0; c < columns - j; ++c) {
-                    if (i > 0) e[at(r, c)] = e[at(r + 1, c)] - e[at(r, c)];
-                    most = std::max(most, norm(e[at(r, c)]) / (i == 0 ? weight(r) : 1));
-                }
-            most *= 1 + 8 * kUnitRoundoff;
-        }
-    }
-    return found;
+// The same for all orders from kFrom up to `top`.
+template <int kFrom, class F>
+void each_derivative(bool curve, int top, F&& f) {
+    if (kFrom > top) return;
+    each_of_order<kFrom>(curve, f);
+    if constexpr (kFrom < kBoundOrder) each_derivative<kFrom + 1>(curve, top, f);
 }
 
 // Whether weights change along u, along v, by more than restriction to a part rounds them.
-template <class P>
-std::array<bool, 2> weights_change(const NetView<2, const P>& net) {
+std::array<bool, 2> weights_vary(const BezierBlock& block) {
     std::array<bool, 2> out{};
-    const double part = 8 * (net.extent[0] + net.extent[1]) * kUnitRoundoff;
-    const auto weight = [&](int r, int c) {
-        return Space<P>::weight(net.data[r * net.stride[0] + c * net.stride[1]]);
-    };
-    for (int r = 0; r < net.extent[0]; ++r)
-        for (int c = 0; c < net.extent[1]; ++c) {
-            const double w = weight(r, c), alike = part * w;
-            out[0] |= std::abs(w - weight(0, c)) > alike;
-            out[1] |= std::abs(w - weight(r, 0)) > alike;
+    const int rows = block.shape().rows, columns = block.shape().columns;
+    const double part = 8 * (rows + columns) * kUnitRoundoff;
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) {
+            const double w = block.weight(r, c), alike = part * w;
+            out[0] |= std::abs(w - block.weight(0, c)) > alike;
+            out[1] |= std::abs(w - block.weight(r, 0)) > alike;
         }
     return out;
 }
 
-DerivativeBounds<2> with_axes_exchanged(const DerivativeBounds<2>& b) {
-    DerivativeBounds<2> out;
+BlockBounds with_axes_exchanged(const BlockBounds& b) {
+    BlockBounds out{};
     for (int i = 0; i <= kBoundOrder; ++i)
-        for (int j = 0; i + j <= kBoundOrder; ++j) out.d[slot_of<2>(i, j)] = b.d[slot_of<2>(j, i)];
+        for (int j = 0; i + j <= kBoundOrder; ++j) out[slot_of(i, j)] = b[slot_of(j, i)];
+    return out;
+}
+
+// Of the block (M = 4) or of one of its coordinates (M = 1), about c0: largest differences, and derivatives
+// of the numerator in the middle.
+template <std::size_t M>
+struct Sizes {
+    double radius = 0, slip = 0;
+    double products = 0;  // rounding of n . x, divided by |x|
+    BlockBounds most, ruled;
+    std::array<std::array<double, M>, jet_size(2, kBoundOrder - 1)> middle;
+};
+
+// The coordinate that a direction is; -1: none.
+int axis_of(const Vec<4>& direction) {
+    for (int i = 0; i < 4; ++i) {
+        Vec<4> axis;
+        axis[i] = 1;
+        if (direction == axis) return i;
+    }
+    return -1;
+}
+
+class BlockBounder {
+public:
+    BlockBounder(BezierBlock& block, const BlockDemands& demands, bool ruled);
+    BlockAnswer run();
+
+private:
+    double careful_radius() const;
+    void find_weights();
+    template <std::size_t M>
+    void find_derivatives(Sizes<M>& of, int direction) const;
+    template <std::size_t M>
+    double by_rulings(const Sizes<M>& of, const BlockBounds& out, int i, int j) const;
+    template <std::size_t M>
+    BlockBounds bounds(Sizes<M>& of) const;
+
+    BezierBlock& block_;
+    const BlockDemands& demands_;
+    const kernel::BlockShape shape_;
+    const bool ruled_, curve_;
+    const int top_;
+    double steps_ = 8, weight_slip_ = 0;
+    kernel::BlockTask task_;
+    kernel::BlockFound found_;
+    double falling_[2][kBoundOrder + 1];  // p (p - 1) .. / width^k along each axis
+    BlockBounds weight_, weight_middle_;
+};
+
+BlockBounder::BlockBounder(BezierBlock& block, const BlockDemands& demands, bool ruled)
+    : block_(block),
+      demands_(demands),
+      shape_(block.shape()),
+      ruled_(ruled),
+      curve_(shape_.rows == 1),
+      top_(shape_.rational ? std::min(demands.order + 1, kBoundOrder) : demands.order) {
+    const int sizes[2] = {shape_.rows, shape_.columns};
+    for (std::size_t d = 0; d < 2; ++d) {
+        steps_ += 12 * (sizes[d] - 1);
+        falling_[d][0] = 1;
+        for (int k = 0; k < top_; ++k)
+            falling_[d][k + 1] = falling_[d][k] * (double(sizes[d] - 1 - k) / demands.width[d]);
+    }
+    task_.shape = shape_;
+    task_.numbers = block.numbers();
+    task_.room = block.room();
+    const int row = shape_.rows / 2, column = shape_.columns / 2;
+    for (int i = 0; i < shape_.dim; ++i)
+        task_.centre[i] = block.number(i, row, column) / block.weight(row, column);
+    task_.top = top_;
+    task_.directions = int(demands.directions.size());
+    for (std::size_t k = 0; k < demands.directions.size(); ++k)
+        for (int i = 0; i < 4; ++i) task_.direction[k][i] = demands.directions[k][i];
+    task_.at_half = kAtHalf[0].data();
+    task_.half_stride = kHalfStride;
+    task_.ruled = ruled;
+}
+
+// Where squares are too small or too large.
+double BlockBounder::careful_radius() const {
+    double radius = 0;
+    for (int r = 0; r < shape_.rows; ++r)
+        for (int c = 0; c < shape_.columns; ++c) {
+            Vec<4> x;
+            const double w = block_.weight(r, c);
+            for (int i = 0; i < shape_.dim; ++i) x[i] = block_.number(i, r, c) - w * task_.centre[i];
+            radius = std::max(radius, norm(x) / w);
+        }
+    return radius;
+}
+
+void BlockBounder::find_weights() {
+    weight_slip_ = steps_ * kUnitRoundoff * found_.most_weight;
+    each_derivative<0>(curve_, top_, [&]<int I, int J>() {
+        const bool there = I < shape_.rows && J < shape_.columns;
+        const double factor = falling_[0][I] * falling_[1][J];
+        constexpr std::size_t slot = slot_of(I, J);
+        weight_[slot] =
+            std::abs(factor) * ((there ? found_.of[I][J].most[1] : 0) + double(1 << (I + J)) * weight_slip_);
+        if (I + J < top_) weight_middle_[slot] = there ? factor * found_.of[I][J].middle[shape_.dim] : 0;
+    });
+}
+
+// direction -1: of all coordinates.
+template <std::size_t M>
+void BlockBounder::find_derivatives(Sizes<M>& of, int direction) const {
+    each_derivative<0>(curve_, top_, [&]<int I, int J>() {
+        constexpr std::size_t slot = slot_of(I, J);
+        const bool there = I < shape_.rows && J < shape_.columns,
+                   with_middle = shape_.rational && I + J < top_;
+        const auto& difference = found_.of[I][J];
+        const double size = there ? std::sqrt(difference.most[0]) * (1 + 8 * kUnitRoundoff) : 0;
+        if constexpr (M == 1)
+            of.most[slot] = there ? difference.most[2 + direction] + of.products * size : 0;
+        else
+            of.most[slot] = size;
+        if constexpr (J > 0)
+            if (ruled_) {
+                // By the weights of their own columns: what these differ by is in `own` of by_rulings().
+                const double all = there ? std::sqrt(difference.ruled[0]) : 0;
+                of.ruled[slot] =
+                    (M == 1 && there ? difference.ruled[1 + direction] + of.products * all : all) *
+                    (1 + 16 * kUnitRoundoff);
+            }
+        if constexpr (I + J < kBoundOrder)
+            if (with_middle) {
+                const double factor = falling_[0][I] * falling_[1][J];
+                std::array<double, M> middle{};
+                if (there && M == 1)
+                    for (int k = 0; k < shape_.dim; ++k)
+                        middle[0] += task_.direction[direction][k] * difference.middle[k];
+                else if (there)
+                    for (std::size_t k = 0; k < M; ++k)
+                        middle[k] = int(k) < shape_.dim ? difference.middle[k] : 0;
+                for (double& x : middle) x *= factor;
+                of.middle[slot] = middle;
+            }
+    });
+}
+
+// The numerator of a derivative with i, j > 0: w S_ij = E_ij - sum C w_k0 S_{i-k,j} - w_i0 (S_0j - c_j) -
+// terms with w_kl, l > 0, which are rounding; E_ij = A_ij - w_i0 c_j, c_j near S_0j.
+template <std::size_t M>
+double BlockBounder::by_rulings(const Sizes<M>& of, const BlockBounds& out, int i, int j) const {
+    const double by_v = falling_[1][j], factor = falling_[0][i] * falling_[1][j];
+    if (!(by_v > 0)) return kInfinity;
+    const std::size_t of_j = slot_of(0, j);
+    Vec<4> c0;
+    for (int k = 0; k < shape_.dim; ++k) c0[k] = task_.centre[k];
+    // A is taken about c0 in thought; c_j is a multiple of a weight. All with the rounding of differences.
+    const double own = of.slip + norm(c0) * weight_slip_ + (out[of_j] / by_v) * weight_slip_;
+    double most = std::abs(factor) * (of.ruled[slot_of(i, j)] + double(1 << (i + j)) * 4 * own);
+    double from_middle = by_v * (of.ruled[of_j] + 16 * own / found_.least_weight);
+    for (int l = 1; l <= j; ++l)
+        from_middle += kChoose[j][l] * weight_[slot_of(0, l)] * out[slot_of(0, j - l)] / found_.least_weight;
+    for (int k = 1; k <= i; ++k)
+        most += kChoose[i][k] * weight_[slot_of(k, 0)] * (k < i ? out[slot_of(i - k, j)] : from_middle);
+    for (int k = 0; k <= i; ++k)
+        for (int l = 1; l <= j; ++l)
+            most += kChoose[i][k] * kChoose[j][l] * weight_[slot_of(k, l)] * out[slot_of(i - k, j - l)];
+    return most;
+}
+
+template <std::size_t M>
+BlockBounds BlockBounder::bounds(Sizes<M>& of) const {
+    BlockBounds out{};
+    out[0] = of.radius;
+    if (!shape_.rational) {
+        each_derivative<1>(curve_, top_, [&]<int I, int J>() {
+            const double factor = falling_[0][I] * falling_[1][J];
+            if (factor > 0)  // otherwise the order is above the degree: exactly zero
+                out[slot_of(I, J)] = std::abs(factor) *
+                                     (of.most[slot_of(I, J)] + double(1 << (I + J)) * 2 * of.slip) *
+                                     (1 + 64 * kUnitRoundoff);
+        });
+        return out;
+    }
+    const double divide =
+                     1 / (found_.least_weight * (1 - 16 * steps_ * kUnitRoundoff)) * (1 + 4 * kUnitRoundoff),
+                 invert = 1 / weight_middle_[0];
+    for (double& x : of.middle[0]) x *= invert;
+    each_derivative<1>(curve_, top_, [&]<int I, int J>() {
+        constexpr std::size_t slot = slot_of(I, J);
+        const double factor = falling_[0][I] * falling_[1][J];
+        double most = std::abs(factor) * (of.most[slot] + double(1 << (I + J)) * 2 * of.slip);
+        for (const Term& t : kTerms<I, J>) most += t.choose * weight_[t.part] * out[t.rest];
+        if constexpr (I > 0 && J > 0)
+            if (ruled_) most = std::min(most, by_rulings(of, out, I, J));
+        out[slot] = most * divide * (1 + 64 * kUnitRoundoff);
+        if constexpr (I + J < kBoundOrder)
+            if (I + J < top_) {
+                std::array<double, M> middle = of.middle[slot];
+                for (const Term& t : kTerms<I, J>) {
+                    const double share = t.choose * weight_middle_[t.part];
+                    for (std::size_t k = 0; k < M; ++k) middle[k] -= share * of.middle[t.rest][k];
+                }
+                for (std::size_t k = 0; k < M; ++k) of.middle[slot][k] = middle[k] * invert;
+            }
+    });
+    // The triangle inequality lost the signs; from the middle outwards they are kept.
+    const auto from_middle = [&]<int I, int J>() {
+        constexpr std::size_t slot = slot_of(I, J);
+        const double crude = out[slot];
+        Vec<int(M)> middle;
+        for (std::size_t k = 0; k < M; ++k) middle[int(k)] = of.middle[slot][k];
+        double here = norm(middle) + demands_.width[1] / 2 * out[slot_of(I, J + 1)];
+        if (!curve_) here += demands_.width[0] / 2 * out[slot_of(I + 1, J)];
+        // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
+        here += 64 * steps_ * kUnitRoundoff * crude;
+        out[slot] = std::min(crude, here * (1 + 64 * kUnitRoundoff));
+    };
+    if (top_ > 2) each_of_order<2>(curve_, from_middle);
+    if (top_ > 1) each_of_order<1>(curve_, from_middle);
+    for (std::size_t slot = jet_size(2, demands_.order); slot < out.size(); ++slot) out[slot] = 0;
+    return out;
+}
+
+BlockAnswer BlockBounder::run() {
+    kernel::block_kernels().differences(task_, found_);
+    if (shape_.rational) find_weights();
+    double largest = demands_.size;
+    for (int i = 0; i < shape_.dim; ++i) largest = std::max(largest, found_.largest[i]);
+    const bool careful = !(found_.farthest > 1e-280 && found_.farthest < 1e280 &&
+                           found_.least_weight > 1e-140 && found_.most_weight < 1e140);
+    const double radius = careful ? careful_radius() : std::sqrt(found_.square) * (1 + 8 * kUnitRoundoff);
+    const double rounding = steps_ * kUnitRoundoff;
+    BlockAnswer out;
+    if (demands_.all) {
+        Sizes<4> all;
+        all.slip = rounding * largest;
+        all.radius = radius + 2 * all.slip / found_.least_weight;
+        find_derivatives(all, -1);
+        out.all = bounds(all);
+    }
+    for (std::size_t k = 0; k < demands_.directions.size(); ++k) {
+        Sizes<1> along;
+        const int axis = axis_of(demands_.directions[k]);
+        along.slip = rounding * (axis < 0 ? 2 * largest : found_.largest[axis]);
+        along.products = axis < 0 ? 8 * kUnitRoundoff : 0;
+        along.radius =
+            careful ? radius : found_.across[k] * (1 + 8 * kUnitRoundoff) + along.products * radius;
+        along.radius += 2 * along.slip / found_.least_weight;
+        find_derivatives(along, int(k));
+        out.along[k] = bounds(along);
+    }
     return out;
 }
 
 }  // namespace
+
+BlockAnswer bounds_of_block(BezierBlock& block, const BlockDemands& demands) {
+    bool ruled = false;
+    if (block.shape().rational && block.shape().rows > 1) {
+        const auto change = weights_vary(block);
+        if (change[1] && !change[0]) {
+            block.exchange_axes();
+            BlockDemands exchanged = demands;
+            std::swap(exchanged.width[0], exchanged.width[1]);
+            BlockAnswer out = BlockBounder(block, exchanged, demands.order > 1).run();
+            out.all = with_axes_exchanged(out.all);
+            for (auto& along : out.along) along = with_axes_exchanged(along);
+            return out;
+        }
+        ruled = change[0] && !change[1] && demands.order > 1;
+    }
+    return BlockBounder(block, demands, ruled).run();
+}
 
 template <std::size_t N, class P>
 DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
                                       int order, double size) {
-    constexpr int D = Space<P>::kDim;
-    constexpr bool kRational = Space<P>::kRational;
-    bool ruled = false;
-    if constexpr (N == 2 && kRational) {
-        const auto change = weights_change(net);
-        if (change[1] && !change[0])
-            return with_axes_exchanged(derivative_bounds<2, P>(
-                {net.data, {net.extent[1], net.extent[0]}, {net.stride[1], net.stride[0]}},
-                {width[1], width[0]}, order, size));
-        ruled = change[0] && !change[1] && order > 1;
-    }
-    double steps = 8, largest = size, weight_min = kInfinity, weight_max = 0;
-    Index<N> centre{};
-    for (std::size_t d = 0; d < N; ++d) {
-        steps += 12 * (net.extent[d] - 1);
-        centre[d] = net.extent[d] / 2;
-    }
-    const PointOf<P> c0 = project(net(centre));
-    double farthest = 0, square = 0;  // from c0: of the numerator, of the points themselves
-    each_entry(net, [&](const P& p) {
-        const double w = Space<P>::weight(p);
-        weight_min = w < weight_min ? w : weight_min;
-        weight_max = w > weight_max ? w : weight_max;
-        double sum = 0;
-        for (int i = 0; i < D; ++i) {
-            const double shifted = p[i] - w * c0[i], a = std::abs(p[i]);
-            sum += shifted * shifted;
-            largest = a > largest ? a : largest;
-        }
-        farthest = sum > farthest ? sum : farthest;
-        const double part = kRational ? sum / (w * w) : sum;
-        square = part > square ? part : square;
-    });
-    double radius = std::sqrt(square) * (1 + 8 * kUnitRoundoff);
-    if (!(farthest > 1e-280 && farthest < 1e280 && weight_min > 1e-140 && weight_max < 1e140)) {
-        radius = 0;  // squares are too small or too large
-        each_entry(net, [&](const P& p) {
-            const double w = Space<P>::weight(p);
-            Vec<D> shifted;
-            for (int i = 0; i < D; ++i) shifted[i] = p[i] - w * c0[i];
-            radius = std::max(radius, norm(shifted) / w);
-        });
-    }
-    const double slip = steps * kUnitRoundoff * largest,
-                 weight_slip = Space<P>::kRational ? steps * kUnitRoundoff * weight_max : 0;
-    radius += 2 * slip / weight_min;
-
-    DerivativeBounds<N> out;
-    std::array<double, jet_size(N, kBoundOrder)> weight{}, weight_middle{};
-    std::array<Vec<D>, jet_size(N, kBoundOrder)> middle{};
-    out.d[0] = radius;
-    const int top = kRational ? std::min(order + 1, kBoundOrder) : order, across = N == 1 ? 0 : top;
-    const DifferenceTable<N, P> found(net, c0, top);
-    std::array<double, jet_size(2, kBoundOrder)> found_ruled{};
-    if constexpr (N == 2 && kRational)
-        if (ruled) found_ruled = ruled_differences(net, top);
-    // p (p - 1) .. / width^k along each axis.
-    std::array<std::array<double, kBoundOrder + 1>, N> falling{};
-    for (std::size_t d = 0; d < N; ++d) {
-        falling[d][0] = 1;
-        for (int k = 0; k < top; ++k)
-            falling[d][std::size_t(k) + 1] =
-                falling[d][std::size_t(k)] * (double(net.extent[d] - 1 - k) / width[d]);
-    }
-    // The numerator of a derivative with i, j > 0: w S_ij = E_ij - sum C w_k0 S_{i-k,j} - w_i0 (S_0j - c_j) -
-    // terms with w_kl, l > 0, which are rounding; E_ij = A_ij - w_i0 c_j, c_j near S_0j.
-    const auto by_rulings = [&](int i, int j, double factor, double rounding) {
-        const std::size_t of_j = slot_of<N>(0, N == 1 ? 0 : j);
-        const double by_v = falling[N - 1][std::size_t(j)];
-        if (!(by_v > 0)) return kInfinity;
-        // A is taken about c0 in thought; c_j is a multiple of a weight. All with the rounding of
-        // differences.
-        const double own = slip + norm(c0) * weight_slip + (out.d[of_j] / by_v) * weight_slip;
-        double most = std::abs(factor) * (found_ruled[slot_of<N>(i, j)] + rounding * 4 * own);
-        double from_middle = by_v * (found_ruled[of_j] + 16 * own / weight_min);
-        for (int l = 1; l <= j; ++l)
-            from_middle +=
-                kChoose[j][l] * weight[slot_of<N>(0, l)] * out.d[slot_of<N>(0, j - l)] / weight_min;
-        for (int k = 1; k <= i; ++k)
-            most += kChoose[i][k] * weight[slot_of<N>(k, 0)] *
-                    (k < i ? out.d[slot_of<N>(i - k, j)] : from_middle);
-        for (int k = 0; k <= i; ++k)
-            for (int l = 1; l <= j; ++l)
-                most += kChoose[i][k] * kChoose[j][l] * weight[slot_of<N>(k, l)] *
-                        out.d[slot_of<N>(i - k, j - l)];
-        return most;
-    };
-    const double divisor = weight_min * (1 - 16 * steps * kUnitRoundoff);
-    double invert = 1;  // of the weight in the middle
-    for (int sum = kRational ? 0 : 1; sum <= top; ++sum)
-        for (int j = 0; j <= std::min(sum, across); ++j) {
-            const int i = sum - j;
-            const double factor = falling[0][std::size_t(i)] * falling[N - 1][std::size_t(N == 1 ? 0 : j)];
-            if (!(factor > 0) && !kRational) continue;  // order above the degree: exactly zero
-            const std::size_t slot = slot_of<N>(i, j);
-            const double rounding = double(1 << sum);
-            double most = std::abs(factor) * (found[slot].most + rounding * 2 * slip);
-            if constexpr (kRational) {
-                weight[slot] = std::abs(factor) * (found[slot].weight_most + rounding * weight_slip);
-                weight_middle[slot] = factor * found[slot].weight_middle;
-                middle[slot] = factor * found[slot].middle;
-                for (int k = 0; k <= i; ++k)
-                    for (int l = k == 0 ? 1 : 0; l <= j; ++l) {
-                        const double choose = kChoose[i][k] * kChoose[j][l];
-                        const std::size_t part = slot_of<N>(k, l), rest = slot_of<N>(i - k, j - l);
-                        most += choose * weight[part] * out.d[rest];
-                        middle[slot] -= (choose * weight_middle[part]) * middle[rest];
-                    }
-                if (ruled && i > 0 && j > 0) most = std::min(most, by_rulings(i, j, factor, rounding));
-                most /= divisor;
-                if (sum == 0) invert = 1 / weight_middle[0];
-                middle[slot] *= invert;
-            }
-            if (sum > 0) out.d[slot] = most * (1 + 64 * kUnitRoundoff);
-        }
-    if constexpr (kRational) {
-        // The triangle inequality lost the signs; from the middle outwards they are kept.
-        const DerivativeBounds<N> crude = out;
-        for (int sum = top - 1; sum >= 1; --sum)
-            for (int j = 0; j <= std::min(sum, across); ++j) {
-                const int i = sum - j;
-                const std::size_t slot = slot_of<N>(i, j);
-                double here = norm(middle[slot]) + width[0] / 2 * out.d[slot_of<N>(i + 1, j)];
-                if constexpr (N == 2) here += width[1] / 2 * out.d[slot_of<N>(i, j + 1)];
-                // Rounding of the value in the middle: at most that of the terms that `crude` adds up.
-                here += 64 * steps * kUnitRoundoff * crude.d[slot];
-                out.d[slot] = std::min(crude.d[slot], here * (1 + 64 * kUnitRoundoff));
-            }
-        for (std::size_t slot = jet_size(N, order); slot < out.d.size(); ++slot) out.d[slot] = 0;
-    }
-    return out;
+    BezierBlock block;
+    block.load(net);
+    block.arrange();
+    BlockDemands demands;
+    demands.width = {width[0], width[N - 1]};
+    demands.order = order;
+    demands.size = size;
+    return of_block<N>(bounds_of_block(block, demands).all);
 }
 
 #define FF_INSTANTIATE(P)                                                                                    \

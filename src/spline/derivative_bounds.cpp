@@ -4,13 +4,10 @@
 // Idea: restricting a block to a smaller box (de Casteljau) makes the bound as tight as wanted, quadratically
 // in the size of the box.
 //
-// Along n: n . S has the coefficients n . P, which are off by sqrt(3) times what P is off by, and by 6 u |P|
-// from the products; both together are less than what would come from coefficients of size 2 |P|.
-//
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
 #include "bends_detail.hpp"
+#include "block_detail.hpp"
 #include "kinks_detail.hpp"
-#include "room_detail.hpp"
 #include "swept_bounds_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -25,39 +22,8 @@ namespace {
 
 constexpr double kSmallestBlock = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
-// de Casteljau on points of n numbers, one after the other: their part on [0, t], or on [t, 1].
-void keep_left_of(double* b, int size, int n, double t) {
-    for (int r = 1; r < size; ++r)
-        for (int i = size - 1; i >= r; --i) {
-            double *const to = b + std::ptrdiff_t(i) * n, *const from = to - n;
-            for (int c = 0; c < n; ++c) to[c] = (1 - t) * from[c] + t * to[c];
-        }
-}
-void keep_right_of(double* b, int size, int n, double t) {
-    for (int r = 1; r < size; ++r)
-        for (int i = 0; i < size - r; ++i) {
-            double *const to = b + std::ptrdiff_t(i) * n, *const from = to + n;
-            for (int c = 0; c < n; ++c) to[c] = (1 - t) * to[c] + t * from[c];
-        }
-}
-
-// Restricts a block without gaps along one axis of the piece's own interval `on` to `part`.
-template <std::size_t N, class P>
-void restrict_block(const NetView<N, P>& block, std::size_t axis, Interval on, Interval part) {
-    const int size = block.extent[axis], n = int(block.stride[axis]) * P::kCoords,
-              blocks = int(count_of(block.extent)) / (size * int(block.stride[axis]));
-    for (int k = 0; k < blocks; ++k) {
-        double* const first = block.data->c.data() + std::ptrdiff_t(k) * size * n;
-        const auto restrict_rows = [&](int numbers) {  // as a constant, where it can be one
-            if (part.hi < on.hi) keep_left_of(first, size, numbers, (part.hi - on.lo) / on.length());
-            if (part.lo > on.lo) keep_right_of(first, size, numbers, (part.lo - on.lo) / (part.hi - on.lo));
-        };
-        n == P::kCoords ? restrict_rows(P::kCoords) : restrict_rows(n);
-    }
-}
-
-// Calls f(net, widths) for the pieces of a spline that meet the box, each restricted to its part of it. The
-// nets have no gaps.
+// Calls f(block, widths) for the pieces of a spline that meet the box, each restricted to its part of it and
+// arranged.
 template <std::size_t N, class P, class F>
 void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box, F&& f) {
     Index<N> from{}, count{};
@@ -71,25 +37,14 @@ void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& 
         from[d] = first;
         count[d] = last - first + 1;
     }
-    Room<P> room;
+    BezierBlock block;
     each_index(count, [&](const Index<N>& k) {
         Index<N> piece{};
         for (std::size_t d = 0; d < N; ++d) piece[d] = from[d] + k[d];
-        const NetView<N, const P> whole = pieces.net(piece);
-        NetView<N, P> own{room.of(std::size_t(count_of(whole.extent))), whole.extent, {}};
-        std::ptrdiff_t stride = 1;
-        for (std::size_t d = N; d-- > 0;) {
-            own.stride[d] = stride;
-            stride *= whole.extent[d];
-        }
-        P* to = own.data;
-        each_fibre(int(N) - 1, whole.extent, [&](const Index<N>& at) {
-            const auto row = whole.fibre(int(N) - 1, at);
-            for (int i = 0; i < row.size; ++i) *to++ = row[i];
-        });
+        block.load(pieces.net(piece));
         std::array<double, N> width{};
         const auto on = pieces.box(piece);
-        for (std::size_t d = 0; d < N; ++d) {
+        for (std::size_t d = N; d-- > 0;) {
             width[d] = on[d].length();
             double lo = std::clamp(box[d].lo, on[d].lo, on[d].hi),
                    hi = std::clamp(box[d].hi, on[d].lo, on[d].hi);
@@ -101,64 +56,38 @@ void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& 
                 hi = std::min(on[d].hi, hi + lack);
             }
             if (lo <= on[d].lo && hi >= on[d].hi) continue;
-            restrict_block(own, d, on[d], {lo, hi});
+            block.restrict(N == 1 ? 1 : int(d), lo > on[d].lo ? (lo - on[d].lo) / (hi - on[d].lo) : 0,
+                           hi < on[d].hi ? (hi - on[d].lo) / width[d] : 1);
             width[d] = hi - lo;
         }
-        f(NetView<N, const P>(own), width);
+        block.arrange();
+        f(block, width);
     });
 }
 
+// Of f, if it is asked for, and of its coordinates along the directions: one restriction serves all.
+template <std::size_t N>
+struct PartBounds {
+    DerivativeBounds<N> all;
+    std::array<DerivativeBounds<N>, kernel::kBlockDirections> along;
+};
 template <std::size_t N, class P>
-DerivativeBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box,
-                              int order) {
-    DerivativeBounds<N> out;
-    each_part(pieces, box, [&](const NetView<N, const P>& net, const std::array<double, N>& width) {
-        out.include(derivative_bounds<N, P>(net, width, order));
+PartBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box, int order,
+                        std::span<const Vec<4>> directions, bool with_all) {
+    PartBounds<N> out;
+    each_part(pieces, box, [&](BezierBlock& block, const std::array<double, N>& width) {
+        const BlockAnswer part =
+            bounds_of_block(block, {{width[0], width[N - 1]}, order, 0, with_all, directions});
+        if (with_all) out.all.include(of_block<N>(part.all));
+        for (std::size_t k = 0; k < directions.size(); ++k) out.along[k].include(of_block<N>(part.along[k]));
     });
     return out;
 }
 
-// One coordinate of the coefficients of a plane curve.
-void coordinate(const NetView<1, const Vec<2>>& net, int i, std::vector<Vec<1>>& out) {
-    out.clear();
-    for (int k = 0; k < net.extent[0]; ++k) out.push_back({{net({k})[i]}});
-}
-void coordinate(const NetView<1, const Hom<2>>& net, int i, std::vector<Hom<1>>& out) {
-    out.clear();
-    for (int k = 0; k < net.extent[0]; ++k) out.push_back({{net({k})[i], net({k}).weight()}});
-}
-
-// n . p, of coefficients.
 template <int D>
-Vec<1> coordinate_along(const Vec<D>& p, const Vec<D>& n) {
-    return {{dot(p, n)}};
-}
-template <int D>
-Hom<1> coordinate_along(const Hom<D>& p, const Vec<D>& n) {
-    double sum = 0;
-    for (int i = 0; i < D; ++i) sum += p[i] * n[i];
-    return {{sum, p.weight()}};
-}
-
-// Of f, if it is asked for, and of n . f: one restriction serves both.
-template <std::size_t N, class P, int D>
-typename DerivativeQuery<N, D>::Both bounds_along(const BezierPieces<N, P>& pieces, const Vec<D>& n,
-                                                  const std::array<Interval, N>& box, int order,
-                                                  bool with_all) {
-    using Q = std::conditional_t<Space<P>::kRational, Hom<1>, Vec<1>>;
-    typename DerivativeQuery<N, D>::Both out;
-    Room<Q> room;
-    each_part(pieces, box, [&](const NetView<N, const P>& net, const std::array<double, N>& width) {
-        if (with_all) out.all.include(derivative_bounds<N, P>(net, width, order));
-        const std::size_t size = std::size_t(count_of(net.extent));
-        Q* const one = room.of(size);
-        double largest = 0;
-        for (std::size_t k = 0; k < size; ++k) {
-            one[k] = coordinate_along(net.data[k], n);
-            for (int i = 0; i < D; ++i) largest = std::max(largest, std::abs(net.data[k][i]));
-        }
-        out.along.include(derivative_bounds<N, Q>({one, net.extent, net.stride}, width, order, 2 * largest));
-    });
+Vec<4> direction_of(const Vec<D>& n) {
+    Vec<4> out;
+    for (int i = 0; i < D; ++i) out[i] = n[i];
     return out;
 }
 
@@ -230,9 +159,10 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
         [&](const auto& g) -> DerivativeBounds<N> {
             if constexpr (requires { g.net(); })
                 return bounds_of(
-                    std::get<BezierPieces<N, typename std::remove_cvref_t<decltype(g)>::Coefficients>>(
-                        pieces_),
-                    box, order);
+                           std::get<BezierPieces<N, typename std::remove_cvref_t<decltype(g)>::Coefficients>>(
+                               pieces_),
+                           box, order, {}, true)
+                    .all;
             else if constexpr (requires { g.profile; })
                 return bounds_of(g, *profile_, box, order);
             else if constexpr (requires { g.base; })
@@ -250,9 +180,9 @@ DerivativeBounds<N> DerivativeQuery<N, D>::along(const Vec<D>& n, const std::arr
         [&](const auto& g) -> DerivativeBounds<N> {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); })
-                return bounds_along<N>(std::get<BezierPieces<N, typename G::Coefficients>>(pieces_), n, box,
-                                       order, false)
-                    .along;
+                return bounds_of(std::get<BezierPieces<N, typename G::Coefficients>>(pieces_), box, order,
+                                 std::array{direction_of(n)}, false)
+                    .along[0];
             else if constexpr (std::same_as<G, Extrusion>)
                 return bounds_along(g, n, *profile_, box, order);
             else if constexpr (std::same_as<G, Revolution>)
@@ -266,6 +196,23 @@ DerivativeBounds<N> DerivativeQuery<N, D>::along(const Vec<D>& n, const std::arr
 }
 
 template <std::size_t N, int D>
+std::array<DerivativeBounds<N>, 2> DerivativeQuery<N, D>::along_two(const std::array<Vec<D>, 2>& n,
+                                                                    const std::array<Interval, N>& box,
+                                                                    int order) const {
+    return std::visit(
+        [&](const auto& g) -> std::array<DerivativeBounds<N>, 2> {
+            using G = std::remove_cvref_t<decltype(g)>;
+            if constexpr (requires { g.net(); })
+                return bounds_of(std::get<BezierPieces<N, typename G::Coefficients>>(pieces_), box, order,
+                                 std::array{direction_of(n[0]), direction_of(n[1])}, false)
+                    .along;
+            else
+                return {along(n[0], box, order), along(n[1], box, order)};
+        },
+        *geometry_);
+}
+
+template <std::size_t N, int D>
 typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n,
                                                                  const std::array<Interval, N>& box,
                                                                  int order) const {
@@ -273,8 +220,9 @@ typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n
         [&](const auto& g) -> Both {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); }) {
-                return bounds_along<N>(std::get<BezierPieces<N, typename G::Coefficients>>(pieces_), n, box,
-                                       order, true);
+                const auto found = bounds_of(std::get<BezierPieces<N, typename G::Coefficients>>(pieces_),
+                                             box, order, std::array{direction_of(n)}, true);
+                return {found.all, found.along[0]};
             } else if constexpr (std::same_as<G, Revolution>) {
                 Both out{(*this)(box, order), {}};
                 out.along = bounds_along(g, n, *profile_, box, order, out.all);
@@ -288,23 +236,15 @@ typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n
 
 PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>& curve, Interval on) {
     PlaneCurveBounds out;
-    const auto of_pieces = [&]<class P>(const BezierPieces<1, P>& pieces) {
-        std::vector<std::conditional_t<Space<P>::kRational, Hom<1>, Vec<1>>> one;
-        using Q = typename decltype(one)::value_type;
-        each_part(pieces, {on}, [&](const NetView<1, const P>& net, const std::array<double, 1>& width) {
-            out.both.include(derivative_bounds<1, P>(net, width, 2));
-            for (int i = 0; i < 2; ++i) {
-                coordinate(net, i, one);
-                out.coordinate[std::size_t(i)].include(
-                    derivative_bounds<1, Q>({one.data(), net.extent, {1}}, width, 2));
-            }
-        });
-    };
     std::visit(
         [&](const auto& g) {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); }) {
-                of_pieces(std::get<BezierPieces<1, typename G::Coefficients>>(curve.pieces_));
+                const auto found =
+                    bounds_of(std::get<BezierPieces<1, typename G::Coefficients>>(curve.pieces_), {on}, 2,
+                              std::array{Vec<4>{{1}}, Vec<4>{{0, 1}}}, true);
+                out.both = found.all;
+                for (std::size_t i = 0; i < 2; ++i) out.coordinate[i] = found.along[i];
             } else {
                 out.both = bounds_of(g, on);
                 for (int i = 0; i < 2; ++i) {

@@ -17,7 +17,7 @@ public:
     }
 
 private:
-    static_assert(std::is_trivially_copyable_v<T> && std::is_aggregate_v<T>);
+    static_assert(std::is_trivially_copyable_v<T> && (std::is_aggregate_v<T> || std::is_arithmetic_v<T>));
     alignas(T) std::byte few_[kFew * sizeof(T)];  // creates its objects by itself
     std::vector<T> more_;
 };

@@ -77,7 +77,10 @@ public:
     DerivativeBounds<N> operator()(const std::array<Interval, N>& box, int order = 2) const;
     // Of the coordinate n . f instead of f, for a vector n of length 1: bounds of |n . f_a|.
     DerivativeBounds<N> along(const Vec<D>& n, const std::array<Interval, N>& box, int order = 2) const;
-    // Both of f and of n . f: what the two above say, for little more than one costs.
+    // Along two vectors, for little more than one costs.
+    std::array<DerivativeBounds<N>, 2> along_two(const std::array<Vec<D>, 2>& n,
+                                                 const std::array<Interval, N>& box, int order = 2) const;
+    // Both of f and of n . f: what is said above, for little more than one costs.
     struct Both {
         DerivativeBounds<N> all, along;
     };
