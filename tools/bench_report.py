@@ -18,12 +18,14 @@ import platform
 import shutil
 import subprocess
 import sys
+import time
 
 from bench_report_text import TOLERANCES, good, report, table_row
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LIMIT = 60  # seconds for one process
 BISECTIONS = 6
+SEARCH_LIMIT = 120  # seconds of search for one row, after which the run in progress is the last one
 OCCT_DATA = "/usr/share/opencascade/data"
 GMSH_DATA = "/usr/share/doc/gmsh-doc/doc/gmsh/demos/boolean"
 
@@ -119,7 +121,7 @@ def measure(name, path, relative, programs, rounds):
 
 def deflection_that_reaches(path, relative, diagonal, program, cache, more):
     """The largest deflection found, relative to the diagonal, with which Open CASCADE's measured deviation is at most
-    `relative` of it; None if none was found. Some deflections between it and `relative` may do as well: the
+    `relative` of it; None if none was found before SEARCH_LIMIT. Some deflections between it and `relative` may do as well: the
     deviation is not a monotone function of the deflection."""
     size = 0 if path in FACES else pathlib.Path(path).stat().st_size
     key = " ".join([f"{path} {size} {relative:g}"] + more)
@@ -131,20 +133,22 @@ def deflection_that_reaches(path, relative, diagonal, program, cache, more):
         result = run([program, path, "--relative", repr(deflection), "--diagonal", repr(diagonal), "--repetitions", "1"] + more)
         return good(result) and result["deviation"] <= relative * diagonal
 
-    found, above = None, relative
+    found, above, end = None, relative, time.monotonic() + SEARCH_LIMIT
     if reaches(relative):
         found = relative
     else:
         below = relative
         for _ in range(BISECTIONS):  # down by factors of four first
             below /= 4
+            if time.monotonic() > end:
+                break
             if reaches(below):
                 found = below
                 break
             above = below
         for _ in range(BISECTIONS if found else 0):
             middle = math.sqrt(found * above)
-            if above / found < 1.1:
+            if above / found < 1.1 or time.monotonic() > end:
                 break
             if reaches(middle):
                 found = middle

@@ -26,7 +26,7 @@ struct BlockShape {
 struct BlockTask {
     BlockShape shape;
     const double* numbers = nullptr;
-    double* room = nullptr;  // for twice as many and 8 more
+    double* room = nullptr;  // for twice as many
     double centre[4] = {};
     int top = 2;  // total order
     int directions = 0;
@@ -55,11 +55,34 @@ struct BlockFound {
     } of[kBlockOrder + 1][kBlockOrder + 1];
 };
 
+// Sums of w[0][a][i] w[1][b][j] * coefficient (i, j) of 4 numbers each, for all a + b <= order, in graded
+// order. Indices wrap at the extents. REQUIRES order <= 3.
+struct Contraction {
+    const double* net = nullptr;
+    std::ptrdiff_t stride[2] = {};  // in numbers
+    int first[2] = {}, count[2] = {}, extent[2] = {};
+    const double* weights[2] = {};  // those of the next order are `weight_stride` further on
+    std::ptrdiff_t weight_stride = 0;
+    int order = 0;
+};
+
+// Coefficients (i, j) of 4 numbers each, i < rows, j < columns, at from + i * row_step + j * column_step.
+struct Quadruples {
+    const double* from = nullptr;
+    std::ptrdiff_t row_step = 0, column_step = 0;
+    int rows = 1, columns = 1;
+};
+
 struct BlockKernels {
     // A Bezier curve of `count` coefficients of `lanes` numbers each becomes its part on [0, hi], and of this
     // the part on [lo, 1]. 1 and 0: not at all.
     void (*restrict)(double* coefficients, int count, int lanes, double hi, double lo);
+    // The same for each column of quadruples, to rows one after the other without gaps.
+    void (*restrict_quadruples)(const Quadruples&, double* to, double hi, double lo);
+    // To four planes of `rows` rows of lanes_of(columns) numbers.
+    void (*arrange_quadruples)(const Quadruples&, double* to);
     void (*differences)(const BlockTask&, BlockFound&);
+    void (*contract)(const Contraction&, double* out);
 };
 
 // Those that go with kernels() (evaluate.hpp).

@@ -49,24 +49,53 @@ FF_INLINE V4 over_lanes(V4 a, V4 b, V4 c, V4 d, F f) {
 }
 
 template <int Count>
-FF_INLINE void restrict_lanes(double* p, int count, int lanes, double hi, double lo) {
+FF_INLINE void restrict_lanes(const double* from, std::ptrdiff_t from_step, int count, double* to,
+                              int to_step, double hi, double lo) {
     const int n = Count > 0 ? Count : count;
     V4 b[Count > 0 ? Count : kMaxDegree + 1];
-    for (int i = 0; i < n; ++i) b[i] = load4(p + i * lanes);
+    for (int i = 0; i < n; ++i) b[i] = load4(from + i * from_step);
     if (hi < 1)
         for (int r = 1; r < n; ++r)
             for (int i = n - 1; i >= r; --i) b[i] = all4(1 - hi) * b[i - 1] + all4(hi) * b[i];
     if (lo > 0)
         for (int r = 1; r < n; ++r)
             for (int i = 0; i < n - r; ++i) b[i] = all4(1 - lo) * b[i] + all4(lo) * b[i + 1];
-    for (int i = 0; i < n; ++i) store4(p + i * lanes, b[i]);
+    for (int i = 0; i < n; ++i) store4(to + i * to_step, b[i]);
+}
+FF_INLINE void restrict_four(const double* from, std::ptrdiff_t from_step, int count, double* to, int to_step,
+                             double hi, double lo) {
+    count == 4   ? restrict_lanes<4>(from, from_step, count, to, to_step, hi, lo)
+    : count == 3 ? restrict_lanes<3>(from, from_step, count, to, to_step, hi, lo)
+                 : restrict_lanes<0>(from, from_step, count, to, to_step, hi, lo);
 }
 
 void restrict_all(double* p, int count, int lanes, double hi, double lo) {
-    for (int k = 0; k < lanes; k += 4)
-        count == 4   ? restrict_lanes<4>(p + k, count, lanes, hi, lo)
-        : count == 3 ? restrict_lanes<3>(p + k, count, lanes, hi, lo)
-                     : restrict_lanes<0>(p + k, count, lanes, hi, lo);
+    for (int k = 0; k < lanes; k += 4) restrict_four(p + k, lanes, count, p + k, lanes, hi, lo);
+}
+
+void restrict_quadruples(const Quadruples& t, double* to, double hi, double lo) {
+    for (int k = 0; k < t.columns; ++k)
+        restrict_four(t.from + k * t.column_step, t.row_step, t.rows, to + 4 * k, 4 * t.columns, hi, lo);
+}
+
+void arrange_quadruples(const Quadruples& t, double* to) {
+    const int lanes = lanes_of(t.columns);
+    const std::size_t plane = std::size_t(t.rows) * std::size_t(lanes);
+    for (int r = 0; r < t.rows; ++r)
+        for (int k = 0; k < lanes; k += 4) {
+            V4 p[4];
+            for (int i = 0; i < 4; ++i)
+                p[i] = k + i < t.columns ? load4(t.from + r * t.row_step + (k + i) * t.column_step) : all4(0);
+            const V4 ab = __builtin_shufflevector(p[0], p[1], 0, 4, 2, 6),
+                     cd = __builtin_shufflevector(p[2], p[3], 0, 4, 2, 6),
+                     ab1 = __builtin_shufflevector(p[0], p[1], 1, 5, 3, 7),
+                     cd1 = __builtin_shufflevector(p[2], p[3], 1, 5, 3, 7);
+            double* const at = to + r * lanes + k;
+            store4(at, __builtin_shufflevector(ab, cd, 0, 1, 4, 5));
+            store4(at + plane, __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5));
+            store4(at + 2 * plane, __builtin_shufflevector(ab, cd, 2, 3, 6, 7));
+            store4(at + 3 * plane, __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7));
+        }
 }
 
 // Dim, Directions: how many, or -1 where that is known only when running.
@@ -80,7 +109,7 @@ struct Differences {
     const int directions = Directions < 0 ? t.directions : Directions;
     const std::size_t plane = t.shape.plane();
     double* const down = t.room;
-    double* const work = t.room + std::size_t(dim + int(kRational)) * plane + 4;
+    double* const work = t.room + std::size_t(dim + int(kRational)) * plane;
     double ruled_centre[kBlockOrder + 1][4] = {};
 
     template <class F>
@@ -163,7 +192,12 @@ struct Differences {
                 V4 x[kBlockPlanes];
                 each_plane([&](int c) FF_BODY {
                     const double* const own = p + std::size_t(c) * plane;
-                    x[c] = kSubtract ? kept(load4(own + 1) - load4(own), mask) : load4(own);
+                    x[c] = load4(own);
+                    if constexpr (kSubtract) {
+                        // Not load4(own + 1): what was just stored would not be there yet.
+                        const V4 next = k + 4 < lanes ? load4(own + 4) : x[c];
+                        x[c] = kept(__builtin_shufflevector(x[c], next, 1, 2, 3, 4) - x[c], mask);
+                    }
                     if (kSubtract) store4(q + std::size_t(c) * plane, x[c]);
                 });
                 most = larger(most, square_of(x));
@@ -201,8 +235,6 @@ struct Differences {
 
     void run() {
         begin();
-        store4(down + std::size_t(dim + int(kRational)) * plane, all4(0));
-        store4(work + std::size_t(dim + int(kRational)) * plane, all4(0));
         for (int i = 0; i <= t.top && i < t.shape.rows; ++i) {
             const int rows = t.shape.rows - i;
             if (i > 0)
@@ -266,9 +298,44 @@ void differences(const BlockTask& t, BlockFound& out) {
                    : differences_of<-1, false>(t, out);
 }
 
+template <int Order>
+FF_INLINE void contract_to(const Contraction& t, double* out) {
+    constexpr int kSlots = (Order + 1) * (Order + 2) / 2;
+    V4 sum[kSlots];
+    each<kSlots>(kSlots, [&](int i) FF_BODY { sum[i] = all4(0); });
+    int row = t.first[0];
+    for (int k = 0; k < t.count[0]; ++k) {
+        const double* const from = t.net + row * t.stride[0];
+        V4 inner[Order + 1];
+        each<Order + 1>(Order + 1, [&](int b) FF_BODY { inner[b] = all4(0); });
+        int column = t.first[1];
+        for (int l = 0; l < t.count[1]; ++l) {
+            const V4 p = load4(from + column * t.stride[1]);
+            each<Order + 1>(Order + 1, [&](int b) FF_BODY {
+                inner[b] += all4(t.weights[1][b * t.weight_stride + l]) * p;
+            });
+            if (++column == t.extent[1]) column = 0;
+        }
+        each<Order + 1>(Order + 1, [&](int b) FF_BODY {
+            for (int a = 0; a + b <= Order; ++a)
+                sum[(a + b) * (a + b + 1) / 2 + b] += all4(t.weights[0][a * t.weight_stride + k]) * inner[b];
+        });
+        if (++row == t.extent[0]) row = 0;
+    }
+    each<kSlots>(kSlots, [&](int i) FF_BODY { store4(out + 4 * i, sum[i]); });
+}
+
+void contract(const Contraction& t, double* out) {
+    t.order == 0   ? contract_to<0>(t, out)
+    : t.order == 1 ? contract_to<1>(t, out)
+    : t.order == 2 ? contract_to<2>(t, out)
+                   : contract_to<3>(t, out);
+}
+
 }  // namespace
 }  // namespace FF_KERNEL
 
-const BlockKernels FF_KERNELS = {FF_KERNEL::restrict_all, FF_KERNEL::differences};
+const BlockKernels FF_KERNELS = {FF_KERNEL::restrict_all, FF_KERNEL::restrict_quadruples,
+                                 FF_KERNEL::arrange_quadruples, FF_KERNEL::differences, FF_KERNEL::contract};
 
 }  // namespace freiform::kernel

@@ -27,6 +27,7 @@
 //
 // References: [Farin 2002, 5.3], [PT97, 4.2], [Filip Magedson Markot 1986].
 #include "block_detail.hpp"
+#include "leibniz_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -40,9 +41,7 @@ namespace {
 
 constexpr std::size_t kMostBernstein = kMaxDegree + 1, kHalfStride = kernel::lanes_of(kMaxDegree + 1);
 
-constexpr std::size_t slot_of(int i, int j) { return std::size_t((i + j) * (i + j + 1) / 2 + j); }
-static_assert(slot_of(2, 0) == jet_slot(Index<2>{2, 0}) && slot_of(1, 2) == jet_slot(Index<2>{1, 2}));
-static_assert(kBoundOrder == kernel::kBlockOrder);
+static_assert(kBoundOrder == kernel::kBlockOrder && kBoundOrder == kLowOrder);
 
 // The Bernstein polynomials of each degree at 1/2.
 constexpr auto kAtHalf = [] {
@@ -53,41 +52,6 @@ constexpr auto kAtHalf = [] {
             b[n][i] = ((i > 0 ? b[n - 1][i - 1] : 0) + (i < n ? b[n - 1][i] : 0)) / 2;
     return b;
 }();
-
-// The terms of Leibniz' rule of each derivative but the one with the derivative itself: `choose` times the
-// one in slot `part` times the one in slot `rest`.
-struct Term {
-    double choose = 0;
-    std::size_t part = 0, rest = 0;
-};
-constexpr double kChoose[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
-template <int I, int J>
-constexpr auto kTerms = [] {
-    std::array<Term, std::size_t((I + 1) * (J + 1) - 1)> out{};
-    std::size_t n = 0;
-    for (int k = 0; k <= I; ++k)
-        for (int l = k == 0 ? 1 : 0; l <= J; ++l)
-            out[n++] = {kChoose[I][k] * kChoose[J][l], slot_of(k, l), slot_of(I - k, J - l)};
-    return out;
-}();
-
-// Calls f.operator()<i, j>() for the derivatives of order kSum, of curves only for those along v.
-template <int kSum, class F>
-void each_of_order(bool curve, F&& f) {
-    if constexpr (kSum > 0)
-        if (!curve) [&]<int... J>(std::integer_sequence<int, J...>) {
-                (f.template operator()<kSum - J, J>(), ...);
-            }
-    (std::make_integer_sequence<int, kSum>{});
-    f.template operator()<0, kSum>();
-}
-// The same for all orders from kFrom up to `top`.
-template <int kFrom, class F>
-void each_derivative(bool curve, int top, F&& f) {
-    if (kFrom > top) return;
-    each_of_order<kFrom>(curve, f);
-    if constexpr (kFrom < kBoundOrder) each_derivative<kFrom + 1>(curve, top, f);
-}
 
 // Whether weights change along u, along v, by more than restriction to a part rounds them.
 std::array<bool, 2> weights_vary(const BezierBlock& block) {
@@ -293,14 +257,14 @@ BlockBounds BlockBounder::bounds(Sizes<M>& of) const {
         constexpr std::size_t slot = slot_of(I, J);
         const double factor = falling_[0][I] * falling_[1][J];
         double most = std::abs(factor) * (of.most[slot] + double(1 << (I + J)) * 2 * of.slip);
-        for (const Term& t : kTerms<I, J>) most += t.choose * weight_[t.part] * out[t.rest];
+        for (const LeibnizTerm& t : kLeibniz<2, I, J>) most += t.choose * weight_[t.part] * out[t.rest];
         if constexpr (I > 0 && J > 0)
             if (ruled_) most = std::min(most, by_rulings(of, out, I, J));
         out[slot] = most * divide * (1 + 64 * kUnitRoundoff);
         if constexpr (I + J < kBoundOrder)
             if (I + J < top_) {
                 std::array<double, M> middle = of.middle[slot];
-                for (const Term& t : kTerms<I, J>) {
+                for (const LeibnizTerm& t : kLeibniz<2, I, J>) {
                     const double share = t.choose * weight_middle_[t.part];
                     for (std::size_t k = 0; k < M; ++k) middle[k] -= share * of.middle[t.rest][k];
                 }

@@ -1,9 +1,12 @@
 // Partial derivatives of curves and surfaces at one place.
 #pragma once
+#include "leibniz_detail.hpp"
+
 #include <freiform/basis/blossom.hpp>
 #include <freiform/spline/jet.hpp>
 
 #include <algorithm>
+#include <kernel/blocks.hpp>
 #include <span>
 
 namespace freiform::detail {
@@ -50,6 +53,16 @@ requires(N <= 2) void contract_all(const NetView<N, const P>& net, const std::ar
     };
     if constexpr (N == 1) {
         for (int a = 0; a <= order; ++a) out[a] = sum_along(net.data, a);
+    } else if (P::kCoords == 4 && order <= 3) {
+        kernel::block_kernels().contract({net.data->c.data(),
+                                          {net.stride[0] * 4, net.stride[1] * 4},
+                                          {first[0], first[1]},
+                                          {count[0], count[1]},
+                                          {net.extent[0], net.extent[1]},
+                                          {w[0], w[1]},
+                                          stride,
+                                          order},
+                                         out->c.data());
     } else {
         std::fill_n(out, std::size_t((order + 1) * (order + 2) / 2), P{});
         int i = first[0];
@@ -70,18 +83,15 @@ requires(N <= 2) void contract_all(const NetView<N, const P>& net, const std::ar
 // project_jet up to order 3.
 template <std::size_t N, class P>
 requires(N <= 2 && Space<P>::kRational) void project_low(int order, const P* h, std::span<PointOf<P>> out) {
-    constexpr double kChoose[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
-    const auto slot = [](int i, int j) { return std::size_t(N == 1 ? i : (i + j) * (i + j + 1) / 2 + j); };
-    for (int total = 0; total <= order; ++total)
-        for (int j = 0; j <= (N == 1 ? 0 : total); ++j) {
-            const int i = total - j;
+    each_derivative<0>(N == 1, order, [&]<int I, int J>() {
+        if constexpr (N == 2 || I == 0) {
+            constexpr std::size_t slot = slot_of<N>(I, J);
             PointOf<P> v;
-            for (int c = 0; c < v.kCoords; ++c) v[c] = h[slot(i, j)][c];
-            for (int k = 0; k <= i; ++k)
-                for (int l = k == 0 ? 1 : 0; l <= j; ++l)
-                    v -= (kChoose[i][k] * kChoose[j][l] * h[slot(k, l)].weight()) * out[slot(i - k, j - l)];
-            for (int c = 0; c < v.kCoords; ++c) out[slot(i, j)][c] = v[c] / h[0].weight();
+            for (int c = 0; c < v.kCoords; ++c) v[c] = h[slot][c];
+            for (const LeibnizTerm& t : kLeibniz<N, I, J>) v -= (t.choose * h[t.part].weight()) * out[t.rest];
+            for (int c = 0; c < v.kCoords; ++c) out[slot][c] = v[c] / h[0].weight();
         }
+    });
 }
 
 }  // namespace freiform::detail

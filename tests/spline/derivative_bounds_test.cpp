@@ -1,3 +1,4 @@
+#include "support/prepared.hpp"
 #include "support/shapes.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -133,9 +134,95 @@ TEST(DerivativeBounds, asked_for_both_are_those_asked_for_one_by_one) {
             const auto both = query.both(n, box);
             EXPECT_EQ(both.all.d, query(box).d) << name;
             EXPECT_EQ(both.along.d, query.along(n, box).d) << name;
+            const Vec<3> other = unit(Vec<3>{{uniform(rng, -1, 1), uniform(rng, 1, 2), uniform(rng, -1, 1)}});
+            const auto two = query.along_two({n, other}, box);
+            EXPECT_EQ(two[0].d, both.along.d) << name;
+            EXPECT_EQ(two[1].d, query.along(other, box).d) << name;
             EXPECT_EQ(query.value_error(box), value_error_bound(surface, box)) << name;
         }
     }
+}
+
+TEST(DerivativeBounds, along_vectors_hold_at_every_point_and_are_no_larger_than_those_of_all) {
+    std::mt19937 rng(21);
+    for (const auto& [name, surface, on] : surfaces_of_every_kind(6)) {
+        const DerivativeQuery<2, 3> query(surface);
+        for (int k = 0; k < 40; ++k) {
+            const Vec<3> n = k % 4 == 0 ? Vec<3>{{0, 1, 0}}
+                                        : unit(Vec<3>{{uniform(rng, -1, 1), uniform(rng, -1, 1), 0.1}});
+            const double part = std::pow(0.5, uniform(rng, 0, 9));
+            std::array<Interval, 2> box;
+            for (std::size_t d = 0; d < 2; ++d) {
+                box[d].lo = uniform(rng, on[d].lo, on[d].hi - part * on[d].length());
+                box[d].hi = box[d].lo + part * on[d].length();
+            }
+            const auto both = query.both(n, box);
+            for (std::size_t s = 1; s < 6; ++s)
+                EXPECT_LE(both.along.d[s], both.all.d[s] * (1 + 1e-9) + 1e-9) << name << ", derivative " << s;
+            for (int i = 0; i < 30; ++i) {
+                const auto j =
+                    jet<2>(surface, {uniform(rng, box[0].lo, box[0].hi), uniform(rng, box[1].lo, box[1].hi)});
+                for (std::size_t s = 1; s < 6; ++s)
+                    ASSERT_LE(std::abs(dot(n, j.d[s])), both.along.d[s] * (1 + 1e-12) + 1e-12)
+                        << name << ", derivative " << s;
+            }
+        }
+    }
+}
+
+constexpr int kBinomials[4][4] = {{1}, {1, 1}, {1, 2, 1}, {1, 3, 3, 1}};
+
+TEST(DerivativeBounds, of_blocks_of_every_degree_are_those_of_all_their_differences) {
+    std::mt19937 rng(22);
+    for (int p = 1; p <= 6; ++p)
+        for (int q = 1; q <= 9; ++q) {
+            const auto s = random_patch<2, Vec<3>>(rng, {p, q}, 0);
+            const auto net = s.net().view();
+            const auto found = derivative_bounds<2, Vec<3>>({net.data, net.extent, net.stride}, {1, 1}, 3);
+            double factor_u = 1;
+            for (int i = 0; i <= 3; factor_u *= p - i, ++i) {
+                double factor = factor_u;
+                for (int j = 0; i + j <= 3; factor *= q - j, ++j) {
+                    if (i + j == 0) continue;
+                    double most = 0;
+                    for (int a = 0; a + i <= p; ++a)
+                        for (int b = 0; b + j <= q; ++b) {
+                            Vec<3> sum;  // all signed binomials at once, the slow obvious way
+                            for (int k = 0; k <= i; ++k)
+                                for (int l = 0; l <= j; ++l)
+                                    sum += ((i - k + j - l) % 2 ? -1.0 : 1.0) * kBinomials[i][k] *
+                                           kBinomials[j][l] * net({a + k, b + l});
+                            most = std::max(most, norm(sum));
+                        }
+                    const double bound = found(i, j), exact = std::abs(factor) * most;
+                    EXPECT_GE(bound, exact * (1 - 1e-14)) << p << " " << q << ": " << i << " " << j;
+                    EXPECT_LE(bound, exact * (1 + 1e-9) + 1e-9) << p << " " << q << ": " << i << " " << j;
+                }
+            }
+        }
+}
+
+TEST(DerivativeBounds, are_the_same_numbers_with_every_instruction_set) {
+    std::vector<std::vector<double>> found;
+    with_every_variant([&] {
+        std::mt19937 rng(23);
+        auto& all = found.emplace_back();
+        for (const auto& [name, surface, on] : surfaces_of_every_kind(7)) {
+            const DerivativeQuery<2, 3> query(surface);
+            for (int k = 0; k < 20; ++k) {
+                const std::array<Interval, 2> box{
+                    Interval{uniform(rng, on[0].lo, on[0].middle()), uniform(rng, on[0].middle(), on[0].hi)},
+                    Interval{uniform(rng, on[1].lo, on[1].middle()), uniform(rng, on[1].middle(), on[1].hi)}};
+                const auto both = query.both(unit(Vec<3>{{1, 2, uniform(rng, -1, 1)}}), box, 1 + k % 2);
+                all.insert(all.end(), both.all.d.begin(), both.all.d.end());
+                all.insert(all.end(), both.along.d.begin(), both.along.d.end());
+                const auto j = jet<2>(surface, {box[0].lo, box[1].hi});
+                for (const Vec<3>& d : j.d) all.insert(all.end(), d.c.begin(), d.c.end());
+            }
+        }
+    });
+    for (const auto& other : found) EXPECT_EQ(other, found[0]);
+    if (found.size() == 1) GTEST_SKIP() << "this processor has one instruction set only";
 }
 
 TEST(DerivativeBounds, scale_exactly_with_powers_of_two) {
