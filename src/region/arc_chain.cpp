@@ -173,8 +173,8 @@ public:
             segments.push_back({1, {segments.back().back(), subpath.start}, 1});
         const std::size_t n = segments.size();
         std::vector<Vec<2>> begin(n), end(n);
-        std::vector<std::array<double, 2>> bends(n);  // at the start and the end of each
-        std::vector<bool> smooth(n, false);           // at the end of each
+        std::vector<std::array<Bounded, 2>> bends(n);  // at the start and the end of each
+        std::vector<bool> smooth(n, false);            // at the end of each
         for (std::size_t i = 0; i < n; ++i) {
             begin[i] = unit(end_tangent(segments[i], false));
             end[i] = unit(end_tangent(segments[i], true));
@@ -223,13 +223,22 @@ private:
     }
 
     // The curvature at the start; 0 where the curve stands still there.
-    static double end_bend(const PathSegment& s) {
+    static Bounded end_bend(const PathSegment& s) {
         if (s.degree == 1 || s.points[0] == s.points[1]) return 0;
-        const Vec<2> d = s.points[1] - s.points[0], next = s.points[2] - s.points[1];
-        const double length = norm(d), w = s.degree == 2 ? s.weight : 1;
-        const double bend =
-            (s.degree - 1.0) / s.degree * cross(unit(d), (1 / length) * next) / length / (w * w);
-        return std::isfinite(bend) ? bend : 0;
+        const auto side = [&](std::size_t i) {
+            return BoundedVec<2>{Bounded(s.points[i + 1][0]) - Bounded(s.points[i][0]),
+                                 Bounded(s.points[i + 1][1]) - Bounded(s.points[i][1])};
+        };
+        BoundedVec<2> d = side(0), next = side(1);
+        const double size = std::ldexp(
+            1.0,
+            std::ilogb(std::max(std::abs(d[0].value), std::abs(d[1].value))));  // so that no power overflows
+        for (BoundedVec<2>* v : {&d, &next})
+            for (Bounded& x : *v) x = x / Bounded(size);
+        const Bounded square = dot(d, d), w = s.degree == 2 ? s.weight : 1,
+                      bend = Bounded(s.degree - 1) / Bounded(s.degree) * (d[0] * next[1] - d[1] * next[0]) /
+                             (square * sqrt(square) * w * w * Bounded(size));
+        return bend.is_finite() ? bend : 0;
     }
 
     struct Part {
@@ -347,7 +356,7 @@ private:
     double h_, tolerance_, bend_ = 0;
     ArcChain out_;
     PieceJoint joint_ = PieceJoint::smooth;
-    std::array<double, 2> bends_{};
+    std::array<Bounded, 2> bends_{};
 };
 
 }  // namespace

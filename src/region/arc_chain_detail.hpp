@@ -2,6 +2,8 @@
 #pragma once
 #include "arcs_detail.hpp"
 
+#include <freiform/core/bounded.hpp>
+
 #include <vector>
 
 namespace freiform::detail {
@@ -29,7 +31,7 @@ struct ArcChain {
     std::vector<PieceJoint> before;  // of each piece; of the first one only if closed
     // At corners, for each piece: the curvatures of the segments that end and begin there, to the left. 0
     // where it is infinite.
-    std::vector<std::array<double, 2>> bends;
+    std::vector<std::array<Bounded, 2>> bends;
     bool closed = false;
     // For every point of the pen at a place of the path there is one of the pen at a place of the chain
     // within this distance, and the other way round.

@@ -1,5 +1,6 @@
 // The join `arcs` of SVG 2: where the circles end that go on with the curvature of the sides of a stroke.
 #pragma once
+#include <freiform/core/bounded.hpp>
 #include <freiform/core/vec.hpp>
 
 namespace freiform::detail {
@@ -8,8 +9,10 @@ namespace freiform::detail {
 struct JoinSide {
     Vec<2> at;         // of length 1
     Vec<2> direction;  // in which the side goes on; at right angles to `at`
-    double bend = 0;   // curvature of the path there; > 0 where its centre is opposite to `at`
+    Bounded bend;      // curvature of the path there; > 0 where its centre is opposite to `at`
 };
+// Coordinates of `at` and `direction` may be off by this much.
+inline constexpr double kJoinSideError = 0x1p-50;
 
 enum class ArcsJoinKind { arcs, miter_clip, round };
 
@@ -19,6 +22,9 @@ enum class ArcsJoinKind { arcs, miter_clip, round };
 struct ArcsJoin {
     ArcsJoinKind kind = ArcsJoinKind::arcs;
     Vec<2> from_first, from_last;
+    // The join that the rules give for the exact numbers is within this distance; infinite where rounding
+    // leaves everything open.
+    double bound = 0;
 };
 
 // Counter-clockwise from `first` to `last` on the outside of the corner; `first.at` is on the right of its

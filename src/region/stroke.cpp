@@ -147,6 +147,13 @@ public:
     }
     Path take() { return std::move(path_); }
 
+    // Of the joins: the one that rounding leaves most in doubt.
+    struct Doubt {
+        Vec<2> at;
+        double bound = 0;
+    };
+    const Doubt& worst() const { return worst_; }
+
 private:
     bool is_tight(const ArcPiece& x) const { return x.curvature != 0 && 1 <= h_ * std::abs(x.curvature); }
     std::optional<Vec<2>> centre(const ArcPiece& x) const {
@@ -225,7 +232,7 @@ private:
 
     // On the outside of the corner, between the pens before and after it; or on the inside.
     void join(const Frame& f, const Vec<2>& in, const Frame& g, const Vec<2>& out, LineJoin how,
-              bool inside = false, const std::array<double, 2>& bends = {}) {
+              bool inside = false, const std::array<Bounded, 2>& bends = {}) {
         const bool left = cross(in, out) > 0 || (cross(in, out) == 0 && freiform::dot(in, out) < 0);
         if (cross(in, out) == 0 && freiform::dot(in, out) > 0) return;
         const Frame &first = left ? f : g, &last = left ? g : f;
@@ -238,11 +245,12 @@ private:
         const Vec<2> middle = unit((a - p) + (b - p));
         const double half = freiform::dot(middle, a - p) / h_;  // the cosine of half the turn
         if (how == LineJoin::arcs) {
-            const double bend_in = (left ? h_ : -h_) * bends[0], bend_out = (left ? h_ : -h_) * bends[1];
+            const Bounded scale = left ? h_ : -h_, bend_in = scale * bends[0], bend_out = scale * bends[1];
             const JoinSide incoming{(left ? -1.0 : 1.0) * Vec<2>{{-in[1], in[0]}}, in, bend_in},
                 outgoing{(left ? -1.0 : 1.0) * Vec<2>{{-out[1], out[0]}}, -out, bend_out};
             const JoinSide &x = left ? incoming : outgoing, &y = left ? outgoing : incoming;
             const ArcsJoin arcs = arcs_join(x, y, style_.miter_limit);
+            if (!(h_ * arcs.bound <= worst_.bound)) worst_ = {p, h_ * arcs.bound};
             how = arcs.kind == ArcsJoinKind::round        ? LineJoin::round
                   : arcs.kind == ArcsJoinKind::miter_clip ? LineJoin::miter_clip
                                                           : LineJoin::arcs;
@@ -270,6 +278,7 @@ private:
     const StrokeStyle& style_;
     double h_;
     Path path_;
+    Doubt worst_;
 };
 
 Result<void> check(const StrokeStyle& style, const RegionOptions& options) {
@@ -315,7 +324,12 @@ Result<Region> stroked(const Path& path, const StrokeStyle& style, const RegionO
         if (!chain) return refuse_within(text("path.subpaths[", i, "]"), chain.error());
         bound = std::max(bound, chain->bound);
         pen.stroke(*chain);
+        if (const auto& [at, off] = pen.worst(); !(off < options.tolerance / 4))
+            return refuse(RefusalKind::ill_conditioned, text("path.subpaths[", i, "]"),
+                          text("rounding leaves open how the edges go on in the join at (", at[0], ", ",
+                               at[1], "), by ", off, " for a tolerance of ", options.tolerance));
     }
+    bound += pen.worst().bound;
     RegionOptions rest = options;
     rest.tolerance = 0.99 * (options.tolerance - bound);
     auto region = region_of({pen.take()}, rest);

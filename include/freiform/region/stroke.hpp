@@ -16,11 +16,12 @@ namespace freiform {
 // is that between those places.)
 //
 // Joins `arcs` go on with the curvature of the outer edges until these meet, as SVG 2 says, miter-clip
-// where they do not. Their curvatures are off by at most 2^-40 of themselves, or of 1 / width, which the
-// bound does not count: where two circles almost touch, it moves the tip by more.
+// where they do not. What rounding does to the tip is in the bound: much, where the edges almost touch.
 //
 // Refuses (invalid) a width, a miter limit, dashes or a tolerance that make no sense, and what region_of
-// refuses; (limit) more than 100,000 arcs, or more than 100,000 dashes.
+// refuses; (limit) more than 100,000 arcs, or more than 100,000 dashes; (ill_conditioned) a tolerance that
+// rounding exceeds, and joins `arcs` where it leaves open what they look like by more than a quarter of it:
+// say, an edge that bends as much as the pen, within rounding, which is one with a tip or a round one.
 //   auto outline = stroked(path, {.width = 2, .cap = LineCap::round}, {.tolerance = 1e-3});
 Result<Region> stroked(const Path& path, const StrokeStyle& style, const RegionOptions& options);
 
