@@ -15,7 +15,7 @@
 // Trimmed surfaces. Loops are turned as above first. Their edges have parameter curves alone: what these are
 // in space is found exactly but for rounding (make/image_curve.hpp), and both are written.
 //
-// References: ISO 10303-21 (the text), -42 (geometry and topology), -214 (products).
+// References: ISO 10303-21 (the text), -42 (geometry and topology), -242:2014 (products).
 // Why not the writer of Open CASCADE: it rounds numbers to 15 digits, which moves control points, and takes a
 // process of its own.
 #include "step_detail.hpp"
@@ -216,9 +216,11 @@ private:
 class Product {
 public:
     Product(Entities& entities, std::string_view unit) : e_(entities) {
-        application_ = e_.add("APPLICATION_CONTEXT('automotive design')");
-        e_.add(text("APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#",
-                    application_, ")"));
+        application_ = e_.add("APPLICATION_CONTEXT('managed model based 3d engineering')");
+        e_.add(
+            text("APPLICATION_PROTOCOL_DEFINITION('international standard',"
+                 "'ap242_managed_model_based_3d_engineering',2014,#",
+                 application_, ")"));
         const int length = length_unit(unit);
         const int angle = e_.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
         const int solid = e_.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
@@ -327,11 +329,11 @@ Result<std::string> write_step(const Document& given) {
         const int set = entities.add(text("GEOMETRIC_CURVE_SET('',", Entities::refs(curves), ")"));
         product.add("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION", name, {set});
     }
-    return text(
-        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME(", quoted(name),
-        ",'',(''),(''),'freiform','freiform','');\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 "
-        "}'));\nENDSEC;\nDATA;\n",
-        entities.out, "ENDSEC;\nEND-ISO-10303-21;\n");
+    return text("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME(", quoted(name),
+                ",'',(''),(''),'freiform','freiform','');\nFILE_SCHEMA(('AP242_MANAGED_MODEL_BASED_3D_"
+                "ENGINEERING_MIM_LF "
+                "{ 1 0 10303 442 1 1 4 }'));\nENDSEC;\nDATA;\n",
+                entities.out, "ENDSEC;\nEND-ISO-10303-21;\n");
 }
 
 }  // namespace freiform

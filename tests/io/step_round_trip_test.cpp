@@ -263,5 +263,15 @@ TEST(StepRoundTrip, names_of_any_characters_come_back) {
     }
 }
 
+TEST(StepRoundTrip, files_are_of_the_schema_that_they_say) {
+    Random r(7);
+    const std::string bytes =
+        must(write_step(Document{"mm", {{"", must(prism(random_region(r, {}), {{0, 0, 2}})), {}}}}));
+    EXPECT_EQ(must(step::parse(bytes)).schema,
+              "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }");
+    EXPECT_NE(bytes.find("'ap242_managed_model_based_3d_engineering',2014,"), bytes.npos);
+    EXPECT_EQ(bytes.find("AUTOMOTIVE"), bytes.npos);
+}
+
 }  // namespace
 }  // namespace freiform::test

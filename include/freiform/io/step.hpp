@@ -1,4 +1,4 @@
-// STEP files (ISO 10303-21, AP214) of what a document holds, written here and not by another library: numbers
+// STEP files (ISO 10303-21, AP242) of what a document holds, written here and not by another library: numbers
 // are the shortest text that reads back as the same double, so that control points, knots and weights come
 // back exact.
 #pragma once
