@@ -78,8 +78,12 @@ Result<Vec<3>> GeometryReader::vector(std::uint32_t i) const {
 }
 
 Result<Placement> GeometryReader::placement(std::uint32_t i) const {
-    const bool full = f_.is(i, Type::AXIS2_PLACEMENT_3D), single = f_.is(i, Type::AXIS1_PLACEMENT);
-    const auto f = Fields::of(f_, i, single ? Type::AXIS1_PLACEMENT : Type::AXIS2_PLACEMENT_3D, 2);
+    const bool single = f_.is(i, Type::AXIS1_PLACEMENT), flat = f_.is(i, Type::AXIS2_PLACEMENT_2D);
+    const auto f = Fields::of(f_, i,
+                              single ? Type::AXIS1_PLACEMENT
+                              : flat ? Type::AXIS2_PLACEMENT_2D
+                                     : Type::AXIS2_PLACEMENT_3D,
+                              2);
     if (!f) return std::unexpected(f.error());
     const auto at = f->reference(1, "location");
     if (!at) return std::unexpected(at.error());
@@ -87,13 +91,14 @@ Result<Placement> GeometryReader::placement(std::uint32_t i) const {
     if (!o) return std::unexpected(o.error());
     Vec<3> z{{0, 0, 1}};
     std::optional<Vec<3>> x;
-    for (int k = 2; k <= (full ? 3 : 2); ++k) {
+    for (int k = 2; k <= (single || flat ? 2 : 3); ++k) {
         if (f->is_omitted(k)) continue;
-        const auto d = f->reference(k, k == 2 ? "axis" : "reference direction");
+        const bool axis = k == 2 && !flat;  // one in the plane has its first direction there
+        const auto d = f->reference(k, axis ? "axis" : "reference direction");
         if (!d) return std::unexpected(d.error());
         const auto v = direction(*d);
         if (!v) return std::unexpected(v.error());
-        if (k == 2)
+        if (axis)
             z = *v;
         else
             x = *v;
