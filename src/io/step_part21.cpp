@@ -4,11 +4,11 @@
 //
 // Cost. Linear; twelve bytes for each token, of which the densest text has one for every second byte.
 //
-// References: ISO 10303-21:2016, 5 to 14; edition 1 for scopes.
+// References: ISO 10303-21:2016, 5 to 14 (anchors: step_anchors.cpp); edition 1 for scopes.
 //
 // Why not a grammar and a tree: nodes take ten times the memory of the text, and a tree of the depth that a
 // file asks for takes the stack along.
-#include "step_part21.hpp"
+#include "step_anchors.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,8 +50,10 @@ public:
                 if (i_ < s_.size() && s_[i_] == '(' && !value_list())
                     return fatal("the parameters of a DATA section are damaged", at);
                 if (auto ok = section(f_.instances, true); !ok) return ok;
-            } else if (word("ANCHOR") || word("REFERENCE")) {
-                skip_section();
+            } else if (word("ANCHOR")) {
+                names_section(&Anchors::add_anchor);
+            } else if (word("REFERENCE")) {
+                names_section(&Anchors::add_reference);
             } else {
                 return fatal("HEADER, DATA or END-ISO-10303-21 is expected", at);
             }
@@ -69,11 +71,21 @@ private:
         return refuse(RefusalKind::unreadable, text("byte ", at), std::string(what));
     }
     void complain(std::uint32_t id, std::size_t at, std::string what) {
-        if (f_.refused.size() >= kMostRefusals) {
+        complain(RefusalKind::unreadable, id, text(what, " (byte ", at, ")"));
+    }
+    void complain(RefusalKind kind, std::uint32_t id, std::string what) {
+        if (f_.refused.size() < kMostRefusals)
+            f_.refused.push_back({kind, text("#", id), std::move(what)});
+        else
             ++dropped_;
-            return;
-        }
-        f_.refused.push_back({RefusalKind::unreadable, text("#", id), text(what, " (byte ", at, ")")});
+    }
+    // Of anchors and references.
+    Anchors::Tell tell_line() {
+        return [this](RefusalKind kind, std::uint32_t id, std::size_t at, std::string what) {
+            if (f_.refused.size() >= kMostRefusals) return void(++dropped_);
+            const auto line = 1 + std::ranges::count(s_.substr(0, at), '\n');
+            complain(kind, id, text(what, " (line ", line, ", byte ", at, ")"));
+        };
     }
 
     // Blanks and comments.
@@ -117,15 +129,19 @@ private:
             }
         }
     }
-    void skip_section() {
-        for (;;) {
+    // A name in pointed brackets may contain what is a quote elsewhere.
+    void names_section(void (Anchors::*add)(std::string_view, std::size_t, const Anchors::Tell&)) {
+        if (!sign(';')) return skip_statement();
+        for (const Anchors::Tell tell = tell_line();;) {
             skip();
             if (i_ >= s_.size()) return;
-            if (word("ENDSEC")) {
-                skip_statement();
-                return;
-            }
+            if (word("ENDSEC")) return skip_statement();
+            const std::size_t at = i_, open = s_.find_first_of("<;'\"", i_);
+            if (open != std::string_view::npos && s_[open] == '<')
+                i_ = std::min(s_.find('>', open), s_.size());
             skip_statement();
+            const std::size_t end = s_[i_ - 1] == ';' ? i_ - 1 : i_;
+            (anchors_.*add)(s_.substr(at, end - at), at, tell);
         }
     }
 
@@ -348,17 +364,19 @@ private:
         std::vector<std::uint32_t> place(dense ? std::size_t(last) + 1 : 0, kMissing);
         if (dense)
             for (std::size_t k = order.size(); k-- > 0;) place[all[order[k]].id] = order[k];
+        const auto place_of = [&](std::uint32_t id) {
+            if (dense) return id <= last ? place[id] : kMissing;
+            const auto at = std::lower_bound(order.begin(), order.end(), id,
+                                             [&](std::uint32_t a, std::uint32_t b) { return all[a].id < b; });
+            return at != order.end() && all[*at].id == id ? *at : kMissing;
+        };
+        const Anchors::Tell tell = tell_line();
+        anchors_.resolve(place_of, tell);
         for (Token& t : f_.tokens) {
             f_.offset_curves += t.kind == TokenKind::keyword && t.type == Type::OFFSET_CURVE_3D;
             if (t.kind != TokenKind::reference) continue;
-            if (dense) {
-                t.at = t.size <= last ? place[t.size] : kMissing;
-                continue;
-            }
-            const auto at =
-                std::lower_bound(order.begin(), order.end(), t.size,
-                                 [&](std::uint32_t a, std::uint32_t id) { return all[a].id < id; });
-            t.at = at != order.end() && all[*at].id == t.size ? *at : kMissing;
+            t.at = place_of(t.size);
+            if (t.at == kMissing && anchors_.has_references()) t.at = anchors_.place_of(t.size, tell);
         }
     }
 
@@ -366,6 +384,7 @@ private:
     std::string_view s_;
     std::size_t i_ = 0, dropped_ = 0;
     std::vector<std::uint32_t> open_;
+    Anchors anchors_;
 };
 
 }  // namespace
