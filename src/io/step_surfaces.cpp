@@ -13,6 +13,8 @@
 // References: ISO 10303-42:2014, 4.5 (surfaces).
 #include "step_geometry.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -21,6 +23,38 @@ namespace freiform::step {
 
 Result<BSplineBasis> knots_of(const File& f, std::uint32_t i, const Fields* with_knots, int multiplicities,
                               int knots, std::string_view what, int degree, int size);
+
+namespace {
+
+// An offset that is part of another.
+struct OffsetStep {
+    std::uint32_t instance;
+    double distance;
+};
+
+// Whether the offset by d has the normals of the surface everywhere: 1 + d k > 0 for both curvatures k.
+// Proven for planes, cylinders, spheres and rings alone.
+bool keeps_normal(const SurfaceGeometry& s, double d) {
+    const auto is_positive = [](double radius, double by) {
+        return radius + by > 8 * kUnitRoundoff * (radius + std::abs(by));
+    };
+    if (const auto* e = std::get_if<Extrusion>(&s)) {
+        if (std::holds_alternative<Line<3>>(e->profile)) return true;
+        const auto* c = std::get_if<Conic<3>>(&e->profile);
+        return e->kind == SurfaceKind::cylinder && c != nullptr && is_positive(norm(c->x), d);
+    }
+    const auto* r = std::get_if<Revolution>(&s);
+    const auto* c = r != nullptr ? std::get_if<Conic<3>>(&r->profile) : nullptr;
+    if (c == nullptr) return false;
+    const double radius = norm(c->x);
+    if (r->kind == SurfaceKind::sphere) return is_positive(radius, d);
+    if (r->kind != SurfaceKind::torus) return false;
+    // The inside of a ring is a saddle: it meets itself where the circle reaches the axis.
+    const double major = norm(c->centre - r->origin);
+    return is_positive(radius, d) && is_positive(major, -radius) && is_positive(major, -radius - d);
+}
+
+}  // namespace
 
 Result<SurfaceGeometry> GeometryReader::elementary(std::uint32_t i, Type type, double offset) const {
     const auto f = Fields::of(f_, i, type, 2);
@@ -172,9 +206,11 @@ Result<SurfaceGeometry> GeometryReader::basic_surface(std::uint32_t i) {
                   text("is a surface that has no exact counterpart here (byte ", f_.instances[i].at, ")"));
 }
 
-// Offsets, trimmings and replicas are taken off one by one.
+// Offsets, trimmings and replicas are taken off one by one. Distances add up where the normal of each offset
+// is that of the surface below: where none but the outermost turns or collapses it.
 Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
     double offset = 0;
+    std::vector<OffsetStep> steps;
     std::optional<Motion> by;
     std::uint32_t at = i;
     for (int depth = 0;; ++depth) {
@@ -191,7 +227,8 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
         if (wrapping == Type::OFFSET_SURFACE) {
             const auto d = f->number(2, "distance");
             if (!d) return std::unexpected(d.error());
-            offset += *d * (by ? by->scale : 1.0);
+            steps.push_back({at, *d * (by ? by->scale : 1.0)});
+            offset += steps.back().distance;
         } else if (wrapping == Type::SURFACE_REPLICA) {
             const auto m = f->reference(2, "transformation");
             if (!m) return std::unexpected(m.error());
@@ -207,6 +244,20 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
     }
     const std::size_t known = approximated.size();
     auto made = [&]() -> Result<SurfaceGeometry> {
+        std::erase_if(steps, [](const OffsetStep& s) { return s.distance == 0; });
+        if (steps.size() > 1) {
+            auto base = basic_surface(at);
+            if (base && by) base = moved(*base, *by);
+            if (!base) return base;
+            double below = 0;
+            for (; steps.size() > 1; steps.pop_back()) {
+                below += steps.back().distance;
+                if (!keeps_normal(*base, below))
+                    return refuse(RefusalKind::unsupported, f_.label(steps[steps.size() - 2].instance),
+                                  text("is the offset of ", f_.label(steps.back().instance),
+                                       ", whose normal is not proven to be that of the surface below it"));
+            }
+        }
         if (offset != 0 && !by)
             for (const Type t :
                  {Type::PLANE, Type::CYLINDRICAL_SURFACE, Type::SPHERICAL_SURFACE, Type::TOROIDAL_SURFACE})
