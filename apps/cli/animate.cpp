@@ -139,11 +139,11 @@ Result<void> animate_curve(const Context& context, const AnimateArguments& o, co
     if (!(rough.value > 0))
         return refuse(RefusalKind::no_answer, "", "the curve has no length to move along");
     const double accuracy = o.accuracy.value_or(1e-9 * rough.value);
-    auto motion =
-        o.across ? Motion::along(curve,
-                                 {o.speed.value_or(kInfinity), o.acceleration.value_or(kInfinity), *o.across},
-                                 accuracy)
-                 : motion_of(o, rough.value, accuracy);
+    auto motion = o.across ? Motion::along(curve,
+                                           {o.speed.value_or(kInfinity), o.acceleration.value_or(kInfinity),
+                                            *o.across, o.jerk.value_or(kInfinity)},
+                                           accuracy)
+                           : motion_of(o, rough.value, accuracy);
     if (!motion) return std::unexpected(motion.error());
     TrajectoryOptions how{accuracy, Facing::fixed, {{0, 0, 1}}};
     if (o.facing != "fixed") how.facing = o.facing == "upright" ? Facing::upright : Facing::least_turning;
@@ -237,8 +237,6 @@ Result<void> run_animate(const Context& context, const AnimateArguments& o) {
     if (int(limited) + int(o.duration.has_value()) + int(!o.speeds.empty()) != 1)
         wrong_usage(
             "one of --duration, --speeds, or limits (--speed, --acceleration, --across, --jerk) is expected");
-    if (o.across && o.jerk)
-        wrong_usage("--across and --jerk do not go together: with bends the jerk has no limit");
     if (!o.up.empty() && o.up.size() != 3) wrong_usage("--up needs three numbers: X,Y,Z");
     const std::string format = output_ending(context);
     if (format != "csv" && format != "glb" && format != "svg" && format != "html")
@@ -262,7 +260,7 @@ void add_animate(CommandLine& line) {
     const Command command = line.add(
         "animate", "A body that moves along a curve, or the animations of a glTF file",
         "  freiform animate way.json --speed 2 --acceleration 1 --jerk 4 -o motion.csv\n"
-        "  freiform animate way.json --speed 20 --acceleration 3 --across 4 -o drive.csv\n"
+        "  freiform animate way.json --speed 20 --acceleration 3 --across 4 --jerk 5 -o drive.csv\n"
         "  freiform animate way.json --duration 5 --facing least-turning -o motion.glb\n"
         "  freiform animate drawing.svg --object rim --speeds 1,3,1 --facing upright -o motion.html\n"
         "  freiform animate walk.glb --rate 30                  # all channels, sampled\n"

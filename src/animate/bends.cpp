@@ -17,8 +17,12 @@
 //
 // Cost: a few dozen parts for a piece, each a bound of derivatives and an arc length.
 //
-// Why not a limit of the jerk, too? The passes do not know how long the acceleration takes to change.
+// With a limit of the jerk the passes do not do, which do not know how long the acceleration takes to change:
+// see bends_jerk.cpp.
+//
 // References: [Bobrow, Dubowsky & Gibson 1985] for the two passes.
+#include "bends_detail.hpp"
+
 #include <freiform/animate/motion.hpp>
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
@@ -110,6 +114,7 @@ Result<void> check_limits(const BendLimits& limits, double accuracy) {
     const std::pair<const char*, double> all[] = {{"speed", limits.speed},
                                                   {"acceleration", limits.acceleration},
                                                   {"across", limits.across},
+                                                  {"jerk", limits.jerk},
                                                   {"accuracy", accuracy}};
     for (const auto& [name, value] : all)
         if (!(value > 0)) return refuse(RefusalKind::invalid, name, "a positive number is expected");
@@ -139,6 +144,34 @@ void Motion::pass(const BendPart& part, double w0, double w1, double acceleratio
           std::sqrt(w1));
 }
 
+// By the squares of speeds at nodes, forwards and backwards.
+void Motion::pass_all(std::span<const BendPart> parts, const std::vector<bool>& stops, double acceleration) {
+    std::vector<double> w(stops.size(), 0);
+    const double gain = std::isinf(acceleration) ? 0 : 2 * acceleration;  // else not asked for
+    for (std::size_t i = 1; i + 1 < stops.size(); ++i)
+        w[i] = stops[i] ? 0
+                        : std::min({parts[i - 1].most, parts[i].most, w[i - 1] + gain * parts[i - 1].length});
+    for (std::size_t i = stops.size() - 1; i-- > 0;) w[i] = std::min(w[i], w[i + 1] + gain * parts[i].length);
+    for (std::size_t i = 0; i < parts.size(); ++i) pass(parts[i], w[i], w[i + 1], acceleration);
+}
+
+// With a limit of the jerk, from stop to stop.
+void Motion::pass_below(std::span<const BendPart> parts, const std::vector<bool>& stops,
+                        const BendLimits& limits) {
+    std::vector<detail::SpeedCeiling> ceilings;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const BendPart& part = parts[i];
+        ceilings.push_back({part.from, part.from + part.length, std::sqrt(part.most)});
+        if (!stops[i + 1]) continue;
+        for (const detail::JerkPhase& p : detail::motion_below(ceilings, limits.acceleration, limits.jerk)) {
+            phases_.push_back({p.from, {0, p.speed, p.acceleration / 2, p.jerk / 6}});
+            times_.push_back(times_.back() + p.duration);
+            fastest_ = std::max(fastest_, p.speed);
+        }
+        ceilings.clear();
+    }
+}
+
 template <class P>
 Result<Motion> Motion::along(const Curve<P>& curve, const BendLimits& limits, double accuracy) {
     constexpr int D = Space<P>::kDim;
@@ -157,24 +190,20 @@ Result<Motion> Motion::along(const Curve<P>& curve, const BendLimits& limits, do
         if (!s) return std::unexpected(s.error());
         parts.push_back({at.back(), std::max(0.0, s->value - at.back()), most[i]});
         at.push_back(std::max(at.back(), s->value));
-        if (std::isinf(limits.acceleration) && std::isinf(most[i]))
+        if (std::isinf(limits.acceleration) && std::isinf(limits.jerk) && std::isinf(most[i]))
             return refuse(
                 RefusalKind::invalid, "speed",
                 text("near the parameter ", (*ends)[i], " no limit holds: there is no fastest motion"));
     }
-    // The squares of speeds at nodes, forwards and backwards.
-    std::vector<double> w(at.size(), 0);
-    const double gain = std::isinf(limits.acceleration) ? 0 : 2 * limits.acceleration;  // else not asked for
-    for (std::size_t i = 1; i + 1 < at.size(); ++i) {
-        const bool stops =
-            std::ranges::binary_search(breaks, (*ends)[i]) && is_corner<D>(geometry, (*ends)[i]);
-        w[i] =
-            stops ? 0 : std::min({parts[i - 1].most, parts[i].most, w[i - 1] + gain * parts[i - 1].length});
-    }
-    for (std::size_t i = at.size() - 1; i-- > 0;) w[i] = std::min(w[i], w[i + 1] + gain * parts[i].length);
+    std::vector<bool> stops(at.size(), true);
+    for (std::size_t i = 1; i + 1 < at.size(); ++i)
+        stops[i] = std::ranges::binary_search(breaks, (*ends)[i]) && is_corner<D>(geometry, (*ends)[i]);
     Motion m;
     m.length_ = at.back();
-    for (std::size_t i = 0; i < parts.size(); ++i) m.pass(parts[i], w[i], w[i + 1], limits.acceleration);
+    if (std::isfinite(limits.jerk))
+        m.pass_below(parts, stops, limits);
+    else
+        m.pass_all(parts, stops, limits.acceleration);
     if (m.phases_.empty() || !std::isfinite(m.duration()))
         return refuse(RefusalKind::limit, "curve", "with these limits times leave the range of double");
     return m;

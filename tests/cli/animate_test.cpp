@@ -81,11 +81,18 @@ TEST_F(AnimateProgram, is_slow_where_the_way_bends) {
     EXPECT_GT(most_across(limited), 0.4);
     EXPECT_GT(limited.back()[0], free.back()[0]);
     EXPECT_NEAR(limited.back()[4], 4, 1e-9);
-    const Ran jerky = run({"animate", "way.json", "--across", "1", "--acceleration", "1", "--jerk", "1"});
-    EXPECT_EQ(jerky.code, 2);
-    EXPECT_NE(jerky.err.find("--across and --jerk do not go together: with bends the jerk has no limit"),
-              jerky.err.npos)
-        << jerky.err;
+    // With the jerk limited, too: column 3 is the acceleration along the way.
+    const auto smooth = rows_of({"--across", "0.5", "--jerk", "2"});
+    EXPECT_LT(most_across(smooth), 0.51);
+    EXPECT_GT(smooth.back()[0], limited.back()[0]);
+    const auto most_jerk = [](const std::vector<std::vector<double>>& rows) {
+        double most = 0;
+        for (std::size_t i = 1; i < rows.size(); ++i)
+            most = std::max(most, std::abs(rows[i][3] - rows[i - 1][3]) / (rows[i][0] - rows[i - 1][0]));
+        return most;
+    };
+    EXPECT_LT(most_jerk(smooth), 2.001);
+    EXPECT_GT(most_jerk(limited), 20);
 }
 
 TEST_F(AnimateProgram, writes_pictures_that_move_and_gltf_that_it_reads_back) {

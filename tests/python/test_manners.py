@@ -36,6 +36,7 @@ OBJECTS = [
     ff.Track([ff.Key(0, [0.0]), ff.Key(1, [2.0])]), ff.RotationTrack([0, 1], [(0, 0, 0, 1), (1, 0, 0, 0)]),
     ff.Motion.limited(3, 1, 2), ff.Motion.with_speed(ff.Curve([[1.0], [2.0]], knots=[0, 0, 3, 3]), 1e-6),
     ff.Motion.along(CURVE, 1e-6, speed=2, across=1),
+    ff.Motion.along(CURVE, 1e-6, speed=2, across=1, jerk=3),
     ff.Trajectory(CURVE, ff.Motion.uniform(CURVE.length(1e-9).value, 2), 1e-6),
     ff.Gradient([(0, "#ff0000"), (1, "#0000ff")]),
     ff.MeshGradient(ff.Surface([[[0, 0], [0, 1]], [[1, 0], [1, 1]]]), ["#ff0000"] * 4),

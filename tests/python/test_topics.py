@@ -314,6 +314,7 @@ def test_animation():
     # Round a quarter of the unit circle: v^2 <= across, and the ends take v / acceleration each.
     quarter = ff.Curve([[1, 0], [1, 1], [0, 1]], weights=[1, 2**-0.5, 1])
     slow = ff.Motion.along(quarter, 1e-9, acceleration=8, across=1)
+    assert ff.Motion.along(quarter, 1e-9, acceleration=8, across=1, jerk=9).duration > slow.duration
     assert abs(slow(slow.duration / 2).speed - 1) < 0.02 and slow(slow.duration / 2).speed <= 1
     assert abs(slow.duration - (pi / 2 + 1 / 8)) < 0.03
     assert ff.Motion.along(quarter, 1e-9, speed=0.5).duration == pytest.approx(pi, 1e-9)

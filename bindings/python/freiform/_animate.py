@@ -203,9 +203,9 @@ class Motion(_Made):
     @staticmethod
     @from_header("animate/motion:along", "animate/motion:BendLimits")
     def along(curve: Curve, accuracy: float, *, speed: float = inf, acceleration: float = inf,
-              across: float = inf) -> Motion:
-        """The fastest motion from rest to rest along a curve, slow where it bends."""
-        return Motion("along", curve, speed, acceleration, across, accuracy)
+              across: float = inf, jerk: float = inf) -> Motion:
+        """From rest to rest along a curve, slow where it bends; without a limit of the jerk the fastest way."""
+        return Motion("along", curve, speed, acceleration, across, jerk, accuracy)
 
     @property
     def duration(self) -> float:

@@ -173,8 +173,9 @@ void bind_motion(py::module_& m) {
             py::arg("speed"), py::arg("accuracy"))
         .def_static(
             "along",
-            [](const CurveHandle& h, double speed, double acceleration, double across, double accuracy) {
-                const BendLimits limits{speed, acceleration, across};
+            [](const CurveHandle& h, double speed, double acceleration, double across, double jerk,
+               double accuracy) {
+                const BendLimits limits{speed, acceleration, across, jerk};
                 std::optional<Motion> made;
                 visit_dims<2, 3>(*h.patch, "curve", [&](const auto& p) -> py::object {
                     made = take(unlocked([&] { return Motion::along(p, limits, accuracy); }));
@@ -182,7 +183,7 @@ void bind_motion(py::module_& m) {
                 });
                 return *made;
             },
-            py::arg("curve"), py::arg("speed"), py::arg("acceleration"), py::arg("across"),
+            py::arg("curve"), py::arg("speed"), py::arg("acceleration"), py::arg("across"), py::arg("jerk"),
             py::arg("accuracy"))
         .def_property_readonly("duration", &Motion::duration)
         .def_property_readonly("length", &Motion::length)

@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace freiform {
@@ -22,7 +23,8 @@ struct MotionLimits {
 struct BendLimits {
     double speed = std::numeric_limits<double>::infinity(),
            acceleration = std::numeric_limits<double>::infinity(),  // along the way
-        across = std::numeric_limits<double>::infinity();
+        across = std::numeric_limits<double>::infinity(),
+           jerk = std::numeric_limits<double>::infinity();  // of the acceleration along the way
 };
 
 // The distance s(t) that was covered at time t, 0 <= t <= duration. Const and safe to share.
@@ -46,9 +48,10 @@ public:
 
     // From rest to rest along the curve, slow where it bends. The curve is cut into parts on each of which
     // the curvature has a proven bound, the speed is held below what that allows (but for `accuracy` beyond
-    // the ends of parts, a distance > 0), and among such motions this is the fastest. Bounds are within some
-    // 2 % of the curvature, or parts are 1/256 of a polynomial piece long. At corners the body stops. Without
-    // a limit of the acceleration the speed jumps. P as for Trajectory. Refuses (invalid) limits and
+    // the ends of parts, a distance > 0), and among such motions this is the fastest, if the jerk has no
+    // limit; with one it is one that keeps it, and need not be the fastest. Bounds are within some 2 % of the
+    // curvature, or parts are 1/256 of a polynomial piece long. At corners the body stops. Without a limit of
+    // the acceleration or the jerk the speed jumps. P as for Trajectory. Refuses (invalid) limits and
     // accuracies that are not positive, and limits none of which holds everywhere; (ill_conditioned) curves
     // that stand still; (limit) more than 2^16 parts.
     template <class P>
@@ -74,6 +77,9 @@ private:
 
     struct BendPart;
     void pass(const BendPart& part, double w0, double w1, double acceleration);
+    void pass_all(std::span<const BendPart> parts, const std::vector<bool>& stops, double acceleration);
+    void pass_below(std::span<const BendPart> parts, const std::vector<bool>& stops,
+                    const BendLimits& limits);
 
     double length_ = 0, fastest_ = 0;  // the latter where many times are added up
     std::vector<double> times_{0};
