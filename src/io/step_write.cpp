@@ -27,6 +27,8 @@
 #include <freiform/make/image_curve.hpp>
 #include <freiform/spline/in_space.hpp>
 
+#include <map>
+
 namespace freiform {
 
 namespace {
@@ -84,6 +86,7 @@ public:
             if (!id) return refuse_within(text("faces[", f, "]"), id.error());
             faces.push_back(*id);
             put_on_layers(m_.faces[f].layers, *id);
+            if (m_.faces[f].colour) styled.push_back(coloured(*m_.faces[f].colour, *id));
         }
         for (const Body& b : m_.bodies) {
             std::vector<int> shells;
@@ -96,6 +99,7 @@ public:
             }
             const int id = add_body(b, shells);
             if (id > 0) put_on_layers(b.layers, id);
+            if (id > 0 && b.colour) styled.push_back(coloured(*b.colour, id));
         }
         for (std::size_t l = 0; l < m_.layers.size(); ++l)
             if (!on_layers_[l].empty())
@@ -104,9 +108,24 @@ public:
         return {};
     }
 
-    std::vector<int> solids, sheets;
+    std::vector<int> solids, sheets, styled;
 
 private:
+    // Red, green and blue; one style for all things of a colour.
+    int coloured(const Colour& c, int item) {
+        int& style = styles_[{c.r, c.g, c.b}];
+        if (style == 0) {
+            int id = e_.add(text("COLOUR_RGB('',", real(c.r), ",", real(c.g), ",", real(c.b), ")"));
+            id = e_.add(text("FILL_AREA_STYLE_COLOUR('',#", id, ")"));
+            id = e_.add(text("FILL_AREA_STYLE('',(#", id, "))"));
+            id = e_.add(text("SURFACE_STYLE_FILL_AREA(#", id, ")"));
+            id = e_.add(text("SURFACE_SIDE_STYLE('',(#", id, "))"));
+            id = e_.add(text("SURFACE_STYLE_USAGE(.BOTH.,#", id, ")"));
+            style = e_.add(text("PRESENTATION_STYLE_ASSIGNMENT((#", id, "))"));
+        }
+        return e_.add(text("STYLED_ITEM('',(#", style, "),#", item, ")"));
+    }
+
     void put_on_layers(const std::vector<int>& layers, int id) {
         for (const int l : layers) on_layers_[std::size_t(l)].push_back(id);
     }
@@ -210,6 +229,7 @@ private:
     const Model& m_;
     std::vector<int> vertices_, edges_;        // their entities, 0 until they are written
     std::vector<std::vector<int>> on_layers_;  // the entities of each
+    std::map<std::array<double, 3>, int> styles_;
 };
 
 // What every file says once.
@@ -245,6 +265,12 @@ public:
             e_.add(text("PRODUCT_DEFINITION('design','',#", formation, ",#", of_definition, ")"));
         const int of_shape = e_.add(text("PRODUCT_DEFINITION_SHAPE('','',#", definition, ")"));
         e_.add(text("SHAPE_DEFINITION_REPRESENTATION(#", of_shape, ",#", shape, ")"));
+    }
+
+    void style(const std::vector<int>& items) {
+        if (!items.empty())
+            e_.add(text("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',", Entities::refs(items),
+                        ",#", context_, ")"));
     }
 
 private:
@@ -312,19 +338,20 @@ Result<std::string> write_step(const Document& given) {
     if (with_faces.empty() && curves.empty())
         return refuse(RefusalKind::no_answer, "objects", "there is nothing to write");
     std::string unit = document.unit;
-    std::vector<int> solids, sheets;
+    std::vector<int> solids, sheets, styled;
     if (!with_faces.empty()) {
         const auto model = scene_of(document, with_faces);
         if (!model) return std::unexpected(model.error());
         if (unit.empty()) unit = model->unit;
         StepModel writer(entities, *model);
         if (auto ok = writer.write(); !ok) return std::unexpected(ok.error());
-        solids = writer.solids, sheets = writer.sheets;
+        solids = writer.solids, sheets = writer.sheets, styled = writer.styled;
     }
     const std::string_view name = document.objects[0].name;
     Product product(entities, unit);
     product.add("ADVANCED_BREP_SHAPE_REPRESENTATION", name, solids);
     product.add("MANIFOLD_SURFACE_SHAPE_REPRESENTATION", name, sheets);
+    product.style(styled);
     if (!curves.empty()) {
         const int set = entities.add(text("GEOMETRIC_CURVE_SET('',", Entities::refs(curves), ")"));
         product.add("GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION", name, {set});

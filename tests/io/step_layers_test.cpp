@@ -89,5 +89,25 @@ TEST(StepLayers, layers_that_are_not_there_and_items_on_too_many_are_refused_by_
     EXPECT_EQ(full.refused[0].message, "is on 100 layers; 64 of them are kept");
 }
 
+TEST(StepLayers, colours_of_faces_and_bodies_are_written_and_read_again_the_same) {
+    Model m = layered_model("");
+    const auto again = [&] { return *read_step(*write_step({"mm", {{"", m}}})); };
+    EXPECT_FALSE(again().faces.at(0).colour);
+    EXPECT_FALSE(again().bodies.at(0).colour);
+    m.faces.at(0).colour = Colour{0.1, 1.0 / 3, 1, 1};
+    const Model face = again();
+    ASSERT_TRUE(face.faces.at(0).colour);
+    EXPECT_EQ(face.faces[0].colour->r, 0.1);
+    EXPECT_EQ(face.faces[0].colour->g, 1.0 / 3);
+    EXPECT_EQ(face.faces[0].colour->b, 1);
+    EXPECT_FALSE(face.bodies.at(0).colour);
+    m.faces[0].colour.reset(), m.bodies.at(0).colour = Colour{0, 0.5, 0.25, 1};
+    const Model body = again();
+    EXPECT_FALSE(body.faces.at(0).colour);
+    ASSERT_TRUE(body.bodies.at(0).colour);
+    EXPECT_EQ(body.bodies[0].colour->g, 0.5);
+    EXPECT_EQ(body.bodies[0].colour->b, 0.25);
+}
+
 }  // namespace
 }  // namespace freiform::test
