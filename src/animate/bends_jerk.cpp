@@ -1,18 +1,16 @@
 // From rest to rest below ceilings of the speed, with a limit of the jerk.
 //
 // Idea. A hump goes from one speed up to a higher one, along at that, and down to another one, with no
-// acceleration at its ends and on top; how it gets up is as fast as the limits allow. The highest hump over
-// the whole way that stays below the ceilings is a motion. Where a ceiling holds it down, there is often a
-// faster one: two humps, one before that ceiling and one after it, between which the motion goes along it;
-// and so on in each of them. Of the two ways the one that takes less time is kept, so that each step makes
-// the motion faster, and all of them obey the limits.
+// acceleration at its ends and on top; how it gets up is as fast as the limits allow. Nodes are the ends of
+// ceilings, with the speed that both ceilings there allow. Of the motions that are humps from node to node,
+// from each to the next few, to some farther away and to those before low ceilings, the quickest is found
+// node by node, as a shortest path.
 //
 // A ramp from v up to V reaches a speed c between them after a distance that is known in closed form. It
 // stays below a ceiling of c if that ceiling ends before it; higher humps get there sooner, so the highest
 // one is found by halving.
 //
-// Ceilings that differ by less than kAlike are taken as one. What is tried has an end (kPatience), behind
-// which humps are no more divided.
+// Ceilings that differ by less than kAlike are taken as one. Cost: some 60 humps for each place.
 //
 // Why not the fastest motion of all? It changes its jerk at places that have to be found together, along all
 // of the way at once; no answer of such a search would be known to be within the limits before it ends.
@@ -23,13 +21,15 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ranges>
 
 namespace freiform::detail {
 
 namespace {
 
-constexpr double kAlike = 0.99, kBelow = 1 - 0x1p-36;
-constexpr int kPatience = 20'000, kTries = 8, kHalvingsOfSpeed = 60;
+constexpr double kAlike = 0.98, kBelow = 1 - 0x1p-36;
+constexpr int kHalvingsOfSpeed = 30, kLows = 6, kLevels = 12;
+constexpr std::size_t kNext = 6, kFarthest = 192;  // places
 
 // From the speed `low` to `high`, or back, without acceleration at its ends.
 struct Ramp {
@@ -83,26 +83,73 @@ public:
 
     std::vector<JerkPhase> run() {
         if (ceilings_.empty()) return {};
-        const Node start{ceilings_.front().from, 0, 0}, end{ceilings_.back().to, 0, ceilings_.size()};
-        if (const auto plan = best(start, end))
-            for (const Hump& h : plan->humps) emit(h);
+        find_nodes();
+        const std::size_t last = places_.size() - 1, end = nodes_.size() - 1;
+        std::vector<Way> ways(nodes_.size());
+        ways[0].duration = 0;
+        const auto extend = [&](std::size_t i, std::size_t j) {
+            const auto hump = best_hump(nodes_[i], nodes_[j]);
+            if (!hump) return;
+            const double duration = ways[i].duration + hump->duration;
+            if (duration < ways[j].duration) ways[j] = {duration, i, hump->top};
+        };
+        const auto extend_to = [&](std::size_t i, std::size_t place) {
+            for (std::size_t j = places_[place];
+                 j < nodes_.size() && nodes_[j].at == nodes_[places_[place]].at; ++j)
+                extend(i, j);
+        };
+        extend(0, end);  // from rest to rest there is always one
+        for (std::size_t place = 0; place < last; ++place)
+            for (std::size_t i = places_[place]; i < places_[place + 1]; ++i) {
+                if (std::isinf(ways[i].duration)) continue;
+                for (std::size_t p = place + 1; p <= last && p <= place + kNext; ++p) extend_to(i, p);
+                for (std::size_t step = kNext + 1; step <= kFarthest && place + step <= last;
+                     step += step / 4)
+                    extend_to(i, place + step);
+                auto low = std::ranges::upper_bound(lows_, place + kNext);
+                for (int k = 0; k < kLows && low != lows_.end(); ++k, ++low) extend_to(i, *low);
+            }
+        std::vector<std::size_t> path;
+        for (std::size_t i = end; i > 0; i = ways[i].before) path.push_back(i);
+        for (const std::size_t i : path | std::views::reverse)
+            emit({nodes_[ways[i].before], nodes_[i], ways[i].top, 0});
         return std::move(phases_);
     }
 
 private:
-    // Where the motion has no acceleration; `ceiling`: the first one after it.
+    // Where the motion may have no acceleration; `ceiling`: the first one after it.
     struct Node {
         double at, speed;
         std::size_t ceiling;
     };
     struct Hump {
         Node from, to;
-        double top;
+        double top, duration;
     };
-    struct Plan {
-        std::vector<Hump> humps;
-        double duration = 0;
+    // The quickest one to a node: by its last hump.
+    struct Way {
+        double duration = kInfinity;
+        std::size_t before = 0;
+        double top = 0;
     };
+
+    void find_nodes() {
+        const auto is_low = [&](std::size_t i) {
+            return (i == 0 || ceilings_[i].speed < ceilings_[i - 1].speed) &&
+                   (i + 1 == ceilings_.size() || ceilings_[i].speed < ceilings_[i + 1].speed);
+        };
+        places_.push_back(0), nodes_.push_back({ceilings_.front().from, 0, 0});
+        for (std::size_t i = 1; i < ceilings_.size(); ++i) {
+            const double speed = std::min(ceilings_[i - 1].speed, ceilings_[i].speed);
+            const bool low = is_low(i - 1) || is_low(i);
+            if (low) lows_.push_back(places_.size());
+            places_.push_back(nodes_.size());
+            for (int k = 0; k < (low ? kLevels : 1); ++k)
+                nodes_.push_back({ceilings_[i].from, speed * (1 - double(k) / kLevels), i});
+        }
+        lows_.push_back(places_.size());
+        places_.push_back(nodes_.size()), nodes_.push_back({ceilings_.back().to, 0, ceilings_.size()});
+    }
 
     Ramp ramp(double a, double b) const { return {a, b, acceleration_, jerk_}; }
     bool is_long_enough(const Node& a, const Node& b, double top) const {
@@ -120,63 +167,25 @@ private:
         return true;
     }
 
-    // The highest speed from `low` on for which the condition holds, as it does for all below.
-    template <class Holds>
-    static std::optional<double> highest(double low, double high, Holds&& holds) {
-        if (!holds(low)) return std::nullopt;
-        if (holds(high)) return high;
-        for (int i = 0; i < kHalvingsOfSpeed; ++i) {
+    std::optional<Hump> best_hump(const Node& a, const Node& b) const {
+        const double least = std::max(a.speed, b.speed), length = b.at - a.at;
+        const auto holds = [&](double top) {
+            return is_long_enough(a, b, top) && is_below_ceilings(a, b, top);
+        };
+        if (!(length > 0) || !holds(least)) return std::nullopt;
+        double low = least, high = 0;
+        for (std::size_t i = a.ceiling; i < b.ceiling; ++i) high = std::max(high, ceilings_[i].speed);
+        if (std::isinf(high))  // no faster than with this jerk all of the way
+            high = least + 2 * std::cbrt(length) * std::cbrt(length * jerk_);
+        if (high > low && holds(high)) low = high;
+        for (int i = 0; i < kHalvingsOfSpeed && high > low * (1 + 0x1p-40); ++i) {
             const double middle = low / 2 + high / 2;
             (holds(middle) ? low : high) = middle;
         }
-        return low;
-    }
-
-    Plan plan_of(const Hump& h) const {
-        const Ramp up = ramp(h.from.speed, h.top), down = ramp(h.to.speed, h.top);
-        const double level = h.to.at - h.from.at - up.length() - down.length();
-        return {{h}, up.duration + down.duration + (h.top > 0 ? std::max(0.0, level) / h.top : 0)};
-    }
-
-    std::optional<Plan> best(const Node& a, const Node& b) {
-        const double least = std::max(a.speed, b.speed), length = b.at - a.at;
-        if (!(length > 0) || !is_long_enough(a, b, least)) return std::nullopt;
-        double top = 0, lowest = kInfinity;
-        for (std::size_t i = a.ceiling; i < b.ceiling; ++i)
-            top = std::max(top, ceilings_[i].speed), lowest = std::min(lowest, ceilings_[i].speed);
-        if (std::isinf(top))  // no faster than with this jerk all of the way
-            top = least + 2 * std::cbrt(length) * std::cbrt(length * jerk_);
-        top = std::max(top, least);
-        const double reach = *highest(least, top, [&](double v) { return is_long_enough(a, b, v); });
-        const auto hump = highest(least, reach, [&](double v) { return is_below_ceilings(a, b, v); });
-        std::optional<Plan> plan;
-        if (hump && (*hump > 0 || least > 0)) plan = plan_of({a, b, *hump});
-        if ((hump && *hump >= reach) || ++tried_ > kPatience) return plan;
-        // At the end or the start of one of the lowest ceilings where its speed can be had there.
-        std::vector<Node> nodes;
-        for (std::size_t i = a.ceiling; i < b.ceiling; ++i) {
-            const SpeedCeiling& c = ceilings_[i];
-            if (!(c.speed < reach)) continue;
-            for (const Node& n : {Node{c.to, c.speed, i + 1}, Node{c.from, c.speed, i}})
-                if (n.at > a.at && n.at < b.at && ramp(a.speed, n.speed).length() <= n.at - a.at &&
-                    ramp(n.speed, b.speed).length() <= b.at - n.at)
-                    nodes.push_back(n);
-        }
-        const std::size_t tries = std::min<std::size_t>(nodes.size(), kTries);
-        std::ranges::partial_sort(nodes, nodes.begin() + std::ptrdiff_t(tries), {},
-                                  [&](const Node& n) { return std::pair(n.speed, n.at); });
-        for (std::size_t k = 0; k < tries; ++k) {
-            auto before = best(a, nodes[k]);
-            if (!before) continue;
-            const auto after = best(nodes[k], b);
-            if (!after) continue;
-            const double duration = before->duration + after->duration;
-            if (plan && !(duration < plan->duration * (1 - 1e-12))) continue;
-            before->humps.insert(before->humps.end(), after->humps.begin(), after->humps.end());
-            before->duration = duration;
-            return before;
-        }
-        return plan;
+        if (!(low > 0)) return std::nullopt;
+        const Ramp up = ramp(a.speed, low), down = ramp(b.speed, low);
+        const double level = std::max(0.0, length - up.length() - down.length());
+        return Hump{a, b, low, up.duration + down.duration + level / low};
     }
 
     void emit(const Hump& h) {
@@ -201,7 +210,9 @@ private:
 
     double acceleration_, jerk_;
     std::vector<SpeedCeiling> ceilings_;
-    int tried_ = 0;
+    std::vector<Node> nodes_;
+    std::vector<std::size_t> places_;  // the first node at each
+    std::vector<std::size_t> lows_;    // places beside a ceiling that is lower than the next ones; the last
     std::vector<JerkPhase> phases_;
 };
 
