@@ -28,7 +28,7 @@ const r21: Page = {
     row: "R21", title: t("Bikubische Flächenstücke", "Bicubic patches"), gist: t("16 Punkte, zwei Matrizen", "16 points, two matrices"),
     text: t("Sechzehn Punkte sind die Geometrie einer Kurve, deren Kontrollpunkte auf Kurven laufen. Wie bei Kurven geben dieselben Punkte mit einer anderen Matrix ein anderes Stück, und jede Richtung darf ihre eigene haben.",
         "Sixteen points are the geometry of a curve whose control points run along curves. As with curves the same points give another patch with another matrix, and each direction may have its own."),
-    formula: `Q(s, t) = T^T M^T G M S`,
+    formula: `Q(s, t) = S^T M_s^T G M_t T`,
     build(stage) {
         const points = hills(kSixteen);
         const space = stage.space(t("Fläche", "surface"));
