@@ -4,7 +4,7 @@
 //
 // Why not a parser from elsewhere: an unknown, repeated or misplaced key is to be reported with its line;
 // "-0" and numbers beyond the range of double must not change silently; and nothing may be thrown.
-#include "utf8.hpp"
+#include "core/utf8.hpp"
 
 #include <freiform/io/json.hpp>
 
@@ -177,9 +177,7 @@ private:
         };
         while (n < 24 && pos_ + n < text_.size() && is_word(text_[pos_ + n])) ++n;
         if (n > 0) return freiform::text("'", text_.substr(pos_, n), "'");
-        const auto c = static_cast<unsigned char>(text_[pos_]);
-        if (c > 32 && c < 127) return freiform::text("'", char(c), "'");
-        return freiform::text("byte ", int(c));
+        return shown_character(text_.substr(pos_));
     }
     bool at(char c) const { return pos_ < text_.size() && text_[pos_] == c; }
     void skip_space() {

@@ -9,6 +9,7 @@
 // from its center M - (B - M) w^2 / (1 - w^2). Their singular values are the radii. Of thin or nearly
 // straight ellipses rounding moves the center; an arc that reading would not give back within kArcKept of its
 // size is written as cubics that near.
+#include "core/utf8.hpp"
 #include "path_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -49,7 +50,7 @@ public:
 private:
     void stop(std::string_view expected) {
         if (out_.stopped) return;
-        const std::string found = at_ < text_.size() ? text("'", text_[at_], "'") : "the end";
+        const std::string found = at_ < text_.size() ? shown_character(text_.substr(at_)) : "the end";
         out_.stopped = Refusal{RefusalKind::unreadable, text("character ", at_ + 1),
                                text("found ", found, ", expected ", expected)};
     }

@@ -80,6 +80,8 @@ TEST(Path, what_has_no_meaning_ends_the_path_and_is_named) {
         {"M 0 0 L 1 1 2", 1, "character 14", "found the end, expected a number"},
         {"M 0 0 L 1 1 B 3 3", 1, "character 13", "found 'B', expected a command, one of M L H V C S Q T A Z"},
         {"M 0 0 L 1 1 A 1 1 0 2 0 3 3", 1, "character 21", "found '2', expected a flag, 0 or 1"},
+        {"M 0 0 L \u2603", 0, "character 9", "found '\u2603', expected a number"},
+        {"M 0 0 \xE2 1", 0, "character 7", "found byte 226, expected a command, one of M L H V C S Q T A Z"},
         {"M 0 0 L 1 1 L 1e999 3", 1, "character 15", "found '1', expected a number that a double holds"},
         {"M 0 0 L 1 1 L nan 3", 1, "character 15", "found 'n', expected a number"},
         {"M 0 0 L 1 1 L", 1, "character 14", "found the end, expected a number"}};

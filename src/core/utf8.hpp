@@ -1,5 +1,8 @@
 // UTF-8, one character at a time.
 #pragma once
+#include <freiform/core/text.hpp>
+
+#include <string>
 #include <string_view>
 
 namespace freiform {
@@ -20,6 +23,14 @@ inline std::size_t utf8_length(std::string_view s) {
         (c == 0xF4 && second >= 0x90))
         return 0;
     return n;
+}
+
+// The character that `s`, not empty, begins with, for messages, which are UTF-8: in quotes, or the number of
+// the byte if it is no character, or none that can be seen.
+inline std::string shown_character(std::string_view s) {
+    const std::size_t n = utf8_length(s);
+    const auto c = static_cast<unsigned char>(s[0]);
+    return n > 0 && c > 32 && c != 127 ? text("'", s.substr(0, n), "'") : text("byte ", int(c));
 }
 
 }  // namespace freiform
