@@ -4,8 +4,7 @@
 //
 // Why not a parser from elsewhere: an unknown, repeated or misplaced key is to be reported with its line;
 // "-0" and numbers beyond the range of double must not change silently; and nothing may be thrown.
-#include "core/utf8.hpp"
-
+#include <freiform/core/utf8.hpp>
 #include <freiform/io/json.hpp>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // Text goes out as it comes in, with commas and line ends where they belong; numbers in the shortest form
 // that reads back to the same bits, and what JSON has no number for as null.
-#include "core/utf8.hpp"
-
+#include <freiform/core/utf8.hpp>
 #include <freiform/io/json.hpp>
 
 #include <algorithm>

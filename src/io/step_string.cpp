@@ -1,8 +1,9 @@
 // Strings of STEP files. The basic alphabet is ASCII; what else occurs is an escape, or the bytes themselves:
 // UTF-8 (edition 3), or else ISO 8859-1, which older programs write against the standard. What is written
 // here is ASCII with escapes, which every edition has.
-#include "core/utf8.hpp"
 #include "step_part21.hpp"
+
+#include <freiform/core/utf8.hpp>
 
 #include <optional>
 

@@ -9,11 +9,11 @@
 // from its center M - (B - M) w^2 / (1 - w^2). Their singular values are the radii. Of thin or nearly
 // straight ellipses rounding moves the center; an arc that reading would not give back within kArcKept of its
 // size is written as cubics that near.
-#include "core/utf8.hpp"
 #include "path_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/scan.hpp>
+#include <freiform/core/utf8.hpp>
 #include <freiform/path/path_data.hpp>
 
 #include <algorithm>
