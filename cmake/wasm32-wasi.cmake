@@ -9,6 +9,7 @@ find_program(CMAKE_AR NAMES llvm-ar-22 llvm-ar ar)
 find_program(CMAKE_RANLIB NAMES llvm-ranlib-22 llvm-ranlib ranlib)
 # Programs are linked against a module without `main`; nothing has to be linked to test the compiler.
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+# Nothing asks for types at run time, and there is one thread: both only make the module larger.
 set(CMAKE_CXX_FLAGS_INIT "-fno-exceptions -fno-rtti -fno-threadsafe-statics -msimd128 -Wno-deprecated")
 # What wasm-opt does is said in bindings/wasm/CMakeLists.txt; what clang asks of it takes minutes and saves less.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-mexec-model=reactor -Wl,--strip-all --no-wasm-opt")

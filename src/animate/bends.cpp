@@ -155,21 +155,24 @@ void Motion::pass_all(std::span<const BendPart> parts, const std::vector<bool>& 
     for (std::size_t i = 0; i < parts.size(); ++i) pass(parts[i], w[i], w[i + 1], acceleration);
 }
 
-// With a limit of the jerk, from stop to stop.
-void Motion::pass_below(std::span<const BendPart> parts, const std::vector<bool>& stops,
+// With a limit of the jerk, from stop to stop; no where one of these has no motion in double.
+bool Motion::pass_below(std::span<const BendPart> parts, const std::vector<bool>& stops,
                         const BendLimits& limits) {
     std::vector<detail::SpeedCeiling> ceilings;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const BendPart& part = parts[i];
         ceilings.push_back({part.from, part.from + part.length, std::sqrt(part.most)});
         if (!stops[i + 1]) continue;
-        for (const detail::JerkPhase& p : detail::motion_below(ceilings, limits.acceleration, limits.jerk)) {
+        const auto phases = detail::motion_below(ceilings, limits.acceleration, limits.jerk);
+        if (phases.empty() && ceilings.back().to > ceilings.front().from) return false;
+        for (const detail::JerkPhase& p : phases) {
             phases_.push_back({p.from, {0, p.speed, p.acceleration / 2, p.jerk / 6}});
             times_.push_back(times_.back() + p.duration);
             fastest_ = std::max(fastest_, p.speed);
         }
         ceilings.clear();
     }
+    return true;
 }
 
 template <class P>
@@ -200,11 +203,12 @@ Result<Motion> Motion::along(const Curve<P>& curve, const BendLimits& limits, do
         stops[i] = std::ranges::binary_search(breaks, (*ends)[i]) && is_corner<D>(geometry, (*ends)[i]);
     Motion m;
     m.length_ = at.back();
+    bool passes = true;
     if (std::isfinite(limits.jerk))
-        m.pass_below(parts, stops, limits);
+        passes = m.pass_below(parts, stops, limits);
     else
         m.pass_all(parts, stops, limits.acceleration);
-    if (m.phases_.empty() || !std::isfinite(m.duration()))
+    if (!passes || m.phases_.empty() || !std::isfinite(m.duration()))
         return refuse(RefusalKind::limit, "curve", "with these limits times leave the range of double");
     return m;
 }

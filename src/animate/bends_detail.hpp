@@ -14,7 +14,8 @@ struct JerkPhase {
     double from = 0, duration = 0, speed = 0, acceleration = 0, jerk = 0;
 };
 
-// Ceilings follow each other; `acceleration` may be infinite, `jerk` is not.
+// Ceilings follow each other; `acceleration` may be infinite, `jerk` is not. Nothing where they have no
+// length, or speeds and times leave the range of double.
 std::vector<JerkPhase> motion_below(std::span<const SpeedCeiling> ceilings, double acceleration, double jerk);
 
 }  // namespace freiform::detail

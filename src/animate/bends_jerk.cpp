@@ -2,9 +2,9 @@
 //
 // Idea. A hump goes from one speed up to a higher one, along at that, and down to another one, with no
 // acceleration at its ends and on top; how it gets up is as fast as the limits allow. Nodes are the ends of
-// ceilings, with the speed that both ceilings there allow. Of the motions that are humps from node to node,
-// from each to the next few, to some farther away and to those before low ceilings, the quickest is found
-// node by node, as a shortest path.
+// ceilings, with the speed that both ceilings there allow, and beside low ceilings with parts of it, too. Of
+// the motions that are humps from node to node, from each to the next few, to some farther away and to those
+// beside the next low ceilings, the quickest is found node by node, as a shortest path.
 //
 // A ramp from v up to V reaches a speed c between them after a distance that is known in closed form. It
 // stays below a ceiling of c if that ceiling ends before it; higher humps get there sooner, so the highest
@@ -28,7 +28,8 @@ namespace freiform::detail {
 namespace {
 
 constexpr double kAlike = 0.98, kBelow = 1 - 0x1p-36;
-constexpr int kHalvingsOfSpeed = 30, kLows = 6, kLevels = 12;
+constexpr double kSameTop = 1 + 0x1p-30;
+constexpr int kLows = 6, kLevels = 12;
 constexpr std::size_t kNext = 6, kFarthest = 192;  // places
 
 // From the speed `low` to `high`, or back, without acceleration at its ends.
@@ -94,11 +95,10 @@ public:
             if (duration < ways[j].duration) ways[j] = {duration, i, hump->top};
         };
         const auto extend_to = [&](std::size_t i, std::size_t place) {
-            for (std::size_t j = places_[place];
-                 j < nodes_.size() && nodes_[j].at == nodes_[places_[place]].at; ++j)
-                extend(i, j);
+            const std::size_t next = place < last ? places_[place + 1] : nodes_.size();
+            for (std::size_t j = places_[place]; j < next; ++j) extend(i, j);
         };
-        extend(0, end);  // from rest to rest there is always one
+        extend(0, end);  // from rest to rest there is always one, unless its speed is below all doubles
         for (std::size_t place = 0; place < last; ++place)
             for (std::size_t i = places_[place]; i < places_[place + 1]; ++i) {
                 if (std::isinf(ways[i].duration)) continue;
@@ -109,6 +109,7 @@ public:
                 auto low = std::ranges::upper_bound(lows_, place + kNext);
                 for (int k = 0; k < kLows && low != lows_.end(); ++k, ++low) extend_to(i, *low);
             }
+        if (std::isinf(ways[end].duration)) return {};
         std::vector<std::size_t> path;
         for (std::size_t i = end; i > 0; i = ways[i].before) path.push_back(i);
         for (const std::size_t i : path | std::views::reverse)
@@ -178,8 +179,9 @@ private:
         if (std::isinf(high))  // no faster than with this jerk all of the way
             high = least + 2 * std::cbrt(length) * std::cbrt(length * jerk_);
         if (high > low && holds(high)) low = high;
-        for (int i = 0; i < kHalvingsOfSpeed && high > low * (1 + 0x1p-40); ++i) {
+        while (high > low * kSameTop) {
             const double middle = low / 2 + high / 2;
+            if (middle == low || middle == high) break;
             (holds(middle) ? low : high) = middle;
         }
         if (!(low > 0)) return std::nullopt;

@@ -197,6 +197,28 @@ TEST(MotionAlong, on_lines_and_circles_with_jerk_is_that_of_the_limits_along_the
     test::expect_refusal(Motion::along(circle, {.across = 1, .jerk = 0}, 1e-9), RefusalKind::invalid, "jerk");
 }
 
+// Sizes of the numbers play no part: with another unit of time and length it is the same motion; and a jerk
+// that is as good as none does no harm.
+TEST(MotionAlong, with_jerk_keeps_its_shape_in_other_units) {
+    Random random(9);
+    const auto curve = random_curve<2>(random, 8);
+    const double plain = Motion::along(curve, {.acceleration = 1, .across = 2, .jerk = 3}, 1e-9)->duration();
+    for (const double s : {1e-20, 1e20}) {  // seconds are s times as long
+        const auto m = Motion::along(
+            curve, {.acceleration = 1 / s / s, .across = 2 / s / s, .jerk = 3 / s / s / s}, 1e-9);
+        ASSERT_TRUE(m) << m.error().message;
+        EXPECT_NEAR(m->duration(), s * plain, 1e-6 * s * plain);
+    }
+    const auto line =
+        *Curve<Vec<2>>::make({*BSplineBasis::bezier(1)}, Net<1, Vec<2>>({2}, {{{0, 0}}, {{30, 40}}}));
+    for (const double jerk : {1e30, 1e60}) {
+        const auto m = Motion::along(line, {.acceleration = 2, .across = 1, .jerk = jerk}, 1e-9);
+        ASSERT_TRUE(m) << m.error().message;
+        EXPECT_NEAR(m->duration(), 2 * std::sqrt(50 / 2.0), 1e-6);
+        EXPECT_NEAR(m->at(m->duration()).distance, 50, 1e-6);
+    }
+}
+
 // A bend next to the start, which the motion passes while it still gets faster, and one far away.
 TEST(MotionAlong, is_not_held_down_by_a_bend_that_it_passes_at_once) {
     const auto curve = *Curve<Vec<2>>::make(

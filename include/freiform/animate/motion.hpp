@@ -78,7 +78,7 @@ private:
     struct BendPart;
     void pass(const BendPart& part, double w0, double w1, double acceleration);
     void pass_all(std::span<const BendPart> parts, const std::vector<bool>& stops, double acceleration);
-    void pass_below(std::span<const BendPart> parts, const std::vector<bool>& stops,
+    bool pass_below(std::span<const BendPart> parts, const std::vector<bool>& stops,
                     const BendLimits& limits);
 
     double length_ = 0, fastest_ = 0;  // the latter where many times are added up
