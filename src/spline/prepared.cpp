@@ -24,6 +24,7 @@ using kernel::kernels;
 using Tables = PreparedNet::Tables;
 
 constexpr std::size_t kChunk = 4096;  // points that one thread takes at once
+constexpr std::size_t kGathered = 512;  // points whose parameters are gathered at once: near the processor
 constexpr std::size_t kChunksFrom = PreparedPatch<1, Vec<1>>::kParallelFrom / kChunk;
 
 bool is_good(const BSplineBasis& basis, double x) {
@@ -160,21 +161,24 @@ Result<void> evaluate_gathered(const PreparedNet& net, std::size_t count, const 
     const std::size_t axes = t.axis.size(), dim = std::size_t(t.net.dim);
     const Inside inside(t);
     const bool past = goes_past(t, count, slots, to);
-    std::atomic<std::size_t> bad{count};  // where the first chunk with a bad parameter begins
+    std::atomic<std::size_t> bad{count};  // where the first piece with a bad parameter begins
     in_chunks(count, [&](std::size_t first, std::size_t n) {
-        const auto some = std::make_unique_for_overwrite<double[]>(n * axes);
-        gather(first, n, some.get());
-        const std::span<const double> at(some.get(), n * axes);
-        const bool plain = inside(at);
-        if (!plain && outside == Outside::refuse && !check(t, at, first)) {
-            for (std::size_t least = bad; first < least && !bad.compare_exchange_weak(least, first);) {
+        double some[kGathered * 3];
+        for (const std::size_t end = first + n; first < end; first += kGathered) {
+            const std::size_t points = std::min(kGathered, end - first);
+            gather(first, points, some);
+            const std::span<const double> at(some, points * axes);
+            const bool plain = inside(at);
+            if (!plain && outside == Outside::refuse && !check(t, at, first)) {
+                for (std::size_t least = bad; first < least && !bad.compare_exchange_weak(least, first);) {
+                }
+                return;
             }
-            return;
+            evaluate_chunk(t, t.ready, at, !plain, output(to, first, order, slots, dim, past));
         }
-        evaluate_chunk(t, t.ready, at, !plain, output(to, first, order, slots, dim, past));
     });
     std::array<double, 3> one;
-    for (std::size_t i = bad; i < count; ++i) {  // again, to say which: it is in that chunk
+    for (std::size_t i = bad; i < count; ++i) {  // again, to say which: it is in that piece
         gather(i, 1, one.data());
         if (auto ok = check(t, {one.data(), axes}, i); !ok) return ok;
     }

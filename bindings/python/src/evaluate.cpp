@@ -44,6 +44,12 @@ public:
     // Parameters from .. from + count - 1, those of one point together.
     void gather(std::size_t from, std::size_t count, double* out) const {
         if (contiguous_) {
+            if constexpr (N == 2) {  // one pass
+                const double* u = reinterpret_cast<const double*>(first_[0]) + from;
+                const double* v = reinterpret_cast<const double*>(first_[1]) + from;
+                for (std::size_t i = 0; i < count; ++i) out[2 * i] = u[i], out[2 * i + 1] = v[i];
+                return;
+            }
             for (std::size_t d = 0; d < N; ++d) {
                 const double* x = reinterpret_cast<const double*>(first_[d]) + from;
                 for (std::size_t i = 0; i < count; ++i) out[i * N + d] = x[i];
