@@ -23,7 +23,7 @@ namespace {
 using kernel::kernels;
 using Tables = PreparedNet::Tables;
 
-constexpr std::size_t kChunk = 4096;  // points that one thread takes at once
+constexpr std::size_t kChunk = 4096;    // points that one thread takes at once
 constexpr std::size_t kGathered = 512;  // points whose parameters are gathered at once: near the processor
 constexpr std::size_t kChunksFrom = PreparedPatch<1, Vec<1>>::kParallelFrom / kChunk;
 
