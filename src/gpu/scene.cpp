@@ -3,6 +3,8 @@
 // box of all drawn points is fitted into the picture, and the range of z into the depth buffer.
 #include "gpu/scene.hpp"
 
+#include "gpu/outward_detail.hpp"
+
 #include <freiform/core/interval.hpp>
 
 #include <algorithm>
@@ -65,14 +67,14 @@ std::array<float, 2> on_map(double value, const RenderOptions& o) {
 
 std::array<float, 3> to_floats(const Vec<3>& p) { return {float(p[0]), float(p[1]), float(p[2])}; }
 
-std::array<std::uint8_t, 4> to_bytes(const Colour& c) {
+std::array<std::uint8_t, 4> to_bytes(const Colour& c, int outward) {
     const auto byte = [](double x) { return std::uint8_t(std::lround(255 * x)); };
-    return {byte(c.r), byte(c.g), byte(c.b), 255};
+    return {byte(c.r), byte(c.g), byte(c.b), outward_byte(outward)};
 }
 
 // Vertices are copied per part, so that each copy can have the colour of its part.
 void add_triangles(GpuScene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
-                   const RenderOptions& options) {
+                   const RenderOptions& options, std::span<const int> outward) {
     const Colour& uncoloured = options.colour;
     std::vector<std::pair<int, std::uint32_t>> copy(mesh.vertices.size(), {-1, 0});
     scene.vertices.reserve(mesh.vertices.size());
@@ -86,7 +88,7 @@ void add_triangles(GpuScene& scene, const TriangleMesh& mesh, const std::vector<
                     index = std::uint32_t(scene.vertices.size());
                     scene.vertices.push_back({to_floats(points[std::size_t(from.point)]),
                                               to_floats(unit(from.normal)),
-                                              to_bytes(colour),
+                                              to_bytes(colour, outward[t]),
                                               {}});
                     if (!options.field.empty())
                         scene.vertices.back().field = on_map(options.field[std::size_t(v)], options);
@@ -103,7 +105,7 @@ void add_triangles(GpuScene& scene, const TriangleMesh& mesh, const std::vector<
 }
 
 void add_lines(GpuScene& scene, const TriangleMesh& mesh, const std::vector<Vec<3>>& points,
-               const RenderOptions& options) {
+               const RenderOptions& options, std::span<const MeshEdge> all) {
     if (!options.edges && !options.outlines) return;
     std::vector<int> part_of(mesh.triangles.size(), 0);
     for (std::size_t i = 0; i < mesh.parts.size(); ++i)
@@ -116,7 +118,7 @@ void add_lines(GpuScene& scene, const TriangleMesh& mesh, const std::vector<Vec<
                dot(triangle_normal(mesh, std::size_t(first)), triangle_normal(mesh, std::size_t(second))) >
                    kFlat;
     };
-    for (const MeshEdge& edge : edges(mesh)) {
+    for (const MeshEdge& edge : all) {
         const auto [first, second] = edge.triangles;
         const bool outline = second < 0 || (part_of[std::size_t(first)] != part_of[std::size_t(second)] &&
                                             !one_area(first, second));
@@ -196,8 +198,9 @@ GpuScene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
     std::vector<Vec<3>> points;
     for (const Vec<3>& p : mesh.points) points.push_back(centred(p));
     add_user_lines(scene, centred, options);
-    add_triangles(scene, mesh, points, options);
-    add_lines(scene, mesh, points, options);
+    const std::vector<MeshEdge> all = edges(mesh);
+    add_triangles(scene, mesh, points, options, outward_sides(mesh, points, all));
+    add_lines(scene, mesh, points, options, all);
     set_camera(scene, shown_points(scene, centred, options), options);
     return scene;
 }

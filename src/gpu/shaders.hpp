@@ -23,9 +23,11 @@ layout(location = 3) in vec2 field;
 uniform mat3 rotation;
 uniform mat4 projection;
 out vec3 place, direction, albedo;
+flat out float outward;
 out vec2 value;
 void main() {
     value = field;
+    outward = round(2.0 * paint.a - 1.0);
     place = rotation * position;
     direction = rotation * normal;
     albedo = mix(paint.rgb / 12.92, pow((paint.rgb + 0.055) / 1.055, vec3(2.4)), vec3(greaterThan(paint.rgb, vec3(0.04045))));

@@ -11,6 +11,7 @@
 //
 // Why not coefficients about each piece: the sum with its
 // point would be rounded differently on both sides of a boundary.
+#include "gpu/outward_detail.hpp"
 #include "gpu/surface_bends_detail.hpp"
 #include "gpu/surface_seams_detail.hpp"
 #include "gpu/trim_curves_detail.hpp"
@@ -40,6 +41,7 @@ struct BuiltPiece {
 struct BuiltFace {
     Vec<3> centre{};
     bool reversed = false;
+    int outward = 0;  // as outward_sides() has it
     Colour colour;
     SurfacePieces pieces;
     TrimCurves trim;
@@ -72,6 +74,7 @@ private:
     Result<void> add_face(std::size_t index);
     void add_extent(const Face& face, const BuiltFace& built, const std::vector<BuiltPiece>& own);
     void add_triangle(const TriangularFace& triangle);
+    void find_outward();
     void place();
     std::array<float, 4> texel(const Hom<3>& h, const Vec<3>& centre, double heaviest) const;
     void write_coefficients();
@@ -89,6 +92,7 @@ private:
     std::vector<BuiltPiece> pieces_;
     std::vector<std::vector<Hom<3>>> triangle_nets_;
     std::vector<EdgeSeam> seams_;
+    std::vector<FacePoint> points_;
     SurfaceBuffers out_;
 };
 
@@ -108,7 +112,9 @@ void BufferBuilder::add_extent(const Face& face, const BuiltFace& built, const s
                         q[k] = (uv[k] - built.trim.box.lo[k]) / (built.trim.box.hi[k] - built.trim.box.lo[k]);
                     if (!is_inside(built.trim, q)) continue;
                 }
-                out_.extent.push_back(jet<0>(face.surface, uv.c).value());
+                const Vec<3> at = jet<0>(face.surface, uv.c).value();
+                out_.extent.push_back(at);
+                points_.push_back({p.face, at, nullptr, uv});
             }
     }
 }
@@ -147,7 +153,7 @@ Result<void> BufferBuilder::add_face(std::size_t index) {
                            {bends[0][i], bends[1][j]}});
             for (const Hom<3>& h : pieces->nets[i * rows + j].flat()) box.add(project(h));
         }
-    faces_.push_back({0.5 * (box.lo + box.hi), face.reversed, face.colour.value_or(body_colour_[index]),
+    faces_.push_back({0.5 * (box.lo + box.hi), face.reversed, 0, face.colour.value_or(body_colour_[index]),
                       std::move(*pieces), std::move(*trim)});
     add_extent(face, faces_.back(), own);
     pieces_.insert(pieces_.end(), own.begin(), own.end());
@@ -161,13 +167,22 @@ void BufferBuilder::add_triangle(const TriangularFace& triangle) {
     for (const Hom<3>& h : net) box.add(project(h));
     const double bend = bend_of(triangle.patch);
     pieces_.push_back({int(triangle_nets_.size()), int(faces_.size()), {n, -1}, {}, false, 0, {bend, bend}});
-    faces_.push_back({0.5 * (box.lo + box.hi), false, triangle.colour.value_or(options_.colour), {}, {}});
+    faces_.push_back({0.5 * (box.lo + box.hi), false, 0, triangle.colour.value_or(options_.colour), {}, {}});
     triangle_nets_.emplace_back(net.begin(), net.end());
     for (EdgeSeam& s : seams_of(triangle.patch, int(faces_.size()) - 1, options_.edge_tolerance))
         seams_.push_back(std::move(s));
     for (int i = 0; i <= kMostSamples / 2; ++i)
         for (int j = 0; i + j <= kMostSamples / 2; ++j)
             out_.extent.push_back(triangle.patch(2.0 * i / kMostSamples, 2.0 * j / kMostSamples));
+}
+
+// REQUIRES that faces_ are those of the model.
+void BufferBuilder::find_outward() {
+    for (const EdgeSeam& s : seams_)
+        for (std::size_t i = 0; i < s.points.size(); ++i)
+            points_.push_back({s.face, s.points[i], &s.normals[i], {}});
+    const std::vector<int> sides = outward_sides(model_, points_);
+    for (std::size_t f = 0; f < sides.size(); ++f) faces_[f].outward = sides[f];
 }
 
 // The middle and the size of the scene.
@@ -262,7 +277,7 @@ void BufferBuilder::write_records() {
         const Colour& k = faces_[f].colour;
         out_.texels.push_back({c[0], c[1], c[2], faces_[f].reversed ? -1.0f : 1.0f});
         out_.texels.push_back({float(k.r), float(k.g), float(k.b), float(k.a)});
-        out_.texels.push_back(trims[f]);
+        out_.texels.push_back({trims[f][0], trims[f][1], float(faces_[f].outward), 0});
     }
 }
 
@@ -270,8 +285,8 @@ void BufferBuilder::write_seams() {
     const auto byte = [](double x) { return std::uint8_t(std::lround(255 * x)); };
     for (const EdgeSeam& s : seams_) {
         const auto bytes = [&](int face) -> std::array<std::uint8_t, 4> {
-            const Colour& c = faces_[std::size_t(face)].colour;
-            return {byte(c.r), byte(c.g), byte(c.b), 255};
+            const BuiltFace& f = faces_[std::size_t(face)];
+            return {byte(f.colour.r), byte(f.colour.g), byte(f.colour.b), outward_byte(f.outward)};
         };
         for (std::size_t i = 1; i < s.points.size(); ++i) {
             out_.seams.push_back({floats(scene(s.points[i - 1])), floats(scene(s.points[i])),
@@ -297,6 +312,7 @@ Result<SurfaceBuffers> BufferBuilder::run() {
             return refuse_within(
                 text("face ", f, model_.faces[f].name.empty() ? "" : " ", model_.faces[f].name), ok.error());
     seams_ = seams_of(model_, options_.edge_tolerance);
+    find_outward();
     for (const TriangularFace& t : triangles_) {
         if (t.patch.degree() < 1)
             return refuse(RefusalKind::no_answer, "triangles", "a triangle of degree 0 is a point");

@@ -45,6 +45,33 @@ inline ComparedPictures compared(const Image& gpu, const Image& mesh, int by) {
     return out;
 }
 
+// Averages over squares of n by n pixels.
+inline Image reduced(const Image& image, int n) {
+    Image out;
+    out.width = image.width / n, out.height = image.height / n;
+    for (int y = 0; y < out.height; ++y)
+        for (int x = 0; x < out.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                int sum = 0;
+                for (int i = 0; i < n * n; ++i) sum += image.pixel(n * x + i % n, n * y + i / n)[c];
+                out.rgb.push_back(static_cast<unsigned char>(sum / (n * n)));
+            }
+    return out;
+}
+
+// Pixels with less red, which the background is full of, than everything around in the other picture.
+inline int darker(const Image& image, const Image& other, int by) {
+    int out = 0;
+    for (int y = 1; y + 1 < image.height; ++y)
+        for (int x = 1; x + 1 < image.width; ++x) {
+            int least = 255;
+            for (int i = -1; i <= 1; ++i)
+                for (int j = -1; j <= 1; ++j) least = std::min(least, int(other.pixel(x + i, y + j)[0]));
+            out += image.pixel(x, y)[0] < least - by;
+        }
+    return out;
+}
+
 // Black where they agree.
 inline Image difference(const Image& a, const Image& b) {
     Image out = a;

@@ -124,6 +124,31 @@ TEST_P(SurfacePictures, show_what_the_mesh_shows) {
     expect_same(test::frustum(1, 0.6, 1), "frustum_perspective", {"20,50"});
 }
 
+// Triangles at outlines of saddles are seen from behind, by less than a pixel. Their light is that of the
+// outside, whichever way the faces are turned.
+TEST_P(SurfacePictures, closed_bodies_have_no_dark_dots_at_outlines) {
+    options_.supersampling = 1;
+    for (const bool inside_out : {false, true}) {
+        Model model = test::torus(2.0, 0.7);
+        for (Face& f : model.faces) f.reversed = f.reversed != inside_out;
+        auto renderer = renderer_of(model);
+        ASSERT_TRUE(renderer);
+        const TriangleMesh coarse = test::must(tessellate(model, {.tolerance = 0.002})).mesh;
+        for (const char* view : {"40,25", "120,-30", "250,40"}) {
+            options_.view = *parse_view(view);
+            RenderOptions large = options_;
+            large.width *= 8, large.height *= 8;
+            const Image whole = test::reduced(test::must(renderer->draw(large)), 8);
+            const Image drawn = test::must(renderer->draw(options_));
+            EXPECT_EQ(test::darker(drawn, whole, 16), 0) << view << (inside_out ? ", inside out" : "");
+            EXPECT_EQ(test::darker(test::must(render(coarse, options_)), whole, 16), 0) << view << ", mesh";
+            if (const char* folder = std::getenv("FREIFORM_PICTURES"))
+                std::ofstream(text(folder, "/outlines_", view, int(GetParam()), inside_out, ".png"))
+                    << *to_png(drawn);
+        }
+    }
+}
+
 // Many small triangles, narrow seams: a pixel whose samples are of several triangles must not be decided on
 // by one place for one face and by another for its neighbour.
 TEST_P(SurfacePictures, have_no_open_pixels_between_trimmed_faces_with_narrow_seams) {

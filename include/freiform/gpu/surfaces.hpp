@@ -16,6 +16,8 @@ struct SeamSegment {
     std::array<float, 3> from{}, to{}, edge_from{}, edge_to{};  // in the scene
     // Of the face, outward, and of another one that meets it there (without one, the same); zero: none.
     std::array<float, 3> normal_from{}, normal_to{}, other_from{}, other_to{};
+    // Of the faces; the fourth byte is 255 where the normals are known to point out of what the faces
+    // enclose, 1 where into it, else 128.
     std::array<std::uint8_t, 4> colour{}, other_colour{};
 };
 struct OutlineSegment {

@@ -1,5 +1,6 @@
 // Triangles of a mesh.
 in vec3 place, direction, albedo;
+flat in float outward;
 in vec2 value;
 uniform sampler1D map;
 uniform vec3 no_value;
@@ -10,5 +11,5 @@ void main() {
     // Texels are in the middle of their cells.
     float at = (clamp(value.x, 0.0, 1.0) * 256.0 + 0.5) / 257.0;
     vec3 paint = value.y > 0.99 ? texture(map, at).rgb : no_value;
-    colour = vec4(shaded(place, direction, plane, albedo, vec4(paint, 1.0)), 1.0);
+    colour = vec4(shaded(place, direction, plane, outward, albedo, vec4(paint, 1.0)), 1.0);
 }

@@ -16,6 +16,7 @@ uniform float inverse_distance;
 uniform vec2 half_size;  // of the picture, in pixels
 uniform float reach, farther, slopes;  // slopes: over so many pixels faces fall away
 out vec3 place, direction, albedo;
+flat out float outward;
 
 vec2 pixel_of(vec4 p) { return half_size * p.xy / p.w; }
 
@@ -43,6 +44,7 @@ void main() {
     bool turned_away = dot(own, view) < min(0.1 * length(view), dot(other, view));
     direction = turned_away ? other : own;
     albedo = turned_away ? other_paint.rgb : paint.rgb;
+    outward = round(2.0 * (turned_away ? other_paint.a : paint.a) - 1.0);
     float deeper = farther + slopes * max(slope_of(own), slope_of(other));
     gl_Position = p + p.w * vec4(offset / half_size, deeper, 0.0);
     gl_Position.z = min(gl_Position.z, 0.9999 * gl_Position.w);  // before the far plane

@@ -24,11 +24,15 @@ float faded(float cosine) {
 vec3 view_from(vec3 place) { return normalize(vec3(0.0, 0.0, 1.0) - inverse_distance * place); }
 
 // `plane`: a normal of the triangle, towards the eye. The normal is turned to its side: orientation plays no part,
-// and near a silhouette an interpolated normal may lean away without harm. `paint`: of the map, and 1.
-vec3 shaded(vec3 place, vec3 direction, vec3 plane, vec3 albedo, vec4 paint) {
+// and near a silhouette an interpolated normal may lean away without harm. But where `outward` (1 or -1; 0: not known)
+// says which side of a closed surface it is on, it stays: at outlines of saddles triangles are seen from behind, by less
+// than a pixel, and would take their light from the wrong side. `paint`: of the map, and 1.
+vec3 shaded(vec3 place, vec3 direction, vec3 plane, float outward, vec3 albedo, vec4 paint) {
     vec3 view = view_from(place);
     vec3 n = dot(direction, direction) > 0.01 ? normalize(direction) : plane;
-    if (dot(n, plane) < 0.0) n = -n;
+    if (outward != 0.0 && outward * dot(n, view) > -0.5)
+        n *= dot(direction, direction) > 0.01 ? outward : 1.0;
+    else if (dot(n, plane) < 0.0) n = -n;
 
     // A key from the upper left, a fill from the right, one from the eye, and a sky that is brighter than the floor.
     // Each fades out with a slope of zero: an edge of light would look like a crease of the surface.

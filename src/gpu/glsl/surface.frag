@@ -14,7 +14,7 @@ void main() {
     if (dot(plane, view_from(place)) < 0.0) plane = -plane;
     Piece p = piece_of(piece_number);
     vec3 albedo = decoded(texel(faces + 3 * p.face + 1).rgb);
-    colour = vec4(shaded(place, direction, plane, albedo, vec4(albedo, 1.0)), 1.0);
+    colour = vec4(shaded(place, direction, plane, texel(faces + 3 * p.face + 2).z, albedo, vec4(albedo, 1.0)), 1.0);
 #ifdef SAMPLES
     gl_SampleMask[0] = -1;
     if (!p.trimmed) return;
