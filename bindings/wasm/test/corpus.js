@@ -1,4 +1,4 @@
-// node corpus.js [--gtest_filter=...]: the C++ tests of core, basis, spline and query, compiled to WebAssembly. The same
+// node corpus.js [--gtest_filter=...]: the C++ tests from core to model, compiled to WebAssembly. The same
 // function runs them in a page (browser.js). Exit code 77 where they have not been built:
 //     cmake --build --preset wasm --target freiform-tests
 const kNoSuchFunction = 52, kNoSuchFile = 8;
