@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <unordered_set>
 
 namespace freiform {
@@ -96,6 +97,7 @@ private:
             return refuse(RefusalKind::limit, "file",
                           text("the model takes more than the ", options_.memory_bytes,
                                " bytes that it may; ", bytes_, " so far"));
+        ++places_;
         const bool same = at.is_identity();
         const Model& m = part.model;
         Model& out = model_;
@@ -126,7 +128,7 @@ private:
             if (!used[i]) {
                 if (m.edges[i].curve)
                     free_.push_back({m.edges[i], m.vertices[std::size_t(m.edges[i].start)],
-                                     m.vertices[std::size_t(m.edges[i].end)], at});
+                                     m.vertices[std::size_t(m.edges[i].end)], at, places_});
                 continue;
             }
             to[i] = int(out.edges.size());
@@ -174,18 +176,20 @@ private:
                                       text(free_.size(), " curves that bound no face are left out")});
             return;
         }
+        std::map<std::pair<int, int>, int> known;  // by the place and the number there
         for (Free& c : free_) {
             Edge e = std::move(c.edge);
-            const bool closed = e.start == e.end;
-            e.start = int(model_.vertices.size());
-            model_.vertices.push_back({c.at.point(c.a.point), c.at.scale * c.a.tolerance});
-            e.end = e.start;
-            if (!closed) {
-                e.end = int(model_.vertices.size());
-                model_.vertices.push_back({c.at.point(c.b.point), c.at.scale * c.b.tolerance});
-            }
+            const bool same = c.at.is_identity();
+            const auto vertex = [&](int number, const Vertex& v) {
+                const auto [found, fresh] = known.try_emplace({c.place, number}, int(model_.vertices.size()));
+                if (fresh)
+                    model_.vertices.push_back(
+                        {same ? v.point : c.at.point(v.point), c.at.scale * v.tolerance});
+                return found->second;
+            };
+            e.start = vertex(e.start, c.a), e.end = vertex(e.end, c.b);
             e.tolerance *= c.at.scale;
-            e.curve = moved(*e.curve, c.at);
+            if (!same) e.curve = moved(*e.curve, c.at);
             model_.edges.push_back(std::move(e));
         }
     }
@@ -194,6 +198,7 @@ private:
         Edge edge;
         Vertex a, b;
         Motion at;
+        int place;  // those of one place share vertices
     };
 
     const File& f_;
@@ -201,6 +206,7 @@ private:
     Structure structure_;
     std::vector<std::optional<Part>> parts_;
     std::vector<Free> free_;
+    int places_ = 0;
     Model model_;
     double length_ = 1, largest_ = 0;
     std::uint64_t bytes_ = 0;  // also where addresses have 32 bits

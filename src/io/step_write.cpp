@@ -108,7 +108,26 @@ public:
         return {};
     }
 
-    std::vector<int> solids, sheets, styled;
+    // Edges that no face has, once faces are written; nothing if there are none.
+    Result<void> write_wires(std::string_view name) {
+        std::vector<int> wires;
+        for (std::size_t i = 0; i < m_.edges.size(); ++i) {
+            const Edge& e = m_.edges[i];
+            if (edges_[i] != 0 || e.degenerate) continue;
+            if (!e.curve)
+                return refuse(RefusalKind::unsupported, text("edges[", i, "]"),
+                              "has neither a curve nor a face");
+            const auto curve = geometry_.curve(*e.curve);
+            if (!curve) return refuse_within(text("edges[", i, "]"), curve.error());
+            wires.push_back(edge_curve(e, *curve));
+        }
+        if (wires.empty()) return {};
+        const int set = e_.add(text("CONNECTED_EDGE_SET('',", Entities::refs(wires), ")"));
+        wireframes.push_back(e_.add(text("EDGE_BASED_WIREFRAME_MODEL(", quoted(name), ",(#", set, "))")));
+        return {};
+    }
+
+    std::vector<int> solids, sheets, wireframes, styled;
 
 private:
     // Red, green and blue; one style for all things of a colour.
@@ -193,8 +212,12 @@ private:
         const Edge& e = m_.edges[std::size_t(c.edge)];
         const auto curve = curve_of(e, c, surface, of_surface);
         if (!curve) return refuse_within(text("edges[", c.edge, "]"), curve.error());
+        return id = edge_curve(e, *curve);
+    }
+
+    int edge_curve(const Edge& e, int curve) {
         const int from = vertex(e.start), to = vertex(e.end);
-        return id = e_.add(text("EDGE_CURVE(", quoted(e.name), ",#", from, ",#", to, ",#", *curve, ",.T.)"));
+        return e_.add(text("EDGE_CURVE(", quoted(e.name), ",#", from, ",#", to, ",#", curve, ",.T.)"));
     }
 
     Result<int> face(const Face& f) {
@@ -304,14 +327,17 @@ Result<std::string> write_step(const Document& given) {
         }
     Entities entities;
     StepGeometry geometry(entities);
-    std::vector<std::size_t> with_faces;
+    std::vector<std::size_t> with_faces, wires;
     std::vector<int> curves;
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
         const auto done = std::visit(
             [&](const auto& s) -> Result<void> {
                 using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (std::same_as<S, Model> || std::same_as<S, TrimmedSurface>) {
+                if constexpr (std::same_as<S, Model>) {
+                    (s.faces.empty() && !s.edges.empty() ? wires : with_faces).push_back(i);
+                    return {};
+                } else if constexpr (std::same_as<S, TrimmedSurface>) {
                     with_faces.push_back(i);
                     return {};
                 } else if constexpr (S::Point::kCoords == 2 || S::Point::kCoords == 3) {
@@ -335,22 +361,37 @@ Result<std::string> write_step(const Document& given) {
             o.shape);
         if (!done) return refuse_within(object_label(document, i), done.error());
     }
-    if (with_faces.empty() && curves.empty())
+    if (with_faces.empty() && wires.empty() && curves.empty())
         return refuse(RefusalKind::no_answer, "objects", "there is nothing to write");
     std::string unit = document.unit;
-    std::vector<int> solids, sheets, styled;
+    std::vector<int> solids, sheets, wireframes, styled;
     if (!with_faces.empty()) {
         const auto model = scene_of(document, with_faces);
         if (!model) return std::unexpected(model.error());
         if (unit.empty()) unit = model->unit;
         StepModel writer(entities, *model);
         if (auto ok = writer.write(); !ok) return std::unexpected(ok.error());
+        if (auto ok = writer.write_wires(""); !ok) return std::unexpected(ok.error());
         solids = writer.solids, sheets = writer.sheets, styled = writer.styled;
+        wireframes = writer.wireframes;
+    }
+    for (const std::size_t i : wires) {
+        const Model& model = std::get<Model>(document.objects[i].shape);
+        if (unit.empty()) unit = model.unit;
+        if (!model.unit.empty() && model.unit != unit)
+            return refuse(
+                RefusalKind::unsupported, object_label(document, i),
+                text("a model in ", model.unit, " cannot be written to one file with others in ", unit));
+        StepModel writer(entities, model);
+        if (auto ok = writer.write_wires(document.objects[i].name); !ok)
+            return refuse_within(object_label(document, i), ok.error());
+        wireframes.insert(wireframes.end(), writer.wireframes.begin(), writer.wireframes.end());
     }
     const std::string_view name = document.objects[0].name;
     Product product(entities, unit);
     product.add("ADVANCED_BREP_SHAPE_REPRESENTATION", name, solids);
     product.add("MANIFOLD_SURFACE_SHAPE_REPRESENTATION", name, sheets);
+    product.add("EDGE_BASED_WIREFRAME_SHAPE_REPRESENTATION", name, wireframes);
     product.style(styled);
     if (!curves.empty()) {
         const int set = entities.add(text("GEOMETRIC_CURVE_SET('',", Entities::refs(curves), ")"));

@@ -233,6 +233,19 @@ TEST_F(Step, of_a_part_with_fillets_is_measured_as_the_part) {
         }
 }
 
+TEST_F(Step, wires_are_read) {
+    Model net;
+    net.unit = "mm";
+    net.vertices = {{{{0, 0, 0}}, 0}, {{{3, 0, 4}}, 0}};
+    const CurveGeometry<3> arc = Conic<3>{ConicKind::ellipse, {{1.5, 0, 2}}, {{-1.5, 0, -2}}, {{0, 1, 0}}};
+    net.edges = {{Line<3>{{}, {{0.6, 0, 0.8}}}, false, {0, 5}, 0, 1, 0, ""},
+                 {arc, false, {0, kPi}, 0, 1, 0, ""}};
+    const Model back = read_again({"mm", {{"", net}}});
+    EXPECT_TRUE(back.faces.empty());
+    ASSERT_EQ(back.edges.size(), 2u);
+    EXPECT_EQ(back.vertices.size(), 2u);
+}
+
 TEST_F(Step, units_are_written) {
     const Model cube = must(prism(loops_of({{ellipse({{0, 0}}, 1, 1)}}), {{0, 0, 1}}));
     for (const char* unit : {"mm", "cm", "m", "inch"}) {
