@@ -19,9 +19,9 @@
 // Why not the writer of Open CASCADE: it rounds numbers to 15 digits, which moves control points, and takes a
 // process of its own.
 #include "step_detail.hpp"
+#include "step_product.hpp"
 
 #include <freiform/io/bpt.hpp>
-#include <freiform/io/mesh_file.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
 #include <freiform/make/image_curve.hpp>
@@ -34,6 +34,7 @@ namespace freiform {
 namespace {
 
 using detail::Entities;
+using detail::Product;
 using detail::quoted;
 using detail::real;
 using detail::StepGeometry;
@@ -253,66 +254,6 @@ private:
     std::vector<int> vertices_, edges_;        // their entities, 0 until they are written
     std::vector<std::vector<int>> on_layers_;  // the entities of each
     std::map<std::array<double, 3>, int> styles_;
-};
-
-// What every file says once.
-class Product {
-public:
-    Product(Entities& entities, std::string_view unit) : e_(entities) {
-        application_ = e_.add("APPLICATION_CONTEXT('managed model based 3d engineering')");
-        e_.add(
-            text("APPLICATION_PROTOCOL_DEFINITION('international standard',"
-                 "'ap242_managed_model_based_3d_engineering',2014,#",
-                 application_, ")"));
-        const int length = length_unit(unit);
-        const int angle = e_.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
-        const int solid = e_.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
-        const int accuracy = e_.add(text("UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),#", length,
-                                         ",'distance_accuracy_value','')"));
-        context_ = e_.add(text("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#",
-                               accuracy, "))GLOBAL_UNIT_ASSIGNED_CONTEXT((#", length, ",#", angle, ",#",
-                               solid, "))REPRESENTATION_CONTEXT('',''))"));
-    }
-
-    void add(std::string_view representation, std::string_view name, const std::vector<int>& items) {
-        if (items.empty()) return;
-        const int shape = e_.add(text(representation, "('',", Entities::refs(items), ",#", context_, ")"));
-        const int of_product = e_.add(text("PRODUCT_CONTEXT('',#", application_, ",'mechanical')"));
-        const int product =
-            e_.add(text("PRODUCT(", quoted(name), ",", quoted(name), ",'',(#", of_product, "))"));
-        e_.add(text("PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#", product, "))"));
-        const int of_definition =
-            e_.add(text("PRODUCT_DEFINITION_CONTEXT('part definition',#", application_, ",'design')"));
-        const int formation = e_.add(text("PRODUCT_DEFINITION_FORMATION('','',#", product, ")"));
-        const int definition =
-            e_.add(text("PRODUCT_DEFINITION('design','',#", formation, ",#", of_definition, ")"));
-        const int of_shape = e_.add(text("PRODUCT_DEFINITION_SHAPE('','',#", definition, ")"));
-        e_.add(text("SHAPE_DEFINITION_REPRESENTATION(#", of_shape, ",#", shape, ")"));
-    }
-
-    void style(const std::vector<int>& items) {
-        if (!items.empty())
-            e_.add(text("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',", Entities::refs(items),
-                        ",#", context_, ")"));
-    }
-
-private:
-    int length_unit(std::string_view unit) {
-        const std::string_view prefix = unit == "m" ? "$" : unit == "cm" ? ".CENTI." : ".MILLI.";
-        const int si = e_.add(text("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(", prefix, ",.METRE.))"));
-        const auto metres = metres_per(unit);
-        if (!metres || unit == "m" || unit == "cm" || unit == "mm") return si;
-        const int of =
-            e_.add(text("LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(", real(*metres * 1000), "),#", si, ")"));
-        const int exponents = e_.add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");
-        std::string name(unit);
-        for (char& c : name) c = c >= 'a' && c <= 'z' ? char(c - 32) : c;
-        return e_.add(text("(CONVERSION_BASED_UNIT(", quoted(name), ",#", of, ")LENGTH_UNIT()NAMED_UNIT(#",
-                           exponents, "))"));
-    }
-
-    Entities& e_;
-    int application_ = 0, context_ = 0;
 };
 
 }  // namespace
