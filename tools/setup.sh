@@ -10,7 +10,7 @@ gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 font="libfreetype-dev libharfbuzz-dev libfontconfig-dev"
 python="pybind11-dev python3-dev python3-numpy"
-test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell"
+test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell fonts-inter-variable"
 wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 python3-venv python3-pip gmsh libglfw3-dev xvfb xauth libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
@@ -57,6 +57,7 @@ what_for() {
         fonts-dejavu-core) echo "the letters of drawings" ;;
         libfreetype-dev | libharfbuzz-dev | libfontconfig-dev) echo "outlines of letters, for text" ;;
         fonts-cantarell) echo "a font with cubics, to test on" ;;
+        fonts-inter-variable) echo "a variable font, to test on" ;;
         pybind11-dev | python3-dev | python3-numpy) echo "the Python package" ;;
         python3-pytest | python3-hypothesis | mypy) echo "the tests of the Python package" ;;
         python3-venv | python3-pip) echo "the test of the wheel" ;;
