@@ -5,9 +5,11 @@ if(FREIFORM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     find_program(FREIFORM_CCACHE_PROGRAM ccache)
     mark_as_advanced(FREIFORM_CCACHE_PROGRAM)
     if(FREIFORM_CCACHE_PROGRAM)
-        # What ccache has to be told before it dares to cache files that use a precompiled header.
+        # What ccache has to be told before it dares to cache files that use a precompiled header, and that another clone
+        # has the same files in another folder.
         set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-            CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${FREIFORM_CCACHE_PROGRAM})
+            CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+            CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${FREIFORM_CCACHE_PROGRAM})
     endif()
 endif()
 
