@@ -21,11 +21,11 @@
 // |DS(x) (y - x)| <= e + K |y - x|'^2 / 2 gives |y - x|' <= e / (least (1 - 3.75 q)) =: way.
 // The distance: |p - S(x)| = |N(x) . (S(y) - p) + N(x) . (S(x) - S(y))|. The first term is a linear
 // interpolation error of the function N(x) . S, which has the second derivatives that are seen along N(x):
-// with |N(x) - n| <= t those along n and t times the whole ones (`Bending::seen`). The second is at most K
-// way^2 / 2 = q e / 2 / (1 - 3.75 q)^2, for DS(x) (y - x) is orthogonal to N(x). And t: on a box with the
-// middle m and n = N(m), a tangent DS(x) d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle
-// with a sine of at most the swing of n . DS over the least stretch; from y to x by one of at most K way /
-// (least - K way).
+// with |N(x) - n| <= t those along n and t times those of the part of S across n, for N(x) is cos s n + sin s
+// b, b a unit vector across n, sin s <= t (`Bending::seen`). The second is at most K way^2 / 2 = q e / 2 / (1
+// - 3.75 q)^2, for DS(x) (y - x) is orthogonal to N(x). And t: on a box with the middle m and n = N(m), a
+// tangent DS(x) d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle with a sine of at most the
+// swing of n . DS over the least stretch; from y to x by one of at most K way / (least - K way).
 //
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so
@@ -62,11 +62,77 @@ namespace {
 constexpr double kRounding = 1e-6;
 constexpr double kLeastStretch = 0.1, kMostQ = 1.0 / 16;
 constexpr double kDisc = 2.5;
+constexpr double kMuchTurn = 0.1;  // of normals within half a box
 
 constexpr double kSumSlack = 1 + 0x1p-46;  // more than the roundings of sums below
 
 Curvature seconds(const DerivativeBounds<2>& b) { return {b(2, 0), b(1, 1), b(0, 2)}; }
 std::array<double, 4> thirds(const DerivativeBounds<2>& b) { return {b(3, 0), b(2, 1), b(1, 2), b(0, 3)}; }
+
+// Of the box, from the middle, which is rounded, to the ends.
+Vec<2> half_sides(const std::array<Interval, 2>& on) {
+    const auto half = [](const Interval& x) {
+        return x.length() / 2 + 2 * kUnitRoundoff * std::max(std::abs(x.lo), std::abs(x.hi));
+    };
+    return {{half(on[0]), half(on[1])}};
+}
+
+// Bounds of |jet<2> - exact| of S_uu, S_uv, S_vv, where second derivatives are continuous in the box and one
+// is known. Of profiles that are lines or ellipses they are derivatives of the profile, turned, or vectors
+// from the axis to it.
+std::optional<Curvature> second_slip(const DerivativeQuery<2, 3>& surface,
+                                     const std::array<Interval, 2>& on) {
+    if (surface.is_twice_smooth(on))
+        return Curvature{surface.second_rounding(0, 0), surface.second_rounding(0, 1),
+                         surface.second_rounding(1, 1)};
+    const CurveGeometry<3>* profile = nullptr;
+    if (const auto* r = std::get_if<Revolution>(&surface.geometry())) profile = &r->profile;
+    if (const auto* e = std::get_if<Extrusion>(&surface.geometry())) profile = &e->profile;
+    if (!profile) return std::nullopt;
+    double size = kInfinity;
+    if (const auto* line = std::get_if<Line<3>>(profile)) size = norm(line->direction);
+    if (const auto* conic = std::get_if<Conic<3>>(profile); conic && conic->kind == ConicKind::ellipse)
+        size = norm(conic->x) + norm(conic->y);
+    if (size == kInfinity) return std::nullopt;
+    const double slip = 4 * surface.value_error(on) + 64 * kUnitRoundoff * size;
+    return Curvature{slip, slip, slip};
+}
+
+// What second derivatives change by from the middle, by third ones; with their own error `slip`.
+Curvature change_by(const Vec<2>& half, const std::array<double, 4>& third, const Curvature& slip) {
+    return {(half[0] * third[0] + half[1] * third[1] + slip.uu) * kSumSlack,
+            (half[0] * third[1] + half[1] * third[2] + slip.uv) * kSumSlack,
+            (half[0] * third[2] + half[1] * third[3] + slip.vv) * kSumSlack};
+}
+
+// The signs of n . S_uu and n . S_vv, where they are what they are in the middle.
+void add_signs(Curvature& along, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, const Curvature& change) {
+    const auto sure = [&](const Vec<3>& second, double by) {
+        return Curvature::less(dot(n, second), by + 8 * kUnitRoundoff * norm(second));
+    };
+    along.sure_uu = sure(j(2, 0), change.uu);
+    along.sure_vv = sure(j(0, 2), change.vv);
+}
+
+// Of second derivatives less their part along n.
+Curvature beside_of(const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, const Curvature& change) {
+    const auto of = [&](const Vec<3>& second, double by) {
+        return (norm(second - dot(n, second) * n) + 16 * kUnitRoundoff * norm(second) + by) * kSumSlack;
+    };
+    return {of(j(2, 0), change.uu), of(j(1, 1), change.uv), of(j(0, 2), change.vv)};
+}
+
+// Of surfaces that are no splines third derivatives are dear: they are asked for at saddles, where signs are
+// worth more, and where normals turn much.
+bool matters_what_is_beside(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& on,
+                            const Jet<2, 2, Vec<3>>& j, const Vec<3>& n) {
+    if (surface.piece_numbers() > 0) return true;
+    const double uu = dot(n, j(2, 0)), uv = dot(n, j(1, 1)), vv = dot(n, j(0, 2));
+    if (uu * vv < 0) return true;
+    const double a = norm(j(1, 0)), b = norm(j(0, 1)), hu = on[0].length() / 2, hv = on[1].length() / 2;
+    return std::abs(uu) * hu + std::abs(uv) * hv > kMuchTurn * a ||
+           std::abs(uv) * hu + std::abs(vv) * hv > kMuchTurn * b;
+}
 
 // The normal of the tangents u and v in the middle of the box, where rounding leaves one.
 std::optional<Vec<3>> normal_in(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& on,
@@ -81,9 +147,9 @@ std::optional<Vec<3>> normal_in(const DerivativeQuery<2, 3>& surface, const std:
 }
 
 // What makes parameters lengths, and how steady the normal is: from the tangents u, v and the normal n in the
-// middle, and `along`, bounds of the second derivatives of n . S.
+// middle, and `along` and `beside`, bounds of the second derivatives of n . S and of the rest of S.
 void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3>& u, const Vec<3>& v,
-                 const Vec<3>& n, const Curvature& along) {
+                 const Vec<3>& n, const Curvature& along, const Curvature& beside) {
     if (!out.full.is_finite()) return;
     const double a = norm(u), b = norm(v), hu = on[0].length() / 2, hv = on[1].length() / 2;
     const double c = std::abs(dot(u, v)) / (a * b);
@@ -94,6 +160,8 @@ void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3
     out.n = n;
     out.across = along;
     out.across.restrict_to(out.full);
+    out.beside = beside;
+    out.beside.restrict_to(out.full);
     const double change = swing(out.full);
     const double least = std::sqrt(std::max(0.0, 1 - c)) - change;
     if (!(least > kLeastStretch)) return;
@@ -107,37 +175,41 @@ void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3
 }  // namespace
 
 BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
-                      const Jet<2, 1, Vec<3>>& j, Variation* variation) {
+                      const Jet<2, 2, Vec<3>>& j, Variation* variation) {
     const std::array<Interval, 2> on{box.side(0), box.side(1)};
-    const int order = variation ? 3 : 2;
     BoxBending out;
     const auto n = knows_normals ? normal_in(surface, on, j.d[1], j.d[2]) : std::nullopt;
+    const auto slip =
+        n && matters_what_is_beside(surface, on, j, *n) ? second_slip(surface, on) : std::nullopt;
+    const int order = variation || slip ? 3 : 2;
     const auto both = n ? surface.both(*n, on, order) : DerivativeQuery<2, 3>::Both{surface(on, order), {}};
     if (variation) *variation = {n.value_or(Vec<3>{}), thirds(both.all), thirds(n ? both.along : both.all)};
     out.full = seconds(both.all);
     out.first[0] = both.all(1, 0), out.first[1] = both.all(0, 1);
-    if (n) add_normals(out, on, j.d[1], j.d[2], *n, seconds(both.along));
+    if (!n) return out;
+    Curvature along = seconds(both.along);
+    Curvature beside = out.full;
+    if (slip) {
+        const Vec<2> half = half_sides(on);
+        add_signs(along, *n, j, change_by(half, thirds(both.along), *slip));
+        beside = beside_of(*n, j, change_by(half, thirds(both.all), *slip));
+    }
+    add_normals(out, on, j.d[1], j.d[2], *n, along, beside);
     return out;
 }
 
 BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
                                const Jet<2, 2, Vec<3>>& j, const Variation& variation) {
     const std::array<Interval, 2> on{box.side(0), box.side(1)};
-    // From the middle, which is rounded, to the ends.
-    const auto half = [](const Interval& x) {
-        return x.length() / 2 + 2 * kUnitRoundoff * std::max(std::abs(x.lo), std::abs(x.hi));
-    };
-    const double hu = half(on[0]), hv = half(on[1]);
-    const auto varied = [&](double uu, double uv, double vv, const std::array<double, 4>& third) {
-        return Curvature{(uu + hu * third[0] + hv * third[1] + surface.second_rounding(0, 0)) * kSumSlack,
-                         (uv + hu * third[1] + hv * third[2] + surface.second_rounding(0, 1)) * kSumSlack,
-                         (vv + hu * third[2] + hv * third[3] + surface.second_rounding(1, 1)) * kSumSlack};
-    };
+    const Vec<2> half = half_sides(on);
+    const Curvature slip{surface.second_rounding(0, 0), surface.second_rounding(0, 1),
+                         surface.second_rounding(1, 1)};
+    const Curvature change = change_by(half, variation.all, slip);
     BoxBending out;
-    out.full = varied(norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2)), variation.all);
+    out.full = Curvature{norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2))}.plus(kSumSlack, change);
     for (int d = 0; d < 2; ++d)
-        out.first[d] = (norm(j.d[std::size_t(d) + 1]) + (d == 0 ? out.full.uu : out.full.uv) * hu +
-                        (d == 0 ? out.full.uv : out.full.vv) * hv) *
+        out.first[d] = (norm(j.d[std::size_t(d) + 1]) + (d == 0 ? out.full.uu : out.full.uv) * half[0] +
+                        (d == 0 ? out.full.uv : out.full.vv) * half[1]) *
                        (1 + kRounding);
     if (!knows_normals) return out;
     const auto n = normal_in(surface, on, j(1, 0), j(0, 1));
@@ -146,9 +218,20 @@ BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2
     const double turned = norm(*n - variation.n);
     for (std::size_t k = 0; k < 4; ++k)
         along[k] = std::min(variation.all[k], variation.along[k] + turned * variation.all[k]);
-    add_normals(
-        out, on, j(1, 0), j(0, 1), *n,
-        varied(std::abs(dot(*n, j(2, 0))), std::abs(dot(*n, j(1, 1))), std::abs(dot(*n, j(0, 2))), along));
+    const Curvature change_along = change_by(half, along, slip);
+    Curvature seen =
+        Curvature{std::abs(dot(*n, j(2, 0))), std::abs(dot(*n, j(1, 1))), std::abs(dot(*n, j(0, 2)))}.plus(
+            kSumSlack, change_along);
+    add_signs(seen, *n, j, change_along);
+    add_normals(out, on, j(1, 0), j(0, 1), *n, seen, beside_of(*n, j, change));
+    return out;
+}
+
+Curvature Bending::seen_along(double apart) const {
+    Curvature out = across.plus(apart, beside);
+    const double shorter = std::max(0.0, 1 - apart * apart / 2 * (1 + 1e-14));  // what of n is in the vector
+    out.sure_uu = Curvature::less(shorter * across.sure_uu, apart * beside.uu);
+    out.sure_vv = Curvature::less(shorter * across.sure_vv, apart * beside.vv);
     return out;
 }
 
@@ -156,7 +239,8 @@ void Bending::include(const Bending& o) {
     full.include(o.full);
     if (least > 0 && o.least > 0) {
         const double apart = norm(n - o.n) * (1 + 1e-14);
-        across.include(o.across.plus(apart, o.full));
+        across.include(o.seen_along(apart));
+        beside.include(o.beside.plus(apart, o.across));
         tilt = std::max(tilt, o.tilt + apart);
         const double a0 = std::min(a, o.a), b0 = std::min(b, o.b);
         most = std::max(most * std::max(a / a0, b / b0), o.most * std::max(o.a / a0, o.b / b0));

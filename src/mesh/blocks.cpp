@@ -5,16 +5,29 @@
 // two triangles. Every triangle is within its cell, whose bound it keeps: half the squared radius of the
 // smallest circle around it is no more than that of half the cell (curvature_tree.cpp). What two blocks have
 // on both sides is no outline.
+//
+// Blocks of one cell, the leaves, get the best shaped triangles among the points of their sides
+// (leaf_triangles.cpp). Where feet cannot be proven (bending.cpp), all points of a leaf are plain, if all of
+// its error is small enough. Their neighbours have plain points then; those that can do without these feet,
+// do, others become plain in turn or are left to the triangulation. So are blocks near places to avoid: where
+// triangles around them turned out to need plain points that a block counts on.
 #include "blocks_detail.hpp"
+#include "leaf_triangles_detail.hpp"
+#include "outer_sides_detail.hpp"
 #include "parameter_table_detail.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
+#include <cmath>
 
 namespace freiform {
 
 namespace {
 
 constexpr double kCellRounding = 1 + 1e-12;  // of what judges cells
+constexpr double kMarginOfAvoided = 2;       // times the box
+constexpr int kPlainRounds = 8;              // then leaves that disagree are left to the triangulation
 
 struct Grid {
     std::array<std::vector<double>, 2> lines;
@@ -33,18 +46,25 @@ struct Grid {
 
 class BlockMesher {
 public:
-    BlockMesher(const CurvatureTree& tree, const Judge& judge, double tolerance)
-        : tree_(tree), judge_(judge), tolerance_(tolerance), table_(tree.corners().size()) {}
+    BlockMesher(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                std::span<const Vec<2>> avoid)
+        : tree_(tree), judge_(judge), tolerance_(tolerance), avoid_(avoid), table_(tree.corners().size()) {}
 
     BlockMesh run() {
         out_.corners.assign(tree_.corners().begin(), tree_.corners().end());
-        for (const auto& b : tree_.blocks()) take(b);
-        if (blocks_.empty()) return std::move(out_);
+        for (const auto& b : tree_.blocks()) b.first_part < 0 ? take_leaf(b) : take(b);
+        if (blocks_.empty() && leaves_.empty()) return std::move(out_);
         for (const auto& c : out_.corners) table_.number(c.at);
         for (const Block& b : blocks_) each_border_point(b.grid, [&](const Vec<2>& p) { table_.number(p); });
+        for (const Leaf& l : leaves_)
+            for (std::size_t k = 0; k < 4; ++k) table_.number(corner_of(l.box, k));
         find_sides();
+        plain_.assign(table_.size(), 0);
+        if (!tree_.is_all_plain()) settle_feet();
+        for (const Leaf& l : leaves_) out_.bound = std::max(out_.bound, l.bound());
         find_outline();
         for (const Block& b : blocks_) mesh(b);
+        for (const Leaf& l : leaves_) mesh(l);
         return std::move(out_);
     }
 
@@ -57,9 +77,57 @@ private:
         std::vector<int> border = {}, step = {};
     };
 
+    // A block of one cell: its border is border_[first] and what follows.
+    struct Leaf {
+        Box<2> box;
+        Vec<2> scale;  // what makes parameters lengths
+        // Bounds, where all points have feet, some have none, all are plain; infinite above the tolerance.
+        double usual = 0, footless = 0, flat = 0;
+        bool is_plain = false;
+        std::size_t first = 0, count = 0;
+
+        bool needs_foot() const { return !is_plain && !std::isfinite(footless); }
+        double bound() const {
+            return is_plain ? flat : std::max(usual, std::isfinite(footless) ? footless : 0);
+        }
+    };
+
+    static Vec<2> corner_of(const Box<2>& b, std::size_t k) {
+        return {{k == 1 || k == 2 ? b.hi[0] : b.lo[0], k >= 2 ? b.hi[1] : b.lo[1]}};
+    }
+
+    bool is_near_avoided(const Box<2>& box) const {
+        const Vec<2> margin = kMarginOfAvoided * (box.hi - box.lo);
+        const Box<2> around{box.lo - margin, box.hi + margin};
+        return std::any_of(avoid_.begin(), avoid_.end(), [&](const Vec<2>& p) { return around.contains(p); });
+    }
+
+    void take_leaf(const CurvatureTree::Block& b) {
+        if (is_near_avoided(b.box)) return dissolve(b.box);
+        const Bending& at = tree_.part_bendings(b)[0];
+        const Vec<2> size = b.box.hi - b.box.lo, cell = kCellRounding * size;
+        const std::array<Vec<2>, 3> corner{b.box.lo, b.box.lo + Vec<2>{{cell[0], 0}},
+                                           b.box.lo + Vec<2>{{0, cell[1]}}};
+        const auto judged = [&](int plain) {
+            const double bound = judge_(at, b.box, corner, plain, b.node).bound;
+            return bound <= tolerance_ ? bound : kInfinity;
+        };
+        Leaf leaf{b.box, at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}}};
+        leaf.flat = judged(3);
+        leaf.usual = tree_.is_all_plain() ? kInfinity : judged(0);
+        leaf.footless = std::isfinite(leaf.usual) ? judged(1) : kInfinity;
+        leaf.is_plain = !std::isfinite(leaf.usual);
+        std::isfinite(std::min(leaf.flat, leaf.usual)) ? leaves_.push_back(leaf) : dissolve(b.box);
+    }
+
+    void dissolve(const Box<2>& leaf) {
+        for (std::size_t k = 0; k < 4; ++k) out_.corners.push_back({corner_of(leaf, k), leaf.hi - leaf.lo});
+    }
+
     void take(const CurvatureTree::Block& b) {
         const Grid grid{{halved(b.box.side(0), b.halves[0]), halved(b.box.side(1), b.halves[1])}};
         const Vec<2> cell = kCellRounding * grid.largest_cell();
+        if (is_near_avoided(b.box)) return dissolve(grid, cell);
         // Of the first cell of each part, as if corners were plain where a foot is not needed.
         double usual = 0, footless = 0;
         const bool all_plain = tree_.is_all_plain();
@@ -117,28 +185,115 @@ private:
             }
             block.step.push_back(int(block.border.size()));
         }
+        border_.reserve(6 * leaves_.size());
+        std::erase_if(leaves_, [&](Leaf& l) {
+            l.first = border_.size();
+            for (std::size_t k = 0; k < 4; ++k) {
+                const Vec<2> a = corner_of(l.box, k), b = corner_of(l.box, (k + 1) % 4);
+                border_.push_back(table_.find(a));
+                add_between(a, b, k % 2 ? 1 : 0, border_);
+            }
+            l.count = border_.size() - l.first;
+            if (l.count <= kMostAround) return false;
+            border_.resize(l.first);
+            dissolve(l.box);
+            return true;
+        });
+    }
+
+    // Leaves without feet have plain points, and what these do to others.
+    void settle_feet() {
+        const auto make_plain = [&](Leaf& l) {
+            l.is_plain = true;
+            for (const int at : border_of(l)) plain_[std::size_t(at)] = 1;
+        };
+        const auto meets_plain = [&](std::span<const int> border) {
+            return std::any_of(border.begin(), border.end(),
+                               [&](int at) { return plain_[std::size_t(at)] != 0; });
+        };
+        for (Leaf& l : leaves_)
+            if (l.is_plain) make_plain(l);
+        // Beyond the outline anything may be, so what can do without feet there, does.
+        std::vector<char> outer(table_.size());
+        each_outer_side([&](int a, int b) { outer[std::size_t(a)] = outer[std::size_t(b)] = 1; });
+        for (Leaf& l : leaves_) {
+            const auto border = border_of(l);
+            if (l.needs_foot() && std::isfinite(l.flat) &&
+                std::any_of(border.begin(), border.end(),
+                            [&](int at) { return outer[std::size_t(at)] != 0; }))
+                make_plain(l);
+        }
+        bool changed = true;
+        for (int round = 0; changed && round < kPlainRounds; ++round) {
+            changed = false;
+            for (Leaf& l : leaves_)
+                if (l.needs_foot() && std::isfinite(l.flat) && meets_plain(border_of(l))) {
+                    make_plain(l);
+                    changed = true;
+                }
+        }
+        std::erase_if(leaves_, [&](const Leaf& l) {
+            const bool bad = l.needs_foot() && meets_plain(border_of(l));
+            if (bad) dissolve(l.box);
+            return bad;
+        });
+        std::erase_if(blocks_, [&](const Block& b) {
+            const bool bad = b.needs_foot && meets_plain(b.border);
+            if (bad) dissolve(b.grid, b.grid.largest_cell());
+            return bad;
+        });
+    }
+
+    // Sides that one block or leaf has alone, by numbers of table_.
+    template <class Visit>
+    void each_outer_side(Visit&& visit) const {
+        OuterSides sides(table_.size(), border_.size());
+        for (const Block& b : blocks_) sides.add(b.border);
+        for (const Leaf& l : leaves_) sides.add(border_of(l));
+        sides.each(visit);
     }
 
     void find_outline() {
-        std::vector<std::array<int, 2>> sides;  // sorted ends
-        for (const Block& b : blocks_)
-            for (std::size_t k = 0; k < b.border.size(); ++k) {
-                const auto [lo, hi] = std::minmax(b.border[k], b.border[(k + 1) % b.border.size()]);
-                sides.push_back({lo, hi});
-            }
-        std::sort(sides.begin(), sides.end());
         number_.assign(table_.size(), -1);
-        for (std::size_t i = 0; i < sides.size(); ++i) {
-            const bool twice =
-                (i > 0 && sides[i] == sides[i - 1]) || (i + 1 < sides.size() && sides[i] == sides[i + 1]);
-            if (!twice) out_.outline.push_back({point(sides[i][0]), point(sides[i][1])});
-        }
+        each_outer_side([&](int a, int b) { out_.outline.push_back({point(a), point(b)}); });
         out_.on_outline = int(out_.points.size());
         out_.needs_foot.assign(out_.points.size(), 0);
-        for (const Block& b : blocks_)
-            for (const int at : b.border)
-                if (const int p = point(at); b.needs_foot && p < out_.on_outline)
+        const auto mark = [&](std::span<const int> border, bool needs_foot) {
+            for (const int at : border)
+                if (const int p = point(at); needs_foot && p < out_.on_outline)
                     out_.needs_foot[std::size_t(p)] = 1;
+        };
+        for (const Block& b : blocks_) mark(b.border, b.needs_foot);
+        for (const Leaf& l : leaves_) mark(border_of(l), l.needs_foot());
+        out_.plain.resize(out_.needs_foot.size());
+        for (std::size_t at = 0; at < number_.size(); ++at)
+            if (const int p = number_[at]; plain_[at] && p >= 0 && p < out_.on_outline)
+                out_.plain[std::size_t(p)] = 1;
+    }
+
+    std::span<const int> border_of(const Leaf& l) const {
+        return std::span(border_).subspan(l.first, l.count);
+    }
+
+    void mesh(const Leaf& l) {
+        const auto border = border_of(l);
+        const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+            out_.triangles.push_back({point(border[a]), point(border[b]), point(border[c])});
+        };
+        if (border.size() == 4) {
+            add(0, 1, 2);
+            add(0, 2, 3);
+            return;
+        }
+        places_.clear();
+        for (const int at : border) {
+            const Vec<2> x = table_.points()[std::size_t(at)] - l.box.lo;
+            places_.push_back({{x[0] * l.scale[0], x[1] * l.scale[1]}});
+        }
+        found_.clear();
+        [[maybe_unused]] const bool has_area = add_best_triangles(places_, found_);
+        FF_REQUIRE(has_area);
+        for (const auto& t : found_) add(std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]));
     }
 
     // The point of the mesh with this number of table_.
@@ -214,18 +369,25 @@ private:
     const CurvatureTree& tree_;
     const Judge& judge_;
     double tolerance_;
+    std::span<const Vec<2>> avoid_;
     ParameterTable table_;
     std::vector<Block> blocks_;
+    std::vector<Leaf> leaves_;
+    std::vector<int> border_;  // of leaves, one after the other
+    std::vector<char> plain_;  // of points of table_
     std::vector<int> number_;  // of points of table_ in the mesh
     int first_inner_ = 0;      // of the block that is being meshed
     std::vector<int> around_;  // work space
+    std::vector<Vec<2>> places_;
+    std::vector<std::array<int, 3>> found_;
     BlockMesh out_;
 };
 
 }  // namespace
 
-BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance) {
-    return BlockMesher(tree, judge, tolerance).run();
+BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                      std::span<const Vec<2>> avoid) {
+    return BlockMesher(tree, judge, tolerance, avoid).run();
 }
 
 }  // namespace freiform

@@ -12,12 +12,14 @@ struct BlockMesh {
     // of leaves that lie there are ends of them.
     std::vector<std::array<int, 2>> outline;
     int on_outline = 0;
-    std::vector<char> needs_foot;  // of points on the outline: as Filler::keep_feet
-    double bound = 0;              // of the distance, of all triangles
+    std::vector<char> needs_foot, plain;  // of points on the outline: as Filler::keep_feet
+    double bound = 0;                     // of the distance, of all triangles
     // Corners of the other leaves, and of the cells of blocks for which no bound was found.
     std::vector<CurvatureTree::Corner> corners;
 };
 
-BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance);
+// Blocks near places to `avoid` are left out.
+BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                      std::span<const Vec<2>> avoid = {});
 
 }  // namespace freiform

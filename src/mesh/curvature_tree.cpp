@@ -12,13 +12,18 @@
 //     |f - L f| <= R^2 / 2,
 // R half the longest side of an obtuse triangle, else its circumradius, both in the metric g. For vectors f
 // the argument is applied to f . e, e any unit vector. Delaunay triangulations in g minimise the largest R.
-// Kinks: where f_u jumps by at most J across u = u0, f has the part J (u - u0)_+ more (in the limit of
-// smoothings of f); its interpolant on a triangle from u0 - a to u0 + b is off by at most J a b / (a + b).
-// Applied to all of S, this bounds more than the distance; bending.cpp applies it to what is seen along
-// normals. Bounds over a box hold over its parts: the halves of a box that is not fine mostly are by its own
-// bounds, unless normals turn much within it, and need none of their own. The tree halves boxes: parts of a
-// third or a fifth, which would fit uniform curvature better, cost more points where boxes of different sizes
-// meet (a fifth more triangles on the models of bench/REPORT.md). References: [Waldron 1998] (min-containment
+// Saddles: where a function f has f_uu >= a > 0, f_vv <= -b < 0, |f_uv| <= c, D^2 f (d, d) >= a du^2 - 2 c
+// |du dv| - M_vv dv^2 >= -(M_vv + c^2 / a) dv^2, so f - L f <= (M_vv + c^2 / a) / 2 sum l_i dv_i^2, and that
+// sum is at most the quarter of the squared extent of T along v. Likewise L f - f <= (M_uu + c^2 / b) du^2 /
+// 8: the larger of both counts, not their sum, so that saddles need half as many triangles as domes. Kinks:
+// where f_u jumps by at most J across u = u0, f has the part J (u - u0)_+ more (in the limit of smoothings of
+// f); its interpolant on a triangle from u0 - a to u0 + b is off by at most J a b / (a + b). Applied to all
+// of S, this bounds more than the distance; bending.cpp applies it to what is seen along normals. Bounds over
+// a box hold over its parts: the halves of a box that is not fine mostly are by its own bounds, unless
+// normals turn much within it, and need none of their own. The tree halves boxes: parts of a third or a
+// fifth, which would fit uniform curvature better, cost more points where boxes of different sizes meet (a
+// fifth more triangles on the models of bench/REPORT.md); columns of the whole box do not
+// (curvature_tree_columns.cpp). References: [Waldron 1998] (min-containment
 // radius), [Filip Magedson Markot 1986] (second derivatives). Why not sampling: a bump between the samples is
 // missed, see the adversarial bump in the tests.
 #include "curvature_tree_detail.hpp"
@@ -34,11 +39,6 @@
 namespace freiform {
 
 namespace {
-
-// More than a part of the edge.
-bool has_common_part(const Box<2>& a, const Box<2>& b) {
-    return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
-}
 
 // Half of the squared min-containment radius with the metric diag(A, B).
 double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
@@ -63,7 +63,8 @@ Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal) {
     const Vec<3> m = cross(j(1, 0), j(0, 1));
     if (!along_normal || !(norm(m) > 0)) return {norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2))};
     const Vec<3> n = unit(m);
-    return {std::abs(dot(n, j(2, 0))), std::abs(dot(n, j(1, 1))), std::abs(dot(n, j(0, 2)))};
+    const double uu = dot(n, j(2, 0)), vv = dot(n, j(0, 2));
+    return {std::abs(uu), std::abs(dot(n, j(1, 1))), std::abs(vv), uu, vv};
 }
 
 double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, const FaceDemands& demands,
@@ -95,11 +96,16 @@ double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, co
 
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d) {
     const double grow = 1 + 1e-14;  // the roundings of this function
-    if (c.uv == 0) return grow * half_squared_radius(c.uu, c.vv, a, b, d);
+    if (c.uv == 0 && !c.is_saddle()) return grow * half_squared_radius(c.uu, c.vv, a, b, d);
     Box<2> box;
     for (const Vec<2>& p : {a, b, d}) box.add(p);
     const Vec<2> size = box.hi - box.lo;
     double best = std::numeric_limits<double>::infinity();
+    if (c.is_saddle()) {
+        const Curvature k = c.apart();
+        best = std::max(k.uu * size[0] * size[0], k.vv * size[1] * size[1]) / 8;
+        if (c.uv == 0) return grow * std::min(best, half_squared_radius(c.uu, c.vv, a, b, d));
+    }
     const auto attempt = [&](double s) {
         if (s > 0 && std::isfinite(s) && 1 / s < std::numeric_limits<double>::infinity())
             best = std::min(best, half_squared_radius(c.uu + s * c.uv, c.vv + c.uv / s, a, b, d));
@@ -109,10 +115,16 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
     return grow * best;
 }
 
-// At the kink that is nearest to the middle if there is one, else across the axis.
-std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Box<2>& box, int axis) const {
+// At the kink that is nearest to the middle if there is one, else across the axis, between columns where it
+// has more than one.
+std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Node& node, int axis) const {
+    const Box<2>& box = node.box;
     const Vec<2> size = box.hi - box.lo;
     Cut out{axis, box.side(axis).middle()};
+    if (const auto [first, end] = node.columns[std::size_t(axis)]; end - first > 1) {
+        out.column = (first + end) / 2;
+        out.at = columns_[std::size_t(axis)][std::size_t(out.column)];
+    }
     double nearest = size[axis];
     for (int d = 0; d < 2; ++d)
         for (const Kink& k : kinks_[std::size_t(d)])
@@ -129,7 +141,7 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
     if (error <= tolerance) return true;
     if (!knows_normals_ || kinks) return false;
     const Shift shift = shift_of(b, error, b.full, 1);
-    return shift.exists && shift.across(b.seen(shift.turn).along(size[0], size[1]) / 8, error) <= tolerance;
+    return shift.exists && shift.across(b.seen(shift.turn).error(size), error) <= tolerance;
 }
 
 bool CurvatureTree::accept(int node, double error, double tolerance) {

@@ -10,7 +10,9 @@
 // what third derivatives in the whole box say, as for leaves of large nets (curvature_tree_make.cpp), or from
 // control points where these are not continuous, or where there are none.
 //
-// Cells are halved sides, as leaves are, so that the corners of both are the same where they meet.
+// Cells are halved sides, as leaves are, so that the corners of both are the same where they meet. So other
+// leaves away from the boundary are blocks, too, of one cell: they need no triangulation and one proof for
+// all triangles.
 #include "curvature_tree_detail.hpp"
 
 namespace freiform {
@@ -25,11 +27,14 @@ constexpr int kMostHalves = 12;                      // of both sides together
 constexpr double kPartError = 4;                     // of a part, times the tolerance
 constexpr int kPartHalves = 8;                       // likewise, into parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
+constexpr double kDeep = 0.3;                        // of a leaf: nearer to the boundary it makes slivers
 
 // Cells of a box of this size whose triangles are off by the tolerance: sides are chosen so that the
 // derivatives along both count equally.
 double cells_for(const Curvature& c, const Vec<2>& size, double tolerance) {
-    return (std::sqrt(c.uu * c.vv) + c.uv) * size[0] * size[1] / (4 * tolerance);
+    double both = std::sqrt(c.uu * c.vv) + c.uv;
+    if (c.is_saddle()) both = std::min(both, std::sqrt(c.apart().uu * c.apart().vv) / 2);
+    return both * size[0] * size[1] / (4 * tolerance);
 }
 
 void halve_longer(const Curvature& c, Vec<2>& size, CurvatureTree::Halves& halves) {
@@ -40,7 +45,7 @@ void halve_longer(const Curvature& c, Vec<2>& size, CurvatureTree::Halves& halve
 // Some cells each; `size` becomes theirs.
 CurvatureTree::Halves parts_for(const Curvature& c, Vec<2>& size, double tolerance) {
     CurvatureTree::Halves parts{};
-    while (c.along(size[0], size[1]) / 8 > kPartError * tolerance && parts[0] + parts[1] < kPartHalves)
+    while (c.error(size) > kPartError * tolerance && parts[0] + parts[1] < kPartHalves)
         halve_longer(c, size, parts);
     return parts;
 }
@@ -120,8 +125,7 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
     if (meets_kink(box)) return false;
     const bool is_smooth = surface.is_twice_smooth({box.side(0), box.side(1)});
     Variation varies;
-    known = bending_of(surface, box, knows_normals_, {{middle.d[0], middle.d[1], middle.d[2]}},
-                       is_smooth ? &varies : nullptr);
+    known = bending_of(surface, box, knows_normals_, middle, is_smooth ? &varies : nullptr);
     known.full.restrict_to(before);
     if (!known.full.is_finite()) return false;
 
@@ -136,7 +140,7 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
 
     size = box.hi - box.lo;
     const auto is_fine = [&] {
-        if (matters.along(size[0], size[1]) / 8 > kAlmost * tolerance) return false;
+        if (matters.error(size) > kAlmost * tolerance) return false;
         for (const Bending& b : of_parts)
             if (!keeps(b, size, false, b.full.along(size[0], size[1]) / 8, tolerance)) return false;
         return true;
@@ -158,6 +162,40 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
     bendings_[std::size_t(node)] = known;
     blocks_.push_back({box, halves, parts, int(first), node});
     return true;
+}
+
+// Whether the boundary is not near.
+bool CurvatureTree::is_deep(int leaf) const {
+    const Box<2>& box = nodes_[std::size_t(leaf)].box;
+    const Vec<2> margin = kDeep * (box.hi - box.lo);
+    const Box<2> around{box.lo - margin, box.hi + margin};
+    int place = leaf;
+    while (place != 0 && !(nodes_[std::size_t(place)].box.contains(around.lo) &&
+                           nodes_[std::size_t(place)].box.contains(around.hi)))
+        place = nodes_[std::size_t(place)].parent;
+    if (!nodes_[std::size_t(place)].box.contains(around.lo) ||
+        !nodes_[std::size_t(place)].box.contains(around.hi))
+        return false;
+    int stack[2 * kMaxTreeDepth + 4], size = 0;
+    stack[size++] = place;
+    while (size > 0) {
+        const Node& n = nodes_[std::size_t(stack[--size])];
+        if (n.inside || !has_common_part(n.box, around)) continue;
+        if (n.child < 0) return false;
+        stack[size++] = n.child;
+        stack[size++] = n.child + 1;
+    }
+    return true;
+}
+
+void CurvatureTree::take_leaves() {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        Node& n = nodes_[i];
+        if (n.child >= 0 || n.block >= 0 || !n.inside || n.has_columns() || meets_kink(n.box)) continue;
+        if (!is_deep(int(i))) continue;
+        n.block = int(blocks_.size());
+        blocks_.push_back({n.box, {}, {}, -1, int(i)});
+    }
 }
 
 }  // namespace freiform

@@ -14,11 +14,15 @@ namespace freiform {
 // Bounds of the second derivatives (of |S_uu|, |S_uv|, |S_vv|, or of a coordinate).
 struct Curvature {
     double uu = 0, uv = 0, vv = 0;
+    // Of a coordinate: what S_uu and S_vv are at least, if positive; at most, if negative. 0: signs are not
+    // known.
+    double sure_uu = 0, sure_vv = 0;
 
     void include(const Curvature& o) {
         uu = std::max(uu, o.uu);
         uv = std::max(uv, o.uv);
         vv = std::max(vv, o.vv);
+        sure_uu = nearer(sure_uu, o.sure_uu), sure_vv = nearer(sure_vv, o.sure_vv);
     }
     void restrict_to(const Curvature& o) {
         uu = std::min(uu, o.uu);
@@ -26,12 +30,34 @@ struct Curvature {
         vv = std::min(vv, o.vv);
     }
     Curvature plus(double factor, const Curvature& o) const {
-        return {uu + factor * o.uu, uv + factor * o.uv, vv + factor * o.vv};
+        return {uu + factor * o.uu, uv + factor * o.uv, vv + factor * o.vv, less(sure_uu, factor * o.uu),
+                less(sure_vv, factor * o.vv)};
+    }
+    // Nearer to 0 by so much.
+    static double less(double sure, double by) {
+        return sure > 0 ? std::max(0.0, sure - by) : std::min(0.0, sure + by);
+    }
+    bool is_saddle() const { return (sure_uu > 0 && sure_vv < 0) || (sure_uu < 0 && sure_vv > 0); }
+    // Of a saddle: the interpolation error is at most the larger of uu du^2 / 8 and vv dv^2 / 8 of these
+    // (curvature_tree.cpp).
+    Curvature apart() const {
+        return {uu + uv * (uv / std::abs(sure_vv)), 0, vv + uv * (uv / std::abs(sure_uu))};
+    }
+    // Bound of the interpolation error in the halves of a box with these sides.
+    double error(const Vec<2>& size) const {
+        const double together = along(size[0], size[1]) / 8;
+        if (!is_saddle()) return together;
+        const Curvature a = apart();
+        return std::min(together, std::max(a.uu * size[0] * size[0], a.vv * size[1] * size[1]) / 8);
     }
     bool is_finite() const { return std::isfinite(uu + uv + vv); }
     // Bound of |D^2 S (d, d)| for d = (du, dv).
     double along(double du, double dv) const {
         return uu * du * du + 2 * uv * std::abs(du * dv) + vv * dv * dv;
+    }
+    // Of two that are sure: what is sure of both.
+    static double nearer(double a, double b) {
+        return a > 0 && b > 0 ? std::min(a, b) : a < 0 && b < 0 ? std::max(a, b) : 0;
     }
 };
 
@@ -49,6 +75,7 @@ inline constexpr double kChord = 1.06;    // chord over sine of angles with such
 struct Bending {
     Curvature full;       // of S
     Curvature across;     // of n . S
+    Curvature beside;     // of S less its part along n
     Vec<3> n{};           // of length 1
     double tilt = 0;      // |N - n| is at most this
     double a = 0, b = 0;  // what makes parameters lengths
@@ -57,7 +84,9 @@ struct Bending {
 
     void include(const Bending& o);
     // Of what is seen along normals that are within `turn` of some here.
-    Curvature seen(double turn) const { return across.plus(tilt + turn, full); }
+    Curvature seen(double turn) const { return seen_along(tilt + turn); }
+    // The same along vectors of length 1 that are within `apart` of n.
+    Curvature seen_along(double apart) const;
 };
 
 // Of S over the box, with bounds of |S_u| and |S_v|. `knows_normals`: false leaves all else unknown.
@@ -73,13 +102,13 @@ struct Variation {
 };
 // Finds `variation`, too, if it is asked for. REQUIRES surface.is_twice_smooth(box) then.
 BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
-                      const Jet<2, 1, Vec<3>>& middle, Variation* variation = nullptr);
+                      const Jet<2, 2, Vec<3>>& middle, Variation* variation = nullptr);
 // The same from what is seen in the middle, by the variation over some box around.
 BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
                                const Jet<2, 2, Vec<3>>& middle, const Variation& variation);
 inline BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals) {
     return bending_of(surface, box, knows_normals,
-                      jet<1>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()}));
+                      jet<2>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()}));
 }
 
 // How points of the mesh find their feet on S.
@@ -101,6 +130,11 @@ Shift shift_of(const Bending& at, double e, const Curvature& near, double reflec
 // all the same (CurvatureTree::kink_bound), and triangles at them are judged by all of their error
 // (bending.cpp).
 bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance);
+
+// More than a part of the edge.
+inline bool has_common_part(const Box<2>& a, const Box<2>& b) {
+    return a.lo[0] < b.hi[0] && b.lo[0] < a.hi[0] && a.lo[1] < b.hi[1] && b.lo[1] < a.hi[1];
+}
 
 // The ends of the parts of an interval that is halved so many times.
 std::vector<double> halved(const Interval& on, int times);
@@ -160,12 +194,13 @@ public:
     struct Block {
         Box<2> box;
         Halves halves{}, parts{};  // into cells, and into parts of some cells
-        int first_part = 0;
+        int first_part = 0;        // -1: a leaf that is one cell
         int node = 0;
     };
     std::span<const Block> blocks() const { return blocks_; }
     // Of its parts, row by row.
     std::span<const Bending> part_bendings(const Block& b) const {
+        if (b.first_part < 0) return {&bending(b.node), 1};
         return std::span(part_bendings_)
             .subspan(std::size_t(b.first_part), std::size_t(1) << (b.parts[0] + b.parts[1]));
     }
@@ -185,12 +220,19 @@ private:
         int variation = -1;  // over it, in variations_
         int block = -1;      // in blocks_
         bool outside = false;
-        bool whole = false;  // nothing of it is outside
-        bool flat = false;   // fine without a shift
+        bool inside = false;  // known to be so while it was made, with its border
+        bool whole = false;   // nothing of it is outside
+        bool flat = false;    // fine without a shift
+        // Along each axis the first of the columns of all that it has, and the one after the last.
+        std::array<std::array<std::uint8_t, 2>, 2> columns{{{0, 1}, {0, 1}}};
+        bool has_columns() const {
+            return columns[0][1] - columns[0][0] > 1 || columns[1][1] - columns[1][0] > 1;
+        }
     };
     struct Cut {
         int axis;
         double at;
+        int column = 0;  // that begins there, if it is not 0
     };
     // Whether the two triangles of a box of this size keep the tolerance, without a shift or with one, which
     // kinks do not allow.
@@ -206,7 +248,10 @@ private:
     void bound_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
                      const BoxBending& all, const Variation* varies, std::vector<Bending>& out) const;
     const Bending& bending(int node) const { return bendings_[std::size_t(node)]; }
-    std::optional<Cut> cut(const Box<2>& box, int axis) const;
+    std::optional<Cut> cut(const Node& node, int axis) const;
+    void plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance);  // curvature_tree_columns.cpp
+    void take_leaves();  // those away from the boundary, as blocks
+    bool is_deep(int leaf) const;
     void find_corners();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
@@ -219,6 +264,7 @@ private:
     std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;
+    std::array<std::vector<double>, 2> columns_;  // where they begin and end; none where there is one
 };
 
 }  // namespace freiform

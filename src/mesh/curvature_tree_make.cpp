@@ -109,8 +109,7 @@ void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, V
     const Curvature before = outer.full;
     const bool varies = tree_.varies(task_.surface, box);
     Variation variation;
-    outer = bending_of(task_.surface, box, tree_.knows_normals_, {{middle.d[0], middle.d[1], middle.d[2]}},
-                       varies ? &variation : nullptr);
+    outer = bending_of(task_.surface, box, tree_.knows_normals_, middle, varies ? &variation : nullptr);
     outer.full.restrict_to(before);
     if (!varies) return;
     node.variation = int(tree_.variations_.size());
@@ -141,6 +140,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         if (node.outside) return std::nullopt;
     }
     node.variation = item.variation;
+    node.inside = inside;
     // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
     if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(item.node, item.outer))
         return std::nullopt;
@@ -149,14 +149,15 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
     const Curvature seen = seen_at(middle, tree_.knows_normals_);
     for (int d = 0; d < 2; ++d) length_[d] = norm(middle.d[std::size_t(d + 1)]) * size[d];
-    const double asked = seen.along(size[0], size[1]) / 8;
+    const double asked = seen.error(size);
     std::optional<Cut> cut;
     if (asked > tolerance && item.depth < kMaxTreeDepth)
-        cut = tree_.cut(box, longer_side(seen, size, length_));
+        cut = tree_.cut(node, longer_side(seen, size, length_));
     // Where control points are many, they are asked about boxes of some leaves, and within these the middle
     // and what varies tell.
     BoxBending outer = item.outer;
-    if (task_.blocks && inside && cut && is_block(item, middle, outer)) return std::nullopt;
+    if (task_.blocks && inside && cut && !node.has_columns() && is_block(item, middle, outer))
+        return std::nullopt;
     if (item.variation >= 0) {
         outer = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
                                     tree_.variations_[std::size_t(item.variation)]);
@@ -179,7 +180,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         const Curvature matters = outer.least > 0 ? outer.seen(0) : outer.full;
         const int axis = fine_ || !std::isfinite(error) ? int(length_[0] < length_[1])
                                                         : longer_side(matters, size, length_);
-        cut = tree_.cut(box, axis);
+        cut = tree_.cut(node, axis);
         if (!cut) return std::nullopt;  // no double between the ends
     }
     if (++task_.leaves > task_.max_leaves) return too_many_leaves();
@@ -194,8 +195,11 @@ void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, con
     tree_.nodes_[std::size_t(item.node)].child = child;
     Box<2> part[2] = {box, box};
     part[0].hi[cut.axis] = part[1].lo[cut.axis] = cut.at;
-    for (const Box<2>& p : part) {
-        tree_.nodes_.push_back({p, item.node});
+    const auto columns = tree_.nodes_[std::size_t(item.node)].columns;
+    for (const int half : {0, 1}) {
+        Node& n = tree_.nodes_.emplace_back(Node{part[half], item.node});
+        n.columns = columns;
+        if (cut.column > 0) n.columns[std::size_t(cut.axis)][half == 0 ? 1 : 0] = std::uint8_t(cut.column);
         tree_.bendings_.emplace_back();
     }
     for (const int half : {1, 0}) {
@@ -238,6 +242,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         CurvatureTree& part = parts[i];
         part.knows_normals_ = tree_.knows_normals_;
         part.kinks_ = tree_.kinks_;
+        part.columns_ = tree_.columns_;
         part.segments_ = tree_.segments_;
         part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
         part.bendings_.emplace_back();
@@ -304,6 +309,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     for (const Vec<2>& p : polygon) root.add(p);
     tree.nodes_.push_back({root, 0});
     tree.bendings_.emplace_back();
+    tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
@@ -330,6 +336,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         }
     if (all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
+    if (ways.blocks) tree.take_leaves();
     tree.find_corners();
     return tree;
 }

@@ -54,8 +54,8 @@ std::optional<Refusal> CurvatureTree::torn_place(const DerivativeQuery<2, 3>& su
         const Vec<2> size = worst.box.hi - worst.box.lo;
         const Curvature& c = worst.bending.full;
         const int longer = !(c.uu * size[0] * size[0] < c.vv * size[1] * size[1]) ? 0 : 1;
-        auto cut_at = cut(worst.box, longer);
-        if (!cut_at) cut_at = cut(worst.box, 1 - longer);
+        auto cut_at = cut(Node{worst.box}, longer);
+        if (!cut_at) cut_at = cut(Node{worst.box}, 1 - longer);
         if (!cut_at) break;
         std::optional<WorstBox> next;
         for (const bool upper : {false, true}) {

@@ -29,6 +29,7 @@ namespace freiform {
 namespace {
 
 constexpr int kSeparateRounds = 16;
+constexpr int kAttemptsAround = 6;
 constexpr std::size_t kPatience = 16;  // times the points that are expected
 constexpr std::size_t kHope = 4;       // likewise, where there is another way
 
@@ -174,42 +175,44 @@ void add_blocks(FaceMesh& out, const BlockMesh& blocks, int outline) {
     }
 }
 
-Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
-                        const FaceDemands& demands, long long max_triangles, std::span<const Vec<2>> extra,
-                        CurvatureTree::Ways ways) {
-    const double tolerance = demands.tolerance;
-    auto polygon = merged(boundary);
-    if (!polygon) return refuse(RefusalKind::invalid, "loops", polygon.error().message);
-    std::vector<std::array<int, 2>> segments;
-    for (const auto& s : polygon->segments) segments.push_back({s.a, s.b});
-    auto tree = CurvatureTree::make(surface, polygon->points, segments, demands,
-                                    std::size_t(max_triangles) / 2 + 1, ways);
-    if (!tree) return std::unexpected(tree.error());
+// What is asked for, and the tree that says how dense points have to be.
+struct Filling {
+    const DerivativeQuery<2, 3>& surface;
+    const FaceBoundary& boundary;
+    const FaceDemands& demands;
+    long long max_triangles;
+    std::span<const Vec<2>> extra;
+    CurvatureTree::Ways ways;
+    const CurvatureTree& tree;
+    const Judge& judge;
+};
 
-    const int merged_corners = int(polygon->points.size());
-    Box<2> box;
-    for (const Vec<2>& p : polygon->points) box.add(p);
-    const Judge judge(*tree, surface, box, tolerance);
-    const BlockMesh blocks = mesh_blocks(*tree, judge, tolerance);
-    const auto grid = grid_of(surface, *tree, *polygon, demands, max_triangles);
+// Blocks are left out near places to `avoid`; where they have to be is in `stuck` then.
+Result<FaceMesh> filled_around(const Filling& f, Polygon polygon, std::span<const Vec<2>> avoid,
+                               std::vector<Vec<2>>& stuck) {
+    const auto& [surface, boundary, demands, max_triangles, extra, ways, tree, judge] = f;
+    const double tolerance = demands.tolerance;
+    const int merged_corners = int(polygon.points.size());
+    const BlockMesh blocks = mesh_blocks(tree, judge, tolerance, avoid);
+    const auto grid = grid_of(surface, tree, polygon, demands, max_triangles);
     const std::vector<CurvatureTree::Corner> crossings =
         grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
     const std::span<const CurvatureTree::Corner> corners = grid ? crossings : blocks.corners;
-    const Vec<2> leaf = grid ? mean_cell(*grid) : tree->mean_leaf();
-    cut_poles(*polygon, boundary, corners, leaf);
+    const Vec<2> leaf = grid ? mean_cell(*grid) : tree.mean_leaf();
+    cut_poles(polygon, boundary, corners, leaf);
     const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
     // What lies outside the blocks is triangulated; their outline is a boundary as the polygon is.
-    const int first_outline = int(polygon->points.size());
-    std::vector<Vec<2>> points = polygon->points;
+    const int first_outline = int(polygon.points.size());
+    std::vector<Vec<2>> points = polygon.points;
     points.insert(points.end(), blocks.points.begin(), blocks.points.begin() + blocks.on_outline);
     for (const auto& [a, b] : blocks.outline)
-        polygon->segments.push_back({first_outline + a, first_outline + b});
+        polygon.segments.push_back({first_outline + a, first_outline + b});
     for (Vec<2>& p : points) p = {{p[0] * scale[0], p[1] * scale[1]}};
-    auto triangulation = Triangulation::make(points, polygon->segments);
+    auto triangulation = Triangulation::make(points, polygon.segments);
     if (!triangulation) return std::unexpected(triangulation.error());
 
-    Filler filler(*triangulation, *tree, judge, surface, scale, demands);
-    filler.keep_feet(first_outline, blocks.needs_foot);
+    Filler filler(*triangulation, tree, judge, surface, scale, demands);
+    filler.keep_feet(first_outline, blocks.needs_foot, blocks.plain);
     for (const Vec<2>& p : extra) triangulation->insert({{p[0] * scale[0], p[1] * scale[1]}});
     filler.insert_corners(corners);
     // Corners that stand for the same mesh point, numbered by the first of them.
@@ -217,8 +220,8 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     std::map<int, int> first;
     for (std::size_t i = 0; i < place.size(); ++i)
         place[i] =
-            i < polygon->corner.size()
-                ? first.try_emplace(boundary.point[std::size_t(polygon->corner[i])], int(i)).first->second
+            i < polygon.corner.size()
+                ? first.try_emplace(boundary.point[std::size_t(polygon.corner[i])], int(i)).first->second
                 : int(i);
     // Leaves and boundary say how many points to expect; many times as many mean that something does not
     // converge.
@@ -228,7 +231,8 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
                                  ? limit
                                  : std::min(limit, (ways.knows_normals ? kHope : kPatience) * expected);
     for (int round = 0; round < kSeparateRounds; ++round) {
-        if (!filler.refine(most))
+        if (!filler.refine(most)) {
+            stuck.assign(filler.stuck_at().begin(), filler.stuck_at().end());
             return filler.is_stuck()
                        ? refuse(RefusalKind::not_converged, "mesh", "triangles beside a block need no foot")
                    : most == limit
@@ -237,6 +241,7 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
                        : refuse(RefusalKind::not_converged, "mesh",
                                 text("more than ", most, " points do not bring all triangles within ",
                                      tolerance));
+        }
         if (filler.separate(place) == 0) break;
     }
 
@@ -248,7 +253,7 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
     const int shift = int(boundary.uv.size()) - merged_corners;
     for (int v = merged_corners; v < int(triangulation->points().size()); ++v) {
         out.uv.push_back(filler.uv(v));
-        out.point.push_back(v < first_outline ? boundary.point[std::size_t(polygon->corner[std::size_t(v)])]
+        out.point.push_back(v < first_outline ? boundary.point[std::size_t(polygon.corner[std::size_t(v)])]
                                               : -1);
     }
     add_blocks(out, blocks, first_outline + shift);
@@ -264,12 +269,35 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
         std::array<int, 3> at{};
         for (std::size_t k = 0; k < 3; ++k) {
             at[k] = t[k] < int(place.size()) ? place[std::size_t(t[k])] : t[k];
-            t[k] = t[k] < merged_corners ? polygon->corner[std::size_t(t[k])] : t[k] + shift;
+            t[k] = t[k] < merged_corners ? polygon.corner[std::size_t(t[k])] : t[k] + shift;
         }
         if (at[0] != at[1] && at[1] != at[2] && at[2] != at[0]) out.triangles.push_back(t);
     }
     if (grid) out.quads = pair_halves(*grid, out.uv, out.point, out.triangles);
     return out;
+}
+
+Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
+                        const FaceDemands& demands, long long max_triangles, std::span<const Vec<2>> extra,
+                        CurvatureTree::Ways ways) {
+    const auto polygon = merged(boundary);
+    if (!polygon) return refuse(RefusalKind::invalid, "loops", polygon.error().message);
+    std::vector<std::array<int, 2>> segments;
+    for (const auto& s : polygon->segments) segments.push_back({s.a, s.b});
+    const auto tree = CurvatureTree::make(surface, polygon->points, segments, demands,
+                                          std::size_t(max_triangles) / 2 + 1, ways);
+    if (!tree) return std::unexpected(tree.error());
+    Box<2> box;
+    for (const Vec<2>& p : polygon->points) box.add(p);
+    const Judge judge(*tree, surface, box, demands.tolerance);
+    const Filling filling{surface, boundary, demands, max_triangles, extra, ways, *tree, judge};
+    std::vector<Vec<2>> avoid, stuck;
+    for (int attempt = 0;; ++attempt) {
+        stuck.clear();
+        auto mesh = filled_around(filling, *polygon, avoid, stuck);
+        if (stuck.empty() || attempt == kAttemptsAround) return mesh;
+        avoid.insert(avoid.end(), stuck.begin(), stuck.end());
+    }
 }
 
 }  // namespace

@@ -124,14 +124,23 @@ bool Filler::is_plain(int vertex) const {
     return tree_.is_all_plain() || (std::size_t(vertex) < plain_.size() && plain_[std::size_t(vertex)]);
 }
 
-void Filler::keep_feet(int first, std::span<const char> marked) {
+void Filler::keep_feet(int first, std::span<const char> marked, std::span<const char> plain) {
     first_kept_ = first;
     kept_.assign(marked.begin(), marked.end());
+    plain_.assign(std::size_t(first), 0);
+    plain_.insert(plain_.end(), plain.begin(), plain.end());
+}
+
+// Its vertices whose feet others count on.
+bool Filler::note_kept(int triangle) {
+    bool any = false;
+    for (const int v : t_.vertices(triangle))
+        if (!is_plain(v) && has_kept_foot(v)) stuck_at_.push_back(uv(v)), any = true;
+    return any;
 }
 
 bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
-    for (const int v : t_.vertices(triangle)) stuck_ = stuck_ || (!is_plain(v) && has_kept_foot(v));
-    if (stuck_) return false;
+    if (note_kept(triangle)) return false;
     bool any = false;
     for (const int v : t_.vertices(triangle)) {
         if (is_plain(v)) continue;
@@ -267,7 +276,15 @@ bool Filler::refine(std::size_t max_points) {
                 for (const int i : again) queue.push_back({i, t_.stamp(i)});
                 continue;
             }
-            if (stuck_) return false;
+            if (is_stuck()) {  // where else?
+                for (std::size_t i = head + 1; i < queue.size(); ++i)
+                    if (const int t = queue[i].triangle; t_.stamp(t) == queue[i].stamp)
+                        if (const Known& other = known(t); !(other.bound <= demands_.tolerance) &&
+                                                           !other.shifted &&
+                                                           other.whole <= demands_.tolerance)
+                            note_kept(t);
+                return false;
+            }
         }
         if (t_.points().size() >= max_points) return false;
         if (!improve(entry.triangle)) continue;  // its bound stands, and the caller will see it

@@ -12,10 +12,13 @@ public:
     Filler(Triangulation& t, const CurvatureTree& tree, const Judge& judge,
            const DerivativeQuery<2, 3>& surface, Vec<2> scale, const FaceDemands& demands);
 
-    // Vertices [first, first + so many) have triangles beyond the region: those marked count on their foot.
-    void keep_feet(int first, std::span<const char> marked);
+    // Vertices [first, first + so many) have triangles beyond the region: those marked count on their foot,
+    // those that are `plain` have none.
+    void keep_feet(int first, std::span<const char> marked, std::span<const char> plain);
     // A vertex would have to do without a foot that other triangles count on: nothing more was tried.
-    bool is_stuck() const { return stuck_; }
+    bool is_stuck() const { return !stuck_at_.empty(); }
+    // Those vertices.
+    std::span<const Vec<2>> stuck_at() const { return stuck_at_; }
 
     void insert_corners(std::span<const CurvatureTree::Corner> corners);
     // False when more than `max_points` are needed, or it is stuck.
@@ -60,6 +63,7 @@ private:
     Triangulation& t_;
     std::vector<Known> known_;
     bool is_plain(int vertex) const;
+    bool note_kept(int triangle);
     // Makes all corners plain; false if they are.
     bool make_plain(int triangle, std::vector<int>& judge_again);
     bool has_kept_foot(int vertex) const {
@@ -75,7 +79,7 @@ private:
     std::size_t most_for_angles_ = 0;
     int first_kept_ = 0;
     std::vector<char> kept_;
-    bool stuck_ = false;
+    std::vector<Vec<2>> stuck_at_;
     std::vector<char> plain_;        // of vertices, as far as one is
     std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
 };

@@ -1,4 +1,5 @@
 // Cells of blocks and the triangles around them are one mesh that keeps the bound.
+#include "mesh/blocks_detail.hpp"
 #include "mesh/filler_detail.hpp"
 #include "support/random.hpp"
 
@@ -143,6 +144,52 @@ TEST(Blocks, and_what_is_around_them_cover_a_face_once_within_the_bound) {
     EXPECT_GT(with_blocks, 16);
 }
 
+// Where a tolerance is coarse for a steep surface, feet cannot be proven: leaves do without.
+TEST(Blocks, of_steep_hills_do_without_feet) {
+    Random random(14);
+    int leaves = 0, plain = 0, counted_on = 0;
+    for (int round = 0; round < 12; ++round) {
+        const auto basis = must(BSplineBasis::clamped_uniform(3, 9));
+        std::vector<Hom<3>> c;
+        for (int i = 0; i < 81; ++i)
+            c.push_back(weighted(Vec<3>{{(i / 9) / 3.0, (i % 9) / 3.0, random.real(-0.6, 0.6)}},
+                                 std::exp2(random.real(-0.3, 0.3))));
+        const SurfaceGeometry s =
+            must(Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({9, 9}, std::move(c))));
+        const DerivativeQuery<2, 3> surface(s);
+        const FaceBoundary boundary = square_of(6, round % 2 == 0);
+        const FaceDemands demands{.tolerance = std::exp2(random.real(-7.5, -5))};
+        const auto mesh = must(mesh_face(surface, boundary, demands, 1'000'000));
+        EXPECT_LE(mesh.bound, demands.tolerance);
+        expect_covers_once(mesh, boundary);
+        EXPECT_LE(sampled_distance(s, mesh), mesh.bound) << round;
+        for (const double tolerance :
+             {demands.tolerance, demands.tolerance / 32}) {  // fine: feet are counted on
+            const auto tree = must(CurvatureTree::make(surface, boundary.uv, boundary.segments,
+                                                       {.tolerance = tolerance}, 1'000'000, {true, true}));
+            for (const auto& b : tree.blocks()) leaves += b.first_part < 0;
+            const Judge judge(tree, surface, {boundary.uv.front(), {{6, 6}}}, tolerance);
+            const auto blocks = mesh_blocks(tree, judge, tolerance);
+            ASSERT_EQ(blocks.plain.size(), std::size_t(blocks.on_outline));
+            for (std::size_t i = 0; i < blocks.plain.size(); ++i) {
+                plain += blocks.plain[i];
+                counted_on += blocks.needs_foot[i];
+                EXPECT_FALSE(blocks.plain[i] && blocks.needs_foot[i]);
+            }
+            // Around a place to avoid there are none, and what they had are corners.
+            const auto& some = blocks.triangles[blocks.triangles.size() / 2];
+            const Vec<2> place = blocks.points[std::size_t(some[0])];
+            const auto less = mesh_blocks(tree, judge, tolerance, std::vector<Vec<2>>{place});
+            EXPECT_LT(less.triangles.size(), blocks.triangles.size());
+            EXPECT_GT(less.corners.size(), blocks.corners.size());
+            for (const auto& p : less.points) EXPECT_NE(p, place);
+        }
+    }
+    EXPECT_GT(leaves, 2000);
+    EXPECT_GT(plain, 200);
+    EXPECT_GT(counted_on, 20);
+}
+
 TEST(Blocks, take_no_more_triangles_than_leaves_would_by_much) {
     Random random(12);
     for (int round = 0; round < 6; ++round) {
@@ -203,7 +250,7 @@ TEST(Blocks, that_count_on_feet_stop_triangles_beside_them_from_doing_without) {
     for (const bool count_on_feet : {false, true}) {
         auto t = must(Triangulation::make(polygon, sides));
         Filler filler(t, tree, judge, surface, {{1, 1}}, demands);
-        filler.keep_feet(0, std::vector<char>(polygon.size(), count_on_feet));
+        filler.keep_feet(0, std::vector<char>(polygon.size(), count_on_feet), {});
         filler.insert_corners(tree.corners());
         EXPECT_EQ(filler.refine(100'000), !count_on_feet);
         EXPECT_EQ(filler.is_stuck(), count_on_feet);

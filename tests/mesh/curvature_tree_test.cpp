@@ -117,7 +117,7 @@ TEST(CurvatureTree, bounds_by_samples_of_pieces_with_many_control_points_hold) {
         };
         const auto j = middle_of(outer);
         Variation variation;
-        (void)bending_of(surface, outer, true, {{j.d[0], j.d[1], j.d[2]}}, &variation);
+        (void)bending_of(surface, outer, true, j, &variation);
         const BoxBending at = bending_from_middle(surface, box, true, middle_of(box), variation);
         for (int i = 0; i < 40; ++i) {
             const auto x = jet<2>(s, {random.real(box.lo[0], box.hi[0]), random.real(box.lo[1], box.hi[1])});
