@@ -51,13 +51,11 @@ Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std
 }
 
 Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart, LoopBuilder& loops) {
-    Type type = Type::COMPOSITE_CURVE;
-    for (const Type t : {Type::OUTER_BOUNDARY_CURVE, Type::BOUNDARY_CURVE})
-        if (f_.is(i, t)) type = t;
-    const auto f = Fields::of(f_, i, type, 2);
-    if (!f) return std::unexpected(f.error());
-    const auto segments = f->references(1, "segments");
+    const auto segments = segment_list(i);
     if (!segments) return std::unexpected(segments.error());
+    const auto refused = [&](std::string_view what) {
+        return refuse(RefusalKind::invalid, f_.label(i), text(what, " (byte ", f_.instances[i].at, ")"));
+    };
     struct Along {
         EdgeMade made;
         bool forward;
@@ -68,7 +66,7 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
     Box<3> box;
     // Corners that other boundaries have made, before new ones are.
     for (const std::uint32_t s : *segments) {
-        const auto g = Fields::of(f_, s, Type::COMPOSITE_CURVE_SEGMENT, 3);
+        const auto g = segment_fields(s);
         const auto parent = g ? g->reference(2, "curve") : Result<std::uint32_t>(std::unexpected(g.error()));
         if (!parent) return std::unexpected(parent.error());
         const auto known = edges_.find(*parent);
@@ -78,7 +76,7 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
         }
     }
     for (const std::uint32_t s : *segments) {
-        const auto g = Fields::of(f_, s, Type::COMPOSITE_CURVE_SEGMENT, 3);
+        const auto g = segment_fields(s);
         if (!g) return std::unexpected(g.error());
         const auto parent = g->reference(2, "curve");
         if (!parent) return std::unexpected(parent.error());
@@ -111,8 +109,7 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
         if (fits) continue;
         const bool turned = first ? std::min(apart(u.from, other.from), apart(u.from, other.to)) <= joint
                                   : apart(other.to, u.to) <= joint;
-        if (!turned)
-            return f->refused("is a boundary whose segments do not follow each other", RefusalKind::invalid);
+        if (!turned) return refused("is a boundary whose segments do not follow each other");
         u.coedge.reversed = !u.coedge.reversed;
         std::swap(u.from, u.to), std::swap(u.start, u.end);
         report(u.coedge.edge,
@@ -120,7 +117,7 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
                0);
     }
     if (uses.empty() || apart(uses.back().to, uses.front().from) > joint)
-        return f->refused("is a boundary that is not closed", RefusalKind::invalid);
+        return refused("is a boundary that is not closed");
     for (std::size_t k = 0; k < uses.size(); ++k) join_vertices(uses[k].to, uses[(k + 1) % uses.size()].from);
     loops.add(std::move(uses));
     return {};

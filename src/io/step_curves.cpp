@@ -7,7 +7,7 @@
 // surfaces, replicas) are taken off one by one, in a loop and not on the stack.
 //
 // References: ISO 10303-42:2014, 4.4 (placements, curves).
-#include "step_geometry.hpp"
+#include "step_shape.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -192,6 +192,9 @@ Result<BoundedCurve> GeometryReader::basic_curve(std::uint32_t i) {
             if (!c) return std::unexpected(c.error());
             return BoundedCurve{std::move(*c), false, std::nullopt};
         }
+    if (composite_in(f_, i) != kMissing)
+        return refuse(RefusalKind::unsupported, f_.label(i),
+                      "is a composite curve; such are read as edges, wires and boundaries alone");
     return refuse(RefusalKind::unsupported, f_.label(i),
                   text("is a curve that has no exact counterpart here (byte ", f_.instances[i].at, ")"));
 }
@@ -230,13 +233,19 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
         if (!parameter && !projected) return f->refused("has a trim that is neither a point nor a parameter");
         t[std::size_t(end)] = parameter && !(prefers_points && projected) ? *parameter : *projected;
     }
-    const bool backward = !f->flag(4);
+    bool backward = !f->flag(4);
     double lo = backward ? t[1] : t[0], hi = backward ? t[0] : t[1];
     if (ellipse) {
         while (hi <= lo && std::abs(lo) < 1e6) hi += kTwoPi;
+    } else if (hi <= lo) {
+        const double turn = domain(basis.curve)[0].length();
+        if (auto longer = continued(basis.curve, hi + turn, tolerance))
+            basis.curve = std::move(*longer), hi += turn;  // over the place where it closes
+        else if (hi < lo)
+            std::swap(lo, hi), backward = !backward;  // from one to the other there is one way only
     }
     basis.reversed = basis.reversed != backward;
-    if (lo < hi) basis.range = Interval{lo, hi};
+    basis.range = Interval{lo, std::max(lo, hi)};
     return basis;
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 // Edges shorter than this, of the tolerance, are none: they run to and fro within the errors of their ends.
 constexpr double kTiny = 1e-3;
+// Parameters beyond this have lost digits of an angle.
+constexpr double kFarAround = 100;
 
 bool length_at_most(const CurveGeometry<3>& c, Interval on, double most) {
     constexpr int kChords = 8;
@@ -79,9 +81,27 @@ Result<ShapeReader::EdgeMade> ShapeReader::straight_edge(int from, int to) {
     return made;
 }
 
-Result<ShapeReader::EdgeMade> ShapeReader::edge(std::uint32_t i) {
-    if (const auto known = edges_.find(i); known != edges_.end()) return known->second;
-    return edges_.emplace(i, make_edge(i)).first->second;
+bool ShapeReader::is_tiny(const CurveGeometry<3>& c, Interval on) const {
+    return length_at_most(c, on, kTiny * tolerance_);
+}
+
+Result<std::span<const ShapeReader::EdgeMade>> ShapeReader::edge(std::uint32_t i) {
+    auto known = edges_.find(i);
+    if (known == edges_.end()) known = edges_.emplace(i, make_edge(i)).first;
+    if (!known->second) return std::unexpected(known->second.error());
+    if (const auto row = rows_.find(i); row != rows_.end()) return std::span<const EdgeMade>(row->second);
+    return std::span<const EdgeMade>(&*known->second, 1);
+}
+
+void ShapeReader::tell_ends(std::uint32_t edge, const std::array<int, 2>& vertices, double off) {
+    if (!(off > tolerance_)) return;
+    report(int(out_.model.edges.size()),
+           text(f_.label(edge), " ends ", off, " from its vertex; the file says at most ", tolerance_),
+           std::nullopt, off);
+    for (const int v : vertices) {
+        Vertex& x = out_.model.vertices[std::size_t(v)];
+        x.tolerance = std::max(x.tolerance, off);
+    }
 }
 
 Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
@@ -97,6 +117,12 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     }
     const auto at = f->reference(3, "curve");
     if (!at) return std::unexpected(at.error());
+    if (const std::uint32_t composite = composite_in(f_, *at); composite != kMissing) {
+        auto row = composite_edge(*f, i, composite, end);
+        if (!row) return std::unexpected(row.error());
+        rows_.emplace(i, std::move(*row));
+        return EdgeMade{};
+    }
     const std::array<Vec<3>, 2> ends{out_.model.vertices[std::size_t(end[0])].point,
                                      out_.model.vertices[std::size_t(end[1])].point};
     const auto c = curve_in_space(*at, &ends);
@@ -114,7 +140,13 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     const bool spline = conic == nullptr && !line;
     double off_a = 0, off_b = 0, lo = 0, hi = 0;
     const auto at_end = [&](double t, const Vec<3>& p) { return norm(jet<0>(c->curve, t).value() - p); };
-    if (spline && at_end(whole.lo, a) <= tolerance_ && at_end(whole.hi, b) <= tolerance_) {
+    const Interval part = c->range.value_or(Interval{});
+    if (part.lo < part.hi && std::abs(part.lo) < kFarAround && at_end(part.lo, a) <= tolerance_ &&
+        at_end(part.hi, b) <= tolerance_) {
+        // Trimmed, where its vertices are: where the curve meets itself, they say less.
+        lo = part.lo, hi = part.hi;
+        off_a = at_end(lo, a), off_b = at_end(hi, b);
+    } else if (spline && at_end(whole.lo, a) <= tolerance_ && at_end(whole.hi, b) <= tolerance_) {
         lo = whole.lo, hi = whole.hi;
         off_a = at_end(lo, a), off_b = at_end(hi, b);
     } else {
@@ -127,24 +159,16 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
             if (closes && at_end(whole.hi, b) <= tolerance_) hi = whole.hi;
             if (closes && !(lo < hi)) {
                 // Over the end of the curve: one spline from there on.
-                SurfaceGeometry sheet = Extrusion{c->curve, {{1, 0, 0}}};
-                const Chart chart(sheet, tolerance_);
-                Box<2> on;
-                on.add(Vec<2>{{lo, 0}});
                 hi += whole.length();
-                on.add(Vec<2>{{hi, 0}});
-                if (chart.period(0) > 0) {
+                if (auto longer = continued(c->curve, hi, tolerance_)) {
                     Edge e;
-                    const SurfaceGeometry longer = unwound(sheet, chart, on, 0);
-                    e.curve = std::get<Extrusion>(longer).profile;
+                    e.curve = std::move(*longer);
                     e.range = {lo, hi};
                     e.start = end[0], e.end = end[1], e.tolerance = std::max({tolerance_, off_a, off_b});
-                    if (domain(*e.curve)[0].contains(hi)) {
-                        e.name = f->string(0);
-                        made.edge = int(out_.model.edges.size());
-                        out_.model.edges.push_back(std::move(e));
-                        return made;
-                    }
+                    e.name = name_in(*f);
+                    made.edge = int(out_.model.edges.size());
+                    out_.model.edges.push_back(std::move(e));
+                    return made;
                 }
             }
         }
@@ -177,7 +201,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
                               RefusalKind::invalid);
         }
     }
-    if (end[0] != end[1] && length_at_most(c->curve, {lo, hi}, kTiny * tolerance_)) {
+    if (end[0] != end[1] && is_tiny(c->curve, {lo, hi})) {
         // That no part of a curved one is further off is seen at some points only.
         const bool straight = std::holds_alternative<Line<3>>(c->curve);
         report(-1, text(f_.label(i), " is shorter than a thousandth of the tolerance; its vertices are one"),
@@ -194,17 +218,8 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     e.range = {lo, hi};
     e.start = end[0], e.end = end[1];
     e.tolerance = tolerance_;
-    e.name = f->string(0);
-    if (e.name == "NONE") e.name.clear();
-    if (const double off = std::max(off_a, off_b); off > tolerance_) {
-        report(int(out_.model.edges.size()),
-               text(f_.label(i), " ends ", off, " from its vertex; the file says at most ", tolerance_),
-               std::nullopt, off);
-        for (const int v : end) {
-            Vertex& x = out_.model.vertices[std::size_t(v)];
-            x.tolerance = std::max(x.tolerance, off);
-        }
-    }
+    e.name = name_in(*f);
+    tell_ends(i, end, std::max(off_a, off_b));
     made.edge = int(out_.model.edges.size());
     out_.model.edges.push_back(std::move(e));
     return made;

@@ -131,7 +131,9 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
             if (!of) return std::unexpected(of.error());
             const auto made = edge(*of);
             if (!made) return std::unexpected(made.error());
-            if (auto ok = append(*made, o->flag(4) == forward, *of); !ok) return ok;
+            const bool along = o->flag(4) == forward;
+            for (std::size_t k = 0; k < made->size(); ++k)
+                if (auto ok = append((*made)[along ? k : made->size() - 1 - k], along, *of); !ok) return ok;
         }
     }
     if (uses.empty()) return {};
@@ -230,11 +232,13 @@ Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen) 
             if (!of) return std::unexpected(of.error());
             const auto made = edge(*of);
             if (!made) return std::unexpected(made.error());
-            if (made->empty) continue;
-            const Edge& e = out_.model.edges[std::size_t(made->edge)];
-            const int n = std::holds_alternative<Line<3>>(*e.curve) ? 1 : 6;
-            for (int k = 0; k <= n; ++k)
-                seen.push_back(jet<0>(*e.curve, e.range.lo + e.range.length() * k / n).value());
+            for (const EdgeMade& part : *made) {
+                if (part.empty) continue;
+                const Edge& e = out_.model.edges[std::size_t(part.edge)];
+                const int n = std::holds_alternative<Line<3>>(*e.curve) ? 1 : 6;
+                for (int k = 0; k <= n; ++k)
+                    seen.push_back(jet<0>(*e.curve, e.range.lo + e.range.length() * k / n).value());
+            }
         }
     }
     for (const Vec<3>& p : seen) box.add(p);
@@ -372,8 +376,7 @@ int ShapeReader::face(std::uint32_t i) {
         refuse_item(i, made.error());
     } else {
         const Fields f(f_, i, f_.instances[i].first + 1);
-        made->name = f.string(0);
-        if (made->name == "NONE") made->name.clear();
+        made->name = name_in(f);
         made->colour = colour_of(i);
         styles_.add_layers(made->layers, i);
         at = int(out_.model.faces.size());

@@ -29,8 +29,8 @@ std::vector<CurveGeometry<3>> GeometryReader::images(std::uint32_t curve, std::u
         const auto ids = f.references(f_.type(curve) == Type::unknown ? 1 : 2, "associated geometry");
         if (!ids) continue;
         for (const std::uint32_t id : *ids) {
-            const auto p = Fields::of(f_, id, Type::PCURVE, 3);
-            const auto on = p ? p->reference(1, "surface") : Result<std::uint32_t>(kMissing);
+            const auto p = Fields::of(f_, id, Type::PCURVE, 2);
+            const auto on = p ? p->reference(p->size() - 2, "surface") : Result<std::uint32_t>(kMissing);
             if (!p || !on || *on != surface) continue;
             const auto items = items_of_pcurve(id);
             if (!items) continue;

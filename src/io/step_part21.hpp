@@ -38,6 +38,7 @@ namespace freiform::step {
     X(COMPLEX_TRIANGULATED_FACE)                       \
     X(COMPLEX_TRIANGULATED_SURFACE_SET)                \
     X(COMPOSITE_CURVE)                                 \
+    X(COMPOSITE_CURVE_ON_SURFACE)                      \
     X(COMPOSITE_CURVE_SEGMENT)                         \
     X(CONICAL_SURFACE)                                 \
     X(CONNECTED_EDGE_SET)                              \
@@ -98,6 +99,7 @@ namespace freiform::step {
     X(RATIONAL_B_SPLINE_CURVE)                         \
     X(RATIONAL_B_SPLINE_SURFACE)                       \
     X(RECTANGULAR_TRIMMED_SURFACE)                     \
+    X(REPARAMETRISED_COMPOSITE_CURVE_SEGMENT)          \
     X(REPOSITIONED_TESSELLATED_ITEM)                   \
     X(REPRESENTATION_RELATIONSHIP)                     \
     X(REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION) \

@@ -169,9 +169,9 @@ std::vector<std::uint32_t> GeometryReader::pcurves(std::uint32_t curve) const {
 }
 
 Result<std::vector<std::uint32_t>> GeometryReader::items_of_pcurve(std::uint32_t pcurve) const {
-    const auto p = Fields::of(f_, pcurve, Type::PCURVE, 3);
+    const auto p = Fields::of(f_, pcurve, Type::PCURVE, 2);  // a part of a complex instance has no name
     if (!p) return std::unexpected(p.error());
-    const auto by = p->reference(2, "representation");
+    const auto by = p->reference(p->size() - 1, "representation");
     if (!by) return std::unexpected(by.error());
     const auto d = Fields::of(f_, *by, Type::DEFINITIONAL_REPRESENTATION, 3);
     if (!d) return std::unexpected(d.error());
@@ -179,9 +179,9 @@ Result<std::vector<std::uint32_t>> GeometryReader::items_of_pcurve(std::uint32_t
 }
 
 Result<BoundedCurve> ShapeReader::lifted_curve(std::uint32_t pcurve, const std::array<Vec<3>, 2>* ends) {
-    const auto p = Fields::of(f_, pcurve, Type::PCURVE, 3);
+    const auto p = Fields::of(f_, pcurve, Type::PCURVE, 2);
     if (!p) return std::unexpected(p.error());
-    const auto on = p->reference(1, "surface");
+    const auto on = p->reference(p->size() - 2, "surface");
     if (!on) return std::unexpected(on.error());
     const auto items = geometry_.items_of_pcurve(pcurve);
     if (!items) return std::unexpected(items.error());
@@ -226,6 +226,7 @@ Result<BoundedCurve> ShapeReader::lift_one(const Chart& chart, const CurveGeomet
                                            std::uint32_t pcurve) {
     const Interval whole = given.range.value_or(domain(flat)[0]);
     const bool endless = !std::isfinite(whole.length());
+    if (!(whole.lo < whole.hi)) return refuse(RefusalKind::invalid, "", "is trimmed to nothing");
     const auto line = as_line(flat);
     BoundedCurve out{{}, given.reversed, endless ? std::nullopt : std::optional<Interval>(whole)};
     if (auto same = raised(chart.surface(), flat)) {

@@ -53,6 +53,11 @@ std::string_view unread_shape(const File& f, std::uint32_t item) {
 
 }  // namespace
 
+std::string name_in(const Fields& f) {
+    std::string name = f.string(0);
+    return name == "NONE" ? std::string() : name;
+}
+
 void ShapeReader::refuse_item(std::uint32_t item, Refusal why) {
     const std::string label = f_.label(item);
     const bool same = why.where == label;
@@ -119,8 +124,7 @@ void ShapeReader::body_of(std::uint32_t item, std::vector<int> shells, bool soli
     Body b;
     b.shells = std::move(shells);
     b.solid = solid;
-    b.name = Fields(f_, item, f_.instances[item].first + 1).string(0);
-    if (b.name == "NONE") b.name.clear();
+    b.name = name_in(Fields(f_, item, f_.instances[item].first + 1));
     b.colour = colour_of(item);
     styles_.add_layers(b.layers, item);
     for (const std::uint32_t i : made_of) styles_.add_layers(b.layers, i);
@@ -160,12 +164,18 @@ void ShapeReader::free_curve(std::uint32_t item) {
         if (const auto made = edge(item); !made) refuse_item(item, made.error());
         return;
     }
+    if (composite_in(f_, item) != kMissing) {
+        if (const auto made = free_composite(item); !made) refuse_item(item, made.error());
+        return;
+    }
     const auto c = curve_in_space(item, nullptr);
     if (!c) return refuse_item(item, c.error());
     const Interval on = c->range.value_or(domain(c->curve)[0]);
     if (!std::isfinite(on.length()) || !(on.lo < on.hi))
-        return refuse_item(item, {RefusalKind::unsupported, f_.label(item), "is a curve without end"});
+        return refuse_item(
+            item, {RefusalKind::unsupported, f_.label(item), "is a curve without end, or without length"});
     Edge e;
+    e.name = name_in(Fields(f_, item, f_.instances[item].first + 1));
     e.curve = c->curve;
     e.range = on;
     e.tolerance = tolerance_;
@@ -203,12 +213,11 @@ void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
         };
         if (is_any({Type::GEOMETRIC_SET, Type::GEOMETRIC_CURVE_SET, Type::EDGE_BASED_WIREFRAME_MODEL,
                     Type::SHELL_BASED_WIREFRAME_MODEL, Type::CONNECTED_EDGE_SET, Type::WIRE_SHELL,
-                    Type::EDGE_LOOP, Type::COMPOSITE_CURVE})) {
+                    Type::EDGE_LOOP})) {
             descend(1);
-        } else if (is_any({Type::ORIENTED_EDGE, Type::COMPOSITE_CURVE_SEGMENT})) {
-            const bool segment = f_.is(i, Type::COMPOSITE_CURVE_SEGMENT);
+        } else if (f_.is(i, Type::ORIENTED_EDGE)) {
             const Fields f(f_, i, f_.instances[i].first + 1);
-            const auto at = f.reference(segment ? 2 : 3, "curve");
+            const auto at = f.reference(3, "edge");
             if (at)
                 todo.push_back(*at);
             else

@@ -44,6 +44,7 @@ public:
     ShapeReader(const File& file, const Styles& styles, double angle, double tolerance,
                 const StepReadOptions& options)
         : f_(file), styles_(styles), geometry_(file), tolerance_(tolerance), options_(options) {
+        segments_left_ = 4 * file.tokens.size();
         geometry_.angle = angle;
         geometry_.tolerance = tolerance;
     }
@@ -59,6 +60,14 @@ private:
         bool flipped = false;  // the edge of the model runs from the second vertex to the first
         bool empty = false;    // no longer than the tolerance: left out of loops
         std::uint32_t curve = kMissing;
+    };
+    // A segment of a composite curve, as that runs through it.
+    struct Segment {
+        std::uint32_t instance, curve;  // itself, and the curve that it is a part of
+        CurveGeometry<3> shape;
+        Interval on;
+        bool backward;
+        Vec<3> end(bool last) const;
     };
     struct SurfaceMade {
         SurfaceGeometry surface;
@@ -88,8 +97,24 @@ private:
     Result<Face> close_face(Face face, LoopBuilder& loops, const Chart& chart, std::uint32_t i, double size,
                             bool* tangled = nullptr);
     Result<SurfaceMade*> surface(std::uint32_t i);
-    Result<EdgeMade> edge(std::uint32_t i);
+    // In the direction of the edge; several on a composite curve.
+    Result<std::span<const EdgeMade>> edge(std::uint32_t i);
     Result<EdgeMade> make_edge(std::uint32_t i);
+    bool is_tiny(const CurveGeometry<3>& c, Interval on) const;
+    void tell_ends(std::uint32_t edge, const std::array<int, 2>& vertices, double off);
+    // step_composite.cpp
+    Result<std::vector<std::uint32_t>> segment_list(std::uint32_t composite) const;
+    Result<Fields> segment_fields(std::uint32_t segment) const;
+    Result<std::vector<Segment>> segments_of(std::uint32_t composite);
+    static double row_size(const std::vector<Segment>& row);
+    static std::vector<std::uint32_t> turn_segments(std::vector<Segment>& row, double joint);
+    static std::size_t cut_at(std::vector<Segment>& row, const Vec<3>& p, double joint, double& off);
+    std::vector<EdgeMade> row_edges(std::vector<Segment> row, std::array<int, 2> ends,
+                                    const std::string& name);
+    Result<void> close_gaps(std::vector<Segment>& row, double joint, double limit);
+    Result<std::vector<EdgeMade>> composite_edge(const Fields& f, std::uint32_t i, std::uint32_t composite,
+                                                 const std::array<int, 2>& vertices);
+    Result<void> free_composite(std::uint32_t composite);
     Result<EdgeMade> straight_edge(int from, int to);
     // step_pcurve.cpp: `ends` are those of the edge, if they are known.
     Result<BoundedCurve> curve_in_space(std::uint32_t i, const std::array<Vec<3>, 2>* ends);
@@ -134,14 +159,26 @@ private:
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
     std::unordered_map<int, std::uint32_t> vertex_of_;  // what the file calls a vertex
     std::unordered_map<std::uint32_t, Result<EdgeMade>> edges_;
+    std::unordered_map<std::uint32_t, std::vector<EdgeMade>> rows_;  // of edges on composite curves
+    std::size_t segments_left_;  // of composite curves, with their control points
     std::map<std::pair<std::uint32_t, bool>, Result<BoundedCurve>> lifts_;  // of PCURVEs, by unit of angles
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
     std::unordered_map<const Chart*, std::uint32_t> charts_;
 };
 
+// Of what has its name first; some programs write NONE for none.
+std::string name_in(const Fields& f);
+
+// The composite curve that the instance is, or is in space; kMissing if there is none.
+std::uint32_t composite_in(const File& file, std::uint32_t i);
+
 // Whether an item of a representation is of triangles, or of what stands beside them.
 bool is_tessellated(const File& file, std::uint32_t item);
+
+// A spline that closes, gone on with as far as that parameter; nothing of other curves. `close`: ends nearer
+// than this are one.
+std::optional<CurveGeometry<3>> continued(const CurveGeometry<3>& curve, double to, double close);
 
 // The surface with a spline that closes continued by whole turns, so that `on` is inside its domain.
 // `slack`: of a turn, by which `on` may leave the domain.

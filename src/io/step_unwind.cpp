@@ -77,4 +77,15 @@ SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, cons
     return out;
 }
 
+std::optional<CurveGeometry<3>> continued(const CurveGeometry<3>& curve, double to, double close) {
+    const SurfaceGeometry sheet = Extrusion{curve, {{1, 0, 0}}};
+    const Chart chart(sheet, close);
+    if (!chart.is_spline(0) || !(chart.period(0) > 0)) return std::nullopt;
+    Box<2> on;
+    on.add(Vec<2>{{to, 0}});
+    auto longer = std::get<Extrusion>(unwound(sheet, chart, on, 0)).profile;
+    if (!domain(longer)[0].contains(to)) return std::nullopt;
+    return longer;
+}
+
 }  // namespace freiform::step

@@ -97,6 +97,10 @@ constexpr std::string_view kNames[] = {"PLANE",
                                        "OFFSET_CURVE_3D",
                                        "PCURVE",
                                        "SURFACE_CURVE",
+                                       "COMPOSITE_CURVE",
+                                       "COMPOSITE_CURVE_SEGMENT",
+                                       "COMPOSITE_CURVE_ON_SURFACE",
+                                       "GEOMETRIC_CURVE_SET",
                                        "REPOSITIONED_TESSELLATED_ITEM"};
 
 void mutate(std::string& s, Random& r) {
