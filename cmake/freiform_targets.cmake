@@ -136,7 +136,7 @@ set(FREIFORM_COLD
     intersect/exact_pair
     io/bpt io/document io/document_fields io/document_model io/document_model_write io/document_patch
     io/drawing io/drawing_compose io/drawing_elements io/drawing_flatten io/drawing_joints io/drawing_panels io/drawing_svg io/exchange io/figure
-    io/figure_axes io/figure_labels io/paper io/quake3_map io/read io/scene
+    io/figure_axes io/figure_labels io/paper io/quake3_map io/read io/scene io/step_composite
     make/conic make/conic_equation make/graph make/joint make/named_curve make/named_surface make/over_one_denominator
     model/assemble
     query/continuity query/features query/implicit query/knot_lines query/meetings query/reparametrise

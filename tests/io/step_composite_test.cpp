@@ -69,6 +69,8 @@ std::ptrdiff_t told(const Model& m, std::string_view what) {
                                  [&](const Approximation& a) { return a.what.find(what) != a.what.npos; });
 }
 
+std::string why(const Model& m) { return m.refused.empty() ? "it says nothing" : m.refused[0].message; }
+
 // Every edge begins and ends at its vertices, up to their tolerance.
 void expect_joined(const Model& m) {
     for (const Edge& e : m.edges)
@@ -94,7 +96,7 @@ Model plate(std::string_view curve, std::string_view sense = ".T.", std::string_
     auto m = read_step(plate_file(curve, sense, more), {.repair = repair});
     EXPECT_TRUE(m) << m.error().where << ": " << m.error().message;
     if (!m) return {};
-    EXPECT_EQ(m->faces.size(), 1u) << (m->refused.empty() ? "" : m->refused[0].message);
+    EXPECT_EQ(m->faces.size(), 1u) << why(*m);
     expect_joined(*m);
     return *m;
 }
@@ -200,7 +202,7 @@ TEST(StepComposite, a_curve_that_closes_may_be_the_whole_edge) {
             "#23=TRIMMED_CURVE('',#25,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(4.)),.T.,.PARAMETER.);\n"
             "#24=TRIMMED_CURVE('',#25,(PARAMETER_VALUE(4.)),(PARAMETER_VALUE(0.)),.T.,.PARAMETER.);\n"
             "#25=CIRCLE('',#5,2.);\n"))));
-        ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+        ASSERT_EQ(m.faces.size(), 1u) << why(m);
         expect_joined(m);
         EXPECT_EQ(m.edges.size(), 3u);
         EXPECT_EQ(m.vertices.size(), 3u);
@@ -214,7 +216,7 @@ TEST(StepComposite, gaps_within_the_tolerance_are_that_of_their_vertex) {
     file.replace(file.find("(#53,PAR"), 8, "(PAR");
     file.replace(file.find("(#52,PAR"), 8, "(PAR");
     const Model m = must(read_step(file));
-    ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+    ASSERT_EQ(m.faces.size(), 1u) << why(m);
     expect_joined(m);
     EXPECT_EQ(std::ranges::count_if(m.vertices,
                                     [](const Vertex& v) { return std::abs(v.tolerance - 3e-5) < 1e-12; }),
@@ -246,7 +248,7 @@ TEST(StepComposite, segments_that_run_against_their_neighbours_are_turned_and_to
         const std::size_t at = file.find(",.", file.find(name) + name.size()) + 2;
         file[at] = file[at] == 'T' ? 'F' : 'T';
         const Model m = must(read_step(file));
-        ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+        ASSERT_EQ(m.faces.size(), 1u) << why(m);
         EXPECT_EQ(kinds(m), kAsGiven);
         expect_joined(m);
         EXPECT_EQ(told(m, text("#", wrong, " COMPOSITE_CURVE_SEGMENT runs against its composite curve")), 1);
@@ -318,13 +320,14 @@ TEST(StepComposite, splines_that_close_are_trimmed_over_the_place_where_they_do)
              "#70=B_SPLINE_CURVE_WITH_KNOTS('',1,(#71,#72,#73,#74,#71),.UNSPECIFIED.,.T.,.F.,"
              "(2,1,1,1,2),(0.,1.,2.,3.,4.),.UNSPECIFIED.);\n");
     const auto part = [&](double from, double to, const char* sense) {
-        const Model m = wire(text("#20=TRIMMED_CURVE('',#70,(PARAMETER_VALUE(", from, ")),(PARAMETER_VALUE(",
-                                  to, ")),", sense, ",.PARAMETER.);\n", closed));
+        const Model m = wire(text("#20=TRIMMED_CURVE('part',#70,(PARAMETER_VALUE(", from,
+                                  ")),(PARAMETER_VALUE(", to, ")),", sense, ",.PARAMETER.);\n", closed));
         EXPECT_EQ(m.edges.size(), 1u);
         return m.edges.at(0);
     };
     const Edge over = part(3, 1, ".T."), back = part(1, 3, ".F.");
     for (const Edge& e : {over, back}) {
+        EXPECT_EQ(e.name, "part");
         EXPECT_EQ(e.range, (Interval{3, 5}));
         EXPECT_EQ(jet<0>(*e.curve, 4).value(), (Vec<3>{{1, 0, 0}}));
         EXPECT_EQ(jet<0>(*e.curve, 4.5).value(), (Vec<3>{{0.5, 1.5, 0}}));
@@ -348,7 +351,7 @@ TEST(StepComposite, trims_say_which_part_of_a_curve_that_meets_itself_is_the_edg
         "#17=VERTEX_POINT('',#18);\n#18=CARTESIAN_POINT('',(0.,",
         y, ",0.));\n#20=TRIMMED_CURVE('',#70,(PARAMETER_VALUE(", lo, ")),(PARAMETER_VALUE(", hi,
         ")),.T.,.PARAMETER.);\n", loop))));
-    ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+    ASSERT_EQ(m.faces.size(), 1u) << why(m);
     ASSERT_EQ(m.edges.size(), 1u);
     EXPECT_EQ(m.edges[0].range, (Interval{lo, hi}));
 }
