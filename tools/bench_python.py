@@ -10,6 +10,7 @@ nothing on a loaded one (those of the processor, beside them, do)."""
 import datetime
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 import sys
@@ -82,6 +83,17 @@ def objects():
     return curve, surface, a * 97, a * 17, b * 17
 
 
+def open_cascade(ours):
+    """A line about what Open CASCADE takes for the same objects, called from C++: bench/EVALUATION.md has it."""
+    page = (ROOT / "bench" / "EVALUATION.md").read_text()
+    day = re.search(r"\d{4}-\d\d-\d\d", page)[0]
+    theirs = {name: float(re.search(rf"^\| {work} \|[^|]*\|[^|]*\| ([\d.]+) \|", page, re.M)[1])
+              for name, work in (("curve", "curve, random"), ("surface", "surface, scattered"))}
+    return ("- Open CASCADE 7.6, called from C++, figures of `bench/EVALUATION.md` (" + day + "): "
+            + ", ".join(f"{name} {x:.0f} ns, freiform from NumPy {ours[name]:.2f} ns: {x / ours[name]:.1f} times as fast"
+                        for name, x in theirs.items()))
+
+
 def others(curve, t):
     """Lines about other libraries, on one thread."""
     plain = ff.Curve(curve.points, 3)
@@ -151,6 +163,7 @@ def main():
             held.append(gain >= GAIN)
             lines.append(f"- {name}, {memory}: {gain:.2f} times as many points per second")
     lines += ["", "Beside other libraries, one thread:", ""] + others(curve, t)
+    lines += [open_cascade({name: best(ours[name, "one", "fresh"])[0] for name in ("curve", "surface")})]
     lines += ["", f"Demanded: ratios of at most {SLACK}, less than {MEGABYTES} MB of extra memory, {GAIN} times as many points with two "
               f"threads: {sum(held)} of {len(held)} reached.", ""]
     (ROOT / "bench" / "PYTHON.md").write_text("\n".join(lines))
