@@ -92,11 +92,32 @@ def test_an_object_pickles_copies_compares_and_has_a_hash(x):
 
 @pytest.mark.parametrize("x", OBJECTS, ids=IDS)
 def test_a_repr_can_be_evaluated(x):
-    if re.search(r"<(Model|Mesh|Font) ", repr(x)):  # too large for it, or with more than its constructor takes
-        assert type(x) in (ff.Model, ff.ModelNearestQuery, ff.Mesh, ff.Font)
-        return
     names = dict(vars(ff), array=np.array, inf=np.inf, nan=np.nan)
     assert eval(repr(x), names) == x
+
+
+def test_what_is_large_is_printed_short_and_its_repr_can_be_evaluated(tmp_path):
+    vase = ff.Model.assemble([ff.revolve(ff.Curve([[1.0, 0, 0], [2.0, 0, 1], [0.5, 0, 2], [1.0, 0, 3]])).surface, BALL], "mm")
+    mesh = vase.tessellate(0.01).mesh
+    assert len(vase.to_binary()) > 2000 and len(mesh) > 500
+    for x in (vase, mesh):
+        assert eval(repr(x), vars(ff)) == x and len(str(x)) < 60
+    for text in ("", "x", repr(CURVE), ff.Mesh([[0, 0, 0]] * 3, [[0, 1, 2]]).to_bytes("stl").hex()):
+        for kind in (ff.Model, ff.Mesh):
+            with pytest.raises(ff.UnreadableError):
+                kind.unpacked(text)
+
+
+def test_a_font_says_where_it_is_from(tmp_path):
+    try:
+        font = ff.Font("DejaVu Sans")
+    except (ff.UnavailableError, ff.NoAnswerError) as why:
+        pytest.skip(str(why))
+    data = font.__reduce__()[1][0]
+    (tmp_path / "x.ttf").write_bytes(data)
+    for made, says in ((font, "Font('DejaVu Sans', {})"), (ff.Font.read(tmp_path / "x.ttf"), "x.ttf"), (ff.Font.from_bytes(data), "b'")):
+        for same in (made, pickle.loads(pickle.dumps(made))):
+            assert says in repr(same) and eval(repr(same), vars(ff)) == made == same and str(same) == "<Font DejaVu Sans Book>"
 
 
 def test_every_public_class_is_among_them():

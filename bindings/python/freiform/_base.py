@@ -1,14 +1,16 @@
 """Numbers, intervals, colours, and what all records have in common."""
 from __future__ import annotations
 
+import base64
 import dataclasses
+import zlib
 from typing import Any, Callable, Iterable, NamedTuple, Sequence, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from ._docs import DOCS
-from ._refusals import InvalidError
+from ._refusals import InvalidError, UnreadableError
 
 __all__ = ["Array", "ArrayLike", "Interval", "Bounded", "Colour", "Record"]
 
@@ -70,6 +72,19 @@ def same(a: object, b: object) -> bool:
     if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
         return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
     return bool(a == b)
+
+
+def packed(data: bytes) -> str:
+    """Bytes as a text without quotes, for a repr that can be evaluated."""
+    return base64.b85encode(zlib.compress(data, 1)).decode()
+
+
+def unpacked(text: str, where: str) -> bytes:
+    """What was packed. What is no such text is refused."""
+    try:
+        return zlib.decompress(base64.b85decode(text))
+    except (ValueError, zlib.error):
+        raise UnreadableError(where, "is not what a repr holds") from None
 
 
 class Record:

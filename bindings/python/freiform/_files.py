@@ -121,6 +121,10 @@ class Document(Sequence[Shape]):
         from ._notebook import html_of
         return html_of(self) if set(self.types) - {"curve", "volume"} else None
 
+    def _repr_png_(self) -> bytes | None:
+        from ._notebook import png_of
+        return png_of(self) if set(self.types) - {"curve", "volume"} else None
+
 
 @from_header("io/read:read_any", "io/exchange:read_with_occt")
 def read(path: str | os.PathLike[str], *, format: str | None = None, timeout: float = 0.0, max_bytes: int = 0,

@@ -17,16 +17,17 @@ __all__ = ["Font"]
 class Font:
     """A font: ``Font("DejaVu Sans")`` of those installed, ``Font.read("file.ttf")``, ``Font.from_bytes(data)``."""
 
-    __slots__ = ("_c", "_state")
+    __slots__ = ("_c", "_state", "_made")
 
     def __init__(self, family: str, axes: Mapping[str, float] | None = None) -> None:
         _available()
         file = _core.font_file(family)
         with open(file.path, "rb") as f:
-            self._set(f.read(), file.face, axes)
+            self._set(f.read(), file.face, axes, f"({family!r}, {dict(axes or {})!r})")
 
-    def _set(self, data: bytes, face: int, axes: Mapping[str, float] | None) -> None:
+    def _set(self, data: bytes, face: int, axes: Mapping[str, float] | None, made: str = "") -> None:
         self._state = (data, face, dict(axes or {}))
+        self._made = made  # how, where that is shorter than the bytes
         self._c: Any = _core.FontHandle(data, face, list(self._state[2].items()))
 
     @classmethod
@@ -39,7 +40,9 @@ class Font:
     @classmethod
     def read(cls, path: str | os.PathLike[str], face: int = 0, axes: Mapping[str, float] | None = None) -> Font:
         with open(path, "rb") as f:
-            return cls.from_bytes(f.read(), face, axes)
+            made = cls.from_bytes(f.read(), face, axes)
+        made._made = f".read({os.fspath(path)!r}, {face}, {made._state[2]!r})"
+        return made
 
     @property
     def info(self) -> FontInfo:
@@ -72,11 +75,21 @@ class Font:
         return hash((self._state[0], self._state[1], tuple(self._state[2].items())))
 
     def __repr__(self) -> str:
+        """By name or file where it was made so: it is the same font as long as these are."""
+        return f"Font{self._made or f'.from_bytes{self._state!r}'}"
+
+    def __str__(self) -> str:
         info = self.info
         return f"<Font {info.family} {info.style}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Font.from_bytes, self._state
+        return Font._restored, (*self._state, self._made)
+
+    @staticmethod
+    def _restored(data: bytes, face: int, axes: Mapping[str, float], made: str) -> Font:
+        font = Font.from_bytes(data, face, axes)
+        font._made = made
+        return font
 
 
 def _available() -> None:

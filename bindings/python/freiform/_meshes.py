@@ -1,14 +1,16 @@
 """Triangle meshes."""
 from __future__ import annotations
 
+import ast
 import os
 from typing import Any
 
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, from_header, indices, points_array
+from ._base import Array, ArrayLike, from_header, indices, packed, points_array, unpacked
 from ._records import LevelLine, MeshEdge, MeshPart, MeshTopology, Outline
+from ._refusals import Refusal, UnreadableError
 
 __all__ = ["Mesh", "triangulate"]
 
@@ -146,10 +148,22 @@ class Mesh:
     def __hash__(self) -> int:
         return hash((self.points.tobytes(), self.triangles.tobytes(), self.unit))
 
+    @classmethod
+    def unpacked(cls, text: str) -> Mesh:
+        """From the text that the repr of a mesh holds: all that there is of it, to the last bit."""
+        try:
+            state = ast.literal_eval(unpacked(text, "text").decode())
+            return cls._restored(state)
+        except (SyntaxError, TypeError, ValueError, RuntimeError) as why:
+            raise why if isinstance(why, Refusal) else UnreadableError("text", "holds no mesh") from None
+
     def __repr__(self) -> str:
-        if len(self) > 50 or Mesh(self.points, self.faces, self.unit) != self:  # large, or with more than these
-            return f"<Mesh of {len(self.points)} points and {len(self)} triangles>"
-        return f"Mesh({self.points.tolist()!r}, {self.faces.tolist()!r}, {self.unit!r})"
+        if len(self) <= 50 and Mesh(self.points, self.faces, self.unit) == self:  # small, and no more than these
+            return f"Mesh({self.points.tolist()!r}, {self.faces.tolist()!r}, {self.unit!r})"
+        return f"Mesh.unpacked({packed(repr(self._c.state()).encode())!r})"
+
+    def __str__(self) -> str:
+        return f"<Mesh of {len(self.points)} points and {len(self)} triangles>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh._restored, (self._c.state(),)

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, Sequence, Union
 import numpy as np
 
 from . import _core
-from ._base import Array, ArrayLike, Colour, Interval, IntervalLike, Record, from_header, handles, pair, points_array
+from ._base import (Array, ArrayLike, Colour, Interval, IntervalLike, Record, from_header, handles, packed, pair, points_array,
+                    unpacked)
 from ._meshes import Mesh
 from ._patches import Curve, Surface
 from ._paths import Path
@@ -90,6 +91,10 @@ class TrimmedSurface:
         from ._notebook import html_of
         return html_of(self)
 
+    def _repr_png_(self) -> bytes | None:
+        from ._notebook import png_of
+        return png_of(self)
+
 
 Faces = Union[Surface, TrimmedSurface]
 
@@ -130,6 +135,11 @@ class Model:
                             angle: float = tau) -> Model:
         """The region that a path bounds, turned about an axis."""
         return _core.solid_of_revolution(path._c, points_array(origin), points_array(direction), angle)
+
+    @classmethod
+    def unpacked(cls, text: str) -> Model:
+        """From the text that the repr of a model holds."""
+        return cls(unpacked(text, "text"))
 
     def to_binary(self) -> bytes:
         """The whole model, exact to the last bit."""
@@ -274,10 +284,10 @@ class Model:
         return hash(self.to_binary())
 
     def __repr__(self) -> str:
-        data = self.to_binary()
-        if len(data) > 2000:
-            return f"<Model of {len(self.faces)} faces>"
-        return f"Model({data!r})"
+        return f"Model.unpacked({packed(self.to_binary())!r})"
+
+    def __str__(self) -> str:
+        return f"<Model of {len(self.faces)} faces>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Model, (self.to_binary(),)

@@ -11,6 +11,7 @@ from ._meshes import Mesh
 from ._models import Model, TrimmedSurface
 from ._patches import Surface
 from ._refusals import Refusal
+from ._triangles import TriangularPatch
 
 _MAX_TRIANGLES = 20_000
 
@@ -20,6 +21,8 @@ def _mesh_of(what: Any) -> Mesh:
     from ._files import Document
     if isinstance(what, Mesh):
         return what
+    if isinstance(what, TriangularPatch):
+        what = Document([what])
     if isinstance(what, Document):
         model = what.scene()
     elif isinstance(what, Model):

@@ -180,6 +180,14 @@ class TriangularPatch:
             return f"TriangularPatch({p.tolist()!r}, {self.degree}, weights={w.tolist()!r})"
         return f"TriangularPatch.from_homogeneous({self.coefficients.tolist()!r}, {self.degree})"
 
+    def _repr_html_(self) -> str | None:
+        from ._notebook import html_of
+        return html_of(self) if self.dimension == 3 else None
+
+    def _repr_png_(self) -> bytes | None:
+        from ._notebook import png_of
+        return png_of(self) if self.dimension == 3 else None
+
     def __reduce__(self) -> tuple[Any, ...]:
         if self.is_rational:
             return TriangularPatch.from_homogeneous, (self.coefficients, self.degree)
