@@ -85,6 +85,7 @@ RECORDS = {
     "model/section": ["ModelSectionLine", "ModelSection"],
     "model/sew": ["SewnEdge", "RemainingGap", "Opening", "Sewing"],
     "model/surface_field": ["FieldValues"],
+    "model/swept_solid": ["SolidAlong"],
     "model/surface_lines": ["SurfaceLine", "SurfaceNormal"],
     "io/svg": ["SvgShape", "SvgPicture", "SvgOfDocument"],
     "path/style": ["StrokeStyle"],

@@ -1,32 +1,16 @@
-// Idea. Each loop becomes a ring of walls, on surfaces that sweep its curves: analytic extrusions or
-// revolutions, whose parameters are those of the curve and of the sweep, so that every parameter curve is a
-// straight line. The flat faces have the region's own coordinates as parameters; there the loops themselves
-// are the parameter curves.
-//
-//          after ---- far curve ----> next      wall of one curve: u along it and v along the sweep (prism),
-//            ^                          ^       or v along it and u the angle (revolution)
-//          rail                       rail      rails: the lines, or circular arcs, that vertices sweep
-//            |                          |
-//          start ---- curve --------> next
-//
-// Orientation. orient_loops puts the region on the left of each loop. A prism's wall c(u) + v by has the
-// normal c' x by; for by upwards that points to the right of c, outwards. A wall of revolution has (axis x r)
-// x c', which points to the right of c where the region is on the right of the axis. The other cases are
-// reversed.
-//
-// Parts. Loops of even depth bound a part, with the loops one deeper inside them as holes. Loops do not
-// cross, so one point of a hole tells in which: of several that contain it the one next to it has the right
-// depth.
+// Prisms and solids of revolution: walls are analytic extrusions or revolutions. region_sweep.cpp puts them
+// together.
 //
 // Why not splines as walls (make/sweep.hpp): a circle as rational arcs has parameters that are no angles, so
 // that the walls' parameter curves would have to be approximated.
+#include "region_sweep_detail.hpp"
+
 #include <freiform/core/constants.hpp>
-#include <freiform/model/swept_solid.hpp>
 #include <freiform/spline/in_space.hpp>
-#include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace freiform {
@@ -82,11 +66,6 @@ CurveGeometry<3> moved(const CurveGeometry<2>& curve, const Motion& motion) {
         curve);
 }
 
-Line<2> from_to(Interval on, const Vec<2>& from, const Vec<2>& to) {
-    const Vec<2> direction = (1 / on.length()) * (to - from);
-    return {from - on.lo * direction, direction};
-}
-
 struct Sweep {
     Vec<3> by{};  // of a prism; zero for a revolution
     Vec<3> origin{}, axis{};
@@ -107,171 +86,22 @@ struct Sweep {
         if (!turns()) return Extrusion{std::move(profile), by};
         return Revolution{std::move(profile), origin, axis};
     }
-    // In the parameters of a wall: the curve's own parameter t, and s of the sweep.
-    Vec<2> at(double t, double s) const { return turns() ? Vec<2>{{s, t}} : Vec<2>{{t, s}}; }
-};
-
-class Sweeper {
-public:
-    Sweeper(const Sweep& sweep, const OrientedLoops& loops, double gap)
-        : sweep_(sweep), loops_(loops), gap_(gap) {}
-
-    Result<Model> model() {
-        for (const auto& loop : loops_.loops) walls(loop);
-        for (std::size_t l = 0; l < loops_.loops.size(); ++l)
-            if (loops_.depth[l] % 2 == 0)
-                if (auto ok = part(l); !ok) return std::unexpected(ok.error());
-        return make_model(std::move(model_));
+    detail::SweptCurve curve(const CurveGeometry<2>& c) const {
+        const Vec<3> p = in_space(jet<0>(c, domain(c)[0].lo).value());
+        return {wall(moved(c, {})), moved(c, {}), moved(c, far()), rail(p), p, far()(p)};
     }
-
-private:
-    struct Ring {  // of one loop: edges of its curves at both ends of the sweep, and its walls
-        std::vector<int> near, far, faces;
-    };
-
-    int add(Edge edge) {
-        model_.edges.push_back(std::move(edge));
-        return int(model_.edges.size()) - 1;
-    }
-
-    void walls(const std::vector<CurveGeometry<2>>& loop) {
-        const Motion far = sweep_.far();
-        const int n = int(loop.size()), first = int(model_.vertices.size());
-        const int step = sweep_.full() ? 1 : 2;  // vertices for each start of a curve
-        Ring ring;
-        std::vector<int> rails;
-        for (const auto& c : loop) {
-            const Vec<3> p = in_space(jet<0>(c, domain(c)[0].lo).value());
-            const int v = int(model_.vertices.size());
-            model_.vertices.push_back({p, 0});
-            if (step == 2) model_.vertices.push_back({far(p), 0});
-            rails.push_back(add({sweep_.rail(p), false, sweep_.range(), v, v + step - 1, 0, ""}));
-        }
-        for (int i = 0; i < n; ++i) {
-            const auto& c = loop[std::size_t(i)];
-            const int a = first + i * step, b = first + (i + 1) % n * step;
-            ring.near.push_back(add({moved(c, {}), false, domain(c)[0], a, b, 0, ""}));
-            ring.far.push_back(sweep_.full()
-                                   ? ring.near.back()
-                                   : add({moved(c, far), false, domain(c)[0], a + 1, b + 1, 0, ""}));
-        }
-        for (int i = 0; i < n; ++i) {
-            const Interval t = domain(loop[std::size_t(i)])[0], s = sweep_.range();
-            const auto along = [&](double at_s) {
-                return from_to(t, sweep_.at(t.lo, at_s), sweep_.at(t.hi, at_s));
-            };
-            const auto across = [&](double at_t) {
-                return from_to(s, sweep_.at(at_t, s.lo), sweep_.at(at_t, s.hi));
-            };
-            const std::size_t k = std::size_t(i);
-            Loop around{{{ring.near[k], false, along(s.lo)},
-                         {rails[(k + 1) % rails.size()], false, across(t.hi)},
-                         {ring.far[k], true, along(s.hi)},
-                         {rails[k], true, across(t.lo)}}};
-            if (sweep_.turns()) {  // (s, t) are (u, v): the same way round is the other way
-                std::ranges::reverse(around.coedges);
-                for (Coedge& e : around.coedges) e.reversed = !e.reversed;
-            }
-            Face face;
-            face.surface = sweep_.wall(moved(loop[k], {}));
-            face.reversed = sweep_.reversed;
-            face.loops = {std::move(around)};
-            ring.faces.push_back(int(model_.faces.size()));
-            model_.faces.push_back(std::move(face));
-        }
-        rings_.push_back(std::move(ring));
-    }
-
-    // A flat face over the loops, at the near or the far end.
-    int cap(const std::vector<std::size_t>& loops, bool at_far) {
-        const Motion far = sweep_.far();
+    SurfaceGeometry cap(bool at_far) const {
         const Vec<3> x{{1, 0, 0}}, y{{0, 1, 0}};
-        Face face;
-        face.surface =
-            at_far ? Extrusion{Line<3>{far(Vec<3>{}), far.turned(x)}, far.turned(y), SurfaceKind::plane}
+        return at_far
+                   ? Extrusion{Line<3>{far()(Vec<3>{}), far().turned(x)}, far().turned(y), SurfaceKind::plane}
                    : Extrusion{Line<3>{{}, x}, y, SurfaceKind::plane};
-        // Upwards is outwards at the far end of a prism, and at the near end of a turn to the right of the
-        // axis.
-        face.reversed = (at_far == sweep_.turns()) != sweep_.reversed;
-        for (const std::size_t l : loops) {
-            Loop around;
-            for (std::size_t i = 0; i < loops_.loops[l].size(); ++i)
-                around.coedges.push_back(
-                    {(at_far ? rings_[l].far : rings_[l].near)[i], false, loops_.loops[l][i]});
-            face.loops.push_back(std::move(around));
-        }
-        model_.faces.push_back(std::move(face));
-        return int(model_.faces.size()) - 1;
     }
-
-    int shell(const std::vector<std::size_t>& loops, std::initializer_list<int> caps) {
-        Shell s;
-        s.closed = true;
-        for (const std::size_t l : loops)
-            for (const int f : rings_[l].faces) s.faces.push_back({f, false});
-        for (const int f : caps) s.faces.push_back({f, false});
-        model_.shells.push_back(std::move(s));
-        return int(model_.shells.size()) - 1;
+    Result<Model> of(const RegionLoops& region) const {
+        return detail::sweep_region(
+            region, {[this](const CurveGeometry<2>& c) { return curve(c); },
+                     [this](bool at_far) { return cap(at_far); }, range(), turns(), full(), reversed});
     }
-
-    Result<void> part(std::size_t outer) {
-        const auto inside = InsideQuery::make(std::span(&loops_.loops[outer], 1), gap_);
-        if (!inside) return std::unexpected(inside.error());
-        std::vector<std::size_t> loops{outer};
-        for (std::size_t l = 0; l < loops_.loops.size(); ++l) {
-            if (loops_.depth[l] != loops_.depth[outer] + 1) continue;
-            const CurveGeometry<2>& c = loops_.loops[l][0];
-            if (inside->at(jet<0>(c, domain(c)[0].middle()).value()).place == Place::inside)
-                loops.push_back(l);
-        }
-        Body body;
-        body.solid = true;
-        if (sweep_.full())
-            for (const std::size_t l : loops) body.shells.push_back(shell({l}, {}));
-        else
-            body.shells = {shell(loops, {cap(loops, false), cap(loops, true)})};
-        model_.bodies.push_back(std::move(body));
-        return {};
-    }
-
-    Sweep sweep_;
-    const OrientedLoops& loops_;
-    double gap_;
-    std::vector<Ring> rings_;
-    Model model_;
 };
-
-// Of all control points. Refuses curves that are no splines.
-template <class F>
-Result<void> each_point(const RegionLoops& region, F&& f) {
-    for (std::size_t l = 0; l < region.size(); ++l)
-        for (std::size_t c = 0; c < region[l].size(); ++c) {
-            const bool spline = std::visit(
-                [&](const auto& curve) {
-                    if constexpr (requires { curve.net(); }) {
-                        for (const auto& p : curve.net().flat()) f(project(p));
-                        return true;
-                    }
-                    return false;
-                },
-                region[l][c]);
-            if (!spline)
-                return refuse(RefusalKind::unsupported, text("loops[", l, "][", c, "]"),
-                              "is no spline; write ellipses as rational ones");
-        }
-    return {};
-}
-
-Result<Model> swept(const RegionLoops& region, const Sweep& sweep) {
-    Box<2> box;
-    if (auto ok = each_point(region, [&](const Vec<2>& p) { box.add(p); }); !ok)
-        return std::unexpected(ok.error());
-    if (box.is_empty()) return refuse(RefusalKind::no_answer, "loops", "there is no region");
-    const double gap = TrimmedSurface::kSlack * box.diagonal();
-    const auto loops = orient_loops(region, {gap, gap});
-    if (!loops) return std::unexpected(loops.error());
-    return Sweeper(sweep, *loops, gap).model();
-}
 
 bool is_finite(const Vec<3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
@@ -301,7 +131,7 @@ Result<Model> prism(const RegionLoops& region, const Vec<3>& by) {
             text("a vector that leaves the plane z = 0, not (", by[0], ", ", by[1], ", ", by[2], ")"));
     Sweep sweep;
     sweep.by = by, sweep.reversed = by[2] < 0;
-    return swept(region, sweep);
+    return sweep.of(region);
 }
 
 Result<Model> solid_of_revolution(const RegionLoops& region, const Axis& axis, double angle) {
@@ -321,14 +151,14 @@ Result<Model> solid_of_revolution(const RegionLoops& region, const Axis& axis, d
         const double s = d[0] * sweep.axis[1] - d[1] * sweep.axis[0];
         least = std::min(least, s), most = std::max(most, s), reach = std::max(reach, max_abs(d));
     };
-    if (auto ok = each_point(region, side); !ok) return std::unexpected(ok.error());
+    if (auto ok = detail::each_point(region, side); !ok) return std::unexpected(ok.error());
     const double touches = TrimmedSurface::kSlack * reach;
     if (!(least > touches || most < -touches))
         return refuse(RefusalKind::unsupported, "axis",
                       text("the region reaches the axis: its control points are from ", least, " to ", most,
                            " to the right of it"));
     sweep.reversed = most < 0;
-    return swept(region, sweep);
+    return sweep.of(region);
 }
 
 }  // namespace freiform

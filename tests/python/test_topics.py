@@ -24,6 +24,27 @@ def test_bases_have_partition_of_unity_and_matrices_that_keep_the_function():
     assert np.allclose(closed.collocation([0.2, 3.9]).sum(axis=1), 1)
 
 
+def test_the_polar_form_is_symmetric_affine_and_gives_values_and_coefficients():
+    b = ff.Basis(3, [0, 0, 0, 0, 1, 2.5, 4, 4, 4, 4])
+    c = np.random.default_rng(0).normal(size=(b.size, 2))
+    curve, s = ff.Curve(c, 3, b.knots), b.span(1.5)
+
+    def polar(*arguments):
+        return b.blossom(s, arguments) @ c[s - 3: s + 1]
+    assert np.allclose(polar(1.5, 1.5, 1.5), curve(1.5)) and np.allclose(polar(1.1, 2, 7), polar(7, 1.1, 2))
+    assert np.allclose(polar(1, 2, 0.25 * 3 + 0.75 * 5), 0.25 * polar(1, 2, 3) + 0.75 * polar(1, 2, 5))
+    assert np.allclose([polar(*b.knots[i + 1: i + 4]) for i in range(s - 3, s + 1)], c[s - 3: s + 1])
+    for span, arguments, kind in ((2, [1, 1, 1], ff.InvalidError), (6, [1, 1, 1], ff.InvalidError), (s, [1, 1], ff.InvalidError),
+                                  (s, [1, 1, np.nan], ff.NonFiniteError)):
+        with pytest.raises(kind):
+            b.blossom(span, arguments)
+    t = ff.TriangularPatch([[0, 0, 0], [0.5, 0, 1], [0, 0.5, 1], [1, 0, 0], [0.5, 0.5, 1], [0, 1, 0]])
+    assert np.allclose(t.blossom([[0.2, 0.3]] * 2), t(0.2, 0.3))
+    assert np.allclose(t.blossom([[0, 0], [1, 0]]), t.points[1]) and np.allclose(t.blossom([[1, 0], [0, 1]]), t.points[4])
+    with pytest.raises(ff.InvalidError):
+        t.blossom([[0, 0]])
+
+
 def test_changes_of_polynomial_bases_are_inverses():
     m, b = ff.PolynomialBasis.monomial(4), ff.PolynomialBasis.bernstein(4)
     there, back = ff.change_basis(m, b), ff.change_basis(b, m)
@@ -251,6 +272,11 @@ def test_models_and_meshes(tmp_path):
     assert len(ff.triangulate([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1], [1, 2], [2, 3], [3, 0]])) == 2
 
 
+def test_a_region_along_a_rail_is_a_solid():
+    s = ff.Model.along(ff.Path("M -1 -1 H 1 V 1 H -1 Z"), ff.Curve([[0, 0, 0], [0, 0, 9], [9, 0, 9]]), 1e-4)
+    assert s.bound <= 1e-4 and s.model.summary().solids == 1 and s.model.tessellate(0.01).topology.open_edges == 0
+
+
 def test_a_model_that_is_not_closed_is_refused_a_side():
     with pytest.raises(ff.NoAnswerError):
         ff.Model.assemble([SAIL]).inside([[0, 0, 0]], 1e-3)
@@ -326,6 +352,28 @@ def test_animation():
         ff.Motion.along(quarter, 1e-9)
     way = ff.Trajectory(WAVE, ff.Motion.uniform(WAVE.length(1e-9).value, 2), 1e-6, facing="upright")
     assert np.allclose(way(2).point, [4, 0, 0], atol=1e-5)
+
+
+def test_animations_are_written_as_they_are_read():
+    way = ff.Trajectory(WAVE, ff.Motion.uniform(WAVE.length(1e-9).value, 2), 1e-6, facing="upright")
+    times = np.linspace(0, way.duration, 9)
+    states = [way(t) for t in times]
+    places = [s.point for s in states]
+    velocities = [s.speed * s.tangent for s in states]
+    data = ff.to_animated_glb(times, places, velocities, [s.facing for s in states], places, name="cart", size=0.2)
+    (animation,) = ff.read_gltf_animations(data)
+    moved, turned = animation.channels
+    assert (moved.node, moved.path, moved.interpolation) == ("cart", "translation", "cubic_spline")
+    assert np.allclose(moved.times, times) and np.allclose(np.reshape(moved.values, (9, 3, 3))[:, 1], places, atol=1e-6)
+    assert np.allclose(np.reshape(moved.values, (9, 3, 3))[:, 2], velocities, atol=1e-6)
+    assert turned.path == "rotation" and np.allclose(
+        np.reshape(turned.values, (9, 4)), [[q.x, q.y, q.z, q.w] for q in (s.facing for s in states)], atol=1e-6)
+    assert np.allclose(ff.rotated(states[3].facing, [1, 0, 0]), states[3].tangent)
+    assert len(ff.read_gltf_animations(ff.to_animated_glb(times, places, velocities))[0].channels) == 1
+    with pytest.raises(ff.InvalidError):
+        ff.to_animated_glb(times, places[1:], velocities)
+    with pytest.raises(ff.InvalidError):
+        ff.to_animated_glb(times, [[0, 0]] * 9, velocities)
 
 
 def test_colours():

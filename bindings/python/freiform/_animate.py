@@ -3,17 +3,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
-from typing import Any, Sequence
+from typing import Any, Iterable, Sequence
 
 import numpy as np
 
 from . import _core
 from ._base import Array, ArrayLike, Interval, Record, from_header, points_array
 from ._patches import Curve
-from ._records import GltfAnimation, Measure, MotionState, TrajectoryState
+from ._records import GltfAnimation, Measure, MotionState, Quaternion, TrajectoryState
 
 __all__ = ["CubicBezierEasing", "step_easing", "Key", "Track", "RotationTrack", "Motion", "Trajectory", "slerp",
-           "turn_about", "rotated", "angle_between", "read_gltf_animations"]
+           "turn_about", "rotated", "angle_between", "read_gltf_animations", "to_animated_glb"]
 
 Quaternion4 = tuple[float, float, float, float]
 
@@ -141,12 +141,12 @@ class RotationTrack(_Made):
         return self._c.evaluate(_times(times))
 
 
-def _q(q: Sequence[float]) -> list[float]:
-    return [float(x) for x in q]
+def _q(q: Sequence[float] | Quaternion) -> list[float]:
+    return [q.x, q.y, q.z, q.w] if isinstance(q, Quaternion) else [float(x) for x in q]
 
 
 @from_header("animate/rotation:slerp")
-def slerp(a: Sequence[float], b: Sequence[float], t: float) -> Quaternion4:
+def slerp(a: Sequence[float] | Quaternion, b: Sequence[float] | Quaternion, t: float) -> Quaternion4:
     return _core.slerp(_q(a), _q(b), t)
 
 
@@ -156,12 +156,12 @@ def turn_about(axis: ArrayLike, angle: float) -> Quaternion4:
 
 
 @from_header("animate/rotation:rotated")
-def rotated(q: Sequence[float], v: ArrayLike) -> Array:
+def rotated(q: Sequence[float] | Quaternion, v: ArrayLike) -> Array:
     return _core.rotated(_q(q), points_array(v))
 
 
 @from_header("animate/rotation:angle_between")
-def angle_between(a: Sequence[float], b: Sequence[float]) -> float:
+def angle_between(a: Sequence[float] | Quaternion, b: Sequence[float] | Quaternion) -> float:
     return _core.angle_between(_q(a), _q(b))
 
 
@@ -245,3 +245,17 @@ class Trajectory(_Made):
 def read_gltf_animations(data: bytes, folder: str = "") -> list[GltfAnimation]:
     """The animations of a .glb or .gltf file."""
     return _core.read_gltf_animations(data, folder)
+
+
+@from_header("io/gltf_animation:to_animated_glb", "io/gltf_animation:GltfMotion")
+def to_animated_glb(times: ArrayLike, places: ArrayLike, velocities: ArrayLike,
+                    facing: Iterable[Sequence[float] | Quaternion] = (), line: ArrayLike = (), *, name: str = "body",
+                    size: float = 1.0) -> bytes:
+    """The bytes of a .glb file: a body that is at places (n, 3) at times, moving at velocities (n, 3), turned by
+    quaternions (n, 4), and a line (m, 3)."""
+    def tuples(x: ArrayLike, width: int) -> Array:
+        a = points_array(x)
+        return a if a.size else a.reshape(0, width)
+
+    return _core.to_animated_glb(np.atleast_1d(points_array(times)), tuples(places, 3), tuples(velocities, 3),
+                                 tuples([_q(q) for q in facing], 4), tuples(line, 3), name, size)

@@ -81,6 +81,12 @@ class Basis:
         """Row i: the values (or derivatives) of all functions at at[i]."""
         return self._c.collocation(np.atleast_1d(points_array(at)), derivative)
 
+    @from_header("basis/blossom:blossom")
+    def blossom(self, span: int, arguments: ArrayLike) -> Array:
+        """The polar form of the polynomials of a span at as many arguments as the degree says: the weights of the
+        coefficients span - degree .. span, of a closed basis modulo its size."""
+        return self._c.blossom(span, np.atleast_1d(points_array(arguments)))
+
     @from_header("basis/change:insert_knots")
     def insert_knots(self, knots: ArrayLike) -> tuple[Basis, Array]:
         """The new basis and the matrix that takes coefficients to it."""

@@ -15,8 +15,8 @@ from ._patches import Curve, Surface
 from ._paths import Path
 from ._records import (Approximation, Conic, ConvexHull, EdgeContinuity, FieldValues, Layer, Line, Measure,
                        MeshDeviation, ModelContacts, ModelDistance, ModelFarthest, ModelIntersection, ModelNearest,
-                       ModelSection, ModelSummary, NearestFaces, OrientedBox, Repair, Sewing, SolidInside,
-                       SurfaceLine, Tessellation, TightBox)
+                       ModelSection, ModelSummary, NearestFaces, OrientedBox, Repair, Sewing, SolidAlong,
+                       SolidInside, SurfaceLine, Tessellation, TightBox)
 from ._refusals import Refusal
 
 __all__ = ["Model", "ModelFace", "ModelEdge", "ModelNearestPoints", "ModelNearestQuery", "TrimmedSurface", "inside_loops", "orient_loops"]
@@ -135,6 +135,12 @@ class Model:
                             angle: float = tau) -> Model:
         """The region that a path bounds, turned about an axis."""
         return _core.solid_of_revolution(path._c, points_array(origin), points_array(direction), angle)
+
+    @staticmethod
+    @from_header("model/swept_solid:solid_along")
+    def along(path: Path, rail: Curve, tolerance: float, x_at_start: ArrayLike = (0.0, 0.0, 0.0)) -> SolidAlong:
+        """The region that a path bounds, along a rail in the frame that does not turn about it."""
+        return _core.solid_along(path._c, rail._c, tolerance, points_array(x_at_start))
 
     @classmethod
     def unpacked(cls, text: str) -> Model:

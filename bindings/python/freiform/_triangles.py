@@ -100,6 +100,11 @@ class TriangularPatch:
         levels: list[Array] = _core.triangle_construction(self._c, (u, v))[0]
         return levels
 
+    @from_header("spline/simplex_construction:blossom")
+    def blossom(self, arguments: ArrayLike) -> Array:
+        """The polar form at as many (u, v) as the degree says: a coefficient (of rational patches a weighted one)."""
+        return _core.triangle_blossom(self._c, points_array(arguments))
+
     @from_header("spline/simplex:elevate")
     def elevate(self) -> TriangularPatch:
         return _core.triangle_elevate(self._c)

@@ -214,6 +214,28 @@ void bind_motion(py::module_& m) {
             return answer([&] { return read_gltf_animations(bytes, folder); });
         },
         py::arg("data"), py::arg("folder"));
+    m.def(
+        "to_animated_glb",
+        [](const Array& times, const Array& places, const Array& velocities, const Array& facing,
+           const Array& line, const std::string& name, double size) {
+            const auto list = [](const Array& a, const char* where) {
+                const auto p = points_of<Vec<3>>(a, where);
+                return std::vector<Vec<3>>(p.begin(), p.end());
+            };
+            const auto t = numbers_of(times);
+            GltfMotion motion{name,
+                              size,
+                              {t.begin(), t.end()},
+                              list(places, "places"),
+                              list(velocities, "velocities"),
+                              {},
+                              list(line, "line")};
+            for (const Vec<4>& q : points_of<Vec<4>>(facing, "facing"))
+                motion.facing.push_back({q[0], q[1], q[2], q[3]});
+            return py::bytes(take(unlocked([&] { return to_animated_glb(motion); })));
+        },
+        py::arg("times"), py::arg("places"), py::arg("velocities"), py::arg("facing"), py::arg("line"),
+        py::arg("name"), py::arg("size"));
 }
 
 }  // namespace

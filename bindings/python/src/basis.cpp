@@ -4,6 +4,7 @@
 #include "records/poly/roots.hpp"
 #include "records/query/hull.hpp"
 
+#include <freiform/basis/blossom.hpp>
 #include <freiform/basis/named.hpp>
 #include <freiform/basis/subdivide.hpp>
 #include <freiform/poly/predicates.hpp>
@@ -134,6 +135,22 @@ void bind_basis(py::module_& m) {
         .def(
             "insert_knot", [](const B& b, double u) { return changed(take(insert_knot(b, u))); },
             py::arg("u"))
+        .def(
+            "blossom",
+            [](const B& b, int span, const Array& arguments) {
+                const int p = b.degree();
+                if (span < p || span >= b.size() + b.wrapped() || !(b.knot(span) < b.knot(span + 1)))
+                    reject(RefusalKind::invalid, "span", text(span, " is no span of the basis"));
+                if (arguments.ndim() != 1 || arguments.size() != p)
+                    reject(RefusalKind::invalid, "arguments", text(p, " are needed"));
+                for (py::ssize_t i = 0; i < p; ++i)
+                    if (!std::isfinite(arguments.data()[i]))
+                        reject(RefusalKind::nonfinite, text("arguments[", i, "]"), "is not a finite number");
+                py::array_t<double> weights(p + 1);
+                blossom(b, span, arguments.data(), weights.mutable_data());
+                return weights;
+            },
+            py::arg("span"), py::arg("arguments"))
         .def("elevate", [](const B& b) { return changed(take(elevate(b))); })
         .def(
             "restrict_to",

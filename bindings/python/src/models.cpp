@@ -15,6 +15,7 @@
 #include "records/model/sew.hpp"
 #include "records/model/surface_field.hpp"
 #include "records/model/surface_lines.hpp"
+#include "records/model/swept_solid.hpp"
 #include "records/model/tessellate.hpp"
 #include "records/query/bounds.hpp"
 #include "records/query/hull.hpp"
@@ -27,7 +28,6 @@
 #include <freiform/model/bounds.hpp>
 #include <freiform/model/edge_length.hpp>
 #include <freiform/model/rescale.hpp>
-#include <freiform/model/swept_solid.hpp>
 #include <freiform/trim/loops.hpp>
 
 namespace freiform::python {
@@ -139,6 +139,15 @@ void bind_model_making(py::module_& m) {
             return answer([&] { return solid_of_revolution(loops_of(*p.path), axis, angle); });
         },
         py::arg("path"), py::arg("origin"), py::arg("direction"), py::arg("angle"));
+    m.def(
+        "solid_along",
+        [](const PathHandle& p, const CurveHandle& rail, double tolerance, const Array& x_at_start) {
+            const FrameSweepOptions options{tolerance, vec_of<3>(x_at_start, "x_at_start")};
+            return visit_dims<3, 3>(*rail.patch, "rail", [&](const auto& r) {
+                return answer([&] { return solid_along(loops_of(*p.path), r, options); });
+            });
+        },
+        py::arg("path"), py::arg("rail"), py::arg("tolerance"), py::arg("x_at_start"));
     m.def(
         "inside_loops",
         [](const std::vector<std::vector<CurveHandle>>& loops, double gap, const Array& points) {

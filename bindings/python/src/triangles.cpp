@@ -300,6 +300,19 @@ void bind_triangles(py::module_& m) {
         },
         py::arg("triangle"), py::arg("at"));
     m.def(
+        "triangle_blossom",
+        [](const TriangleHandle& h, const Array& arguments) {
+            const auto given = points_of<Vec<2>>(arguments, "arguments");
+            std::vector<Param<2>> at;
+            for (const Vec<2>& u : given) check_numbers(u.c, "arguments"), at.push_back(u.c);
+            return visit_triangle(h, [&](const auto& s) -> py::object {
+                if (at.size() != std::size_t(s.degree()))
+                    reject(RefusalKind::invalid, "arguments", text(s.degree(), " are needed"));
+                return to_py(blossom(s, std::span<const Param<2>>(at)));
+            });
+        },
+        py::arg("triangle"), py::arg("arguments"));
+    m.def(
         "triangle_directional",
         [](const TriangleHandle& h, Uv u, const Array& directions) {
             check_numbers(u, "at");

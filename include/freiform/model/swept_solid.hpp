@@ -1,6 +1,7 @@
-// Solids that a plane region sweeps: prisms and solids of revolution. Watertight by their construction: every
-// edge is stored once and used by both of its faces.
+// Solids that a plane region sweeps: prisms, solids of revolution, solids along a rail. Watertight by their
+// construction: every edge is stored once and used by both of its faces.
 #pragma once
+#include <freiform/make/frame_sweep.hpp>
 #include <freiform/make/revolve.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/path/path.hpp>
@@ -29,5 +30,23 @@ Result<Model> prism(const RegionLoops& region, const Vec<3>& by);
 // Refuses the same as prism, axes that leave the plane (invalid), and (unsupported) regions with a control
 // point on the axis or on both sides of it.
 Result<Model> solid_of_revolution(const RegionLoops& region, const Axis& axis, double angle);
+
+struct SolidAlong {
+    Model model;
+    double bound = 0;  // distance of every point of a wall from that of the exact one at the same parameters
+    int pieces = 0;    // of the frame, along the rail
+};
+
+// The region moved along a rail in the frame that does not turn about it, as sweep (make/frame_sweep.hpp)
+// moves curves: a point (x, y) sweeps rail(v) + x r(v) + y s(v). All of the boundary shares one frame. Flat
+// faces at both ends; walls are splines, one for each curve. R: Vec<3> or Hom<3>. Refuses what sweep refuses
+// of the rail and the options, what prism refuses of the region, (unsupported) rails that end where they
+// begin, for the frame comes back at another angle, (no_answer) rails that are seen to bend around a
+// control point of the region, where walls fold, and (limit) walls of more than 2^24 coefficients. Whether
+// far parts of the solid meet is not asked.
+//   auto pipe = solid_along(loops_of(ring), rail, {1e-4});
+template <class R>
+Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
+                               const FrameSweepOptions& options);
 
 }  // namespace freiform

@@ -1,0 +1,33 @@
+// A region of the plane that is moved through space, whatever moves it.
+#pragma once
+#include <freiform/model/swept_solid.hpp>
+
+#include <functional>
+
+namespace freiform::detail {
+
+// What a curve of a loop sweeps: a wall, the edges at both ends of it, and the way of the curve's start.
+struct SweptCurve {
+    SurfaceGeometry wall;
+    CurveGeometry<3> near, far, rail;
+    Vec<3> start{}, start_far{};
+    double tolerance = 0;  // of these edges and vertices
+};
+
+struct RegionSweep {
+    std::function<Result<SweptCurve>(const CurveGeometry<2>&)> curve;
+    // The flat face at the far or the near end; its parameters are coordinates of the region.
+    std::function<SurfaceGeometry(bool at_far)> cap;
+    Interval range{0, 1};   // of rails
+    bool turns = false;     // parameters of walls are (s, t) of sweep and curve, otherwise (t, s)
+    bool full = false;      // the far end is the near one
+    bool reversed = false;  // the sweep goes to the other side of the region's left-hand walls
+};
+
+// Of all control points. Refuses curves that are no splines.
+Result<void> each_point(const RegionLoops& region, const std::function<void(const Vec<2>&)>& f);
+
+// A solid for each connected part of the region. Refuses what orient_loops and the sweep of a curve refuse.
+Result<Model> sweep_region(const RegionLoops& region, const RegionSweep& how);
+
+}  // namespace freiform::detail
