@@ -1,0 +1,218 @@
+// node order_functions.js FILE.wasm: the same module with its functions in an order that gzip likes.
+//
+// Idea. Half of the module are instances of templates, which differ in a few numbers. gzip finds a text again
+// only within the 32 kB before it, and compilers put instances of one template far from each other. Which
+// function comes first means nothing to a module, so functions go where most of their text has just been seen.
+//
+// Method. A function is the set of the runs of kRun bytes in its code, without the numbers of the functions that
+// it calls, which change with the order; every second run, by its hash, and no run that is in one function alone
+// or in more than kCommon. From the largest function on, the next one is that with the most runs in the last
+// kWindow bytes, relative to the number of its own to the power of 3/4: by the number itself large functions
+// come too early, by the share short ones. Equal ones in their old order, so that the same module always becomes
+// the same. Then all numbers of functions are replaced: in calls, exports, tables and the start.
+//
+// Cost. Seconds. The module is 10.8 % smaller after gzip, freiform-curves.wasm 5 %.
+//
+// Why not: sorted by type and size, 6.5 %. Runs of 4 bytes, which are in everything, 8.4 %; a window of 12 kB 10.2 %.
+import { readFileSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+
+const kRun = 7, kCommon = 200, kWindow = 28000;
+
+class Bytes {
+  constructor(bytes) { this.bytes = bytes; this.at = 0; }
+  byte() { return this.bytes[this.at++]; }
+  // LEB128; of signed numbers only the length is right.
+  number() {
+    let value = 0;
+    for (let factor = 1;; factor *= 128) {
+      const b = this.byte();
+      value += (b & 127) * factor;
+      if (b < 128) return value;
+    }
+  }
+  numbers(n) { for (let i = 0; i < n; ++i) this.number(); }
+  part(size) { return this.bytes.subarray(this.at, this.at += size); }
+  get ended() { return this.at >= this.bytes.length; }
+}
+
+function leb(value) {
+  const out = [];
+  for (; value > 127; value = Math.floor(value / 128)) out.push(value % 128 | 128);
+  return [...out, value];
+}
+
+// Goes over an instruction; `call` is told where the number of a function stands.
+function instruction(code, call) {
+  const op = code.byte();
+  const memory = () => code.numbers(2);
+  if (op === 0x10 || op === 0x12 || op === 0xd2) call(code.at, code.number(), code.at);
+  else if (op === 0x0e) code.numbers(code.number() + 1);
+  else if (op === 0x11 || op === 0x13 || op >= 0x28 && op <= 0x3e) code.numbers(2);
+  else if (op >= 0x02 && op <= 0x04 || op === 0x0c || op === 0x0d || op >= 0x20 && op <= 0x26 ||
+    op >= 0x3f && op <= 0x42 || op === 0xd0) code.number();
+  else if (op === 0x43) code.at += 4;
+  else if (op === 0x44) code.at += 8;
+  else if (op === 0x1c) code.at += code.number();
+  else if (op === 0xfc) {
+    const more = code.number();
+    if (more > 17) throw new Error(`no instruction: 0xfc ${more}`);
+    code.numbers(more < 8 ? 0 : more === 8 || more === 10 || more === 12 || more === 14 ? 2 : 1);
+  } else if (op === 0xfd) {
+    const more = code.number();
+    if (more < 12 || more === 92 || more === 93) memory();
+    else if (more < 14) code.at += 16;
+    else if (more > 20 && more < 35) code.at += 1;
+    else if (more > 83 && more < 92) memory(), code.at += 1;
+  } else if (!(op < 2 || op === 0x05 || op === 0x0b || op === 0x0f || op === 0x1a || op === 0x1b || op === 0xd1 ||
+    op >= 0x45 && op <= 0xc4)) throw new Error(`no instruction: 0x${op.toString(16)}`);
+}
+
+// A function: where its calls are, and its runs.
+function functionOf(body) {
+  const code = new Bytes(body), calls = [], text = [];
+  for (let i = code.number(); i > 0; --i) code.number(), code.at++;
+  let from = 0;
+  const upTo = (end) => { for (; from < end; ++from) text.push(body[from]); };
+  while (!code.ended)
+    instruction(code, (begin, callee, end) => { calls.push([begin, callee, end]), upTo(begin), from = end; });
+  upTo(body.length);
+  const runs = new Set();
+  for (let i = 0; i + kRun <= text.length; ++i) {
+    let hash = 0x811c9dc5;
+    for (let k = 0; k < kRun; ++k) hash = Math.imul(hash ^ text[i + k], 0x01000193);
+    hash ^= hash >>> 15;
+    if (hash & 1) runs.add(hash);
+  }
+  return { body, calls, runs };
+}
+
+// For each function its runs as numbers from 0, and for each run the functions that have it.
+function sharedRuns(functions) {
+  const holders = new Map();
+  functions.forEach((f, i) => f.runs.forEach((run) => {
+    const list = holders.get(run);
+    if (list) list.push(i);
+    else holders.set(run, [i]);
+  }));
+  const shared = [...holders.values()].filter((list) => list.length > 1 && list.length <= kCommon);
+  const runs = functions.map(() => []);
+  shared.forEach((list, run) => list.forEach((i) => runs[i].push(run)));
+  return { shared, runs };
+}
+
+// The old numbers in the new order.
+function orderOf(functions) {
+  const { shared, runs } = sharedRuns(functions);
+  const weight = runs.map((list) => Math.max(1, list.length) ** -0.75);
+  const score = new Int32Array(functions.length), seen = new Int32Array(shared.length);
+  const count = (i, by) => runs[i].forEach((run) => {
+    if (by > 0 ? seen[run]++ === 0 : --seen[run] === 0) for (const j of shared[run]) score[j] += by;
+  });
+  const order = [];
+  const left = functions.map((_, i) => i).sort((a, b) => functions[b].body.length - functions[a].body.length || a - b);
+  let size = 0, oldest = 0;
+  while (left.length > 0) {
+    let best = 0, most = 0;
+    for (let k = 0; k < left.length; ++k) {
+      const worth = score[left[k]] * weight[left[k]];
+      if (worth > most) most = worth, best = k;
+    }
+    const [next] = left.splice(best, 1);
+    order.push(next), count(next, 1), size += functions[next].body.length;
+    for (; size > kWindow && oldest < order.length - 1; ++oldest)
+      count(order[oldest], -1), size -= functions[order[oldest]].body.length;
+  }
+  return order;
+}
+
+function sectionsOf(bytes) {
+  const file = new Bytes(bytes), sections = [];
+  for (file.at = 8; !file.ended;) {
+    const id = file.byte();
+    sections.push({ id, bytes: file.part(file.number()) });
+  }
+  return sections;
+}
+
+// How many functions are imported: those have the first numbers.
+function importedFunctions(section) {
+  const s = new Bytes(section);
+  let functions = 0;
+  const limits = () => s.numbers(s.number() % 2 + 1);
+  for (let n = s.number(); n > 0; --n) {
+    s.part(s.number()), s.part(s.number());
+    const kind = s.byte();
+    if (kind === 0) s.number(), ++functions;
+    else if (kind === 1) s.byte(), limits();
+    else if (kind === 2) limits();
+    else s.at += 2;
+  }
+  return functions;
+}
+
+function exportsRenumbered(section, renumbered) {
+  const s = new Bytes(section), out = [];
+  const n = s.number();
+  for (let i = 0; i < n; ++i) {
+    const begin = s.at;
+    s.part(s.number());
+    const kind = s.byte(), end = s.at, number = s.number();
+    out.push(...section.subarray(begin, end), ...leb(kind === 0 ? renumbered(number) : number));
+  }
+  return [...leb(n), ...out];
+}
+
+// Tables of functions that begin at a constant: what linkers write.
+function elementsRenumbered(section, renumbered) {
+  const s = new Bytes(section), out = [];
+  const n = s.number();
+  for (let i = 0; i < n; ++i) {
+    const begin = s.at;
+    if (s.number() !== 0 || s.byte() !== 0x41) throw new Error('a table that is not one of functions at a constant');
+    s.number();
+    if (s.byte() !== 0x0b) throw new Error('a table that begins at an expression');
+    const size = s.number();
+    out.push(...section.subarray(begin, s.at));
+    for (let k = 0; k < size; ++k) out.push(...leb(renumbered(s.number())));
+  }
+  return [...leb(n), ...out];
+}
+
+function bodyRenumbered({ body, calls }, renumbered) {
+  const parts = [];
+  let from = 0;
+  for (const [begin, callee, end] of calls) {
+    parts.push(body.subarray(from, begin), Uint8Array.from(leb(renumbered(callee))));
+    from = end;
+  }
+  const code = Buffer.concat([...parts, body.subarray(from)]);
+  return Buffer.concat([Uint8Array.from(leb(code.length)), code]);
+}
+
+export function ordered(bytes) {
+  const sections = sectionsOf(bytes).filter(({ id }) => id !== 0);
+  const section = (id) => sections.find((s) => s.id === id)?.bytes ?? Uint8Array.of(0);
+  const code = new Bytes(section(10)), types = new Bytes(section(3));
+  const functions = Array.from({ length: code.number() }, () => functionOf(code.part(code.number())));
+  const typeOf = Array.from({ length: types.number() }, () => types.number());
+  const order = orderOf(functions), imported = importedFunctions(section(2));
+  const place = new Int32Array(order.length);
+  order.forEach((old, now) => { place[old] = now; });
+  const renumbered = (i) => i < imported ? i : imported + place[i - imported];
+  const change = {
+    3: () => [...leb(order.length), ...order.flatMap((i) => leb(typeOf[i]))],
+    7: (s) => exportsRenumbered(s, renumbered),
+    8: (s) => leb(renumbered(new Bytes(s).number())),
+    9: (s) => elementsRenumbered(s, renumbered),
+    10: () => Buffer.concat([Uint8Array.from(leb(order.length)),
+      ...order.map((i) => bodyRenumbered(functions[i], renumbered))]),
+  };
+  return Buffer.concat([bytes.subarray(0, 8), ...sections.flatMap(({ id, bytes: s }) => {
+    const now = Uint8Array.from(change[id]?.(s) ?? s);
+    return [Uint8Array.from([id, ...leb(now.length)]), now];
+  })]);
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url))
+  for (const file of process.argv.slice(2)) writeFileSync(file, ordered(readFileSync(file)));

@@ -1,0 +1,52 @@
+// node --test: a module whose functions have another order does the same.
+import assert from 'node:assert';
+import { test } from 'node:test';
+import { ordered } from '../order_functions.js';
+
+const section = (id, ...bytes) => [id, bytes.length, ...bytes];
+const body = (...code) => [code.length + 2, 0, ...code, 0x0b];
+const name = (s) => [s.length, ...Buffer.from(s)];
+const text = [0x43, 0x10, 0x10, 0x10, 0x10, 0x1a];  // f32.const of what looks like calls; drop
+
+// Imported: 0. Its own: 1 calls the import and 3, and is larger than 3; 2 is the largest, asks the table; 3 is 7,
+// after a text that 2 has, too. The table is [1, 3]; `all` is 1, `asked` is 2; the start is 4, which calls the import.
+const small = Uint8Array.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0,
+  ...section(0, ...name('note'), 1),
+  ...section(1, 2, 0x60, 0, 1, 0x7f, 0x60, 0, 0),
+  ...section(2, 1, ...name('m'), ...name('five'), 0, 0),
+  ...section(3, 4, 0, 0, 0, 1),
+  ...section(4, 1, 0x70, 0, 2),
+  ...section(7, 2, ...name('all'), 0, 1, ...name('asked'), 0, 2),
+  ...section(8, 4),
+  ...section(9, 1, 0, 0x41, 0, 0x0b, 2, 1, 3),
+  ...section(10, 4,
+    ...body(0x10, 0, 0x10, 3, 0x6a, ...Array(20).fill(0x01)),
+    ...body(...text, ...text, ...text, 0x41, 1, 0x11, 0, 0, 0x41, 0, 0x11, 0, 0, 0x6a),
+    ...body(...text, ...text, 0x41, 7),
+    ...body(0x10, 0, 0x1a)),
+]);
+
+function answers(bytes) {
+  let calls = 0;
+  const { exports } = new WebAssembly.Instance(new WebAssembly.Module(bytes), { m: { five: () => (++calls, 5) } });
+  return [calls, exports.all(), exports.asked()];
+}
+
+test('functions in another order are called by their new numbers, from everywhere', () => {
+  const now = ordered(small);
+  assert.notDeepStrictEqual([...now].slice(-60), [...small].slice(-60));
+  assert.deepStrictEqual(answers(small), [1, 12, 19]);
+  assert.deepStrictEqual(answers(now), [1, 12, 19]);
+});
+
+test('the largest function comes first, then the one that shares its text', () => {
+  const at = (bytes, part) => Buffer.from(bytes).indexOf(Buffer.from(part));
+  const now = ordered(small), largest = at(now, [...text, ...text, ...text]), sharing = at(now, [...text, ...text, 0x41, 7]);
+  assert(0 < largest && largest < sharing && sharing < at(now, [27, 0, 0x10]), `${largest}, ${sharing}`);
+});
+
+test('a module with instructions that are not known is refused', () => {
+  const bad = Uint8Array.from(small);
+  bad[bad.length - 2] = 0xff;
+  assert.throws(() => ordered(bad), /no instruction: 0xff/);
+});
