@@ -186,7 +186,7 @@ private:
             block.step.push_back(int(block.border.size()));
         }
         border_.reserve(6 * leaves_.size());
-        std::erase_if(leaves_, [&](Leaf& l) {
+        for (Leaf& l : leaves_) {
             l.first = border_.size();
             for (std::size_t k = 0; k < 4; ++k) {
                 const Vec<2> a = corner_of(l.box, k), b = corner_of(l.box, (k + 1) % 4);
@@ -194,10 +194,11 @@ private:
                 add_between(a, b, k % 2 ? 1 : 0, border_);
             }
             l.count = border_.size() - l.first;
-            if (l.count <= kMostAround) return false;
-            border_.resize(l.first);
-            dissolve(l.box);
-            return true;
+        }
+        std::erase_if(leaves_, [&](const Leaf& l) {
+            const bool many = l.count > kMostAround;
+            if (many) dissolve(l.box);
+            return many;
         });
     }
 
