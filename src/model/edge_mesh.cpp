@@ -223,6 +223,36 @@ std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int
     return !last.empty() ? last : !best.empty() ? best : now;
 }
 
+// Neighbours that keep the demands together become one. Equal parts are asked for with the worst of the
+// curve's second derivatives; where that is large over a short way alone (a turn within a short knot span,
+// as in curves that follow others) it is cut off in the end, and what was shared out for it is left over.
+std::vector<EdgeMesher::Part> EdgeMesher::joined(int edge, std::vector<Part> parts, double longest,
+                                                 const EdgeDemands& demands) const {
+    constexpr double kWasted = 0.5;  // of the parts: fewer are not worth looking
+    double sum = 0;
+    for (const Part& p : parts) sum += p.needs;
+    if (!(sum < kWasted * double(parts.size()))) return parts;
+    std::vector<Part> out;
+    for (std::size_t i = 0; i < parts.size();) {
+        Part best = parts[i];
+        std::size_t next = i + 1;
+        const auto longer = [&](std::size_t end) {
+            if (end > parts.size() || parts[end - 1].b - best.a > longest) return false;
+            const Part p = part(edge, best.a, parts[end - 1].b, demands);
+            if (!(p.needs <= 1)) return false;
+            best = p;
+            next = end;
+            return true;
+        };
+        std::size_t step = 1;
+        while (longer(next + step)) step *= 2;
+        while (step /= 2) longer(next + step);
+        out.push_back(best);
+        i = next;
+    }
+    return out;
+}
+
 // Where a part that cannot be halved does not keep the demands, if the worst half of each leads there: see
 // curvature_tree_torn.cpp. Asked about edges whose weights are far apart alone.
 std::optional<double> EdgeMesher::torn_place(int edge, Interval on, const EdgeDemands& demands) const {
@@ -266,22 +296,26 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
         if (const auto torn = torn_place(edge, on, demands)) return too_steep(*torn);
         auto stack = equal_parts(edge, on, least, demands, max_segments);
         std::reverse(stack.begin(), stack.end());
+        std::vector<Part> done;
         while (!stack.empty()) {
             const Part p = stack.back();
             stack.pop_back();
             if (p.needs <= 1) {
-                mesh.parameters.push_back(p.b);
-                mesh.bound = std::max(mesh.bound, p.bound);
+                done.push_back(p);
                 continue;
             }
             const double middle = p.a + (p.b - p.a) * first_part(p.needs);
             if (!(p.a < middle && middle < p.b)) return too_steep(p.a);
-            if (mesh.parameters.size() + stack.size() > max_segments)
+            if (mesh.parameters.size() + done.size() + stack.size() > max_segments)
                 return refuse(
                     RefusalKind::limit, "max_triangles",
                     text("edge ", edge, " needs more than ", max_segments, " segments within ", tolerance));
             stack.push_back(part(edge, middle, p.b, demands));
             stack.push_back(part(edge, p.a, middle, demands));
+        }
+        for (const Part& p : joined(edge, std::move(done), on.length() / least, demands)) {
+            mesh.parameters.push_back(p.b);
+            mesh.bound = std::max(mesh.bound, p.bound);
         }
     }
     return {};

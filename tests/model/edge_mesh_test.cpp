@@ -103,6 +103,28 @@ TEST(EdgeMesh, pilots_only_guess) {
     EXPECT_LE(double(needs.size()), sum_of(needs) / 0.95);
 }
 
+// Spans so short that second derivatives are huge on them, as between a bend's two knots: each costs the
+// chord that holds it, not as many chords of the whole curve as that derivative would ask for everywhere.
+TEST(EdgeMesh, what_short_spans_ask_for_is_not_asked_for_everywhere) {
+    for (const double span : {0.3, 1e-3, 1e-5}) {
+        std::vector<double> knots{0, 0, 0};
+        std::vector<Vec<2>> p{{{0, 0}}};
+        for (int i = 1; i <= 4; ++i) {
+            knots.insert(knots.end(), {double(i), i + span});
+            p.push_back({{i + 0.0, i % 2 * 0.4}});
+            p.push_back({{i + span, i % 2 * 0.4 + span * (i % 2 ? -0.4 : 0.4)}});
+        }
+        p.insert(p.end(), {{{4.7, 0.1}}, {{5.5, 0}}});
+        knots.insert(knots.end(), {6.0, 6.0, 6.0});
+        const auto basis = BSplineBasis::make(2, knots);
+        ASSERT_TRUE(basis) << span;
+        const CurveGeometry<2> curve = Curve<Vec<2>>::trusted({*basis}, Net<1, Vec<2>>({int(p.size())}, p));
+        const auto needs = OneFace(curve, {0, 6}).needs(0.003);
+        EXPECT_LE(needs.size(), 60u) << span;
+        EXPECT_GE(needs.size(), 9u) << span;
+    }
+}
+
 // On a cylinder whose speed round its axis is uneven: a helix is cut as by its distance from chords.
 TEST(EdgeMesh, chords_on_faces_are_judged_across) {
     std::vector<Hom<3>> c;
