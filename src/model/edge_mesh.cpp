@@ -6,7 +6,8 @@
 // that the part asks for. All parts are moved so that each gets an equal share of the sum, rounded up: once
 // or twice, as a rule, and an edge that is alike all along, as a circle, gets equal parts. Where some parts
 // still exceed, or fewer seem to do, a last pass goes from part to part and makes up for each one's surprise
-// in those behind it. Parts that exceed even so are cut.
+// in those behind it. Parts that exceed even so are cut. Where much of what was shared out is not needed in
+// the end, neighbours that keep the demands together are joined.
 //
 // Cost: two bounds for each part of a circle's sort less those that pilots stand for, three of others.
 //
@@ -228,10 +229,10 @@ std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int
 // as in curves that follow others) it is cut off in the end, and what was shared out for it is left over.
 std::vector<EdgeMesher::Part> EdgeMesher::joined(int edge, std::vector<Part> parts, double longest,
                                                  const EdgeDemands& demands) const {
-    constexpr double kWasted = 0.5;  // of the parts: fewer are not worth looking
+    constexpr double kUsed = 0.5;  // of what parts may ask for: where more is used, few can be joined
     double sum = 0;
     for (const Part& p : parts) sum += p.needs;
-    if (!(sum < kWasted * double(parts.size()))) return parts;
+    if (!(sum < kUsed * double(parts.size()))) return parts;
     std::vector<Part> out;
     for (std::size_t i = 0; i < parts.size();) {
         Part best = parts[i];

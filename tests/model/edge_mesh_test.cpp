@@ -122,6 +122,9 @@ TEST(EdgeMesh, what_short_spans_ask_for_is_not_asked_for_everywhere) {
         const auto needs = OneFace(curve, {0, 6}).needs(0.003);
         EXPECT_LE(needs.size(), 60u) << span;
         EXPECT_GE(needs.size(), 9u) << span;
+        OneFace closed(curve, {0, 6});
+        closed.model.edges[0].end = 0;
+        EXPECT_GE(closed.needs(300).size(), 4u) << "a closed edge does not become a slit";
     }
 }
 
