@@ -159,10 +159,11 @@ def deflection_that_reaches(path, relative, diagonal, program, cache, more):
     return found
 
 
-def measure_at_same_error(row, path, programs, rounds, cache):
-    """Open CASCADE at the deflection that reaches our tolerance, as row["occt_reached"]; None where there is none."""
+def measure_at_same_error(row, path, programs, rounds, cache, reached_more):
+    """Open CASCADE at the deflection that reaches our tolerance, as row["occt_reached"]; None where there is none. What is not
+    reached for a larger tolerance (`reached_more` false) is not looked for."""
     row["occt_reached"] = None
-    if not good(row["occt"]) or not good(row["freiform"]):
+    if not good(row["occt"]) or not good(row["freiform"]) or not reached_more:
         return row
     diagonal = row["occt"]["diagonal"]
     sewn = sewing(row["model"])
@@ -238,9 +239,11 @@ def main():
         if path is None:
             skipped.append({"model": name, "reason": f"{source} is not there"})
             continue
-        for relative in args.tolerances:
+        reached = True
+        for relative in sorted(args.tolerances, reverse=True):
             row = measure(name, path, relative, programs, args.rounds)
-            rows.append(measure_at_same_error(row, path, programs, args.rounds, folder / "bench-deflections.json"))
+            rows.append(measure_at_same_error(row, path, programs, args.rounds, folder / "bench-deflections.json", reached))
+            reached = rows[-1]["occt_reached"] is not None
             print(table_row(rows[-1]), file=sys.stderr, flush=True)
     data = {"name": f"{datetime.date.today().isoformat()}-{commit()}", "commit": commit(), "rounds": args.rounds,
             "machine": before, "build": json.loads((folder / "bin/bench.json").read_text()), "skipped": skipped, "rows": rows,

@@ -12,7 +12,7 @@ font="libfreetype-dev libharfbuzz-dev libfontconfig-dev"
 python="pybind11-dev python3-dev python3-numpy"
 test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell fonts-inter-variable"
 wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
-ci="python3 python3-venv python3-pip gmsh libglfw3-dev xvfb xauth libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
+ci="python3 python3-venv python3-pip gmsh blender inkscape libglfw3-dev xvfb xauth libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
 bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
@@ -74,6 +74,8 @@ what_for() {
         npm) echo "fetches what the page is built with" ;;
         chromium) echo "runs the WebAssembly modules and the page as a browser does" ;;
         gmsh) echo "measures the STEP and IGES files that are written" ;;
+        blender) echo "measures the triangles that are written" ;;
+        inkscape) echo "draws what is drawn, to compare pictures" ;;
         clang-format) echo "the format check" ;;
         *) echo "the WebAssembly build" ;;
     esac

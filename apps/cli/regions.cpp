@@ -56,7 +56,8 @@ Result<PlaneRegion> read_region(const Context& context, const std::string& file,
 }
 
 Result<void> emit_swept(const Context& context, const SolidOutput& output, const std::string& file,
-                        const std::string& unit, Result<Model> model) {
+                        const std::string& unit, Result<Model> model,
+                        std::span<const std::pair<std::string, double>> said) {
     if (!model) return refuse_within(shown(file), model.error());
     model->unit = unit;
     Document document;
@@ -65,8 +66,12 @@ Result<void> emit_swept(const Context& context, const SolidOutput& output, const
     document.objects.push_back({"", *std::move(model)});
     json::Writer w;
     w.begin_object().field("solids", solids).field("faces", faces);
-    return emit_solids(context, output, document, w,
-                       text(solids, solids == 1 ? " solid, " : " solids, ", faces, " faces"));
+    std::string words = text(solids, solids == 1 ? " solid, " : " solids, ", faces, " faces");
+    for (const auto& [name, number] : said) {
+        w.field(name, number);
+        words += text(", ", name, " ", number);
+    }
+    return emit_solids(context, output, document, w, std::move(words));
 }
 
 }  // namespace freiform::cli

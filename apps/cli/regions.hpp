@@ -13,8 +13,10 @@ struct PlaneRegion {
 };
 Result<PlaneRegion> read_region(const Context& context, const std::string& file, const std::string& object);
 
-// The model that was made of the region, as the output wants it. `file` is for refusals.
+// The model that was made of the region, as the output wants it. `file` is for refusals; `said`: more numbers
+// for the report.
 Result<void> emit_swept(const Context& context, const SolidOutput& output, const std::string& file,
-                        const std::string& unit, Result<Model> model);
+                        const std::string& unit, Result<Model> model,
+                        std::span<const std::pair<std::string, double>> said = {});
 
 }  // namespace freiform::cli

@@ -10,6 +10,7 @@
 #include <freiform/model/surface_field.hpp>
 #include <freiform/model/surface_lines.hpp>
 #include <freiform/model/tessellate.hpp>
+#include <freiform/spline/simplex_convert.hpp>
 #if FREIFORM_HAS_CAIRO
 #include <freiform/io/figure.hpp>
 #include <freiform/paint/paint.hpp>
@@ -200,9 +201,7 @@ Result<DirectScene> direct_scene(const Document& document, std::span<const std::
         if (const auto* t = std::get_if<Triangle<Hom<3>>>(&shape)) {
             out.triangles.push_back({*t, {}});
         } else if (const auto* p = std::get_if<Triangle<Vec<3>>>(&shape)) {
-            std::vector<Hom<3>> net;
-            for (const Vec<3>& x : p->coefficients()) net.push_back(weighted(x, 1.0));
-            out.triangles.push_back({SimplexPatch<2, Hom<3>>::trusted(p->degree(), std::move(net)), {}});
+            out.triangles.push_back({to_rational(*p), {}});
         } else {
             others.push_back(i);
         }

@@ -17,6 +17,7 @@
 #include "parameter_table_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,7 @@ namespace freiform {
 
 namespace {
 
+constexpr std::size_t kBlocksAtOnce = 64;    // that a thread judges
 constexpr double kCellRounding = 1 + 1e-12;  // of what judges cells
 constexpr double kMarginOfAvoided = 2;       // times the box
 constexpr int kPlainRounds = 8;              // then leaves that disagree are left to the triangulation
@@ -46,13 +48,18 @@ struct Grid {
 
 class BlockMesher {
 public:
-    BlockMesher(const CurvatureTree& tree, const Judge& judge, double tolerance,
+    BlockMesher(const CurvatureTree& tree, const Judge& judge, double tolerance, bool alone,
                 std::span<const Vec<2>> avoid)
-        : tree_(tree), judge_(judge), tolerance_(tolerance), avoid_(avoid), table_(tree.corners().size()) {}
+        : tree_(tree),
+          judge_(judge),
+          tolerance_(tolerance),
+          alone_(alone),
+          avoid_(avoid),
+          table_(tree.corners().size()) {}
 
     BlockMesh run() {
         out_.corners.assign(tree_.corners().begin(), tree_.corners().end());
-        for (const auto& b : tree_.blocks()) b.first_part < 0 ? take_leaf(b) : take(b);
+        take_all();
         if (blocks_.empty() && leaves_.empty()) return std::move(out_);
         for (const auto& c : out_.corners) table_.number(c.at);
         for (const Block& b : blocks_) each_border_point(b.grid, [&](const Vec<2>& p) { table_.number(p); });
@@ -102,8 +109,31 @@ private:
         return std::any_of(avoid_.begin(), avoid_.end(), [&](const Vec<2>& p) { return around.contains(p); });
     }
 
-    void take_leaf(const CurvatureTree::Block& b) {
-        if (is_near_avoided(b.box)) return dissolve(b.box);
+    struct Judged {
+        bool avoided = false;
+        Leaf leaf{};
+        double usual = 0,
+               footless = 0;  // of a block, as of leaves, but larger than the tolerance where not kept
+    };
+
+    void take_all() {
+        const auto& all = tree_.blocks();
+        std::vector<Judged> judged(all.size());
+        const auto judge = [&](std::size_t i) { judged[i] = judged_of(all[i]); };
+        parallel_for(all.size(), alone_ ? kBlocksAtOnce : all.size(), judge);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            all[i].first_part < 0 ? take_leaf(judged[i]) : take(all[i], judged[i]);
+    }
+
+    Judged judged_of(const CurvatureTree::Block& b) const {
+        Judged out;
+        out.leaf.box = b.box;
+        out.avoided = is_near_avoided(b.box);
+        if (!out.avoided) b.first_part < 0 ? judge_leaf(b, out.leaf) : judge_parts(b, out);
+        return out;
+    }
+
+    void judge_leaf(const CurvatureTree::Block& b, Leaf& leaf) const {
         const Bending& at = tree_.part_bendings(b)[0];
         const Vec<2> size = b.box.hi - b.box.lo, cell = kCellRounding * size;
         const std::array<Vec<2>, 3> corner{b.box.lo, b.box.lo + Vec<2>{{cell[0], 0}},
@@ -112,24 +142,29 @@ private:
             const double bound = judge_(at, b.box, corner, plain, b.node).bound;
             return bound <= tolerance_ ? bound : kInfinity;
         };
-        Leaf leaf{b.box, at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}}};
+        leaf.scale = at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
         leaf.flat = judged(3);
         leaf.usual = tree_.is_all_plain() ? kInfinity : judged(0);
         leaf.footless = std::isfinite(leaf.usual) ? judged(1) : kInfinity;
         leaf.is_plain = !std::isfinite(leaf.usual);
-        std::isfinite(std::min(leaf.flat, leaf.usual)) ? leaves_.push_back(leaf) : dissolve(b.box);
+    }
+
+    void take_leaf(const Judged& j) {
+        const bool is_kept = !j.avoided && std::isfinite(std::min(j.leaf.flat, j.leaf.usual));
+        is_kept ? leaves_.push_back(j.leaf) : dissolve(j.leaf.box);
     }
 
     void dissolve(const Box<2>& leaf) {
         for (std::size_t k = 0; k < 4; ++k) out_.corners.push_back({corner_of(leaf, k), leaf.hi - leaf.lo});
     }
 
-    void take(const CurvatureTree::Block& b) {
-        const Grid grid{{halved(b.box.side(0), b.halves[0]), halved(b.box.side(1), b.halves[1])}};
-        const Vec<2> cell = kCellRounding * grid.largest_cell();
-        if (is_near_avoided(b.box)) return dissolve(grid, cell);
-        // Of the first cell of each part, as if corners were plain where a foot is not needed.
-        double usual = 0, footless = 0;
+    static Grid grid_of(const CurvatureTree::Block& b) {
+        return {{halved(b.box.side(0), b.halves[0]), halved(b.box.side(1), b.halves[1])}};
+    }
+
+    // Of the first cell of each part, as if corners were plain where a foot is not needed.
+    void judge_parts(const CurvatureTree::Block& b, Judged& out) const {
+        const Vec<2> cell = kCellRounding * grid_of(b).largest_cell();
         const bool all_plain = tree_.is_all_plain();
         const Grid parts{{halved(b.box.side(0), b.parts[0]), halved(b.box.side(1), b.parts[1])}};
         const Bending* at = tree_.part_bendings(b).data();
@@ -138,13 +173,18 @@ private:
                 const Box<2> box{parts.at(i, j), parts.at(i + 1, j + 1)};
                 const std::array<Vec<2>, 3> corner{box.lo, box.lo + Vec<2>{{cell[0], 0}},
                                                    box.lo + Vec<2>{{0, cell[1]}}};
-                usual = std::max(usual, judge_(*at, box, corner, all_plain ? 3 : 0, b.node).bound);
-                if (!(usual <= tolerance_)) return dissolve(grid, cell);
-                if (!all_plain && footless <= tolerance_)
-                    footless = std::max(footless, judge_(*at, box, corner, 1, b.node).bound);
+                out.usual = std::max(out.usual, judge_(*at, box, corner, all_plain ? 3 : 0, b.node).bound);
+                if (!(out.usual <= tolerance_)) return;
+                if (!all_plain && out.footless <= tolerance_)
+                    out.footless = std::max(out.footless, judge_(*at, box, corner, 1, b.node).bound);
             }
-        const bool needs_foot = !(footless <= tolerance_);
-        out_.bound = std::max({out_.bound, usual, needs_foot ? 0 : footless});
+    }
+
+    void take(const CurvatureTree::Block& b, const Judged& j) {
+        const Grid grid = grid_of(b);
+        if (j.avoided || !(j.usual <= tolerance_)) return dissolve(grid, kCellRounding * grid.largest_cell());
+        const bool needs_foot = !(j.footless <= tolerance_);
+        out_.bound = std::max({out_.bound, j.usual, needs_foot ? 0 : j.footless});
         blocks_.push_back({grid, needs_foot});
     }
 
@@ -185,15 +225,28 @@ private:
             }
             block.step.push_back(int(block.border.size()));
         }
-        border_.reserve(6 * leaves_.size());
-        for (Leaf& l : leaves_) {
-            l.first = border_.size();
-            for (std::size_t k = 0; k < 4; ++k) {
-                const Vec<2> a = corner_of(l.box, k), b = corner_of(l.box, (k + 1) % 4);
-                border_.push_back(table_.find(a));
-                add_between(a, b, k % 2 ? 1 : 0, border_);
+        // Some leaves at a time, whose borders then follow each other.
+        std::vector<std::vector<int>> borders((leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce);
+        parallel_for(borders.size(), alone_ ? 1 : borders.size(), [&](std::size_t part) {
+            std::vector<int>& border = borders[part];
+            border.reserve(6 * kBlocksAtOnce);
+            const std::size_t end = std::min(leaves_.size(), (part + 1) * kBlocksAtOnce);
+            for (std::size_t i = part * kBlocksAtOnce; i < end; ++i) {
+                Leaf& l = leaves_[i];
+                l.first = border.size();
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const Vec<2> a = corner_of(l.box, k), b = corner_of(l.box, (k + 1) % 4);
+                    border.push_back(table_.find(a));
+                    add_between(a, b, k % 2 ? 1 : 0, border);
+                }
+                l.count = border.size() - l.first;
             }
-            l.count = border_.size() - l.first;
+        });
+        border_.reserve(6 * leaves_.size());
+        for (std::size_t i = 0; i < leaves_.size(); ++i) {
+            const std::vector<int>& border = borders[i / kBlocksAtOnce];
+            if (i % kBlocksAtOnce == 0) border_.insert(border_.end(), border.begin(), border.end());
+            leaves_[i].first += border_.size() - border.size();
         }
         std::erase_if(leaves_, [&](const Leaf& l) {
             const bool many = l.count > kMostAround;
@@ -370,6 +423,7 @@ private:
     const CurvatureTree& tree_;
     const Judge& judge_;
     double tolerance_;
+    bool alone_;
     std::span<const Vec<2>> avoid_;
     ParameterTable table_;
     std::vector<Block> blocks_;
@@ -386,9 +440,9 @@ private:
 
 }  // namespace
 
-BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance,
+BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool alone,
                       std::span<const Vec<2>> avoid) {
-    return BlockMesher(tree, judge, tolerance, avoid).run();
+    return BlockMesher(tree, judge, tolerance, alone, avoid).run();
 }
 
 }  // namespace freiform

@@ -18,8 +18,8 @@ struct BlockMesh {
     std::vector<CurvatureTree::Corner> corners;
 };
 
-// Blocks near places to `avoid` are left out.
-BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance,
+// Blocks near places to `avoid` are left out. `alone`: all threads may be used.
+BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool alone,
                       std::span<const Vec<2>> avoid = {});
 
 }  // namespace freiform

@@ -15,6 +15,8 @@
 // all triangles.
 #include "curvature_tree_detail.hpp"
 
+#include <freiform/core/parallel.hpp>
+
 namespace freiform {
 
 namespace {
@@ -27,6 +29,7 @@ constexpr int kMostHalves = 12;                      // of both sides together
 constexpr double kPartError = 4;                     // of a part, times the tolerance
 constexpr int kPartHalves = 8;                       // likewise, into parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
+constexpr std::size_t kLeavesAtOnce = 256;           // that a thread looks at
 constexpr double kDeep = 0.3;                        // of a leaf: nearer to the boundary it makes slivers
 
 // Cells of a box of this size whose triangles are off by the tolerance: sides are chosen so that the
@@ -188,13 +191,21 @@ bool CurvatureTree::is_deep(int leaf) const {
     return true;
 }
 
-void CurvatureTree::take_leaves() {
+void CurvatureTree::take_leaves(bool alone) {
+    std::vector<int> leaves;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        Node& n = nodes_[i];
+        const Node& n = nodes_[i];
         if (n.child >= 0 || n.block >= 0 || !n.inside || n.has_columns() || meets_kink(n.box)) continue;
-        if (!is_deep(int(i))) continue;
+        leaves.push_back(int(i));
+    }
+    std::vector<char> deep(leaves.size());
+    parallel_for(leaves.size(), alone ? kLeavesAtOnce : leaves.size(),
+                 [&](std::size_t i) { deep[i] = is_deep(leaves[i]); });
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        if (!deep[i]) continue;
+        Node& n = nodes_[std::size_t(leaves[i])];
         n.block = int(blocks_.size());
-        blocks_.push_back({n.box, {}, {}, -1, int(i)});
+        blocks_.push_back({n.box, {}, {}, -1, leaves[i]});
     }
 }
 

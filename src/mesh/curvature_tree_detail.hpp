@@ -250,7 +250,8 @@ private:
     const Bending& bending(int node) const { return bendings_[std::size_t(node)]; }
     std::optional<Cut> cut(const Node& node, int axis) const;
     void plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance);  // curvature_tree_columns.cpp
-    void take_leaves();  // those away from the boundary, as blocks
+    // Those away from the boundary, as blocks. `alone`: all threads may be used.
+    void take_leaves(bool alone);
     bool is_deep(int leaf) const;
     void find_corners();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;

@@ -80,7 +80,11 @@ private:
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
                std::vector<Item>& items);
-    void add(const CurvatureTree& part, const Item& item);
+    struct Place {  // where in the tree what a part has begins
+        std::size_t nodes, variations, blocks, part_bendings;
+    };
+    void add(std::vector<CurvatureTree>& parts, std::span<const Item> items);
+    void put(const CurvatureTree& part, const Item& item, const Place& place);
 
     CurvatureTree& tree_;
     Task& task_;
@@ -255,36 +259,54 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         bad[i] = Grower(part, task_).grow(own, 0);
     });
     if (auto first = worst()) return first;
-    for (std::size_t i = 0; i < parts.size(); ++i) add(parts[i], items[i]);
+    add(parts, items);
     return std::nullopt;
 }
 
-// A part that has been grown from the item.
-void CurvatureTree::Grower::add(const CurvatureTree& part, const Item& item) {
-    const int nodes = int(tree_.nodes_.size()) - 1, variations = int(tree_.variations_.size()),
-              blocks = int(tree_.blocks_.size()), parts = int(tree_.part_bendings_.size());
-    for (Block b : part.blocks_) {
-        b.first_part += parts;
-        tree_.blocks_.push_back(b);
+// Parts that have been grown from the items, one behind the other. Their room is given back.
+void CurvatureTree::Grower::add(std::vector<CurvatureTree>& parts, std::span<const Item> items) {
+    std::vector<Place> places;
+    Place end{tree_.nodes_.size(), tree_.variations_.size(), tree_.blocks_.size(),
+              tree_.part_bendings_.size()};
+    for (const CurvatureTree& p : parts) {
+        places.push_back(end);
+        end.nodes += p.nodes_.size() - 1;  // the first is there: the item's
+        end.variations += p.variations_.size(), end.blocks += p.blocks_.size();
+        end.part_bendings += p.part_bendings_.size();
     }
-    tree_.part_bendings_.insert(tree_.part_bendings_.end(), part.part_bendings_.begin(),
-                                part.part_bendings_.end());
-    tree_.variations_.insert(tree_.variations_.end(), part.variations_.begin(), part.variations_.end());
+    tree_.nodes_.resize(end.nodes);
+    tree_.bendings_.resize(end.nodes);
+    tree_.variations_.resize(end.variations);
+    tree_.blocks_.resize(end.blocks);
+    tree_.part_bendings_.resize(end.part_bendings);
+    parallel_for(parts.size(), 1, [&](std::size_t i) {
+        put(parts[i], items[i], places[i]);
+        parts[i] = {};
+    });
+}
+
+void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, const Place& place) {
+    const int nodes = int(place.nodes) - 1, variations = int(place.variations), blocks = int(place.blocks);
+    for (std::size_t k = 0; k < part.blocks_.size(); ++k) {
+        Block b = part.blocks_[k];
+        b.first_part += int(place.part_bendings);
+        tree_.blocks_[place.blocks + k] = b;
+    }
+    const auto copy = [](const auto& from, auto& to, std::size_t at) {
+        std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t(at));
+    };
+    copy(part.part_bendings_, tree_.part_bendings_, place.part_bendings);
+    copy(part.variations_, tree_.variations_, place.variations);
+    const int parent = tree_.nodes_[std::size_t(item.node)].parent;
     for (std::size_t k = 0; k < part.nodes_.size(); ++k) {
         Node n = part.nodes_[k];
-        n.parent = k == 0          ? tree_.nodes_[std::size_t(item.node)].parent
-                   : n.parent == 0 ? item.node
-                                   : nodes + n.parent;
+        n.parent = k == 0 ? parent : n.parent == 0 ? item.node : nodes + n.parent;
         if (n.child >= 0) n.child += nodes;
         if (n.variation >= 0) n.variation += variations;
         if (n.block >= 0) n.block += blocks;
-        if (k == 0) {
-            tree_.nodes_[std::size_t(item.node)] = n;
-            tree_.bendings_[std::size_t(item.node)] = part.bendings_[0];
-        } else {
-            tree_.nodes_.push_back(n);
-            tree_.bendings_.push_back(part.bendings_[k]);
-        }
+        const std::size_t at = k == 0 ? std::size_t(item.node) : std::size_t(nodes) + k;
+        tree_.nodes_[at] = n;
+        tree_.bendings_[at] = part.bendings_[k];
     }
 }
 
@@ -336,7 +358,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         }
     if (all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
-    if (ways.blocks) tree.take_leaves();
+    if (ways.blocks) tree.take_leaves(demands.alone);
     tree.find_corners();
     return tree;
 }

@@ -193,7 +193,7 @@ Result<FaceMesh> filled_around(const Filling& f, Polygon polygon, std::span<cons
     const auto& [surface, boundary, demands, max_triangles, extra, ways, tree, judge] = f;
     const double tolerance = demands.tolerance;
     const int merged_corners = int(polygon.points.size());
-    const BlockMesh blocks = mesh_blocks(tree, judge, tolerance, avoid);
+    const BlockMesh blocks = mesh_blocks(tree, judge, tolerance, demands.alone, avoid);
     const auto grid = grid_of(surface, tree, polygon, demands, max_triangles);
     const std::vector<CurvatureTree::Corner> crossings =
         grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};

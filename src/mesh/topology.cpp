@@ -3,6 +3,7 @@
 //
 // Why not the rounded cross product: it errs both ways. Differences that are rounded give area to collinear
 // points, and two products that differ only in a bit beyond the 53rd take it from thin triangles.
+#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/triangle_mesh.hpp>
 #include <freiform/poly/predicates.hpp>
 
@@ -21,17 +22,22 @@ bool is_degenerate(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) {
 
 MeshTopology topology(const TriangleMesh& mesh) {
     MeshTopology out;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const auto [a, b, c] = mesh.points_of(t);
-        out.degenerate_triangles += is_degenerate(mesh.points[std::size_t(a)], mesh.points[std::size_t(b)],
-                                                  mesh.points[std::size_t(c)]);
-    }
-    for (const MeshEdge& edge : edges(mesh)) {
-        const int uses = edge.forward + edge.backward;
-        out.open_edges += uses == 1;
-        out.non_manifold_edges += uses > 2;
-        out.misoriented_edges += uses == 2 && edge.forward != 1;
-    }
+    const auto count_triangles = [&] {
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            const auto [a, b, c] = mesh.points_of(t);
+            out.degenerate_triangles += is_degenerate(
+                mesh.points[std::size_t(a)], mesh.points[std::size_t(b)], mesh.points[std::size_t(c)]);
+        }
+    };
+    const auto count_edges = [&] {
+        for (const MeshEdge& edge : edges(mesh)) {
+            const int uses = edge.forward + edge.backward;
+            out.open_edges += uses == 1;
+            out.non_manifold_edges += uses > 2;
+            out.misoriented_edges += uses == 2 && edge.forward != 1;
+        }
+    };
+    parallel_for(2, 1, [&](std::size_t which) { which == 0 ? count_triangles() : count_edges(); });
     return out;
 }
 

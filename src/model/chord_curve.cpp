@@ -8,7 +8,8 @@
 // distance is |P (C - linear)| <= h^2/8 max|P C''| (edge_error.cpp). C' . e >= C'(m) . e - h/2 max|C''| less
 // jumps, and C' may be no steeper against the chord than bending.cpp takes for granted. Over parts that reach
 // over a break of the knots C''' says nothing of C'', and where the estimate above is too large for `enough`
-// control points may say less: there C'' is bounded in two directions f across the chord by itself.
+// control points may say less: there C'' is bounded in two directions f across the chord by itself. Where
+// short pieces of the curve bend more than others max|C''| counts as PiecewiseBound says.
 //
 // Lifts: a plane is an affine map, so the image of a line, conic or spline has the images of its
 // coefficients. Along a parameter line surfaces are their profile moved, a circle, a straight line, or the
@@ -83,6 +84,7 @@ ChordCurve::ChordCurve(const CurveGeometry<3>& curve) : query_(curve) {
                             k == parts ? breaks[i + 1] : breaks[i] + (breaks[i + 1] - breaks[i]) * k / parts};
                         const auto d = query_({on}, 3);
                         pieces_.push_back({on.hi, k > 1, d(2), d(3)});
+                        second_.add(on.hi, d(2));
                     }
             }
         },
@@ -122,21 +124,23 @@ double ChordCurve::across(Interval on, double enough) const {
     const double h = on.length(), share = h * h / 8;
     const Most most = over(on);
     if (share * most.second <= enough / 16) return share * most.second;
+    const double steady = second_.is_empty() ? most.second : second_.steady(on);
     const auto& curve = query_.geometry();
     const auto middle = jet<2>(curve, on.middle());
     const auto frame = frame_of(jet<0>(curve, on.hi).value() - jet<0>(curve, on.lo).value(), middle.d[2]);
     double torn = 0;
     for (const Kink& k : query_.kinks(0))
         if (on.lo < k.at && k.at < on.hi) torn += k.jump;
-    if (!frame) return at_equal(on);
+    const auto equal = [&] { return std::min(at_equal(on), share * steady); };
+    if (!frame) return equal();
     const auto across_chord = [&](const Vec<3>& x) { return x - dot(x, (*frame)[0]) * (*frame)[0]; };
     const double bend =
         norm(across_chord(middle.d[2])) + h / 2 * most.third + second_rounding_ + 0x1p-44 * most.second;
-    const double along = dot((*frame)[0], middle.d[1]) - (h / 2 * most.second + torn) * kFrameSlack;
+    const double along = dot((*frame)[0], middle.d[1]) - (h / 2 * steady + torn) * kFrameSlack;
     const double aside =
-        norm(across_chord(middle.d[1])) + (h / 2 * std::min(bend, most.second) + torn) * kFrameSlack;
-    if (!(along > 0 && aside <= kSteepest * along)) return at_equal(on);
-    const double sampled = share * bend * kFrameSlack;
+        norm(across_chord(middle.d[1])) + (h / 2 * std::min(bend, steady) + torn) * kFrameSlack;
+    if (!(along > 0 && aside <= kSteepest * along)) return equal();
+    const double sampled = share * std::min(bend * kFrameSlack, steady);
     if (sampled <= enough) return sampled;
     const double directions =
         std::hypot(query_.along((*frame)[1], {on})(2), query_.along((*frame)[2], {on})(2));

@@ -1,5 +1,7 @@
 // Curves in space that are asked many times how far a chord is from them: essay in chord_curve.cpp.
 #pragma once
+#include "piecewise_bound_detail.hpp"
+
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -40,6 +42,7 @@ private:
 
     DerivativeQuery<1, 3> query_;
     std::vector<Piece> pieces_;  // empty: ask the query
+    PiecewiseBound second_;      // of the same pieces
     double begin_ = 0;
     double second_rounding_ = 0;
     bool straight_ = false;

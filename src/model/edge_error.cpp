@@ -26,6 +26,10 @@
 // no farther than 8/7 of |S(c(t)) - L(t)| is asked for by (S o c)' . e >= 7/8 |(S o c)'|. What e . DS changes
 // by needs a bound of e . D^2 S only where one of all of D^2 S is not enough.
 //
+// Pieces of p some of which are short may bend much there without p going far from its chord: p'' counts as
+// PiecewiseBound says, which holds for all that is asked of it, that p is off its chord (with Green's
+// function under the integral) and that p' is off the chord's direction.
+//
 // Why not all of C'': the quarter of a rational circle takes up to 1.4 times as many chords.
 #include "chord_curve_detail.hpp"
 #include "edge_mesh_detail.hpp"
@@ -67,7 +71,7 @@ struct OnFace {
     const CoedgeQuery& use;
     Interval on;
     PlaneCurveBounds plane;
-    Vec<2> from, to, chord, sag, speed, change;  // speed >= |h p'|, change >= |h^2 p''|
+    Vec<2> from, to, chord, sag, speed, change;  // speed >= |h p'|, change: what stands for |h^2 p''|
     Box<2> box;
     DerivativeBounds<2> over;
     SecondBounds second;
@@ -87,7 +91,9 @@ OnFace::OnFace(const DerivativeQuery<2, 3>& face, const CoedgeQuery& of, double 
     const double h = b - a;
     for (int i = 0; i < 2; ++i) {
         const DerivativeBounds<1>& d = plane.coordinate[std::size_t(i)];
-        speed[i] = h * d(1), change[i] = h * h * d(2), sag[i] = change[i] / 8 + bent;
+        const PiecewiseBound& by_pieces = of.second[std::size_t(i)];
+        const double most = by_pieces.is_empty() ? d(2) : std::min(d(2), by_pieces.steady(on));
+        speed[i] = h * d(1), change[i] = h * h * most, sag[i] = change[i] / 8 + bent;
     }
     for (const Vec<2>& p : {from, to}) {
         box.add(p - sag);

@@ -6,8 +6,7 @@
 // that the part asks for. All parts are moved so that each gets an equal share of the sum, rounded up: once
 // or twice, as a rule, and an edge that is alike all along, as a circle, gets equal parts. Where some parts
 // still exceed, or fewer seem to do, a last pass goes from part to part and makes up for each one's surprise
-// in those behind it. Parts that exceed even so are cut. Where much of what was shared out is not needed in
-// the end, neighbours that keep the demands together are joined.
+// in those behind it. Parts that exceed even so are cut.
 //
 // Cost: two bounds for each part of a circle's sort less those that pilots stand for, three of others.
 //
@@ -31,12 +30,36 @@ constexpr double kConeOfAngle =
 constexpr int kClosedParts = 4;      // a closed edge must not collapse to a slit
 constexpr double kFull = 0.97;       // of what a part may ask for: what is aimed at
 constexpr double kPartsAtOnce = 16;  // of a part at a time: bounds over long ones are too large
+constexpr double kShort = 0.125;     // of the mean length: pieces that may bend much without mattering much
 
 // Where to cut an interval that seems to need `parts` parts: so that equal ones result if it does.
 double first_part(double parts) {
     constexpr double kMost = 1e6;
     const double k = std::max(2.0, std::ceil(parts * (1 + 1e-9)));
     return k < kMost ? std::floor(k / 2) / k : 0.5;
+}
+
+// Of both coordinates, over the polynomial or rational pieces of a spline some of which are short. Nothing of
+// others, nor of those on closed knots, whose parameters may go around.
+std::array<PiecewiseBound, 2> second_by_pieces(const DerivativeQuery<1, 2>& curve) {
+    std::array<PiecewiseBound, 2> out;
+    std::visit(
+        [&](const auto& c) {
+            if constexpr (requires { c.net(); }) {
+                const auto breaks = c.basis().breaks();
+                double shortest = kInfinity;
+                for (std::size_t k = 0; k + 1 < breaks.size(); ++k)
+                    shortest = std::min(shortest, breaks[k + 1] - breaks[k]);
+                const double mean = (breaks.back() - breaks.front()) / double(breaks.size() - 1);
+                if (c.basis().is_closed() || !(shortest < kShort * mean)) return;
+                for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+                    const auto bounds = coordinate_bounds(curve, {breaks[k], breaks[k + 1]});
+                    for (std::size_t i = 0; i < 2; ++i) out[i].add(breaks[k + 1], bounds.coordinate[i](2));
+                }
+            }
+        },
+        curve.geometry());
+    return out;
 }
 
 }  // namespace
@@ -80,7 +103,10 @@ EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<Deriv
         for (auto& use : edges_[e].uses) {
             use->curve = std::make_unique<DerivativeQuery<1, 2>>(use->coedge->curve);
             use->lift = lifted(model.faces[std::size_t(use->face)].surface, use->coedge->curve);
-            if (!use->lift) continue;
+            if (!use->lift) {
+                use->second = second_by_pieces(*use->curve);
+                continue;
+            }
             if (own && use->lift->shift == 0 && use->lift->speed == 1)
                 use->twin = distance_of_twins(*own, *use->lift->geometry);
             if (use->twin == kInfinity) use->chords = std::make_unique<ChordCurve>(*use->lift->geometry);
@@ -224,36 +250,6 @@ std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int
     return !last.empty() ? last : !best.empty() ? best : now;
 }
 
-// Neighbours that keep the demands together become one. Equal parts are asked for with the worst of the
-// curve's second derivatives; where that is large over a short way alone (a turn within a short knot span,
-// as in curves that follow others) it is cut off in the end, and what was shared out for it is left over.
-std::vector<EdgeMesher::Part> EdgeMesher::joined(int edge, std::vector<Part> parts, double longest,
-                                                 const EdgeDemands& demands) const {
-    constexpr double kUsed = 0.5;  // of what parts may ask for: where more is used, few can be joined
-    double sum = 0;
-    for (const Part& p : parts) sum += p.needs;
-    if (!(sum < kUsed * double(parts.size()))) return parts;
-    std::vector<Part> out;
-    for (std::size_t i = 0; i < parts.size();) {
-        Part best = parts[i];
-        std::size_t next = i + 1;
-        const auto longer = [&](std::size_t end) {
-            if (end > parts.size() || parts[end - 1].b - best.a > longest) return false;
-            const Part p = part(edge, best.a, parts[end - 1].b, demands);
-            if (!(p.needs <= 1)) return false;
-            best = p;
-            next = end;
-            return true;
-        };
-        std::size_t step = 1;
-        while (longer(next + step)) step *= 2;
-        while (step /= 2) longer(next + step);
-        out.push_back(best);
-        i = next;
-    }
-    return out;
-}
-
 // Where a part that cannot be halved does not keep the demands, if the worst half of each leads there: see
 // curvature_tree_torn.cpp. Asked about edges whose weights are far apart alone.
 std::optional<double> EdgeMesher::torn_place(int edge, Interval on, const EdgeDemands& demands) const {
@@ -314,7 +310,7 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
             stack.push_back(part(edge, middle, p.b, demands));
             stack.push_back(part(edge, p.a, middle, demands));
         }
-        for (const Part& p : joined(edge, std::move(done), on.length() / least, demands)) {
+        for (const Part& p : done) {
             mesh.parameters.push_back(p.b);
             mesh.bound = std::max(mesh.bound, p.bound);
         }

@@ -20,6 +20,7 @@ struct CoedgeQuery {
     int face = -1, loop = -1, index = -1;
     const Coedge* coedge = nullptr;
     std::unique_ptr<DerivativeQuery<1, 2>> curve;
+    std::array<PiecewiseBound, 2> second;  // of both coordinates of a spline that is not lifted
     std::optional<LiftedCurve> lift;
     std::unique_ptr<ChordCurve> chords;  // of the lift; for twins made when a tolerance is too small for them
     double twin = kInfinity;  // of the distance between lift and edge, if they are the same but for rounding
@@ -85,8 +86,6 @@ private:
                                std::size_t most) const;
     std::vector<Part> equal_parts(int edge, Interval on, int least, const EdgeDemands& demands,
                                   std::size_t max_segments) const;
-    std::vector<Part> joined(int edge, std::vector<Part> parts, double longest,
-                             const EdgeDemands& demands) const;
     std::optional<double> torn_place(int edge, Interval on, const EdgeDemands& demands) const;
 
     const Model& model_;

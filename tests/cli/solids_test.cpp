@@ -1,6 +1,8 @@
 #include "run.hpp"
 
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace freiform::test {
 namespace {
@@ -42,6 +44,62 @@ TEST_F(SolidProgram, of_closed_curves_are_extruded_and_revolved) {
     const std::string badge = std::string(FREIFORM_SOURCE_DIR) + "/examples/badge.svg";
     EXPECT_EQ(
         run({"extrude", badge, "--object", "plate", "--by", "0,0,2", "--solid", "-o", "plate.glb"}).code, 0);
+}
+
+double volume_of_stl(const std::string& bytes) {
+    double sum = 0;
+    for (std::size_t at = 84; at + 50 <= bytes.size(); at += 50) {
+        float x[3][3];
+        std::memcpy(x, bytes.data() + at + 12, sizeof x);
+        const auto d = [&](int a, int b) { return double(x[1][a]) * x[2][b] - double(x[1][b]) * x[2][a]; };
+        sum += (x[0][0] * d(1, 2) + x[0][1] * d(2, 0) + x[0][2] * d(0, 1)) / 6;
+    }
+    return sum;
+}
+
+// A ring of radii 2 and 1 along a straight and along a bent rail: volumes are area times length (Pappus), and
+// the triangles' volume says the same within what their bound allows.
+TEST_F(SolidProgram, of_regions_along_a_rail_are_watertight) {
+    const std::string ring = file("ring.svg", R"(<svg xmlns="http://www.w3.org/2000/svg"><path d=
+        "M 2 0 A 2 2 0 1 1 -2 0 A 2 2 0 1 1 2 0 Z M 1 0 A 1 1 0 1 1 -1 0 A 1 1 0 1 1 1 0 Z"/></svg>)");
+    const auto rail = [&](const char* points) {
+        return file("rail.json", std::string(R"({"freiform": 1, "objects": [{"type": "curve", "degree": 2,
+            "points": )") + points + "}]}");
+    };
+    for (const char* points : {"[[0,0,0],[0,0,5],[0,0,10]]", "[[0,0,0],[0,0,20],[20,0,20]]"}) {
+        const std::string along = rail(points);
+        const Ran made = run(
+            {"sweep", ring, "--rail", along, "--tolerance", "0.02", "--solid", "-o", "pipe.json", "--json"});
+        ASSERT_EQ(made.code, 0) << made.err;
+        const auto said = SolidJson::parse(made.out);
+        EXPECT_EQ(said["solids"], 1);
+        EXPECT_EQ(said["faces"], 2 + 2 * 4) << "arcs are two curves each";
+        EXPECT_LE(said["wall_bound"].get<double>(), 0.02);
+        const Ran mesh = run(
+            {"sweep", ring, "--rail", along, "--tolerance", "0.02", "--solid", "-o", "pipe.stl", "--json"});
+        ASSERT_EQ(mesh.code, 0) << mesh.err;
+        const auto triangles = SolidJson::parse(mesh.out);
+        EXPECT_EQ(triangles["open_edges"], 0);
+        EXPECT_LE(triangles["error_bound"].get<double>() + triangles["wall_bound"].get<double>(), 0.02);
+        EXPECT_LE(triangles["wall_bound"].get<double>(), 0.01) << "triangles have the other half";
+        const double length =
+            SolidJson::parse(run({"length", along, "--json"}).out)["objects"][0]["value"].get<double>();
+        const double expected = 3 * std::numbers::pi * length;
+        // The whole boundary, 6 pi times the length and two ends, moved by the tolerance.
+        const double most = 0.02 * (6 * std::numbers::pi * length + 6 * std::numbers::pi) * 1.1;
+        EXPECT_NEAR(volume_of_stl(content(path("pipe.stl"))), expected, most);
+    }
+    EXPECT_EQ(run({"sweep", ring, "--rail", "rail.json", "--translate", "--solid"}).code, 2);
+    EXPECT_EQ(run({"sweep", ring, "--rail", "rail.json", "--solid"}).code, 2) << "without a tolerance";
+    EXPECT_EQ(
+        run({"sweep", ring, "--rail", "rail.json", "--tolerance", "0.1", "--solid", "-o", "a.bpt"}).code, 2);
+    const Ran tight =
+        run({"sweep", ring, "--rail", rail("[[0,0,0],[0,0,2],[2,0,2]]"), "--tolerance", "0.1", "--solid"});
+    EXPECT_EQ(tight.code, 3) << "walls fold";
+    const Ran open = run({"sweep", file("region.json", kRegion), "--object", "open", "--rail", "rail.json",
+                          "--tolerance", "0.1", "--solid"});
+    EXPECT_EQ(open.code, 1);
+    EXPECT_NE(open.err.find("no closed plane curve"), open.err.npos) << open.err;
 }
 
 TEST_F(SolidProgram, are_written_to_every_format_that_holds_models) {

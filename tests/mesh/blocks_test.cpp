@@ -169,7 +169,7 @@ TEST(Blocks, of_steep_hills_do_without_feet) {
                                                        {.tolerance = tolerance}, 1'000'000, {true, true}));
             for (const auto& b : tree.blocks()) leaves += b.first_part < 0;
             const Judge judge(tree, surface, {boundary.uv.front(), {{6, 6}}}, tolerance);
-            const auto blocks = mesh_blocks(tree, judge, tolerance);
+            const auto blocks = mesh_blocks(tree, judge, tolerance, true);
             ASSERT_EQ(blocks.plain.size(), std::size_t(blocks.on_outline));
             for (std::size_t i = 0; i < blocks.plain.size(); ++i) {
                 plain += blocks.plain[i];
@@ -179,7 +179,7 @@ TEST(Blocks, of_steep_hills_do_without_feet) {
             // Around a place to avoid there are none, and what they had are corners.
             const auto& some = blocks.triangles[blocks.triangles.size() / 2];
             const Vec<2> place = blocks.points[std::size_t(some[0])];
-            const auto less = mesh_blocks(tree, judge, tolerance, std::vector<Vec<2>>{place});
+            const auto less = mesh_blocks(tree, judge, tolerance, false, std::vector<Vec<2>>{place});
             EXPECT_LT(less.triangles.size(), blocks.triangles.size());
             EXPECT_GT(less.corners.size(), blocks.corners.size());
             for (const auto& p : less.points) EXPECT_NE(p, place);

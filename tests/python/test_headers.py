@@ -28,7 +28,7 @@ HEADER_EXCEPTIONS = {
     "query/hull_search": CPP, "query/pair_search": CPP, "spline/chain": CPP, "spline/derivative_bounds": CPP,
     "spline/jet": CPP, "io/json": CPP, "io/colour_bar": FIGURE, "io/figure": FIGURE, "io/paper": FIGURE,
     "io/exchange": "read() calls it",
-    "gpu/surfaces": "of programs that draw with OpenGL", "intersect/curve_part": CPP, "make/image_curve": CPP,
+    "intersect/curve_part": CPP, "make/image_curve": CPP,
     "model/spline_faces": CPP, "path/path_data": CPP,
 }
 # Headers that come with others that are included.

@@ -47,6 +47,11 @@ try:
     OBJECTS.append(ff.Font("DejaVu Sans"))
 except (ff.UnavailableError, ff.NoAnswerError):
     pass
+try:
+    OBJECTS.append(ff.SurfaceBuffers(SOLID, 0.01, [(ff.TriangularPatch([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), "#ff0000")]))
+    OBJECTS += [ff.SurfaceRenderer(OBJECTS[-1]), ff.SurfaceEvaluator(BALL)]
+except ff.UnavailableError:
+    pass
 
 
 # Every class of the package, and objects of those that are made of fields: an example of what each field may be.
@@ -123,7 +128,8 @@ def test_a_font_says_where_it_is_from(tmp_path):
 def test_every_public_class_is_among_them():
     seen = {type(x) for x in OBJECTS}
     missing = {c.__name__ for c in CLASSES} - {c.__name__ for c in seen}
-    assert missing <= {"Record", "Font"}  # what records have in common; a font where there is one
+    # What records have in common; a font where there is one, and a card or what does its work.
+    assert missing <= {"Record", "Font", "SurfaceBuffers", "SurfaceRenderer", "SurfaceEvaluator"}
     # Nor is there a class that could be met and has no name of its own.
     assert all(hasattr(ff, c.__name__) for c in ff.Record.__subclasses__() + ff.Refusal.__subclasses__())
 

@@ -1,12 +1,13 @@
 """The PEP 517 backend of the package: builds it with CMake and packs it as a wheel. Standard library only.
 
 FREIFORM_PYTHON_PACKAGE names a folder `freiform` that was built already (build/python/freiform); without it the preset
-`python` is built first.
+`python` is built first, configured with what `pip install . -C cmake-args="-D.."` adds.
 """
 import base64
 import hashlib
 import os
 import pathlib
+import shlex
 import subprocess
 import sys
 import sysconfig
@@ -32,19 +33,21 @@ def _tag():
     return f"{version}-{version}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
 
 
-def _package():
+def _package(settings):
     given = os.environ.get("FREIFORM_PYTHON_PACKAGE")
     if given:
         return pathlib.Path(given)
     python = os.path.realpath(sys.executable)  # not that of an isolated environment, which has no NumPy
-    subprocess.run(["cmake", "--preset", "python", f"-DPython_EXECUTABLE={python}", "--log-level=WARNING"], cwd=ROOT, check=True,
-                   stdout=sys.stderr)
+    more = (settings or {}).get("cmake-args", [])  # a list where it is given more than once
+    more = [word for text in ([more] if isinstance(more, str) else more) for word in shlex.split(text)]
+    subprocess.run(["cmake", "--preset", "python", f"-DPython_EXECUTABLE={python}", "--log-level=WARNING", *more], cwd=ROOT,
+                   check=True, stdout=sys.stderr)
     subprocess.run(["cmake", "--build", "--preset", "python"], cwd=ROOT, check=True, stdout=sys.stderr)
     return ROOT / "build" / "python" / "freiform"
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    package, tag = _package(), _tag()
+    package, tag = _package(config_settings), _tag()
     files = {f"freiform/{p.name}": p.read_bytes() for p in sorted(package.iterdir())
              if p.suffix in (".py", ".pyi", ".so", ".typed")}
     files[f"{INFO}/METADATA"] = METADATA.encode()

@@ -18,6 +18,7 @@ from ._each import *
 from ._files import *
 from ._fit import *
 from ._font import *
+from ._gpu import *
 from ._make import *
 from ._meshes import *
 from ._models import *
@@ -29,11 +30,11 @@ from ._refusals import *
 from ._triangles import *
 from ._version import __version__
 
-from . import (_animate, _base, _basis, _colour, _each, _files, _fit, _font, _make, _meshes, _models, _paths, _patches, _queries,
+from . import (_animate, _base, _basis, _colour, _each, _files, _fit, _font, _gpu, _make, _meshes, _models, _paths, _patches, _queries,
                _records, _refusals, _triangles)
 
 __all__ = ["__version__", "set_max_threads", "max_threads", "instruction_set", "evaluate_grids"]
-for _module in (_animate, _base, _basis, _colour, _each, _files, _fit, _font, _make, _meshes, _models, _paths, _patches, _queries,
+for _module in (_animate, _base, _basis, _colour, _each, _files, _fit, _font, _gpu, _make, _meshes, _models, _paths, _patches, _queries,
                 _records, _refusals, _triangles):
     __all__ += _module.__all__
 

@@ -17,6 +17,7 @@ void bind_evaluate(py::module_&);
 void bind_files(py::module_&);
 void bind_fit(py::module_&);
 void bind_font(py::module_&);
+void bind_gpu(py::module_&);
 void bind_intersect(py::module_&);
 void bind_joints(py::module_&);
 void bind_make_curves(py::module_&);
@@ -51,6 +52,6 @@ PYBIND11_MODULE(_core, m) {
                        bind_named,         bind_make_surfaces,   bind_joints,   bind_fit,
                        bind_curve_queries, bind_surface_queries, bind_nearest,  bind_intersect,
                        bind_meshes,        bind_models,          bind_files,    bind_draw,
-                       bind_colour,        bind_animate,         bind_font})
+                       bind_colour,        bind_animate,         bind_font,     bind_gpu})
         bind(m);
 }

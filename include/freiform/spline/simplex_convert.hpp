@@ -32,6 +32,14 @@ Result<Parts<Surface<P>, 3>> to_three_surfaces(const SimplexPatch<2, P>& s,
 template <class P>
 Result<Parts<SimplexPatch<2, P>, 2>> to_triangles(const Surface<P, Bernstein>& s);
 
+// The same patch with weights 1, exact.
+template <int D>
+SimplexPatch<2, Hom<D>> to_rational(const SimplexPatch<2, Vec<D>>& s) {
+    std::vector<Hom<D>> net;
+    for (const Vec<D>& x : s.coefficients()) net.push_back(weighted(x, 1.0));
+    return SimplexPatch<2, Hom<D>>::trusted(s.degree(), std::move(net));
+}
+
 // restrict_to for corners in barycentric coordinates, which add up to 1 as far as doubles do.
 template <class P>
 SimplexPatch<2, P> restrict_to(const SimplexPatch<2, P>& s,

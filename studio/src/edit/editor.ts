@@ -40,6 +40,10 @@ export class Editor implements Shown {
     private readonly again = h("button", { title: "Ctrl+Shift+Z", onclick: () => { this.history.redo(); } }, say(t("Wiederholen", "Redo")));
     private readonly grips = h("button", { title: "T", onclick: () => { this.hands.gizmo = !this.hands.gizmo; this.refresh(); } }, say(t("Gizmo", "Gizmo")));
     private readonly snap = h("input", { type: "checkbox", checked: true });
+    /** What is touched is chosen beside what is chosen already: Shift for hands without a keyboard. */
+    private readonly several = h("button", { "aria-pressed": "false", title: "Shift", onclick: () => {
+        this.several.setAttribute("aria-pressed", String(!this.more));
+    } }, say(t("Mehrere", "Several")));
     private view: View;
     private readonly hands: Hands;
     private draft: number[][] | undefined;
@@ -52,7 +56,7 @@ export class Editor implements Shown {
         this.history = this.fresh(kFirst);
         this.view = this.viewFor(!flat(this.document));
         this.panel = new Panel(this);
-        this.hands = new Hands({ history: () => this.history, selection: this.selection, snapping: () => this.snap.checked,
+        this.hands = new Hands({ history: () => this.history, selection: this.selection, snapping: () => this.snap.checked, more: () => this.more,
             chose: () => { this.panel.show(); }, settled: () => { this.refresh(); } });
         this.stage.append(h("h1", { class: "unseen" }, say(t("Bearbeiten", "Edit"))), this.bar(), this.view.element, this.status);
         this.element = h("div", { style: "display:contents" }, this.stage, this.panel.element);
@@ -200,6 +204,8 @@ export class Editor implements Shown {
 
     // The view --------------------------------------------------------------------------------------------------------
 
+    private get more(): boolean { return this.several.getAttribute("aria-pressed") === "true"; }
+
     private viewFor(space: boolean): View {
         if (space) {
             const view = new Space(say(t("Zeichnung im Raum", "Drawing in space")));
@@ -208,7 +214,7 @@ export class Editor implements Shown {
         }
         const plane = new Plane({ label: say(t("Zeichnung", "Drawing")) });
         plane.onGround = (at, event) => { this.ground(at, event); };
-        plane.onGroundDrag = (event) => event.shiftKey && !this.draft && this.frame(plane, event);
+        plane.onGroundDrag = (event) => (event.shiftKey || this.more) && !this.draft && this.frame(plane, event);
         return plane;
     }
 
@@ -273,7 +279,7 @@ export class Editor implements Shown {
             if (!best || far < best.far) best = { i, far };
         }); });
         const reach = this.view instanceof Plane ? 12 * this.view.unit : 0;
-        if (best && best.far < reach) { this.choose(best.i, event.shiftKey); return; }
+        if (best && best.far < reach) { this.choose(best.i, event.shiftKey || this.more); return; }
         this.selection.clear();
         this.refresh();
     }
@@ -353,7 +359,7 @@ export class Editor implements Shown {
         return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Werkzeuge", "Tools")) },
             h("button", { onclick: () => { this.attempt(say(t("Neu", "new")), () => ({ objects: [] })); } }, say(t("Neu", "New"))), opener((opened) => { this.take(opened); }),
             ...exportButtons(() => this.json(), () => this.view, () => 0.001 * extent(this.document)), h("span", { class: "sep" }), this.back, this.again, h("span", { class: "sep" }), this.pen,
-            h("button", { title: "Enter", onclick: () => { this.finish(); } }, say(t("Fertig", "Finish"))), h("label", { class: "check" }, this.snap, say(t("Einrasten", "Snap"))), this.grips,
+            h("button", { title: "Enter", onclick: () => { this.finish(); } }, say(t("Fertig", "Finish"))), h("label", { class: "check" }, this.snap, say(t("Einrasten", "Snap"))), this.several, this.grips,
             h("button", { title: "F", onclick: () => { this.fit(); } }, say(t("Alles", "Fit"))), h("button", { title: "Del", onclick: () => { this.remove(); } }, say(t("Löschen", "Delete"))),
             h("button", { onclick: () => { this.inspect(JSON.stringify(this.json())); } }, say(t("Untersuchen", "Inspect"))), h("button", { title: "?", "aria-label": say(t("Tasten", "Keys")), onclick: showKeys }, "?"));
     }

@@ -16,6 +16,8 @@ export interface Hosted {
     readonly history: () => History<Document>;
     readonly selection: Selection;
     readonly snapping: () => boolean;
+    /** Whether points are chosen beside those that are, as with Shift. */
+    readonly more: () => boolean;
     /** Other points are chosen. */
     readonly chose: () => void;
     /** A movement has ended. */
@@ -72,7 +74,7 @@ export class Hands {
             label: `${this.document.objects[place.object]?.name ?? place.object + 1}, ${say(t("Punkt", "point"))} ${place.point}`,
             at: () => this.at(place), chosen: () => selection.has(place), colour: selection.objects.has(place.object) ? "hot" : "control",
             onPress: (event) => {
-                if (event.shiftKey) selection.toggle(place);
+                if (event.shiftKey || this.host.more()) selection.toggle(place);
                 else if (!selection.has(place)) selection.only(place);
                 this.dragged = place;
                 chose();
@@ -80,7 +82,7 @@ export class Hands {
             onKey: (event) => {
                 if (event.key !== "Enter" && event.key !== " ") return;
                 event.preventDefault();
-                if (event.shiftKey) selection.toggle(place);
+                if (event.shiftKey || this.host.more()) selection.toggle(place);
                 else selection.only(place);
                 chose();
             },

@@ -387,6 +387,51 @@ export const cases = [
         await settle(page);
         assert.notEqual(await seen(page), before);
     }, { context: { viewport: { width: 400, height: 800 }, hasTouch: true, isMobile: true } }],
+    ["edit: by finger the gizmo moves one point and turns several", async ({ page, url, context, write, picture }) => {
+        const net = [0, 1, 2].map((i) => [0, 1, 2].map((j) => [i, j, i === 1 && j === 1 ? 1.5 : 0]));
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("net.json", JSON.stringify({ freiform: 1, objects: [{ type: "surface", name: "net", points: net }] })));
+        await page.waitForSelector(".view.space canvas");
+        await page.getByLabel("Snap").uncheck();
+        await page.locator(".view.space").scrollIntoViewIfNeeded();
+        await settle(page);
+        const touch = await context.newCDPSession(page);
+        const middle = async (locator) => { const box = await locator.locator(":nth-child(2)").first().boundingBox(); return [box.x + box.width / 2, box.y + box.height / 2]; };
+        const finger = async (locator, dx, dy) => {
+            const [x, y] = await middle(locator), at = (k) => [{ x: x + k * dx, y: y + k * dy }];
+            await touch.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+            for (let i = 1; i <= 4 && (dx !== 0 || dy !== 0); ++i) await touch.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(i / 4) });
+            await touch.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+            await settle(page);
+        };
+        const point = (i) => page.locator(`.handles:not(.parts) .handle[aria-label$='point ${i}']`), parts = page.locator(".parts .handle");
+        const part = (name) => page.locator(`.parts .handle[aria-label="${name}"]`);
+        const now = async () => (await points(page)).objects[0].points.flat();
+
+        await finger(point(4), 0, 0);
+        assert.equal(await parts.count(), 3, "one point is moved");
+        const first = await now(), [cx, cy] = await (async () => middle(point(4)))(), [zx, zy] = await middle(part("move, axis z"));
+        const far = Math.hypot(zx - cx, zy - cy);
+        await finger(part("move, axis z"), (50 * (zx - cx)) / far, (50 * (zy - cy)) / far);
+        const lifted = await now();
+        assert.ok(lifted[4][2] > first[4][2] + 0.05, `from ${first[4]} to ${lifted[4]}`);
+        lifted.forEach((p, i) => { if (i !== 4) assert.deepEqual(p, first[i]); else assert.deepEqual(p.slice(0, 2), first[i].slice(0, 2)); });
+
+        await page.getByRole("button", { name: "Several" }).tap();
+        await finger(point(0), 0, 0);
+        await finger(point(8), 0, 0);
+        assert.equal(await parts.count(), 11, "three are turned and scaled, too");
+        await picture("gizmo-touch");
+        await finger(part("turn, axis z"), 30, -10);
+        const turned = await now(), apart = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
+        assert.ok(apart(turned[0], lifted[0]) > 0.01, "turned");
+        for (const [a, b] of [[0, 4], [4, 8], [0, 8]]) assert.ok(Math.abs(apart(turned[a], turned[b]) - apart(lifted[a], lifted[b])) < 1e-9);
+        for (const i of [1, 2, 3, 5, 6, 7]) assert.deepEqual(turned[i], lifted[i], "not chosen");
+        await finger(point(8), 0, 0);
+        await finger(point(0), 0, 0);
+        assert.equal(await parts.count(), 3, "a second touch lets go");
+        assert.equal(await refused(page), "");
+    }, { context: { viewport: { width: 820, height: 1100 }, hasTouch: true, isMobile: true } }],
     ["inspect: the teapot within its tolerance, looks, colours, section, nearest", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         const count = () => page.evaluate(() => Number(document.querySelector(".view.space").dataset.triangles ?? 0));
