@@ -16,7 +16,7 @@ else
     root=$work/source
     mkdir "$root"
     git ls-files -z | tar -c --null -T - | tar -x -C "$root"
-    if [ -n "${CMAKE_ARGS:-}" ]; then settings=(-C "cmake-args=$CMAKE_ARGS"); fi
+    if [ -n "${CMAKE_ARGS:-}" ]; then settings=(--config-settings "cmake-args=$CMAKE_ARGS"); fi
 fi
 # NumPy is the system's: there is no network to get it from.
 "$python" -m venv --system-site-packages "$work/venv"

@@ -166,8 +166,8 @@ Result<T> read_entity(json::Value v, std::string_view what, const std::string_vi
 }
 
 constexpr std::string_view kVertexFields[] = {"point", "tolerance"};
-constexpr std::string_view kEdgeFields[] = {"curve", "degenerate", "range", "start",
-                                            "end",   "tolerance",  "name"};
+constexpr std::string_view kEdgeFields[] = {"curve",     "degenerate", "range",  "start", "end",
+                                            "tolerance", "name",       "colour", "layers"};
 constexpr std::string_view kCoedgeFields[] = {"edge", "reversed", "curve"};
 constexpr std::string_view kFaceFields[] = {"surface", "reversed", "loops", "tolerance",
                                             "name",    "colour",   "layers"};
@@ -191,6 +191,8 @@ Result<Vertex> read_vertex(json::Value v) {
     });
 }
 
+Result<std::vector<int>> read_indices(json::Value v) { return read_list(v, read_int); }
+
 Result<Edge> read_edge(json::Value v) {
     return read_entity<Edge>(v, "an edge", kEdgeFields, [](Into& in, const Fields& f, Edge& x) {
         Vec<2> range{{0, 1}};
@@ -200,7 +202,9 @@ Result<Edge> read_edge(json::Value v) {
             .needed(f, "start", x.start, read_int)
             .needed(f, "end", x.end, read_int)
             .field(f, "tolerance", x.tolerance, read_number)
-            .field(f, "name", x.name, read_string);
+            .field(f, "name", x.name, read_string)
+            .field(f, "colour", x.colour, read_colour)
+            .field(f, "layers", x.layers, read_indices);
         x.range = {range[0], range[1]};
     });
 }
@@ -223,8 +227,6 @@ Result<Loop> read_loop(json::Value v) {
     if (!coedges) return std::unexpected(coedges.error());
     return Loop{std::move(*coedges)};
 }
-
-Result<std::vector<int>> read_indices(json::Value v) { return read_list(v, read_int); }
 
 Result<Face> read_face(json::Value v) {
     return read_entity<Face>(v, "a face", kFaceFields, [](Into& in, const Fields& f, Face& x) {

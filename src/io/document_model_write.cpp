@@ -76,6 +76,8 @@ void write_entity(json::Writer& w, const Edge& e) {
     if (e.degenerate) w.field("degenerate", true);
     w.key("range").array(std::array{e.range.lo, e.range.hi}).field("start", e.start).field("end", e.end);
     write_optional(w, false, e.tolerance, e.name);
+    write_optional(w, e.colour);
+    write_layers(w, e.layers);
 }
 void write_entity(json::Writer& w, const Face& f) {
     w.key("surface");

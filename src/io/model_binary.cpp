@@ -20,7 +20,7 @@ namespace freiform {
 namespace {
 
 constexpr std::string_view kMagic{"FFMODEL\0", 8};
-constexpr std::uint32_t kFormatVersion = 3;
+constexpr std::uint32_t kFormatVersion = 4;
 
 struct Writer {
     static constexpr bool kReading = false;
@@ -313,7 +313,8 @@ void describe(A& a, Vertex& v) {
 }
 template <class A>
 void describe(A& a, Edge& e) {
-    describe_parts(a, e.curve, e.degenerate, e.range, e.start, e.end, e.tolerance, e.name);
+    describe_parts(a, e.curve, e.degenerate, e.range, e.start, e.end, e.tolerance, e.name, e.colour,
+                   e.layers);
 }
 template <class A>
 void describe(A& a, Coedge& c) {

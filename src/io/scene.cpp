@@ -37,10 +37,11 @@ void append(Model& to, Model from) {
     for (Body& b : from.bodies)
         for (int& s : b.shells) s += shells;
     const std::vector<int> layers = joined_layers(to, std::move(from.layers));
-    for (Face& f : from.faces)
-        for (int& l : f.layers) l = layers[std::size_t(l)];
-    for (Body& b : from.bodies)
-        for (int& l : b.layers) l = layers[std::size_t(l)];
+    const auto number = [&](auto& things) {
+        for (auto& x : things)
+            for (int& l : x.layers) l = layers[std::size_t(l)];
+    };
+    number(from.edges), number(from.faces), number(from.bodies);
     const auto move_all = [](auto& a, auto& b) {
         a.insert(a.end(), std::make_move_iterator(b.begin()), std::make_move_iterator(b.end()));
     };

@@ -237,7 +237,7 @@ Result<void> ShapeReader::close_gaps(std::vector<Segment>& row, double joint, do
 }
 
 Result<std::vector<ShapeReader::EdgeMade>> ShapeReader::composite_edge(const Fields& f, std::uint32_t i,
-                                                                       std::uint32_t composite,
+                                                                       bool forward, std::uint32_t composite,
                                                                        const std::array<int, 2>& vertices) {
     auto row = segments_of(composite);
     if (!row) return std::unexpected(row.error());
@@ -250,7 +250,7 @@ Result<std::vector<ShapeReader::EdgeMade>> ShapeReader::composite_edge(const Fie
     const auto between = [](const Vec<3>& p, const Vec<3>& q) { return norm(p - q); };
     const std::array<Vec<3>, 2> at{out_.model.vertices[std::size_t(vertices[0])].point,
                                    out_.model.vertices[std::size_t(vertices[1])].point};
-    if (!f.flag(4)) turn_around();
+    if (!forward) turn_around();
     const std::size_t repairs = out_.model.repairs.size();
     if (auto ok = close_gaps(*row, joint, repair_limit(size)); !ok) return std::unexpected(ok.error());
     const auto meets = [&](bool last, int vertex) {

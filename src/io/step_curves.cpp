@@ -251,7 +251,8 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
 
 Result<BoundedCurve> GeometryReader::wrapped_curve(std::uint32_t wrapping, BoundedCurve c) const {
     if (f_.is(wrapping, Type::TRIMMED_CURVE)) return trimmed(wrapping, std::move(c));
-    if (f_.is(wrapping, Type::OFFSET_CURVE_3D)) return offset_of(wrapping, std::move(c));
+    for (const Type t : {Type::OFFSET_CURVE_2D, Type::OFFSET_CURVE_3D})
+        if (f_.is(wrapping, t)) return offset_of(wrapping, t, std::move(c));
     if (!f_.is(wrapping, Type::CURVE_REPLICA)) return c;
     const auto f = Fields::of(f_, wrapping, Type::CURVE_REPLICA, 3);
     if (!f) return std::unexpected(f.error());
@@ -273,8 +274,9 @@ Result<BoundedCurve> GeometryReader::unwrapped_curve(std::uint32_t i) {
         if (wrappings.size() > kMostWrappings)
             return refuse(RefusalKind::invalid, f_.label(i), "is a curve that refers to itself, or too deep");
         int field = -1;
-        for (const Type t : {Type::TRIMMED_CURVE, Type::SURFACE_CURVE, Type::SEAM_CURVE,
-                             Type::INTERSECTION_CURVE, Type::CURVE_REPLICA, Type::OFFSET_CURVE_3D})
+        for (const Type t :
+             {Type::TRIMMED_CURVE, Type::SURFACE_CURVE, Type::SEAM_CURVE, Type::INTERSECTION_CURVE,
+              Type::CURVE_REPLICA, Type::OFFSET_CURVE_2D, Type::OFFSET_CURVE_3D})
             if (f_.is(at, t) && field < 0) {
                 const Fields f(f_, at, f_.part(at, t));
                 field = f_.type(at) == Type::unknown ? 0 : 1;

@@ -87,10 +87,23 @@ bool ShapeReader::is_tiny(const CurveGeometry<3>& c, Interval on) const {
 
 Result<std::span<const ShapeReader::EdgeMade>> ShapeReader::edge(std::uint32_t i) {
     auto known = edges_.find(i);
-    if (known == edges_.end()) known = edges_.emplace(i, make_edge(i)).first;
+    const bool fresh = known == edges_.end();
+    if (fresh) known = edges_.emplace(i, make_edge(i)).first;
     if (!known->second) return std::unexpected(known->second.error());
-    if (const auto row = rows_.find(i); row != rows_.end()) return std::span<const EdgeMade>(row->second);
-    return std::span<const EdgeMade>(&*known->second, 1);
+    const auto row = rows_.find(i);
+    const std::span<const EdgeMade> made =
+        row != rows_.end() ? std::span<const EdgeMade>(row->second) : std::span(&*known->second, 1);
+    if (fresh)
+        for (const EdgeMade& m : made)
+            if (m.edge >= 0) style_edge(out_.model.edges[std::size_t(m.edge)], i);
+    return made;
+}
+
+// As the item is styled, where the edge has no colour yet.
+void ShapeReader::style_edge(Edge& e, std::uint32_t item) const {
+    if (const auto c = styles_.curve_colours.find(item); c != styles_.curve_colours.end() && !e.colour)
+        e.colour = c->second;
+    styles_.add_layers(e.layers, item);
 }
 
 void ShapeReader::tell_ends(std::uint32_t edge, const std::array<int, 2>& vertices, double off) {
@@ -104,9 +117,31 @@ void ShapeReader::tell_ends(std::uint32_t edge, const std::array<int, 2>& vertic
     }
 }
 
+// What a SUBEDGE or SUBFACE is a part of, through parts of parts; the item itself if it is no part.
+Result<std::uint32_t> ShapeReader::whole_of(std::uint32_t i, Type part, int parent) const {
+    constexpr int kDeepest = 64;
+    std::uint32_t whole = i;
+    for (int steps = 0; f_.is(whole, part); ++steps) {
+        const Fields f(f_, whole, f_.part(whole, part));
+        if (steps == kDeepest)
+            return refuse(
+                RefusalKind::invalid, f_.label(i),
+                text("is a part of a part of a part, more than ", kDeepest, " times, or of itself"));
+        const auto of = f.reference(parent, "what it is a part of");
+        if (!of) return std::unexpected(of.error());
+        whole = *of;
+    }
+    return whole;
+}
+
 Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
-    const auto f = Fields::of(f_, i, Type::EDGE_CURVE, 5);
+    const auto whole_edge = whole_of(i, Type::SUBEDGE, 3);
+    if (!whole_edge) return std::unexpected(whole_edge.error());
+    const bool is_part = *whole_edge != i;
+    const auto f = Fields::of(f_, i, is_part ? Type::SUBEDGE : Type::EDGE_CURVE, is_part ? 4 : 5);
     if (!f) return std::unexpected(f.error());
+    const auto of = Fields::of(f_, *whole_edge, Type::EDGE_CURVE, 5);
+    if (!of) return std::unexpected(of.error());
     std::array<int, 2> end{};
     for (int k = 0; k < 2; ++k) {
         const auto at = f->reference(1 + k, "vertex");
@@ -115,10 +150,10 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
         if (!v) return std::unexpected(v.error());
         end[std::size_t(k)] = *v;
     }
-    const auto at = f->reference(3, "curve");
+    const auto at = of->reference(3, "curve");
     if (!at) return std::unexpected(at.error());
     if (const std::uint32_t composite = composite_in(f_, *at); composite != kMissing) {
-        auto row = composite_edge(*f, i, composite, end);
+        auto row = composite_edge(*f, i, of->flag(4), composite, end);
         if (!row) return std::unexpected(row.error());
         rows_.emplace(i, std::move(*row));
         return EdgeMade{};
@@ -129,7 +164,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
     if (!c) return std::unexpected(c.error());
     EdgeMade made;
     made.curve = *at;
-    made.flipped = f->flag(4) == c->reversed;
+    made.flipped = of->flag(4) == c->reversed;
     if (made.flipped) std::swap(end[0], end[1]);
     const Vec<3> a = out_.model.vertices[std::size_t(end[0])].point,
                  b = out_.model.vertices[std::size_t(end[1])].point;

@@ -272,16 +272,19 @@ std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& s
                       best, SurfaceKind::sphere};
 }
 
-Result<Face> ShapeReader::make_face(std::uint32_t i, Type type) {
-    const auto f = Fields::of(f_, i, type, 4);
+// A face, or a part of one: bounds of its own on the surface of another.
+Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type type) {
+    const auto f = whole == i ? Fields::of(f_, i, type, 4) : Fields::of(f_, i, Type::SUBFACE, 3);
     if (!f) return std::unexpected(f.error());
-    const auto on = f->reference(2, "surface");
+    const auto of = Fields::of(f_, whole, type, 4);
+    if (!of) return std::unexpected(of.error());
+    const auto on = of->reference(2, "surface");
     if (!on) return std::unexpected(on.error());
     const auto bounds = f->references(1, "bounds");
     if (!bounds) return std::unexpected(bounds.error());
     const auto s = surface(*on);
     if (!s) return std::unexpected(s.error());
-    const bool same = f->flag(3);
+    const bool same = of->flag(3);
     std::vector<Vec<3>> on_edges;
     const auto size = size_of(*f, on_edges);
     if (!size) return std::unexpected(size.error());
@@ -367,10 +370,13 @@ Result<Face> ShapeReader::bare_face(std::uint32_t i) {
 
 int ShapeReader::face(std::uint32_t i) {
     if (const auto known = faces_.find(i); known != faces_.end()) return known->second;
+    const auto whole = whole_of(i, Type::SUBFACE, 2);
     Type type = Type::unknown;
     for (const Type t : {Type::ADVANCED_FACE, Type::FACE_SURFACE})
-        if (f_.is(i, t)) type = t;
-    auto made = type != Type::unknown ? make_face(i, type) : bare_face(i);
+        if (whole && f_.is(*whole, t)) type = t;
+    auto made = !whole                  ? std::unexpected(whole.error())
+                : type != Type::unknown ? make_face(i, *whole, type)
+                                        : bare_face(i);
     int at = -1;
     if (!made) {
         refuse_item(i, made.error());

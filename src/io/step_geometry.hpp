@@ -73,7 +73,7 @@ private:
     Result<BoundedCurve> unwrapped_curve(std::uint32_t i);
     Result<BoundedCurve> wrapped_curve(std::uint32_t wrapping, BoundedCurve basis) const;
     Result<BoundedCurve> trimmed(std::uint32_t i, BoundedCurve basis) const;
-    Result<BoundedCurve> offset_of(std::uint32_t i, BoundedCurve basis) const;
+    Result<BoundedCurve> offset_of(std::uint32_t i, Type type, BoundedCurve basis) const;
     Result<SurfaceGeometry> basic_surface(std::uint32_t i);
     Result<SurfaceGeometry> elementary(std::uint32_t i, Type type, double offset) const;
     Result<SurfaceGeometry> spline_surface(std::uint32_t i) const;

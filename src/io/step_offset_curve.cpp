@@ -10,7 +10,10 @@
 //
 // Why not offsets of offsets of splines? The distance of the first spline says nothing about its slope.
 //
-// References: ISO 10303-42:2014, 4.4 (offset_curve_3d).
+// Curves of parameters are offset in the plane, V = z; a spline near one would be off by a distance of
+// parameters, which says nothing in space.
+//
+// References: ISO 10303-42:2014, 4.4 (offset_curve_2d, offset_curve_3d).
 #include "step_geometry.hpp"
 #include "step_lift.hpp"
 
@@ -44,15 +47,19 @@ std::optional<CurveGeometry<3>> simple_offset(const CurveGeometry<3>& c, double 
 
 }  // namespace
 
-Result<BoundedCurve> GeometryReader::offset_of(std::uint32_t i, BoundedCurve basis) const {
-    const auto f = Fields::of(f_, i, Type::OFFSET_CURVE_3D, 4);
+Result<BoundedCurve> GeometryReader::offset_of(std::uint32_t i, Type type, BoundedCurve basis) const {
+    const bool flat = type == Type::OFFSET_CURVE_2D;
+    const auto f = Fields::of(f_, i, type, flat ? 3 : 4);
     if (!f) return std::unexpected(f.error());
-    const int first = f->size() > 4 ? 2 : 1;  // a part of a complex instance has no name
+    const int first = f->size() > (flat ? 3 : 4) ? 2 : 1;  // a part of a complex instance has no name
     const auto distance = f->number(first, "distance");
     if (!distance) return std::unexpected(distance.error());
-    const auto along = f->reference(first + 2, "reference direction");
-    if (!along) return std::unexpected(along.error());
-    const auto v = direction(*along);
+    Result<Vec<3>> v = Vec<3>{{0, 0, 1}};
+    if (!flat) {
+        const auto along = f->reference(first + 2, "reference direction");
+        if (!along) return std::unexpected(along.error());
+        v = direction(*along);
+    }
     if (!v) return std::unexpected(v.error());
     if (*distance == 0) return basis;
     const double d = basis.reversed ? -*distance : *distance;
@@ -66,6 +73,9 @@ Result<BoundedCurve> GeometryReader::offset_of(std::uint32_t i, BoundedCurve bas
         basis.curve = std::move(*simple);
         return basis;
     }
+    if (flat)
+        return f->refused("is the offset of a curve of parameters that is no line and no circle",
+                          RefusalKind::unsupported);
     const Interval on = basis.range.value_or(domain(basis.curve)[0]);
     if (!std::isfinite(on.length()) || !(on.lo < on.hi))
         return f->refused("is the offset of a curve without end", RefusalKind::unsupported);

@@ -75,6 +75,7 @@ namespace freiform::step {
     X(MANIFOLD_SOLID_BREP)                             \
     X(MAPPED_ITEM)                                     \
     X(NEXT_ASSEMBLY_USAGE_OCCURRENCE)                  \
+    X(OFFSET_CURVE_2D)                                 \
     X(OFFSET_CURVE_3D)                                 \
     X(OFFSET_SURFACE)                                  \
     X(OPEN_SHELL)                                      \
@@ -98,6 +99,7 @@ namespace freiform::step {
     X(QUASI_UNIFORM_SURFACE)                           \
     X(RATIONAL_B_SPLINE_CURVE)                         \
     X(RATIONAL_B_SPLINE_SURFACE)                       \
+    X(RECTANGULAR_COMPOSITE_SURFACE)                   \
     X(RECTANGULAR_TRIMMED_SURFACE)                     \
     X(REPARAMETRISED_COMPOSITE_CURVE_SEGMENT)          \
     X(REPOSITIONED_TESSELLATED_ITEM)                   \
@@ -112,9 +114,12 @@ namespace freiform::step {
     X(SOLID_REPLICA)                                   \
     X(SPHERICAL_SURFACE)                               \
     X(STYLED_ITEM)                                     \
+    X(SUBEDGE)                                         \
+    X(SUBFACE)                                         \
     X(SURFACE_CURVE)                                   \
     X(SURFACE_OF_LINEAR_EXTRUSION)                     \
     X(SURFACE_OF_REVOLUTION)                           \
+    X(SURFACE_PATCH)                                   \
     X(SURFACE_REPLICA)                                 \
     X(TESSELLATED_GEOMETRIC_SET)                       \
     X(TESSELLATED_SHELL)                               \

@@ -160,7 +160,7 @@ void ShapeReader::sheet(std::uint32_t item, std::uint32_t of, bool closed) {
 }
 
 void ShapeReader::free_curve(std::uint32_t item) {
-    if (f_.is(item, Type::EDGE_CURVE)) {
+    if (f_.is(item, Type::EDGE_CURVE) || f_.is(item, Type::SUBEDGE)) {
         if (const auto made = edge(item); !made) refuse_item(item, made.error());
         return;
     }
@@ -215,6 +215,25 @@ void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
                     Type::SHELL_BASED_WIREFRAME_MODEL, Type::CONNECTED_EDGE_SET, Type::WIRE_SHELL,
                     Type::EDGE_LOOP})) {
             descend(1);
+        } else if (f_.is(i, Type::RECTANGULAR_COMPOSITE_SURFACE)) {
+            // Its patches are surfaces one beside the other.
+            const Fields f(f_, i, f_.part(i, Type::RECTANGULAR_COMPOSITE_SURFACE));
+            const auto rows = f.rows(f.size() - 1, "segments");
+            if (!rows) return refuse_item(i, rows.error());
+            for (std::size_t r = rows->size(); r-- > 0;) {
+                const auto patches = f.references_at((*rows)[r], "segments");
+                if (!patches) return refuse_item(i, patches.error());
+                if (patches->size() > budget) return void(budget = 0);
+                budget -= patches->size();
+                todo.insert(todo.end(), patches->rbegin(), patches->rend());
+            }
+        } else if (f_.is(i, Type::SURFACE_PATCH)) {
+            const Fields f(f_, i, f_.instances[i].first + 1);
+            const auto at = f.reference(0, "surface");
+            if (at)
+                todo.push_back(*at);
+            else
+                refuse_item(i, at.error());
         } else if (f_.is(i, Type::ORIENTED_EDGE)) {
             const Fields f(f_, i, f_.instances[i].first + 1);
             const auto at = f.reference(3, "edge");
@@ -237,7 +256,10 @@ void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
                 out_.loose.push_back(made);
             }
         } else {
+            const std::size_t before = out_.model.edges.size();
             free_curve(i);
+            for (std::size_t e = before; e < out_.model.edges.size(); ++e)
+                for (const std::uint32_t styled : {i, item}) style_edge(out_.model.edges[e], styled);
         }
     }
 }
@@ -254,7 +276,7 @@ void ShapeReader::add(std::uint32_t item) {
             sheet(item, i, is(Type::SHELL_BASED_SURFACE_MODEL) && f_.is(i, Type::CLOSED_SHELL));
     } else if (is(Type::OPEN_SHELL) || is(Type::CLOSED_SHELL) || is(Type::CONNECTED_FACE_SET)) {
         sheet(item, item, is(Type::CLOSED_SHELL));
-    } else if (is(Type::ADVANCED_FACE) || is(Type::FACE_SURFACE)) {
+    } else if (is(Type::ADVANCED_FACE) || is(Type::FACE_SURFACE) || is(Type::SUBFACE)) {
         if (const int made = face(item); made >= 0) out_.loose.push_back(made);
     } else if (is(Type::GEOMETRIC_SET) || is(Type::GEOMETRIC_CURVE_SET) ||
                is(Type::EDGE_BASED_WIREFRAME_MODEL) || is(Type::SHELL_BASED_WIREFRAME_MODEL)) {

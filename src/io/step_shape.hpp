@@ -18,7 +18,8 @@ inline constexpr std::size_t kMostLayers = 64;
 
 // What a file says about colours and layers of its items.
 struct Styles {
-    std::unordered_map<std::uint32_t, Colour> colours;
+    std::unordered_map<std::uint32_t, Colour> colours;        // as surfaces
+    std::unordered_map<std::uint32_t, Colour> curve_colours;  // as curves
     std::vector<Layer> layers;
     std::unordered_map<std::uint32_t, std::vector<int>> on_layers;  // ascending
 
@@ -84,7 +85,7 @@ private:
     void body_of(std::uint32_t item, std::vector<int> shells, bool solid,
                  const std::vector<std::uint32_t>& made_of);
     int face(std::uint32_t i);
-    Result<Face> make_face(std::uint32_t i, Type type);
+    Result<Face> make_face(std::uint32_t i, std::uint32_t whole, Type type);
     Result<Face> bare_face(std::uint32_t i);
     Result<void> add_boundary_curve(std::uint32_t i, const Chart& chart, LoopBuilder& loops);
     void join_vertices(int a, int b) {
@@ -112,8 +113,8 @@ private:
     std::vector<EdgeMade> row_edges(std::vector<Segment> row, std::array<int, 2> ends,
                                     const std::string& name);
     Result<void> close_gaps(std::vector<Segment>& row, double joint, double limit);
-    Result<std::vector<EdgeMade>> composite_edge(const Fields& f, std::uint32_t i, std::uint32_t composite,
-                                                 const std::array<int, 2>& vertices);
+    Result<std::vector<EdgeMade>> composite_edge(const Fields& f, std::uint32_t i, bool forward,
+                                                 std::uint32_t composite, const std::array<int, 2>& vertices);
     Result<void> free_composite(std::uint32_t composite);
     Result<EdgeMade> straight_edge(int from, int to);
     // step_pcurve.cpp: `ends` are those of the edge, if they are known.
@@ -145,6 +146,8 @@ private:
     void tell_approximated();
     void report(int edge, std::string what, std::optional<double> bound, double estimate);
     std::optional<Colour> colour_of(std::uint32_t i) const;
+    void style_edge(Edge& e, std::uint32_t item) const;
+    Result<std::uint32_t> whole_of(std::uint32_t i, Type part, int parent) const;
 
     const File& f_;
     const Styles& styles_;

@@ -150,9 +150,9 @@ std::optional<Colour> named_colour(std::string_view name) {
     return std::nullopt;
 }
 
-// The colour of a style: the first one on the way down through styles of surfaces. Curves and points have
-// colours of their own, which are passed over.
-std::optional<Colour> colour_of_style(const File& f, std::uint32_t style) {
+// The colour of a style: the first one on the way down through styles of surfaces, or through those of
+// curves. Points have colours of their own, which are passed over.
+std::optional<Colour> colour_of_style(const File& f, std::uint32_t style, bool of_curves) {
     std::vector<std::uint32_t> todo{style};
     for (int steps = 0; !todo.empty() && steps < 64; ++steps) {
         const std::uint32_t i = todo.back();
@@ -170,8 +170,12 @@ std::optional<Colour> colour_of_style(const File& f, std::uint32_t style) {
         }
         if (f.is(i, Type::DRAUGHTING_PRE_DEFINED_COLOUR)) return named_colour(g.string(0));
         const std::string_view name = f.text_of(f.tokens[f.instances[i].first]);
-        if (name.starts_with("CURVE_STYLE") || name.starts_with("POINT_STYLE") ||
-            name.starts_with("SURFACE_STYLE_BOUNDARY") || name.starts_with("SURFACE_STYLE_PARAMETER"))
+        const auto is_any = [&](std::initializer_list<std::string_view> kinds) {
+            return std::ranges::any_of(kinds, [&](std::string_view kind) { return name.starts_with(kind); });
+        };
+        if (name.starts_with("POINT_STYLE") ||
+            (of_curves ? is_any({"SURFACE_", "FILL_AREA_"})
+                       : is_any({"CURVE_STYLE", "SURFACE_STYLE_BOUNDARY", "SURFACE_STYLE_PARAMETER"})))
             continue;
         const Instance& x = f.instances[i];
         std::vector<std::uint32_t> next;
@@ -195,14 +199,14 @@ Styles styles_of(const File& f) {
             const auto styles = g.references(1, "styles");
             const auto item = g.reference(2, "item");
             if (!styles || !item) continue;
-            for (const std::uint32_t s : *styles)
-                if (const auto c = colour_of_style(f, s)) {
-                    if (overriding)
-                        out.colours[*item] = *c;
-                    else
-                        out.colours.emplace(*item, *c);
-                    break;
-                }
+            for (const bool of_curves : {false, true}) {
+                auto& colours = of_curves ? out.curve_colours : out.colours;
+                for (const std::uint32_t s : *styles)
+                    if (const auto c = colour_of_style(f, s, of_curves)) {
+                        overriding ? void(colours[*item] = *c) : void(colours.emplace(*item, *c));
+                        break;
+                    }
+            }
         }
     return out;
 }

@@ -102,11 +102,15 @@ public:
             if (id > 0) put_on_layers(b.layers, id);
             if (id > 0 && b.colour) styled.push_back(coloured(*b.colour, id));
         }
+        return {};
+    }
+
+    // Once all else is written.
+    void write_layers() {
         for (std::size_t l = 0; l < m_.layers.size(); ++l)
             if (!on_layers_[l].empty())
                 e_.add(text("PRESENTATION_LAYER_ASSIGNMENT(", quoted(m_.layers[l].name), ",",
                             quoted(m_.layers[l].description), ",", Entities::refs(on_layers_[l]), ")"));
-        return {};
     }
 
     // Edges that no face has, once faces are written; nothing if there are none.
@@ -131,16 +135,21 @@ public:
     std::vector<int> solids, sheets, wireframes, styled;
 
 private:
-    // Red, green and blue; one style for all things of a colour.
-    int coloured(const Colour& c, int item) {
-        int& style = styles_[{c.r, c.g, c.b}];
+    // Red, green and blue; one style for all surfaces of a colour, and one for all curves.
+    int coloured(const Colour& c, int item, bool is_curve = false) {
+        int& style = styles_[is_curve][{c.r, c.g, c.b}];
         if (style == 0) {
             int id = e_.add(text("COLOUR_RGB('',", real(c.r), ",", real(c.g), ",", real(c.b), ")"));
-            id = e_.add(text("FILL_AREA_STYLE_COLOUR('',#", id, ")"));
-            id = e_.add(text("FILL_AREA_STYLE('',(#", id, "))"));
-            id = e_.add(text("SURFACE_STYLE_FILL_AREA(#", id, ")"));
-            id = e_.add(text("SURFACE_SIDE_STYLE('',(#", id, "))"));
-            id = e_.add(text("SURFACE_STYLE_USAGE(.BOTH.,#", id, ")"));
+            if (is_curve) {
+                const int font = e_.add("DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')");
+                id = e_.add(text("CURVE_STYLE('',#", font, ",POSITIVE_LENGTH_MEASURE(0.1),#", id, ")"));
+            } else {
+                id = e_.add(text("FILL_AREA_STYLE_COLOUR('',#", id, ")"));
+                id = e_.add(text("FILL_AREA_STYLE('',(#", id, "))"));
+                id = e_.add(text("SURFACE_STYLE_FILL_AREA(#", id, ")"));
+                id = e_.add(text("SURFACE_SIDE_STYLE('',(#", id, "))"));
+                id = e_.add(text("SURFACE_STYLE_USAGE(.BOTH.,#", id, ")"));
+            }
             style = e_.add(text("PRESENTATION_STYLE_ASSIGNMENT((#", id, "))"));
         }
         return e_.add(text("STYLED_ITEM('',(#", style, "),#", item, ")"));
@@ -218,7 +227,11 @@ private:
 
     int edge_curve(const Edge& e, int curve) {
         const int from = vertex(e.start), to = vertex(e.end);
-        return e_.add(text("EDGE_CURVE(", quoted(e.name), ",#", from, ",#", to, ",#", curve, ",.T.)"));
+        const int id =
+            e_.add(text("EDGE_CURVE(", quoted(e.name), ",#", from, ",#", to, ",#", curve, ",.T.)"));
+        put_on_layers(e.layers, id);
+        if (e.colour) styled.push_back(coloured(*e.colour, id, true));
+        return id;
     }
 
     Result<int> face(const Face& f) {
@@ -251,9 +264,9 @@ private:
     Entities& e_;
     StepGeometry geometry_;
     const Model& m_;
-    std::vector<int> vertices_, edges_;        // their entities, 0 until they are written
-    std::vector<std::vector<int>> on_layers_;  // the entities of each
-    std::map<std::array<double, 3>, int> styles_;
+    std::vector<int> vertices_, edges_;                           // their entities, 0 until they are written
+    std::vector<std::vector<int>> on_layers_;                     // the entities of each
+    std::array<std::map<std::array<double, 3>, int>, 2> styles_;  // of surfaces, of curves
 };
 
 }  // namespace
@@ -313,6 +326,7 @@ Result<std::string> write_step(const Document& given) {
         StepModel writer(entities, *model);
         if (auto ok = writer.write(); !ok) return std::unexpected(ok.error());
         if (auto ok = writer.write_wires(""); !ok) return std::unexpected(ok.error());
+        writer.write_layers();
         solids = writer.solids, sheets = writer.sheets, styled = writer.styled;
         wireframes = writer.wireframes;
     }
@@ -326,7 +340,9 @@ Result<std::string> write_step(const Document& given) {
         StepModel writer(entities, model);
         if (auto ok = writer.write_wires(document.objects[i].name); !ok)
             return refuse_within(object_label(document, i), ok.error());
+        writer.write_layers();
         wireframes.insert(wireframes.end(), writer.wireframes.begin(), writer.wireframes.end());
+        styled.insert(styled.end(), writer.styled.begin(), writer.styled.end());
     }
     const std::string_view name = document.objects[0].name;
     Product product(entities, unit);

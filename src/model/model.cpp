@@ -45,7 +45,15 @@ Result<void> check_curve(const CurveGeometry<D>& curve, Interval on, std::string
     return {};
 }
 
+Result<void> check_layers(const Model& m, const std::vector<int>& layers, std::string_view where) {
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (auto ok = check_index(layers[i], m.layers.size(), text(where, ".layers[", i, "]")); !ok)
+            return ok;
+    return {};
+}
+
 Result<void> check_edge(const Model& m, const Edge& e, std::string_view where) {
+    if (auto ok = check_layers(m, e.layers, where); !ok) return ok;
     if (auto ok = check_index(e.start, m.vertices.size(), text(where, ".start")); !ok) return ok;
     if (auto ok = check_index(e.end, m.vertices.size(), text(where, ".end")); !ok) return ok;
     if (auto ok = check_tolerance(e.tolerance, text(where, ".tolerance")); !ok) return ok;
@@ -58,13 +66,6 @@ Result<void> check_edge(const Model& m, const Edge& e, std::string_view where) {
                       "is degenerate, but has a curve or two vertices");
     if (!e.curve) return {};
     return check_curve(*e.curve, e.range, text(where, ".curve"));
-}
-
-Result<void> check_layers(const Model& m, const std::vector<int>& layers, std::string_view where) {
-    for (std::size_t i = 0; i < layers.size(); ++i)
-        if (auto ok = check_index(layers[i], m.layers.size(), text(where, ".layers[", i, "]")); !ok)
-            return ok;
-    return {};
 }
 
 Result<void> check_face(const Model& m, const Face& f, std::string_view where) {

@@ -233,6 +233,8 @@ TEST(DocumentRefusals, of_models_whose_parts_do_not_fit) {
                           {"/bodies/0/shells", {0, 1}, "bodies[0].shells[1]"},
                           {"/faces/0/colour", {1, 2, 0}, "faces[0].colour[1]"},
                           {"/faces/0/colour", {1, 0}, "faces[0].colour"},
+                          {"/edges/0/colour", {1, 2, 0}, "edges[0].colour[1]"},
+                          {"/edges/0/layers", {9}, "edges[0].layers[0]"},
                           {"/faces/0/tolerance", -1, "faces[0].tolerance"},
                           {"/faces/1/surface/axis", {0, 0, 2}, "faces[1].surface.axis"},
                           {"/faces/0/surface/direction", {0, 0, 0}, "faces[0].surface.direction"},

@@ -73,6 +73,7 @@ Model everything() {
     m.bodies = {{{0, 1}, true, "solid", Colour{1, 0, 0, 1}}, {{1}, false, "", std::nullopt}};
     m.layers = {{"walls", "outside"}, {"2", ""}};
     m.faces[1].layers = {0, 1}, m.bodies[0].layers = {1};
+    m.edges[1].layers = {1}, m.edges[1].colour = Colour{0, 0.5, 1, 1};
     m.repairs = {{"#14 EDGE_LOOP", "was open", 0.01}};
     m.refused = {{RefusalKind::unsupported, "#12 FACE", "has no counterpart"}, {RefusalKind::io, "", ""}};
     m.approximations = {{"edges[3]", "moved", 1e-5}, {"edges[4]", "sampled", std::nullopt, 2e-5}};
@@ -96,6 +97,8 @@ TEST(ModelBinary, gives_back_every_part_to_the_last_bit) {
         EXPECT_EQ(back->edges[i].end, m.edges[i].end) << i;
         EXPECT_EQ(back->edges[i].tolerance, m.edges[i].tolerance) << i;
         EXPECT_EQ(back->edges[i].name, m.edges[i].name) << i;
+        EXPECT_EQ(back->edges[i].colour, m.edges[i].colour) << i;
+        EXPECT_EQ(back->edges[i].layers, m.edges[i].layers) << i;
     }
     ASSERT_EQ(back->faces.size(), m.faces.size());
     for (std::size_t i = 0; i < m.faces.size(); ++i) {

@@ -56,6 +56,29 @@ TEST(StepEntities, frames_of_the_plane_need_no_direction) {
     EXPECT_EQ(circle(",#44"), (Conic<3>{ConicKind::ellipse, centre, -1.0 * y, x}));
 }
 
+TEST(StepEntities, curves_of_parameters_are_offset_to_the_left) {
+    const auto offset = [](std::string_view basis, std::string_view distance) {
+        return item_file(
+            "#10", text("#10=GEOMETRIC_CURVE_SET('',(#20));\n#20=TRIMMED_CURVE('',#50,(PARAMETER_VALUE(0.)),"
+                        "(PARAMETER_VALUE(1.)),.T.,.PARAMETER.);\n#50=PCURVE('',#7,#40);\n"
+                        "#40=DEFINITIONAL_REPRESENTATION('',(#41),#1);\n#41=OFFSET_CURVE_2D('',#45,",
+                        distance, ",.F.);\n#43=CARTESIAN_POINT('',(1.,0.));\n#45=", basis, ";\n",
+                        "#46=VECTOR('',#47,1.);\n#47=DIRECTION('',(0.,1.));\n"
+                        "#42=AXIS2_PLACEMENT_2D('',#43,$);\n"));
+    };
+    const auto edge = [&](std::string_view basis, std::string_view distance) {
+        return must(read_step(offset(basis, distance))).edges.at(0);
+    };
+    EXPECT_EQ(point_at(edge("LINE('',#43,#46)", "0.25"), 0.5), (Vec<3>{{0.75, 0.5, 0}}));
+    EXPECT_EQ(point_at(edge("LINE('',#43,#46)", "-0.25"), 0.5), (Vec<3>{{1.25, 0.5, 0}}));
+    const Edge circle = edge("CIRCLE('',#42,2.)", "0.5");
+    EXPECT_NEAR(norm(point_at(circle, 0.3) - Vec<3>{{1, 0, 0}}), 1.5, 1e-15);
+    const auto ellipse = read_step(offset("ELLIPSE('',#42,2.,1.)", "0.5"));
+    ASSERT_FALSE(ellipse);
+    EXPECT_NE(ellipse.error().message.find("no line and no circle"), std::string::npos)
+        << ellipse.error().where << ": " << ellipse.error().message;
+}
+
 TEST(StepEntities, frames_in_space_need_neither_axis_nor_direction) {
     const auto circle = [](std::string_view frame) {
         return std::get<Conic<3>>(
@@ -327,6 +350,81 @@ TEST(StepEntities, colours_are_numbers_or_names) {
     EXPECT_EQ(named->r, 1);
     EXPECT_EQ(named->g, 1);
     EXPECT_EQ(named->b, 0);
+}
+
+TEST(StepEntities, patches_of_a_composite_surface_are_faces) {
+    const auto file = [](std::string_view rows) {
+        return item_file("#10",
+                         text("#10=GEOMETRIC_SET('',(#40));\n#40=RECTANGULAR_COMPOSITE_SURFACE('both',", rows,
+                              ");\n#41=SURFACE_PATCH(#43,.CONTINUOUS.,.CONTINUOUS.,.T.,.T.);\n"
+                              "#42=SURFACE_PATCH(#44,.CONTINUOUS.,.CONTINUOUS.,.T.,.F.);\n"
+                              "#43=RECTANGULAR_TRIMMED_SURFACE('first',#7,0.,1.,0.,2.,.T.,.T.);\n"
+                              "#44=RECTANGULAR_TRIMMED_SURFACE('second',#7,1.,3.,0.,2.,.T.,.T.);\n"));
+    };
+    const Model m = must(read_step(file("((#41),(#42))")));
+    EXPECT_TRUE(m.refused.empty()) << m.refused[0].where << ": " << m.refused[0].message;
+    ASSERT_EQ(m.faces.size(), 2u);
+    EXPECT_EQ(m.faces[0].name, "first");
+    EXPECT_EQ(m.faces[1].name, "second");
+    const auto bad = read_step(file("(#41,#42)"));
+    ASSERT_FALSE(bad) << "not a list of lists";
+    const auto odd = read_step(file("((#40),(#10))"));
+    EXPECT_TRUE(!odd || !odd->refused.empty()) << "a surface of itself";
+}
+
+// A rectangle whose lower side is a part of a longer edge, in the upper half of a square that is a face.
+const std::string kParts = [] {
+    std::string s = polygon_file(
+        {{0, 0}, {4, 0}, {4, 2}, {0, 2}},
+        "#800=CARTESIAN_POINT('',(1.,0.,0.));\n#801=VERTEX_POINT('',#800);\n"
+        "#802=CARTESIAN_POINT('',(3.,0.,0.));\n#803=VERTEX_POINT('',#802);\n"
+        "#804=CARTESIAN_POINT('',(3.,1.,0.));\n#805=VERTEX_POINT('',#804);\n"
+        "#806=CARTESIAN_POINT('',(1.,1.,0.));\n#807=VERTEX_POINT('',#806);\n"
+        "#810=SUBEDGE('',#801,#803,#811);\n#811=SUBEDGE('',#200,#803,#400);\n"
+        "#812=EDGE_CURVE('',#803,#805,#820,.T.);\n#820=LINE('',#802,#821);\n#821=VECTOR('',#822,1.);\n"
+        "#822=DIRECTION('',(0.,1.,0.));\n"
+        "#813=EDGE_CURVE('',#805,#807,#823,.T.);\n#823=LINE('',#804,#824);\n#824=VECTOR('',#825,1.);\n"
+        "#825=DIRECTION('',(-1.,0.,0.));\n"
+        "#814=EDGE_CURVE('',#801,#807,#826,.T.);\n#826=LINE('',#800,#821);\n"
+        "#830=ORIENTED_EDGE('',*,*,#810,.T.);\n#831=ORIENTED_EDGE('',*,*,#812,.T.);\n"
+        "#832=ORIENTED_EDGE('',*,*,#813,.T.);\n#833=ORIENTED_EDGE('',*,*,#814,.F.);\n"
+        "#840=EDGE_LOOP('',(#830,#831,#832,#833));\n#841=FACE_OUTER_BOUND('',#840,.T.);\n"
+        "#842=SUBFACE('part',(#841),#12);\n");
+    return s;
+}();
+
+std::string with_shell_of(std::string file, std::string_view face) {
+    const std::string_view shell = "OPEN_SHELL('',(#12))";
+    file.replace(file.find(shell), shell.size(), text("OPEN_SHELL('',(", face, "))"));
+    return file;
+}
+
+TEST(StepEntities, parts_of_edges_and_faces_lie_on_what_they_are_parts_of) {
+    const Model m = must(read_step(with_shell_of(kParts, "#842")));
+    ASSERT_TRUE(m.refused.empty()) << m.refused[0].where << ": " << m.refused[0].message;
+    ASSERT_EQ(m.faces.size(), 1u);
+    EXPECT_EQ(m.faces[0].name, "part");
+    EXPECT_EQ(kind_name(m.faces[0].surface), "plane");
+    ASSERT_EQ(m.faces[0].loops.size(), 1u);
+    ASSERT_EQ(m.faces[0].loops[0].coedges.size(), 4u);
+    const Edge& lower = m.edges.at(std::size_t(m.faces[0].loops[0].coedges[0].edge));
+    EXPECT_EQ(lower.range.length(), 2);
+    EXPECT_EQ(m.vertices.at(std::size_t(lower.start)).point, (Vec<3>{{1, 0, 0}}));
+    EXPECT_EQ(m.vertices.at(std::size_t(lower.end)).point, (Vec<3>{{3, 0, 0}}));
+}
+
+TEST(StepEntities, parts_of_themselves_are_refused) {
+    for (const auto& [from, to, where] : {std::array{"'',#200,#803,#400", "'',#200,#803,#810", "SUBEDGE"},
+                                          std::array{"(#841),#12", "(#841),#842", "SUBFACE"}}) {
+        std::string file = with_shell_of(kParts, "#842,#12");
+        file.replace(file.find(from), std::string_view(from).size(), to);
+        const Model m = must(read_step(file));
+        EXPECT_EQ(m.faces.size(), 1u) << "the other face is there";
+        ASSERT_EQ(m.refused.size(), 1u);
+        EXPECT_NE((m.refused[0].where + m.refused[0].message).find(where), std::string::npos)
+            << m.refused[0].where << ": " << m.refused[0].message;
+        EXPECT_NE(m.refused[0].message.find("of itself"), std::string::npos) << m.refused[0].message;
+    }
 }
 
 }  // namespace

@@ -78,6 +78,8 @@ TEST(StepLayers, layers_that_are_not_there_and_items_on_too_many_are_refused_by_
     expect_refusal(make_model(m), RefusalKind::invalid, "faces[0].layers[0]", "index 0");
     m.faces[0].layers.clear(), m.bodies.at(0).layers = {-1};
     expect_refusal(make_model(m), RefusalKind::invalid, "bodies[0].layers[0]", "index -1");
+    m.bodies[0].layers.clear(), m.edges.at(2).layers = {0};
+    expect_refusal(make_model(m), RefusalKind::invalid, "edges[2].layers[0]", "index 0");
     std::string many;
     for (int i = 0; i < 100; ++i)
         many += text("#", 1000 + i, "=PRESENTATION_LAYER_ASSIGNMENT('", i, "','',(#12));\n");
@@ -107,6 +109,74 @@ TEST(StepLayers, colours_of_faces_and_bodies_are_written_and_read_again_the_same
     ASSERT_TRUE(body.bodies.at(0).colour);
     EXPECT_EQ(body.bodies[0].colour->g, 0.5);
     EXPECT_EQ(body.bodies[0].colour->b, 0.25);
+}
+
+// What a curve is drawn with, and what a surface is filled with, are colours of their own.
+std::string styled(int id, std::string_view item, std::string_view colour, bool is_curve) {
+    const std::string style =
+        is_curve ? text("#", id + 2, "=CURVE_STYLE('',#", id + 4, ",POSITIVE_LENGTH_MEASURE(0.5),#", id + 3,
+                        ");\n#", id + 4, "=DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous');\n")
+                 : text("#", id + 2, "=SURFACE_STYLE_USAGE(.BOTH.,#", id + 4, ");\n#", id + 4,
+                        "=SURFACE_SIDE_STYLE('',(#", id + 5, "));\n#", id + 5, "=SURFACE_STYLE_FILL_AREA(#",
+                        id + 6, ");\n#", id + 6, "=FILL_AREA_STYLE('',(#", id + 7, "));\n#", id + 7,
+                        "=FILL_AREA_STYLE_COLOUR('',#", id + 3, ");\n");
+    return text("#", id, "=STYLED_ITEM('',(#", id + 1, "),", item, ");\n#", id + 1,
+                "=PRESENTATION_STYLE_ASSIGNMENT((#", id + 2, "));\n", style, "#", id + 3, "=", colour, ";\n");
+}
+
+TEST(StepLayers, edges_have_the_colours_of_curves_and_layers) {
+    const Model m = layered_model(styled(900, "#401", "COLOUR_RGB('',0.25,0.5,0.75)", true) +
+                                  styled(920, "#402", "DRAUGHTING_PRE_DEFINED_COLOUR('red')", false) +
+                                  styled(940, "#12", "DRAUGHTING_PRE_DEFINED_COLOUR('blue')", true) +
+                                  "#960=PRESENTATION_LAYER_ASSIGNMENT('rim','',(#400,#12));\n"
+                                  "#961=PRESENTATION_LAYER_ASSIGNMENT('styled','',(#900));\n");
+    ASSERT_EQ(m.edges.size(), 4u);
+    EXPECT_EQ(m.edges[1].colour, (Colour{0.25, 0.5, 0.75, 1}));
+    for (const std::size_t i : {0, 2, 3}) EXPECT_FALSE(m.edges[i].colour) << "a fill is no line: " << i;
+    EXPECT_FALSE(m.faces.at(0).colour) << "a line is no fill";
+    EXPECT_EQ(names_of(m, m.edges[0].layers), (Names{"rim"}));
+    EXPECT_EQ(names_of(m, m.edges[1].layers), (Names{"styled"}));
+    EXPECT_EQ(names_of(m, m.faces[0].layers), (Names{"rim"}));
+    const Model again = *read_step(*write_step({"mm", {{"", m}}}));
+    ASSERT_EQ(again.edges.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(again.edges[i].colour, m.edges[i].colour) << i;
+        EXPECT_EQ(names_of(again, again.edges[i].layers), names_of(m, m.edges[i].layers)) << i;
+    }
+    // So do documents and scenes.
+    const Model b = layered_model("#960=PRESENTATION_LAYER_ASSIGNMENT('other','',(#400));\n");
+    const auto document = read_document(write_document({"mm", {{"", b}, {"", m}}}));
+    ASSERT_TRUE(document) << document.error().message;
+    const auto both = scene_of(*document);
+    ASSERT_TRUE(both) << both.error().message;
+    EXPECT_EQ(names_of(*both, both->edges.at(0).layers), (Names{"other"}));
+    EXPECT_EQ(names_of(*both, both->edges.at(4).layers), (Names{"rim"}));
+    EXPECT_EQ(both->edges.at(5).colour, m.edges[1].colour);
+}
+
+TEST(StepLayers, wires_have_the_style_of_their_set_where_they_have_none) {
+    const auto file = [](std::string_view more) {
+        return flat_file(
+            text("#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=GEOMETRIC_CURVE_SET('',(#20,#30));\n"
+                 "#20=CIRCLE('',#5,1.);\n#30=CIRCLE('',#5,2.);\n",
+                 more));
+    };
+    const auto m = read_step(file(styled(900, "#10", "COLOUR_RGB('',0.,1.,0.)", true) +
+                                  styled(920, "#30", "COLOUR_RGB('',1.,0.,0.)", true) +
+                                  "#960=PRESENTATION_LAYER_ASSIGNMENT('set','',(#10));\n"
+                                  "#961=PRESENTATION_LAYER_ASSIGNMENT('one','',(#20));\n"));
+    ASSERT_TRUE(m) << m.error().message;
+    ASSERT_EQ(m->edges.size(), 2u);
+    EXPECT_EQ(m->edges[0].colour, (Colour{0, 1, 0, 1}));
+    EXPECT_EQ(m->edges[1].colour, (Colour{1, 0, 0, 1}));
+    EXPECT_EQ(names_of(*m, m->edges[0].layers), (Names{"set", "one"}));
+    EXPECT_EQ(names_of(*m, m->edges[1].layers), (Names{"set"}));
+    const Model again = *read_step(*write_step({"mm", {{"", *m}}}));
+    ASSERT_EQ(again.edges.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(again.edges[i].colour, m->edges[i].colour) << i;
+        EXPECT_EQ(names_of(again, again.edges[i].layers), names_of(*m, m->edges[i].layers)) << i;
+    }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 """The PEP 517 backend of the package: builds it with CMake and packs it as a wheel. Standard library only.
 
 FREIFORM_PYTHON_PACKAGE names a folder `freiform` that was built already (build/python/freiform); without it the preset
-`python` is built first, configured with what `pip install . -C cmake-args="-D.."` adds.
+`python` is built first, configured with what `pip install . --config-settings cmake-args="-D.."` adds.
 """
 import base64
 import hashlib

@@ -32,13 +32,15 @@ class ModelFace(NamedTuple):
 
 
 class ModelEdge(NamedTuple):
-    """An edge: its curve over a range of parameters, the vertices at its ends."""
+    """An edge: its curve over a range of parameters, the vertices at its ends, its name and colour."""
 
     curve: Line | Conic | Curve | None
     range: Interval
     start: int
     end: int
     degenerate: bool
+    name: str = ""
+    colour: Colour | None = None
 
 
 @from_header("trim/trimmed_surface:TrimmedSurface")

@@ -394,7 +394,7 @@ void bind_models(py::module_& m) {
             py::list list;
             for (const Edge& e : h.model->edges)
                 list.append(py::make_tuple(e.curve ? to_py(*e.curve) : py::none(), to_py(e.range), e.start,
-                                           e.end, e.degenerate));
+                                           e.end, e.degenerate, e.name, to_py(e.colour)));
             return list;
         });
     bind_model_making(m);

@@ -29,6 +29,8 @@ struct Edge {
     int start = -1, end = -1;  // equal for a closed edge
     double tolerance = 0;
     std::string name;
+    std::optional<Colour> colour = {};
+    std::vector<int> layers = {};  // those that it is on
 };
 
 struct Coedge {
@@ -70,7 +72,7 @@ struct Body {
     std::vector<int> layers = {};  // likewise; its faces need not say them again
 };
 
-// What programs show and hide together; faces and bodies say which ones they are on.
+// What programs show and hide together; edges, faces and bodies say which ones they are on.
 struct Layer {
     std::string name;
     std::string description = {};
