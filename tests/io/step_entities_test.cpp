@@ -58,13 +58,15 @@ TEST(StepEntities, frames_of_the_plane_need_no_direction) {
 
 TEST(StepEntities, curves_of_parameters_are_offset_to_the_left) {
     const auto offset = [](std::string_view basis, std::string_view distance) {
-        return item_file(
-            "#10", text("#10=GEOMETRIC_CURVE_SET('',(#20));\n#20=TRIMMED_CURVE('',#50,(PARAMETER_VALUE(0.)),"
-                        "(PARAMETER_VALUE(1.)),.T.,.PARAMETER.);\n#50=PCURVE('',#7,#40);\n"
-                        "#40=DEFINITIONAL_REPRESENTATION('',(#41),#1);\n#41=OFFSET_CURVE_2D('',#45,",
-                        distance, ",.F.);\n#43=CARTESIAN_POINT('',(1.,0.));\n#45=", basis, ";\n",
-                        "#46=VECTOR('',#47,1.);\n#47=DIRECTION('',(0.,1.));\n"
-                        "#42=AXIS2_PLACEMENT_2D('',#43,$);\n"));
+        return item_file("#10",
+                         text("#10=GEOMETRIC_CURVE_SET('',(#20));\n#20=PCURVE('',#7,#40);\n"
+                              "#40=DEFINITIONAL_REPRESENTATION('',(#41),#1);\n#41=OFFSET_CURVE_2D('',#45,",
+                              distance,
+                              ",.F.);\n#45=TRIMMED_CURVE('',#48,(PARAMETER_VALUE(0.)),"
+                              "(PARAMETER_VALUE(1.)),.T.,.PARAMETER.);\n#48=",
+                              basis, ";\n",
+                              "#43=CARTESIAN_POINT('',(1.,0.));\n#46=VECTOR('',#47,1.);\n"
+                              "#47=DIRECTION('',(0.,1.));\n#42=AXIS2_PLACEMENT_2D('',#43,$);\n"));
     };
     const auto edge = [&](std::string_view basis, std::string_view distance) {
         return must(read_step(offset(basis, distance))).edges.at(0);

@@ -407,19 +407,22 @@ std::string mutant(const std::string& seed, Random& r) {
     return s;
 }
 
-// 10,000 of each file; each within a second, all in a process that stays below 256 MiB.
+// 10,000 of each of eight files; each within a second, all in a process that stays below 256 MiB.
 TEST(StepDamage, mutants_are_models_or_refusals_at_once_and_in_little_memory) {
+    std::vector<std::string> seeds{round_solid("CYLINDRICAL_SURFACE('',#23,2.)", 10, false),
+                                   round_solid("CONICAL_SURFACE('',#23,2.,-45.)", 0, true),
+                                   round_solid("SPHERICAL_SURFACE('',#23,2.)", 0, true)};
+    for (const char* name : {"composite", "curves", "parts", "repositioned", "sets"})
+        seeds.push_back(must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/fuzz/seeds/step/", name, ".stp"),
+                                       std::size_t(1) << 20)));
     const char* named = std::getenv("FREIFORM_STEP_MUTANTS");
-    const int count = named != nullptr ? std::atoi(named) : cases(30'000);
-    const std::string seeds[] = {round_solid("CYLINDRICAL_SURFACE('',#23,2.)", 10, false),
-                                 round_solid("CONICAL_SURFACE('',#23,2.,-45.)", 0, true),
-                                 round_solid("SPHERICAL_SURFACE('',#23,2.)", 0, true)};
+    const int count = named != nullptr ? std::atoi(named) : cases(10'000 * int(seeds.size()));
     const Effort effort = effort_of([&] {
         Random r(5);
         int models = 0, silent = 0;
         std::clock_t longest = 0;
         for (int i = 0; i < count; ++i) {
-            const std::string bytes = mutant(seeds[std::size_t(i) % 3], r);
+            const std::string bytes = mutant(seeds[std::size_t(i) % seeds.size()], r);
             const std::clock_t begin = std::clock();
             const auto m = read_step(bytes, {.memory_bytes = 100 << 20});
             longest = std::max(longest, std::clock() - begin);
