@@ -130,12 +130,14 @@ void write_approximations(json::Writer& w, const std::vector<Approximation>& lis
 }
 
 // How many faces and bodies are on each layer.
-std::vector<std::array<int, 2>> layer_counts(const Model& m) {
-    std::vector<std::array<int, 2>> counts(m.layers.size());
-    for (const Face& f : m.faces)
-        for (const int l : f.layers) ++counts[std::size_t(l)][0];
-    for (const Body& b : m.bodies)
-        for (const int l : b.layers) ++counts[std::size_t(l)][1];
+// Of faces, bodies and edges.
+std::vector<std::array<int, 3>> layer_counts(const Model& m) {
+    std::vector<std::array<int, 3>> counts(m.layers.size());
+    const auto count = [&](const auto& things, std::size_t kind) {
+        for (const auto& x : things)
+            for (const int l : x.layers) ++counts[std::size_t(l)][kind];
+    };
+    count(m.faces, 0), count(m.bodies, 1), count(m.edges, 2);
     return counts;
 }
 
@@ -148,6 +150,7 @@ void write_layers(json::Writer& w, const Model& m) {
             .field("description", m.layers[i].description)
             .field("faces", counts[i][0])
             .field("bodies", counts[i][1])
+            .field("edges", counts[i][2])
             .end_object();
     w.end_array();
 }
@@ -251,9 +254,10 @@ std::string model_text(const Model& m) {
     for (const Repair& r : m.repairs) t += text("  repaired ", repair_text(r), "\n");
     const auto counts = layer_counts(m);
     for (std::size_t i = 0; i < counts.size(); ++i)
-        t += text("  layer    ", m.layers[i].name,
-                  m.layers[i].description.empty() ? "" : text(" (", m.layers[i].description, ")"),
-                  ": bodies ", counts[i][1], ", faces by themselves ", counts[i][0], "\n");
+        t +=
+            text("  layer    ", m.layers[i].name,
+                 m.layers[i].description.empty() ? "" : text(" (", m.layers[i].description, ")"), ": bodies ",
+                 counts[i][1], ", faces by themselves ", counts[i][0], ", edges ", counts[i][2], "\n");
     return t + approximations_text(m.approximations);
 }
 

@@ -92,17 +92,20 @@ TEST_F(CliStep, a_file_of_triangles_alone_is_a_mesh) {
 }
 
 TEST_F(CliStep, info_says_what_lies_on_each_layer) {
-    const std::string layered = file(
-        "layers.step", polygon_file({{0, 0}, {3, 0}, {3, 2}},
-                                    "#900=PRESENTATION_LAYER_ASSIGNMENT('walls','outside',(#12,#10));\n"));
+    const std::string layered =
+        file("layers.step",
+             polygon_file({{0, 0}, {3, 0}, {3, 2}},
+                          "#900=PRESENTATION_LAYER_ASSIGNMENT('walls','outside',(#12,#10,#400));\n"));
     const Ran r = run({"info", layered, "--json"});
     ASSERT_EQ(r.code, 0) << r.err;
     const Json layers = Json::parse(r.out)["objects"][0]["layers"];
     ASSERT_EQ(layers.size(), 1u);
-    EXPECT_EQ(layers[0],
-              Json::parse(R"({"name": "walls", "description": "outside", "faces": 1, "bodies": 1})"));
-    EXPECT_NE(run({"info", layered}).out.find("layer    walls (outside): bodies 1, faces by themselves 1"),
-              std::string::npos);
+    EXPECT_EQ(
+        layers[0],
+        Json::parse(R"({"name": "walls", "description": "outside", "faces": 1, "bodies": 1, "edges": 1})"));
+    EXPECT_NE(
+        run({"info", layered}).out.find("layer    walls (outside): bodies 1, faces by themselves 1, edges 1"),
+        std::string::npos);
 }
 
 }  // namespace
