@@ -19,27 +19,25 @@ double PiecewiseBound::steady(Interval on) const {
     if (p == pieces_.end()) --p;
     const auto last = std::prev(pieces_.end());
     if (p == last || on.hi <= p->end) return p->most;
-    struct Part {
-        double most, length;
-    };
-    std::vector<Part> parts;
+    std::vector<std::pair<double, double>> parts;  // what is the most, the length
     parts.reserve(8);
-    double sum = 0, least = p->most, most = 0;
+    double sum = 0, least = p->most;
     for (double at = on.lo;; ++p) {
         const double end = p == last ? on.hi : std::min(p->end, on.hi);
         parts.push_back({p->most, end - at});
-        sum += parts.back().length;
-        least = std::min(least, p->most), most = std::max(most, p->most);
+        sum += end - at;
+        least = std::min(least, p->most);
         at = end;
         if (!(at < on.hi)) break;
     }
+    std::sort(parts.begin(), parts.end());
+    const double most = parts.back().first;
     if (!(most > kEven * least)) return most;
-    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.most > b.most; });
     double longer = 0, excess = 0;  // of those that exceed the median
-    std::size_t k = 0;
-    while (longer + parts[k].length < sum / 2) longer += parts[k++].length;
-    const double median = parts[k].most;
-    for (std::size_t i = 0; i < k; ++i) excess += (parts[i].most - median) * parts[i].length;
+    std::size_t k = parts.size();
+    while (longer + parts[k - 1].second < sum / 2) longer += parts[--k].second;
+    const double median = parts[k - 1].first;
+    for (std::size_t i = k; i < parts.size(); ++i) excess += (parts[i].first - median) * parts[i].second;
     const double rounding = 1 + 0x1p-51 * (double(parts.size()) + 8);
     return std::min(most, (median + 2 * excess / on.length()) * rounding);
 }
