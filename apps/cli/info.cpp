@@ -129,8 +129,7 @@ void write_approximations(json::Writer& w, const std::vector<Approximation>& lis
     w.end_array();
 }
 
-// How many faces and bodies are on each layer.
-// Of faces, bodies and edges.
+// How many faces, bodies and edges are on each layer.
 std::vector<std::array<int, 3>> layer_counts(const Model& m) {
     std::vector<std::array<int, 3>> counts(m.layers.size());
     const auto count = [&](const auto& things, std::size_t kind) {

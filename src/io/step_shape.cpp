@@ -227,16 +227,9 @@ void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
                 budget -= patches->size();
                 todo.insert(todo.end(), patches->rbegin(), patches->rend());
             }
-        } else if (f_.is(i, Type::SURFACE_PATCH)) {
+        } else if (const bool patch = f_.is(i, Type::SURFACE_PATCH); patch || f_.is(i, Type::ORIENTED_EDGE)) {
             const Fields f(f_, i, f_.instances[i].first + 1);
-            const auto at = f.reference(0, "surface");
-            if (at)
-                todo.push_back(*at);
-            else
-                refuse_item(i, at.error());
-        } else if (f_.is(i, Type::ORIENTED_EDGE)) {
-            const Fields f(f_, i, f_.instances[i].first + 1);
-            const auto at = f.reference(3, "edge");
+            const auto at = patch ? f.reference(0, "surface") : f.reference(3, "edge");
             if (at)
                 todo.push_back(*at);
             else
