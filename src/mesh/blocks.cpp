@@ -11,6 +11,7 @@
 // its error is small enough. Their neighbours have plain points then; those that can do without these feet,
 // do, others become plain in turn or are left to the triangulation. So are blocks near places to avoid: where
 // triangles around them turned out to need plain points that a block counts on.
+#include "block_judge_detail.hpp"
 #include "blocks_detail.hpp"
 #include "leaf_triangles_detail.hpp"
 #include "outer_sides_detail.hpp"
@@ -26,25 +27,9 @@ namespace freiform {
 
 namespace {
 
-constexpr std::size_t kBlocksAtOnce = 64;    // that a thread judges
-constexpr double kCellRounding = 1 + 1e-12;  // of what judges cells
-constexpr double kMarginOfAvoided = 2;       // times the box
-constexpr int kPlainRounds = 8;              // then leaves that disagree are left to the triangulation
-
-struct Grid {
-    std::array<std::vector<double>, 2> lines;
-
-    int cells(int axis) const { return int(lines[std::size_t(axis)].size()) - 1; }
-    Vec<2> at(int i, int j) const { return {{lines[0][std::size_t(i)], lines[1][std::size_t(j)]}}; }
-    Vec<2> largest_cell() const {
-        Vec<2> out{};
-        for (int d = 0; d < 2; ++d)
-            for (std::size_t k = 0; k + 1 < lines[std::size_t(d)].size(); ++k)
-                out[d] = std::max(out[d], lines[std::size_t(d)][k + 1] - lines[std::size_t(d)][k]);
-        return out;
-    }
-    bool is_inner(int i, int j) const { return i > 0 && j > 0 && i < cells(0) && j < cells(1); }
-};
+constexpr std::size_t kBlocksAtOnce = 64;  // that a thread judges
+constexpr double kMarginOfAvoided = 2;     // times the box
+constexpr int kPlainRounds = 8;            // then leaves that disagree are left to the triangulation
 
 class BlockMesher {
 public:
@@ -79,17 +64,14 @@ private:
     // Numbers of table_ along the border, counter-clockwise from the lower corner of the box. `step`: where
     // each cell along it begins; sides follow each other.
     struct Block {
-        Grid grid;
+        BlockGrid grid;
         bool needs_foot = false;
         std::vector<int> border = {}, step = {};
     };
 
     // A block of one cell: its border is border_[first] and what follows.
-    struct Leaf {
+    struct Leaf : JudgedBlock {
         Box<2> box;
-        Vec<2> scale;  // what makes parameters lengths
-        // Bounds, where all points have feet, some have none, all are plain; infinite above the tolerance.
-        double usual = 0, footless = 0, flat = 0;
         bool is_plain = false;
         std::size_t first = 0, count = 0;
 
@@ -109,92 +91,42 @@ private:
         return std::any_of(avoid_.begin(), avoid_.end(), [&](const Vec<2>& p) { return around.contains(p); });
     }
 
-    struct Judged {
-        bool avoided = false;
-        Leaf leaf{};
-        double usual = 0,
-               footless = 0;  // of a block, as of leaves, but larger than the tolerance where not kept
-    };
-
     void take_all() {
         const auto& all = tree_.blocks();
-        std::vector<Judged> judged(all.size());
-        const auto judge = [&](std::size_t i) { judged[i] = judged_of(all[i]); };
-        parallel_for(all.size(), alone_ ? kBlocksAtOnce : all.size(), judge);
+        std::vector<JudgedBlock> judged(all.size());
+        parallel_for(all.size(), alone_ ? kBlocksAtOnce : all.size(), [&](std::size_t i) {
+            if (!is_near_avoided(all[i].box)) judged[i] = judged_block(tree_, judge_, tolerance_, all[i]);
+        });
         for (std::size_t i = 0; i < all.size(); ++i)
-            all[i].first_part < 0 ? take_leaf(judged[i]) : take(all[i], judged[i]);
+            all[i].first_part < 0 ? take_leaf(judged[i], all[i].box) : take(all[i], judged[i]);
     }
 
-    Judged judged_of(const CurvatureTree::Block& b) const {
-        Judged out;
-        out.leaf.box = b.box;
-        out.avoided = is_near_avoided(b.box);
-        if (!out.avoided) b.first_part < 0 ? judge_leaf(b, out.leaf) : judge_parts(b, out);
-        return out;
-    }
-
-    void judge_leaf(const CurvatureTree::Block& b, Leaf& leaf) const {
-        const Bending& at = tree_.part_bendings(b)[0];
-        const Vec<2> size = b.box.hi - b.box.lo, cell = kCellRounding * size;
-        const std::array<Vec<2>, 3> corner{b.box.lo, b.box.lo + Vec<2>{{cell[0], 0}},
-                                           b.box.lo + Vec<2>{{0, cell[1]}}};
-        const auto judged = [&](int plain) {
-            const double bound = judge_(at, b.box, corner, plain, b.node).bound;
-            return bound <= tolerance_ ? bound : kInfinity;
-        };
-        leaf.scale = at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
-        leaf.flat = judged(3);
-        leaf.usual = tree_.is_all_plain() ? kInfinity : judged(0);
-        leaf.footless = std::isfinite(leaf.usual) ? judged(1) : kInfinity;
-        leaf.is_plain = !std::isfinite(leaf.usual);
-    }
-
-    void take_leaf(const Judged& j) {
-        const bool is_kept = !j.avoided && std::isfinite(std::min(j.leaf.flat, j.leaf.usual));
-        is_kept ? leaves_.push_back(j.leaf) : dissolve(j.leaf.box);
+    void take_leaf(const JudgedBlock& j, const Box<2>& box) {
+        if (std::isfinite(std::min(j.flat, j.usual)))
+            leaves_.push_back({j, box, !std::isfinite(j.usual)});
+        else
+            dissolve(box);
     }
 
     void dissolve(const Box<2>& leaf) {
         for (std::size_t k = 0; k < 4; ++k) out_.corners.push_back({corner_of(leaf, k), leaf.hi - leaf.lo});
     }
 
-    static Grid grid_of(const CurvatureTree::Block& b) {
-        return {{halved(b.box.side(0), b.halves[0]), halved(b.box.side(1), b.halves[1])}};
-    }
-
-    // Of the first cell of each part, as if corners were plain where a foot is not needed.
-    void judge_parts(const CurvatureTree::Block& b, Judged& out) const {
-        const Vec<2> cell = kCellRounding * grid_of(b).largest_cell();
-        const bool all_plain = tree_.is_all_plain();
-        const Grid parts{{halved(b.box.side(0), b.parts[0]), halved(b.box.side(1), b.parts[1])}};
-        const Bending* at = tree_.part_bendings(b).data();
-        for (int i = 0; i < parts.cells(0); ++i)
-            for (int j = 0; j < parts.cells(1); ++j, ++at) {
-                const Box<2> box{parts.at(i, j), parts.at(i + 1, j + 1)};
-                const std::array<Vec<2>, 3> corner{box.lo, box.lo + Vec<2>{{cell[0], 0}},
-                                                   box.lo + Vec<2>{{0, cell[1]}}};
-                out.usual = std::max(out.usual, judge_(*at, box, corner, all_plain ? 3 : 0, b.node).bound);
-                if (!(out.usual <= tolerance_)) return;
-                if (!all_plain && out.footless <= tolerance_)
-                    out.footless = std::max(out.footless, judge_(*at, box, corner, 1, b.node).bound);
-            }
-    }
-
-    void take(const CurvatureTree::Block& b, const Judged& j) {
-        const Grid grid = grid_of(b);
-        if (j.avoided || !(j.usual <= tolerance_)) return dissolve(grid, kCellRounding * grid.largest_cell());
-        const bool needs_foot = !(j.footless <= tolerance_);
+    void take(const CurvatureTree::Block& b, const JudgedBlock& j) {
+        const BlockGrid grid(b.box, b.halves);
+        if (!std::isfinite(j.usual)) return dissolve(grid, kCellRounding * grid.largest_cell());
+        const bool needs_foot = !std::isfinite(j.footless);
         out_.bound = std::max({out_.bound, j.usual, needs_foot ? 0 : j.footless});
         blocks_.push_back({grid, needs_foot});
     }
 
-    void dissolve(const Grid& grid, const Vec<2>& cell) {
+    void dissolve(const BlockGrid& grid, const Vec<2>& cell) {
         for (int i = 0; i <= grid.cells(0); ++i)
             for (int j = 0; j <= grid.cells(1); ++j) out_.corners.push_back({grid.at(i, j), cell});
     }
 
     template <class Visit>
-    static void each_border_point(const Grid& g, Visit&& visit) {
+    static void each_border_point(const BlockGrid& g, Visit&& visit) {
         const int nu = g.cells(0), nv = g.cells(1);
         for (int i = 0; i < nu; ++i) visit(g.at(i, 0));
         for (int j = 0; j < nv; ++j) visit(g.at(nu, j));
@@ -361,14 +293,14 @@ private:
     }
 
     // The place of a corner of the border among the steps.
-    static std::size_t along(const Grid& g, int i, int j) {
+    static std::size_t along(const BlockGrid& g, int i, int j) {
         const int nu = g.cells(0), nv = g.cells(1);
         const int k = j == 0 ? i : i == nu ? nu + j : j == nv ? 2 * nu + nv - i : 2 * (nu + nv) - j;
         return std::size_t(k);
     }
 
     void mesh(const Block& block) {
-        const Grid& g = block.grid;
+        const BlockGrid& g = block.grid;
         const int nu = g.cells(0), nv = g.cells(1);
         first_inner_ = int(out_.points.size());
         for (int i = 1; i < nu; ++i)
@@ -385,11 +317,13 @@ private:
                 }
     }
 
-    int inner(const Grid& g, int i, int j) const { return first_inner_ + (i - 1) * (g.cells(1) - 1) + j - 1; }
+    int inner(const BlockGrid& g, int i, int j) const {
+        return first_inner_ + (i - 1) * (g.cells(1) - 1) + j - 1;
+    }
 
     // From a corner inside the block, counter-clockwise; if two are, the other one comes last.
     void mesh_border_cell(const Block& block, int i, int j) {
-        const Grid& g = block.grid;
+        const BlockGrid& g = block.grid;
         const std::array<std::array<int, 2>, 4> corner{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
         const bool on_border[4] = {j == 0, i + 1 == g.cells(0), j + 1 == g.cells(1), i == 0};
         const auto is_inner = [&](std::size_t k) { return g.is_inner(corner[k % 4][0], corner[k % 4][1]); };

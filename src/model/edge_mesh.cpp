@@ -6,7 +6,8 @@
 // that the part asks for. All parts are moved so that each gets an equal share of the sum, rounded up: once
 // or twice, as a rule, and an edge that is alike all along, as a circle, gets equal parts. Where some parts
 // still exceed, or fewer seem to do, a last pass goes from part to part and makes up for each one's surprise
-// in those behind it. Parts that exceed even so are cut.
+// in those behind it. Parts that exceed even so are cut. Where much of what was shared out is not needed in
+// the end, neighbours that keep the demands together are joined.
 //
 // Cost: two bounds for each part of a circle's sort less those that pilots stand for, three of others.
 //
@@ -250,6 +251,36 @@ std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int
     return !last.empty() ? last : !best.empty() ? best : now;
 }
 
+// Neighbours that keep the demands together become one. Equal parts are asked for with the worst of the
+// curve's second derivatives; where that is large over a short way alone (a turn within a short knot span,
+// as in curves that follow others) it is cut off in the end, and what was shared out for it is left over.
+std::vector<EdgeMesher::Part> EdgeMesher::joined(int edge, std::vector<Part> parts, double longest,
+                                                 const EdgeDemands& demands) const {
+    constexpr double kUsed = 0.5;  // of what parts may ask for: where more is used, few can be joined
+    double sum = 0;
+    for (const Part& p : parts) sum += p.needs;
+    if (!(sum < kUsed * double(parts.size()))) return parts;
+    std::vector<Part> out;
+    for (std::size_t i = 0; i < parts.size();) {
+        Part best = parts[i];
+        std::size_t next = i + 1;
+        const auto longer = [&](std::size_t end) {
+            if (end > parts.size() || parts[end - 1].b - best.a > longest) return false;
+            const Part p = part(edge, best.a, parts[end - 1].b, demands);
+            if (!(p.needs <= 1)) return false;
+            best = p;
+            next = end;
+            return true;
+        };
+        std::size_t step = 1;
+        while (longer(next + step)) step *= 2;
+        while (step /= 2) longer(next + step);
+        out.push_back(best);
+        i = next;
+    }
+    return out;
+}
+
 // Where a part that cannot be halved does not keep the demands, if the worst half of each leads there: see
 // curvature_tree_torn.cpp. Asked about edges whose weights are far apart alone.
 std::optional<double> EdgeMesher::torn_place(int edge, Interval on, const EdgeDemands& demands) const {
@@ -310,7 +341,7 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
             stack.push_back(part(edge, middle, p.b, demands));
             stack.push_back(part(edge, p.a, middle, demands));
         }
-        for (const Part& p : done) {
+        for (const Part& p : joined(edge, std::move(done), on.length() / least, demands)) {
             mesh.parameters.push_back(p.b);
             mesh.bound = std::max(mesh.bound, p.bound);
         }

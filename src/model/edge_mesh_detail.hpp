@@ -86,6 +86,8 @@ private:
                                std::size_t most) const;
     std::vector<Part> equal_parts(int edge, Interval on, int least, const EdgeDemands& demands,
                                   std::size_t max_segments) const;
+    std::vector<Part> joined(int edge, std::vector<Part> parts, double longest,
+                             const EdgeDemands& demands) const;
     std::optional<double> torn_place(int edge, Interval on, const EdgeDemands& demands) const;
 
     const Model& model_;

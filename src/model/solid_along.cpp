@@ -24,16 +24,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace freiform {
 
 namespace {
 
-// The rows of the swept polyline.
-template <class Q>
+// The rows of the swept polyline, polynomial ones with weights 1.
 class RailFrame {
 public:
-    RailFrame(Surface<Q> rows, double x, double y) : rows_(std::move(rows)), x_(x), y_(y) {}
+    RailFrame(Surface<Hom<3>> rows, double x, double y) : rows_(std::move(rows)), x_(x), y_(y) {}
 
     const BSplineBasis& basis() const { return rows_.basis(1); }
     // Where the wall of (x, y) is at the first or last coefficient, and what x and y are in space there.
@@ -53,55 +53,54 @@ public:
         return {a, (1 / x_) * (rows_(0.0, v) - a), (1 / y_) * (rows_(2.0, v) - a)};
     }
 
-    // The wall of a profile and what rounding of its coefficients moves.
-    template <class P>
-    auto wall(const Curve<P>& profile) const {
-        constexpr bool kRational = Space<P>::kRational || Space<Q>::kRational;
-        using W = std::conditional_t<kRational, Hom<3>, Vec<3>>;
-        std::vector<W> net;
+    // What the wall of a profile has in place of the profile's coefficients.
+    struct Wall {
+        std::vector<Hom<3>> net;
+        double rounding = 0;  // what that of coefficients moves
+    };
+    Wall wall(std::span<const Hom<2>> profile) const {
+        Wall out;
         double moved = 0, off = 0, far = 0;
-        for (const P& p : profile.net().flat()) {
-            const Bounded w(Space<P>::weight(p)), x = Bounded(p[0]) / Bounded(x_),
-                                                  y = Bounded(p[1]) / Bounded(y_);
+        for (const Hom<2>& p : profile) {
+            const Bounded w(p.weight()), x = Bounded(p[0]) / Bounded(x_), y = Bounded(p[1]) / Bounded(y_);
             for (int j = 0; j < basis().size(); ++j) {
-                const Q &a = at(1, j), &b = at(0, j), &c = at(2, j);
-                W out{};
+                const Hom<3>&a = at(1, j), &b = at(0, j), &c = at(2, j);
+                Hom<3> q;
                 Vec<3> lost;
                 for (int k = 0; k < 3; ++k) {
                     const Bounded m(a[k]), sum = w * m + x * (Bounded(b[k]) - m) + y * (Bounded(c[k]) - m);
-                    out[k] = sum.value, lost[k] = sum.bound;
+                    q[k] = sum.value, lost[k] = sum.bound;
                 }
-                const Bounded weight = w * Bounded(Space<Q>::weight(a));
-                if constexpr (kRational) out[3] = weight.value;
+                const Bounded weight = w * Bounded(a.weight());
+                q[3] = weight.value;
                 moved = std::max(moved, norm(lost) / weight.value),
                 off = std::max(off, weight.bound / weight.value);
-                far = std::max(far, norm(project(out)));
-                net.push_back(out);
+                far = std::max(far, norm(project(q)));
+                out.net.push_back(q);
             }
         }
-        const Index<2> extent{profile.basis().size(), basis().size()};
-        auto surface = Surface<W>::make({profile.basis(), basis()}, Net<2, W>(extent, std::move(net)));
         // The difference of two maps whose numerators differ by e and weights by d: (|e| + |point| d) / w.
         const double bound = (moved + far * off) / (1 - off) * (1 + 0x1p-48);
-        return std::pair(std::move(surface), off < 0.5 ? bound : kInfinity);
+        out.rounding = off < 0.5 ? bound : kInfinity;
+        return out;
     }
 
 private:
-    const Q& at(int row, int j) const { return rows_.net().view()({row, j}); }
+    const Hom<3>& at(int row, int j) const { return rows_.net().view()({row, j}); }
     int end(bool at_far) const { return at_far ? basis().size() - 1 : 0; }
 
-    Surface<Q> rows_;
+    Surface<Hom<3>> rows_;
     double x_, y_;
 };
 
-template <class R, class Q>
-Result<void> check_folds(const Curve<R>& rail, const RailFrame<Q>& frame, const std::vector<Vec<2>>& points) {
+Result<void> check_folds(const CurveGeometry<3>& rail, const RailFrame& frame,
+                         const std::vector<Vec<2>>& points) {
     const auto breaks = frame.basis().breaks();
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
         for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
             const double v = breaks[i] + part * (breaks[i + 1] - breaks[i]);
-            const auto jet = rail.template jet<2>(v);
-            const Vec<3> d = jet(1), dd = jet(2);
+            const auto j = jet<2>(rail, v);
+            const Vec<3> d = j.d[1], dd = j.d[2];
             const double speed = dot(d, d);
             const Vec<3> k = (1 / speed) * (dd - (dot(dd, d) / speed) * d);
             const auto [a, r, s] = frame.directions(v);
@@ -115,11 +114,32 @@ Result<void> check_folds(const Curve<R>& rail, const RailFrame<Q>& frame, const 
     return {};
 }
 
-}  // namespace
+Surface<Hom<3>> rational(const Surface<Vec<3>>& s) { return to_rational(s); }
+Surface<Hom<3>> rational(const Surface<Hom<3>>& s) { return s; }
 
-template <class R>
-Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
-                               const FrameSweepOptions& options) {
+std::vector<Vec<3>> numerators(std::span<const Hom<3>> net) {
+    std::vector<Vec<3>> out;
+    for (const Hom<3>& q : net) out.push_back({{q[0], q[1], q[2]}});
+    return out;
+}
+
+template <class W>
+Result<detail::SweptCurve> swept_curve(const BSplineBasis& along, const BSplineBasis& rail,
+                                       std::vector<W> net) {
+    const auto wall = Surface<W>::make({along, rail}, Net<2, W>({along.size(), rail.size()}, std::move(net)));
+    if (!wall) return std::unexpected(wall.error());
+    const Interval t = along.domain(), v = rail.domain();
+    const auto way = iso(*wall, 0, t.lo);
+    return detail::SweptCurve{*wall, iso(*wall, 1, v.lo), iso(*wall, 1, v.hi), way, way(v.lo), way(v.hi)};
+}
+
+using Rows = Result<FrameSweep<Hom<3>>>;
+
+// `rows`: what the polyline sweeps.
+Result<SolidAlong> solid_in_frame(
+    const RegionLoops& region, const CurveGeometry<3>& rail, bool rail_is_rational,
+    const FrameSweepOptions& options,
+    const std::function<Rows(const Curve<Vec<2>>&, double tolerance)>& sweep_rows) {
     std::vector<Vec<2>> points;
     Vec<2> most;
     if (auto ok = detail::each_point(region,
@@ -132,20 +152,13 @@ Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
         return std::unexpected(ok.error());
     if (points.empty() || !(most[0] > 0 && most[1] > 0))
         return refuse(RefusalKind::no_answer, "loops", "there is no region");
-    const Interval on = rail.basis().domain();
-    if (rail.basis().is_closed() || rail(on.lo) == rail(on.hi))
-        return refuse(RefusalKind::unsupported, "rail",
-                      "it ends where it begins, and the frame comes back at another angle");
     const auto polyline =
         Curve<Vec<2>>::make({*BSplineBasis::make(1, std::vector<double>{0, 0, 1, 2, 2})},
                             Net<1, Vec<2>>({3}, {Vec<2>{{most[0], 0}}, Vec<2>{}, Vec<2>{{0, most[1]}}}));
     if (!polyline) return refuse_within("loops", polyline.error());
-    FrameSweepOptions sixth = options;
-    sixth.tolerance = options.tolerance / 6;
-    auto rows = sweep(*polyline, rail, sixth);
+    auto rows = sweep_rows(*polyline, options.tolerance / 6);
     if (!rows) return std::unexpected(rows.error());
-    using Q = Swept<Vec<2>, R>;
-    const RailFrame<Q> frame(std::move(rows->surface), most[0], most[1]);
+    const RailFrame frame(std::move(rows->surface), most[0], most[1]);
     constexpr std::size_t kMost = std::size_t(1) << 24;
     if (points.size() > kMost / std::size_t(frame.basis().size()))
         return refuse(RefusalKind::limit, "tolerance",
@@ -161,24 +174,19 @@ Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
         return Extrusion{Line<3>{frame.origin(at_far), frame.axis(0, at_far)}, frame.axis(1, at_far),
                          SurfaceKind::plane};
     };
-    how.curve = [&](const CurveGeometry<2>& curve) {
-        return std::visit(
-            [&](const auto& c) -> Result<detail::SweptCurve> {
-                if constexpr (requires { c.net(); }) {
-                    auto [wall, bound] = frame.wall(c);
-                    if (!wall) return std::unexpected(wall.error());
-                    rounding = std::max(rounding, bound);
-                    const Interval t = c.basis().domain(), v = how.range;
-                    const auto way = iso(*wall, 0, t.lo);
-                    detail::SweptCurve out{*wall, iso(*wall, 1, v.lo), iso(*wall, 1, v.hi),
-                                           way,   way(v.lo),           way(v.hi)};
-                    out.tolerance = 2 * bound + at_caps;
-                    return out;
-                } else {
-                    return refuse(RefusalKind::unsupported, "loops", "is no spline");
-                }
-            },
-            curve);
+    const auto sweep_spline = [&](const Curve<Hom<2>>& c, bool is_rational) {
+        auto [net, moved] = frame.wall(c.net().flat());
+        rounding = std::max(rounding, moved);
+        auto out = is_rational ? swept_curve(c.basis(), frame.basis(), std::move(net))
+                               : swept_curve(c.basis(), frame.basis(), numerators(net));
+        if (out) out->tolerance = 2 * moved + at_caps;
+        return out;
+    };
+    how.curve = [&](const CurveGeometry<2>& curve) -> Result<detail::SweptCurve> {
+        if (const auto* c = std::get_if<Curve<Vec<2>>>(&curve))
+            return sweep_spline(to_rational(*c), rail_is_rational);
+        if (const auto* c = std::get_if<Curve<Hom<2>>>(&curve)) return sweep_spline(*c, true);
+        return refuse(RefusalKind::unsupported, "loops", "is no spline");
     };
     auto model = detail::sweep_region(region, how);
     if (!model) return std::unexpected(model.error());
@@ -189,6 +197,23 @@ Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
             text(options.tolerance, " is too small beside rounding, which may move points by ", rounding));
     out.model.approximations.push_back({"walls", "a frame of cubics along the rail", out.bound, 0});
     return out;
+}
+
+}  // namespace
+
+template <class R>
+Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
+                               const FrameSweepOptions& options) {
+    const Interval on = rail.basis().domain();
+    if (rail.basis().is_closed() || rail(on.lo) == rail(on.hi))
+        return refuse(RefusalKind::unsupported, "rail",
+                      "it ends where it begins, and the frame comes back at another angle");
+    return solid_in_frame(region, rail, Space<R>::kRational, options,
+                          [&](const Curve<Vec<2>>& polyline, double tolerance) -> Rows {
+                              auto rows = sweep(polyline, rail, {tolerance, options.x_at_start});
+                              if (!rows) return std::unexpected(rows.error());
+                              return FrameSweep<Hom<3>>{rational(rows->surface), rows->bound, rows->pieces};
+                          });
 }
 
 template Result<SolidAlong> solid_along(const RegionLoops&, const Curve<Vec<3>>&, const FrameSweepOptions&);

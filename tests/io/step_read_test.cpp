@@ -1,4 +1,4 @@
-// Our own reader of STEP files: text, geometry, boundaries, assemblies; damaged files; the corpus.
+// Our own reader of STEP files: text, geometry, boundaries, assemblies; the corpus.
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/step.hpp>
@@ -6,37 +6,19 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <algorithm>
-#include <ctime>
-#include <filesystem>
 #include <io/step_part21.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <support/corpus.hpp>
-#include <support/effort.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
-#include <support/sanitizer.hpp>
 #include <support/solids.hpp>
+#include <support/step_solids.hpp>
 
 namespace freiform::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-// A file around instances; #1 is the context, in millimetres and degrees.
-std::string file_of(std::string_view data, std::string_view unit = ".MILLI.,.METRE.") {
-    return text("ISO-10303-21;\nHEADER;FILE_DESCRIPTION((''),'2;1');FILE_NAME('','',(''),(''),'','','');",
-                "FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;\nDATA;\n",
-                "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#5))"
-                "GLOBAL_UNIT_ASSIGNED_CONTEXT((#2,#3))REPRESENTATION_CONTEXT('',''));\n"
-                "#2=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(",
-                unit,
-                "));\n#3=(CONVERSION_BASED_UNIT('DEGREE',#4)NAMED_UNIT(*)PLANE_ANGLE_UNIT());\n"
-                "#4=PLANE_ANGLE_MEASURE_WITH_UNIT(PLANE_ANGLE_MEASURE(0.0174532925),#6);\n"
-                "#5=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-6),#2,'','');\n"
-                "#6=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));\n",
-                data, "ENDSEC;\nEND-ISO-10303-21;\n");
-}
 
 double gap_of(const Model& m, const Face& f, const Coedge& c) {
     const Edge& e = m.edges[std::size_t(c.edge)];
@@ -130,18 +112,6 @@ TEST(StepText, damage_is_told_with_instance_and_byte) {
     EXPECT_TRUE(step::parse(deep).has_value());
 }
 
-// A face on a surface between edges; instance #30 is the surface.
-std::string solid_of(std::string_view faces, std::string_view rest) {
-    return file_of(
-        text("#10=ADVANCED_BREP_SHAPE_REPRESENTATION('',(#11),#1);\n#11=MANIFOLD_SOLID_BREP('part',#12);\n"
-             "#12=CLOSED_SHELL('',(",
-             faces, "));\n", rest));
-}
-
-constexpr std::string_view kFrame =
-    "#20=CARTESIAN_POINT('',(1.,2.,3.));\n#21=DIRECTION('',(0.,0.,1.));\n#22=DIRECTION('',(1.,0.,0.));\n"
-    "#23=AXIS2_PLACEMENT_3D('',#20,#21,#22);\n";
-
 TEST(StepRead, a_sphere_without_edges_gets_its_poles_and_a_seam) {
     const Model m = must(read_step(solid_of(
         "#24",
@@ -158,34 +128,6 @@ TEST(StepRead, a_sphere_without_edges_gets_its_poles_and_a_seam) {
     EXPECT_EQ(m.bodies.at(0).name, "part");
     expect_sound(m, "sphere");
     EXPECT_NEAR(volume_of(m, 0.02), 4 * kPi / 3 * 125, 8);
-}
-
-// A disc, a lateral face and perhaps another disc; circles of radius r at heights 0 and h.
-std::string round_solid(std::string_view surface, double top, bool tip) {
-    const auto disc = [](int id, int edge, int plane, const char* sense, const char* same) {
-        return text("#", id, "=ADVANCED_FACE('',(#", id + 1, "),#", plane, ",", same, ");\n#", id + 1,
-                    "=FACE_OUTER_BOUND('',#", id + 2, ",.T.);\n#", id + 2, "=EDGE_LOOP('',(#", id + 3,
-                    "));\n#", id + 3, "=ORIENTED_EDGE('',*,*,#", edge, ",", sense, ");\n");
-    };
-    const auto circle = [](int id, double z, double r) {
-        return text("#", id, "=EDGE_CURVE('',#", id + 1, ",#", id + 1, ",#", id + 3, ",.T.);\n#", id + 1,
-                    "=VERTEX_POINT('',#", id + 2, ");\n#", id + 2, "=CARTESIAN_POINT('',(", 1 + r, ",2.,", z,
-                    "));\n#", id + 3, "=CIRCLE('',#", id + 4, ",", r, ");\n#", id + 4,
-                    "=AXIS2_PLACEMENT_3D('',#", id + 5, ",#21,#22);\n#", id + 5,
-                    "=CARTESIAN_POINT('',(1.,2.,", z, "));\n#", id + 6, "=PLANE('',#", id + 4, ");\n");
-    };
-    std::string rest =
-        text(kFrame, "#30=", surface, ";\n", circle(100, 3, 2), disc(40, 100, 106, ".F.", ".F."));
-    if (!tip) rest += circle(110, 3 + top, 2) + disc(50, 110, 116, ".T.", ".T.");
-    rest += "#60=ADVANCED_FACE('',(#61";
-    if (!tip) rest += ",#62";
-    rest +=
-        "),#30,.T.);\n#61=FACE_BOUND('',#63,.T.);\n#63=EDGE_LOOP('',(#64));\n#64=ORIENTED_EDGE('',*,*,#100,."
-        "T.);\n";
-    if (!tip)
-        rest +=
-            "#62=FACE_BOUND('',#65,.T.);\n#65=EDGE_LOOP('',(#66));\n#66=ORIENTED_EDGE('',*,*,#110,.F.);\n";
-    return solid_of(tip ? "#40,#60" : "#40,#50,#60", rest);
 }
 
 TEST(StepRead, a_tube_without_a_seam_gets_one_and_a_cone_its_apex) {
@@ -366,74 +308,6 @@ TEST(StepCorpus, solids_have_the_faces_and_volumes_that_another_reader_finds) {
         for (const Vertex& v : m.vertices) box.add(v.point);
         EXPECT_NEAR(volume_of(m, 5e-4 * box.diagonal()) * unit * unit * unit, volume, 1e-2 * volume) << name;
         expect_sound(m, name);
-    }
-}
-
-// Bytes changed, lines moved and numbers replaced: a model or a refusal that says something, soon.
-std::string mutant(const std::string& seed, Random& r) {
-    constexpr std::string_view kPieces[] = {"#1",      "#999999", "$",  "*",   "1.E308", "-0.", "()",
-                                            "(",       ")",       "'",  ";",   ".T.",    ".F.", "0",
-                                            "1.E-300", ",",       "/*", "NAN", "\\X2\\"};
-    std::string s = seed;
-    for (int k = r.integer(1, 8); k > 0 && !s.empty(); --k) {
-        const auto at = std::size_t(r.integer(0, int(s.size()) - 1));
-        switch (r.integer(0, 5)) {
-            case 0:
-                s[at] = char(r.integer(0, 255));
-                break;
-            case 1:
-                s.erase(at, std::size_t(r.integer(1, 40)));
-                break;
-            case 2:
-                s.insert(at, kPieces[r.integer(0, int(std::size(kPieces)) - 1)]);
-                break;
-            case 3: {  // another number in place of a reference
-                const std::size_t hash = s.find('#', at);
-                if (hash != std::string::npos) s.replace(hash, 2, text("#", r.integer(1, 120)));
-                break;
-            }
-            case 4: {  // a statement again, elsewhere
-                const std::size_t begin = s.find('\n', at), end = s.find('\n', begin + 1);
-                if (end != std::string::npos)
-                    s.insert(s.find('\n', s.size() / 2) + 1, s.substr(begin + 1, end - begin));
-                break;
-            }
-            default: {  // a digit
-                const std::size_t digit = s.find_first_of("0123456789", at);
-                if (digit != std::string::npos) s[digit] = char('0' + r.integer(0, 9));
-            }
-        }
-    }
-    return s;
-}
-
-// 10,000 of each of eight files; each within a second, all in a process that stays below 256 MiB.
-TEST(StepDamage, mutants_are_models_or_refusals_at_once_and_in_little_memory) {
-    std::vector<std::string> seeds{round_solid("CYLINDRICAL_SURFACE('',#23,2.)", 10, false),
-                                   round_solid("CONICAL_SURFACE('',#23,2.,-45.)", 0, true),
-                                   round_solid("SPHERICAL_SURFACE('',#23,2.)", 0, true)};
-    for (const char* name : {"composite", "curves", "parts", "repositioned", "sets"})
-        seeds.push_back(must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/fuzz/seeds/step/", name, ".stp"),
-                                       std::size_t(1) << 20)));
-    const char* named = std::getenv("FREIFORM_STEP_MUTANTS");
-    const int count = named != nullptr ? std::atoi(named) : cases(10'000 * int(seeds.size()));
-    const Effort effort = effort_of([&] {
-        Random r(5);
-        int models = 0, silent = 0;
-        std::clock_t longest = 0;
-        for (int i = 0; i < count; ++i) {
-            const std::string bytes = mutant(seeds[std::size_t(i) % seeds.size()], r);
-            const std::clock_t begin = std::clock();
-            const auto m = read_step(bytes, {.memory_bytes = 100 << 20});
-            longest = std::max(longest, std::clock() - begin);
-            models += m.has_value();
-            silent += !m && m.error().message.empty();
-        }
-        return silent == 0 && models > count / 10 && models < count && longest < CLOCKS_PER_SEC;
-    });
-    EXPECT_TRUE(effort.ended);
-    if (kIsMeasured) {
-        EXPECT_LT(effort.mebibytes, 256);
     }
 }
 

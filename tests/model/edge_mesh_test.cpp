@@ -134,10 +134,10 @@ TEST(EdgeMesh, what_short_spans_ask_for_is_not_asked_for_everywhere) {
             return Curve<Vec<2>>::trusted({*basis}, Net<1, Vec<2>>({int(q.size())}, q));
         };
         const auto needs = OneFace(curve(1), {0, 6}).needs(0.003);
-        EXPECT_LE(needs.size(), 80u) << span;
+        EXPECT_LE(needs.size(), 60u) << span;
         EXPECT_GE(needs.size(), 9u) << span;
         const auto on_wall = OneFace(curve(0.125), {0, 6}, uneven_wall()).needs(0.003);
-        EXPECT_LE(on_wall.size(), 80u) << span;
+        EXPECT_LE(on_wall.size(), 60u) << span;
         EXPECT_GE(on_wall.size(), 9u) << span;
         OneFace closed(curve(1), {0, 6});
         closed.model.edges[0].end = 0;

@@ -1,0 +1,59 @@
+#include "block_judge_detail.hpp"
+
+namespace freiform {
+
+namespace {
+
+struct BlockJudge {
+    const CurvatureTree& tree;
+    const Judge& judge;
+    double tolerance;
+    const CurvatureTree::Block& block;
+
+    // Of a cell whose corners are at `corner`, of which `plain` are.
+    double bound(const Bending& at, const Box<2>& box, const Vec<2>& cell, int plain) const {
+        const std::array<Vec<2>, 3> corner{box.lo, box.lo + Vec<2>{{cell[0], 0}},
+                                           box.lo + Vec<2>{{0, cell[1]}}};
+        const double found = judge(at, box, corner, plain, block.node).bound;
+        return found <= tolerance ? found : kInfinity;
+    }
+
+    JudgedBlock leaf() const {
+        const Bending& at = tree.part_bendings(block)[0];
+        const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
+        JudgedBlock out;
+        out.scale = at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
+        out.flat = bound(at, block.box, cell, 3);
+        if (!tree.is_all_plain()) out.usual = bound(at, block.box, cell, 0);
+        if (std::isfinite(out.usual)) out.footless = bound(at, block.box, cell, 1);
+        return out;
+    }
+
+    // Of the first cell of each part, as if corners were plain where a foot is not needed.
+    JudgedBlock parts() const {
+        const Vec<2> cell = kCellRounding * BlockGrid(block.box, block.halves).largest_cell();
+        const bool all_plain = tree.is_all_plain();
+        const BlockGrid parts(block.box, block.parts);
+        const Bending* at = tree.part_bendings(block).data();
+        JudgedBlock out{0, 0};
+        for (int i = 0; i < parts.cells(0); ++i)
+            for (int j = 0; j < parts.cells(1); ++j, ++at) {
+                const Box<2> box{parts.at(i, j), parts.at(i + 1, j + 1)};
+                out.usual = std::max(out.usual, bound(*at, box, cell, all_plain ? 3 : 0));
+                if (!std::isfinite(out.usual)) return out;
+                if (!all_plain && std::isfinite(out.footless))
+                    out.footless = std::max(out.footless, bound(*at, box, cell, 1));
+            }
+        return out;
+    }
+};
+
+}  // namespace
+
+JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                         const CurvatureTree::Block& block) {
+    const BlockJudge judged{tree, judge, tolerance, block};
+    return block.first_part < 0 ? judged.leaf() : judged.parts();
+}
+
+}  // namespace freiform

@@ -1,0 +1,42 @@
+// Which blocks of a tree keep the tolerance as they are.
+#pragma once
+#include "judge_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+
+namespace freiform {
+
+constexpr double kCellRounding = 1 + 1e-12;  // of what judges cells
+
+// The cells of a block.
+struct BlockGrid {
+    BlockGrid(const Box<2>& box, const CurvatureTree::Halves& halves)
+        : lines{halved(box.side(0), halves[0]), halved(box.side(1), halves[1])} {}
+
+    std::array<std::vector<double>, 2> lines;
+
+    int cells(int axis) const { return int(lines[std::size_t(axis)].size()) - 1; }
+    Vec<2> at(int i, int j) const { return {{lines[0][std::size_t(i)], lines[1][std::size_t(j)]}}; }
+    Vec<2> largest_cell() const {
+        Vec<2> out{};
+        for (int d = 0; d < 2; ++d)
+            for (std::size_t k = 0; k + 1 < lines[std::size_t(d)].size(); ++k)
+                out[d] = std::max(out[d], lines[std::size_t(d)][k + 1] - lines[std::size_t(d)][k]);
+        return out;
+    }
+    bool is_inner(int i, int j) const { return i > 0 && j > 0 && i < cells(0) && j < cells(1); }
+};
+
+// Bounds, where all points have feet, some have none, all are plain (of leaves alone); infinite above the
+// tolerance.
+struct JudgedBlock {
+    double usual = kInfinity, footless = kInfinity, flat = kInfinity;
+    Vec<2> scale{};  // what makes parameters lengths, of leaves
+};
+
+JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                         const CurvatureTree::Block& block);
+
+}  // namespace freiform

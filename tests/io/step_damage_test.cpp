@@ -1,0 +1,85 @@
+// Damaged STEP files.
+#include <freiform/io/file.hpp>
+#include <freiform/io/step_read.hpp>
+
+#include <cstdlib>
+#include <ctime>
+#include <support/effort.hpp>
+#include <support/random.hpp>
+#include <support/refusal.hpp>
+#include <support/sanitizer.hpp>
+#include <support/step_solids.hpp>
+
+namespace freiform::test {
+namespace {
+
+// Bytes changed, lines moved and numbers replaced: a model or a refusal that says something, soon.
+std::string mutant(const std::string& seed, Random& r) {
+    constexpr std::string_view kPieces[] = {"#1",      "#999999", "$",  "*",   "1.E308", "-0.", "()",
+                                            "(",       ")",       "'",  ";",   ".T.",    ".F.", "0",
+                                            "1.E-300", ",",       "/*", "NAN", "\\X2\\"};
+    std::string s = seed;
+    for (int k = r.integer(1, 8); k > 0 && !s.empty(); --k) {
+        const auto at = std::size_t(r.integer(0, int(s.size()) - 1));
+        switch (r.integer(0, 5)) {
+            case 0:
+                s[at] = char(r.integer(0, 255));
+                break;
+            case 1:
+                s.erase(at, std::size_t(r.integer(1, 40)));
+                break;
+            case 2:
+                s.insert(at, kPieces[r.integer(0, int(std::size(kPieces)) - 1)]);
+                break;
+            case 3: {  // another number in place of a reference
+                const std::size_t hash = s.find('#', at);
+                if (hash != std::string::npos) s.replace(hash, 2, text("#", r.integer(1, 120)));
+                break;
+            }
+            case 4: {  // a statement again, elsewhere
+                const std::size_t begin = s.find('\n', at), end = s.find('\n', begin + 1);
+                if (end != std::string::npos)
+                    s.insert(s.find('\n', s.size() / 2) + 1, s.substr(begin + 1, end - begin));
+                break;
+            }
+            default: {  // a digit
+                const std::size_t digit = s.find_first_of("0123456789", at);
+                if (digit != std::string::npos) s[digit] = char('0' + r.integer(0, 9));
+            }
+        }
+    }
+    return s;
+}
+
+// 10,000 of each of eight files; each within a second, all in a process that stays below 256 MiB.
+TEST(StepDamage, mutants_are_models_or_refusals_at_once_and_in_little_memory) {
+    std::vector<std::string> seeds{round_solid("CYLINDRICAL_SURFACE('',#23,2.)", 10, false),
+                                   round_solid("CONICAL_SURFACE('',#23,2.,-45.)", 0, true),
+                                   round_solid("SPHERICAL_SURFACE('',#23,2.)", 0, true)};
+    for (const char* name : {"composite", "curves", "parts", "repositioned", "sets"})
+        seeds.push_back(must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/fuzz/seeds/step/", name, ".stp"),
+                                       std::size_t(1) << 20)));
+    const char* named = std::getenv("FREIFORM_STEP_MUTANTS");
+    const int count = named != nullptr ? std::atoi(named) : cases(10'000 * int(seeds.size()));
+    const Effort effort = effort_of([&] {
+        Random r(5);
+        int models = 0, silent = 0;
+        std::clock_t longest = 0;
+        for (int i = 0; i < count; ++i) {
+            const std::string bytes = mutant(seeds[std::size_t(i) % seeds.size()], r);
+            const std::clock_t begin = std::clock();
+            const auto m = read_step(bytes, {.memory_bytes = 100 << 20});
+            longest = std::max(longest, std::clock() - begin);
+            models += m.has_value();
+            silent += !m && m.error().message.empty();
+        }
+        return silent == 0 && models > count / 10 && models < count && longest < CLOCKS_PER_SEC;
+    });
+    EXPECT_TRUE(effort.ended);
+    if (kIsMeasured) {
+        EXPECT_LT(effort.mebibytes, 256);
+    }
+}
+
+}  // namespace
+}  // namespace freiform::test
