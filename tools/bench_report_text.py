@@ -247,7 +247,7 @@ Other comparisons: [evaluation of many points](EVALUATION.md), with plots agains
   to the nearest triangle of the same face, divided by the tolerance. One program text (bench/common/measure.cpp)
   measures both.
 - Measured error: the same distance in the unit of the file. Time at the same error: that of Open CASCADE at the deflection with which its
-  measured deviation is at most the tolerance (the first found by dividing by four, then by bisection; "–": none was found), and the time of
+  measured deviation is at most the tolerance (the first found by dividing by four, then by bisection; "–": none was found, or none at a larger tolerance, and it was not looked for), and the time of
   freiform divided by it. A red mark stands where Open CASCADE does better.
 - Bound: what freiform proves of the distance between faces and mesh (`error_bound`), divided by the tolerance. Gap: how far the model
   contradicts itself along its edges (`boundary_gap`), likewise. Kept: the measured deviation is no larger than their sum.
