@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 #if FREIFORM_THREADS
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/info.h>
@@ -13,7 +14,10 @@ namespace freiform {
 
 namespace {
 std::atomic<int> g_max_threads{0};
-}
+#if FREIFORM_THREADS
+thread_local bool t_is_inside = false;  // of a loop
+#endif
+}  // namespace
 
 void set_max_threads(int threads) { g_max_threads = std::max(threads, 0); }
 int max_threads() { return g_max_threads; }
@@ -22,16 +26,24 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
     grain = std::max<std::size_t>(grain, 1);
 #if FREIFORM_THREADS
     if (const int threads = g_max_threads; n >= 2 * grain && threads != 1) {
+        const auto loop = [&] {
+            oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain),
+                                      [&](const auto& range) {
+                                          const bool before = std::exchange(t_is_inside, true);
+                                          for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
+                                          t_is_inside = before;
+                                      });
+        };
+        // A loop in a loop has the threads of that one; who waits for it takes up nothing else.
+        if (t_is_inside) {
+            oneapi::tbb::this_task_arena::isolate(loop);
+            return;
+        }
         // More threads than the machine has would only make TBB print a warning.
         oneapi::tbb::task_arena arena(threads > 0
                                           ? std::min(threads, oneapi::tbb::info::default_concurrency())
                                           : oneapi::tbb::task_arena::automatic);
-        arena.execute([&] {
-            oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain),
-                                      [&](const auto& range) {
-                                          for (std::size_t i = range.begin(); i != range.end(); ++i) f(i);
-                                      });
-        });
+        arena.execute(loop);
         return;
     }
 #endif

@@ -22,8 +22,8 @@
 // at a small angle, are decided in integers where the coefficients are those given (exact_pair.cpp). Curves
 // that run along each other would be cut into parts that are flat within rounding, 10^8 of them: if a pair of
 // pieces takes long, overlaps are looked for and set aside (overlap_detail.hpp).
-//   Pieces on both sides of a knot find the same zero, or both a zero beyond their end: if both cross the
-//   same
+// What integers leave open too, as where the tips of cusps meet, is halved on to the size of rounding.
+//   Pieces on both sides of a knot find the same zero, or both a zero beyond their end: if both cross the same
 // way, one follows from continuity.
 //
 // In space, Y is an inverse from the left. Zeros of Y F are unique as before; F itself does not vanish there
@@ -116,11 +116,15 @@ private:
         return is_at_end(s) || std::max(s.box[0].length(), s.box[1].length()) > kWidest;
     }
 
+    static bool is_left_open(int i, int j, const Simple<2>& s, Overlaps<P>& overlaps) {
+        return D == 3 || (is_unclear(s) && overlaps.exact(i, j));
+    }
+
     void take(int i, int j, Overlaps<P>& overlaps) {
         exact_.clear();
         std::vector<Boxes> unclear;
         for (const Simple<2>& s : search_.found()) {
-            if (D == 3 || (is_unclear(s) && overlaps.exact(i, j)))
+            if (is_left_open(i, j, s, overlaps))
                 unclear.push_back(s.box);
             else
                 add_simple(i, j, s, is_at_end(s));
@@ -165,6 +169,16 @@ private:
                 if (D == 3 || !is_known(c)) add_exact(i, j, c);
             return;
         }
+        // Zeros that are known, but at an end, are open as well.
+        std::vector<Boxes> left{box};
+        if (auto narrow = search_.narrowed(box)) {
+            left = *std::move(narrow);
+            for (const Simple<2>& s : search_.found())
+                if (is_left_open(i, j, s, overlaps) && touch(s.box, box)) left.push_back(s.box);
+        }
+        for (const Boxes& b : clusters(left)) add_possible(i, j, b, overlaps);
+    }
+    void add_possible(int i, int j, const Boxes& box, Overlaps<P>& overlaps) {
         Raw<D, 2> r;
         r.c.box = box;
         r.c.at = nearest(i, j, box);

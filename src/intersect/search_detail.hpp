@@ -4,6 +4,7 @@
 #include "parts_detail.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace freiform::detail {
 
@@ -92,6 +93,25 @@ public:
     const std::vector<Simple<N>>& found() const { return found_; }
     const std::vector<Open<N>>& open() const { return open_; }
 
+    // Where in the box open parts of the last pair of pieces are near each other, if flat ones are halved as
+    // long as they are longer than rounding. Those that run along each other have no end of that, but where
+    // the tips of two cusps meet, what is near is far shorter than what is flat. Nothing: it takes too long.
+    std::optional<std::vector<std::array<Interval, N>>> narrowed(const std::array<Interval, N>& box) {
+        constexpr int kMostLooks = 2000;
+        pairs_.clear();
+        for (const Open<N>& o : open_)
+            if (overlap(o.box, box)) pairs_.push_back({o.part_a, o.part_b});
+        std::vector<std::array<Interval, N>> out;
+        for (int looked_at = 0; !pairs_.empty(); ++looked_at) {
+            if (looked_at == kMostLooks) return std::nullopt;
+            const auto [ia, ib] = pairs_.back();
+            pairs_.pop_back();
+            const std::optional<Near> n = near(ia, ib);
+            if (n && (n->tiny || !halve(ia, ib, n->first_is_larger))) out.push_back(on(ia, ib));
+        }
+        return out;
+    }
+
 private:
     static constexpr int kStuck = 300;
     static constexpr double kFlat = 16;  // times the rounding
@@ -101,29 +121,43 @@ private:
     };
     using Columns = std::array<Vec<D>, N>;
 
-    void look(int ia, int ib, bool over_budget) {
+    // Of two parts that are not proven to be apart: `flat`, neither is wide beside rounding.
+    struct Near {
+        Rows<N, D> rows;
+        bool flat = false, tiny = false, first_is_larger = false;
+    };
+    std::optional<Near> near(int ia, int ib) const {
         const auto& p = a_[ia];
         const auto& q = b_[ib];
         const double e = p.error + q.error;
         for (int k = 0; k < D; ++k)
-            if (p.lo[k] - q.hi[k] > e || q.lo[k] - p.hi[k] > e) return;
+            if (p.lo[k] - q.hi[k] > e || q.lo[k] - p.hi[k] > e) return std::nullopt;
         Columns c;
         for (std::size_t k = 0; k < A::kParams; ++k) c[k] = a_.chord(ia, int(k));
         for (std::size_t k = 0; k < B::kParams; ++k) c[A::kParams + k] = -b_.chord(ib, int(k));
-        const Rows<N, D> rows = rows_of(c);
+        Near out;
+        out.rows = rows_of(c);
         // Closed parts have no chord, so nothing to be flat along.
-        bool flat = std::any_of(c.begin(), c.end(), [](const Vec<D>& v) { return max_abs(v) > 0; });
-        if (apart(ia, ib, rows.r, e, flat)) return;
+        out.flat = std::any_of(c.begin(), c.end(), [](const Vec<D>& v) { return max_abs(v) > 0; });
+        if (apart(ia, ib, out.rows.r, e, out.flat)) return std::nullopt;
         bool ignored = true;
-        for (int k = 0; k < rows.extra; ++k)
-            if (apart(ia, ib, std::array{rows.more[std::size_t(k)]}, e, ignored)) return;
-        if (rows.det != 0) {
-            const double q_norm = contraction(ia, ib, rows);
-            if (q_norm < 0.9 && settle(ia, ib, rows, q_norm)) return;
-        }
+        for (int k = 0; k < out.rows.extra; ++k)
+            if (apart(ia, ib, std::array{out.rows.more[std::size_t(k)]}, e, ignored)) return std::nullopt;
         const double size_a = p.extent(), size_b = q.extent();
-        const bool tiny = std::max(size_a, size_b) <= kFlat * e;
-        if (over_budget || tiny || flat || !halve(ia, ib, size_a >= size_b)) give_up(ia, ib, over_budget);
+        out.tiny = std::max(size_a, size_b) <= kFlat * e;
+        out.first_is_larger = size_a >= size_b;
+        return out;
+    }
+
+    void look(int ia, int ib, bool over_budget) {
+        const std::optional<Near> n = near(ia, ib);
+        if (!n) return;
+        if (n->rows.det != 0) {
+            const double q_norm = contraction(ia, ib, n->rows);
+            if (q_norm < 0.9 && settle(ia, ib, n->rows, q_norm)) return;
+        }
+        if (over_budget || n->tiny || n->flat || !halve(ia, ib, n->first_is_larger))
+            give_up(ia, ib, over_budget);
     }
 
     bool halve(int ia, int ib, bool first) {

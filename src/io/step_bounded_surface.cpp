@@ -51,7 +51,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::segment_edge(std::uint32_t curve, std
 }
 
 Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart, LoopBuilder& loops) {
-    const auto segments = segment_list(i);
+    const auto segments = segments_in(f_, i);
     if (!segments) return std::unexpected(segments.error());
     const auto refused = [&](std::string_view what) {
         return refuse(RefusalKind::invalid, f_.label(i), text(what, " (byte ", f_.instances[i].at, ")"));
@@ -65,24 +65,17 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
     std::vector<int> corners;
     Box<3> box;
     // Corners that other boundaries have made, before new ones are.
-    for (const std::uint32_t s : *segments) {
-        const auto g = segment_fields(s);
-        const auto parent = g ? g->reference(2, "curve") : Result<std::uint32_t>(std::unexpected(g.error()));
-        if (!parent) return std::unexpected(parent.error());
-        const auto known = edges_.find(*parent);
+    for (const CompositeSegment& s : *segments) {
+        const auto known = edges_.find(s.curve);
         if (known != edges_.end() && known->second && known->second->edge >= 0) {
             const Edge& e = out_.model.edges[std::size_t(known->second->edge)];
             corners.insert(corners.end(), {e.start, e.end});
         }
     }
-    for (const std::uint32_t s : *segments) {
-        const auto g = segment_fields(s);
-        if (!g) return std::unexpected(g.error());
-        const auto parent = g->reference(2, "curve");
-        if (!parent) return std::unexpected(parent.error());
-        const auto made = segment_edge(*parent, corners);
+    for (const CompositeSegment& s : *segments) {
+        const auto made = segment_edge(s.curve, corners);
         if (!made) return std::unexpected(made.error());
-        list.push_back({*made, g->flag(1), s});
+        list.push_back({*made, s.forward, s.instance});
         const Edge& e = out_.model.edges[std::size_t(made->edge)];
         for (int k = 0; k <= 4; ++k) box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * k / 4).value());
     }

@@ -27,9 +27,6 @@ namespace freiform::step {
 
 namespace {
 
-constexpr int kMostWraps = 100;
-constexpr double kJoint = 1e-6;  // of the size of the curve: nearer ends are one, as in loops
-
 std::size_t control_points(const CurveGeometry<3>& c) {
     return std::visit(
         [](const auto& g) -> std::size_t {
@@ -45,40 +42,6 @@ std::size_t control_points(const CurveGeometry<3>& c) {
 
 Vec<3> ShapeReader::Segment::end(bool last) const {
     return jet<0>(shape, last != backward ? on.hi : on.lo).value();
-}
-
-// The composite curve that the instance is, or wraps as a curve on a surface; kMissing if there is none.
-std::uint32_t composite_in(const File& f, std::uint32_t i) {
-    for (int depth = 0; depth < kMostWraps; ++depth) {
-        for (const Type t : {Type::COMPOSITE_CURVE, Type::COMPOSITE_CURVE_ON_SURFACE, Type::BOUNDARY_CURVE,
-                             Type::OUTER_BOUNDARY_CURVE})
-            if (f.is(i, t)) return i;
-        std::uint32_t next = kMissing;
-        for (const Type t : {Type::SURFACE_CURVE, Type::SEAM_CURVE, Type::INTERSECTION_CURVE})
-            if (const std::uint32_t list = f.part(i, t); list != kMissing)
-                if (const auto of = Fields(f, i, list).reference(f.type(i) == Type::unknown ? 0 : 1, "curve"))
-                    next = *of;
-        if (next == kMissing) break;
-        i = next;
-    }
-    return kMissing;
-}
-
-Result<std::vector<std::uint32_t>> ShapeReader::segment_list(std::uint32_t composite) const {
-    for (const Type t : {Type::COMPOSITE_CURVE, Type::COMPOSITE_CURVE_ON_SURFACE, Type::BOUNDARY_CURVE,
-                         Type::OUTER_BOUNDARY_CURVE}) {
-        const std::uint32_t list = f_.part(composite, t);
-        if (list == kMissing) continue;
-        const Fields f(f_, composite, list);
-        if (f.size() >= 2) return f.references(f.size() - 2, "segments");
-    }
-    return refuse(RefusalKind::unreadable, f_.label(composite), "is a boundary without segments");
-}
-
-Result<Fields> ShapeReader::segment_fields(std::uint32_t segment) const {
-    const Type other = Type::REPARAMETRISED_COMPOSITE_CURVE_SEGMENT;
-    const bool named = f_.is(segment, Type::COMPOSITE_CURVE_SEGMENT) || !f_.is(segment, other);
-    return Fields::of(f_, segment, named ? Type::COMPOSITE_CURVE_SEGMENT : other, 3);
 }
 
 Result<std::vector<ShapeReader::Segment>> ShapeReader::segments_of(std::uint32_t composite) {
@@ -101,16 +64,12 @@ Result<std::vector<ShapeReader::Segment>> ShapeReader::segments_of(std::uint32_t
         const Piece p = todo.back();
         todo.pop_back();
         if (const std::uint32_t inner = composite_in(f_, p.curve); inner != kMissing) {
-            auto ids = segment_list(inner);
-            if (!ids) return std::unexpected(ids.error());
-            if (!pay(ids->size() + 1)) return too_many();
-            if (p.forward) std::ranges::reverse(*ids);  // the last one is taken first
-            for (const std::uint32_t id : *ids) {
-                const auto f = segment_fields(id);
-                const auto of = f ? f->reference(2, "curve") : std::unexpected(f.error());
-                if (!of) return std::unexpected(of.error());
-                todo.push_back({id, *of, f->flag(1) == p.forward});
-            }
+            auto parts = segments_in(f_, inner);
+            if (!parts) return std::unexpected(parts.error());
+            if (!pay(parts->size() + 1)) return too_many();
+            if (p.forward) std::ranges::reverse(*parts);  // the last one is taken first
+            for (const CompositeSegment& s : *parts)
+                todo.push_back({s.instance, s.curve, s.forward == p.forward});
             continue;
         }
         auto c = curve_in_space(p.curve, nullptr);
@@ -241,7 +200,7 @@ Result<std::vector<ShapeReader::EdgeMade>> ShapeReader::composite_edge(const Fie
                                                                        const std::array<int, 2>& vertices) {
     auto row = segments_of(composite);
     if (!row) return std::unexpected(row.error());
-    const double size = row_size(*row), joint = std::max(tolerance_, kJoint * size);
+    const double size = row_size(*row), joint = std::max(tolerance_, kNearEnds * size);
     const auto turned = turn_segments(*row, joint);
     const auto turn_around = [&] {
         std::ranges::reverse(*row);
@@ -297,7 +256,7 @@ Result<std::vector<ShapeReader::EdgeMade>> ShapeReader::composite_edge(const Fie
 Result<void> ShapeReader::free_composite(std::uint32_t composite) {
     auto row = segments_of(composite);
     if (!row) return std::unexpected(row.error());
-    const double joint = std::max(tolerance_, kJoint * row_size(*row));
+    const double joint = std::max(tolerance_, kNearEnds * row_size(*row));
     turn_segments(*row, joint);
     const auto vertex = [&](const Vec<3>& p) {
         out_.model.vertices.push_back({p, 0});

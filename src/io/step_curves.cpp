@@ -192,9 +192,7 @@ Result<BoundedCurve> GeometryReader::basic_curve(std::uint32_t i) {
             if (!c) return std::unexpected(c.error());
             return BoundedCurve{std::move(*c), false, std::nullopt};
         }
-    if (composite_in(f_, i) != kMissing)
-        return refuse(RefusalKind::unsupported, f_.label(i),
-                      "is a composite curve; such are read as edges, wires and boundaries alone");
+    if (const std::uint32_t row = composite_in(f_, i); row != kMissing) return composite(row);
     return refuse(RefusalKind::unsupported, f_.label(i),
                   text("is a curve that has no exact counterpart here (byte ", f_.instances[i].at, ")"));
 }
@@ -231,7 +229,12 @@ Result<BoundedCurve> GeometryReader::trimmed(std::uint32_t i, BoundedCurve basis
         });
         if (bad) return std::unexpected(*bad);
         if (!parameter && !projected) return f->refused("has a trim that is neither a point nor a parameter");
-        t[std::size_t(end)] = parameter && !(prefers_points && projected) ? *parameter : *projected;
+        if (basis.has_own_parameters && !projected)
+            return f->refused("is trimmed by a parameter of a composite curve with conics",
+                              RefusalKind::unsupported);
+        t[std::size_t(end)] = parameter && !((prefers_points || basis.has_own_parameters) && projected)
+                                  ? *parameter
+                                  : *projected;
     }
     bool backward = !f->flag(4);
     double lo = backward ? t[1] : t[0], hi = backward ? t[0] : t[1];
@@ -296,7 +299,14 @@ Result<BoundedCurve> GeometryReader::unwrapped_curve(std::uint32_t i) {
 
 Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
     auto known = curves_.find(i);
-    if (known == curves_.end()) known = curves_.emplace(i, unwrapped_curve(i)).first;
+    if (known == curves_.end()) {
+        // Until it is known; composite curves may come back to it.
+        const Refusal itself{RefusalKind::invalid, f_.label(i), "is a curve that is a part of itself"};
+        known = curves_.emplace(i, std::unexpected(itself)).first;
+        Result<BoundedCurve>& own = known->second;
+        own = unwrapped_curve(i);
+        known = curves_.find(i);
+    }
     const Result<BoundedCurve>& c = known->second;
     if (c && c->approximated != kMissing) approximated.push_back({c->approximated, c->bound});
     return c;

@@ -24,13 +24,26 @@ struct BoundedCurve {
     std::uint32_t approximated = kMissing;
     double bound = 0;
     bool has_angles = false;
+    bool has_own_parameters = false;  // not the standard's, between the ends of segments
 };
+
+// A segment of a composite curve: itself, and the curve that it is a part of.
+struct CompositeSegment {
+    std::uint32_t instance, curve;
+    bool forward;
+};
+Result<std::vector<CompositeSegment>> segments_in(const File& file, std::uint32_t composite);
+
+// The composite curve that the instance is, or wraps as a curve on a surface; kMissing if there is none.
+std::uint32_t composite_in(const File& file, std::uint32_t i);
+
+constexpr double kNearEnds = 1e-6;  // of the size of a curve: nearer ends are one, as in loops
 
 // Geometry by instance, converted once. Lengths are in the unit of the file, angles times `angle` are
 // radians.
 class GeometryReader {
 public:
-    explicit GeometryReader(const File& file) : f_(file) {}
+    explicit GeometryReader(const File& file) : f_(file), composite_points_left_(4 * file.tokens.size()) {}
     double angle = 1;
     double tolerance = 0;  // of the file: what is a spline near something may be off by a part of it
 
@@ -68,6 +81,7 @@ private:
     Result<Vec<3>> triple(const Fields& f, int i, std::string_view what) const;
     Result<Vec<3>> vector(std::uint32_t i) const;
     Result<BoundedCurve> basic_curve(std::uint32_t i);
+    Result<BoundedCurve> composite(std::uint32_t i);
     Result<CurveGeometry<3>> spline_curve(std::uint32_t i) const;
     Result<CurveGeometry<3>> conic(std::uint32_t i, Type type) const;
     Result<BoundedCurve> unwrapped_curve(std::uint32_t i);
@@ -81,6 +95,9 @@ private:
 
     const File& f_;
     std::unordered_map<std::uint32_t, Result<BoundedCurve>> curves_;
+    std::size_t composite_points_left_;  // of composite curves as one, with what is in them
+    int composite_depth_ = 0;
+    bool has_own_parameters_ = false;  // a profile of the surface that is made now
 };
 
 // The parameter of the point of the curve that is nearest to `p`, among some tries; `distance` to it.

@@ -104,8 +104,6 @@ private:
     bool is_tiny(const CurveGeometry<3>& c, Interval on) const;
     void tell_ends(std::uint32_t edge, const std::array<int, 2>& vertices, double off);
     // step_composite.cpp
-    Result<std::vector<std::uint32_t>> segment_list(std::uint32_t composite) const;
-    Result<Fields> segment_fields(std::uint32_t segment) const;
     Result<std::vector<Segment>> segments_of(std::uint32_t composite);
     static double row_size(const std::vector<Segment>& row);
     static std::vector<std::uint32_t> turn_segments(std::vector<Segment>& row, double joint);
@@ -172,9 +170,6 @@ private:
 
 // Of what has its name first; some programs write NONE for none.
 std::string name_in(const Fields& f);
-
-// The composite curve that the instance is, or is in space; kMissing if there is none.
-std::uint32_t composite_in(const File& file, std::uint32_t i);
 
 // Whether an item of a representation is of triangles, or of what stands beside them.
 bool is_tessellated(const File& file, std::uint32_t item);

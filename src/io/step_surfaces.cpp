@@ -169,6 +169,7 @@ Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) const {
 Result<CurveGeometry<3>> GeometryReader::profile(std::uint32_t i) {
     auto c = curve(i);
     if (!c) return std::unexpected(c.error());
+    has_own_parameters_ = has_own_parameters_ || c->has_own_parameters;
     return c->reversed ? reversed(c->curve) : std::move(c->curve);
 }
 
@@ -212,7 +213,7 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
     double offset = 0;
     std::vector<OffsetStep> steps;
     std::optional<Motion> by;
-    std::uint32_t at = i;
+    std::uint32_t at = i, trim = kMissing;
     for (int depth = 0;; ++depth) {
         if (depth > 100)
             return refuse(RefusalKind::invalid, f_.label(i),
@@ -222,6 +223,7 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
                              Type::CURVE_BOUNDED_SURFACE, Type::SURFACE_REPLICA})
             if (f_.is(at, t)) wrapping = t;
         if (wrapping == Type::unknown) break;
+        if (wrapping == Type::RECTANGULAR_TRIMMED_SURFACE) trim = at;
         const auto f = Fields::of(f_, at, wrapping, 3);
         if (!f) return std::unexpected(f.error());
         if (wrapping == Type::OFFSET_SURFACE) {
@@ -243,6 +245,7 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
         at = *basis;
     }
     const std::size_t known = approximated.size();
+    has_own_parameters_ = false;
     auto made = [&]() -> Result<SurfaceGeometry> {
         std::erase_if(steps, [](const OffsetStep& s) { return s.distance == 0; });
         if (steps.size() > 1) {
@@ -273,6 +276,9 @@ Result<SurfaceGeometry> GeometryReader::surface(std::uint32_t i) {
                                f_.label(approximated.back().instance), ", which is taken as a spline"));
         return OffsetSurface{std::make_shared<const SurfaceGeometry>(std::move(*base)), offset};
     }();
+    if (made && trim != kMissing && has_own_parameters_)
+        return refuse(RefusalKind::unsupported, f_.label(trim),
+                      "is trimmed by parameters of a composite curve with conics");
     if (made)
         if (auto ok = check(*made); !ok) return refuse(ok.error().kind, f_.label(i), ok.error().message);
     return made;

@@ -283,11 +283,15 @@ double Shift::way(double e) const {
     return (e + q * e / (8 * p * p)) * (1 + 1e-14);
 }
 
-bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance) {
+bool is_rounding(const Kink& kink, double side, double tolerance) {
     constexpr double kLittle = 0x1p-8;  // of the tolerance
+    return kink.jump * side <= kLittle * tolerance;
+}
+
+bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance) {
     for (int d = 0; d < 2; ++d)
         for (const Kink& k : surface.kinks(d))
-            if (!(k.jump * (box.hi - box.lo)[d] <= kLittle * tolerance)) return false;
+            if (!is_rounding(k, (box.hi - box.lo)[d], tolerance)) return false;
     return true;
 }
 

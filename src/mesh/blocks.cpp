@@ -33,12 +33,12 @@ constexpr int kPlainRounds = 8;            // then leaves that disagree are left
 
 class BlockMesher {
 public:
-    BlockMesher(const CurvatureTree& tree, const Judge& judge, double tolerance, bool alone,
+    BlockMesher(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
                 std::span<const Vec<2>> avoid)
         : tree_(tree),
           judge_(judge),
           tolerance_(tolerance),
-          alone_(alone),
+          is_shared_(is_shared),
           avoid_(avoid),
           table_(tree.corners().size()) {}
 
@@ -94,7 +94,7 @@ private:
     void take_all() {
         const auto& all = tree_.blocks();
         std::vector<JudgedBlock> judged(all.size());
-        parallel_for(all.size(), alone_ ? kBlocksAtOnce : all.size(), [&](std::size_t i) {
+        parallel_for(all.size(), is_shared_ ? kBlocksAtOnce : all.size(), [&](std::size_t i) {
             if (!is_near_avoided(all[i].box)) judged[i] = judged_block(tree_, judge_, tolerance_, all[i]);
         });
         for (std::size_t i = 0; i < all.size(); ++i)
@@ -159,7 +159,7 @@ private:
         }
         // Some leaves at a time, whose borders then follow each other.
         std::vector<std::vector<int>> borders((leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce);
-        parallel_for(borders.size(), alone_ ? 1 : borders.size(), [&](std::size_t part) {
+        parallel_for(borders.size(), is_shared_ ? 1 : borders.size(), [&](std::size_t part) {
             std::vector<int>& border = borders[part];
             border.reserve(6 * kBlocksAtOnce);
             const std::size_t end = std::min(leaves_.size(), (part + 1) * kBlocksAtOnce);
@@ -357,7 +357,7 @@ private:
     const CurvatureTree& tree_;
     const Judge& judge_;
     double tolerance_;
-    bool alone_;
+    bool is_shared_;
     std::span<const Vec<2>> avoid_;
     ParameterTable table_;
     std::vector<Block> blocks_;
@@ -374,9 +374,9 @@ private:
 
 }  // namespace
 
-BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool alone,
+BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
                       std::span<const Vec<2>> avoid) {
-    return BlockMesher(tree, judge, tolerance, alone, avoid).run();
+    return BlockMesher(tree, judge, tolerance, is_shared, avoid).run();
 }
 
 }  // namespace freiform

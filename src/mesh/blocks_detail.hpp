@@ -18,8 +18,8 @@ struct BlockMesh {
     std::vector<CurvatureTree::Corner> corners;
 };
 
-// Blocks near places to `avoid` are left out. `alone`: all threads may be used.
-BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool alone,
+// Blocks near places to `avoid` are left out. `is_shared`: all threads may be used.
+BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
                       std::span<const Vec<2>> avoid = {});
 
 }  // namespace freiform

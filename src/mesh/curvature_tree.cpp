@@ -157,6 +157,14 @@ bool CurvatureTree::meets_kink(const Box<2>& box) const {
     return false;
 }
 
+// Not at its edge: then nothing is known of normals on one side from those on the other.
+bool CurvatureTree::is_sharp_inside(const Box<2>& box) const {
+    for (int d = 0; d < 2; ++d)
+        for (const double at : sharp_[std::size_t(d)])
+            if (box.lo[d] < at && at < box.hi[d]) return true;
+    return false;
+}
+
 bool CurvatureTree::is_outside(const Box<2>& box) const {
     int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = 0;

@@ -191,7 +191,7 @@ bool CurvatureTree::is_deep(int leaf) const {
     return true;
 }
 
-void CurvatureTree::take_leaves(bool alone) {
+void CurvatureTree::take_leaves(bool is_shared) {
     std::vector<int> leaves;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Node& n = nodes_[i];
@@ -199,7 +199,7 @@ void CurvatureTree::take_leaves(bool alone) {
         leaves.push_back(int(i));
     }
     std::vector<char> deep(leaves.size());
-    parallel_for(leaves.size(), alone ? kLeavesAtOnce : leaves.size(),
+    parallel_for(leaves.size(), is_shared ? kLeavesAtOnce : leaves.size(),
                  [&](std::size_t i) { deep[i] = is_deep(leaves[i]); });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         if (!deep[i]) continue;

@@ -125,10 +125,11 @@ struct Shift {
 Vec<2> reach_of(const Bending& at, double e);
 Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected);
 
-// Whether kinks add less to the error of linear interpolation within the box than anybody sees: arcs written
-// with double knots, say, which are smooth but for the digits of the file. What they add is in every bound
-// all the same (CurvatureTree::kink_bound), and triangles at them are judged by all of their error
-// (bending.cpp).
+// Whether a kink adds less to the error of linear interpolation over a box with such a side than anybody
+// sees: arcs written with double knots, say, which are smooth but for the digits of the file. What it adds is
+// in every bound all the same (CurvatureTree::kink_bound), and triangles at it are judged by all of their
+// error (bending.cpp).
+bool is_rounding(const Kink& kink, double side, double tolerance);
 bool kinks_are_rounding(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance);
 
 // More than a part of the edge.
@@ -250,11 +251,13 @@ private:
     const Bending& bending(int node) const { return bendings_[std::size_t(node)]; }
     std::optional<Cut> cut(const Node& node, int axis) const;
     void plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance);  // curvature_tree_columns.cpp
-    // Those away from the boundary, as blocks. `alone`: all threads may be used.
-    void take_leaves(bool alone);
+    // Those away from the boundary, as blocks. `is_shared`: all threads may be used.
+    void take_leaves(bool is_shared);
     bool is_deep(int leaf) const;
     void find_corners();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
+    bool is_sharp() const { return !sharp_[0].empty() || !sharp_[1].empty(); }
+    bool is_sharp_inside(const Box<2>& box) const;
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
     std::span<const std::array<int, 2>> segments_;  // while it is made
     std::vector<Node> nodes_;
@@ -265,6 +268,7 @@ private:
     std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;
+    std::array<std::vector<double>, 2> sharp_;    // where kinks are that are more than rounding
     std::array<std::vector<double>, 2> columns_;  // where they begin and end; none where there is one
 };
 

@@ -6,7 +6,7 @@
 // control points are many, they are asked about boxes of some leaves, and leaves by one sample each; and
 // where that is too much for a leaf, of its own box, so that no leaf is halved for want of a better bound.
 //
-// Threads. A face that is meshed alone has its tree begun breadth first, until there are enough boxes; each
+// Threads. A face that threads share has its tree begun breadth first, until there are enough boxes; each
 // of these is then grown by itself. Where it is cut does not depend on the number of threads.
 //
 // Accuracy. The sample is off by roundings for which DerivativeQuery::second_rounding has a bound. Why not
@@ -113,7 +113,8 @@ void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, V
     const Curvature before = outer.full;
     const bool varies = tree_.varies(task_.surface, box);
     Variation variation;
-    outer = bending_of(task_.surface, box, tree_.knows_normals_, middle, varies ? &variation : nullptr);
+    const bool knows_normals = tree_.knows_normals_ && !tree_.is_sharp_inside(box);
+    outer = bending_of(task_.surface, box, knows_normals, middle, varies ? &variation : nullptr);
     outer.full.restrict_to(before);
     if (!varies) return;
     node.variation = int(tree_.variations_.size());
@@ -181,7 +182,9 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
             return Refusal{RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
                            "the surface has no bounded curvature here"};
         }
-        const Curvature matters = outer.least > 0 ? outer.seen(0) : outer.full;
+        // Beside kinks all of the error is asked for.
+        const bool beside_kinks = tree_.is_sharp() && tree_.meets_kink(box);
+        const Curvature matters = outer.least > 0 && !beside_kinks ? outer.seen(0) : outer.full;
         const int axis = fine_ || !std::isfinite(error) ? int(length_[0] < length_[1])
                                                         : longer_side(matters, size, length_);
         cut = tree_.cut(node, axis);
@@ -246,6 +249,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         CurvatureTree& part = parts[i];
         part.knows_normals_ = tree_.knows_normals_;
         part.kinks_ = tree_.kinks_;
+        part.sharp_ = tree_.sharp_;
         part.columns_ = tree_.columns_;
         part.segments_ = tree_.segments_;
         part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
@@ -329,6 +333,10 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
     Box<2> root;
     for (const Vec<2>& p : polygon) root.add(p);
+    for (int d = 0; d < 2; ++d)
+        for (const Kink& k : tree.kinks_[std::size_t(d)])
+            if (!is_rounding(k, (root.hi - root.lo)[d], demands.tolerance))
+                tree.sharp_[std::size_t(d)].push_back(k.at);
     tree.nodes_.push_back({root, 0});
     tree.bendings_.emplace_back();
     tree.plan_columns(surface, demands.tolerance);
@@ -339,8 +347,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks};
     Grower grower(tree, task);
     std::vector<Grower::Item> items{{0, 0, any, {segments.begin(), segments.end()}}};
-    auto bad = grower.grow(items, demands.alone ? kPartsOfTree : 0);
-    if (!bad && demands.alone) bad = grower.grow_parts(std::move(items));
+    auto bad = grower.grow(items, demands.is_shared ? kPartsOfTree : 0);
+    if (!bad && demands.is_shared) bad = grower.grow_parts(std::move(items));
     if (!bad && task.leaves > max_leaves) bad = grower.too_many_leaves();
     if (bad) return std::unexpected(*bad);
     bool all_flat = true;                               // enough to do without normals
@@ -358,7 +366,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         }
     if (all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
-    if (ways.blocks) tree.take_leaves(demands.alone);
+    if (ways.blocks) tree.take_leaves(demands.is_shared);
     tree.find_corners();
     return tree;
 }

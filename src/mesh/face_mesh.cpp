@@ -193,7 +193,7 @@ Result<FaceMesh> filled_around(const Filling& f, Polygon polygon, std::span<cons
     const auto& [surface, boundary, demands, max_triangles, extra, ways, tree, judge] = f;
     const double tolerance = demands.tolerance;
     const int merged_corners = int(polygon.points.size());
-    const BlockMesh blocks = mesh_blocks(tree, judge, tolerance, demands.alone, avoid);
+    const BlockMesh blocks = mesh_blocks(tree, judge, tolerance, demands.is_shared, avoid);
     const auto grid = grid_of(surface, tree, polygon, demands, max_triangles);
     const std::vector<CurvatureTree::Corner> crossings =
         grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
@@ -305,15 +305,21 @@ Result<FaceMesh> filled(const DerivativeQuery<2, 3>& surface, const FaceBoundary
 Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBoundary& boundary,
                            const FaceDemands& demands, long long max_triangles,
                            std::span<const Vec<2>> extra) {
-    // Judging by all of the error is dearer but asks nothing of normals, which kinks spoil.
+    // Judging by all of the error asks nothing of normals, which kinks spoil around them. Away from them
+    // swept surfaces save most of their triangles by normals; splines that have kinks save hardly any, and
+    // take longer.
     Box<2> box;
     for (const Vec<2>& p : boundary.uv) box.add(p);
-    const bool smooth = kinks_are_rounding(surface, box, demands.tolerance);
+    const bool is_swept = surface.piece_numbers() == 0;
+    const bool by_normals =
+        (is_swept && !demands.quads) || kinks_are_rounding(surface, box, demands.tolerance);
     const bool blocks = !demands.quads && !demands.shapes_triangles();
-    auto mesh = filled(surface, boundary, demands, max_triangles, extra, {smooth, blocks});
+    auto mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, blocks});
     const auto failed = [&] { return !mesh && mesh.error().kind == RefusalKind::not_converged; };
-    if (blocks && failed()) mesh = filled(surface, boundary, demands, max_triangles, extra, {smooth, false});
-    if (smooth && failed()) mesh = filled(surface, boundary, demands, max_triangles, extra, {false, false});
+    if (blocks && failed())
+        mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, false});
+    if (by_normals && failed())
+        mesh = filled(surface, boundary, demands, max_triangles, extra, {false, false});
     return mesh;
 }
 

@@ -244,7 +244,7 @@ bool Filler::improve(int triangle) {
     return attempt((1.0 / 3) * (corner[0] + corner[1] + corner[2]));
 }
 
-// Most triangles that there are at first are the last ones: a face that is alone has them judged by all
+// Most triangles that there are at first are the last ones: a face that threads share has them judged by all
 // threads.
 void Filler::judge_all() {
     known_.resize(std::size_t(t_.size()));
@@ -257,7 +257,7 @@ void Filler::judge_all() {
 }
 
 bool Filler::refine(std::size_t max_points) {
-    if (demands_.alone && known_.empty()) judge_all();
+    if (demands_.is_shared && known_.empty()) judge_all();
     struct Entry {
         int triangle;
         std::uint32_t stamp;

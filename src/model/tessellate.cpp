@@ -18,6 +18,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -27,6 +28,7 @@ namespace freiform {
 namespace {
 
 constexpr int kManifoldRounds = 4;
+constexpr double kLargeFace = 4096;     // triangles
 constexpr double kFlatTriangle = 1e-9;  // of the squared longest side: no area
 
 double now() {
@@ -73,10 +75,15 @@ Result<void> Tessellator::discretise_edges() {
     return {};
 }
 
+// Whether threads share the work of this face.
+bool Tessellator::is_large(std::size_t f) const {
+    return faces() == 1 || (f < sizes_.size() && sizes_[f] >= kLargeFace);
+}
+
 FaceDemands Tessellator::face_demands(std::size_t f) const {
     return {tolerance_,          options_.max_edge, options_.max_angle,
             options_.max_aspect, options_.quads,    f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
-            faces() == 1};
+            is_large(f)};
 }
 
 Result<void> Tessellator::match_grids() {
@@ -96,8 +103,12 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     std::atomic<bool> stop{false};
     std::atomic<long long> total{0};
     std::vector<std::optional<Refusal>> limits(which.size());
-    parallel_for(which.size(), 1, [&](std::size_t i) {
-        const std::size_t f = which[i];
+    // The largest first, so that none is left over at the end.
+    std::vector<std::size_t> order(which.begin(), which.end());
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t f) { return sizes_[f]; });
+    std::atomic<std::size_t> next{0};
+    parallel_for(order.size(), 1, [&](std::size_t) {
+        const std::size_t i = next++, f = order[i];
         if (is_refused(f) || stop) return;
         auto mesh = mesh_face(*queries_[f], boundaries_[f].polygon, face_demands(f), options_.max_triangles,
                               extra_[f]);

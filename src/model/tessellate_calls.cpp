@@ -84,9 +84,9 @@ constexpr double kCopiesApart = 0x1p-21;  // of the tolerance
 // What tessellations of one model share.
 struct Shared {
     std::optional<SharedWork> work;
-    Result<Tessellation> run(const Model& model, const TessellateOptions& how) {
+    Result<Tessellation> run(const Model& model, const TessellateOptions& how, std::vector<double> sizes) {
         if (!work) work.emplace(model);
-        return Tessellator(model, *work, how).run();
+        return Tessellator(model, *work, how, std::move(sizes)).run();
     }
 };
 
@@ -103,7 +103,11 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
     std::vector<Result<Tessellation>> all;
     for (const TessellateOptions& how : options) {
         auto ok = check_options(how);
-        if (ok) ok = check_budget(model, how);
+        std::vector<double> sizes;
+        if (ok) {
+            sizes = face_sizes(model, how);
+            ok = check_budget(model, how, sizes);
+        }
         if (!ok) {
             all.push_back(std::unexpected(ok.error()));
             continue;
@@ -113,14 +117,14 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
         const bool may_copy = !std::isfinite(how.max_angle) && model.faces.size() > 1;
         if (may_copy && !copies) copies = copies_in(model);
         if (!may_copy || !copies->any() || copies->apart() > kCopiesApart * how.tolerance) {
-            all.push_back(whole.run(model, how));
+            all.push_back(whole.run(model, how, std::move(sizes)));
             continue;
         }
         if (!reduced) reduced = originals_of(model, *copies);
         TessellateOptions inner = how;  // what is moved is rounded
         inner.max_edge *= 1 - 0x1p-40;
         inner.tolerance *= 1 - 0x1p-20;
-        auto few = originals.run(*reduced, inner);
+        auto few = originals.run(*reduced, inner, face_sizes(*reduced, inner));
         all.push_back(few ? with_copies(model, *copies, std::move(*few), how) : std::move(few));
         if (all.back())
             all.back()->seconds.total =

@@ -74,9 +74,9 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
         for (int k = 0; k < 3; ++k)
             inwards[std::size_t(t[std::size_t(k)])] =
                 (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
-    // Faces are looked at in parallel, the vertices of one that is alone.
+    // Faces are looked at in parallel, and the vertices of large ones.
     const auto each_vertex = [&](const std::function<void(std::size_t)>& look) {
-        parallel_for(m.uv.size(), faces() == 1 ? kVerticesAtOnce : m.uv.size(), look);
+        parallel_for(m.uv.size(), kVerticesAtOnce, look);
     };
     std::vector<Jet<2, 1, Vec<3>>> jets(m.uv.size());
     each_vertex([&](std::size_t i) { jets[i] = jet<1>(surface, m.uv[i].c); });

@@ -24,9 +24,12 @@ std::vector<const Colour*> body_colours(const Model& model);
 
 class Tessellator {
 public:
-    Tessellator(const Model& model, SharedWork& shared, const TessellateOptions& options)
+    // `sizes`: estimates of the triangles of faces.
+    Tessellator(const Model& model, SharedWork& shared, const TessellateOptions& options,
+                std::vector<double> sizes)
         : model_(model),
           options_(options),
+          sizes_(std::move(sizes)),
           queries_(shared.queries),
           edges_(&shared.edges),
           boundaries_(model.faces.size()),
@@ -38,6 +41,7 @@ public:
 
 private:
     std::size_t faces() const { return model_.faces.size(); }
+    bool is_large(std::size_t f) const;
     bool is_refused(std::size_t f) const { return refusals_[f].has_value(); }
     EdgeDemands edge_demands() const {
         return {tolerance_ / kBesideBoundary, options_.max_edge, options_.max_angle};
@@ -77,6 +81,7 @@ private:
 
     const Model& model_;
     const TessellateOptions& options_;
+    std::vector<double> sizes_;
     double tolerance_ = 0, rounding_ = 0;
     const std::vector<std::unique_ptr<DerivativeQuery<2, 3>>>& queries_;
     EdgeMesher* edges_;

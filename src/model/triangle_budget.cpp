@@ -9,6 +9,7 @@
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <cmath>
+#include <numeric>
 
 namespace freiform {
 
@@ -18,9 +19,8 @@ constexpr double kFarBelow = 16;   // one from few samples below the limit by mo
 constexpr double kHopeless = 256;  // above the limit by more than this
 constexpr int kFewSamples = 3, kManySamples = 12;
 
-double predicted(const Model& model, const TessellateOptions& options, int samples) {
-    double sum = 0;
-    std::vector<double> chords;
+std::vector<double> predicted(const Model& model, const TessellateOptions& options, int samples) {
+    std::vector<double> out, chords;
     for (const Edge& e : model.edges)
         chords.push_back(std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0));
     for (const Face& face : model.faces) {
@@ -34,13 +34,16 @@ double predicted(const Model& model, const TessellateOptions& options, int sampl
                     box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
                 }
             }
-        if (!box.is_empty())
-            sum += std::max(
-                estimated_triangles(face.surface, box, {options.tolerance, options.max_edge}, samples),
-                along + 2 * double(face.loops.size()) - 4);
+        out.push_back(box.is_empty()
+                          ? 0
+                          : std::max(estimated_triangles(face.surface, box,
+                                                         {options.tolerance, options.max_edge}, samples),
+                                     along + 2 * double(face.loops.size()) - 4));
     }
-    return sum;
+    return out;
 }
+
+double sum_of(std::span<const double> x) { return std::accumulate(x.begin(), x.end(), 0.0); }
 
 }  // namespace
 
@@ -59,14 +62,18 @@ double estimated_chords(const CurveGeometry<3>& curve, Interval on, double toler
 }
 
 double predicted_triangles(const Model& model, const TessellateOptions& options) {
-    return predicted(model, options, kManySamples);
+    return sum_of(predicted(model, options, kManySamples));
 }
 
-Result<void> check_budget(const Model& model, const TessellateOptions& options) {
-    const double limit = double(options.max_triangles);
-    const double first = predicted(model, options, kFewSamples);
+std::vector<double> face_sizes(const Model& model, const TessellateOptions& options) {
+    return predicted(model, options, kFewSamples);
+}
+
+Result<void> check_budget(const Model& model, const TessellateOptions& options,
+                          std::span<const double> sizes) {
+    const double limit = double(options.max_triangles), first = sum_of(sizes);
     if (first < limit / kFarBelow) return {};
-    double sum = first > kHopeless * limit ? predicted(model, options, kFewSamples + 1) : 0;
+    double sum = first > kHopeless * limit ? sum_of(predicted(model, options, kFewSamples + 1)) : 0;
     if (!(sum > kHopeless * limit)) sum = predicted_triangles(model, options);
     if (sum <= kFarBeyond * limit) return {};
     return refuse(

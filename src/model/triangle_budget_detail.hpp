@@ -2,6 +2,9 @@
 #pragma once
 #include <freiform/model/tessellate.hpp>
 
+#include <span>
+#include <vector>
+
 namespace freiform {
 
 // An estimate above a limit by more than this factor is believed.
@@ -11,7 +14,12 @@ inline constexpr double kFarBeyond = 4;
 // estimate.
 double estimated_chords(const CurveGeometry<3>& curve, Interval on, double tolerance);
 
-// Refuses (limit) what is beyond max_triangles by far; what is near it is counted while it is made.
-Result<void> check_budget(const Model& model, const TessellateOptions& options);
+// About how many triangles each face needs, from few samples. An estimate.
+std::vector<double> face_sizes(const Model& model, const TessellateOptions& options);
+
+// Refuses (limit) what is beyond max_triangles by far; what is near it is counted while it is made. `sizes`:
+// of the faces.
+Result<void> check_budget(const Model& model, const TessellateOptions& options,
+                          std::span<const double> sizes);
 
 }  // namespace freiform

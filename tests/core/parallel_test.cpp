@@ -47,6 +47,32 @@ TEST(ParallelFor, one_thread_is_the_calling_one) {
     parallel_for(1000, 1, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), here); });
 }
 
+// Each call of the outer loop has a thread to itself until it is done, though it waits for an inner loop.
+TEST(ParallelFor, a_loop_in_a_loop_has_its_threads_and_takes_up_nothing_else) {
+    static thread_local int begun = 0;
+    for (const int threads : {0, 1, 2}) {
+        const Threads limit(threads);
+        std::vector<std::atomic<int>> calls(40 * 200);
+        std::atomic<int> at_once{0}, most_at_once{0}, nested{0};
+        parallel_for(40, 1, [&](std::size_t i) {
+            if (++begun > 1) ++nested;
+            parallel_for(200, 1, [&](std::size_t k) {
+                const int now = ++at_once;
+                for (int m = most_at_once; m < now && !most_at_once.compare_exchange_weak(m, now);) continue;
+                if (k % 50 == i) std::this_thread::sleep_for(std::chrono::microseconds(200));
+                ++calls[200 * i + k];
+                --at_once;
+            });
+            --begun;
+        });
+        for (std::size_t i = 0; i < calls.size(); ++i) ASSERT_EQ(calls[i], 1) << i;
+        EXPECT_EQ(nested, 0) << threads;
+        if (threads > 0) {
+            EXPECT_LE(most_at_once, threads);
+        }
+    }
+}
+
 TEST(ParallelFor, gives_the_same_bits_for_any_number_of_threads) {
     const auto compute = [](int threads) {
         const Threads limit(threads);

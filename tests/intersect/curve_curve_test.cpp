@@ -126,6 +126,25 @@ TEST(IntersectCurves, a_line_through_a_cusp_meets_it_once) {
         expect_nothing_else(meet(cusp(), plane_bezier({{{0, 0.75 + 1e-12}}, {{1, 0.75 + 1e-12}}})), 0, 0));
 }
 
+// Both are straight along the same line near their tips, over far more of their parameters than they are
+// short.
+TEST(IntersectCurves, cusps_that_meet_tip_to_tip_meet_there_alone) {
+    const auto other = [](double height) {
+        return plane_bezier({{{0, height}}, {{1, height - 1}}, {{0, height - 1}}, {{1, height}}});
+    };
+    const PlaneAnswer a = meet(cusp(), other(1.5));
+    ASSERT_NO_FATAL_FAILURE(expect_nothing_else(a, 1, 0));
+    for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_TRUE(a.contacts[0].box[k].contains(0.5));
+        EXPECT_LT(a.contacts[0].box[k].length(), 1e-6);
+    }
+    EXPECT_LT(a.contacts[0].gap, 1e-12);
+    for (const double gap : {1e-3, 1e-9, 1e-13})
+        ASSERT_NO_FATAL_FAILURE(expect_nothing_else(meet(cusp(), other(1.5 + gap)), 0, 0)) << gap;
+    // One reaches into the other: the sides of both cross twice.
+    ASSERT_NO_FATAL_FAILURE(expect_nothing_else(meet(cusp(), other(1.5 - 1e-3)), 2, 0));
+}
+
 TEST(IntersectCurves, two_cubics_cross_nine_times) {
     const PlaneAnswer a = meet(wave(), mirrored(wave()));
     ASSERT_NO_FATAL_FAILURE(expect_nothing_else(a, 9, 0));

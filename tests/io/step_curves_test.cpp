@@ -4,15 +4,13 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <cmath>
-#include <numbers>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
+#include <support/solids.hpp>
 #include <support/step_polygons.hpp>
 
 namespace freiform::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // One curve, #20, in a set: #21 is the direction of z, #22 that of x, #23 the frame at the origin.
 std::string curve_file(std::string_view more) {

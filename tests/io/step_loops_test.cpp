@@ -7,46 +7,29 @@
 #include <support/corpus.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
+#include <support/step_measures.hpp>
 #include <support/step_polygons.hpp>
 
 namespace freiform::test {
 namespace {
-
-double area_of(const Model& m) {
-    const auto t = must(tessellate(m, {.tolerance = 1e-3}));
-    EXPECT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
-    double sum = 0;
-    for (const auto& f : t.mesh.triangles) {
-        const auto& p = t.mesh.points;
-        sum += norm(cross(p[std::size_t(f[1])] - p[std::size_t(f[0])],
-                          p[std::size_t(f[2])] - p[std::size_t(f[0])])) /
-               2;
-    }
-    return sum;
-}
-
-std::ptrdiff_t told(const Model& m, std::string_view what) {
-    return std::count_if(m.approximations.begin(), m.approximations.end(),
-                         [&](const Approximation& a) { return a.what.find(what) != std::string::npos; });
-}
 
 TEST(StepLoops, edges_that_are_nearly_nothing_are_left_out_and_told) {
     // The fourth edge is 2e-8 long and runs back; the tolerance is 1e-4.
     const Model m = must(read_step(polygon_file({{0, 0}, {3, 0}, {3, 2}, {0, 2}, {2e-8, 2}})));
     ASSERT_TRUE(m.refused.empty()) << m.refused[0].message;
     EXPECT_EQ(summary(m).edges, 4);
-    EXPECT_EQ(told(m, "#403 EDGE_CURVE is shorter than a thousandth"), 1);
-    EXPECT_EQ(told(m, "#204 VERTEX_POINT is taken for #203 VERTEX_POINT, 2e-08 from it"), 1);
+    EXPECT_EQ(times_told(m, "#403 EDGE_CURVE is shorter than a thousandth"), 1);
+    EXPECT_EQ(times_told(m, "#204 VERTEX_POINT is taken for #203 VERTEX_POINT, 2e-08 from it"), 1);
     for (const Approximation& a : m.approximations) {
         ASSERT_TRUE(a.bound) << a.what;
         EXPECT_GE(*a.bound, 2e-8);
         EXPECT_LT(*a.bound, 2.001e-8);
     }
-    EXPECT_NEAR(area_of(m), 6, 1e-6);
+    EXPECT_NEAR(area_of(m, 1e-3), 6, 1e-6);
     // One of the size of the tolerance is there.
     const Model wide = must(read_step(polygon_file({{0, 0}, {3, 0}, {3, 2}, {1e-4, 2}, {0, 1.9999}})));
     EXPECT_EQ(summary(wide).edges, 5);
-    EXPECT_EQ(told(wide, "shorter"), 0);
+    EXPECT_EQ(times_told(wide, "shorter"), 0);
 }
 
 TEST(StepLoops, vertices_that_loops_take_for_one_are_told_with_their_numbers_and_how_far_they_are_apart) {
@@ -92,8 +75,8 @@ TEST(StepLoops, segments_of_a_boundary_that_run_the_wrong_way_are_turned_and_tol
     const Model good = must(read_step(file(".T."))), turned = must(read_step(file(".F.")));
     ASSERT_EQ(good.faces.size(), 1u);
     ASSERT_EQ(turned.faces.size(), 1u) << (turned.refused.empty() ? "" : turned.refused[0].message);
-    EXPECT_EQ(told(good, "taken the other way"), 0);
-    EXPECT_EQ(told(turned, "#502 COMPOSITE_CURVE_SEGMENT runs against its boundary"), 1);
+    EXPECT_EQ(times_told(good, "taken the other way"), 0);
+    EXPECT_EQ(times_told(turned, "#502 COMPOSITE_CURVE_SEGMENT runs against its boundary"), 1);
     EXPECT_NEAR(area_of(good), 6, 1e-9);
     EXPECT_NEAR(area_of(turned), 6, 1e-9);
 }
@@ -122,7 +105,7 @@ TEST(StepLoops, what_a_loop_with_a_seam_to_a_pole_encloses_is_on_the_side_of_the
         for (const bool forward : {false, true}) {
             const Model m = must(read_step(cap_file(south, forward)));
             ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
-            EXPECT_EQ(told(m, "the wrong way around"), forward == south ? 1 : 0) << south << forward;
+            EXPECT_EQ(times_told(m, "the wrong way around"), forward == south ? 1 : 0) << south << forward;
             Box<3> box;
             for (const Vec<3>& p : must(tessellate(m, {.tolerance = 1e-2})).mesh.points) box.add(p);
             EXPECT_NEAR(south ? box.lo[2] : box.hi[2], south ? -2 : 2, 1e-12);

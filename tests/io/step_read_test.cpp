@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <io/step_part21.hpp>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <support/corpus.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
@@ -17,8 +16,6 @@
 
 namespace freiform::test {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double gap_of(const Model& m, const Face& f, const Coedge& c) {
     const Edge& e = m.edges[std::size_t(c.edge)];

@@ -12,6 +12,7 @@
 #include <support/random.hpp>
 #include <support/refusal.hpp>
 #include <support/solids.hpp>
+#include <support/step_measures.hpp>
 #include <unistd.h>
 
 namespace freiform::test {
@@ -136,28 +137,15 @@ Document trimmed_sheet() {
                     "weights": [1,0.7071067811865476,1,0.7071067811865476,1,0.7071067811865476,1,0.7071067811865476,1]}]]}]})"));
 }
 
-double area_of(const Model& model) {
-    const auto t = must(tessellate(model, {.tolerance = 2e-3}));
-    EXPECT_TRUE(t.refused.empty());
-    double sum = 0;
-    for (const auto& [a, b, c] : t.mesh.triangles) {
-        const auto p = [&](auto i) {
-            return t.mesh.points[std::size_t(t.mesh.vertices[std::size_t(i)].point)];
-        };
-        sum += norm(cross(p(b) - p(a), p(c) - p(a))) / 2;
-    }
-    return sum;
-}
-
 TEST_F(Step, trimmed_surfaces_come_back_with_their_boundaries) {
     const Document document = trimmed_sheet();
-    const double area = area_of(must(scene_of(document)));
+    const double area = area_of(must(scene_of(document)), 2e-3);
     for (const bool iges : {false, true}) {
         const Model back = read_again(document, iges);
         ASSERT_EQ(back.faces.size(), 1u);
         EXPECT_EQ(back.faces[0].loops.size(), 2u);
         EXPECT_EQ(back.edges.size(), 8u) << "cut at corners";
-        EXPECT_NEAR(area_of(back), area, 2e-3 * area);
+        EXPECT_NEAR(area_of(back, 2e-3), area, 2e-3 * area);
         for (const Edge& e : back.edges) EXPECT_LE(e.tolerance, iges ? 2e-5 : 1e-6);
     }
 }
@@ -198,7 +186,7 @@ TEST(StepText, is_measured_by_gmsh_as_it_should) {
     }
     // Its areas of trimmed faces are those of a quadrature with 0.3 %.
     const Document sheet = trimmed_sheet();
-    const double area = area_of(must(scene_of(sheet)));
+    const double area = area_of(must(scene_of(sheet)), 2e-3);
     for (const bool iges : {false, true}) {
         const auto m =
             measured_by_gmsh(must(iges ? write_iges(sheet) : write_step(sheet)), iges ? ".igs" : ".step");

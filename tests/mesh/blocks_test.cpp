@@ -212,7 +212,7 @@ TEST(Blocks, are_the_same_for_any_number_of_threads) {
     const SurfaceGeometry s = hill<Hom<3>>(random, 3, false);
     const DerivativeQuery<2, 3> surface(s);
     const FaceBoundary boundary = square_of(6);
-    const FaceDemands demands{.tolerance = 1e-4, .alone = true};
+    const FaceDemands demands{.tolerance = 1e-4, .is_shared = true};
     set_max_threads(1);
     const auto one = must(mesh_face(surface, boundary, demands, 1'000'000));
     set_max_threads(2);

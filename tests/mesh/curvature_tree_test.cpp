@@ -146,27 +146,27 @@ TEST(CurvatureTree, of_a_face_that_is_alone_is_the_same_tree) {
     const std::vector<std::array<int, 2>> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
     for (const SurfaceGeometry& s : {waves(random), many_waves(random)}) {
         const DerivativeQuery<2, 3> surface(s);
-        const auto made = [&](bool alone) {
-            return must(CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3, .alone = alone},
-                                            100'000));
+        const auto made = [&](bool shared) {
+            return must(CurvatureTree::make(surface, polygon, segments,
+                                            {.tolerance = 1e-3, .is_shared = shared}, 100'000));
         };
-        const auto usual = made(false), alone = made(true);
+        const auto usual = made(false), shared = made(true);
         ASSERT_GT(usual.corners().size(), 200u);
-        ASSERT_EQ(usual.corners().size(), alone.corners().size());
+        ASSERT_EQ(usual.corners().size(), shared.corners().size());
         for (std::size_t i = 0; i < usual.corners().size(); ++i) {
-            EXPECT_EQ(usual.corners()[i].at, alone.corners()[i].at);
-            EXPECT_EQ(usual.corners()[i].leaf, alone.corners()[i].leaf);
+            EXPECT_EQ(usual.corners()[i].at, shared.corners()[i].at);
+            EXPECT_EQ(usual.corners()[i].leaf, shared.corners()[i].leaf);
         }
         const Box<2> box{{{0.3, 0.2}}, {{2.7, 2.1}}};
-        EXPECT_EQ(usual.over(box, 0).full.uu, alone.over(box, 0).full.uu);
-        EXPECT_EQ(usual.over(box, 0).least, alone.over(box, 0).least);
-        EXPECT_EQ(alone.place_of(box, alone.place_of({{{0.1, 0.1}}, {{0.2, 0.2}}})), alone.place_of(box));
+        EXPECT_EQ(usual.over(box, 0).full.uu, shared.over(box, 0).full.uu);
+        EXPECT_EQ(usual.over(box, 0).least, shared.over(box, 0).least);
+        EXPECT_EQ(shared.place_of(box, shared.place_of({{{0.1, 0.1}}, {{0.2, 0.2}}})), shared.place_of(box));
     }
     const SurfaceGeometry s = waves(random);
     const DerivativeQuery<2, 3> surface(s);
-    for (const bool alone : {false, true}) {
+    for (const bool shared : {false, true}) {
         const auto none =
-            CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3, .alone = alone}, 50);
+            CurvatureTree::make(surface, polygon, segments, {.tolerance = 1e-3, .is_shared = shared}, 50);
         ASSERT_FALSE(none);
         EXPECT_EQ(none.error().kind, RefusalKind::limit);
     }

@@ -183,13 +183,17 @@ TEST(Tessellate, powers_of_two_scale_the_mesh_exactly) {
 
 TEST(Tessellate, any_number_of_threads_gives_the_same_bits) {
     std::mt19937 rng(13);
-    ModelBuilder single;
+    ModelBuilder single, several;
     ASSERT_TRUE(single.add(landscape(rng, 3, 8, 0.3)));
-    for (const Model& model : {frustum(2, 1, 3), *std::move(single).finish()}) {
+    for (const double height : {0.01, 0.3, 0.02, 0.01, 0.2, 0.01})  // threads share the work of some
+        ASSERT_TRUE(several.add(landscape(rng, 3, 8, height)));
+    for (const auto& [model, tolerance] :
+         {std::pair(frustum(2, 1, 3), 1e-3), std::pair(*std::move(single).finish(), 1e-3),
+          std::pair(*std::move(several).finish(), 2e-4)}) {
         set_max_threads(1);
-        const auto one = tessellate(model, {.tolerance = 0.001});
+        const auto one = tessellate(model, {.tolerance = tolerance});
         set_max_threads(4);
-        const auto four = tessellate(model, {.tolerance = 0.001});
+        const auto four = tessellate(model, {.tolerance = tolerance});
         set_max_threads(0);
         ASSERT_TRUE(one && four);
         EXPECT_GT(one->mesh.triangles.size(), 500u);

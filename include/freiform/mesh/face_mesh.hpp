@@ -63,9 +63,8 @@ struct FaceDemands {
     // ends. None where the lines would be too many.
     bool quads = false;
     const GridLines* lines = nullptr;
-    // No other face is meshed at the same time: work inside this one is for all threads. Results are the same
-    // for any number of them.
-    bool alone = false;
+    // Work inside of this face is for all threads. Results are the same for any number of them.
+    bool is_shared = false;
 
     bool shapes_triangles() const {
         return std::isfinite(max_edge) || std::isfinite(max_angle) || std::isfinite(max_aspect);
