@@ -15,7 +15,7 @@ wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libc
 ci="python3 python3-venv python3-pip gmsh blender inkscape libglfw3-dev xvfb xauth libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
 command -v chromium >/dev/null || ci="$ci chromium"
-bench="python3 gmsh-doc occt-misc python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
+bench="python3 gmsh-doc occt-misc fonts-noto-mono python3-scipy libsisl-dev libboost-dev libbenchmark-dev"
 
 purpose=${1:-demo}
 case $purpose in
@@ -57,6 +57,7 @@ what_for() {
         fonts-dejavu-core) echo "the letters of drawings" ;;
         libfreetype-dev | libharfbuzz-dev | libfontconfig-dev) echo "outlines of letters, for text" ;;
         fonts-cantarell) echo "a font with cubics, to test on" ;;
+        fonts-noto-mono) echo "a font with many letters, to measure on" ;;
         fonts-inter-variable) echo "a variable font, to test on" ;;
         pybind11-dev | python3-dev | python3-numpy) echo "the Python package" ;;
         python3-pytest | python3-hypothesis | mypy) echo "the tests of the Python package" ;;

@@ -26,14 +26,6 @@ constexpr int kMostWraps = 100;
 constexpr int kMostNested = 20;  // composite curves in each other
 constexpr double kRounding = 0x1p-40;
 
-struct Deeper {
-    explicit Deeper(int& depth) : depth_(++depth) {}
-    ~Deeper() { --depth_; }
-    Deeper(const Deeper&) = delete;
-    Deeper& operator=(const Deeper&) = delete;
-    int& depth_;
-};
-
 }  // namespace
 
 std::uint32_t composite_in(const File& f, std::uint32_t i) {
@@ -78,8 +70,7 @@ Result<std::vector<CompositeSegment>> segments_in(const File& file, std::uint32_
 Result<BoundedCurve> GeometryReader::composite(std::uint32_t i) {
     const auto segments = segments_in(f_, i);
     if (!segments) return std::unexpected(segments.error());
-    const Deeper deeper(composite_depth_);
-    if (composite_depth_ > kMostNested)
+    if (depth_ > kMostNested)
         return refuse(RefusalKind::limit, f_.label(i),
                       text("is a composite curve in more than ", kMostNested, " others"));
     struct Piece {
@@ -164,22 +155,14 @@ Result<BoundedCurve> GeometryReader::composite(std::uint32_t i) {
     auto basis = BSplineBasis::make(degree, std::move(knots));
     if (!basis) return refuse(basis.error().kind, f_.label(i), basis.error().message);
     const Index<1> extent{int(net.size())};
-    const auto kept = [&](auto made) -> Result<void> {
+    if (is_rational) {
+        auto made = Curve<Hom<3>>::make({*std::move(basis)}, Net<1, Hom<3>>(extent, std::move(net)));
         if (!made) return refuse(made.error().kind, f_.label(i), made.error().message);
         out.curve = *std::move(made);
-        return {};
-    };
-    if (is_rational) {
-        if (auto ok = kept(Curve<Hom<3>>::make({*std::move(basis)}, Net<1, Hom<3>>(extent, std::move(net))));
-            !ok)
-            return std::unexpected(ok.error());
     } else {
-        std::vector<Vec<3>> points;
-        for (const Hom<3>& p : net) points.push_back({{p[0], p[1], p[2]}});
-        if (auto ok =
-                kept(Curve<Vec<3>>::make({*std::move(basis)}, Net<1, Vec<3>>(extent, std::move(points))));
-            !ok)
-            return std::unexpected(ok.error());
+        std::vector<Vec<3>> points;  // weights are 1
+        for (const Hom<3>& p : net) points.push_back(project(p));
+        out.curve = Curve<Vec<3>>::trusted({*std::move(basis)}, Net<1, Vec<3>>(extent, std::move(points)));
     }
     if (!is_exact || widest > 0) {
         out.bound += widest + kRounding * largest;

@@ -304,7 +304,9 @@ Result<BoundedCurve> GeometryReader::curve(std::uint32_t i) {
         const Refusal itself{RefusalKind::invalid, f_.label(i), "is a curve that is a part of itself"};
         known = curves_.emplace(i, std::unexpected(itself)).first;
         Result<BoundedCurve>& own = known->second;
+        ++depth_;
         own = unwrapped_curve(i);
+        --depth_;
         known = curves_.find(i);
     }
     const Result<BoundedCurve>& c = known->second;

@@ -96,8 +96,8 @@ private:
     const File& f_;
     std::unordered_map<std::uint32_t, Result<BoundedCurve>> curves_;
     std::size_t composite_points_left_;  // of composite curves as one, with what is in them
-    int composite_depth_ = 0;
-    bool has_own_parameters_ = false;  // a profile of the surface that is made now
+    int depth_ = 0;                      // of curves in composite curves
+    bool has_own_parameters_ = false;    // a profile of the surface that is made now
 };
 
 // The parameter of the point of the curve that is nearest to `p`, among some tries; `distance` to it.

@@ -18,7 +18,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -105,7 +104,9 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     std::vector<std::optional<Refusal>> limits(which.size());
     // The largest first, so that none is left over at the end.
     std::vector<std::size_t> order(which.begin(), which.end());
-    std::ranges::stable_sort(order, std::greater(), [&](std::size_t f) { return sizes_[f]; });
+    std::sort(order.begin(), order.end(), [&](std::size_t f, std::size_t g) {
+        return std::pair(sizes_[g], f) < std::pair(sizes_[f], g);
+    });
     std::atomic<std::size_t> next{0};
     parallel_for(order.size(), 1, [&](std::size_t) {
         const std::size_t i = next++, f = order[i];

@@ -1,17 +1,24 @@
 // What comes out of a tessellation: mesh, normals, bounds. Essay in tessellate.cpp.
 #include "tessellator_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace freiform {
 
 namespace {
 
 constexpr std::size_t kVerticesAtOnce = 1024;
+constexpr double kSameNormals = 1e-3;  // radians, about: normals of both sides of a kink that are one
+
+bool has_kinks(const DerivativeQuery<2, 3>& surface) {
+    return !surface.kinks(0).empty() || !surface.kinks(1).empty();
+}
 
 }  // namespace
 
@@ -65,37 +72,97 @@ void Tessellator::measure_angles(Tessellation& out) const {
     }
 }
 
+// Corners of triangles on a kink of the surface are a vertex for each side of it, if its normals differ.
+Tessellator::Sides Tessellator::sides_of(std::size_t f) const {
+    const FaceMesh& m = meshes_[f];
+    const DerivativeQuery<2, 3>& surface = *queries_[f];
+    Sides out{m.triangles, m.uv, {}};
+    // Axes along which the vertex is on a kink, and the triangle below it.
+    const auto below = [&](int v, const std::array<int, 3>& t) {
+        int axes = 0;
+        for (int d = 0; d < 2; ++d) {
+            const double at = m.uv[std::size_t(v)][d];
+            if (std::ranges::binary_search(surface.kinks(d), at, {}, &Kink::at) &&
+                m.uv[std::size_t(t[0])][d] + m.uv[std::size_t(t[1])][d] + m.uv[std::size_t(t[2])][d] < 3 * at)
+                axes |= 1 << d;
+        }
+        return axes;
+    };
+    const auto just_below = [&](int v, int axes) {
+        Vec<2> at = m.uv[std::size_t(v)];
+        for (int d = 0; d < 2; ++d)
+            if (axes & 1 << d) at[d] = std::nextafter(at[d], -kInfinity);
+        return at;
+    };
+    const auto normal = [&](const Vec<2>& at) {
+        const auto j = jet<1>(surface.geometry(), at.c);
+        const Vec<3> n = cross(j.d[1], j.d[2]);
+        return norm(n) > 0 ? unit(n) : n;
+    };
+    std::vector<char> is_used(m.uv.size());  // as it is: from above
+    for (const auto& t : m.triangles)
+        for (const int v : t)
+            if (below(v, t) == 0) is_used[std::size_t(v)] = 1;
+    std::vector<std::array<int, 4>> known(m.uv.size(), {-1, -1, -1, -1});  // by axes
+    for (auto& t : out.triangles) {
+        const std::array<int, 3> own = t;
+        for (int& v : t) {
+            const int axes = below(v, own);
+            if (axes == 0) continue;
+            int& at = known[std::size_t(v)][std::size_t(axes)];
+            if (at < 0) {
+                const Vec<2> place = just_below(v, axes);
+                at = v;
+                if (!std::exchange(is_used[std::size_t(v)], true)) {
+                    out.place[std::size_t(v)] = place;
+                } else if (norm(normal(place) - normal(out.place[std::size_t(v)])) > kSameNormals) {
+                    at = int(out.place.size());
+                    out.place.push_back(place);
+                    out.copy_of.push_back(v);
+                }
+            }
+            v = at;
+        }
+    }
+    return out;
+}
+
 // The vertices of a face; those with the point -1 - i are at inner[i].
 Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
     const SurfaceGeometry& surface = model_.faces[f].surface;
     const FaceMesh& m = meshes_[f];
-    std::vector<Vec<2>> inwards(m.uv.size());
-    for (const auto& t : m.triangles)
-        for (int k = 0; k < 3; ++k)
-            inwards[std::size_t(t[std::size_t(k)])] =
-                (1.0 / 3) * (m.uv[std::size_t(t[0])] + m.uv[std::size_t(t[1])] + m.uv[std::size_t(t[2])]);
+    FaceLook out;
+    Sides sides;
+    if (has_kinks(*queries_[f])) sides = sides_of(f), out.triangles = std::move(sides.triangles);
+    const std::vector<Vec<2>>& place = out.triangles.empty() ? m.uv : sides.place;
+    std::vector<Vec<2>> inwards(place.size());
+    for (const auto& t : out.triangles.empty() ? m.triangles : out.triangles)
+        for (const int v : t)
+            inwards[std::size_t(v)] =
+                (1.0 / 3) * (place[std::size_t(t[0])] + place[std::size_t(t[1])] + place[std::size_t(t[2])]);
     // Faces are looked at in parallel, and the vertices of large ones.
     const auto each_vertex = [&](const std::function<void(std::size_t)>& look) {
-        parallel_for(m.uv.size(), kVerticesAtOnce, look);
+        parallel_for(place.size(), kVerticesAtOnce, look);
     };
-    std::vector<Jet<2, 1, Vec<3>>> jets(m.uv.size());
-    each_vertex([&](std::size_t i) { jets[i] = jet<1>(surface, m.uv[i].c); });
+    std::vector<Jet<2, 1, Vec<3>>> jets(place.size());
+    each_vertex([&](std::size_t i) { jets[i] = jet<1>(surface, place[i].c); });
     Vec<2> usual{};
     for (const auto& j : jets)
         for (int d = 0; d < 2; ++d) usual[d] = std::max(usual[d], 1e-6 * norm(j.d[std::size_t(d + 1)]));
-    FaceLook out;
-    out.vertices.resize(m.uv.size());
+    out.vertices.resize(place.size());
     each_vertex([&](std::size_t i) {
-        const Vec<3> normal = normal_at(f, m.uv[i], inwards[i], jets[i], usual);
-        out.vertices[i].uv = m.uv[i];
+        const Vec<3> normal = normal_at(f, place[i], inwards[i], jets[i], usual);
+        out.vertices[i].uv = i < m.uv.size() ? m.uv[i] : m.uv[std::size_t(sides.copy_of[i - m.uv.size()])];
         out.vertices[i].normal = flip ? -normal : normal;
     });
     for (std::size_t i = 0; i < m.uv.size(); ++i) {
         out.vertices[i].point = m.point[i];
         if (m.point[i] >= 0) continue;
-        out.inner.push_back(jets[i].value());
+        out.inner.push_back(place[i] == m.uv[i] ? jets[i].value() : jet<0>(surface, m.uv[i].c).value());
         out.vertices[i].point = -int(out.inner.size());
     }
+    for (std::size_t i = m.uv.size(); i < place.size(); ++i)
+        out.vertices[i].point = out.vertices[std::size_t(sides.copy_of[i - m.uv.size()])].point;
     return out;
 }
 
@@ -145,9 +212,10 @@ Tessellation Tessellator::collect() {
         }
         MeshPart part{face.name, face.colour, int(out.mesh.triangles.size()), 0, int(f)};
         if (!part.colour && body_colour[f]) part.colour = *body_colour[f];
-        for (std::size_t k = 0; k < m.triangles.size(); ++k) {
+        const auto& triangles_here = looks[f].triangles.empty() ? m.triangles : looks[f].triangles;
+        for (std::size_t k = 0; k < triangles_here.size(); ++k) {
             // Turned over, the second half of a quad is the first.
-            auto t = m.triangles[flip && k < 2 * std::size_t(m.quads) ? k ^ 1 : k];
+            auto t = triangles_here[flip && k < 2 * std::size_t(m.quads) ? k ^ 1 : k];
             if (flip) std::swap(t[1], t[2]);
             for (int& i : t) i += base;
             out.mesh.triangles.push_back(t);

@@ -68,9 +68,18 @@ private:
     bool look_across(std::size_t face, int u, int v);
     std::array<int, 2> flat_side(const FaceMesh& mesh, const std::array<int, 3>& triangle) const;
     std::vector<std::size_t> faces_to_mend();
+    // The triangles of a face with vertices for both sides of kinks: where each is looked at, a little beside
+    // the kink if need be, and of which of the mesh those behind these are copies.
+    struct Sides {
+        std::vector<std::array<int, 3>> triangles;
+        std::vector<Vec<2>> place;
+        std::vector<int> copy_of;
+    };
+    Sides sides_of(std::size_t face) const;
     struct FaceLook {
         std::vector<MeshVertex> vertices;
         std::vector<Vec<3>> inner;
+        std::vector<std::array<int, 3>> triangles;  // none: those of the mesh
     };
     FaceLook look_of(std::size_t face, bool flip) const;
     Tessellation collect();

@@ -97,6 +97,30 @@ TEST(StepProfile, parameters_are_those_of_the_segments_added_up) {
     expect_near(point_at(part, 2.5), {{4, 0, 0}});
 }
 
+// A corner inside of a face is seen as one: each side of it has its normals, at points that both share.
+TEST(StepProfile, both_sides_of_a_corner_have_their_normals) {
+    const Model m =
+        items_model("#10", text("#10=GEOMETRIC_SET('',(#15));\n"
+                                "#15=RECTANGULAR_TRIMMED_SURFACE('',#70,0.5,2.5,0.,3.,.T.,.T.);\n#70=",
+                                kUp, ";\n", kLines));
+    const auto t = must(tessellate(m, {.tolerance = 1e-3, .max_edge = 0.5}));
+    EXPECT_GT(t.mesh.triangles.size(), 100u);
+    EXPECT_GT(t.mesh.vertices.size(), t.mesh.points.size());
+    std::vector<char> used(t.mesh.vertices.size());
+    for (const auto& corners : t.mesh.triangles) {
+        const auto at = [&](std::size_t k) -> const MeshVertex& {
+            return t.mesh.vertices[std::size_t(corners[k])];
+        };
+        const auto point = [&](std::size_t k) { return t.mesh.points[std::size_t(at(k).point)]; };
+        const Vec<3> flat = unit(cross(point(1) - point(0), point(2) - point(0)));
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(norm(at(k).normal - flat), 0, 1e-9);
+            used[std::size_t(corners[k])] = 1;
+        }
+    }
+    EXPECT_EQ(std::ranges::count(used, 0), 0);
+}
+
 TEST(StepProfile, angles_inside_of_conics_are_not_parameters_of_the_spline) {
     const auto trimmed = [](std::string_view from, std::string_view how) {
         return read_step(

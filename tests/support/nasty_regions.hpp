@@ -194,11 +194,4 @@ inline NastyPairs nasty_pairs() {
     return out;
 }
 
-// Meetings that rounding makes and unmakes: circles that touch but for the last bit.
-inline bool may_be_refused(const NastyPair& pair) {
-    for (const char* name : {"circles touch outside", "circles through a point", "circles and blades"})
-        if (pair.name == name) return true;
-    return false;
-}
-
 }  // namespace freiform::test
