@@ -22,9 +22,9 @@
 // at a small angle, are decided in integers where the coefficients are those given (exact_pair.cpp). Curves
 // that run along each other would be cut into parts that are flat within rounding, 10^8 of them: if a pair of
 // pieces takes long, overlaps are looked for and set aside (overlap_detail.hpp).
-// What integers leave open too, as where the tips of cusps meet, is halved on to the size of rounding.
-//   Pieces on both sides of a knot find the same zero, or both a zero beyond their end: if both cross the same
-// way, one follows from continuity.
+// What integers leave open too, as where the tips of cusps meet, is halved on to the size of rounding. Pieces
+// on both sides of a knot find the same zero, or both a zero beyond their end: if both cross the same way,
+// one follows from continuity.
 //
 // In space, Y is an inverse from the left. Zeros of Y F are unique as before; F itself does not vanish there
 // unless by chance, which is reported with the gap. Curves of one plane of space are intersected in their
