@@ -22,7 +22,7 @@ import { gzipSync } from 'node:zlib';
 
 const kRun = 6, kCommon = 200;
 // Windows in bytes, and powers.
-const kTries = [24000, 25500, 26000, 27000, 28000].flatMap((window) =>
+const kTries = [24000, 25000, 26000, 27000, 28000].flatMap((window) =>
   [0.75, 0.76, 0.78, 0.79].map((power) => [window, power]));
 
 class Bytes {

@@ -5,13 +5,16 @@
 // inside of conics, whose parameter is an angle. Where segments meet, the later one begins at the control
 // point that the earlier one ends with.
 //
-// Accuracy. To move one control point by the gap g moves no point of a spline farther than g. Weights,
-// degrees and conics cost roundings of coefficients, less than kRounding of the largest coordinate.
+// Accuracy. To move one control point by the gap g moves no point of a spline farther than g. What conics
+// lose is their own bound (make/conic.hpp). Parts of lines and splines, degrees and weights cost some 6 p
+// roundings of coefficients each, p <= 25, relative to the largest number that they are made of: of lines the
+// origin and what is added to it. All together are less than kRounding of that.
 //
 // References: ISO 10303-42:2014, 4.4 (composite_curve: its parametrisation).
 #include "step_geometry.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/make/conic.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/spline/patch.hpp>
 
@@ -94,28 +97,40 @@ Result<BoundedCurve> GeometryReader::composite(std::uint32_t i) {
         const Interval on = c->range.value_or(domain(c->curve)[0]);
         if (!std::isfinite(on.length()) || !(on.lo < on.hi))
             return refuse(RefusalKind::invalid, f_.label(s.instance), "is a part of a curve without end");
-        const auto made = space_spline(c->curve, on);
-        if (!made) return within(made.error());
-        const bool rational = std::holds_alternative<Curve<Hom<3>>>(*made);
-        auto spline = rational ? std::get<Curve<Hom<3>>>(*made) : to_rational(std::get<Curve<Vec<3>>>(*made));
-        auto clamped = restrict_to(spline, 0, spline.basis().domain());
+        const auto* conic = std::get_if<Conic<3>>(&c->curve);
+        const auto* line = std::get_if<Line<3>>(&c->curve);
+        CurveGeometry<3> made = c->curve;
+        double lost = c->bound;
+        if (conic) {
+            auto arc = conic_arc(*conic, on);
+            if (!arc) return within(arc.error());
+            made = std::move(arc->curve), lost += arc->bound;
+        } else if (line) {
+            auto part = space_spline(made, on);
+            if (!part) return within(part.error());
+            made = *std::move(part);
+            largest = std::max(largest, max_abs(line->origin) + std::max(std::abs(on.lo), std::abs(on.hi)) *
+                                                                    max_abs(line->direction));
+        }
+        const auto* plain = std::get_if<Curve<Vec<3>>>(&made);
+        const auto spline = plain ? to_rational(*plain) : std::get<Curve<Hom<3>>>(made);
+        for (const Hom<3>& p : spline.net().flat()) largest = std::max(largest, max_abs(project(p)));
+        auto clamped = restrict_to(spline, 0, conic || line ? spline.basis().domain() : on);
         if (!clamped) return within(clamped.error());
         const auto points = std::size_t(clamped->basis().size());
         if (points > composite_points_left_)
             return refuse(RefusalKind::limit, f_.label(i),
                           "contains itself, or has more segments than the file");
         composite_points_left_ -= points;
-        const auto* conic = std::get_if<Conic<3>>(&c->curve);
         const bool turns = c->has_angles || (conic != nullptr && conic->kind == ConicKind::ellipse);
         out.has_own_parameters = out.has_own_parameters || c->has_own_parameters || conic != nullptr;
-        is_rational = is_rational || rational;
+        is_rational = is_rational || !plain;
         degree = std::max(degree, clamped->basis().degree());
-        out.bound = std::max(out.bound, c->bound);
-        is_exact = is_exact && !rational && c->approximated == kMissing;
-        for (const Hom<3>& p : clamped->net().flat()) {
-            box.add(project(p));
-            largest = std::max(largest, max_abs(project(p)));
-        }
+        out.bound = std::max(out.bound, lost);
+        // A whole polynomial spline that begins and ends at control points.
+        is_exact =
+            is_exact && plain && !line && c->approximated == kMissing && clamped->basis() == spline.basis();
+        for (const Hom<3>& p : clamped->net().flat()) box.add(project(p));
         pieces.push_back({s.instance, c->reversed == s.forward ? reverse(*clamped, 0) : *std::move(clamped),
                           on.length() / (turns ? angle : 1)});
     }

@@ -10,7 +10,7 @@ struct BlockJudge {
     double tolerance;
     const CurvatureTree::Block& block;
 
-    // Of a cell whose corners are at `corner`, of which `plain` are.
+    // Of the cell of this size in the lower corner of the box, `plain` of whose triangles' corners are plain.
     double bound(const Bending& at, const Box<2>& box, const Vec<2>& cell, int plain) const {
         const std::array<Vec<2>, 3> corner{box.lo, box.lo + Vec<2>{{cell[0], 0}},
                                            box.lo + Vec<2>{{0, cell[1]}}};

@@ -188,6 +188,28 @@ TEST(StepProfile, gaps_within_the_tolerance_are_closed_and_wider_ones_refused) {
         << why.message;
 }
 
+// A short arc and a short line far from what they are given by: what rounding moves is no less for that.
+TEST(StepProfile, bounds_are_of_the_numbers_that_curves_are_made_of) {
+    const auto bound = [](std::string_view curve) {
+        const Model m = items_model(
+            "#10",
+            text("#10=GEOMETRIC_CURVE_SET('',(#15));\n#15=CURVE_REPLICA('',#20,#28);\n"
+                 "#28=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',$,$,#6,1.,$);\n"
+                 "#20=COMPOSITE_CURVE('',(#41),.F.);\n#41=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#51);\n"
+                 "#67=CARTESIAN_POINT('',(1.E9,0.,0.));\n#63=AXIS2_PLACEMENT_3D('',#67,#21,#22);\n"
+                 "#66=VECTOR('',#22,1.);\n#51=TRIMMED_CURVE('',",
+                 curve));
+        EXPECT_EQ(m.approximations.size(), 1u);
+        return m.approximations.empty() ? 0.0 : m.approximations[0].bound.value_or(0);
+    };
+    EXPECT_GE(bound("#62,(PARAMETER_VALUE(3.1415926525)),(PARAMETER_VALUE(3.1415926545)),.T.,.PARAMETER.);\n"
+                    "#62=CIRCLE('',#63,1.E9);\n"),
+              1e9 * 0x1p-53);
+    EXPECT_GE(bound("#61,(PARAMETER_VALUE(-1000000000.)),(PARAMETER_VALUE(-999999998.7)),.T.,.PARAMETER.);\n"
+                    "#61=LINE('',#67,#66);\n"),
+              1e9 * 0x1p-53);
+}
+
 TEST(StepProfile, what_contains_itself_is_refused) {
     const auto refused = [](std::string_view rows, RefusalKind kind, std::string_view what) {
         const auto m = read_step(item_file(

@@ -7,8 +7,7 @@
 namespace freiform {
 
 // Calls f(i) once for every i in [0, n), possibly at the same time; f may have such loops itself. Serial if n
-// < 2 * grain or max_threads
-// == 1.
+// < 2 * grain or max_threads == 1.
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t)>& f);
 
 // 0: as many as the machine has (default). Applies to the whole process.
