@@ -293,7 +293,7 @@ private:
     }
 
     void shape(pugi::xml_node node, std::string_view name, const SvgState& state) {
-        const auto path = outline(
+        auto path = outline(
             name,
             [&](const char* attribute) -> std::string_view { return node.attribute(attribute).value(); },
             state.metrics,
@@ -304,14 +304,14 @@ private:
                     leave_out(kind, node, std::move(why));
             },
             kMostPicture / sizeof(PathSegment));
-        if (path) add(node, name, *path, state);
+        if (path) add(node, name, std::move(*path), state);
     }
 
-    void add(pugi::xml_node node, std::string_view name, const Path& path, const SvgState& state) {
+    void add(pugi::xml_node node, std::string_view name, Path path, const SvgState& state) {
         if (path.subpaths.empty() || !state.style.visible) return;
         SvgShape out{node.attribute("id").value(),
                      std::string(name),
-                     transformed(path, state.map),
+                     transformed(std::move(path), state.map),
                      state.style.fill,
                      state.style.stroke,
                      state.style.fill_rule,

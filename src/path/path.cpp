@@ -35,21 +35,20 @@ std::array<Hom<2>, 4> raised(const PathSegment& s, int degree) {
 
 }  // namespace
 
-Path transformed(const Path& path, const Affinity<2>& map) {
+Path transformed(Path path, const Affinity<2>& map) {
     const auto image = [&](const Vec<2>& p) {
         Vec<2> q = map.offset;
         for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j) q[i] += map.linear[std::size_t(i)][std::size_t(j)] * p[j];
         return q;
     };
-    Path out = path;
-    for (Subpath& s : out.subpaths) {
+    for (Subpath& s : path.subpaths) {
         s.start = image(s.start);
         for (PathSegment& segment : s.segments)
             for (int i = 0; i <= segment.degree; ++i)
                 segment.points[std::size_t(i)] = image(segment.points[std::size_t(i)]);
     }
-    return out;
+    return path;
 }
 
 std::vector<PathSegment> elliptic_arc(const Vec<2>& from, const Vec<2>& to, double rx, double ry,

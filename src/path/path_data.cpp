@@ -116,8 +116,37 @@ private:
         current_ = start_ = at;
     }
     Subpath& subpath() {
-        if (!open_) out_.path.subpaths.push_back({start_, {}, false}), open_ = true, ++segments_;
+        if (!open_) {
+            out_.path.subpaths.push_back({start_, {}, false}), open_ = true, ++segments_;
+            if (const std::size_t n = segments_ahead(); n > 1) out_.path.subpaths.back().segments.reserve(n);
+        }
         return out_.path.subpaths.back();
+    }
+    // How many segments this subpath has from here on, by its numbers: exact if they are spelled plainly. No
+    // text is looked at twice, for at the next M or Z the subpath ends.
+    std::size_t segments_ahead() const {
+        double n = 1, each = arguments_of(kind_);
+        if (each == 0) return 1;
+        bool inside = false;
+        for (std::size_t i = at_; i < text_.size(); ++i) {
+            const char c = text_[i];
+            const bool is_number = is_digit(c) || c == '.' || c == 'e' || c == 'E';
+            if (is_number) {
+                n += inside ? 0 : 1 / each;
+            } else if (c >= 'A') {
+                each = arguments_of(c);
+                if (each == 0) break;
+            }
+            inside = is_number;
+        }
+        return std::min({std::size_t(n), kMostAhead, segments_ < most_ ? most_ - segments_ + 1 : 1});
+    }
+    // Of a command that goes on with the subpath; 0 of what ends it.
+    static double arguments_of(char c) {
+        constexpr std::string_view kCommands = "HVLTQSCA";
+        constexpr double kArguments[] = {1, 1, 2, 2, 4, 4, 6, 7};
+        const std::size_t i = kCommands.find(c >= 'a' ? char(c - 32) : c);
+        return i == std::string_view::npos ? 0 : kArguments[i];
     }
     void count(std::size_t segments) {
         segments_ += segments;
@@ -129,8 +158,10 @@ private:
         if (out_.stopped) return;
         PathSegment s{degree, {current_, a, b, end}, 1};
         if (degree < 3) s.points[std::size_t(degree)] = end;
-        subpath().segments.push_back(s);
+        Subpath& to = subpath();
         count(1);
+        if (out_.stopped) return;
+        to.segments.push_back(s);
         current_ = end;
     }
     // The mirror image of the last control point, if the command before was of that kind.
@@ -147,6 +178,7 @@ private:
     void command(char c) {
         const bool relative = c >= 'a';
         const char kind = relative ? char(c - 32) : c;
+        kind_ = kind == 'M' ? 'L' : kind;
         if (kind == 'Z') return close();
         skip_space();
         if (kind == 'M') {
@@ -191,14 +223,18 @@ private:
         Subpath& s = subpath();
         for (const PathSegment& part :
              elliptic_arc(current_, to, rx, ry, angle * (std::numbers::pi / 180), large, sweep))
-            s.segments.push_back(part), count(1);
+            if (count(1); !out_.stopped) s.segments.push_back(part);
         current_ = to;
     }
+
+    static constexpr std::size_t kMostAhead = std::size_t(1)
+                                              << 20;  // what text may ask for before it is read
 
     std::string_view text_;
     std::size_t at_ = 0;
     PathData out_;
     Vec<2> current_{}, start_{}, control_{};
+    char kind_ = 'L';     // of the command, in upper case
     int last_ = 0;        // the degree of the command before, if it was a Bezier curve
     bool begins_ = true;  // nothing has been read
     bool open_ = false;   // the last subpath of out_ is being added to

@@ -96,6 +96,8 @@ TEST(SvgHostile, a_path_of_millions_of_segments_is_refused_and_one_of_half_a_mil
         [&] { return is_refused(svg_holding("<path d='M 0 0" + repeated("h1", 4000000) + "'/>")); });
     FF_EXPECT_LITTLE_EFFORT(
         [&] { return is_refused(svg_holding("<path d='M 0 0" + repeated("zh1", 2000000) + "'/>")); });
+    FF_EXPECT_LITTLE_EFFORT(
+        [&] { return is_refused(svg_holding("<path d='M 0 0h" + repeated(" 1", 4000000) + "'/>")); });
     FF_EXPECT_LITTLE_EFFORT([&] {
         const auto read = read_svg(svg_holding("<path d='M 0 0" + repeated("h1", 500000) + "'/>"));
         return read && read->shapes.at(0).path.subpaths.at(0).segments.size() == 500000;

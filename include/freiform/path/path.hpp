@@ -35,7 +35,7 @@ struct Path {
 };
 
 // The image; weights stay as they are.
-Path transformed(const Path& path, const Affinity<2>& map);
+Path transformed(Path path, const Affinity<2>& map);
 
 // The arc from `from` to `to` of the ellipse with the radii rx, ry whose first axis is turned by `angle`
 // (radians) from x: of the four such arcs the one that is `large` (more than half of the ellipse) or not and
