@@ -27,6 +27,21 @@ struct BlockGrid {
         return out;
     }
     bool is_inner(int i, int j) const { return i > 0 && j > 0 && i < cells(0) && j < cells(1); }
+    // Counter-clockwise from (0, 0).
+    template <class Visit>
+    void each_border_point(Visit&& visit) const {
+        const int nu = cells(0), nv = cells(1);
+        for (int i = 0; i < nu; ++i) visit(at(i, 0));
+        for (int j = 0; j < nv; ++j) visit(at(nu, j));
+        for (int i = nu; i > 0; --i) visit(at(i, nv));
+        for (int j = nv; j > 0; --j) visit(at(0, j));
+    }
+    // Which of these (i, j) is.
+    std::size_t along_border(int i, int j) const {
+        const int nu = cells(0), nv = cells(1);
+        const int k = j == 0 ? i : i == nu ? nu + j : j == nv ? 2 * nu + nv - i : 2 * (nu + nv) - j;
+        return std::size_t(k);
+    }
 };
 
 // Bounds, where all points have feet, some have none, all are plain (of leaves alone); infinite above the

@@ -40,23 +40,25 @@ public:
           tolerance_(tolerance),
           is_shared_(is_shared),
           avoid_(avoid),
-          table_(tree.corners().size()) {}
+          table_(tree.corners().size() + tree.blocks().size()) {}
 
     BlockMesh run() {
         out_.corners.assign(tree_.corners().begin(), tree_.corners().end());
         take_all();
         if (blocks_.empty() && leaves_.empty()) return std::move(out_);
         for (const auto& c : out_.corners) table_.number(c.at);
-        for (const Block& b : blocks_) each_border_point(b.grid, [&](const Vec<2>& p) { table_.number(p); });
-        for (const Leaf& l : leaves_)
-            for (std::size_t k = 0; k < 4; ++k) table_.number(corner_of(l.box, k));
+        for (const Block& b : blocks_) b.grid.each_border_point([&](const Vec<2>& p) { table_.number(p); });
+        for (Leaf& l : leaves_)
+            for (std::size_t k = 0; k < 4; ++k) l.corner[k] = table_.number(corner_of(box_of(l), k));
         find_sides();
         plain_.assign(table_.size(), 0);
+        find_outer_sides();
         if (!tree_.is_all_plain()) settle_feet();
-        for (const Leaf& l : leaves_) out_.bound = std::max(out_.bound, l.bound());
+        for (const Leaf& l : leaves_) out_.bound = std::max(out_.bound, bound_of(l));
         find_outline();
+        number_others();
         for (const Block& b : blocks_) mesh(b);
-        for (const Leaf& l : leaves_) mesh(l);
+        mesh_leaves();
         return std::move(out_);
     }
 
@@ -69,17 +71,20 @@ private:
         std::vector<int> border = {}, step = {};
     };
 
-    // A block of one cell: its border is border_[first] and what follows.
-    struct Leaf : JudgedBlock {
-        Box<2> box;
+    // A block of one cell: its border is border_[first] and what follows. Small, as there are many.
+    struct Leaf {
+        std::uint32_t block;  // of the tree
         bool is_plain = false;
-        std::size_t first = 0, count = 0;
-
-        bool needs_foot() const { return !is_plain && !std::isfinite(footless); }
-        double bound() const {
-            return is_plain ? flat : std::max(usual, std::isfinite(footless) ? footless : 0);
-        }
+        std::array<int, 4> corner = {};  // numbers of table_
+        std::uint32_t first = 0, count = 0;
     };
+    const JudgedBlock& judged(const Leaf& l) const { return judged_[l.block]; }
+    const Box<2>& box_of(const Leaf& l) const { return tree_.blocks()[l.block].box; }
+    bool needs_foot(const Leaf& l) const { return !l.is_plain && !std::isfinite(judged(l).footless); }
+    double bound_of(const Leaf& l) const {
+        const JudgedBlock& j = judged(l);
+        return l.is_plain ? j.flat : std::max(j.usual, std::isfinite(j.footless) ? j.footless : 0);
+    }
 
     static Vec<2> corner_of(const Box<2>& b, std::size_t k) {
         return {{k == 1 || k == 2 ? b.hi[0] : b.lo[0], k >= 2 ? b.hi[1] : b.lo[1]}};
@@ -93,19 +98,21 @@ private:
 
     void take_all() {
         const auto& all = tree_.blocks();
-        std::vector<JudgedBlock> judged(all.size());
+        judged_.resize(all.size());
+        leaves_.reserve(all.size());
         parallel_for(all.size(), is_shared_ ? kBlocksAtOnce : all.size(), [&](std::size_t i) {
-            if (!is_near_avoided(all[i].box)) judged[i] = judged_block(tree_, judge_, tolerance_, all[i]);
+            if (!is_near_avoided(all[i].box)) judged_[i] = judged_block(tree_, judge_, tolerance_, all[i]);
         });
         for (std::size_t i = 0; i < all.size(); ++i)
-            all[i].first_part < 0 ? take_leaf(judged[i], all[i].box) : take(all[i], judged[i]);
+            all[i].first_part < 0 ? take_leaf(i) : take(all[i], judged_[i]);
     }
 
-    void take_leaf(const JudgedBlock& j, const Box<2>& box) {
+    void take_leaf(std::size_t block) {
+        const JudgedBlock& j = judged_[block];
         if (std::isfinite(std::min(j.flat, j.usual)))
-            leaves_.push_back({j, box, !std::isfinite(j.usual)});
+            leaves_.push_back({std::uint32_t(block), !std::isfinite(j.usual)});
         else
-            dissolve(box);
+            dissolve(tree_.blocks()[block].box);
     }
 
     void dissolve(const Box<2>& leaf) {
@@ -125,15 +132,6 @@ private:
             for (int j = 0; j <= grid.cells(1); ++j) out_.corners.push_back({grid.at(i, j), cell});
     }
 
-    template <class Visit>
-    static void each_border_point(const BlockGrid& g, Visit&& visit) {
-        const int nu = g.cells(0), nv = g.cells(1);
-        for (int i = 0; i < nu; ++i) visit(g.at(i, 0));
-        for (int j = 0; j < nv; ++j) visit(g.at(nu, j));
-        for (int i = nu; i > 0; --i) visit(g.at(i, nv));
-        for (int j = nv; j > 0; --j) visit(g.at(0, j));
-    }
-
     // Points of anybody between two that are neighbours on a line along the axis, in order.
     void add_between(const Vec<2>& a, const Vec<2>& b, int axis, std::vector<int>& out) const {
         Vec<2> m = a;
@@ -148,7 +146,7 @@ private:
     void find_sides() {
         for (Block& block : blocks_) {
             std::vector<Vec<2>> own;
-            each_border_point(block.grid, [&](const Vec<2>& p) { own.push_back(p); });
+            block.grid.each_border_point([&](const Vec<2>& p) { own.push_back(p); });
             for (std::size_t k = 0; k < own.size(); ++k) {
                 const Vec<2>&a = own[k], &b = own[(k + 1) % own.size()];
                 block.step.push_back(int(block.border.size()));
@@ -165,24 +163,24 @@ private:
             const std::size_t end = std::min(leaves_.size(), (part + 1) * kBlocksAtOnce);
             for (std::size_t i = part * kBlocksAtOnce; i < end; ++i) {
                 Leaf& l = leaves_[i];
-                l.first = border.size();
+                l.first = std::uint32_t(border.size());
                 for (std::size_t k = 0; k < 4; ++k) {
-                    const Vec<2> a = corner_of(l.box, k), b = corner_of(l.box, (k + 1) % 4);
-                    border.push_back(table_.find(a));
-                    add_between(a, b, k % 2 ? 1 : 0, border);
+                    border.push_back(l.corner[k]);
+                    const Box<2>& box = box_of(l);
+                    add_between(corner_of(box, k), corner_of(box, (k + 1) % 4), k % 2 ? 1 : 0, border);
                 }
-                l.count = border.size() - l.first;
+                l.count = std::uint32_t(border.size()) - l.first;
             }
         });
         border_.reserve(6 * leaves_.size());
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
             const std::vector<int>& border = borders[i / kBlocksAtOnce];
             if (i % kBlocksAtOnce == 0) border_.insert(border_.end(), border.begin(), border.end());
-            leaves_[i].first += border_.size() - border.size();
+            leaves_[i].first += std::uint32_t(border_.size() - border.size());
         }
         std::erase_if(leaves_, [&](const Leaf& l) {
             const bool many = l.count > kMostAround;
-            if (many) dissolve(l.box);
+            if (many) dissolve(box_of(l));
             return many;
         });
     }
@@ -201,10 +199,10 @@ private:
             if (l.is_plain) make_plain(l);
         // Beyond the outline anything may be, so what can do without feet there, does.
         std::vector<char> outer(table_.size());
-        each_outer_side([&](int a, int b) { outer[std::size_t(a)] = outer[std::size_t(b)] = 1; });
+        for (const auto& [a, b] : outer_sides_) outer[std::size_t(a)] = outer[std::size_t(b)] = 1;
         for (Leaf& l : leaves_) {
             const auto border = border_of(l);
-            if (l.needs_foot() && std::isfinite(l.flat) &&
+            if (needs_foot(l) && std::isfinite(judged(l).flat) &&
                 std::any_of(border.begin(), border.end(),
                             [&](int at) { return outer[std::size_t(at)] != 0; }))
                 make_plain(l);
@@ -213,90 +211,108 @@ private:
         for (int round = 0; changed && round < kPlainRounds; ++round) {
             changed = false;
             for (Leaf& l : leaves_)
-                if (l.needs_foot() && std::isfinite(l.flat) && meets_plain(border_of(l))) {
+                if (needs_foot(l) && std::isfinite(judged(l).flat) && meets_plain(border_of(l))) {
                     make_plain(l);
                     changed = true;
                 }
         }
-        std::erase_if(leaves_, [&](const Leaf& l) {
-            const bool bad = l.needs_foot() && meets_plain(border_of(l));
-            if (bad) dissolve(l.box);
+        std::size_t gone = std::erase_if(leaves_, [&](const Leaf& l) {
+            const bool bad = needs_foot(l) && meets_plain(border_of(l));
+            if (bad) dissolve(box_of(l));
             return bad;
         });
-        std::erase_if(blocks_, [&](const Block& b) {
+        gone += std::erase_if(blocks_, [&](const Block& b) {
             const bool bad = b.needs_foot && meets_plain(b.border);
             if (bad) dissolve(b.grid, b.grid.largest_cell());
             return bad;
         });
+        if (gone > 0) find_outer_sides();
     }
 
-    // Sides that one block or leaf has alone, by numbers of table_.
-    template <class Visit>
-    void each_outer_side(Visit&& visit) const {
+    void find_outer_sides() {
         OuterSides sides(table_.size(), border_.size());
         for (const Block& b : blocks_) sides.add(b.border);
         for (const Leaf& l : leaves_) sides.add(border_of(l));
-        sides.each(visit);
+        outer_sides_.clear();
+        sides.each([&](int a, int b) { outer_sides_.push_back({a, b}); });
     }
 
     void find_outline() {
         number_.assign(table_.size(), -1);
-        each_outer_side([&](int a, int b) { out_.outline.push_back({point(a), point(b)}); });
+        for (const auto& [a, b] : outer_sides_) out_.outline.push_back({number(a), number(b)});
         out_.on_outline = int(out_.points.size());
         out_.needs_foot.assign(out_.points.size(), 0);
         const auto mark = [&](std::span<const int> border, bool needs_foot) {
             for (const int at : border)
-                if (const int p = point(at); needs_foot && p < out_.on_outline)
+                if (const int p = number_[std::size_t(at)]; needs_foot && p >= 0)
                     out_.needs_foot[std::size_t(p)] = 1;
         };
         for (const Block& b : blocks_) mark(b.border, b.needs_foot);
-        for (const Leaf& l : leaves_) mark(border_of(l), l.needs_foot());
+        for (const Leaf& l : leaves_) mark(border_of(l), needs_foot(l));
         out_.plain.resize(out_.needs_foot.size());
         for (std::size_t at = 0; at < number_.size(); ++at)
-            if (const int p = number_[at]; plain_[at] && p >= 0 && p < out_.on_outline)
-                out_.plain[std::size_t(p)] = 1;
+            if (const int p = number_[at]; plain_[at] && p >= 0) out_.plain[std::size_t(p)] = 1;
+    }
+
+    // Points inside of the outline.
+    void number_others() {
+        for (const Block& b : blocks_)
+            for (const int at : b.border) number(at);
+        for (const Leaf& l : leaves_)
+            for (const int at : border_of(l)) number(at);
     }
 
     std::span<const int> border_of(const Leaf& l) const {
         return std::span(border_).subspan(l.first, l.count);
     }
 
-    void mesh(const Leaf& l) {
-        const auto border = border_of(l);
-        const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-            out_.triangles.push_back({point(border[a]), point(border[b]), point(border[c])});
-        };
-        if (border.size() == 4) {
-            add(0, 1, 2);
-            add(0, 2, 3);
+    // Of n points around a leaf there are n - 2 triangles, so each leaf knows where its own begin.
+    void mesh_leaves() {
+        std::vector<std::size_t> first(leaves_.size() + 1, out_.triangles.size());
+        for (std::size_t i = 0; i < leaves_.size(); ++i) first[i + 1] = first[i] + leaves_[i].count - 2;
+        out_.triangles.resize(first.back());
+        const std::size_t parts = (leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce;
+        parallel_for(parts, is_shared_ ? 1 : parts, [&](std::size_t part) {
+            std::vector<Vec<2>> places;
+            std::vector<std::array<int, 3>> found;
+            const std::size_t end = std::min(leaves_.size(), (part + 1) * kBlocksAtOnce);
+            for (std::size_t i = part * kBlocksAtOnce; i < end; ++i) {
+                const auto border = border_of(leaves_[i]);
+                find_triangles(leaves_[i], places, found);
+                FF_REQUIRE(found.size() == border.size() - 2);
+                for (std::size_t k = 0; k < found.size(); ++k)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        out_.triangles[first[i] + k][c] = point(border[std::size_t(found[k][c])]);
+            }
+        });
+    }
+
+    // By places in its border.
+    void find_triangles(const Leaf& l, std::vector<Vec<2>>& places,
+                        std::vector<std::array<int, 3>>& found) const {
+        if (l.count == 4) {
+            found.assign({{0, 1, 2}, {0, 2, 3}});
             return;
         }
-        places_.clear();
-        for (const int at : border) {
-            const Vec<2> x = table_.points()[std::size_t(at)] - l.box.lo;
-            places_.push_back({{x[0] * l.scale[0], x[1] * l.scale[1]}});
+        places.clear();
+        for (const int at : border_of(l)) {
+            const Vec<2> x = table_.points()[std::size_t(at)] - box_of(l).lo, scale = judged(l).scale;
+            places.push_back({{x[0] * scale[0], x[1] * scale[1]}});
         }
-        found_.clear();
-        [[maybe_unused]] const bool has_area = add_best_triangles(places_, found_);
+        found.clear();
+        [[maybe_unused]] const bool has_area = add_best_triangles(places, found);
         FF_REQUIRE(has_area);
-        for (const auto& t : found_) add(std::size_t(t[0]), std::size_t(t[1]), std::size_t(t[2]));
     }
 
     // The point of the mesh with this number of table_.
-    int point(int at) {
+    int point(int at) const { return number_[std::size_t(at)]; }
+    int number(int at) {
         int& p = number_[std::size_t(at)];
         if (p < 0) {
             p = int(out_.points.size());
             out_.points.push_back(table_.points()[std::size_t(at)]);
         }
         return p;
-    }
-
-    // The place of a corner of the border among the steps.
-    static std::size_t along(const BlockGrid& g, int i, int j) {
-        const int nu = g.cells(0), nv = g.cells(1);
-        const int k = j == 0 ? i : i == nu ? nu + j : j == nv ? 2 * nu + nv - i : 2 * (nu + nv) - j;
-        return std::size_t(k);
     }
 
     void mesh(const Block& block) {
@@ -341,7 +357,7 @@ private:
                 around_.push_back(inner(g, a, b));
                 continue;
             }
-            const std::size_t at = along(g, a, b);
+            const std::size_t at = g.along_border(a, b);
             const int from = block.step[at], to = on_border[k] ? block.step[at + 1] : from + 1;
             for (int p = from; p < to; ++p) around_.push_back(point(block.border[std::size_t(p)]));
         }
@@ -361,14 +377,14 @@ private:
     std::span<const Vec<2>> avoid_;
     ParameterTable table_;
     std::vector<Block> blocks_;
+    std::vector<JudgedBlock> judged_;  // blocks of the tree
     std::vector<Leaf> leaves_;
-    std::vector<int> border_;  // of leaves, one after the other
-    std::vector<char> plain_;  // of points of table_
-    std::vector<int> number_;  // of points of table_ in the mesh
-    int first_inner_ = 0;      // of the block that is being meshed
-    std::vector<int> around_;  // work space
-    std::vector<Vec<2>> places_;
-    std::vector<std::array<int, 3>> found_;
+    std::vector<int> border_;                      // of leaves, one after the other
+    std::vector<char> plain_;                      // of points of table_
+    std::vector<int> number_;                      // of points of table_ in the mesh
+    int first_inner_ = 0;                          // of the block that is being meshed
+    std::vector<int> around_;                      // work space
+    std::vector<std::array<int, 2>> outer_sides_;  // that one block or leaf has alone, by numbers of table_
     BlockMesh out_;
 };
 

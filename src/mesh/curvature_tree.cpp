@@ -144,10 +144,9 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
     return shift.exists && shift.across(b.seen(shift.turn).error(size), error) <= tolerance;
 }
 
-bool CurvatureTree::accept(int node, double error, double tolerance) {
-    Node& n = nodes_[std::size_t(node)];
-    n.flat = error <= tolerance;
-    return n.flat || keeps(bending(node), n.box.hi - n.box.lo, meets_kink(n.box), error, tolerance);
+bool CurvatureTree::accept(Node& node, const Bending& known, double error, double tolerance) const {
+    node.flat = error <= tolerance;
+    return node.flat || keeps(known, node.box.hi - node.box.lo, meets_kink(node.box), error, tolerance);
 }
 
 bool CurvatureTree::meets_kink(const Box<2>& box) const {
@@ -193,7 +192,7 @@ int CurvatureTree::place_of(const Box<2>& box, int near) const {
 
 const Curvature* CurvatureTree::all_in(int place, const Box<2>& box) const {
     const Node& n = nodes_[std::size_t(place)];
-    return n.whole && n.box.contains(box.lo) && n.box.contains(box.hi) ? &bending(place).full : nullptr;
+    return n.whole && n.box.contains(box.lo) && n.box.contains(box.hi) ? &full(n) : nullptr;
 }
 
 Bending CurvatureTree::over(const Box<2>& box, int place) const {
@@ -202,12 +201,11 @@ Bending CurvatureTree::over(const Box<2>& box, int place) const {
     int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
-        const int i = stack[--size];
-        const Node& n = nodes_[std::size_t(i)];
+        const Node& n = nodes_[std::size_t(stack[--size])];
         if (n.outside || !has_common_part(n.box, box)) continue;
-        if (n.child < 0 || (box.contains(n.box.lo) && box.contains(n.box.hi))) {
-            if (any) all.include(bending(i));
-            if (!any) all = bending(i);
+        if (n.child < 0) {
+            if (any) all.include(bending(n));
+            if (!any) all = bending(n);
             any = true;
             continue;
         }
@@ -223,12 +221,11 @@ std::optional<Curvature> CurvatureTree::all_over(const Box<2>& box, int place) c
     int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
-        const int i = stack[--size];
-        const Node& n = nodes_[std::size_t(i)];
+        const Node& n = nodes_[std::size_t(stack[--size])];
         if (!has_common_part(n.box, box)) continue;
         if (n.outside) return std::nullopt;
         if (n.child < 0) {
-            all.include(bending(i).full);
+            all.include(bending(n).full);
             continue;
         }
         stack[size++] = n.child;
@@ -252,7 +249,7 @@ std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& bo
 }
 
 void CurvatureTree::find_corners() {
-    ParameterTable seen(nodes_.size() + 4);  // each cut of a box in two adds two corners at most
+    ParameterTable seen(nodes_.size() / 16);  // most are of blocks
     std::vector<int> stack{0};
     while (!stack.empty()) {
         const int at = stack.back();

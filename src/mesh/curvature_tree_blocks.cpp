@@ -162,7 +162,7 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
     Node& n = nodes_[std::size_t(node)];
     n.block = int(blocks_.size());
     n.flat = known.full.along(size[0], size[1]) / 8 <= tolerance;
-    bendings_[std::size_t(node)] = known;
+    n.slot = int(bendings_.add(known));
     blocks_.push_back({box, halves, parts, int(first), node});
     return true;
 }

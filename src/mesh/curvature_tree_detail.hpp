@@ -1,6 +1,7 @@
 // Where a surface curves how much: a binary tree of parameter boxes, each with proven bounds of the second
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
+#include <freiform/core/chunks.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -201,7 +202,7 @@ public:
     std::span<const Block> blocks() const { return blocks_; }
     // Of its parts, row by row.
     std::span<const Bending> part_bendings(const Block& b) const {
-        if (b.first_part < 0) return {&bending(b.node), 1};
+        if (b.first_part < 0) return {&bending(nodes_[std::size_t(b.node)]), 1};
         return std::span(part_bendings_)
             .subspan(std::size_t(b.first_part), std::size_t(1) << (b.parts[0] + b.parts[1]));
     }
@@ -220,6 +221,7 @@ private:
         int child = -1;      // the first of two neighbours in nodes_; -1: a leaf
         int variation = -1;  // over it, in variations_
         int block = -1;      // in blocks_
+        int slot = -1;       // of a leaf in bendings_, of others in sums_
         bool outside = false;
         bool inside = false;  // known to be so while it was made, with its border
         bool whole = false;   // nothing of it is outside
@@ -238,7 +240,7 @@ private:
     // Whether the two triangles of a box of this size keep the tolerance, without a shift or with one, which
     // kinks do not allow.
     bool keeps(const Bending& b, const Vec<2>& size, bool kinks, double error, double tolerance) const;
-    bool accept(int node, double error, double tolerance);
+    bool accept(Node& node, const Bending& known, double error, double tolerance) const;
     std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       double tolerance) const;
     // curvature_tree_blocks.cpp
@@ -248,12 +250,18 @@ private:
                     double cells, double tolerance, BoxBending& known);
     void bound_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
                      const BoxBending& all, const Variation* varies, std::vector<Bending>& out) const;
-    const Bending& bending(int node) const { return bendings_[std::size_t(node)]; }
+    const Bending& bending(const Node& leaf) const { return bendings_[std::size_t(leaf.slot)]; }
+    const Curvature& full(const Node& n) const {
+        return n.child < 0 ? bending(n).full : sums_[std::size_t(n.slot)];
+    }
     std::optional<Cut> cut(const Node& node, int axis) const;
     void plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance);  // curvature_tree_columns.cpp
     // Those away from the boundary, as blocks. `is_shared`: all threads may be used.
     void take_leaves(bool is_shared);
     bool is_deep(int leaf) const;
+    // Of the first `end` nodes, whose children are there: what holds for both children. Whether all of these
+    // leaves are flat, so that the tree can do without normals.
+    bool sum_up(std::size_t end);
     void find_corners();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
     bool is_sharp() const { return !sharp_[0].empty() || !sharp_[1].empty(); }
@@ -261,7 +269,8 @@ private:
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
     std::span<const std::array<int, 2>> segments_;  // while it is made
     std::vector<Node> nodes_;
-    std::vector<Bending> bendings_;  // of nodes
+    Chunks<Bending> bendings_;  // of leaves that are not outside
+    Chunks<Curvature> sums_;    // of S over other nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;
     std::vector<Block> blocks_;

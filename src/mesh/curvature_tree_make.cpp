@@ -48,7 +48,7 @@ class CurvatureTree::Grower {
 public:
     struct Item {
         int node = 0, depth = 0;
-        BoxBending outer;  // of the smallest box around it of which bounds have been found
+        int outer = 0;  // in outers_: of the smallest box around it of which bounds have been found
         std::vector<std::array<int, 2>> near;
         bool inside = false;  // wholly
         int variation = -1;   // over some box around it
@@ -60,9 +60,11 @@ public:
         std::size_t max_leaves;
         bool blocks = false;
         std::atomic<std::size_t> leaves{1};
+        std::atomic<bool> all_flat{true};  // of the parts that have been summed up
     };
 
-    Grower(CurvatureTree& tree, Task& task) : tree_(tree), task_(task) {}
+    Grower(CurvatureTree& tree, Task& task, const BoxBending& outer)
+        : tree_(tree), task_(task), outers_{outer} {}
     // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
     std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
     // Each of them by itself.
@@ -74,35 +76,35 @@ public:
     }
 
 private:
-    bool is_leaf(int of, const BoxBending& known);
+    bool is_leaf(Node& node, const BoxBending& known);
+    void stay_whole(Node& node, const BoxBending& known) { node.slot = int(tree_.bendings_.add(known)); }
     void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
     bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
-    void split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
-               std::vector<Item>& items);
+    void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
     struct Place {  // where in the tree what a part has begins
-        std::size_t nodes, variations, blocks, part_bendings;
+        std::size_t nodes, variations, blocks, part_bendings, bendings, sums;
     };
     void add(std::vector<CurvatureTree>& parts, std::span<const Item> items);
     void put(const CurvatureTree& part, const Item& item, const Place& place);
 
     CurvatureTree& tree_;
     Task& task_;
-    double length_[2] = {};  // of the sides of the box that was looked at last
-    bool fine_ = false;      // whether its error is small enough
+    std::vector<BoxBending> outers_;  // what items refer to
+    double length_[2] = {};           // of the sides of the box that was looked at last
+    bool fine_ = false;               // whether its error is small enough
 };
 
 // What is known of the box decides; whether it is fine, and whether it stays whole.
-bool CurvatureTree::Grower::is_leaf(int of, const BoxBending& known) {
+bool CurvatureTree::Grower::is_leaf(Node& node, const BoxBending& known) {
     const double tolerance = task_.demands.tolerance;
-    const Box<2>& box = tree_.nodes_[std::size_t(of)].box;
+    const Box<2>& box = node.box;
     const Vec<2> size = box.hi - box.lo;
-    tree_.bendings_[std::size_t(of)] = known;
     const double error = known.full.along(size[0], size[1]) / 8 + tree_.kink_bound(box);
     for (int d = 0; d < 2; ++d) length_[d] = known.first[d] * size[d];
     const double longer = std::max(length_[0], length_[1]), shorter = std::min(length_[0], length_[1]);
     const bool round = longer <= task_.demands.max_aspect * shorter || longer <= tolerance;
-    fine_ = tree_.accept(of, error, tolerance);
+    fine_ = tree_.accept(node, known, error, tolerance);
     return fine_ && longer <= task_.demands.max_edge && round;
 }
 
@@ -147,8 +149,11 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     node.variation = item.variation;
     node.inside = inside;
     // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
-    if (item.outer.least > 0 && item.outer.tilt <= kLittleTilt && is_leaf(item.node, item.outer))
+    const BoxBending& around = outers_[std::size_t(item.outer)];
+    if (around.least > 0 && around.tilt <= kLittleTilt && is_leaf(node, around)) {
+        stay_whole(node, around);
         return std::nullopt;
+    }
     // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but the
     // last boxes, they need not be found.
     const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
@@ -160,42 +165,52 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         cut = tree_.cut(node, longer_side(seen, size, length_));
     // Where control points are many, they are asked about boxes of some leaves, and within these the middle
     // and what varies tell.
-    BoxBending outer = item.outer;
-    if (task_.blocks && inside && cut && !node.has_columns() && is_block(item, middle, outer))
-        return std::nullopt;
+    BoxBending outer = around;
+    const bool may_be_block = task_.blocks && inside && cut && !node.has_columns();
+    if (may_be_block && is_block(item, middle, outer)) return std::nullopt;
+    bool found = may_be_block;  // others than those around
     if (item.variation >= 0) {
         outer = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
                                     tree_.variations_[std::size_t(item.variation)]);
-        outer.full.restrict_to(item.outer.full);
+        outer.full.restrict_to(around.full);
+        found = true;
     } else if (!cut || (asked <= kLeavesAtOnce * tolerance && tree_.varies(task_.surface, box))) {
         ask(node, box, middle, outer);
+        found = true;
     }
     if (!cut) {
-        if (is_leaf(item.node, outer) || !(size[0] > 0) || !(size[1] > 0)) return std::nullopt;
-        if (item.variation >= 0) {
+        bool whole = is_leaf(node, outer) || !(size[0] > 0) || !(size[1] > 0);
+        if (!whole && item.variation >= 0) {
             ask(node, box, middle, outer);
-            if (is_leaf(item.node, outer)) return std::nullopt;
+            whole = is_leaf(node, outer);
         }
         const double error = outer.full.along(size[0], size[1]);
-        if (item.depth == kMaxTreeDepth) {
-            if (std::isfinite(error)) return std::nullopt;
-            return Refusal{RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
-                           "the surface has no bounded curvature here"};
+        if (!whole && item.depth == kMaxTreeDepth) {
+            whole = std::isfinite(error);
+            if (!whole)
+                return Refusal{RefusalKind::ill_conditioned, text("u = ", box.lo[0], ", v = ", box.lo[1]),
+                               "the surface has no bounded curvature here"};
         }
-        // Beside kinks all of the error is asked for.
-        const bool beside_kinks = tree_.is_sharp() && tree_.meets_kink(box);
-        const Curvature matters = outer.least > 0 && !beside_kinks ? outer.seen(0) : outer.full;
-        const int axis = fine_ || !std::isfinite(error) ? int(length_[0] < length_[1])
-                                                        : longer_side(matters, size, length_);
-        cut = tree_.cut(node, axis);
-        if (!cut) return std::nullopt;  // no double between the ends
+        if (!whole) {
+            // Beside kinks all of the error is asked for.
+            const bool beside_kinks = tree_.is_sharp() && tree_.meets_kink(box);
+            const Curvature matters = outer.least > 0 && !beside_kinks ? outer.seen(0) : outer.full;
+            const int axis = fine_ || !std::isfinite(error) ? int(length_[0] < length_[1])
+                                                            : longer_side(matters, size, length_);
+            cut = tree_.cut(node, axis);
+        }
+        if (!cut) {  // also where there is no double between the ends
+            stay_whole(node, outer);
+            return std::nullopt;
+        }
     }
     if (++task_.leaves > task_.max_leaves) return too_many_leaves();
-    split(item, outer, *cut, inside, items);
+    if (found) outers_.push_back(outer);
+    split(item, found ? int(outers_.size()) - 1 : item.outer, *cut, inside, items);
     return std::nullopt;
 }
 
-void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, const Cut& cut, bool inside,
+void CurvatureTree::Grower::split(const Item& item, int outer, const Cut& cut, bool inside,
                                   std::vector<Item>& items) {
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
     const int child = int(tree_.nodes_.size()), variation = tree_.nodes_[std::size_t(item.node)].variation;
@@ -207,7 +222,6 @@ void CurvatureTree::Grower::split(const Item& item, const BoxBending& outer, con
         Node& n = tree_.nodes_.emplace_back(Node{part[half], item.node});
         n.columns = columns;
         if (cut.column > 0) n.columns[std::size_t(cut.axis)][half == 0 ? 1 : 0] = std::uint8_t(cut.column);
-        tree_.bendings_.emplace_back();
     }
     for (const int half : {1, 0}) {
         items.push_back({child + half, item.depth + 1, outer, {}, inside, variation});
@@ -223,6 +237,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std
         const auto next = all ? items.end() - 1 : items.begin();
         const Item item = std::move(*next);
         items.erase(next);
+        if (all) outers_.resize(std::size_t(item.outer) + 1);  // others are of boxes that are done
         if (auto bad = take(item, items)) return bad;
     }
     return std::nullopt;
@@ -239,8 +254,10 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
     };
     if (max_threads() == 1) {  // into this tree at once, in the order in which parts are added below
         for (std::size_t i = 0; i < items.size(); ++i) {
+            const BoxBending& outer = outers_[std::size_t(items[i].outer)];
             std::vector<Item> own{std::move(items[i])};
-            bad[i] = grow(own, 0);
+            own.front().outer = 0;
+            bad[i] = Grower(tree_, task_, outer).grow(own, 0);
         }
         return worst();
     }
@@ -253,14 +270,14 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         part.columns_ = tree_.columns_;
         part.segments_ = tree_.segments_;
         part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
-        part.bendings_.emplace_back();
         std::vector<Item> own{items[i]};
-        own.front().node = 0;
+        own.front().node = own.front().outer = 0;
         if (own.front().variation >= 0) {
             part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
             own.front().variation = 0;
         }
-        bad[i] = Grower(part, task_).grow(own, 0);
+        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)]).grow(own, 0);
+        if (!bad[i] && !part.sum_up(part.nodes_.size())) task_.all_flat = false;
     });
     if (auto first = worst()) return first;
     add(parts, items);
@@ -270,16 +287,21 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
 // Parts that have been grown from the items, one behind the other. Their room is given back.
 void CurvatureTree::Grower::add(std::vector<CurvatureTree>& parts, std::span<const Item> items) {
     std::vector<Place> places;
-    Place end{tree_.nodes_.size(), tree_.variations_.size(), tree_.blocks_.size(),
-              tree_.part_bendings_.size()};
-    for (const CurvatureTree& p : parts) {
+    Place end{tree_.nodes_.size(),
+              tree_.variations_.size(),
+              tree_.blocks_.size(),
+              tree_.part_bendings_.size(),
+              0,
+              0};
+    for (CurvatureTree& p : parts) {
+        end.bendings = tree_.bendings_.take(std::move(p.bendings_));
+        end.sums = tree_.sums_.take(std::move(p.sums_));
         places.push_back(end);
         end.nodes += p.nodes_.size() - 1;  // the first is there: the item's
         end.variations += p.variations_.size(), end.blocks += p.blocks_.size();
         end.part_bendings += p.part_bendings_.size();
     }
     tree_.nodes_.resize(end.nodes);
-    tree_.bendings_.resize(end.nodes);
     tree_.variations_.resize(end.variations);
     tree_.blocks_.resize(end.blocks);
     tree_.part_bendings_.resize(end.part_bendings);
@@ -308,10 +330,28 @@ void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, con
         if (n.child >= 0) n.child += nodes;
         if (n.variation >= 0) n.variation += variations;
         if (n.block >= 0) n.block += blocks;
+        if (n.slot >= 0) n.slot += int(n.child < 0 ? place.bendings : place.sums);
         const std::size_t at = k == 0 ? std::size_t(item.node) : std::size_t(nodes) + k;
         tree_.nodes_[at] = n;
-        tree_.bendings_[at] = part.bendings_[k];
     }
+}
+
+bool CurvatureTree::sum_up(std::size_t end) {
+    bool all_flat = true;
+    for (std::size_t i = end; i-- > 0;)  // children come after their parents
+        if (auto& n = nodes_[i]; n.child >= 0) {
+            const Node &a = nodes_[std::size_t(n.child)], &b = nodes_[std::size_t(n.child) + 1];
+            n.outside = a.outside && b.outside;
+            if (n.outside) continue;
+            Curvature both = full(a.outside ? b : a);
+            if (!a.outside && !b.outside) both.include(full(b));
+            n.slot = int(sums_.add(both));
+            n.whole = a.whole && b.whole;
+        } else if (!n.outside) {
+            all_flat = all_flat && n.flat;
+            n.whole = true;
+        }
+    return all_flat;
 }
 
 bool CurvatureTree::varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const {
@@ -338,33 +378,21 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
             if (!is_rounding(k, (root.hi - root.lo)[d], demands.tolerance))
                 tree.sharp_[std::size_t(d)].push_back(k.at);
     tree.nodes_.push_back({root, 0});
-    tree.bendings_.emplace_back();
     tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
     Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks};
-    Grower grower(tree, task);
-    std::vector<Grower::Item> items{{0, 0, any, {segments.begin(), segments.end()}}};
+    Grower grower(tree, task, any);
+    std::vector<Grower::Item> items{{0, 0, 0, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.is_shared ? kPartsOfTree : 0);
+    const std::size_t top = tree.nodes_.size();
     if (!bad && demands.is_shared) bad = grower.grow_parts(std::move(items));
     if (!bad && task.leaves > max_leaves) bad = grower.too_many_leaves();
     if (bad) return std::unexpected(*bad);
-    bool all_flat = true;                               // enough to do without normals
-    for (std::size_t i = tree.nodes_.size(); i-- > 0;)  // children come after their parents
-        if (auto& n = tree.nodes_[i]; n.child >= 0) {
-            const Node &a = tree.nodes_[std::size_t(n.child)], &b = tree.nodes_[std::size_t(n.child) + 1];
-            Bending& both = tree.bendings_[i];
-            both = tree.bending(a.outside ? n.child + 1 : n.child);
-            if (!a.outside && !b.outside) both.include(tree.bending(n.child + 1));
-            n.outside = a.outside && b.outside;
-            n.whole = a.whole && b.whole;
-        } else if (!n.outside) {
-            all_flat = all_flat && n.flat;
-            n.whole = true;
-        }
-    if (all_flat) tree.knows_normals_ = false;
+    const bool has_parts = demands.is_shared && max_threads() > 1;
+    if (tree.sum_up(has_parts ? top : tree.nodes_.size()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
     if (ways.blocks) tree.take_leaves(demands.is_shared);
     tree.find_corners();

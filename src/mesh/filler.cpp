@@ -13,7 +13,7 @@ namespace freiform {
 namespace {
 
 constexpr double kPole = 1.0 / 64;
-constexpr std::size_t kTrianglesAtOnce = 512;
+constexpr std::size_t kTrianglesAtOnce = 64;    // of which those beyond the outline take no time
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding

@@ -1,10 +1,11 @@
-// Idea. Counts from the list of edges. A triangle has no area exactly if its projections to the three
+// Idea. Counts from the edges. A triangle has no area exactly if its projections to the three
 // coordinate planes have none, which is decided without rounding.
 //
 // Why not the rounded cross product: it errs both ways. Differences that are rounded give area to collinear
 // points, and two products that differ only in a bit beyond the 53rd take it from thin triangles.
+#include "mesh_edges_detail.hpp"
+
 #include <freiform/core/parallel.hpp>
-#include <freiform/mesh/triangle_mesh.hpp>
 #include <freiform/poly/predicates.hpp>
 
 namespace freiform {
@@ -30,12 +31,12 @@ MeshTopology topology(const TriangleMesh& mesh) {
         }
     };
     const auto count_edges = [&] {
-        for (const MeshEdge& edge : edges(mesh)) {
+        each_edge(mesh, [&](const MeshEdge& edge) {
             const int uses = edge.forward + edge.backward;
             out.open_edges += uses == 1;
             out.non_manifold_edges += uses > 2;
             out.misoriented_edges += uses == 2 && edge.forward != 1;
-        }
+        });
     };
     parallel_for(2, 1, [&](std::size_t which) { which == 0 ? count_triangles() : count_edges(); });
     return out;

@@ -1,0 +1,33 @@
+// A sequence that grows without moving what it has, and takes up another one as it is.
+#pragma once
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace freiform {
+
+// Places are numbers, given by what adds to the sequence; they need not follow each other.
+template <class T, std::size_t kChunk = 64>
+class Chunks {
+public:
+    const T& operator[](std::size_t place) const { return chunks_[place / kChunk][place % kChunk]; }
+    T& operator[](std::size_t place) { return chunks_[place / kChunk][place % kChunk]; }
+
+    std::size_t add(const T& x) {
+        if (chunks_.empty() || chunks_.back().size() == kChunk) chunks_.emplace_back().reserve(kChunk);
+        chunks_.back().push_back(x);
+        return (chunks_.size() - 1) * kChunk + chunks_.back().size() - 1;
+    }
+    // What had the place p in the other one has the place p more than the answer.
+    std::size_t take(Chunks&& other) {
+        const std::size_t shift = chunks_.size() * kChunk;
+        for (auto& c : other.chunks_) chunks_.push_back(std::move(c));
+        other.chunks_.clear();
+        return shift;
+    }
+
+private:
+    std::vector<std::vector<T>> chunks_;
+};
+
+}  // namespace freiform

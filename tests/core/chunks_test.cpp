@@ -1,0 +1,44 @@
+#include <gtest/gtest.h>
+
+#include <freiform/core/chunks.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace freiform {
+namespace {
+
+TEST(Chunks, what_was_added_stays_where_it_is) {
+    Chunks<std::string, 4> all;
+    std::vector<std::size_t> places;
+    std::vector<const std::string*> addresses;
+    for (int i = 0; i < 100; ++i) {
+        places.push_back(all.add(std::to_string(i)));
+        addresses.push_back(&all[places.back()]);
+    }
+    for (std::size_t i = 0; i < 100; ++i) {
+        EXPECT_EQ(all[places[i]], std::to_string(i));
+        EXPECT_EQ(&all[places[i]], addresses[i]);
+    }
+}
+
+// Of any lengths, as full chunks, empty ones and what is between end differently.
+TEST(Chunks, another_one_is_taken_up_as_it_is) {
+    for (int own = 0; own < 10; ++own)
+        for (int others = 0; others < 10; ++others) {
+            Chunks<int, 4> all, other;
+            std::vector<std::size_t> places, of_other;
+            for (int i = 0; i < own; ++i) places.push_back(all.add(i));
+            for (int i = 0; i < others; ++i) of_other.push_back(other.add(own + i));
+            const int* first = others > 0 ? &other[of_other[0]] : nullptr;
+            const std::size_t shift = all.take(std::move(other));
+            for (const std::size_t p : of_other) places.push_back(p + shift);
+            for (int i = 0; i < 10; ++i) places.push_back(all.add(own + others + i));
+            for (std::size_t i = 0; i < places.size(); ++i) EXPECT_EQ(all[places[i]], int(i));
+            if (first) EXPECT_EQ(&all[places[std::size_t(own)]], first);
+        }
+}
+
+}  // namespace
+}  // namespace freiform
