@@ -269,8 +269,8 @@ private:
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
     std::span<const std::array<int, 2>> segments_;  // while it is made
     std::vector<Node> nodes_;
-    Chunks<Bending> bendings_;  // of leaves that are not outside
-    Chunks<Curvature> sums_;    // of S over other nodes
+    Chunks<Bending> bendings_;     // of leaves that are not outside
+    std::vector<Curvature> sums_;  // of S over other nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;
     std::vector<Block> blocks_;

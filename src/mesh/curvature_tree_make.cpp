@@ -83,7 +83,7 @@ private:
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
     struct Place {  // where in the tree what a part has begins
-        std::size_t nodes, variations, blocks, part_bendings, bendings, sums;
+        std::size_t nodes = 0, variations = 0, blocks = 0, part_bendings = 0, bendings = 0, sums = 0;
     };
     void add(std::vector<CurvatureTree>& parts, std::span<const Item> items);
     void put(const CurvatureTree& part, const Item& item, const Place& place);
@@ -287,24 +287,22 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
 // Parts that have been grown from the items, one behind the other. Their room is given back.
 void CurvatureTree::Grower::add(std::vector<CurvatureTree>& parts, std::span<const Item> items) {
     std::vector<Place> places;
-    Place end{tree_.nodes_.size(),
-              tree_.variations_.size(),
-              tree_.blocks_.size(),
-              tree_.part_bendings_.size(),
-              0,
-              0};
+    Place end;
+    end.nodes = tree_.nodes_.size(), end.variations = tree_.variations_.size();
+    end.blocks = tree_.blocks_.size(), end.part_bendings = tree_.part_bendings_.size();
+    end.sums = tree_.sums_.size();
     for (CurvatureTree& p : parts) {
         end.bendings = tree_.bendings_.take(std::move(p.bendings_));
-        end.sums = tree_.sums_.take(std::move(p.sums_));
         places.push_back(end);
         end.nodes += p.nodes_.size() - 1;  // the first is there: the item's
         end.variations += p.variations_.size(), end.blocks += p.blocks_.size();
-        end.part_bendings += p.part_bendings_.size();
+        end.part_bendings += p.part_bendings_.size(), end.sums += p.sums_.size();
     }
     tree_.nodes_.resize(end.nodes);
     tree_.variations_.resize(end.variations);
     tree_.blocks_.resize(end.blocks);
     tree_.part_bendings_.resize(end.part_bendings);
+    tree_.sums_.resize(end.sums);
     parallel_for(parts.size(), 1, [&](std::size_t i) {
         put(parts[i], items[i], places[i]);
         parts[i] = {};
@@ -323,6 +321,7 @@ void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, con
     };
     copy(part.part_bendings_, tree_.part_bendings_, place.part_bendings);
     copy(part.variations_, tree_.variations_, place.variations);
+    copy(part.sums_, tree_.sums_, place.sums);
     const int parent = tree_.nodes_[std::size_t(item.node)].parent;
     for (std::size_t k = 0; k < part.nodes_.size(); ++k) {
         Node n = part.nodes_[k];
@@ -345,7 +344,8 @@ bool CurvatureTree::sum_up(std::size_t end) {
             if (n.outside) continue;
             Curvature both = full(a.outside ? b : a);
             if (!a.outside && !b.outside) both.include(full(b));
-            n.slot = int(sums_.add(both));
+            n.slot = int(sums_.size());
+            sums_.push_back(both);
             n.whole = a.whole && b.whole;
         } else if (!n.outside) {
             all_flat = all_flat && n.flat;

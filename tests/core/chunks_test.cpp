@@ -1,7 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <freiform/core/chunks.hpp>
 
+#include <gtest/gtest.h>
 #include <string>
 #include <utility>
 #include <vector>
