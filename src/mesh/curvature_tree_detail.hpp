@@ -1,7 +1,8 @@
 // Where a surface curves how much: a binary tree of parameter boxes, each with proven bounds of the second
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
-#include <freiform/core/chunks.hpp>
+#include "chunks_detail.hpp"
+
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>

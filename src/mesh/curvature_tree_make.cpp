@@ -32,6 +32,13 @@ constexpr std::size_t kPartsOfTree = 64;
 constexpr double kLeavesAtOnce = 16;
 constexpr long long kFewNumbers = 96;  // of a piece: asking them is as cheap as a sample
 
+// Parts of a tree are made by themselves for threads alone.
+#ifdef FREIFORM_THREADS
+bool is_serial() { return max_threads() == 1; }
+#else
+constexpr bool is_serial() { return true; }
+#endif
+
 // The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
 int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
     const double by_u = c.uu * size[0] * size[0], by_v = c.vv * size[1] * size[1],
@@ -237,7 +244,8 @@ std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std
         const auto next = all ? items.end() - 1 : items.begin();
         const Item item = std::move(*next);
         items.erase(next);
-        if (all) outers_.resize(std::size_t(item.outer) + 1);  // others are of boxes that are done
+        if (all)  // others are of boxes that are done
+            outers_.erase(outers_.begin() + item.outer + 1, outers_.end());
         if (auto bad = take(item, items)) return bad;
     }
     return std::nullopt;
@@ -252,7 +260,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
                 if (b && (!limit || b->kind == RefusalKind::limit)) return b;
         return std::nullopt;
     };
-    if (max_threads() == 1) {  // into this tree at once, in the order in which parts are added below
+    if (is_serial()) {  // into this tree at once, in the order in which parts are added below
         for (std::size_t i = 0; i < items.size(); ++i) {
             const BoxBending& outer = outers_[std::size_t(items[i].outer)];
             std::vector<Item> own{std::move(items[i])};
@@ -391,7 +399,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (!bad && demands.is_shared) bad = grower.grow_parts(std::move(items));
     if (!bad && task.leaves > max_leaves) bad = grower.too_many_leaves();
     if (bad) return std::unexpected(*bad);
-    const bool has_parts = demands.is_shared && max_threads() > 1;
+    const bool has_parts = demands.is_shared && !is_serial();
     if (tree.sum_up(has_parts ? top : tree.nodes_.size()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
     if (ways.blocks) tree.take_leaves(demands.is_shared);

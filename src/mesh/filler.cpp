@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace freiform {
 
@@ -19,6 +20,12 @@ constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for othe
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
+
+// The largest first.
+void sort_down(std::array<std::pair<double, int>, 3>& x) {
+    for (const std::size_t k : {0, 1, 0})
+        if (x[k] < x[k + 1]) std::swap(x[k], x[k + 1]);
+}
 
 }  // namespace
 
@@ -211,7 +218,7 @@ bool Filler::improve(int triangle) {
         std::array<std::pair<double, int>, 3> spans;
         for (int e = 0; e < 3; ++e)
             spans[std::size_t(e)] = {std::abs(corner[(e + 2) % 3][axis] - corner[(e + 1) % 3][axis]), e};
-        std::sort(spans.rbegin(), spans.rend());
+        sort_down(spans);
         for (const auto& [span, e] : spans) {
             const Vec<2> p = corner[(e + 1) % 3], q = corner[(e + 2) % 3];
             if (t_.is_constrained(triangle, e) || (p[axis] - at) * (q[axis] - at) >= 0) continue;
@@ -237,7 +244,7 @@ bool Filler::improve(int triangle) {
     if (const auto kink = tree_.worst_kink(box);
         kink && tree_.kink_bound(box) > demands_.tolerance / 4 && attempt_on(*kink))
         return true;
-    std::sort(sides.rbegin(), sides.rend());
+    sort_down(sides);
     for (const auto& [error, e] : sides)
         if (!t_.is_constrained(triangle, e) && attempt(0.5 * (corner[(e + 1) % 3] + corner[(e + 2) % 3])))
             return true;

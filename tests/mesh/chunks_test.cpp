@@ -1,4 +1,4 @@
-#include <freiform/core/chunks.hpp>
+#include "mesh/chunks_detail.hpp"
 
 #include <gtest/gtest.h>
 #include <string>
@@ -35,7 +35,9 @@ TEST(Chunks, another_one_is_taken_up_as_it_is) {
             for (const std::size_t p : of_other) places.push_back(p + shift);
             for (int i = 0; i < 10; ++i) places.push_back(all.add(own + others + i));
             for (std::size_t i = 0; i < places.size(); ++i) EXPECT_EQ(all[places[i]], int(i));
-            if (first) EXPECT_EQ(&all[places[std::size_t(own)]], first);
+            if (first != nullptr) {
+                EXPECT_EQ(&all[places[std::size_t(own)]], first);
+            }
         }
 }
 
