@@ -6,6 +6,7 @@
 #include <freiform/core/constants.hpp>
 
 #include <algorithm>
+#include <set>
 
 namespace freiform::step {
 
@@ -190,23 +191,39 @@ void ShapeReader::free_curve(std::uint32_t item) {
     out_.model.edges.push_back(std::move(e));
 }
 
-// The curves and surfaces of sets, wires and edge models, with a stack of our own.
+// The curves and surfaces of sets, wires and edge models, with a stack of our own: kMissing stands above what
+// the last of `around` contains. Sets that many sets name are visited as often: no more than the file is
+// long.
 void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
-    std::vector<std::uint32_t> todo{first};
-    std::size_t budget = 2 * f_.tokens.size();
+    std::vector<std::uint32_t> todo{first}, around;
+    std::set<std::uint32_t> inside, circular;
+    const auto refuse_more = [&] {
+        items_left_ = 0;
+        refuse_item(item, {RefusalKind::limit, "", "names its items more often than it may"});
+    };
     while (!todo.empty()) {
         const std::uint32_t i = todo.back();
         todo.pop_back();
-        if (budget == 0) return refuse_item(item, {RefusalKind::invalid, "", "contains itself"});
-        --budget;
+        if (i == kMissing) {
+            inside.erase(around.back());
+            around.pop_back();
+            continue;
+        }
+        if (inside.contains(i)) {
+            if (circular.insert(i).second) refuse_item(i, {RefusalKind::invalid, "", "contains itself"});
+            continue;
+        }
+        if (items_left_ == 0) return refuse_more();
+        --items_left_;
+        inside.insert(i);
+        around.push_back(i);
+        todo.push_back(kMissing);
         // What is put on the stack is paid for there: lists that name themselves take no more memory.
-        const auto descend = [&](int field) {
-            const Fields f(f_, i, f_.instances[i].first + 1);
-            const auto ids = f.references(field, "items");
-            if (!ids) return refuse_item(i, ids.error());
-            if (ids->size() > budget) return void(budget = 0);
-            budget -= ids->size();
-            todo.insert(todo.end(), ids->rbegin(), ids->rend());
+        const auto put = [&](const std::vector<std::uint32_t>& ids) {
+            if (ids.size() > items_left_) return false;
+            items_left_ -= ids.size();
+            todo.insert(todo.end(), ids.rbegin(), ids.rend());
+            return true;
         };
         const auto is_any = [&](std::initializer_list<Type> types) {
             return std::any_of(types.begin(), types.end(), [&](Type t) { return f_.is(i, t); });
@@ -214,18 +231,22 @@ void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
         if (is_any({Type::GEOMETRIC_SET, Type::GEOMETRIC_CURVE_SET, Type::EDGE_BASED_WIREFRAME_MODEL,
                     Type::SHELL_BASED_WIREFRAME_MODEL, Type::CONNECTED_EDGE_SET, Type::WIRE_SHELL,
                     Type::EDGE_LOOP})) {
-            descend(1);
+            const auto ids = Fields(f_, i, f_.instances[i].first + 1).references(1, "items");
+            if (!ids)
+                refuse_item(i, ids.error());
+            else if (!put(*ids))
+                return refuse_more();
         } else if (f_.is(i, Type::RECTANGULAR_COMPOSITE_SURFACE)) {
             // Its patches are surfaces one beside the other.
             const Fields f(f_, i, f_.part(i, Type::RECTANGULAR_COMPOSITE_SURFACE));
             const auto rows = f.rows(f.size() - 1, "segments");
-            if (!rows) return refuse_item(i, rows.error());
-            for (std::size_t r = rows->size(); r-- > 0;) {
+            if (!rows) refuse_item(i, rows.error());
+            for (std::size_t r = rows ? rows->size() : 0; r-- > 0;) {
                 const auto patches = f.references_at((*rows)[r], "segments");
-                if (!patches) return refuse_item(i, patches.error());
-                if (patches->size() > budget) return void(budget = 0);
-                budget -= patches->size();
-                todo.insert(todo.end(), patches->rbegin(), patches->rend());
+                if (!patches)
+                    refuse_item(i, patches.error());
+                else if (!put(*patches))
+                    return refuse_more();
             }
         } else if (const bool patch = f_.is(i, Type::SURFACE_PATCH); patch || f_.is(i, Type::ORIENTED_EDGE)) {
             const Fields f(f_, i, f_.instances[i].first + 1);

@@ -46,6 +46,7 @@ public:
                 const StepReadOptions& options)
         : f_(file), styles_(styles), geometry_(file), tolerance_(tolerance), options_(options) {
         segments_left_ = 4 * file.tokens.size();
+        items_left_ = 2 * file.tokens.size();
         geometry_.angle = angle;
         geometry_.tolerance = tolerance;
     }
@@ -162,6 +163,7 @@ private:
     std::unordered_map<std::uint32_t, Result<EdgeMade>> edges_;
     std::unordered_map<std::uint32_t, std::vector<EdgeMade>> rows_;  // of edges on composite curves
     std::size_t segments_left_;  // of composite curves, with their control points
+    std::size_t items_left_;     // of sets, each time that one is named
     std::map<std::pair<std::uint32_t, bool>, Result<BoundedCurve>> lifts_;  // of PCURVEs, by unit of angles
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;

@@ -194,6 +194,47 @@ TEST(StepCurves, curves_in_parameters_that_miss_their_vertices_are_refused_with_
         << m.refused[0].message;
 }
 
+// A file with lines #20 and #30, and more.
+Result<Model> read_lines(std::string_view more) {
+    return read_step(
+        flat_file(text("#8=SHAPE_REPRESENTATION('',(#10),#1);\n#21=DIRECTION('',(0.,0.,1.));\n"
+                       "#22=VECTOR('',#21,1.);\n#23=LINE('',#6,#22);\n"
+                       "#20=TRIMMED_CURVE('',#23,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(1.)),"
+                       ".T.,.PARAMETER.);\n"
+                       "#30=TRIMMED_CURVE('',#23,(PARAMETER_VALUE(2.)),(PARAMETER_VALUE(3.)),"
+                       ".T.,.PARAMETER.);\n",
+                       more)));
+}
+
+TEST(StepShapes, sets_in_themselves_are_named_once_and_the_rest_of_them_is_read_once) {
+    for (const char* sets : {"#10=GEOMETRIC_CURVE_SET('',(#20,#10,#10,#30));\n",
+                             "#10=GEOMETRIC_CURVE_SET('',(#11,#30));\n"
+                             "#11=GEOMETRIC_SET('',(#10,#20,#10));\n"}) {
+        const Model m = must(read_lines(sets));
+        EXPECT_EQ(m.edges.size(), 2u) << sets;
+        ASSERT_EQ(m.refused.size(), 1u) << sets;
+        EXPECT_EQ(m.refused[0].where, "#10 GEOMETRIC_CURVE_SET");
+        EXPECT_EQ(m.refused[0].message, "contains itself");
+    }
+    // In one set twice is not in itself.
+    const Model twice =
+        must(read_lines("#10=GEOMETRIC_CURVE_SET('',(#11,#30,#11));\n#11=GEOMETRIC_SET('',(#20));\n"));
+    EXPECT_EQ(twice.edges.size(), 3u);
+    EXPECT_TRUE(twice.refused.empty());
+}
+
+TEST(StepShapes, sets_that_double_from_one_to_the_next_are_refused_when_they_are_many) {
+    std::string sets;
+    for (int i = 0; i < 60; ++i)
+        sets += text("#", i == 0 ? 10 : 100 + i, "=GEOMETRIC_SET('',(#", 101 + i, ",#", 101 + i, "));\n");
+    sets += "#160=GEOMETRIC_SET('',(#20));\n";
+    const Model m = must(read_lines(sets));
+    EXPECT_LT(m.edges.size(), sets.size());
+    ASSERT_EQ(m.refused.size(), 1u);
+    EXPECT_EQ(m.refused[0].kind, RefusalKind::limit);
+    EXPECT_EQ(m.refused[0].where, "#10 GEOMETRIC_SET");
+}
+
 TEST(StepShapes, solids_of_other_kinds_are_refused_with_their_number_and_kind) {
     const auto refused = [](std::string_view item, std::string_view kind) {
         const std::string_view name = item.substr(0, item.find('('));
