@@ -192,10 +192,10 @@ void ShapeReader::free_curve(std::uint32_t item) {
 }
 
 // The curves and surfaces of sets, wires and edge models, with a stack of our own: kMissing stands above what
-// the last of `around` contains. Sets that many sets name are visited as often: no more than the file is
-// long.
-void ShapeReader::set_items(std::uint32_t item, std::uint32_t first) {
-    std::vector<std::uint32_t> todo{first}, around;
+// the last of `around` contains. Sets that many sets name are visited as often, but all together no more than
+// items_left_ allows.
+void ShapeReader::set_items(std::uint32_t item) {
+    std::vector<std::uint32_t> todo{item}, around;
     std::set<std::uint32_t> inside, circular;
     const auto refuse_more = [&] {
         items_left_ = 0;
@@ -294,7 +294,7 @@ void ShapeReader::add(std::uint32_t item) {
         if (const int made = face(item); made >= 0) out_.loose.push_back(made);
     } else if (is(Type::GEOMETRIC_SET) || is(Type::GEOMETRIC_CURVE_SET) ||
                is(Type::EDGE_BASED_WIREFRAME_MODEL) || is(Type::SHELL_BASED_WIREFRAME_MODEL)) {
-        set_items(item, item);
+        set_items(item);
     } else if (is_tessellated(f_, item)) {
         ++out_.tessellated;
     } else {

@@ -78,7 +78,7 @@ private:
 
     void solid(std::uint32_t item);
     void sheet(std::uint32_t item, std::uint32_t shell, bool solid);
-    void set_items(std::uint32_t item, std::uint32_t list_field);
+    void set_items(std::uint32_t item);
     void free_curve(std::uint32_t item);
     Result<int> shell(std::uint32_t i, bool closed);
     Result<void> shell_faces(std::uint32_t i, bool forward, Shell& out, int depth);

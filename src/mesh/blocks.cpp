@@ -306,6 +306,7 @@ private:
 
     // The point of the mesh with this number of table_.
     int point(int at) const { return number_[std::size_t(at)]; }
+    // The same, which becomes the next point if it has been none.
     int number(int at) {
         int& p = number_[std::size_t(at)];
         if (p < 0) {

@@ -66,6 +66,7 @@ public:
         const FaceDemands& demands;
         std::size_t max_leaves;
         bool blocks = false;
+        bool in_parts = false;  // each part of the tree by itself, for threads
         std::atomic<std::size_t> leaves{1};
         std::atomic<bool> all_flat{true};  // of the parts that have been summed up
     };
@@ -260,7 +261,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
                 if (b && (!limit || b->kind == RefusalKind::limit)) return b;
         return std::nullopt;
     };
-    if (is_serial()) {  // into this tree at once, in the order in which parts are added below
+    if (!task_.in_parts) {  // into this tree at once, in the order in which parts are added below
         for (std::size_t i = 0; i < items.size(); ++i) {
             const BoxBending& outer = outers_[std::size_t(items[i].outer)];
             std::vector<Item> own{std::move(items[i])};
@@ -391,7 +392,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
-    Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks};
+    // Asked once: others may change the number of threads.
+    Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks, demands.is_shared && !is_serial()};
     Grower grower(tree, task, any);
     std::vector<Grower::Item> items{{0, 0, 0, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.is_shared ? kPartsOfTree : 0);
@@ -399,8 +401,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (!bad && demands.is_shared) bad = grower.grow_parts(std::move(items));
     if (!bad && task.leaves > max_leaves) bad = grower.too_many_leaves();
     if (bad) return std::unexpected(*bad);
-    const bool has_parts = demands.is_shared && !is_serial();
-    if (tree.sum_up(has_parts ? top : tree.nodes_.size()) && task.all_flat) tree.knows_normals_ = false;
+    if (tree.sum_up(task.in_parts ? top : tree.nodes_.size()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
     if (ways.blocks) tree.take_leaves(demands.is_shared);
     tree.find_corners();

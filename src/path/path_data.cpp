@@ -227,8 +227,8 @@ private:
         current_ = to;
     }
 
-    static constexpr std::size_t kMostAhead = std::size_t(1)
-                                              << 20;  // what text may ask for before it is read
+    // Segments for which text may ask for memory before it is read.
+    static constexpr std::size_t kMostAhead = std::size_t(1) << 20;
 
     std::string_view text_;
     std::size_t at_ = 0;

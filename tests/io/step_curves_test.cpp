@@ -223,6 +223,17 @@ TEST(StepShapes, sets_in_themselves_are_named_once_and_the_rest_of_them_is_read_
     EXPECT_TRUE(twice.refused.empty());
 }
 
+// Its other rows and what comes after it in the set are there.
+TEST(StepShapes, damaged_rows_of_composite_surfaces_are_refused_and_the_rest_is_read) {
+    const Model m = must(
+        read_lines("#10=GEOMETRIC_SET('',(#40,#20));\n#40=RECTANGULAR_COMPOSITE_SURFACE('',((#41),(.T.)));\n"
+                   "#41=SURFACE_PATCH(#43,.CONTINUOUS.,.CONTINUOUS.,.T.,.T.);\n"
+                   "#43=RECTANGULAR_TRIMMED_SURFACE('',#7,0.,1.,0.,2.,.T.,.T.);\n"));
+    EXPECT_EQ(m.faces.size(), 1u);
+    ASSERT_FALSE(m.refused.empty());
+    EXPECT_NE(m.refused[0].where.find("#40"), std::string::npos) << m.refused[0].where;
+}
+
 TEST(StepShapes, sets_that_double_from_one_to_the_next_are_refused_when_they_are_many) {
     std::string sets;
     for (int i = 0; i < 60; ++i)
