@@ -40,19 +40,18 @@ public:
           tolerance_(tolerance),
           is_shared_(is_shared),
           avoid_(avoid),
-          table_(tree.corners().size() + tree.blocks().size()) {}
+          table_(tree.corners().size() + tree.block_count()) {}
 
     BlockMesh run() {
         out_.corners.assign(tree_.corners().begin(), tree_.corners().end());
+        judge_all();
         take_all();
         if (blocks_.empty() && leaves_.empty()) return std::move(out_);
         for (const auto& c : out_.corners) table_.number(c.at);
         for (const Block& b : blocks_) b.grid.each_border_point([&](const Vec<2>& p) { table_.number(p); });
-        for (Leaf& l : leaves_)
-            for (std::size_t k = 0; k < 4; ++k) l.corner[k] = table_.number(corner_of(box_of(l), k));
         find_sides();
         plain_.assign(table_.size(), 0);
-        find_outer_sides();
+        add_sides();
         if (!tree_.is_all_plain()) settle_feet();
         for (const Leaf& l : leaves_) out_.bound = std::max(out_.bound, bound_of(l));
         find_outline();
@@ -71,15 +70,16 @@ private:
         std::vector<int> border = {}, step = {};
     };
 
-    // A block of one cell: its border is border_[first] and what follows. Small, as there are many.
+    // A block of one cell. Small, as there are many.
     struct Leaf {
         std::uint32_t block;  // of the tree
+        std::uint16_t count = 0;
         bool is_plain = false;
         std::array<int, 4> corner = {};  // numbers of table_
-        std::uint32_t first = 0, count = 0;
+        const int* border = nullptr;     // in borders_, `count` of them
     };
     const JudgedBlock& judged(const Leaf& l) const { return judged_[l.block]; }
-    const Box<2>& box_of(const Leaf& l) const { return tree_.blocks()[l.block].box; }
+    Box<2> box_of(const Leaf& l) const { return tree_.block(l.block).box; }
     bool needs_foot(const Leaf& l) const { return !l.is_plain && !std::isfinite(judged(l).footless); }
     double bound_of(const Leaf& l) const {
         const JudgedBlock& j = judged(l);
@@ -96,23 +96,41 @@ private:
         return std::any_of(avoid_.begin(), avoid_.end(), [&](const Vec<2>& p) { return around.contains(p); });
     }
 
-    void take_all() {
-        const auto& all = tree_.blocks();
-        judged_.resize(all.size());
-        leaves_.reserve(all.size());
-        parallel_for(all.size(), is_shared_ ? kBlocksAtOnce : all.size(), [&](std::size_t i) {
-            if (!is_near_avoided(all[i].box)) judged_[i] = judged_block(tree_, judge_, tolerance_, all[i]);
+    // While one thread numbers the corners of leaves.
+    void judge_all() {
+        const std::size_t all = tree_.block_count(), parts = (all + kBlocksAtOnce - 1) / kBlocksAtOnce;
+        judged_.resize(all);
+        parallel_for(1 + parts, is_shared_ ? 1 : 1 + parts, [&](std::size_t part) {
+            if (part == 0) return list_leaves();
+            for (std::size_t i = (part - 1) * kBlocksAtOnce, end = std::min(all, part * kBlocksAtOnce);
+                 i < end; ++i) {
+                const auto block = tree_.block(i);
+                if (!is_near_avoided(block.box)) judged_[i] = judged_block(tree_, judge_, tolerance_, block);
+            }
         });
-        for (std::size_t i = 0; i < all.size(); ++i)
-            all[i].first_part < 0 ? take_leaf(i) : take(all[i], judged_[i]);
     }
 
-    void take_leaf(std::size_t block) {
-        const JudgedBlock& j = judged_[block];
-        if (std::isfinite(std::min(j.flat, j.usual)))
-            leaves_.push_back({std::uint32_t(block), !std::isfinite(j.usual)});
-        else
-            dissolve(tree_.blocks()[block].box);
+    void list_leaves() {
+        for (const auto& c : tree_.corners()) table_.number(c.at);
+        leaves_.reserve(tree_.block_count());
+        for (std::size_t i = 0; i < tree_.block_count(); ++i) {
+            const auto block = tree_.block(i);
+            if (block.first_part >= 0) continue;
+            Leaf& l = leaves_.emplace_back(Leaf{std::uint32_t(i)});
+            for (std::size_t k = 0; k < 4; ++k) l.corner[k] = table_.number(corner_of(block.box, k));
+        }
+    }
+
+    void take_all() {
+        for (std::size_t i = 0; i < tree_.block_count(); ++i)
+            if (const auto block = tree_.block(i); block.first_part >= 0) take(block, judged_[i]);
+        std::erase_if(leaves_, [&](Leaf& l) {
+            const JudgedBlock& j = judged(l);
+            l.is_plain = !std::isfinite(j.usual);
+            const bool bad = l.is_plain && !std::isfinite(j.flat);
+            if (bad) dissolve(box_of(l));
+            return bad;
+        });
     }
 
     void dissolve(const Box<2>& leaf) {
@@ -155,29 +173,27 @@ private:
             }
             block.step.push_back(int(block.border.size()));
         }
-        // Some leaves at a time, whose borders then follow each other.
-        std::vector<std::vector<int>> borders((leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce);
-        parallel_for(borders.size(), is_shared_ ? 1 : borders.size(), [&](std::size_t part) {
-            std::vector<int>& border = borders[part];
+        borders_.resize((leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce);  // of some leaves at a time
+        parallel_for(borders_.size(), is_shared_ ? 1 : borders_.size(), [&](std::size_t part) {
+            std::vector<int>& border = borders_[part];
             border.reserve(6 * kBlocksAtOnce);
-            const std::size_t end = std::min(leaves_.size(), (part + 1) * kBlocksAtOnce);
-            for (std::size_t i = part * kBlocksAtOnce; i < end; ++i) {
-                Leaf& l = leaves_[i];
-                l.first = std::uint32_t(border.size());
+            const std::size_t first = part * kBlocksAtOnce,
+                              end = std::min(leaves_.size(), first + kBlocksAtOnce);
+            std::array<std::size_t, kBlocksAtOnce + 1> begins{};
+            for (std::size_t i = first; i < end; ++i) {
+                const Box<2> box = box_of(leaves_[i]);
                 for (std::size_t k = 0; k < 4; ++k) {
-                    border.push_back(l.corner[k]);
-                    const Box<2>& box = box_of(l);
+                    border.push_back(leaves_[i].corner[k]);
                     add_between(corner_of(box, k), corner_of(box, (k + 1) % 4), k % 2 ? 1 : 0, border);
                 }
-                l.count = std::uint32_t(border.size()) - l.first;
+                begins[i - first + 1] = border.size();
+            }
+            for (std::size_t i = first; i < end; ++i) {
+                leaves_[i].border = border.data() + begins[i - first];
+                const std::size_t count = begins[i - first + 1] - begins[i - first];
+                leaves_[i].count = std::uint16_t(std::min(count, kMostAround + 1));
             }
         });
-        border_.reserve(6 * leaves_.size());
-        for (std::size_t i = 0; i < leaves_.size(); ++i) {
-            const std::vector<int>& border = borders[i / kBlocksAtOnce];
-            if (i % kBlocksAtOnce == 0) border_.insert(border_.end(), border.begin(), border.end());
-            leaves_[i].first += std::uint32_t(border_.size() - border.size());
-        }
         std::erase_if(leaves_, [&](const Leaf& l) {
             const bool many = l.count > kMostAround;
             if (many) dissolve(box_of(l));
@@ -199,7 +215,7 @@ private:
             if (l.is_plain) make_plain(l);
         // Beyond the outline anything may be, so what can do without feet there, does.
         std::vector<char> outer(table_.size());
-        for (const auto& [a, b] : outer_sides_) outer[std::size_t(a)] = outer[std::size_t(b)] = 1;
+        sides_.each([&](int a, int b) { outer[std::size_t(a)] = outer[std::size_t(b)] = 1; });
         for (Leaf& l : leaves_) {
             const auto border = border_of(l);
             if (needs_foot(l) && std::isfinite(judged(l).flat) &&
@@ -216,30 +232,32 @@ private:
                     changed = true;
                 }
         }
-        std::size_t gone = std::erase_if(leaves_, [&](const Leaf& l) {
+        std::erase_if(leaves_, [&](const Leaf& l) {
             const bool bad = needs_foot(l) && meets_plain(border_of(l));
-            if (bad) dissolve(box_of(l));
+            if (bad) dissolve(box_of(l)), sides_.remove(border_of(l));
             return bad;
         });
-        gone += std::erase_if(blocks_, [&](const Block& b) {
+        std::erase_if(blocks_, [&](const Block& b) {
             const bool bad = b.needs_foot && meets_plain(b.border);
-            if (bad) dissolve(b.grid, b.grid.largest_cell());
+            if (bad) dissolve(b.grid, b.grid.largest_cell()), sides_.remove(b.border);
             return bad;
         });
-        if (gone > 0) find_outer_sides();
     }
 
-    void find_outer_sides() {
-        OuterSides sides(table_.size(), border_.size());
-        for (const Block& b : blocks_) sides.add(b.border);
-        for (const Leaf& l : leaves_) sides.add(border_of(l));
-        outer_sides_.clear();
-        sides.each([&](int a, int b) { outer_sides_.push_back({a, b}); });
+    void add_sides() {
+        std::size_t expected = 0;
+        for (const auto& border : borders_) expected += border.size();
+        sides_ = OuterSides(table_.size(), expected);
+        for (const Block& b : blocks_) sides_.add(b.border);
+        for (const Leaf& l : leaves_) sides_.add(border_of(l));
     }
 
     void find_outline() {
         number_.assign(table_.size(), -1);
-        for (const auto& [a, b] : outer_sides_) out_.outline.push_back({number(a), number(b)});
+        sides_.each([&](int a, int b) {
+            const int first = number(a);
+            out_.outline.push_back({first, number(b)});
+        });
         out_.on_outline = int(out_.points.size());
         out_.needs_foot.assign(out_.points.size(), 0);
         const auto mark = [&](std::span<const int> border, bool needs_foot) {
@@ -262,9 +280,7 @@ private:
             for (const int at : border_of(l)) number(at);
     }
 
-    std::span<const int> border_of(const Leaf& l) const {
-        return std::span(border_).subspan(l.first, l.count);
-    }
+    static std::span<const int> border_of(const Leaf& l) { return {l.border, l.count}; }
 
     // Of n points around a leaf there are n - 2 triangles, so each leaf knows where its own begin.
     void mesh_leaves() {
@@ -380,12 +396,12 @@ private:
     std::vector<Block> blocks_;
     std::vector<JudgedBlock> judged_;  // blocks of the tree
     std::vector<Leaf> leaves_;
-    std::vector<int> border_;                      // of leaves, one after the other
-    std::vector<char> plain_;                      // of points of table_
-    std::vector<int> number_;                      // of points of table_ in the mesh
-    int first_inner_ = 0;                          // of the block that is being meshed
-    std::vector<int> around_;                      // work space
-    std::vector<std::array<int, 2>> outer_sides_;  // that one block or leaf has alone, by numbers of table_
+    std::vector<std::vector<int>> borders_;  // of leaves, one after the other
+    std::vector<char> plain_;                // of points of table_
+    std::vector<int> number_;                // of points of table_ in the mesh
+    int first_inner_ = 0;                    // of the block that is being meshed
+    std::vector<int> around_;                // work space
+    OuterSides sides_{0, 0};                 // of blocks and leaves, by numbers of table_
     BlockMesh out_;
 };
 

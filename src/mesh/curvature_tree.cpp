@@ -261,10 +261,8 @@ void CurvatureTree::find_corners() {
             stack.push_back(n.child);
             continue;
         }
-        if (n.block >= 0) {
-            blocks_[std::size_t(n.block)].node = at;
-            continue;
-        }
+        if (n.block >= 0) blocks_[std::size_t(n.block)].node = at;
+        if (n.is_block()) continue;
         for (int k = 0; k < 4; ++k) {
             const Vec<2> corner{{k & 1 ? n.box.hi[0] : n.box.lo[0], k & 2 ? n.box.hi[1] : n.box.lo[1]}};
             if (seen.add(corner)) corners_.push_back({corner, n.box.hi - n.box.lo});

@@ -195,7 +195,7 @@ void CurvatureTree::take_leaves(bool is_shared) {
     std::vector<int> leaves;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const Node& n = nodes_[i];
-        if (n.child >= 0 || n.block >= 0 || !n.inside || n.has_columns() || meets_kink(n.box)) continue;
+        if (n.child >= 0 || n.is_block() || !n.inside || n.has_columns() || meets_kink(n.box)) continue;
         leaves.push_back(int(i));
     }
     std::vector<char> deep(leaves.size());
@@ -203,9 +203,8 @@ void CurvatureTree::take_leaves(bool is_shared) {
                  [&](std::size_t i) { deep[i] = is_deep(leaves[i]); });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         if (!deep[i]) continue;
-        Node& n = nodes_[std::size_t(leaves[i])];
-        n.block = int(blocks_.size());
-        blocks_.push_back({n.box, {}, {}, -1, leaves[i]});
+        nodes_[std::size_t(leaves[i])].block = kOneCell;
+        block_leaves_.push_back(leaves[i]);
     }
 }
 

@@ -2,6 +2,7 @@
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
 #include "chunks_detail.hpp"
+#include "unfilled_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
 
@@ -200,7 +201,13 @@ public:
         int first_part = 0;        // -1: a leaf that is one cell
         int node = 0;
     };
-    std::span<const Block> blocks() const { return blocks_; }
+    // First those of more than one cell.
+    std::size_t block_count() const { return blocks_.size() + block_leaves_.size(); }
+    Block block(std::size_t i) const {
+        if (i < blocks_.size()) return blocks_[i];
+        const int leaf = block_leaves_[i - blocks_.size()];
+        return {nodes_[std::size_t(leaf)].box, {}, {}, -1, leaf};
+    }
     // Of its parts, row by row.
     std::span<const Bending> part_bendings(const Block& b) const {
         if (b.first_part < 0) return {&bending(nodes_[std::size_t(b.node)]), 1};
@@ -221,7 +228,7 @@ private:
         int parent = 0;
         int child = -1;      // the first of two neighbours in nodes_; -1: a leaf
         int variation = -1;  // over it, in variations_
-        int block = -1;      // in blocks_
+        int block = -1;      // in blocks_; kOneCell: in block_leaves_
         int slot = -1;       // of a leaf in bendings_, of others in sums_
         bool outside = false;
         bool inside = false;  // known to be so while it was made, with its border
@@ -229,6 +236,7 @@ private:
         bool flat = false;    // fine without a shift
         // Along each axis the first of the columns of all that it has, and the one after the last.
         std::array<std::array<std::uint8_t, 2>, 2> columns{{{0, 1}, {0, 1}}};
+        bool is_block() const { return block != -1; }
         bool has_columns() const {
             return columns[0][1] - columns[0][0] > 1 || columns[1][1] - columns[1][0] > 1;
         }
@@ -269,12 +277,14 @@ private:
     bool is_sharp_inside(const Box<2>& box) const;
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
     std::span<const std::array<int, 2>> segments_;  // while it is made
-    std::vector<Node> nodes_;
-    Chunks<Bending> bendings_;     // of leaves that are not outside
-    std::vector<Curvature> sums_;  // of S over other nodes
+    static constexpr int kOneCell = -2;
+    std::vector<Node, Unfilled<Node>> nodes_;
+    Chunks<Bending> bendings_;                          // of leaves that are not outside
+    std::vector<Curvature, Unfilled<Curvature>> sums_;  // of S over other nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;
     std::vector<Block> blocks_;
+    std::vector<int> block_leaves_;
     std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
     std::array<std::vector<Kink>, 2> kinks_;

@@ -14,7 +14,7 @@ namespace freiform {
 namespace {
 
 constexpr double kPole = 1.0 / 64;
-constexpr std::size_t kTrianglesAtOnce = 64;    // of which those beyond the outline take no time
+constexpr std::size_t kTrianglesAtOnce = 32;    // that a thread judges
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
@@ -195,8 +195,7 @@ Filler::Known Filler::found(int triangle, int& place) const {
 const Filler::Known& Filler::known(int triangle) {
     const std::size_t i = std::size_t(triangle);
     if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
-    if (known_[i].any && known_[i].stamp == t_.stamp(triangle)) return known_[i];
-    known_[i] = found(triangle, place_);
+    if (!is_known(triangle)) known_[i] = found(triangle, place_);
     return known_[i];
 }
 
@@ -251,29 +250,35 @@ bool Filler::improve(int triangle) {
     return attempt((1.0 / 3) * (corner[0] + corner[1] + corner[2]));
 }
 
-// Most triangles that there are at first are the last ones: a face that threads share has them judged by all
-// threads.
-void Filler::judge_all() {
+// By all threads. Most triangles that there are at first are the last ones, and others mostly stay until it
+// is their turn: it is hardly more than what is asked for later, and the same.
+void Filler::judge(std::span<const Entry> entries) {
     known_.resize(std::size_t(t_.size()));
-    parallel_for((known_.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce, 1, [&](std::size_t part) {
+    std::vector<int> unknown;
+    for (const auto& [triangle, stamp] : entries)
+        if (t_.stamp(triangle) == stamp && !is_known(triangle)) unknown.push_back(triangle);
+    std::sort(unknown.begin(), unknown.end());  // entries may repeat each other
+    unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
+    parallel_for((unknown.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce, 1, [&](std::size_t part) {
         int place = 0;
-        const std::size_t end = std::min(known_.size(), (part + 1) * kTrianglesAtOnce);
+        const std::size_t end = std::min(unknown.size(), (part + 1) * kTrianglesAtOnce);
         for (std::size_t i = part * kTrianglesAtOnce; i < end; ++i)
-            if (t_.is_inside(int(i)) && !known_[i].any) known_[i] = found(int(i), place);
+            known_[std::size_t(unknown[i])] = found(unknown[i], place);
     });
 }
 
 bool Filler::refine(std::size_t max_points) {
-    if (demands_.is_shared && known_.empty()) judge_all();
-    struct Entry {
-        int triangle;
-        std::uint32_t stamp;
-    };
+    const bool by_threads = demands_.is_shared && max_threads() > 1;
     std::vector<Entry> queue;
+    std::size_t judged = 0;  // of the queue
     std::vector<int> again;
     for (int i = 0; i < t_.size(); ++i)
         if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
     for (std::size_t head = 0; head < queue.size(); ++head) {
+        if (by_threads && head >= judged) {
+            judge(std::span(queue).subspan(head));
+            judged = queue.size();
+        }
         const Entry entry = queue[head];
         if (t_.stamp(entry.triangle) != entry.stamp || is_fine(entry.triangle)) continue;
         // Where points have no foot, at poles and kinks, and need none.
@@ -299,6 +304,7 @@ bool Filler::refine(std::size_t max_points) {
             if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
         if (head > 4096 && head > queue.size() / 2) {
             queue.erase(queue.begin(), queue.begin() + std::ptrdiff_t(head) + 1);
+            judged -= std::min(judged, head + 1);
             head = std::size_t(-1);
         }
     }

@@ -56,7 +56,15 @@ private:
         std::uint32_t stamp = 0;
         bool any = false;
     };
-    void judge_all();
+    struct Entry {
+        int triangle;
+        std::uint32_t stamp;
+    };
+    bool is_known(int triangle) const {
+        const std::size_t i = std::size_t(triangle);
+        return i < known_.size() && known_[i].any && known_[i].stamp == t_.stamp(triangle);
+    }
+    void judge(std::span<const Entry> entries);
     const Known& known(int triangle);
     Known found(int triangle, int& place) const;  // `place`: in the tree, where to begin, and where it is
 
