@@ -42,26 +42,34 @@ public:
           avoid_(avoid),
           table_(tree.corners().size() + tree.block_count()) {}
 
-    BlockMesh run() {
-        out_.corners.assign(tree_.corners().begin(), tree_.corners().end());
+    BlockMesh run(const std::function<void(const BlockOutline&)>& around) {
+        outline_.corners.assign(tree_.corners().begin(), tree_.corners().end());
         judge_all();
         take_all();
-        if (blocks_.empty() && leaves_.empty()) return std::move(out_);
-        for (const auto& c : out_.corners) table_.number(c.at);
+        if (!blocks_.empty() || !leaves_.empty()) find_outline();
+        parallel_for(2, is_shared_ ? 1 : 2, [&](std::size_t k) { k == 0 ? fill() : around(outline_); });
+        out_.outline = std::move(outline_);
+        return std::move(out_);
+    }
+
+private:
+    void find_outline() {
+        for (const auto& c : outline_.corners) table_.number(c.at);
         for (const Block& b : blocks_) b.grid.each_border_point([&](const Vec<2>& p) { table_.number(p); });
         find_sides();
         plain_.assign(table_.size(), 0);
         add_sides();
         if (!tree_.is_all_plain()) settle_feet();
+        number_outline();
+    }
+
+    void fill() {
         for (const Leaf& l : leaves_) out_.bound = std::max(out_.bound, bound_of(l));
-        find_outline();
         number_others();
         for (const Block& b : blocks_) mesh(b);
         mesh_leaves();
-        return std::move(out_);
     }
 
-private:
     // Numbers of table_ along the border, counter-clockwise from the lower corner of the box. `step`: where
     // each cell along it begins; sides follow each other.
     struct Block {
@@ -134,7 +142,8 @@ private:
     }
 
     void dissolve(const Box<2>& leaf) {
-        for (std::size_t k = 0; k < 4; ++k) out_.corners.push_back({corner_of(leaf, k), leaf.hi - leaf.lo});
+        for (std::size_t k = 0; k < 4; ++k)
+            outline_.corners.push_back({corner_of(leaf, k), leaf.hi - leaf.lo});
     }
 
     void take(const CurvatureTree::Block& b, const JudgedBlock& j) {
@@ -147,7 +156,7 @@ private:
 
     void dissolve(const BlockGrid& grid, const Vec<2>& cell) {
         for (int i = 0; i <= grid.cells(0); ++i)
-            for (int j = 0; j <= grid.cells(1); ++j) out_.corners.push_back({grid.at(i, j), cell});
+            for (int j = 0; j <= grid.cells(1); ++j) outline_.corners.push_back({grid.at(i, j), cell});
     }
 
     // Points of anybody between two that are neighbours on a line along the axis, in order.
@@ -252,32 +261,32 @@ private:
         for (const Leaf& l : leaves_) sides_.add(border_of(l));
     }
 
-    void find_outline() {
+    void number_outline() {
         number_.assign(table_.size(), -1);
         sides_.each([&](int a, int b) {
-            const int first = number(a);
-            out_.outline.push_back({first, number(b)});
+            const int first = number(a, 0, outline_.points);
+            outline_.sides.push_back({first, number(b, 0, outline_.points)});
         });
-        out_.on_outline = int(out_.points.size());
-        out_.needs_foot.assign(out_.points.size(), 0);
+        outline_.needs_foot.assign(outline_.points.size(), 0);
         const auto mark = [&](std::span<const int> border, bool needs_foot) {
             for (const int at : border)
                 if (const int p = number_[std::size_t(at)]; needs_foot && p >= 0)
-                    out_.needs_foot[std::size_t(p)] = 1;
+                    outline_.needs_foot[std::size_t(p)] = 1;
         };
         for (const Block& b : blocks_) mark(b.border, b.needs_foot);
         for (const Leaf& l : leaves_) mark(border_of(l), needs_foot(l));
-        out_.plain.resize(out_.needs_foot.size());
+        outline_.plain.resize(outline_.needs_foot.size());
         for (std::size_t at = 0; at < number_.size(); ++at)
-            if (const int p = number_[at]; plain_[at] && p >= 0) out_.plain[std::size_t(p)] = 1;
+            if (const int p = number_[at]; plain_[at] && p >= 0) outline_.plain[std::size_t(p)] = 1;
     }
 
     // Points inside of the outline.
     void number_others() {
+        first_other_ = int(outline_.points.size());
         for (const Block& b : blocks_)
-            for (const int at : b.border) number(at);
+            for (const int at : b.border) number(at, first_other_, out_.points);
         for (const Leaf& l : leaves_)
-            for (const int at : border_of(l)) number(at);
+            for (const int at : border_of(l)) number(at, first_other_, out_.points);
     }
 
     static std::span<const int> border_of(const Leaf& l) { return {l.border, l.count}; }
@@ -322,12 +331,12 @@ private:
 
     // The point of the mesh with this number of table_.
     int point(int at) const { return number_[std::size_t(at)]; }
-    // The same, which becomes the next point if it has been none.
-    int number(int at) {
+    // The same, which becomes the next of `points`, whose numbers begin with `first`, if it has been none.
+    int number(int at, int first, std::vector<Vec<2>>& points) {
         int& p = number_[std::size_t(at)];
         if (p < 0) {
-            p = int(out_.points.size());
-            out_.points.push_back(table_.points()[std::size_t(at)]);
+            p = first + int(points.size());
+            points.push_back(table_.points()[std::size_t(at)]);
         }
         return p;
     }
@@ -335,7 +344,7 @@ private:
     void mesh(const Block& block) {
         const BlockGrid& g = block.grid;
         const int nu = g.cells(0), nv = g.cells(1);
-        first_inner_ = int(out_.points.size());
+        first_inner_ = first_other_ + int(out_.points.size());
         for (int i = 1; i < nu; ++i)
             for (int j = 1; j < nv; ++j) out_.points.push_back(g.at(i, j));
         for (int i = 0; i < nu; ++i)
@@ -399,17 +408,19 @@ private:
     std::vector<std::vector<int>> borders_;  // of leaves, one after the other
     std::vector<char> plain_;                // of points of table_
     std::vector<int> number_;                // of points of table_ in the mesh
+    int first_other_ = 0;                    // of the points inside of the outline
     int first_inner_ = 0;                    // of the block that is being meshed
     std::vector<int> around_;                // work space
     OuterSides sides_{0, 0};                 // of blocks and leaves, by numbers of table_
+    BlockOutline outline_;
     BlockMesh out_;
 };
 
 }  // namespace
 
 BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
-                      std::span<const Vec<2>> avoid) {
-    return BlockMesher(tree, judge, tolerance, is_shared, avoid).run();
+                      std::span<const Vec<2>> avoid, const std::function<void(const BlockOutline&)>& around) {
+    return BlockMesher(tree, judge, tolerance, is_shared, avoid).run(around);
 }
 
 }  // namespace freiform

@@ -2,24 +2,32 @@
 #pragma once
 #include "judge_detail.hpp"
 
+#include <functional>
+
 namespace freiform {
 
-struct BlockMesh {
-    std::vector<Vec<2>> points;  // those on the outline first
-    // Counter-clockwise; every one is within a cell of its block.
-    std::vector<std::array<int, 3>> triangles;
+// What has to be known around blocks.
+struct BlockOutline {
+    std::vector<Vec<2>> points;
     // Sides of triangles that no other block has: what encloses all blocks by the odd-even rule. The corners
     // of leaves that lie there are ends of them.
-    std::vector<std::array<int, 2>> outline;
-    int on_outline = 0;
-    std::vector<char> needs_foot, plain;  // of points on the outline: as Filler::keep_feet
-    double bound = 0;                     // of the distance, of all triangles
+    std::vector<std::array<int, 2>> sides;
+    std::vector<char> needs_foot, plain;  // of points: as Filler::keep_feet
     // Corners of the other leaves, and of the cells of blocks for which no bound was found.
     std::vector<CurvatureTree::Corner> corners;
 };
 
-// Blocks near places to `avoid` are left out. `is_shared`: all threads may be used.
+struct BlockMesh {
+    BlockOutline outline;
+    std::vector<Vec<2>> points;  // inside of the outline; their numbers follow those of the points on it
+    // Counter-clockwise; every one is within a cell of its block.
+    std::vector<std::array<int, 3>> triangles;
+    double bound = 0;  // of the distance, of all triangles
+};
+
+// Blocks near places to `avoid` are left out. `is_shared`: all threads may be used; `around` is then called
+// with the outline while triangles inside of it are made, else before that.
 BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
-                      std::span<const Vec<2>> avoid = {});
+                      std::span<const Vec<2>> avoid, const std::function<void(const BlockOutline&)>& around);
 
 }  // namespace freiform

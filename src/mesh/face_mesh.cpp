@@ -162,15 +162,15 @@ Vec<2> mean_cell(const GridLines& lines) {
     return {{mean(lines[0]), mean(lines[1])}};
 }
 
-// `outline`: the vertex of the first point of the outline; others are added.
+// `outline`: the vertex of the first point of the outline, which is there; others are added.
 void add_blocks(FaceMesh& out, const BlockMesh& blocks, int outline) {
-    const int others = int(out.uv.size()) - blocks.on_outline;
-    out.uv.insert(out.uv.end(), blocks.points.begin() + blocks.on_outline, blocks.points.end());
+    const int on_outline = int(blocks.outline.points.size()), others = int(out.uv.size()) - on_outline;
+    out.uv.insert(out.uv.end(), blocks.points.begin(), blocks.points.end());
     out.point.resize(out.uv.size(), -1);
     out.bound = std::max(out.bound, blocks.bound);
-    out.triangles.reserve(2 * blocks.triangles.size());
+    out.triangles.reserve(out.triangles.size() + blocks.triangles.size());
     for (std::array<int, 3> t : blocks.triangles) {
-        for (int& p : t) p += p < blocks.on_outline ? outline : others;
+        for (int& p : t) p += p < on_outline ? outline : others;
         out.triangles.push_back(t);
     }
 }
@@ -187,32 +187,32 @@ struct Filling {
     const Judge& judge;
 };
 
-// Blocks are left out near places to `avoid`; where they have to be is in `stuck` then.
-Result<FaceMesh> filled_around(const Filling& f, Polygon polygon, std::span<const Vec<2>> avoid,
-                               std::vector<Vec<2>>& stuck) {
+// What lies outside the blocks. `stuck`: where they have to be left out, if that is why there is nothing.
+// `first_on_outline`: a vertex; the others on the outline follow it.
+Result<FaceMesh> mesh_around(const Filling& f, Polygon polygon, const BlockOutline& outline,
+                             std::vector<Vec<2>>& stuck, int& first_on_outline) {
     const auto& [surface, boundary, demands, max_triangles, extra, ways, tree, judge] = f;
     const double tolerance = demands.tolerance;
     const int merged_corners = int(polygon.points.size());
-    const BlockMesh blocks = mesh_blocks(tree, judge, tolerance, demands.is_shared, avoid);
     const auto grid = grid_of(surface, tree, polygon, demands, max_triangles);
     const std::vector<CurvatureTree::Corner> crossings =
         grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
-    const std::span<const CurvatureTree::Corner> corners = grid ? crossings : blocks.corners;
+    const std::span<const CurvatureTree::Corner> corners = grid ? crossings : outline.corners;
     const Vec<2> leaf = grid ? mean_cell(*grid) : tree.mean_leaf();
     cut_poles(polygon, boundary, corners, leaf);
     const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
-    // What lies outside the blocks is triangulated; their outline is a boundary as the polygon is.
+    // The outline is a boundary as the polygon is.
     const int first_outline = int(polygon.points.size());
     std::vector<Vec<2>> points = polygon.points;
-    points.insert(points.end(), blocks.points.begin(), blocks.points.begin() + blocks.on_outline);
-    for (const auto& [a, b] : blocks.outline)
+    points.insert(points.end(), outline.points.begin(), outline.points.end());
+    for (const auto& [a, b] : outline.sides)
         polygon.segments.push_back({first_outline + a, first_outline + b});
     for (Vec<2>& p : points) p = {{p[0] * scale[0], p[1] * scale[1]}};
     auto triangulation = Triangulation::make(points, polygon.segments);
     if (!triangulation) return std::unexpected(triangulation.error());
 
     Filler filler(*triangulation, tree, judge, surface, scale, demands);
-    filler.keep_feet(first_outline, blocks.needs_foot, blocks.plain);
+    filler.keep_feet(first_outline, outline.needs_foot, outline.plain);
     for (const Vec<2>& p : extra) triangulation->insert({{p[0] * scale[0], p[1] * scale[1]}});
     filler.insert_corners(corners);
     // Corners that stand for the same mesh point, numbered by the first of them.
@@ -256,7 +256,7 @@ Result<FaceMesh> filled_around(const Filling& f, Polygon polygon, std::span<cons
         out.point.push_back(v < first_outline ? boundary.point[std::size_t(polygon.corner[std::size_t(v)])]
                                               : -1);
     }
-    add_blocks(out, blocks, first_outline + shift);
+    first_on_outline = first_outline + shift;
     for (int i = 0; i < triangulation->size(); ++i) {
         if (!triangulation->is_inside(i)) continue;
         const double bound = filler.bound(i);
@@ -274,6 +274,20 @@ Result<FaceMesh> filled_around(const Filling& f, Polygon polygon, std::span<cons
         if (at[0] != at[1] && at[1] != at[2] && at[2] != at[0]) out.triangles.push_back(t);
     }
     if (grid) out.quads = pair_halves(*grid, out.uv, out.point, out.triangles);
+    return out;
+}
+
+// Blocks are left out near places to `avoid`. `stuck`: as above.
+Result<FaceMesh> filled_around(const Filling& f, const Polygon& polygon, std::span<const Vec<2>> avoid,
+                               std::vector<Vec<2>>& stuck) {
+    Result<FaceMesh> out;
+    int first_on_outline = 0;
+    const auto around = [&](const BlockOutline& outline) {
+        out = mesh_around(f, polygon, outline, stuck, first_on_outline);
+    };
+    const BlockMesh blocks =
+        mesh_blocks(f.tree, f.judge, f.demands.tolerance, f.demands.is_shared, avoid, around);
+    if (out) add_blocks(*out, blocks, first_on_outline);
     return out;
 }
 

@@ -187,19 +187,26 @@ TEST(Blocks, of_steep_hills_do_without_feet) {
                                                        {.tolerance = tolerance}, 1'000'000, {true, true}));
             for (std::size_t i = 0; i < tree.block_count(); ++i) leaves += tree.block(i).first_part < 0;
             const Judge judge(tree, surface, {boundary.uv.front(), {{6, 6}}}, tolerance);
-            const auto blocks = mesh_blocks(tree, judge, tolerance, true);
-            ASSERT_EQ(blocks.plain.size(), std::size_t(blocks.on_outline));
-            for (std::size_t i = 0; i < blocks.plain.size(); ++i) {
-                plain += blocks.plain[i];
-                counted_on += blocks.needs_foot[i];
-                EXPECT_FALSE(blocks.plain[i] && blocks.needs_foot[i]);
+            BlockOutline told;
+            const auto blocks =
+                mesh_blocks(tree, judge, tolerance, true, {}, [&](const BlockOutline& o) { told = o; });
+            const BlockOutline& outline = blocks.outline;
+            EXPECT_EQ(told.sides, outline.sides);
+            ASSERT_EQ(outline.plain.size(), outline.points.size());
+            for (std::size_t i = 0; i < outline.plain.size(); ++i) {
+                plain += outline.plain[i];
+                counted_on += outline.needs_foot[i];
+                EXPECT_FALSE(outline.plain[i] && outline.needs_foot[i]);
             }
             // Around a place to avoid there are none, and what they had are corners.
-            const auto& some = blocks.triangles[blocks.triangles.size() / 2];
-            const Vec<2> place = blocks.points[std::size_t(some[0])];
-            const auto less = mesh_blocks(tree, judge, tolerance, false, std::vector<Vec<2>>{place});
+            const std::size_t some = std::size_t(blocks.triangles[blocks.triangles.size() / 2][0]),
+                              on_outline = outline.points.size();
+            const Vec<2> place = some < on_outline ? outline.points[some] : blocks.points[some - on_outline];
+            const auto less = mesh_blocks(tree, judge, tolerance, false, std::vector<Vec<2>>{place},
+                                          [](const BlockOutline&) {});
             EXPECT_LT(less.triangles.size(), blocks.triangles.size());
-            EXPECT_GT(less.corners.size(), blocks.corners.size());
+            EXPECT_GT(less.outline.corners.size(), outline.corners.size());
+            for (const auto& p : less.outline.points) EXPECT_NE(p, place);
             for (const auto& p : less.points) EXPECT_NE(p, place);
         }
     }
