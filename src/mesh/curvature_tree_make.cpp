@@ -12,6 +12,7 @@
 // Accuracy. The sample is off by roundings for which DerivativeQuery::second_rounding has a bound. Why not
 // for small pieces: with 16 control points of four numbers the sample costs as much as the bound.
 #include "curvature_tree_detail.hpp"
+#include "serial_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
@@ -31,13 +32,6 @@ constexpr double kLittleTilt = 0.125;
 constexpr std::size_t kPartsOfTree = 64;
 constexpr double kLeavesAtOnce = 16;
 constexpr long long kFewNumbers = 96;  // of a piece: asking them is as cheap as a sample
-
-// Parts of a tree are made by themselves for threads alone.
-#ifdef FREIFORM_THREADS
-bool is_serial() { return max_threads() == 1; }
-#else
-constexpr bool is_serial() { return true; }
-#endif
 
 // The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
 int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
@@ -392,7 +386,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
-    // Asked once: others may change the number of threads.
+    // Parts of a tree are made by themselves for threads alone. Asked once: others may change their number.
     Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks, demands.is_shared && !is_serial()};
     Grower grower(tree, task, any);
     std::vector<Grower::Item> items{{0, 0, 0, {segments.begin(), segments.end()}}};

@@ -1,5 +1,6 @@
 // See face_mesh.cpp for the whole.
 #include "filler_detail.hpp"
+#include "serial_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
@@ -268,7 +269,7 @@ void Filler::judge(std::span<const Entry> entries) {
 }
 
 bool Filler::refine(std::size_t max_points) {
-    const bool by_threads = demands_.is_shared && max_threads() > 1;
+    const bool by_threads = demands_.is_shared && !is_serial();
     std::vector<Entry> queue;
     std::size_t judged = 0;  // of the queue
     std::vector<int> again;
