@@ -129,19 +129,24 @@ SurfaceGeometry steep_hills(Random& random) {
     return must(Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({9, 9}, std::move(c))));
 }
 
-void expect_same_for_any_threads(const SurfaceGeometry& s, double tolerance) {
+// Refusals, too: sides of the boundary may be too long for the tolerance. Whether there are triangles.
+bool expect_same_for_any_threads(const SurfaceGeometry& s, double tolerance) {
     const DerivativeQuery<2, 3> surface(s);
     const FaceBoundary boundary = square_of(6);
     const FaceDemands demands{.tolerance = tolerance, .is_shared = true};
     set_max_threads(1);
-    const auto one = must(mesh_face(surface, boundary, demands, 1'000'000));
+    const auto one = mesh_face(surface, boundary, demands, 1'000'000);
     set_max_threads(2);
-    const auto two = must(mesh_face(surface, boundary, demands, 1'000'000));
+    const auto two = mesh_face(surface, boundary, demands, 1'000'000);
     set_max_threads(0);
-    EXPECT_EQ(one.uv, two.uv);
-    EXPECT_EQ(one.triangles, two.triangles);
-    EXPECT_EQ(one.bound, two.bound);
-    expect_covers_once(one, boundary);
+    EXPECT_EQ(one.has_value(), two.has_value());
+    if (!one && !two) EXPECT_EQ(one.error().message, two.error().message);
+    if (!one || !two) return false;
+    EXPECT_EQ(one->uv, two->uv);
+    EXPECT_EQ(one->triangles, two->triangles);
+    EXPECT_EQ(one->bound, two->bound);
+    expect_covers_once(*one, boundary);
+    return true;
 }
 
 TEST(Blocks, and_what_is_around_them_cover_a_face_once_within_the_bound) {
@@ -235,11 +240,15 @@ TEST(Blocks, take_no_more_triangles_than_leaves_would_by_much) {
 TEST(Blocks, are_the_same_for_any_number_of_threads) {
     Random random(13);
     const SurfaceGeometry s = hill<Hom<3>>(random, 3, false);
-    expect_same_for_any_threads(s, 1e-4);
-    expect_same_for_any_threads(s, 1e-2);
+    EXPECT_TRUE(expect_same_for_any_threads(s, 1e-4));
+    EXPECT_TRUE(expect_same_for_any_threads(s, 1e-2));
     // Around these many triangles turn out to do without feet, after others have been judged by all threads.
-    for (int round = 0; round < 6; ++round)
-        expect_same_for_any_threads(steep_hills(random), std::exp2(random.real(-10, -5)));
+    int meshed = 0;
+    for (int round = 0; round < 6; ++round) {
+        const SurfaceGeometry steep = steep_hills(random);
+        meshed += expect_same_for_any_threads(steep, std::exp2(random.real(-10, -5)));
+    }
+    EXPECT_GE(meshed, 4);
 }
 
 // Triangles of blocks may count on feet that those beside them would do without, as at poles: that is told
