@@ -90,6 +90,14 @@ struct Shared {
     }
 };
 
+// In the order of the faces of originals_of.
+std::vector<double> of_originals(std::span<const double> of_faces, const Copies& copies) {
+    std::vector<double> out;
+    for (std::size_t f = 0; f < of_faces.size(); ++f)
+        if (copies.faces[f].of < 0) out.push_back(of_faces[f]);
+    return out;
+}
+
 }  // namespace
 
 std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const TessellateOptions> options) {
@@ -124,7 +132,7 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
         TessellateOptions inner = how;  // what is moved is rounded
         inner.max_edge *= 1 - 0x1p-40;
         inner.tolerance *= 1 - 0x1p-20;
-        auto few = originals.run(*reduced, inner, face_sizes(*reduced, inner));
+        auto few = originals.run(*reduced, inner, of_originals(sizes, *copies));
         all.push_back(few ? with_copies(model, *copies, std::move(*few), how) : std::move(few));
         if (all.back())
             all.back()->seconds.total =

@@ -6,6 +6,7 @@
 // has a triangle, too; those of narrow faces have no others.
 #include "triangle_budget_detail.hpp"
 
+#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <cmath>
@@ -18,12 +19,16 @@ namespace {
 constexpr double kFarBelow = 16;   // one from few samples below the limit by more than this, too
 constexpr double kHopeless = 256;  // above the limit by more than this
 constexpr int kFewSamples = 3, kManySamples = 12;
+constexpr std::size_t kEdgesAtOnce = 64, kFacesAtOnce = 8;  // that a thread looks at
 
 std::vector<double> predicted(const Model& model, const TessellateOptions& options, int samples) {
-    std::vector<double> out, chords;
-    for (const Edge& e : model.edges)
-        chords.push_back(std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0));
-    for (const Face& face : model.faces) {
+    std::vector<double> out(model.faces.size()), chords(model.edges.size());
+    parallel_for(model.edges.size(), kEdgesAtOnce, [&](std::size_t i) {
+        const Edge& e = model.edges[i];
+        chords[i] = std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0);
+    });
+    parallel_for(model.faces.size(), kFacesAtOnce, [&](std::size_t f) {
+        const Face& face = model.faces[f];
         Box<2> box;
         double along = 0;
         for (const Loop& l : face.loops)
@@ -34,12 +39,11 @@ std::vector<double> predicted(const Model& model, const TessellateOptions& optio
                     box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
                 }
             }
-        out.push_back(box.is_empty()
-                          ? 0
-                          : std::max(estimated_triangles(face.surface, box,
-                                                         {options.tolerance, options.max_edge}, samples),
-                                     along + 2 * double(face.loops.size()) - 4));
-    }
+        if (box.is_empty()) return;
+        const FaceDemands demands{options.tolerance, options.max_edge};
+        out[f] = std::max(estimated_triangles(face.surface, box, demands, samples),
+                          along + 2 * double(face.loops.size()) - 4);
+    });
     return out;
 }
 
