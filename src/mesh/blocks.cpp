@@ -254,9 +254,7 @@ private:
     }
 
     void add_sides() {
-        std::size_t expected = 0;
-        for (const auto& border : borders_) expected += border.size();
-        sides_ = OuterSides(table_.size(), expected);
+        sides_ = OuterSides(table_.size(), 4 * leaves_.size());  // most are of two
         for (const Block& b : blocks_) sides_.add(b.border);
         for (const Leaf& l : leaves_) sides_.add(border_of(l));
     }

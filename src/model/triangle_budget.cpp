@@ -19,14 +19,12 @@ namespace {
 constexpr double kFarBelow = 16;   // one from few samples below the limit by more than this, too
 constexpr double kHopeless = 256;  // above the limit by more than this
 constexpr int kFewSamples = 3, kManySamples = 12;
-constexpr std::size_t kEdgesAtOnce = 64, kFacesAtOnce = 8;  // that a thread looks at
+constexpr std::size_t kFacesAtOnce = 8;  // that a thread looks at
 
 std::vector<double> predicted(const Model& model, const TessellateOptions& options, int samples) {
-    std::vector<double> out(model.faces.size()), chords(model.edges.size());
-    parallel_for(model.edges.size(), kEdgesAtOnce, [&](std::size_t i) {
-        const Edge& e = model.edges[i];
-        chords[i] = std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0);
-    });
+    std::vector<double> out(model.faces.size()), chords;
+    for (const Edge& e : model.edges)
+        chords.push_back(std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0));
     parallel_for(model.faces.size(), kFacesAtOnce, [&](std::size_t f) {
         const Face& face = model.faces[f];
         Box<2> box;
