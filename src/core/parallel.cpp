@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <utility>
-#if FREIFORM_THREADS
+#ifndef FREIFORM_SERIAL
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -14,7 +14,7 @@ namespace freiform {
 
 namespace {
 std::atomic<int> g_max_threads{0};
-#if FREIFORM_THREADS
+#ifndef FREIFORM_SERIAL
 thread_local bool t_is_inside = false;  // of a loop
 #endif
 }  // namespace
@@ -22,9 +22,9 @@ thread_local bool t_is_inside = false;  // of a loop
 void set_max_threads(int threads) { g_max_threads = std::max(threads, 0); }
 int max_threads() { return g_max_threads; }
 
+#ifndef FREIFORM_SERIAL
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t)>& f) {
     grain = std::max<std::size_t>(grain, 1);
-#if FREIFORM_THREADS
     if (const int threads = g_max_threads; n >= 2 * grain && threads != 1) {
         const auto loop = [&] {
             oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain),
@@ -46,8 +46,8 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
         arena.execute(loop);
         return;
     }
-#endif
     for (std::size_t i = 0; i < n; ++i) f(i);
 }
+#endif
 
 }  // namespace freiform

@@ -5,10 +5,10 @@
 
 namespace freiform {
 
-#ifdef FREIFORM_THREADS
-inline bool is_serial() { return max_threads() == 1; }
-#else
+#ifdef FREIFORM_SERIAL
 constexpr bool is_serial() { return true; }
+#else
+inline bool is_serial() { return max_threads() == 1; }
 #endif
 
 }  // namespace freiform
