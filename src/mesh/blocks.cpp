@@ -11,6 +11,7 @@
 // its error is small enough. Their neighbours have plain points then; those that can do without these feet,
 // do, others become plain in turn or are left to the triangulation. So are blocks near places to avoid: where
 // triangles around them turned out to need plain points that a block counts on.
+#include "block_cells_detail.hpp"
 #include "block_judge_detail.hpp"
 #include "blocks_detail.hpp"
 #include "leaf_triangles_detail.hpp"
@@ -341,57 +342,12 @@ private:
 
     void mesh(const Block& block) {
         const BlockGrid& g = block.grid;
-        const int nu = g.cells(0), nv = g.cells(1);
-        first_inner_ = first_other_ + int(out_.points.size());
-        for (int i = 1; i < nu; ++i)
-            for (int j = 1; j < nv; ++j) out_.points.push_back(g.at(i, j));
-        for (int i = 0; i < nu; ++i)
-            for (int j = 0; j < nv; ++j)
-                if (i > 0 && j > 0 && i + 1 < nu && j + 1 < nv) {
-                    const int a = inner(g, i, j), b = inner(g, i + 1, j), c = inner(g, i + 1, j + 1),
-                              d = inner(g, i, j + 1);
-                    out_.triangles.push_back({a, b, c});
-                    out_.triangles.push_back({a, c, d});
-                } else {
-                    mesh_border_cell(block, i, j);
-                }
-    }
-
-    int inner(const BlockGrid& g, int i, int j) const {
-        return first_inner_ + (i - 1) * (g.cells(1) - 1) + j - 1;
-    }
-
-    // From a corner inside the block, counter-clockwise; if two are, the other one comes last.
-    void mesh_border_cell(const Block& block, int i, int j) {
-        const BlockGrid& g = block.grid;
-        const std::array<std::array<int, 2>, 4> corner{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
-        const bool on_border[4] = {j == 0, i + 1 == g.cells(0), j + 1 == g.cells(1), i == 0};
-        const auto is_inner = [&](std::size_t k) { return g.is_inner(corner[k % 4][0], corner[k % 4][1]); };
-        std::size_t first = 0, many = 0;
-        for (std::size_t k = 0; k < 4; ++k)
-            if (is_inner(k)) {
-                ++many;
-                if (many == 1 || is_inner(k + 3)) first = k;
-            }
-        around_.clear();
-        for (std::size_t n = 0; n < 4; ++n) {
-            const std::size_t k = (first + n) % 4;
-            const auto [a, b] = corner[k];
-            if (g.is_inner(a, b)) {
-                around_.push_back(inner(g, a, b));
-                continue;
-            }
-            const std::size_t at = g.along_border(a, b);
-            const int from = block.step[at], to = on_border[k] ? block.step[at + 1] : from + 1;
-            for (int p = from; p < to; ++p) around_.push_back(point(block.border[std::size_t(p)]));
-        }
-        const std::size_t last = around_.size() - 1, turn = many == 2 ? last / 2 : last;
-        const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-            out_.triangles.push_back({around_[a], around_[b], around_[c]});
-        };
-        for (std::size_t k = 1; k < turn; ++k) add(0, k, k + 1);
-        if (many == 2) add(0, turn, last);
-        for (std::size_t k = turn; k + 1 < last; ++k) add(k, k + 1, last);
+        const int first_inner = first_other_ + int(out_.points.size());
+        for (int i = 1; i < g.cells(0); ++i)
+            for (int j = 1; j < g.cells(1); ++j) out_.points.push_back(g.at(i, j));
+        std::vector<int> border;
+        for (const int at : block.border) border.push_back(point(at));
+        add_cells(g, border, block.step, first_inner, out_.triangles);
     }
 
     const CurvatureTree& tree_;
@@ -407,8 +363,6 @@ private:
     std::vector<char> plain_;                // of points of table_
     std::vector<int> number_;                // of points of table_ in the mesh
     int first_other_ = 0;                    // of the points inside of the outline
-    int first_inner_ = 0;                    // of the block that is being meshed
-    std::vector<int> around_;                // work space
     OuterSides sides_{0, 0};                 // of blocks and leaves, by numbers of table_
     BlockOutline outline_;
     BlockMesh out_;

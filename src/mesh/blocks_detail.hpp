@@ -25,8 +25,8 @@ struct BlockMesh {
     double bound = 0;  // of the distance, of all triangles
 };
 
-// Blocks near places to `avoid` are left out. `is_shared`: all threads may be used; `around` is then called
-// with the outline while triangles inside of it are made, else before that.
+// Blocks near places to `avoid` are left out. `around` is called with the outline, once. `is_shared`: all
+// threads may be used; triangles inside of the outline are then made meanwhile, else before.
 BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
                       std::span<const Vec<2>> avoid, const std::function<void(const BlockOutline&)>& around);
 

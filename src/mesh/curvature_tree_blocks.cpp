@@ -29,7 +29,7 @@ constexpr int kMostHalves = 12;                      // of both sides together
 constexpr double kPartError = 4;                     // of a part, times the tolerance
 constexpr int kPartHalves = 8;                       // likewise, into parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
-constexpr std::size_t kLeavesAtOnce = 256;           // that a thread looks at
+constexpr std::size_t kLeavesOfThread = 256;         // that a thread looks at
 constexpr double kDeep = 0.3;                        // of a leaf: nearer to the boundary it makes slivers
 
 // Cells of a box of this size whose triangles are off by the tolerance: sides are chosen so that the
@@ -199,7 +199,7 @@ void CurvatureTree::take_leaves(bool is_shared) {
         leaves.push_back(int(i));
     }
     std::vector<char> deep(leaves.size());
-    parallel_for(leaves.size(), is_shared ? kLeavesAtOnce : leaves.size(),
+    parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(),
                  [&](std::size_t i) { deep[i] = is_deep(leaves[i]); });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         if (!deep[i]) continue;
