@@ -1,9 +1,9 @@
 // How the jumps of joints are written: orders, numbers and units.
 #pragma once
+#include <freiform/core/decimal.hpp>
 #include <freiform/core/text.hpp>
 #include <freiform/io/document.hpp>
 
-#include <charconv>
 #include <string>
 
 namespace freiform::cli {
@@ -21,9 +21,6 @@ inline std::string g_unit(const Document& d, int order) {
 }
 inline std::string order_text(char kind, int order) { return order < 0 ? "-" : text(kind, order); }
 // Six digits are enough to read; --json has all.
-inline std::string rounded(double x) {
-    char buffer[40];
-    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::general, 6).ptr};
-}
+inline std::string rounded(double x) { return rounded_text(x, 6); }
 
 }  // namespace freiform::cli

@@ -72,6 +72,8 @@ class Instance {
       refuse: (kind, kindSize, where, whereSize, message, messageSize) => {
         throw new FreiformError(this.string(kind, kindSize), this.string(where, whereSize), this.string(message, messageSize));
       },
+      digits: (x, at, room) =>
+        utf8.encodeInto(x.toExponential(), new Uint8Array(this.exports.memory.buffer, at, room)).written,
       progress: (part) => (this.progress && this.progress(part) === false ? 0 : 1),
     } };
     for (const { module: from, name } of WebAssembly.Module.imports(module))

@@ -12,6 +12,9 @@
 // order, so that the same module always becomes the same. Then all numbers of functions are replaced: in calls,
 // exports, tables and the start.
 //
+// How far an access to memory is said to be aligned is a hint that changes no result and that engines do not need; yet
+// copies of objects differ in it from instance to instance. It becomes 0 everywhere.
+//
 // Cost. One or two minutes. The module is 11.3 % smaller after gzip, freiform-curves.wasm 5.5 %.
 //
 // Why not: sorted by type and size, 6.5 %. Runs of 4 bytes, which are in everything, 8.4 %; a window of 12 kB 10.2 %;
@@ -48,13 +51,14 @@ function leb(value) {
   return [...out, value];
 }
 
-// Goes over an instruction; `call` is told where the number of a function stands.
-function instruction(code, call) {
+// Goes over an instruction; `call` is told where the number of a function stands, `hint` where an alignment does.
+function instruction(code, call, hint) {
   const op = code.byte();
-  const memory = () => code.numbers(2);
+  const memory = () => (hint(code.at), code.numbers(2));
   if (op === 0x10 || op === 0x12 || op === 0xd2) call(code.at, code.number(), code.at);
   else if (op === 0x0e) code.numbers(code.number() + 1);
-  else if (op === 0x11 || op === 0x13 || op >= 0x28 && op <= 0x3e) code.numbers(2);
+  else if (op === 0x11 || op === 0x13) code.numbers(2);
+  else if (op >= 0x28 && op <= 0x3e) memory();
   else if (op >= 0x02 && op <= 0x04 || op === 0x0c || op === 0x0d || op >= 0x20 && op <= 0x26 ||
     op >= 0x3f && op <= 0x42 || op === 0xd0) code.number();
   else if (op === 0x43) code.at += 4;
@@ -74,14 +78,16 @@ function instruction(code, call) {
     op >= 0x45 && op <= 0xc4)) throw new Error(`no instruction: 0x${op.toString(16)}`);
 }
 
-// A function: where its calls are, and its runs.
-function functionOf(body) {
+// A function: where its calls are, and its runs. Alignments, which are hints, become 0.
+function functionOf(given) {
+  const body = Uint8Array.from(given);
   const code = new Bytes(body), calls = [], text = [];
   for (let i = code.number(); i > 0; --i) code.number(), code.at++;
   let from = 0;
   const upTo = (end) => { for (; from < end; ++from) text.push(body[from]); };
   while (!code.ended)
-    instruction(code, (begin, callee, end) => { calls.push([begin, callee, end]), upTo(begin), from = end; });
+    instruction(code, (begin, callee, end) => { calls.push([begin, callee, end]), upTo(begin), from = end; },
+      (at) => { body[at] = 0; });
   upTo(body.length);
   const runs = new Set();
   for (let i = 0; i + kRun <= text.length; ++i) {

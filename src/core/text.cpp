@@ -1,14 +1,55 @@
+#include <freiform/core/decimal.hpp>
 #include <freiform/core/text.hpp>
 
 #include <charconv>
+#include <cmath>
+#include <concepts>
 
 namespace freiform {
+namespace {
+
+#ifdef __wasm__
+// As std::to_chars writes it: without a power of ten where that is not longer, whole numbers to the last
+// digit.
+std::string text_of(const Decimal& d, double x) {
+    std::string plain = fixed_text(d), with_power = scientific_text(d);
+    if (plain.size() > with_power.size()) return with_power;
+    if (d.exponent <= d.size) return plain;
+    std::string whole = d.negative ? "-" : "";
+    const double size = std::abs(x),
+                 last = std::fmod(size, 1e11);  // 11 digits; those before them are exact, too
+    if (size < 9e18) return whole + std::to_string(std::llround(size));
+    whole += std::to_string(std::llround((size - last) / 1e11));
+    return whole + std::to_string(100'000'000'000 + std::llround(last)).substr(1);
+}
+
+std::string text_of(double x) {
+    if (std::isnan(x)) return std::signbit(x) ? "-nan" : "nan";
+    if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
+    return text_of(shortest_decimal(x), x);
+}
+
+// The fewest digits of its value that read back to it.
+std::string text_of(float x) {
+    if (!std::isfinite(x)) return text_of(double(x));
+    const Decimal all = shortest_decimal(double(x));
+    Decimal d = rounded(all, 1);
+    for (int digits = 2; float(scan_real(scientific_text(d)).value) != x; ++digits) d = rounded(all, digits);
+    return text_of(d, double(x));
+}
+
+void append_number(std::string& s, std::floating_point auto x) { s += text_of(x); }
+void append_number(std::string& s, std::integral auto x) { s += std::to_string(x); }
+#else
+void append_number(std::string& s, auto x) {
+    char buffer[40];
+    s.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
+}
+#endif
+
+}  // namespace
 
 void append_text(std::string& s, const TextPart& part) {
-    char buffer[40];
-    const auto number = [&](auto x) {
-        s.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
-    };
     switch (part.kind_) {
         case TextPart::Kind::characters:
             s += part.characters_;
@@ -17,16 +58,16 @@ void append_text(std::string& s, const TextPart& part) {
             s += part.character_;
             break;
         case TextPart::Kind::integer:
-            number(part.integer_);
+            append_number(s, part.integer_);
             break;
         case TextPart::Kind::natural:
-            number(part.natural_);
+            append_number(s, part.natural_);
             break;
         case TextPart::Kind::real:
-            number(part.real_);
+            append_number(s, part.real_);
             break;
         case TextPart::Kind::single:
-            number(part.single_);
+            append_number(s, part.single_);
             break;
     }
 }

@@ -1,7 +1,7 @@
+#include <freiform/core/decimal.hpp>
 #include <freiform/core/view.hpp>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -19,14 +19,13 @@ Result<View> parse_view(std::string_view words) {
                                                                        {"bottom", {-kRight, -kRight}}}};
     for (const auto& [name, view] : kViews)
         if (words == name) return view;
-    View view;
-    const char *at = words.data(), *end = at + words.size();
-    const auto azimuth = std::from_chars(at, end, view.azimuth);
-    if (azimuth.ec == std::errc() && azimuth.ptr != end && *azimuth.ptr == ',') {
-        const auto elevation = std::from_chars(azimuth.ptr + 1, end, view.elevation);
-        if (elevation.ec == std::errc() && elevation.ptr == end && std::abs(view.azimuth) <= 360 &&
-            std::abs(view.elevation) <= 90)
-            return View{view.azimuth * kRight / 90, view.elevation * kRight / 90};
+    const ScannedReal azimuth = scan_real(words);
+    if (azimuth.length > 0 && words.substr(azimuth.length).starts_with(',')) {
+        const std::string_view rest = words.substr(azimuth.length + 1);
+        const ScannedReal elevation = scan_real(rest);
+        if (elevation.length > 0 && elevation.length == rest.size() && std::abs(azimuth.value) <= 360 &&
+            std::abs(elevation.value) <= 90)
+            return View{azimuth.value * kRight / 90, elevation.value * kRight / 90};
     }
     return refuse(RefusalKind::invalid, "view",
                   text("\"", words,

@@ -1,8 +1,8 @@
+#include <freiform/core/decimal.hpp>
 #include <freiform/io/colour_bar.hpp>
 #include <freiform/io/figure.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace freiform {
@@ -63,12 +63,7 @@ std::vector<double> ticks(const Interval& on) {
 DrawnText number(double value, const Interval& range) {
     const double most = std::max(std::abs(range.lo), std::abs(range.hi));
     std::string digits = text(std::abs(value));
-    if (most >= 1e-4 && most < 1e6) {
-        std::array<char, 400> buffer{};  // a double has less than 350 digits
-        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value),
-                                       std::chars_format::fixed);
-        digits.assign(buffer.data(), end.ptr);
-    }
+    if (most >= 1e-4 && most < 1e6) digits = fixed_text(shortest_decimal(std::abs(value)));
     return plain_text(value < 0 ? text("\u2212", digits) : digits);
 }
 

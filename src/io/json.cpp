@@ -4,11 +4,11 @@
 //
 // Why not a parser from elsewhere: an unknown, repeated or misplaced key is to be reported with its line;
 // "-0" and numbers beyond the range of double must not change silently; and nothing may be thrown.
+#include <freiform/core/decimal.hpp>
 #include <freiform/core/utf8.hpp>
 #include <freiform/io/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 
 namespace freiform::json {
@@ -42,28 +42,6 @@ std::string position(std::string_view text, std::size_t offset) {
 }
 
 namespace {
-
-// What a number beyond the range of double is nearest to: zero if its first digit that is not 0 stands behind
-// the point, infinity otherwise. (The numbers meant here have exponents beyond +-300, so this decides.)
-double out_of_range_number(std::string_view s) {
-    const bool negative = s[0] == '-';
-    if (negative) s.remove_prefix(1);
-    const std::size_t e = s.find_first_of("eE");
-    const std::string_view digits = s.substr(0, e);
-    const std::size_t point = std::min(digits.find('.'), digits.size()),
-                      first = digits.find_first_of("123456789");
-    double magnitude = double(point) - double(first);
-    if (e != std::string_view::npos) {
-        std::string_view tail = s.substr(e + 1);
-        const bool down = tail[0] == '-';
-        if (tail[0] == '-' || tail[0] == '+') tail.remove_prefix(1);
-        double exponent = 0;
-        for (char c : tail) exponent = std::min(exponent * 10 + (c - '0'), 1e15);
-        magnitude += down ? -exponent : exponent;
-    }
-    const double x = magnitude > 0 ? std::numeric_limits<double>::infinity() : 0;
-    return negative ? -x : x;
-}
 
 void append_utf8(std::string& s, std::uint32_t c) {
     if (c < 0x80) {
@@ -311,9 +289,7 @@ private:
             if (at('-') || at('+')) ++pos_;
             if (digits() == 0) return unexpected_here("a digit");
         }
-        const std::string_view s = text_.substr(begin, pos_ - begin);
-        if (std::from_chars(s.data(), s.data() + s.size(), n.number).ec == std::errc::result_out_of_range)
-            n.number = out_of_range_number(s);
+        n.number = scan_real(text_.substr(begin, pos_ - begin)).value;
         return {};
     }
 

@@ -1,8 +1,9 @@
 #include "io/mesh_builder.hpp"
 
+#include <freiform/core/scan.hpp>
+
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 
 namespace freiform {
@@ -107,34 +108,14 @@ std::string Words::where() const {
 
 Result<double> Words::number() {
     const std::string_view word = next();
-    if (const auto x = to_number(word)) return *x;
+    if (const auto x = scan_number<double>(word)) return *x;
     return refuse_here(text("expected a finite number, found ", shown(word)));
 }
 
 Result<long long> Words::integer() {
     const std::string_view word = next();
-    if (const auto x = to_integer(word)) return *x;
+    if (const auto x = scan_number<long long>(word)) return *x;
     return refuse_here(text("expected an integer, found ", shown(word)));
-}
-
-std::optional<double> to_number(std::string_view word) {
-    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-    double x = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-    if (end != word.data() + word.size() || word.empty()) return std::nullopt;
-    if (error == std::errc::result_out_of_range &&
-        word.find("e-") + word.find("E-") != 2 * std::string_view::npos)
-        return 0.0;
-    if (error != std::errc() || !std::isfinite(x)) return std::nullopt;
-    return x;
-}
-
-std::optional<long long> to_integer(std::string_view word) {
-    if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
-    long long x = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-    if (end != word.data() + word.size() || word.empty() || error != std::errc()) return std::nullopt;
-    return x;
 }
 
 bool equal_words(std::string_view word, std::string_view lower_case) {

@@ -87,9 +87,6 @@ private:
     std::size_t at_ = 0, word_ = 0;
 };
 
-// The whole word must be a finite number; what is too small for a double is zero.
-std::optional<double> to_number(std::string_view word);
-std::optional<long long> to_integer(std::string_view word);
 bool equal_words(std::string_view word, std::string_view lower_case);
 // How a message shows a word of a damaged file: bounded and printable.
 std::string shown(std::string_view word);

@@ -1,6 +1,8 @@
 // Faces may name points that follow later in the file, so that they are resolved at the end.
 #include "io/mesh_builder.hpp"
 
+#include <freiform/core/scan.hpp>
+
 #include <array>
 
 namespace freiform {
@@ -86,7 +88,7 @@ private:
         if (key != "colour") return;
         std::array<double, 4> c;
         for (double& x : c) {
-            const auto number = to_number(words.next());
+            const auto number = scan_number<double>(words.next());
             if (!number || *number < 0 || *number > 1) return;
             x = *number;
         }
@@ -97,7 +99,7 @@ private:
         Vec<3> v;
         for (double& x : v.c) {
             const std::string_view word = words.next();
-            const auto number = to_number(word);
+            const auto number = scan_number<double>(word);
             if (!number) return refuse_line(text("expected three finite numbers, found ", shown(word)));
             x = *number;
         }
@@ -109,7 +111,7 @@ private:
 
     // "7", "7/2", "7//3", "7/2/3"; from 1, or from the end if negative.
     Result<long long> index(std::string_view word, std::string_view digits, std::size_t count) const {
-        const auto i = to_integer(digits);
+        const auto i = scan_number<long long>(digits);
         if (!i || *i == 0)
             return refuse_line(
                 text("expected an index as in \"7\", \"7//3\" or \"7/2/3\", found ", shown(word)));

@@ -1,7 +1,6 @@
 #include "step_fields.hpp"
 
-#include <charconv>
-#include <cmath>
+#include <freiform/core/scan.hpp>
 
 namespace freiform::step {
 
@@ -12,21 +11,6 @@ std::string_view kind_in_words(TokenKind kind) {
         "a number", "a string", "an enumeration", "a binary", "a reference",
         "omitted",  "derived",  "a typed value",  "a list",   "something of another file"};
     return kWords[std::size_t(kind)];
-}
-
-// All of the text as a number; what is too small for a double is 0.
-std::optional<double> real(std::string_view s) {
-    if (s.starts_with('+')) s.remove_prefix(1);
-    double x = 0;
-    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
-    if (end != s.data() + s.size()) return std::nullopt;
-    if (error == std::errc::result_out_of_range) {
-        const std::size_t e = s.find_first_of("eE");
-        if (e != std::string_view::npos && s.substr(e + 1).starts_with('-')) return 0.0;
-        return std::nullopt;
-    }
-    if (error != std::errc() || !std::isfinite(x)) return std::nullopt;
-    return x;
 }
 
 }  // namespace
@@ -73,7 +57,7 @@ Result<double> Fields::number_of(std::uint32_t at, std::string_view what) const 
     const Token& t = f_->tokens[at];
     if (t.kind != TokenKind::number)
         return refused(text("its ", what, " is ", kind_in_words(t.kind), "; a number is expected"));
-    if (const auto x = real(f_->text_of(t))) return *x;
+    if (const auto x = scan_number<double>(f_->text_of(t))) return *x;
     return refuse(RefusalKind::unreadable, f_->label(instance_),
                   text("its ", what, " is '", f_->text_of(t).substr(0, 40),
                        "', which is no number that a double can hold (byte ", t.at, ")"));

@@ -42,9 +42,11 @@ export async function run(module, words = []) {
     },
     proc_exit: (code) => { throw new Ended(code); },
   };
-  const imports = { wasi_snapshot_preview1: {} };
-  for (const { name } of WebAssembly.Module.imports(module))
-    imports.wasi_snapshot_preview1[name] = wasi[name] ?? (() => kNoSuchFunction);
+  const imports = { wasi_snapshot_preview1: {}, freiform: {
+    digits: (x, at, room) => utf8.encodeInto(x.toExponential(), new Uint8Array(memory.buffer, at, room)).written,
+  } };
+  for (const { module: from, name } of WebAssembly.Module.imports(module))
+    if (from === 'wasi_snapshot_preview1') imports.wasi_snapshot_preview1[name] = wasi[name] ?? (() => kNoSuchFunction);
   const { exports } = await WebAssembly.instantiate(module, imports);
   memory = exports.memory;
   let code = 0;

@@ -45,6 +45,16 @@ test('the largest function comes first, then the one that shares its text', () =
   assert(0 < largest && largest < sharing && sharing < at(now, [27, 0, 0x10]), `${largest}, ${sharing}`);
 });
 
+test('alignments are no reason for code to differ', () => {
+  const loads = (hint) => Uint8Array.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0,
+    ...section(1, 1, 0x60, 0, 1, 0x7f), ...section(3, 1, 0), ...section(5, 1, 0, 1), ...section(7, 1, ...name('all'), 0, 0),
+    ...section(10, 1, ...body(0x41, 8, 0x41, 5, 0x36, hint, 16, 0x41, 8, 0x28, hint, 16,
+      0x41, 0, 0xfd, 0, hint, 24, 0xfd, 0x1b, 0, 0x6a))]);
+  const one = ordered(loads(2)), other = ordered(loads(1));
+  assert.deepStrictEqual(one, other);
+  assert.strictEqual(new WebAssembly.Instance(new WebAssembly.Module(one)).exports.all(), 10);
+});
+
 test('a module with instructions that are not known is refused', () => {
   const bad = Uint8Array.from(small);
   bad[bad.length - 2] = 0xff;

@@ -1,5 +1,7 @@
 // Numbers from text written by people or programs: without locale, to the last bit.
 #pragma once
+#include <freiform/core/decimal.hpp>
+
 #include <charconv>
 #include <cmath>
 #include <concepts>
@@ -35,16 +37,20 @@ constexpr std::string_view next_word(std::string_view& rest) {
 }
 
 // All of `s` as a finite number (or a whole one), with or without a plus sign; nothing if it is anything
-// else.
+// else. What is too small for a double is 0.
 template <class T>
 std::optional<T> scan_number(std::string_view s) {
     if (s.starts_with('+') && !s.starts_with("+-")) s.remove_prefix(1);
-    T x{};
-    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
-    if (error != std::errc() || end != s.data() + s.size()) return std::nullopt;
-    if constexpr (std::floating_point<T>)
-        if (!std::isfinite(x)) return std::nullopt;
-    return x;
+    if constexpr (std::floating_point<T>) {
+        const ScannedReal all = scan_real(s);
+        if (s.empty() || all.length != s.size() || !std::isfinite(all.value)) return std::nullopt;
+        return T(all.value);
+    } else {
+        T x{};
+        const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
+        if (error != std::errc() || end != s.data() + s.size()) return std::nullopt;
+        return x;
+    }
 }
 
 }  // namespace freiform

@@ -1,0 +1,164 @@
+#include <freiform/core/decimal.hpp>
+#include <freiform/core/text.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+
+namespace freiform {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// What a text says, as long as it is that of a number: its first digits, and the power of ten of the last
+// one.
+struct Literal {
+    std::uint64_t digits = 0;  // at most 19; of the others only the power is kept
+    double power = 0;
+    std::size_t length = 0;
+    bool negative = false, cut = false;
+};
+
+Literal literal_of(std::string_view s) {
+    Literal l;
+    std::size_t i = 0;
+    l.negative = s.starts_with('-');
+    if (l.negative) ++i;
+    bool any = false;
+    const auto take = [&](bool behind_point) {
+        for (; i < s.size() && is_digit(s[i]); ++i, any = true) {
+            const bool room = l.digits < std::numeric_limits<std::uint64_t>::max() / 10 - 1;
+            if (room) l.digits = 10 * l.digits + std::uint64_t(s[i] - '0');
+            l.cut |= !room;
+            l.power += double(!room) - double(behind_point);
+        }
+    };
+    take(false);
+    if (i < s.size() && s[i] == '.') ++i, take(true);
+    if (!any) return {};
+    l.length = i;
+    if (i == s.size() || (s[i] != 'e' && s[i] != 'E')) return l;
+    ++i;
+    const bool down = i < s.size() && s[i] == '-';
+    if (i < s.size() && (s[i] == '-' || s[i] == '+')) ++i;
+    double power = 0;
+    for (; i < s.size() && is_digit(s[i]); ++i) {
+        power = std::min(10 * power + (s[i] - '0'), 1e15);
+        l.length = i + 1;
+    }
+    l.power += down ? -power : power;
+    return l;
+}
+
+#ifdef __wasm__
+// With their tables the functions of the C++ library take as much to load as twenty commands; pages have
+// them.
+__attribute__((import_module("freiform"), import_name("digits"))) extern "C" std::size_t ff_page_digits(
+    double x, char* to, std::size_t room);
+
+std::size_t digits_of(double x, char* to, std::size_t room) { return ff_page_digits(x, to, room); }
+#else
+std::size_t digits_of(double x, char* to, std::size_t room) {
+    return std::size_t(std::to_chars(to, to + room, x, std::chars_format::scientific).ptr - to);
+}
+#endif
+
+}  // namespace
+
+Decimal shortest_decimal(double x) {
+    Decimal d;
+    d.negative = std::signbit(x);
+    if (x == 0) return d;
+    std::array<char, 32> buffer{};  // "1.2345678901234567e-308"
+    const std::string_view s(buffer.data(), digits_of(std::abs(x), buffer.data(), buffer.size()));
+    const std::size_t e = s.find('e');
+    for (const char c : s.substr(0, e))
+        if (is_digit(c)) d.digits[std::size_t(d.size++)] = c;
+    for (const char c : s.substr(e + 2)) d.exponent = 10 * d.exponent + (c - '0');
+    d.exponent = (s[e + 1] == '-' ? -d.exponent : d.exponent) + 1;
+    return d;
+}
+
+Decimal rounded(Decimal d, int digits) {
+    if (d.size <= digits) return d;
+    const bool half = d.size == digits + 1 && d.digits[std::size_t(digits)] == '5';
+    bool up =
+        half ? (d.digits[std::size_t(digits) - 1] - '0') % 2 == 1 : d.digits[std::size_t(digits)] >= '5';
+    d.size = digits;
+    while (up && d.size > 0) {
+        char& last = d.digits[std::size_t(d.size) - 1];
+        up = last == '9';
+        if (up)
+            --d.size;
+        else
+            ++last;
+    }
+    if (d.size == 0) d.digits[0] = '1', d.size = 1, ++d.exponent;
+    while (d.digits[std::size_t(d.size) - 1] == '0') --d.size;
+    return d;
+}
+
+std::string fixed_text(const Decimal& d) {
+    std::string s(d.text());
+    const int behind = d.size - d.exponent;
+    if (d.size == 0)
+        s = "0";
+    else if (d.exponent <= 0)
+        s.insert(0, "0." + std::string(std::size_t(-d.exponent), '0'));
+    else if (behind > 0)
+        s.insert(std::size_t(d.exponent), 1, '.');
+    else
+        s.append(std::size_t(-behind), '0');
+    return d.negative ? "-" + s : s;
+}
+
+std::string scientific_text(const Decimal& d) {
+    std::string s(d.size == 0 ? "0" : d.text());
+    if (d.size > 1) s.insert(1, 1, '.');
+    const int power = d.size == 0 ? 0 : d.exponent - 1;
+    s += power < 0 ? "e-" : "e+";
+    if (std::abs(power) < 10) s += '0';
+    append_text(s, std::abs(power));
+    return d.negative ? "-" + s : s;
+}
+
+std::string rounded_text(double x, int digits) {
+    if (!std::isfinite(x)) return text(x);
+    const Decimal d = rounded(shortest_decimal(x), digits);
+    return d.exponent > digits || d.exponent <= -4 ? scientific_text(d) : fixed_text(d);
+}
+
+#ifdef __wasm__
+ScannedReal scan_real(std::string_view s) {
+    const Literal l = literal_of(s);
+    if (l.length == 0) return {};
+    // [Clinger 1990: How to read floating point numbers accurately] where both are doubles, it is rounded
+    // once.
+    constexpr double kExact = 22;
+    if (l.cut || l.digits > std::uint64_t(1) << 53 || std::abs(l.power) > kExact)
+        return {std::strtod(std::string(s.substr(0, l.length)).c_str(), nullptr), l.length};
+    double ten = 1;
+    for (double i = std::abs(l.power); i > 0; --i) ten *= 10;
+    const double x = l.power < 0 ? double(l.digits) / ten : double(l.digits) * ten;
+    return {l.negative ? -x : x, l.length};
+}
+#else
+ScannedReal scan_real(std::string_view s) {
+    const std::string_view unsigned_part = s.substr(s.starts_with('-'));
+    if (unsigned_part.empty() || !(is_digit(unsigned_part[0]) || unsigned_part[0] == '.')) return {};
+    double x = 0;
+    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
+    if (error == std::errc::result_out_of_range) {
+        // The exponent is beyond 300 or below -300 then: 19 digits do not matter.
+        const Literal l = literal_of(s);
+        x = l.digits > 0 && l.power > 0 ? std::numeric_limits<double>::infinity() : 0;
+        x = l.negative ? -x : x;
+    }
+    return {x, std::size_t(end - s.data())};
+}
+#endif
+
+}  // namespace freiform
