@@ -19,7 +19,7 @@ RANK = {layer: rank for rank, layers in enumerate(ORDER) for layer in layers}
 # Other people's headers, and the only folders or files that may include them.
 THIRD_PARTY = [
     (r".*\.hxx", ["apps/occt", "bench/compare"]),
-    (r"nlohmann/.*", ["src/io", "apps", "tests"]),
+    (r"nlohmann/.*", ["tests"]),
     (r"pugixml.hpp", ["src/io/svg.cpp"]),
     (r"CLI/.*", ["apps/cli/command_line.cpp"]),
     (r"(oneapi/)?tbb/.*", ["src/core"]),

@@ -4,13 +4,13 @@
 set -euo pipefail
 
 build="g++ cmake ninja-build ccache pkg-config"
-library="libtbb-dev nlohmann-json3-dev libpugixml-dev libcli11-dev"
+library="libtbb-dev libpugixml-dev libcli11-dev"
 occt="libocct-data-exchange-dev"
 gl="libegl-dev libepoxy-dev libegl-mesa0 libgl1-mesa-dri libpng-dev"
 paint="libcairo2-dev fonts-dejavu-core"
 font="libfreetype-dev libharfbuzz-dev libfontconfig-dev"
 python="pybind11-dev python3-dev python3-numpy"
-test="$python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell fonts-inter-variable"
+test="nlohmann-json3-dev $python python3-pytest python3-hypothesis python3-scipy mypy libgtest-dev librapidcheck-dev libboost-dev fonts-cantarell fonts-inter-variable"
 wasm="clang-22 lld-22 binaryen libc++-22-dev-wasm32 libc++abi-22-dev-wasm32 libclang-rt-22-dev-wasm32 wasi-libc"
 ci="python3 python3-venv python3-pip gmsh blender inkscape libglfw3-dev xvfb xauth libclang-rt-22-dev clang-format g++-aarch64-linux-gnu qemu-user $wasm"
 command -v node >/dev/null || ci="$ci nodejs"
@@ -24,9 +24,9 @@ case $purpose in
     test) packages="$build $library $occt $gl $paint $font $test" ;;
     bench) packages="$build $library $occt $gl $paint $font $bench" ;;
     ci) packages="$build $library $occt $gl $paint $font $test $ci" ;;
-    wasm) packages="$build $wasm nlohmann-json3-dev"; command -v node >/dev/null || packages="$packages nodejs" ;;
+    wasm) packages="$build $wasm"; command -v node >/dev/null || packages="$packages nodejs" ;;
     studio)
-        packages="$build $wasm nlohmann-json3-dev"
+        packages="$build $wasm"
         command -v node >/dev/null || packages="$packages nodejs"
         command -v npm >/dev/null || packages="$packages npm"
         ;;
@@ -45,7 +45,7 @@ what_for() {
         pkg-config) echo "finds epoxy, EGL, cairo and FreeType" ;;
         libtbb-dev) echo "threads" ;;
         libpugixml-dev) echo "reads XML, for SVG" ;;
-        nlohmann-json3-dev) echo "reads and writes JSON and glTF" ;;
+        nlohmann-json3-dev) echo "JSON as another library reads it, to test against" ;;
         libcli11-dev) echo "the options of the command line" ;;
         libocct-data-exchange-dev) echo "reads STEP, IGES and BREP (the largest: 400 MB)" ;;
         libegl-dev | libepoxy-dev) echo "OpenGL without a window, for pictures" ;;

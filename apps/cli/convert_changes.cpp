@@ -2,6 +2,7 @@
 
 #include "input.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/refine.hpp>
@@ -120,7 +121,7 @@ private:
 
     Result<void> insert() {
         std::vector<double> sorted = o_.knots;
-        std::sort(sorted.begin(), sorted.end());
+        sort(sorted.begin(), sorted.end());
         return each("--insert-knots", [&](const Shape& s) { return with_knots(s, int(axis_or(0)), sorted); });
     }
 

@@ -2,6 +2,7 @@
 
 #include "nearest_objects.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/model/inside.hpp>
 
 #include <algorithm>
@@ -131,7 +132,7 @@ Result<void> nearest_faces_of(const Input& input, const Queries& queries, const 
         for (const ModelNearest& n : faces->faces) near.push_back({i, n});
         others = std::min(others, faces->others);
     }
-    std::ranges::sort(near, {}, [](const Near& n) { return std::tuple(n.at.distance, n.object, n.at.face); });
+    sort(near, {}, [](const Near& n) { return std::tuple(n.at.distance, n.object, n.at.face); });
     while (asked.count && near.size() > std::size_t(*asked.count)) {
         others = std::min(others, near.back().at.lower_bound);
         near.pop_back();

@@ -1,6 +1,7 @@
 #include "tessellate_report.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@ constexpr std::pair<std::string_view, double> kQuantiles[] = {
 // Of the smallest angles of the triangles, in degrees; empty for a mesh without triangles.
 std::vector<double> angle_quantiles(const TriangleMesh& mesh) {
     auto angles = smallest_angles(mesh);
-    std::sort(angles.begin(), angles.end());
+    sort(angles.begin(), angles.end());
     std::vector<double> out;
     for (const auto& [name, part] : kQuantiles)
         if (!angles.empty()) out.push_back(kDegrees * angles[std::size_t(part * double(angles.size() - 1))]);

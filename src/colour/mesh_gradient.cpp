@@ -9,6 +9,7 @@
 // References: the PDF specification, shadings of types 6 and 7.
 #include <freiform/colour/mesh_gradient.hpp>
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -52,7 +53,7 @@ std::vector<double> divided(const BSplineBasis& a, const BSplineBasis& b, int n)
     std::vector<double> breaks = a.breaks(), out;
     const std::vector<double> more = b.breaks();
     breaks.insert(breaks.end(), more.begin(), more.end());
-    std::ranges::sort(breaks);
+    sort(breaks);
     breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
         for (int k = 0; k < n; ++k) out.push_back(breaks[i] + (breaks[i + 1] - breaks[i]) * k / n);

@@ -29,6 +29,8 @@
 #include "fit_report_detail.hpp"
 #include "knot_placement_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -150,7 +152,7 @@ std::optional<typename ApproximationSearch<D>::Candidate> ApproximationSearch<D>
     std::vector<double> site = start_, inner;
     for (const KeptRow& k : kept_)
         if (k.order > 0) site.push_back(k.at);
-    std::sort(site.begin(), site.end());
+    sort(site.begin(), site.end());
     // Sites that repeat are one, but for the derivatives that are kept there.
     const std::size_t derivatives =
         std::size_t(std::count_if(kept_.begin(), kept_.end(), [](const KeptRow& k) { return k.order > 0; }));
@@ -209,7 +211,7 @@ void ApproximationSearch<D>::thin(Candidate& best) {
         }
         std::vector<std::size_t> order(inner.size());
         std::iota(order.begin(), order.end(), std::size_t(0));
-        std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
+        sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) {
             return matter[x] != matter[y] ? matter[x] < matter[y] : x < y;
         });
         group = std::min(group, inner.size());

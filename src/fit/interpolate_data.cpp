@@ -14,6 +14,8 @@
 // References: [Schoenberg & Whitney 1953], [deBoor 1978].
 #include "residual_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <numeric>
 
 namespace freiform {
@@ -82,7 +84,7 @@ Result<Interpolant<1, D>> interpolate(const BSplineBasis& basis, std::span<const
     }
     std::vector<int> order(data.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
+    sort(order.begin(), order.end(), [&](int a, int b) {
         const auto &x = data[std::size_t(a)], &y = data[std::size_t(b)];
         return x.at != y.at ? x.at < y.at : x.order != y.order ? x.order < y.order : a < b;
     });

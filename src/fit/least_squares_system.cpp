@@ -23,6 +23,8 @@
 // not banded.
 #include "least_squares_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -70,7 +72,7 @@ void arrange(int n, const BandMap& kept, std::vector<int>& place, std::vector<in
     std::vector<std::pair<int, int>> order;  // twice the place that is wanted, and which row
     for (int r = 0; r < kept.rows(); ++r)
         order.emplace_back((kept.first[std::size_t(r)] + kept.width / 2) % n, r);
-    std::sort(order.begin(), order.end());
+    sort(order.begin(), order.end());
     multiplier.assign(std::size_t(kept.rows()), 0);
     int next = 0;
     std::size_t k = 0;
@@ -226,7 +228,7 @@ Result<void> check_determined(const BSplineBasis& basis, std::span<const double>
     const int p = basis.degree(), n = basis.size();
     std::vector<double> more, all;
     for (const KeptRow& k : kept) more.push_back(basis.wrap(k.at));
-    std::sort(more.begin(), more.end());
+    sort(more.begin(), more.end());
     all.reserve(sites.size() + more.size());
     std::merge(sites.begin(), sites.end(), more.begin(), more.end(), std::back_inserter(all));
     std::vector<int> copies;  // how often a site may be used: once, and once more for every derivative kept

@@ -1,6 +1,8 @@
 // The search for charts; charts_detail.hpp is the essay.
 #include "charts_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <set>
 
 namespace freiform::detail {
@@ -39,7 +41,7 @@ void Charts::search(double nearness, double finest, int max_pairs, double coarse
         open_.assign(1, 0);
         look_at_all(std::numeric_limits<std::size_t>::max());
     }
-    std::ranges::sort(explained_cells_, {}, [](const auto& e) { return e.first; });
+    sort(explained_cells_, {}, [](const auto& e) { return e.first; });
     struct Batch {
         std::vector<int> nodes;
         double nearness;
@@ -76,7 +78,7 @@ void Charts::search(double nearness, double finest, int max_pairs, double coarse
         if (is_coarse) nearness_ = std::max(nearness_, nearness);
         for (const int n : batch.nodes) split(n);
         look_at_all(std::numeric_limits<std::size_t>::max());
-        std::ranges::sort(explained_cells_, {}, [](const auto& e) { return e.first; });
+        sort(explained_cells_, {}, [](const auto& e) { return e.first; });
         // About a point there are always as many; along a curve four times as many, for nothing.
         if (!is_coarse && (left_.size() > left || 2 * given_up_.size() > 5 * batch.nodes.size() + 2000)) {
             for (const int n : batch.nodes) nodes_[std::size_t(n)].left = -1;
@@ -145,7 +147,7 @@ std::vector<std::vector<int>> Charts::neighbours(std::vector<int> nodes) const {
         for (const int n : in) pairs += double(n) * n;
         if (pairs < fewest) fewest = pairs, way = k;
     }
-    std::ranges::sort(cells, [&](const auto& a, const auto& b) {
+    sort(cells, [&](const auto& a, const auto& b) {
         return std::pair(a.first[way].lo, a.second) < std::pair(b.first[way].lo, b.second);
     });
     std::vector<std::size_t> root(cells.size());

@@ -4,6 +4,7 @@
 #include "search_detail.hpp"
 
 #include <freiform/core/result.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/core/text.hpp>
 #include <freiform/intersect/contact.hpp>
 
@@ -155,7 +156,7 @@ std::vector<Contact<D, N>> joined(std::vector<Raw<D, N>> all) {
         }
         contacts.push_back(r.c);
     }
-    std::sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) { return x.at < y.at; });
+    sort(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) { return x.at < y.at; });
     return contacts;
 }
 
@@ -165,10 +166,9 @@ void exchange(Intersections<D, 2>& all) {
     for (auto& c : all.contacts) std::swap(c.at[0], c.at[1]), std::swap(c.box[0], c.box[1]);
     for (auto& o : all.overlaps) std::swap(o.a, o.b);
     for (auto& u : all.undecided) std::swap(u[0], u[1]);
-    std::sort(all.contacts.begin(), all.contacts.end(),
-              [](const auto& x, const auto& y) { return x.at < y.at; });
-    std::sort(all.overlaps.begin(), all.overlaps.end(),
-              [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
+    sort(all.contacts.begin(), all.contacts.end(), [](const auto& x, const auto& y) { return x.at < y.at; });
+    sort(all.overlaps.begin(), all.overlaps.end(),
+         [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
 }
 
 }  // namespace freiform::detail

@@ -47,6 +47,7 @@
 #include "piece_pairs_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/intersect/curve_curve.hpp>
 
 #include <algorithm>
@@ -290,7 +291,7 @@ private:
     // Overlaps that go on over a knot are one.
     void chain_overlaps() {
         auto& all = answer_.overlaps;
-        std::sort(all.begin(), all.end(), [](const Overlap& x, const Overlap& y) {
+        sort(all.begin(), all.end(), [](const Overlap& x, const Overlap& y) {
             return x.a.lo != y.a.lo ? x.a.lo < y.a.lo : x.b.lo < y.b.lo;
         });
         const double sa = slack(a_.source()), sb = slack(b_.source());

@@ -5,6 +5,7 @@
 // already, kinds and multiplicities included, tori as well, and curves as well as lines.
 #include "part_spline_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/intersect/curve_part.hpp>
 
 #include <algorithm>
@@ -35,7 +36,7 @@ Result<Intersections<3, 3>> IntersectPart::carried(Result<Intersections<3, 3>> f
         c.gap = 1.01 * (c.gap + search_bound_);
     }
     for (auto& box : found->undecided) over(box);
-    std::ranges::sort(found->contacts, {}, [](const auto& c) { return c.at; });
+    sort(found->contacts, {}, [](const auto& c) { return c.at; });
     return found;
 }
 

@@ -19,6 +19,7 @@
 #include "exact_pair_detail.hpp"
 #include "parts_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/intersect/contact.hpp>
 
 namespace freiform::detail {
@@ -251,7 +252,7 @@ private:
     }
 
     void join(std::vector<ExactContact> ends, bool exact) {
-        std::sort(ends.begin(), ends.end(), [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
+        sort(ends.begin(), ends.end(), [](const auto& x, const auto& y) { return x.a.lo < y.a.lo; });
         std::vector<char> used(ends.size());
         for (std::size_t i = 0; i < ends.size(); ++i) {
             const ExactContact& from = ends[i];

@@ -10,6 +10,7 @@
 #include "same_map_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -173,7 +174,7 @@ std::vector<double> missing_breaks(const AxisAngles& own, const std::vector<doub
     for (const double x : wanted)
         if (std::ranges::none_of(has, [&](double o) { return std::abs(o - x) <= beside; }))
             out.push_back(own.inverse(x));
-    std::ranges::sort(out);
+    sort(out);
     return out;
 }
 

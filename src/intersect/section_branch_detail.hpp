@@ -6,6 +6,8 @@
 #pragma once
 #include "section_fit_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 namespace freiform::detail {
 
 // A point of the branch, in places that continue over seams; `step`: the cell behind it.
@@ -107,7 +109,7 @@ private:
                 }
             }
             const std::size_t free = std::size_t(1 - monotone_axis(a.step));
-            std::sort(all.begin() + std::ptrdiff_t(begin), all.end(), [&](const auto& p, const auto& q) {
+            sort(all.begin() + std::ptrdiff_t(begin), all.end(), [&](const auto& p, const auto& q) {
                 return (p.x[free] < q.x[free]) == (a.x[free] < b.x[free]) && p.x[free] != q.x[free];
             });
         }

@@ -4,15 +4,20 @@
 //
 // Every offset is compared with the bytes that are there; nodes are walked with a stack of our own, and one
 // that is met twice is refused, so that a cycle ends.
-#include "io/glb_read_detail.hpp"
+#include "io/glb_chunks.hpp"
+#include "io/gltf_matrix.hpp"
 #include "io/mesh_builder.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <ranges>
 
 namespace freiform {
 namespace {
+
+using gltf::elements, gltf::Found, gltf::member, gltf::string_of, gltf::whole;
 
 // One accessor whose bytes have been found and measured.
 struct BufferView {
@@ -26,97 +31,69 @@ public:
     GlbReader(const std::string& name, const MeshReadOptions& options) : name_(name), builder_(options) {}
 
     Result<TriangleMesh> read(std::string_view bytes) {
-        if (auto r = split(bytes); !r) return std::unexpected(r.error());
-        if (const Json* required = find(json_, "extensionsRequired"); required && !required->empty())
-            return refuse(
-                RefusalKind::unsupported, name_,
-                text("needs the extension ", required->is_array() && (*required)[0].is_string()
-                                                 ? shown((*required)[0].get_ref<const std::string&>())
-                                                 : "?"));
-        if (auto r = walk(); !r) return std::unexpected(r.error());
+        const auto chunks = chunks_of_glb(bytes);
+        if (!chunks) return within_file(chunks.error());
+        // Nothing here goes down a tree by recursion.
+        const auto tree = json::parse(chunks->json, chunks->json.size());
+        if (!tree) {
+            Refusal r = tree.error();
+            r.where = text("JSON, ", r.where);
+            return within_file(std::move(r));
+        }
+        binary_ = chunks->binary;
+        const json::Value root = tree->root();
+        if (!root.is(json::Kind::object)) return damaged("JSON", "expected an object");
+        if (const auto required = elements(member(root, "extensionsRequired")); !required.empty())
+            return refuse(RefusalKind::unsupported, name_,
+                          text("needs the extension ", shown(string_of(required[0]))));
+        for (List list : {nodes, scenes, meshes, accessors, buffer_views, buffers, materials})
+            lists_[list] = elements(member(root, kNames[list]));
+        if (auto r = walk(root); !r) return std::unexpected(r.error());
         return builder_.finish(unit_);
     }
 
 private:
-    auto damaged(std::string where, std::string message) const {
+    enum List : std::size_t { nodes, scenes, meshes, accessors, buffer_views, buffers, materials };
+    static constexpr std::string_view kNames[] = {"nodes",       "scenes",  "meshes",   "accessors",
+                                                  "bufferViews", "buffers", "materials"};
+
+    std::unexpected<Refusal> within_file(Refusal r) const {
+        r.where = r.where.empty() ? name_ : text(name_, ": ", r.where);
+        return std::unexpected(std::move(r));
+    }
+    std::unexpected<Refusal> damaged(std::string where, std::string message) const {
         return refuse(RefusalKind::unreadable, text(name_, ": ", where), std::move(message));
     }
 
-    Result<void> split(std::string_view bytes) {
-        const auto word = [&](std::size_t at) {
-            std::uint32_t w = 0;
-            std::memcpy(&w, bytes.data() + at, 4);
-            return w;
-        };
-        if (bytes.size() < 20 || word(0) != 0x46546c67)
-            return refuse(RefusalKind::unreadable, name_, "the file does not begin with \"glTF\"");
-        if (word(4) != 2)
-            return refuse(RefusalKind::unsupported, name_, text("glTF version ", word(4), ", expected 2"));
-        const std::size_t total = word(8), json_size = word(12);
-        if (total > bytes.size() || total < 20)
-            return damaged("byte 8", text("the length says ", total, " bytes, the file has ", bytes.size()));
-        if (word(16) != 0x4e4f534a || json_size > total - 20)
-            return damaged("byte 12", text("expected a JSON chunk, found one of ", json_size, " bytes, ",
-                                           total - 20, " are left"));
-        const std::string_view text_of_json = bytes.substr(20, json_size);
-        json_ = Json::parse(text_of_json, nullptr, false);
-        if (json_.is_discarded()) {
-            Locator locator;
-            Json::sax_parse(text_of_json, &locator);
-            return damaged(text("byte ", 20 + locator.byte), "not JSON");
-        }
-        if (!json_.is_object()) return damaged("byte 20", "the JSON is not an object");
-        const std::size_t at = 20 + json_size;
-        if (total - at < 8) return {};
-        const std::size_t size = word(at);
-        if (word(at + 4) != 0x004e4942) return {};
-        if (size > total - at - 8)
-            return damaged(text("byte ", at),
-                           text("a chunk of ", size, " bytes, ", total - at - 8, " are left"));
-        binary_ = bytes.substr(at + 8, size);
-        return {};
-    }
-
-    static const Json* find(const Json& object, const char* key) {
-        if (!object.is_object()) return nullptr;
-        const auto it = object.find(key);
-        return it == object.end() ? nullptr : &*it;
-    }
     // An integer that is not negative, or `missing`; nothing if it is something else.
-    static std::optional<std::size_t> integer(const Json& object, const char* key,
+    static std::optional<std::size_t> integer(const json::Value& object, std::string_view key,
                                               std::optional<std::size_t> missing) {
-        const Json* v = find(object, key);
-        if (!v) return missing;
-        if (v->is_number_unsigned()) return v->get<std::size_t>();
-        return std::nullopt;
+        const Found v = member(object, key);
+        return v ? whole(v) : missing;
     }
-    const Json* item(const char* list, std::size_t i) const {
-        const Json* array = find(json_, list);
-        return array && array->is_array() && i < array->size() ? &(*array)[i] : nullptr;
-    }
-    static std::string name_of_json(const Json& object) {
-        const Json* v = find(object, "name");
-        return v && v->is_string() ? v->get<std::string>() : "";
+    Found item(List list, std::optional<std::size_t> i) const {
+        return i && *i < lists_[list].size() ? Found(lists_[list][*i]) : std::nullopt;
     }
 
     // The numbers of a field of n; `missing` if it is not there.
     template <std::size_t N>
-    Result<std::array<double, N>> numbers(const Json& object, const char* key, std::array<double, N> missing,
-                                          const std::string& where) const {
-        const Json* v = find(object, key);
+    Result<std::array<double, N>> numbers(const json::Value& object, std::string_view key,
+                                          std::array<double, N> missing, const std::string& where) const {
+        const Found v = member(object, key);
         if (!v) return missing;
-        if (!v->is_array() || v->size() != N)
+        const auto all = elements(v);
+        if (all.size() != N ||
+            !std::ranges::all_of(all, [](const auto& x) { return x.is(json::Kind::number); }))
             return damaged(text(where, ".", key), text("expected ", N, " numbers"));
         for (std::size_t i = 0; i < N; ++i) {
-            if (!(*v)[i].is_number()) return damaged(text(where, ".", key), text("expected ", N, " numbers"));
-            missing[i] = (*v)[i].template get<double>();
+            missing[i] = all[i].number();
             if (!std::isfinite(missing[i])) return damaged(text(where, ".", key), "a number is not finite");
         }
         return missing;
     }
 
-    Result<NodeMatrix> matrix_of(const Json& node, const std::string& where) const {
-        if (find(node, "matrix")) return numbers<16>(node, "matrix", kIdentity, where);
+    Result<NodeMatrix> matrix_of(const json::Value& node, const std::string& where) const {
+        if (member(node, "matrix")) return numbers<16>(node, "matrix", kIdentity, where);
         const auto t = numbers<3>(node, "translation", {0, 0, 0}, where);
         const auto q = numbers<4>(node, "rotation", {0, 0, 0, 1}, where);
         const auto s = numbers<3>(node, "scale", {1, 1, 1}, where);
@@ -148,34 +125,35 @@ private:
         NodeMatrix matrix = kYUpToZUp;
     };
 
-    Result<void> push_nodes(const Json* list, const NodeMatrix& matrix, std::vector<Visit>& stack,
+    Result<void> push_nodes(const Found& list, const NodeMatrix& matrix, std::vector<Visit>& stack,
                             const std::string& where) {
         if (!list) return {};
-        if (!list->is_array()) return damaged(where, "expected a list of nodes");
-        for (auto it = list->rbegin(); it != list->rend(); ++it) {
-            if (!it->is_number_unsigned()) return damaged(where, "expected a list of nodes");
-            stack.push_back({it->get<std::size_t>(), matrix});
+        if (!list->is(json::Kind::array)) return damaged(where, "expected a list of nodes");
+        for (const json::Value& v : std::views::reverse(elements(list))) {
+            const auto node = whole(v);
+            if (!node) return damaged(where, "expected a list of nodes");
+            stack.push_back({*node, matrix});
         }
         return {};
     }
 
-    Result<void> walk() {
-        const auto number = integer(json_, "scene", 0);
+    Result<void> walk(const json::Value& root) {
+        const auto number = integer(root, "scene", 0);
         if (!number) return damaged("scene", "expected an index");
-        const Json* scene = item("scenes", *number);
+        const Found scene = item(scenes, number);
         if (!scene) return {};  // a library of meshes that shows nothing
         std::vector<Visit> stack;
-        if (auto r = push_nodes(find(*scene, "nodes"), kYUpToZUp, stack, "scenes.nodes"); !r) return r;
-        std::vector<bool> met(
-            find(json_, "nodes") && find(json_, "nodes")->is_array() ? find(json_, "nodes")->size() : 0);
+        if (auto r = push_nodes(member(*scene, "nodes"), kYUpToZUp, stack, "scenes.nodes"); !r) return r;
+        std::vector<bool> met(lists_[nodes].size());
         const bool single_root = stack.size() == 1;
         bool at_root = true;
         while (!stack.empty()) {
             const Visit visit = stack.back();
             stack.pop_back();
             const std::string where = text("nodes[", visit.node, "]");
-            const Json* node = item("nodes", visit.node);
-            if (!node || !node->is_object()) return damaged(where, text("there are ", met.size(), " nodes"));
+            const Found node = item(nodes, visit.node);
+            if (!node || !node->is(json::Kind::object))
+                return damaged(where, text("there are ", met.size(), " nodes"));
             if (met[visit.node]) return damaged(where, "is the child of two nodes");
             met[visit.node] = true;
             const auto own = matrix_of(*node, where);
@@ -183,61 +161,59 @@ private:
             NodeMatrix matrix = product(visit.matrix, *own);
             if (at_root && single_root) {
                 unit_ = "m";
-                if (const Json* extras = find(*node, "extras"))
-                    if (const Json* u = find(*extras, "freiform_unit"); u && u->is_string()) {
-                        unit_ = u->get<std::string>();
+                if (const Found extras = member(*node, "extras"))
+                    if (const Found u = member(*extras, "freiform_unit"); u && u->is(json::Kind::string)) {
+                        unit_ = u->string();
                         matrix = kIdentity;
                     }
             }
             at_root = false;
-            if (find(*node, "mesh"))
+            if (member(*node, "mesh"))
                 if (auto r = read_mesh_of(*node, matrix, where); !r) return r;
-            if (auto r = push_nodes(find(*node, "children"), matrix, stack, text(where, ".children")); !r)
+            if (auto r = push_nodes(member(*node, "children"), matrix, stack, text(where, ".children")); !r)
                 return r;
         }
         if (unit_.empty() && !single_root) unit_ = "m";
         return {};
     }
 
-    Result<void> read_mesh_of(const Json& node, const NodeMatrix& matrix, const std::string& where) {
+    Result<void> read_mesh_of(const json::Value& node, const NodeMatrix& matrix, const std::string& where) {
         const auto number = integer(node, "mesh", std::nullopt);
-        const Json* mesh = number ? item("meshes", *number) : nullptr;
+        const Found mesh = item(meshes, number);
         if (!mesh) return damaged(text(where, ".mesh"), "there is no such mesh");
-        const Json* primitives = find(*mesh, "primitives");
-        if (!primitives || !primitives->is_array())
+        const Found primitives = member(*mesh, "primitives");
+        if (!primitives || !primitives->is(json::Kind::array))
             return damaged(text("meshes[", *number, "].primitives"), "expected a list");
-        std::string name = name_of_json(*mesh);
-        if (name.empty() && !find(node, "children")) name = name_of_json(node);
-        for (std::size_t i = 0; i < primitives->size(); ++i) {
-            const std::string here = text("meshes[", *number, "].primitives[", i, "]");
-            if (auto r = read_primitive((*primitives)[i], name, matrix, here); !r) return r;
+        std::string name = string_of(member(*mesh, "name"));
+        if (name.empty() && !member(node, "children")) name = string_of(member(node, "name"));
+        std::size_t i = 0;
+        for (const json::Value& primitive : primitives->elements()) {
+            const std::string here = text("meshes[", *number, "].primitives[", i++, "]");
+            if (auto r = read_primitive(primitive, name, matrix, here); !r) return r;
         }
         return {};
     }
 
-    Result<BufferView> view_of(const Json& holder, const char* key, std::string_view type,
+    Result<BufferView> view_of(const json::Value& holder, std::string_view key, std::string_view type,
                                const std::string& where) const {
         const std::string here = text(where, ".", key);
-        const auto number = integer(holder, key, std::nullopt);
-        const Json* accessor = number ? item("accessors", *number) : nullptr;
+        const Found accessor = item(accessors, integer(holder, key, std::nullopt));
         if (!accessor) return damaged(here, "there is no such accessor");
-        const Json* given = find(*accessor, "type");
-        if (!given || !given->is_string() || given->get_ref<const std::string&>() != type)
+        if (string_of(member(*accessor, "type")) != type)
             return damaged(here, text("expected an accessor of type ", type));
-        if (find(*accessor, "sparse"))
+        if (member(*accessor, "sparse"))
             return refuse(RefusalKind::unsupported, text(name_, ": ", here), "a sparse accessor");
         const auto component = integer(*accessor, "componentType", 0),
                    count = integer(*accessor, "count", std::nullopt);
-        const auto offset = integer(*accessor, "byteOffset", 0),
-                   index = integer(*accessor, "bufferView", std::nullopt);
-        const Json* buffer_view = index ? item("bufferViews", *index) : nullptr;
+        const auto offset = integer(*accessor, "byteOffset", 0);
+        const Found buffer_view = item(buffer_views, integer(*accessor, "bufferView", std::nullopt));
         if (!component || !count || !offset || !buffer_view)
             return damaged(here, "the accessor has no view, count or offset");
         const auto view_offset = integer(*buffer_view, "byteOffset", 0),
                    length = integer(*buffer_view, "byteLength", std::nullopt);
         const auto buffer = integer(*buffer_view, "buffer", std::nullopt);
-        const Json* first_buffer = item("buffers", 0);
-        if (!buffer || *buffer != 0 || !first_buffer || find(*first_buffer, "uri"))
+        const Found first_buffer = item(buffers, 0);
+        if (!buffer || *buffer != 0 || !first_buffer || member(*first_buffer, "uri"))
             return refuse(RefusalKind::unsupported, text(name_, ": ", here),
                           "the data are not in the file itself");
         if (!view_offset || !length || *view_offset > binary_.size() ||
@@ -264,11 +240,10 @@ private:
         return BufferView{binary_.data() + *view_offset + *offset, *count, *stride, int(*component)};
     }
 
-    std::optional<Colour> colour_of(const Json& primitive) const {
-        const auto number = integer(primitive, "material", std::nullopt);
-        const Json* material = number ? item("materials", *number) : nullptr;
-        const Json* surface = material ? find(*material, "pbrMetallicRoughness") : nullptr;
-        if (!surface || !find(*surface, "baseColorFactor")) return std::nullopt;
+    std::optional<Colour> colour_of(const json::Value& primitive) const {
+        const Found material = item(materials, integer(primitive, "material", std::nullopt));
+        const Found surface = material ? member(*material, "pbrMetallicRoughness") : std::nullopt;
+        if (!surface || !member(*surface, "baseColorFactor")) return std::nullopt;
         const auto c = numbers<4>(*surface, "baseColorFactor", {1, 1, 1, 1}, "materials");
         if (!c) return std::nullopt;
         const auto encoded = [](double x) {
@@ -292,24 +267,24 @@ private:
         return x;
     }
 
-    Result<void> read_primitive(const Json& primitive, const std::string& part, const NodeMatrix& matrix,
-                                const std::string& where) {
+    Result<void> read_primitive(const json::Value& primitive, const std::string& part,
+                                const NodeMatrix& matrix, const std::string& where) {
         const auto mode = integer(primitive, "mode", 4);
         if (!mode || *mode != 4)
             return refuse(RefusalKind::unsupported, text(name_, ": ", where),
                           "only lists of triangles are read (mode 4)");
-        const Json* attributes = find(primitive, "attributes");
+        const Found attributes = member(primitive, "attributes");
         if (!attributes) return damaged(where, "has no attributes");
         const auto positions = view_of(*attributes, "POSITION", "VEC3", where);
         if (!positions) return std::unexpected(positions.error());
         std::optional<BufferView> normals, indices;
-        if (find(*attributes, "NORMAL")) {
+        if (member(*attributes, "NORMAL")) {
             auto view = view_of(*attributes, "NORMAL", "VEC3", where);
             if (!view) return std::unexpected(view.error());
             if (view->count < positions->count) return damaged(where, "fewer normals than positions");
             normals = *view;
         }
-        if (find(primitive, "indices")) {
+        if (member(primitive, "indices")) {
             auto view = view_of(primitive, "indices", "SCALAR", where);
             if (!view) return std::unexpected(view.error());
             indices = *view;
@@ -343,7 +318,7 @@ private:
 
     const std::string& name_;
     MeshBuilder builder_;
-    Json json_;
+    std::array<std::vector<json::Value>, 7> lists_;
     std::string_view binary_;
     std::string unit_;
 };

@@ -9,6 +9,7 @@
 // where the size leaves [2^-60, 2^60] they are scaled by a power of two. The nodes undo both.
 //
 // Why a matrix and not a rotation: the quaternion of a right angle is irrational, the matrix is exact.
+#include "io/glb_chunks.hpp"
 #include "io/mesh_bytes.hpp"
 
 #include <freiform/io/mesh_file.hpp>
@@ -16,15 +17,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 namespace freiform {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 enum { kByteStrideOfPoint = 12, kArrayBuffer = 34962, kElementArrayBuffer = 34963 };
 enum { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126 };
@@ -141,70 +138,81 @@ private:
             for (std::uint32_t i : indices) narrow_.push_back(std::uint16_t(i));
     }
 
-    Json nodes() const {
+    void add_nodes(json::Writer& w) const {
         const double s = metres_per(mesh_.unit).value_or(1);
-        Json root{{"name", "model"}, {"matrix", {s, 0, 0, 0, 0, 0, -s, 0, 0, s, 0, 0, 0, 0, 0, 1}}};
-        root["extras"] = {{"freiform_unit", mesh_.unit}};
-        root["children"] = Json::array();
-        Json out = Json::array({std::move(root)});
+        w.key("nodes").begin_array().begin_object().field("name", "model");
+        w.key("matrix").array(std::array<double, 16>{s, 0, 0, 0, 0, 0, -s, 0, 0, s, 0, 0, 0, 0, 0, 1});
+        w.key("extras").begin_object().field("freiform_unit", mesh_.unit).end_object();
+        w.key("children").begin_array();
+        for (std::size_t i = 0; i < all_.meshes.size(); ++i) w.value(i + 1);
+        w.end_array().end_object();
         const double k = std::scalbn(1.0, placement_.exponent);
         const Vec<3>& c = placement_.centre;
         for (std::size_t i = 0; i < all_.meshes.size(); ++i) {
-            Json node{{"mesh", i}};
-            if (!all_.meshes[i].empty()) node["name"] = all_.meshes[i];
+            w.begin_object().field("mesh", i);
+            if (!all_.meshes[i].empty()) w.field("name", all_.meshes[i]);
             if (k != 1 || c != Vec<3>{})
-                node["matrix"] = {k, 0, 0, 0, 0, k, 0, 0, 0, 0, k, 0, c[0], c[1], c[2], 1};
-            out[0]["children"].push_back(i + 1);
-            out.push_back(std::move(node));
+                w.key("matrix").array(
+                    std::array<double, 16>{k, 0, 0, 0, 0, k, 0, 0, 0, 0, k, 0, c[0], c[1], c[2], 1});
+            w.end_object();
         }
-        return out;
+        w.end_array();
     }
 
-    Json materials() const {
+    void add_materials(json::Writer& w) const {
         const auto linear = [](double x) {
             return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
         };
-        Json out = Json::array();
+        w.key("materials").begin_array();
         for (const auto& c : all_.materials) {
-            Json surface{{"metallicFactor", 0}, {"roughnessFactor", 0.5}};
-            if (c) surface["baseColorFactor"] = {linear(c->r), linear(c->g), linear(c->b), c->a};
-            Json material{{"pbrMetallicRoughness", std::move(surface)}, {"doubleSided", true}};
-            if (c && c->a < 1) material["alphaMode"] = "BLEND";
-            out.push_back(std::move(material));
+            w.begin_object().key("pbrMetallicRoughness").begin_object();
+            w.field("metallicFactor", 0).field("roughnessFactor", 0.5);
+            if (c) w.key("baseColorFactor").array(std::array{linear(c->r), linear(c->g), linear(c->b), c->a});
+            w.end_object().field("doubleSided", true);
+            if (c && c->a < 1) w.field("alphaMode", "BLEND");
+            w.end_object();
         }
-        return out;
+        w.end_array();
     }
 
-    // Meshes and accessors together, as the first refer to the second.
-    void add_primitives(Json& json) const {
-        Json meshes = Json::array(), accessors = Json::array();
-        for (const std::string& name : all_.meshes) {
-            meshes.push_back({{"primitives", Json::array()}});
-            if (!name.empty()) meshes.back()["name"] = name;
+    // A group's accessors: positions, normals, indices.
+    void add_meshes(json::Writer& w) const {
+        std::vector<std::vector<std::size_t>> groups_of(all_.meshes.size());
+        for (std::size_t g = 0; g < all_.groups.size(); ++g) groups_of[all_.groups[g].mesh].push_back(g);
+        w.key("meshes").begin_array();
+        for (std::size_t m = 0; m < all_.meshes.size(); ++m) {
+            w.begin_object().key("primitives").begin_array();
+            for (const std::size_t g : groups_of[m]) {
+                w.begin_object().key("attributes").begin_object();
+                w.field("POSITION", 3 * g).field("NORMAL", 3 * g + 1).end_object();
+                w.field("indices", 3 * g + 2).field("material", all_.groups[g].material).end_object();
+            }
+            w.end_array();
+            if (!all_.meshes[m].empty()) w.field("name", all_.meshes[m]);
+            w.end_object();
         }
+        w.end_array();
+    }
+
+    void add_accessors(json::Writer& w) const {
+        const auto begin = [&w](int view, std::size_t offset, int component, std::size_t count,
+                                std::string_view type) {
+            w.begin_object().field("bufferView", view).field("byteOffset", offset);
+            w.field("componentType", component).field("count", count).field("type", type);
+        };
+        w.key("accessors").begin_array();
         for (const Group& g : all_.groups) {
-            const std::size_t first = accessors.size(), offset = kByteStrideOfPoint * g.first_vertex;
-            meshes[g.mesh]["primitives"].push_back(
-                {{"attributes", {{"POSITION", first}, {"NORMAL", first + 1}}},
-                 {"indices", first + 2},
-                 {"material", g.material}});
-            const Json vertices{{"componentType", kFloat}, {"count", g.vertices}, {"type", "VEC3"}};
-            Json positions{{"bufferView", 0}, {"byteOffset", offset}},
-                normals{{"bufferView", 1}, {"byteOffset", offset}};
-            positions.update(vertices);
-            positions["min"] = {double(g.lo[0]), double(g.lo[1]), double(g.lo[2])};
-            positions["max"] = {double(g.hi[0]), double(g.hi[1]), double(g.hi[2])};
-            normals.update(vertices);
-            accessors.push_back(std::move(positions));
-            accessors.push_back(std::move(normals));
-            accessors.push_back({{"bufferView", g.wide && !narrow_.empty() ? 3 : 2},
-                                 {"byteOffset", g.index_offset},
-                                 {"componentType", g.wide ? kUnsignedInt : kUnsignedShort},
-                                 {"count", g.indices},
-                                 {"type", "SCALAR"}});
+            const std::size_t offset = kByteStrideOfPoint * g.first_vertex;
+            begin(0, offset, kFloat, g.vertices, "VEC3");
+            w.key("min").array(std::array<double, 3>{g.lo[0], g.lo[1], g.lo[2]});
+            w.key("max").array(std::array<double, 3>{g.hi[0], g.hi[1], g.hi[2]}).end_object();
+            begin(1, offset, kFloat, g.vertices, "VEC3");
+            w.end_object();
+            begin(g.wide && !narrow_.empty() ? 3 : 2, g.index_offset, g.wide ? kUnsignedInt : kUnsignedShort,
+                  g.indices, "SCALAR");
+            w.end_object();
         }
-        json["meshes"] = std::move(meshes);
-        json["accessors"] = std::move(accessors);
+        w.end_array();
     }
 
     // Meshes and materials that lost all their triangles would be without use, and a mesh must not be empty.
@@ -230,53 +238,36 @@ private:
     Result<std::string> assemble() {
         drop_unused();
         if (narrow_.size() % 2) narrow_.push_back(0);
-        const std::array<std::size_t, 4> sizes{kByteStrideOfPoint * positions_.size(),
-                                               kByteStrideOfPoint * normals_.size(), 2 * narrow_.size(),
-                                               4 * wide_.size()};
-        Json json{{"asset", {{"version", "2.0"}, {"generator", options_.generator}}}, {"scene", 0}};
-        json["scenes"] = Json::array({Json::object()});
-        std::size_t binary = 0;
-        if (!all_.groups.empty()) {
-            json["scenes"][0]["nodes"] = Json::array({0});
-            json["nodes"] = nodes();
-            json["materials"] = materials();
-            add_primitives(json);
-            json["bufferViews"] = Json::array();
-            for (std::size_t i = 0; i < 4; ++i) {
-                if (sizes[i] == 0) continue;
-                Json view{{"buffer", 0}, {"byteOffset", binary}, {"byteLength", sizes[i]}};
-                if (i < 2) view["byteStride"] = int(kByteStrideOfPoint);
-                view["target"] = int(i < 2 ? kArrayBuffer : kElementArrayBuffer);
-                json["bufferViews"].push_back(std::move(view));
-                binary += sizes[i];
-            }
-            json["buffers"] = Json::array({Json{{"byteLength", binary}}});
+        const std::array<std::string_view, 4> parts{bytes_of(positions_), bytes_of(normals_),
+                                                    bytes_of(narrow_), bytes_of(wide_)};
+        json::Writer w;
+        w.begin_object().key("asset").begin_object().field("version", "2.0");
+        w.field("generator", options_.generator).end_object().field("scene", 0);
+        w.key("scenes").begin_array().begin_object();
+        if (all_.groups.empty()) {
+            w.end_object().end_array().end_object();
+            return glb_file(w.take(), {});
         }
-        std::string head = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-        head.append((4 - head.size() % 4) % 4, ' ');
-
-        const std::size_t total = 12 + 8 + head.size() + (binary ? 8 + binary : 0);
-        if (total > std::numeric_limits<std::uint32_t>::max())
-            return refuse(RefusalKind::limit, "mesh",
-                          text("needs ", total, " bytes; a .glb file has at most ", std::uint32_t(-1)));
-        std::string bytes(total, '\0');
-        ByteCursor out(bytes.data());
-        const auto put = [&out](const void* data, std::size_t n) {
-            if (n > 0) std::memcpy(out.at(), data, n);
-            out = ByteCursor(out.at() + n);
-        };
-        for (std::uint32_t word :
-             {0x46546c67u, 2u, std::uint32_t(total), std::uint32_t(head.size()), 0x4e4f534au})
-            out.put(word);
-        put(head.data(), head.size());
-        if (binary == 0) return bytes;
-        out.put(std::uint32_t(binary));
-        out.put(0x004e4942u);
-        put(positions_.data(), sizes[0]);
-        put(normals_.data(), sizes[1]);
-        put(narrow_.data(), sizes[2]);
-        put(wide_.data(), sizes[3]);
-        return bytes;
+        w.key("nodes").begin_array().value(0).end_array().end_object().end_array();
+        add_nodes(w);
+        add_materials(w);
+        add_meshes(w);
+        add_accessors(w);
+        std::size_t size = 0;
+        w.key("bufferViews").begin_array();
+        for (std::size_t i = 0; i < 4; ++i) {
+            if (parts[i].empty()) continue;
+            w.begin_object()
+                .field("buffer", 0)
+                .field("byteOffset", size)
+                .field("byteLength", parts[i].size());
+            if (i < 2) w.field("byteStride", int(kByteStrideOfPoint));
+            w.field("target", int(i < 2 ? kArrayBuffer : kElementArrayBuffer)).end_object();
+            size += parts[i].size();
+        }
+        w.end_array().key("buffers").begin_array().begin_object().field("byteLength", size);
+        w.end_object().end_array().end_object();
+        return glb_file(w.take(), parts);
     }
 
     const TriangleMesh& mesh_;

@@ -5,9 +5,10 @@
 // against what it counts before anything is read, so memory is bounded by the size of the buffers.
 //
 // References: the glTF 2.0 specification, sections 3.6, 3.11 and appendix C.
+#include "io/glb_chunks.hpp"
+
 #include <freiform/io/file.hpp>
 #include <freiform/io/gltf_animation.hpp>
-#include <freiform/io/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,31 +30,11 @@ std::string_view name_of(GltfInterpolation interpolation) {
 
 namespace {
 
-using Found = std::optional<json::Value>;
+using gltf::elements, gltf::Found, gltf::member, gltf::string_of, gltf::whole;
 
 std::unexpected<Refusal> broken_gltf(std::string where, std::string why) {
     return refuse(RefusalKind::unreadable, std::move(where), std::move(why));
 }
-
-Found member(const json::Value& object, std::string_view key) {
-    if (object.is(json::Kind::object))
-        for (const json::Member& m : object.members())
-            if (m.key == key) return m.value;
-    return std::nullopt;
-}
-std::optional<std::size_t> whole(const Found& v) {
-    constexpr double kMost = 9007199254740992.0;
-    if (!v || !v->is(json::Kind::number)) return std::nullopt;
-    const double x = v->number();
-    if (!(x >= 0 && x < kMost && x == std::floor(x))) return std::nullopt;
-    return std::size_t(x);
-}
-std::vector<json::Value> elements(const json::Value& array) {
-    std::vector<json::Value> out;
-    for (const json::Value& v : array.elements()) out.push_back(v);
-    return out;
-}
-std::string string_of(const Found& v) { return v && v->is(json::Kind::string) ? v->string() : std::string(); }
 
 std::optional<std::string> from_base64(std::string_view s) {
     std::string out;
@@ -73,34 +54,12 @@ std::optional<std::string> from_base64(std::string_view s) {
     return out;
 }
 
-// The JSON text and the binary chunk of a .glb; the text alone of a .gltf.
-struct Chunks {
-    std::string_view text, binary;
-};
-Result<Chunks> chunks_of(std::string_view bytes) {
-    const auto word = [&](std::size_t at) {
-        std::uint32_t w = 0;
-        std::memcpy(&w, bytes.data() + at, 4);
-        return std::size_t(w);
-    };
-    if (!bytes.starts_with("glTF")) return Chunks{bytes, {}};
-    if (bytes.size() < 20 || word(8) > bytes.size() || word(16) != 0x4e4f534a || word(12) > bytes.size() - 20)
-        return broken_gltf("", "the .glb ends before its first chunk does");
-    Chunks out{bytes.substr(20, word(12)), {}};
-    const std::size_t next = 20 + word(12);
-    if (next + 8 <= bytes.size() && word(next + 4) == 0x004e4942 && word(next) <= bytes.size() - next - 8)
-        out.binary = bytes.substr(next + 8, word(next));
-    return out;
-}
-
 class GltfReader {
 public:
     GltfReader(const json::Value& root, std::string_view binary, const std::filesystem::path& folder)
         : root_(root), binary_(binary), folder_(folder) {
         static constexpr std::string_view kNames[] = {"nodes", "accessors", "bufferViews", "buffers"};
-        for (std::size_t i = 0; i < 4; ++i)
-            if (const auto all = member(root, kNames[i]); all && all->is(json::Kind::array))
-                arrays_[i] = elements(*all);
+        for (std::size_t i = 0; i < 4; ++i) arrays_[i] = elements(member(root, kNames[i]));
         buffers_.resize(arrays_[kBuffers].size());
     }
 
@@ -241,7 +200,7 @@ private:
         const auto channels = member(a, "channels"), samplers = member(a, "samplers");
         if (!channels || !channels->is(json::Kind::array) || !samplers || !samplers->is(json::Kind::array))
             return broken_gltf("", "arrays of channels and samplers are expected");
-        const std::vector<json::Value> all = elements(*samplers);
+        const std::vector<json::Value> all = elements(samplers);
         std::size_t i = 0;
         for (const json::Value& c : channels->elements()) {
             const auto sampler = whole(member(c, "sampler"));
@@ -312,9 +271,9 @@ private:
 
 Result<std::vector<GltfAnimation>> read_gltf_animations(std::string_view bytes,
                                                         const std::filesystem::path& folder) {
-    const auto chunks = chunks_of(bytes);
+    const auto chunks = bytes.starts_with("glTF") ? chunks_of_glb(bytes) : GlbChunks{bytes, {}};
     if (!chunks) return std::unexpected(chunks.error());
-    const auto tree = json::parse(chunks->text);
+    const auto tree = json::parse(chunks->json);
     if (!tree) return std::unexpected(tree.error());
     return GltfReader(tree->root(), chunks->binary, folder).animations();
 }

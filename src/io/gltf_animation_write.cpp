@@ -2,75 +2,68 @@
 // and the line.
 //
 //     node 0 (Z up -> Y up) - node 1 (the body, animated), node 2 (the line)
+#include "io/glb_chunks.hpp"
 #include "io/mesh_bytes.hpp"
 
 #include <freiform/io/gltf_animation.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 namespace freiform {
 namespace {
 
-using GltfJson = nlohmann::ordered_json;
-
-// Accessors and views over one growing buffer of floats.
+// Accessors, each with a view of its own, over one growing buffer of floats.
 class Buffer {
 public:
     // Adds numbers, `components` for an element, as an accessor whose index is returned.
     std::size_t add(std::span<const double> numbers, std::size_t components, bool with_range) {
-        static constexpr const char* kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-        GltfJson accessor{{"bufferView", views_.size()},
-                          {"componentType", 5126},
-                          {"count", numbers.size() / components},
-                          {"type", kTypes[components]}};
-        views_.push_back(
-            {{"buffer", 0}, {"byteOffset", 4 * floats_.size()}, {"byteLength", 4 * numbers.size()}});
-        for (const double x : numbers) {
-            in_range_ = in_range_ && std::abs(x) <= double(std::numeric_limits<float>::max());
-            floats_.push_back(float(x));
+        Accessor a{floats_.size(), numbers.size(), components, {}, {}};
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            in_range_ = in_range_ && std::abs(numbers[i]) <= double(std::numeric_limits<float>::max());
+            const auto x = float(numbers[i]);
+            floats_.push_back(x);
+            if (!with_range) continue;
+            if (i < components) a.lo.push_back(x), a.hi.push_back(x);
+            double &lo = a.lo[i % components], &hi = a.hi[i % components];
+            lo = std::min(lo, double(x)), hi = std::max(hi, double(x));
         }
-        if (with_range) {
-            GltfJson lo = GltfJson::array(), hi = GltfJson::array();
-            const auto first = floats_.end() - std::ptrdiff_t(numbers.size());
-            for (std::size_t k = 0; k < components; ++k) {
-                float least = first[std::ptrdiff_t(k)], most = least;
-                for (auto i = first + std::ptrdiff_t(k); i < floats_.end(); i += std::ptrdiff_t(components)) {
-                    least = std::min(least, *i), most = std::max(most, *i);
-                    if (floats_.end() - i <= std::ptrdiff_t(components)) break;
-                }
-                lo.push_back(double(least)), hi.push_back(double(most));
-            }
-            accessor["min"] = lo, accessor["max"] = hi;
-        }
-        accessors_.push_back(std::move(accessor));
+        accessors_.push_back(std::move(a));
         return accessors_.size() - 1;
     }
 
     bool in_range() const { return in_range_; }
-    std::string glb(GltfJson json) const {
-        json["accessors"] = accessors_, json["bufferViews"] = views_;
-        json["buffers"] = GltfJson::array({GltfJson{{"byteLength", 4 * floats_.size()}}});
-        std::string head = json.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
-        head.append((4 - head.size() % 4) % 4, ' ');
-        const std::size_t binary = 4 * floats_.size(), total = 12 + 8 + head.size() + 8 + binary;
-        std::string bytes(total, '\0');
-        ByteCursor out(bytes.data());
-        for (const std::uint32_t word :
-             {0x46546c67u, 2u, std::uint32_t(total), std::uint32_t(head.size()), 0x4e4f534au})
-            out.put(word);
-        std::memcpy(out.at(), head.data(), head.size());
-        out = ByteCursor(out.at() + head.size());
-        out.put(std::uint32_t(binary)), out.put(0x004e4942u);
-        std::memcpy(out.at(), floats_.data(), binary);
-        return bytes;
+    // The file, from JSON whose outermost object is open.
+    Result<std::string> glb(json::Writer w) const {
+        static constexpr std::string_view kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+        w.key("accessors").begin_array();
+        for (std::size_t i = 0; i < accessors_.size(); ++i) {
+            const Accessor& a = accessors_[i];
+            w.begin_object().field("bufferView", i).field("componentType", 5126);
+            w.field("count", a.size / a.components).field("type", kTypes[a.components]);
+            if (!a.lo.empty()) w.key("min").array(a.lo).key("max").array(a.hi);
+            w.end_object();
+        }
+        w.end_array().key("bufferViews").begin_array();
+        for (const Accessor& a : accessors_) {
+            w.begin_object().field("buffer", 0).field("byteOffset", 4 * a.first);
+            w.field("byteLength", 4 * a.size).end_object();
+        }
+        w.end_array().key("buffers").begin_array().begin_object().field("byteLength", 4 * floats_.size());
+        w.end_object().end_array().end_object();
+        const std::array parts{bytes_of(floats_)};
+        return glb_file(w.take(), parts);
     }
 
 private:
+    struct Accessor {
+        std::size_t first, size, components;
+        std::vector<double> lo, hi;  // nothing: not wanted
+    };
     std::vector<float> floats_;
-    GltfJson accessors_ = GltfJson::array(), views_ = GltfJson::array();
+    std::vector<Accessor> accessors_;
     bool in_range_ = true;
 };
 
@@ -114,42 +107,58 @@ Result<std::string> to_animated_glb(const GltfMotion& m) {
     for (const Vec<3>& p : m.line) append(line, p);
     add_body(m.size, corners, normals);
     const std::size_t time = buffer.add(m.times, 1, true), place = buffer.add(places, 3, false);
-    GltfJson samplers =
-        GltfJson::array({{{"input", time}, {"output", place}, {"interpolation", "CUBICSPLINE"}}});
-    GltfJson channels =
-        GltfJson::array({{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}});
-    if (!turns.empty()) {
-        samplers.push_back(
-            {{"input", time}, {"output", buffer.add(turns, 4, false)}, {"interpolation", "LINEAR"}});
-        channels.push_back({{"sampler", 1}, {"target", {{"node", 1}, {"path", "rotation"}}}});
-    }
+    json::Writer w;
+    const auto turn = turns.empty() ? 0 : buffer.add(turns, 4, false);
     const std::size_t corner = buffer.add(corners, 3, true), normal = buffer.add(normals, 3, false);
-    GltfJson meshes = GltfJson::array(
-        {{{"primitives", GltfJson::array({{{"attributes", {{"POSITION", corner}, {"NORMAL", normal}}},
-                                           {"material", 0}}})}}});
-    GltfJson root{
-        {"name", "motion"}, {"matrix", {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}}, {"children", {1}}};
-    GltfJson nodes = GltfJson::array({root, {{"name", m.name}, {"mesh", 0}}});
-    if (line.size() >= 6) {
-        meshes.push_back(
-            {{"primitives",
-              GltfJson::array({{{"attributes", {{"POSITION", buffer.add(line, 3, true)}}}, {"mode", 3}}})}});
-        nodes[0]["children"].push_back(2);
-        nodes.push_back({{"name", "way"}, {"mesh", 1}});
-    }
+    const bool has_line = line.size() >= 6;
+    const std::size_t way = has_line ? buffer.add(line, 3, true) : 0;
     if (!buffer.in_range())
         return refuse(RefusalKind::limit, "", "a number is outside the range of the floats of glTF");
-    return buffer.glb(
-        {{"asset", {{"version", "2.0"}, {"generator", "freiform"}}},
-         {"scene", 0},
-         {"scenes", {{{"nodes", {0}}}}},
-         {"nodes", nodes},
-         {"meshes", meshes},
-         {"materials",
-          {{{"pbrMetallicRoughness",
-             {{"metallicFactor", 0}, {"roughnessFactor", 0.5}, {"baseColorFactor", {0.8, 0.25, 0.1, 1}}}},
-            {"doubleSided", true}}}},
-         {"animations", {{{"name", m.name}, {"channels", channels}, {"samplers", samplers}}}}});
+
+    w.begin_object().key("asset").begin_object().field("version", "2.0").field("generator", "freiform");
+    w.end_object().field("scene", 0).key("scenes").begin_array().begin_object();
+    w.key("nodes").array(std::array{0}).end_object().end_array();
+
+    w.key("nodes").begin_array().begin_object().field("name", "motion");
+    w.key("matrix").array(std::array{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1});
+    w.key("children").begin_array().value(1);
+    if (has_line) w.value(2);
+    w.end_array().end_object().begin_object().field("name", m.name).field("mesh", 0).end_object();
+    if (has_line) w.begin_object().field("name", "way").field("mesh", 1).end_object();
+    w.end_array();
+
+    w.key("meshes").begin_array().begin_object().key("primitives").begin_array().begin_object();
+    w.key("attributes").begin_object().field("POSITION", corner).field("NORMAL", normal).end_object();
+    w.field("material", 0).end_object().end_array().end_object();
+    if (has_line) {
+        w.begin_object().key("primitives").begin_array().begin_object();
+        w.key("attributes").begin_object().field("POSITION", way).end_object();
+        w.field("mode", 3).end_object().end_array().end_object();
+    }
+    w.end_array();
+
+    w.key("materials").begin_array().begin_object().key("pbrMetallicRoughness").begin_object();
+    w.field("metallicFactor", 0).field("roughnessFactor", 0.5);
+    w.key("baseColorFactor").array(std::array{0.8, 0.25, 0.1, 1.0});
+    w.end_object().field("doubleSided", true).end_object().end_array();
+
+    w.key("animations").begin_array().begin_object().field("name", m.name);
+    w.key("channels").begin_array();
+    const auto channel = [&w](int sampler, std::string_view path) {
+        w.begin_object().field("sampler", sampler).key("target").begin_object();
+        w.field("node", 1).field("path", path).end_object().end_object();
+    };
+    channel(0, "translation");
+    if (!turns.empty()) channel(1, "rotation");
+    w.end_array().key("samplers").begin_array();
+    const auto sampler = [&w, time](std::size_t output, std::string_view interpolation) {
+        w.begin_object().field("input", time).field("output", output);
+        w.field("interpolation", interpolation).end_object();
+    };
+    sampler(place, "CUBICSPLINE");
+    if (!turns.empty()) sampler(turn, "LINEAR");
+    w.end_array().end_object().end_array();
+    return buffer.glb(std::move(w));
 }
 
 }  // namespace freiform

@@ -5,6 +5,7 @@
 // Why not a parser from elsewhere: an unknown, repeated or misplaced key is to be reported with its line;
 // "-0" and numbers beyond the range of double must not change silently; and nothing may be thrown.
 #include <freiform/core/decimal.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/core/utf8.hpp>
 #include <freiform/io/json.hpp>
 
@@ -121,7 +122,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 class Parser {
 public:
-    explicit Parser(std::string_view text) : text_(text), tree_(text) {}
+    Parser(std::string_view text, std::size_t max_depth) : text_(text), max_depth_(max_depth), tree_(text) {}
 
     Result<Tree> run() {
         if (text_.size() >= std::numeric_limits<std::uint32_t>::max())
@@ -177,9 +178,9 @@ private:
             skip_space();
             if (!open_.empty()) ++open_node().size;
             if (!at('{') && !at('[')) return scalar();
-            if (open_.size() == std::size_t(kMaxDepth))
-                return fail(pos_,
-                            freiform::text("more than ", kMaxDepth, " arrays and objects within each other"));
+            if (open_.size() == max_depth_)
+                return fail(
+                    pos_, freiform::text("more than ", max_depth_, " arrays and objects within each other"));
             const bool object = at('{');
             add(object ? Kind::object : Kind::array);
             open_.push_back(std::uint32_t(tree_.nodes_.size() - 1));
@@ -244,9 +245,8 @@ private:
             const auto raw = text_.substr(nodes[i].at + 1, nodes[i].size);
             keys.push_back({nodes[i].escaped ? unescape(raw) : std::string(raw), nodes[i].at});
         }
-        std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-            return a.name != b.name ? a.name < b.name : a.at < b.at;
-        });
+        sort(keys.begin(), keys.end(),
+             [](const Key& a, const Key& b) { return a.name != b.name ? a.name < b.name : a.at < b.at; });
         const auto twin = std::adjacent_find(keys.begin(), keys.end(),
                                              [](const Key& a, const Key& b) { return a.name == b.name; });
         if (twin != keys.end())
@@ -330,12 +330,13 @@ private:
     }
 
     std::string_view text_;
+    std::size_t max_depth_;
     Tree tree_;
     std::size_t pos_ = 0;
     std::vector<std::uint32_t> open_;  // the containers that have not ended
 };
 
-Result<Tree> parse(std::string_view text) { return Parser(text).run(); }
+Result<Tree> parse(std::string_view text, std::size_t max_depth) { return Parser(text, max_depth).run(); }
 
 const Node& Value::node() const { return tree_->nodes_[node_]; }
 Kind Value::kind() const { return node().kind; }

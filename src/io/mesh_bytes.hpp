@@ -9,6 +9,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace freiform {
@@ -30,6 +31,11 @@ public:
 private:
     char* at_;
 };
+
+template <class T>
+std::string_view bytes_of(const std::vector<T>& list) {
+    return {reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T)};
+}
 
 using FloatPoint = std::array<float, 3>;
 

@@ -5,6 +5,8 @@
 // kept once; an item is on kMostLayers at most.
 #include "step_structure.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 
 namespace freiform::step {
@@ -44,7 +46,7 @@ void read_layers(const File& f, Styles& styles, std::vector<Refusal>& refused) {
         }
     }
     for (auto& [item, layers] : styles.on_layers) {
-        std::ranges::sort(layers);
+        sort(layers);
         layers.erase(std::ranges::unique(layers).begin(), layers.end());
         if (layers.size() <= kMostLayers) continue;
         refused.push_back({RefusalKind::limit, f.label(item),

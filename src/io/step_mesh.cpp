@@ -15,6 +15,7 @@
 #include "mesh_builder.hpp"
 #include "step_walk.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/io/step_read.hpp>
 
 #include <algorithm>
@@ -268,7 +269,7 @@ private:
         std::vector<int> used;
         used.reserve(3 * corners.size());
         for (const auto& t : corners) used.insert(used.end(), t.begin(), t.end());
-        std::ranges::sort(used);
+        sort(used);
         used.erase(std::ranges::unique(used).begin(), used.end());
         for (const int k : used) {
             face->points.push_back(points[std::size_t(index.empty() ? k : index[std::size_t(k)])]);

@@ -10,6 +10,8 @@
 // file asks for takes the stack along.
 #include "step_anchors.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -353,8 +355,7 @@ private:
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
             return all[a].id != all[b].id ? all[a].id < all[b].id : a < b;
         };
-        if (!std::is_sorted(order.begin(), order.end(), before))
-            std::sort(order.begin(), order.end(), before);
+        if (!std::is_sorted(order.begin(), order.end(), before)) sort(order.begin(), order.end(), before);
         for (std::size_t k = 1; k < order.size(); ++k)
             if (all[order[k]].id == all[order[k - 1]].id)
                 complain(all[order[k]].id, all[order[k]].at, "its number is used before");

@@ -7,6 +7,7 @@
 #include "step_loops.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +103,7 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
             }
             pairs.push_back({cost, i, j});
         }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
+    sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
         return std::tie(x.cost, x.i, x.j) < std::tie(y.cost, y.i, y.j);
     });
     std::size_t best_i = pairs.front().i, best_j = pairs.front().j;

@@ -4,6 +4,7 @@
 #include "step_tangles.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <set>
@@ -339,7 +340,7 @@ void ShapeReader::merge_vertices() {
 // Curves of the file that splines stand for, each once.
 void ShapeReader::tell_approximated() {
     auto& all = geometry_.approximated;
-    std::ranges::sort(all);
+    sort(all);
     const auto rest = std::ranges::unique(all);
     all.erase(rest.begin(), rest.end());
     for (const auto& [instance, bound] : all)

@@ -8,6 +8,8 @@
 // References: ISO 10303-43:2011 (representations), -44 (products).
 #include "step_structure.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <numeric>
 
@@ -256,7 +258,7 @@ private:
             if (const auto of = Fields(f_, *shape, l).reference(2, "definition"))
                 usage.push_back({*relation, *of});
         }
-        std::sort(usage.begin(), usage.end());
+        sort(usage.begin(), usage.end());
         for (const std::uint32_t i : relations_)
             if (auto ok = link_relation(i, usage); !ok) out_.refused.push_back(ok.error());
     }

@@ -18,6 +18,7 @@
 #include "step_geometry.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -142,7 +143,7 @@ struct TouchedEdges {
                 for (const int v : {e.start, e.end})
                     corners.push_back({model.vertices[std::size_t(v)].point[0], v, int(l)});
             }
-        std::ranges::sort(corners, {}, [](const Corner& c) { return std::tuple(c.x, c.vertex, c.loop); });
+        sort(corners, {}, [](const Corner& c) { return std::tuple(c.x, c.vertex, c.loop); });
         std::size_t left = kMostPairs;
         for (std::size_t l = 0; l < f.loops.size(); ++l)
             for (const Coedge& c : f.loops[l].coedges) {

@@ -3,6 +3,7 @@
 #include "step_chart.hpp"
 
 #include <freiform/core/result.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <span>
@@ -49,7 +50,7 @@ std::vector<double> places_along(const CurveGeometry<D>& c, Interval on, int par
             }
         },
         c);
-    std::ranges::sort(all);
+    sort(all);
     return all;
 }
 

@@ -29,6 +29,7 @@
 //
 // Why not an eigenvalue routine? Its rounding decides about kinds, and near parabolas it is always wrong.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/make/conic_equation.hpp>
 #include <freiform/poly/determinant.hpp>
 #include <freiform/poly/exact.hpp>
@@ -327,7 +328,7 @@ Result<std::vector<ConicArc<2>>> arcs_inside(const ConicForm& form, const Box<2>
                 for (const double x :
                      crossings(kind, found.conic.x[i], found.conic.y[i], side - found.conic.centre[i]))
                     t.push_back(x);
-        std::sort(t.begin(), t.end());
+        sort(t.begin(), t.end());
         const CurveGeometry<2> curve(found.conic);
         if (kind == ConicKind::ellipse) {
             if (t.empty())

@@ -20,6 +20,7 @@
 //
 // Why not an approximation by cubics? Files would hold edges that are near the surface; these lie on it. The
 // price is the degree, 18 for a cubic on a bicubic surface, which readers take up to 25.
+#include <freiform/core/sort.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/poly/roots.hpp>
@@ -92,7 +93,7 @@ std::vector<double> crossings(std::span<const Hom<2>> c,
             for (const Root& r : roots->roots) cuts.push_back(r.at.middle());
         }
     }
-    std::ranges::sort(cuts);
+    sort(cuts);
     std::vector<double> apart;
     for (const double t : cuts)
         if (t > kSameCut && t < 1 - kSameCut && (apart.empty() || t > apart.back() + kSameCut))

@@ -12,6 +12,7 @@
 // cost a system of equations or a blossom of p q terms, and the surface is the same.
 #include "bernstein_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/make/boolean_sum.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/compatible.hpp>
@@ -118,7 +119,7 @@ std::vector<double> inner_breaks(std::span<const Curve<Vec<1>>> functions, const
         const auto own = f.basis().breaks();
         all.insert(all.end(), own.begin(), own.end());
     }
-    std::sort(all.begin(), all.end());
+    sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }

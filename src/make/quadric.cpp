@@ -26,6 +26,7 @@
 // reader of NURBS expects. The tiles are for those who need normals everywhere.
 #include "bounded_net_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/make/quadric.hpp>
 
 #include <cmath>
@@ -223,8 +224,8 @@ constexpr SurdPoint kOctant[4] = {{{{36, 0, -12, 0}, {0, 0, 0, 0}, {0, 0, 0, 0},
 
 LocalPoint octant_point(const std::array<int, 3>& ijk) {
     std::array<std::size_t, 3> order{0, 1, 2};  // the axes by descending index
-    std::sort(order.begin(), order.end(),
-              [&](auto p, auto q) { return ijk[p] != ijk[q] ? ijk[p] > ijk[q] : p < q; });
+    sort(order.begin(), order.end(),
+         [&](auto p, auto q) { return ijk[p] != ijk[q] ? ijk[p] > ijk[q] : p < q; });
     const int first = ijk[order[0]], second = ijk[order[1]];
     const LocalPoint p = value_of(kOctant[first == 4 ? 0 : first == 3 ? 1 : second == 2 ? 2 : 3]);
     LocalPoint out{{{}, {}, {}, p[3]}};

@@ -25,6 +25,7 @@
 // References: [Farin 2002, ch. 20], [Ye, Liang & Nowacki 1996], [Ramshaw 1989].
 #include "joint_rows_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/make/surface_joint.hpp>
 
 #include <algorithm>
@@ -242,7 +243,7 @@ Result<Surface<P>> rejoined(const Surface<P>& previous, SurfaceEdge edge, const 
                   need = out->basis(axis).degree() - left - out->basis(axis).multiplicity(at);
         more.insert(more.end(), std::size_t(std::max(need, 0)), at);
     }
-    std::ranges::sort(more);
+    sort(more);
     if (!more.empty()) out = insert_knots(*out, axis, more);
     if (!out) return refuse_within("neighbour", out.error());
     Net<2, P> net = out->net();

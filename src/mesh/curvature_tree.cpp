@@ -30,6 +30,7 @@
 #include "parameter_table_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -47,7 +48,7 @@ double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b,
         return A * d[0] * d[0] + B * d[1] * d[1];
     };
     double s[3] = {length2(a, b), length2(b, c), length2(c, a)};
-    std::sort(s, s + 3);
+    sort(s, s + 3);
     const double longest = s[2] / 8;
     if (s[0] + s[1] <= s[2]) return longest;
     const double twice_area = std::abs(cross(b - a, c - a));  // squared circumradius: s0 s1 s2 / (16 area^2)

@@ -16,6 +16,7 @@
 #include "simple_polygons_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/mesh/grid.hpp>
 #include <freiform/mesh/triangulate.hpp>
@@ -95,7 +96,7 @@ void cut_poles(Polygon& polygon, const FaceBoundary& boundary, std::span<const C
                 1000.0, std::ceil(std::max(std::abs(d[0]) / usual_leaf[0], std::abs(d[1]) / usual_leaf[1]))));
             for (int k = 1; k < n; ++k) cuts.push_back({double(k) / n, p + (double(k) / n) * d});
         }
-        std::sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+        sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
         int last = s.a;
         for (const auto& cut : cuts) {
             polygon.points.push_back(cut.second);

@@ -4,6 +4,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/normal_cone.hpp>
 
 #include <algorithm>
@@ -258,7 +259,7 @@ void Filler::judge(std::span<const Entry> entries) {
     std::vector<int> unknown;
     for (const auto& [triangle, stamp] : entries)
         if (t_.stamp(triangle) == stamp && !is_known(triangle)) unknown.push_back(triangle);
-    std::sort(unknown.begin(), unknown.end());  // entries may repeat each other
+    sort(unknown.begin(), unknown.end());  // entries may repeat each other
     unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
     parallel_for((unknown.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce, 1, [&](std::size_t part) {
         int place = 0;

@@ -2,6 +2,8 @@
 // point: they get further points. See face_mesh.cpp for the whole.
 #include "filler_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <tuple>
 
@@ -70,7 +72,7 @@ int Filler::separate(std::span<const int> place) {
             sides.push_back({std::min(a, b), std::max(a, b), u, w});
         }
     }
-    std::sort(sides.begin(), sides.end());
+    sort(sides.begin(), sides.end());
     int inserted = 0;
     for (const auto& [u, w] : flat_sides(place, corners_at)) inserted += halve(u, w);
     for (std::size_t i = 0, j; i < sides.size(); i = j) {

@@ -3,6 +3,8 @@
 // that double in size keeps both the bound and the locality [Amenta, Choi & Rote 2003].
 #include "mesh/insertion_order_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -69,7 +71,7 @@ std::vector<int> insertion_order(std::span<const Vec<2>> points) {
     for (std::size_t i = 0; i < points.size(); ++i)
         keys.push_back({rounds - std::min(rounds, std::countr_zero(scrambled(i))),
                         place_on_curve(cell(points[i], 0), cell(points[i], 1)), int(i)});
-    std::sort(keys.begin(), keys.end());
+    sort(keys.begin(), keys.end());
     std::vector<int> order;
     order.reserve(points.size());
     for (const Key& k : keys) order.push_back(k.index);

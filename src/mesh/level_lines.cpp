@@ -4,6 +4,7 @@
 // piece and the beginning of the next, and following these gives whole lines.
 //
 // Cost. One pass over the triangles and a sort of the pieces by the side they begin at.
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/level_lines.hpp>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ void add_lines(const TriangleMesh& mesh, int part, std::size_t first, std::size_
         }
         pieces.push_back(piece);
     }
-    std::ranges::sort(pieces, {}, &Piece::from);
+    sort(pieces, {}, &Piece::from);
     const auto beginning_at = [&](const Side& s) {
         auto at = std::ranges::lower_bound(pieces, s, {}, &Piece::from);
         while (at != pieces.end() && at->from == s && at->used) ++at;
@@ -52,7 +53,7 @@ void add_lines(const TriangleMesh& mesh, int part, std::size_t first, std::size_
     };
     std::vector<Side> ends;
     for (const Piece& p : pieces) ends.push_back(p.to);
-    std::ranges::sort(ends);
+    sort(ends);
     const auto follow = [&](Piece* piece) {
         LevelLine line{part, {place_on(piece->from, values, level)}, false};
         const Side start = piece->from;
@@ -133,7 +134,7 @@ std::vector<OutlineEdge> outline_edges(const TriangleMesh& mesh, double angle) {
 std::vector<Outline> outlines(const TriangleMesh& mesh, double angle) {
     std::vector<OutlineEdge> all = outline_edges(mesh, angle);
     const auto kind = [](const OutlineEdge& e) { return std::tuple(e.parts, e.smooth); };
-    std::ranges::sort(all, {}, [](const OutlineEdge& e) { return std::tuple(e.parts, e.smooth, e.a, e.b); });
+    sort(all, {}, [](const OutlineEdge& e) { return std::tuple(e.parts, e.smooth, e.a, e.b); });
     std::vector<Outline> out;
     for (std::size_t i = 0; i < all.size();) {
         std::size_t j = i;

@@ -14,6 +14,7 @@
 // neighbours: it saves pairs that cost less than its tree.
 #include "simple_polygons_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/poly/predicates.hpp>
 
 #include <algorithm>
@@ -73,7 +74,7 @@ bool are_simple_polygons(std::span<const Vec<2>> points, std::span<const Triangu
             std::minmax(along[std::size_t(segments[i].a)], along[std::size_t(segments[i].b)]);
         items.push_back({lo, hi + kSlack, int(i)});
     }
-    std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.lo < b.lo; });
+    sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.lo < b.lo; });
     std::size_t left = kMostPairs * items.size() + kFewPairs;
     for (std::size_t i = 0; i < items.size(); ++i)
         for (std::size_t k = i + 1; k < items.size() && items[k].lo <= items[i].hi; ++k)

@@ -1,5 +1,7 @@
 #include "mesh_edges_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -131,7 +133,7 @@ void each_edge(const TriangleMesh& mesh, const std::function<void(const MeshEdge
     for (std::size_t a = 0; a < n; ++a) {
         const auto first = entries.begin() + std::ptrdiff_t(begin[a]);
         const auto last = entries.begin() + std::ptrdiff_t(begin[a + 1]);
-        std::sort(first, last);
+        sort(first, last);
         for (auto it = first; it != last;) {
             MeshEdge edge{int(a), int(*it >> 32), 0, 0, {-1, -1}};
             for (; it != last && int(*it >> 32) == edge.b; ++it) {

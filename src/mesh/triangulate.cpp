@@ -28,6 +28,7 @@
 // come out wrong, and their coordinates spoil the exactness window of the predicates.
 #include "mesh/insertion_order_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/triangulate.hpp>
 #include <freiform/poly/predicates.hpp>
 
@@ -82,7 +83,7 @@ std::expected<void, Problem> check_input(std::span<const Vec<2>> points, std::sp
 std::vector<int> sorted(std::span<const Vec<2>> points) {
     std::vector<int> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int i, int j) {
+    sort(order.begin(), order.end(), [&](int i, int j) {
         const Vec<2>&p = points[std::size_t(i)], &q = points[std::size_t(j)];
         return p[0] != q[0] ? p[0] < q[0] : p[1] != q[1] ? p[1] < q[1] : i < j;
     });
@@ -95,7 +96,7 @@ std::expected<void, Problem> check_distinct(std::span<const Vec<2>> points, cons
         if (points[std::size_t(order[k])] == points[std::size_t(order[k - 1])])
             conflicts.push_back({.point = order[k], .other_point = order[k - 1]});
     if (conflicts.empty()) return {};
-    std::sort(conflicts.begin(), conflicts.end(), [](auto& c, auto& d) { return c.point < d.point; });
+    sort(conflicts.begin(), conflicts.end(), [](auto& c, auto& d) { return c.point < d.point; });
     const auto [j, i] = std::pair(conflicts[0].point, conflicts[0].other_point);
     const Vec<2>& p = points[std::size_t(j)];
     return refuse_all(RefusalKind::invalid, text("points[", j, "]"),
@@ -127,7 +128,7 @@ void name_crossed_segments(std::vector<Conflict>& conflicts, std::span<const Seg
     for (std::size_t i = 0; i < segments.size(); ++i)
         table.push_back(
             {std::min(segments[i].a, segments[i].b), std::max(segments[i].a, segments[i].b), int(i)});
-    std::sort(table.begin(), table.end());
+    sort(table.begin(), table.end());
     for (Conflict& c : conflicts) {
         if (c.other_point < 0) continue;
         const SegmentEnds key{std::min(c.point, c.other_point), std::max(c.point, c.other_point), -1};

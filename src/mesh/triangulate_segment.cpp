@@ -18,6 +18,7 @@
 // well, with the angle at the tip counted as 360 degrees, no turn at all.
 #include "mesh/corners_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/triangulate.hpp>
 #include <freiform/poly/predicates.hpp>
 
@@ -159,7 +160,7 @@ void Triangulation::replace_cavity(const std::vector<int>& cavity,
         for (int i = 0; i < 3; ++i)
             record(by[k][std::size_t(next(i))], by[k][std::size_t(previous(i))], cavity[k], i, 0);
     }
-    std::sort(records.begin(), records.end(), [](const Record& r, const Record& s) {
+    sort(records.begin(), records.end(), [](const Record& r, const Record& s) {
         return std::array{r.low, r.high, -r.triangle} < std::array{s.low, s.high, -s.triangle};
     });
     // The two triangles of an edge come first, then what is known of its flags.

@@ -23,6 +23,7 @@
 //
 // Why not Appel's counting: one missed crossing spoils the rest of the line, and crossings are missed or
 // found twice exactly where a curve touches an outline, which every isoline of a surface does.
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/visibility.hpp>
 
 #include <algorithm>
@@ -57,7 +58,7 @@ Box<3> box_of(const std::array<Vec<3>, 3>& t) {
 }
 
 void unite(std::vector<Interval>& parts) {
-    std::ranges::sort(parts, {}, &Interval::lo);
+    sort(parts, {}, &Interval::lo);
     std::size_t n = 0;
     for (const Interval& p : parts) {
         if (n > 0 && p.lo <= parts[n - 1].hi)

@@ -8,6 +8,8 @@
 // else are joined, and followed from branches that have a free end, then around.
 #include "branch_chains_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +48,7 @@ std::vector<BranchChain> chains_of(const std::vector<FaceBranch>& branches,
         order.push_back(int(n));
     }
     const auto at = [&](int n) -> FreeEnd& { return ends[std::size_t(n)]; };
-    std::ranges::sort(order, {}, [&](int n) { return at(n).point[0]; });
+    sort(order, {}, [&](int n) { return at(n).point[0]; });
     double widest = 0;
     for (const int n : order) widest = std::max(widest, at(n).reach);
     std::vector<int> near(ends.size(), 0), last(ends.size(), -1);

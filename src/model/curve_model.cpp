@@ -18,6 +18,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/model/curve_model.hpp>
 #include <freiform/query/checks.hpp>
 
@@ -193,8 +194,7 @@ struct IntersectModel::Prepared {
             }
         }
         join(std::move(on_loops), out.contacts);
-        std::ranges::sort(out.contacts, {},
-                          [](const ModelContact& c) { return std::pair(c.contact.at, c.face); });
+        sort(out.contacts, {}, [](const ModelContact& c) { return std::pair(c.contact.at, c.face); });
         return out;
     }
 

@@ -44,6 +44,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/core/text.hpp>
 #include <freiform/model/edge_continuity.hpp>
 #include <freiform/model/edge_gap.hpp>
@@ -251,7 +252,7 @@ private:
                             if (edge_.range.lo < x && x < edge_.range.hi) t.push_back(x);
                 },
                 s.coedge().curve);
-        std::ranges::sort(t);
+        sort(t);
         t.erase(std::unique(t.begin(), t.end()), t.end());
         return t;
     }
@@ -377,7 +378,7 @@ Result<std::vector<EdgeContinuity>> edge_continuity(const Model& model,
     const auto key = [](const EdgeContinuity& x) {
         return std::tuple(x.g_at_most, -x.angle, -x.curvature, -x.gap, x.edge, x.face);
     };
-    std::ranges::sort(out, {}, key);
+    sort(out, {}, key);
     return out;
 }
 

@@ -40,6 +40,7 @@
 #include "surface_seams_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/model/edge_gap.hpp>
 
 #include <algorithm>
@@ -170,7 +171,7 @@ std::vector<double> Prover::cuts() const {
     add(space_);
     if (t.size() == 2)
         for (int i = 1; i < 4; ++i) t.push_back(range_.lo + range_.length() * i / 4);
-    std::sort(t.begin(), t.end());
+    sort(t.begin(), t.end());
     t.erase(std::unique(t.begin(), t.end()), t.end());
     return t;
 }

@@ -28,6 +28,7 @@
 #include "edge_mesh_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/model/edge_length.hpp>
 #include <freiform/query/checks.hpp>
 
@@ -87,7 +88,7 @@ private:
                         if (on.lo < x && x < on.hi) t.push_back(x);
             },
             curve_);
-        std::ranges::sort(t);
+        sort(t);
         std::vector<Interval> out;
         for (std::size_t i = 0; i + 1 < t.size(); ++i)
             if (t[i] < t[i + 1]) out.push_back({t[i], t[i + 1]});

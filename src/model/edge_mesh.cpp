@@ -17,6 +17,7 @@
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -367,7 +368,7 @@ std::vector<double> EdgeMesher::smooth_pieces(int edge, double tolerance) const 
             add(std::span(&k, 1), norm(j.d[1]) + norm(j.d[2]));
         }
     std::erase_if(must, [&](double t) { return !(on.lo <= t && t <= on.hi); });
-    std::sort(must.begin(), must.end());
+    sort(must.begin(), must.end());
     must.erase(std::unique(must.begin(), must.end()), must.end());
     return must;
 }

@@ -11,6 +11,7 @@
 #include "face_loops_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/intersect/curve_curve.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/spline/bezier.hpp>
@@ -237,7 +238,7 @@ Result<std::vector<ClippedPart>> FaceLoops::clip(const Curve<Vec<2>>& curve, dou
             }
         }
     }
-    std::ranges::sort(cuts, {}, &Cut::t);
+    sort(cuts, {}, &Cut::t);
     std::vector<Cut> kept;
     for (const Cut& c : cuts) {
         if (kept.empty() || c.t - kept.back().t > kOneCut * on.length())

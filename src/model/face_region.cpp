@@ -5,6 +5,7 @@
 #include "edge_mesh_detail.hpp"
 #include "face_region_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/segment_box.hpp>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ Result<Pieces> pieces_of(const CurveGeometry<2>& curve, Interval on, Vec<2> sag,
     for (const auto& b : bounds)
         for (const Kink& k : b.kinks(0))
             if (on.lo < k.at && k.at < on.hi) must.push_back(k.at);
-    std::ranges::sort(must);
+    sort(must);
     must.erase(std::unique(must.begin(), must.end()), must.end());
     Pieces out{{on.lo}, {}};
     std::vector<Interval> stack;

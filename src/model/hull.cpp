@@ -23,6 +23,7 @@
 // it, and its tolerance is that of every face, not only of those that are outermost.
 #include "near_parts_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/model/bounds.hpp>
 #include <freiform/query/hull_search.hpp>
 
@@ -120,7 +121,7 @@ private:
         std::erase_if(points_, [&](const Vec<3>&) { return at < inner_.size() && inner_[at++]; });
         for (Vec<3>& p : points_)
             for (int k = 0; k < 3; ++k) p[k] = std::nearbyint(p[k] / grid_) * grid_;
-        std::ranges::sort(points_, {}, &Vec<3>::c);
+        sort(points_, {}, &Vec<3>::c);
         points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
         detail::PointHull<3> hull(points_);
         inner_.assign(hull.facets.empty() ? 0 : points_.size(), true);

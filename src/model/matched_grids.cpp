@@ -19,6 +19,7 @@
 #include "matched_grids_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/grid.hpp>
 
 #include <algorithm>
@@ -130,7 +131,7 @@ struct EdgeClass {
 
     // Kinks stay; equal parts between them, as many as the finest edge has there.
     void begin(EdgeMesher& mesher) {
-        std::sort(fixed.begin(), fixed.end());
+        sort(fixed.begin(), fixed.end());
         std::vector<double> kept{0};
         for (const double s : fixed)
             if (s - kept.back() > kSamePart && 1 - s > kSamePart) kept.push_back(s);

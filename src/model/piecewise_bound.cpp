@@ -1,6 +1,7 @@
 #include "piecewise_bound_detail.hpp"
 
 #include <freiform/core/result.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 
@@ -30,7 +31,7 @@ double PiecewiseBound::steady(Interval on) const {
         at = end;
         if (!(at < on.hi)) break;
     }
-    std::sort(parts.begin(), parts.end());
+    sort(parts.begin(), parts.end());
     const double most = parts.back().first;
     if (!(most > kEven * least)) return most;
     double longer = 0, excess = 0;  // of those that exceed the median

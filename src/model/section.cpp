@@ -13,6 +13,7 @@
 // section of every kind of analytic surface, and ends of branches that meet at edges only up to the tolerance
 // of the file, so that nothing proves that they close.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/level_lines.hpp>
 #include <freiform/model/section.hpp>
 
@@ -48,7 +49,7 @@ std::map<Corners, int> faces_at(const TriangleMesh& mesh, std::span<const double
             Corners c = mesh.points_of(std::size_t(i));
             const auto above = std::ranges::count_if(c, [&](int p) { return height[std::size_t(p)] >= 0; });
             if (above == 0 || above == 3) continue;
-            std::ranges::sort(c);
+            sort(c);
             out[c] = part.face;
         }
     return out;
@@ -57,7 +58,7 @@ std::map<Corners, int> faces_at(const TriangleMesh& mesh, std::span<const double
 // The triangle that has both sides.
 Corners corners_of(const EdgePlace& s, const EdgePlace& t) {
     Corners c{s.a, s.b, t.a == s.a || t.a == s.b ? t.b : t.a};
-    std::ranges::sort(c);
+    sort(c);
     return c;
 }
 

@@ -26,6 +26,7 @@
 #include "sewer_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -146,7 +147,7 @@ void Sewer::cut_edges(const std::vector<Part>& parts, std::vector<int>& edge_of)
     }
     for (auto& [loop, cuts] : by_loop) {
         auto& coedges = m_.faces[std::size_t(loop.first)].loops[std::size_t(loop.second)].coedges;
-        std::sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+        sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
         for (auto& [index, pieces] : cuts) {
             const Coedge whole = coedges[std::size_t(index)];
             if (whole.reversed) std::reverse(pieces.begin(), pieces.end());
@@ -177,7 +178,7 @@ bool Sewer::pass(bool cut) {
                 refused(all[std::size_t(p)].edge, *misses[i],
                         misses[i]->kind == RefusalKind::not_converged ? 1 : 2);
     std::erase_if(pairs, [](const Pair& p) { return !p.match; });
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
+    sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
         return std::tie(x.match->bound, x.a, x.b, x.reversed) <
                std::tie(y.match->bound, y.a, y.b, y.reversed);
     });

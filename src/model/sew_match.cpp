@@ -22,6 +22,7 @@
 #include "sew_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +136,7 @@ std::vector<double> fixed_nodes(const EdgeTrace& stays, const EdgeTrace& other) 
         });
         if (!known) t.push_back(at);
     }
-    std::sort(t.begin(), t.end());
+    sort(t.begin(), t.end());
     return t;
 }
 
@@ -160,7 +161,7 @@ EdgeTrace trace_of(const CurveGeometry<3>& curve, Interval on) {
     EdgeTrace out{&curve, on, {}, {}, 0};
     std::vector<double> cuts{on.lo, on.hi};
     for (const double b : breaks_inside(curve, on, false)) cuts.push_back(b);
-    std::sort(cuts.begin(), cuts.end());
+    sort(cuts.begin(), cuts.end());
     const int spans = int(cuts.size()) - 1;
     const int each =
         std::clamp(std::max(kFewestPlaces / spans, kPlacesPerSpan), 1, std::max(kMostPlaces / spans, 1));
@@ -281,7 +282,7 @@ Places places_of(const CurveGeometry<2>& on_surface, const EdgeTrace& stays, con
     for (std::size_t k = 1; k + 1 < map.nodes.size(); ++k)
         if (const auto& n = map.nodes[k]; std::abs(n.before - n.after) > 0x1p-20 * std::abs(n.after))
             out.kinks.push_back(n.t);
-    std::sort(out.t.begin(), out.t.end());
+    sort(out.t.begin(), out.t.end());
     out.t.erase(
         std::unique(out.t.begin(), out.t.end(), [&](double a, double b) { return b - a <= out.same; }),
         out.t.end());

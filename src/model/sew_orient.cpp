@@ -7,6 +7,8 @@
 // face over and spoils nothing else.
 #include "sew_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,7 +117,7 @@ void orient(Model& model, std::span<const SewnEdge> joined, std::vector<int>& fl
                 if (side[std::size_t(f)] == turn) flipped.push_back(f);
         }
     for (auto* list : {&flipped, &twisted}) {
-        std::sort(list->begin(), list->end());
+        sort(list->begin(), list->end());
         list->erase(std::unique(list->begin(), list->end()), list->end());
     }
     for (const int f : flipped) model.faces[std::size_t(f)].reversed = !model.faces[std::size_t(f)].reversed;

@@ -2,6 +2,7 @@
 #include "sewer_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,7 @@ std::vector<double> Sewer::cuts_along(const EdgeTrace& trace, const PointTree& t
         const auto found = tree.in(box);
         near.insert(near.end(), found.begin(), found.end());
     }
-    std::sort(near.begin(), near.end());
+    sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
     std::vector<EdgeFoot> feet;
     for (const int v : near) {
@@ -71,7 +72,7 @@ std::vector<double> Sewer::cuts_along(const EdgeTrace& trace, const PointTree& t
         if (foot.distance <= tolerance_ && room > std::max(kExtents * foot.distance, 0x1p-40 * trace.extent))
             feet.push_back(foot);
     }
-    std::sort(feet.begin(), feet.end(), [](const EdgeFoot& x, const EdgeFoot& y) { return x.t < y.t; });
+    sort(feet.begin(), feet.end(), [](const EdgeFoot& x, const EdgeFoot& y) { return x.t < y.t; });
     std::vector<EdgeFoot> apart;
     for (const EdgeFoot& f : feet)
         if (apart.empty() ||
@@ -96,7 +97,7 @@ std::vector<Part> Sewer::parts(bool cut) const {
     std::vector<int> ends;
     for (const Part& p : whole)
         if (!is_group(p.edge)) ends.insert(ends.end(), p.ends.begin(), p.ends.end());
-    std::sort(ends.begin(), ends.end());
+    sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     std::vector<Vec<3>> at;
     for (const int v : ends) at.push_back(m_.vertices[std::size_t(v)].point);

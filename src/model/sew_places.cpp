@@ -6,6 +6,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +75,7 @@ std::vector<int> PointTree::in(const Box<3>& box) const {
         if (box.lo[axis] <= p[axis]) todo.push_back({begin, middle});
         if (p[axis] <= box.hi[axis]) todo.push_back({middle + 1, end});
     }
-    std::sort(found.begin(), found.end());
+    sort(found.begin(), found.end());
     return found;
 }
 

@@ -16,6 +16,7 @@
 // Why not always: the numbers of other loops are exact, and without a tolerance nothing says how near is
 // enough.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/make/revolve.hpp>
@@ -189,7 +190,7 @@ std::vector<double> steps_of(const CurveGeometry<2>& curve, Interval on, const s
                     if (on.lo < b && b < on.hi) t.push_back(b);
         },
         curve);
-    std::sort(t.begin(), t.end());
+    sort(t.begin(), t.end());
     std::vector<double> joints;
     for (int axis = 0; axis < 2; ++axis)
         for (int k = 1; k < map[std::size_t(axis)].arcs; ++k) {
@@ -208,7 +209,7 @@ std::vector<double> steps_of(const CurveGeometry<2>& curve, Interval on, const s
                 }
         }
     t.insert(t.end(), joints.begin(), joints.end());
-    std::sort(t.begin(), t.end());
+    sort(t.begin(), t.end());
     const double same = 0x1p-30 * on.length();
     std::erase_if(t, [&, last = -kInfinity](double x) mutable {
         const bool again = x - last <= same && x < on.hi;

@@ -1,6 +1,7 @@
 // Why a twentieth of the area and not the extremes: curvatures grow without limit towards a degenerate
 // corner, and one such corner would leave a single colour for all the rest.
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/model/surface_field.hpp>
 #include <freiform/query/surface_curvature.hpp>
 
@@ -97,7 +98,7 @@ Interval usual_range(const TriangleMesh& mesh, std::span<const double> values) {
         area += size;
     }
     if (parts.empty()) return {1, 0};
-    std::ranges::sort(parts);
+    sort(parts);
     const auto bound = [&](auto begin, auto end) {
         double left = kLeftOut * area;
         for (; begin + 1 != end && (left -= begin->second) > 0;) ++begin;

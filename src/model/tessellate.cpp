@@ -11,6 +11,7 @@
 #include "tessellator_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
 
@@ -104,9 +105,8 @@ Result<void> Tessellator::fill(std::span<const std::size_t> which) {
     std::vector<std::optional<Refusal>> limits(which.size());
     // The largest first, so that none is left over at the end.
     std::vector<std::size_t> order(which.begin(), which.end());
-    std::sort(order.begin(), order.end(), [&](std::size_t f, std::size_t g) {
-        return std::pair(sizes_[g], f) < std::pair(sizes_[f], g);
-    });
+    sort(order.begin(), order.end(),
+         [&](std::size_t f, std::size_t g) { return std::pair(sizes_[g], f) < std::pair(sizes_[f], g); });
     std::atomic<std::size_t> next{0};
     parallel_for(order.size(), 1, [&](std::size_t) {
         const std::size_t i = next++, f = order[i];
@@ -204,7 +204,7 @@ std::vector<std::size_t> Tessellator::faces_to_mend() {
             if (u >= 0 && look_across(f, u, v)) again.insert(f);
         }
     }
-    std::sort(sides.begin(), sides.end());
+    sort(sides.begin(), sides.end());
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t j = i;
         while (j < sides.size() && sides[j].a == sides[i].a && sides[j].b == sides[i].b) ++j;

@@ -25,6 +25,7 @@
 #include "path/flatten_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/path/forward_differences.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -294,7 +295,7 @@ Result<Polyline<Space<P>::kDim>> flatten_halving(const Chain<P>& chain, const Fl
         }
         std::vector<Part<P>> parts;
         for (; !queue.empty(); queue.pop()) parts.push_back(queue.top());
-        std::ranges::sort(parts, [](const Part<P>& a, const Part<P>& b) {
+        sort(parts, [](const Part<P>& a, const Part<P>& b) {
             return a.piece != b.piece ? a.piece < b.piece : a.x0 < b.x0;
         });
         for (const Part<P>& part : parts) {

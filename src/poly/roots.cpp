@@ -43,6 +43,7 @@
 #include "poly/roots_search_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -140,7 +141,7 @@ public:
             out.deepest = Arithmetic::exact;
             const auto more = exact_roots(integers().coefficients(), undecided, width_);
             out.roots.insert(out.roots.end(), more.begin(), more.end());
-            std::sort(out.roots.begin(), out.roots.end(), [](const Root& a, const Root& b) {
+            sort(out.roots.begin(), out.roots.end(), [](const Root& a, const Root& b) {
                 return a.at.lo < b.at.lo || (a.at.lo == b.at.lo && a.at.hi < b.at.hi);
             });
         }

@@ -21,6 +21,7 @@
 // widened by an error that it states only for its own input.
 #include "query/piece_side_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/query/checks.hpp>
 #include <freiform/query/hull_search.hpp>
 #include <freiform/query/nearest.hpp>
@@ -49,7 +50,7 @@ PointHull<3>::PointHull(std::span<const Vec<3>> points) {
                 corners.insert(corners.end(), hull->begin(), hull->end());
         }
     }
-    std::ranges::sort(corners);
+    sort(corners);
     const auto again = std::ranges::unique(corners);
     corners.erase(again.begin(), again.end());
 }

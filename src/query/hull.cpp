@@ -3,6 +3,7 @@
 // Method. Points sorted by x, then y; lower and upper chain each keep only left turns [Andrew 1979]. The turn
 // is decided by orient2d, so the result is the hull of the given doubles.
 // Cost. n log n for sorting, at most 2 n turns.
+#include <freiform/core/sort.hpp>
 #include <freiform/poly/predicates.hpp>
 #include <freiform/query/hull.hpp>
 
@@ -19,7 +20,7 @@ Result<std::vector<int>> convex_hull(std::span<const Vec<2>> points) {
     std::vector<int> order(points.size());
     std::iota(order.begin(), order.end(), 0);
     const auto at = [&](int i) -> const Vec<2>& { return points[std::size_t(i)]; };
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
+    sort(order.begin(), order.end(), [&](int a, int b) {
         return at(a)[0] != at(b)[0]   ? at(a)[0] < at(b)[0]
                : at(a)[1] != at(b)[1] ? at(a)[1] < at(b)[1]
                                       : a < b;

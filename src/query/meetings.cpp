@@ -2,6 +2,7 @@
 //
 // Method: ends sorted by their first coordinate; each is compared with those that follow within `gap`. Cost:
 // O(n log n) and the pairs so near; a drawing whose ends all have one first coordinate costs O(n^2).
+#include <freiform/core/sort.hpp>
 #include <freiform/query/continuity.hpp>
 
 #include <algorithm>
@@ -58,7 +59,7 @@ Result<std::vector<Meeting>> meetings(std::span<const CurveEnds> curves, double 
                     return refuse(RefusalKind::nonfinite, text("curves[", i, "]"), "an end is not finite");
         }
     }
-    std::sort(places.begin(), places.end(), [](const EndPlace& a, const EndPlace& b) {
+    sort(places.begin(), places.end(), [](const EndPlace& a, const EndPlace& b) {
         return std::tuple(a.point[0], a.curve, a.end) < std::tuple(b.point[0], b.curve, b.end);
     });
     std::vector<Meeting> all;
@@ -73,8 +74,8 @@ Result<std::vector<Meeting>> meetings(std::span<const CurveEnds> curves, double 
                               text("more than ", most, " pairs of ends are at most ", gap, " apart"));
             all.push_back(meeting(places[i], places[j], d));
         }
-    std::sort(all.begin(), all.end(),
-              [](const Meeting& a, const Meeting& b) { return order_of(a) < order_of(b); });
+    sort(all.begin(), all.end(),
+         [](const Meeting& a, const Meeting& b) { return order_of(a) < order_of(b); });
     return all;
 }
 

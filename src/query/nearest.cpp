@@ -3,6 +3,7 @@
 
 #include <freiform/basis/named.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/query/checks.hpp>
 #include <freiform/query/nearest.hpp>
 #include <freiform/spline/bezier.hpp>
@@ -173,8 +174,8 @@ Result<NearRegions<D>> NearestQuery::within(const Vec<D>& point, double radius, 
                                        f.point_error,
                                        region.stretch});
             }
-            std::ranges::sort(out.regions, {},
-                              [](const NearRegion<D>& r) { return std::tuple(r.distance, r.object, r.at); });
+            sort(out.regions, {},
+                 [](const NearRegion<D>& r) { return std::tuple(r.distance, r.object, r.at); });
         });
     if (!done) return std::unexpected(done.error());
     return all;

@@ -16,6 +16,8 @@
 // number of cells that its boundary meets.
 #include "query/nearest_blocks_detail.hpp"
 
+#include <freiform/core/sort.hpp>
+
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -225,7 +227,7 @@ struct NearestExtent : NearestBlocks<D> {
 };
 
 std::vector<NearestCell> regions_of(std::vector<NearestCell> cells) {
-    std::ranges::sort(cells, {}, [](const NearestCell& c) {
+    sort(cells, {}, [](const NearestCell& c) {
         return std::tuple(c.object, c.box[0].lo, c.box[1].lo, c.box[2].lo, c.piece);
     });
     std::vector<std::size_t> root(cells.size());

@@ -18,6 +18,7 @@
 // Why not principal axes? They depend on how the points are spread, and are wrong for a cube.
 #include "query/piece_side_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/query/checks.hpp>
 #include <freiform/query/oriented_box.hpp>
 
@@ -134,7 +135,7 @@ std::array<Vec<3>, 3> box_axes<3>(const ConvexHull<3>& hull) {
         const Vec<3> n = cross(hull.points[std::size_t(f[1])] - a, hull.points[std::size_t(f[2])] - a);
         if (norm(n) > 0) normals.push_back({norm(n), unit(n)});
     }
-    std::ranges::sort(normals, {}, [](const Normal& n) { return -n.area; });
+    sort(normals, {}, [](const Normal& n) { return -n.area; });
     if (normals.size() > kMostFacets) normals.resize(kMostFacets);
     for (int k = 0; k < 3; ++k) {
         Vec<3> axis{};

@@ -44,6 +44,7 @@
 #include "self_contact_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/query/self_intersection.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -92,7 +93,7 @@ public:
                 look_at_two(pair, looked_at < max_pairs_);
         }
         unite_open();
-        std::sort(found_.begin(), found_.end(), [](const Meeting& x, const Meeting& y) {
+        sort(found_.begin(), found_.end(), [](const Meeting& x, const Meeting& y) {
             return x.first.lo != y.first.lo ? x.first.lo < y.first.lo : x.second.lo < y.second.lo;
         });
         return std::move(found_);
@@ -109,8 +110,7 @@ private:
         std::vector<int> order;
         order.resize(std::size_t(pieces_.count()));
         std::iota(order.begin(), order.end(), 0);
-        std::sort(order.begin(), order.end(),
-                  [&](int i, int j) { return arc(i).box.lo[0] < arc(j).box.lo[0]; });
+        sort(order.begin(), order.end(), [&](int i, int j) { return arc(i).box.lo[0] < arc(j).box.lo[0]; });
         double error = 0;
         for (int i = 0; i < pieces_.count(); ++i) error = std::max(error, 2.02 * arc(i).error);
         std::vector<Pair> pairs;
@@ -124,7 +124,7 @@ private:
             }
             if (pairs.size() > most) return false;
         }
-        std::sort(pairs.begin(), pairs.end());
+        sort(pairs.begin(), pairs.end());
         queue_.assign(pairs.begin(), pairs.end());
         return true;
     }
@@ -251,7 +251,7 @@ private:
 
     // Pairs that were given up: those that touch are one answer.
     void unite_open() {
-        std::sort(open_.begin(), open_.end(), [](const Meeting& x, const Meeting& y) {
+        sort(open_.begin(), open_.end(), [](const Meeting& x, const Meeting& y) {
             return x.first.lo != y.first.lo ? x.first.lo < y.first.lo : x.second.lo < y.second.lo;
         });
         std::vector<Meeting> united;

@@ -37,6 +37,7 @@
 #include "piecewise_detail.hpp"
 #include "surface_strip_detail.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/query/surface_continuity.hpp>
 
 #include <algorithm>
@@ -204,7 +205,7 @@ void add_aside(std::vector<Interval>& all, const std::vector<Interval>& more) {
         if (x.lo > x.hi) std::swap(x.lo, x.hi);
         all.push_back(x);
     }
-    std::ranges::sort(all, {}, &Interval::lo);
+    sort(all, {}, &Interval::lo);
     std::vector<Interval> merged;
     for (const Interval& x : all)
         if (!merged.empty() && x.lo <= merged.back().hi)

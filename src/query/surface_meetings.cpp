@@ -16,6 +16,7 @@
 // Why not intersect the edges? Curves that have a part in common meet in every point of it, none of which is
 // a crossing.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/query/surface_continuity.hpp>
 #include <freiform/spline/bezier.hpp>
 
@@ -244,7 +245,7 @@ Result<std::vector<SurfaceMeeting>> meetings(std::span<const SurfaceEdges> surfa
         for (std::size_t e = 0; e < 4; ++e)
             if (const SurfaceSide& side = surfaces[i][e]; !side.pieces.empty() && side.length > gap)
                 edges.push_back(edge_of(side, i, e));
-    std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
+    sort(edges, [](const Edge& a, const Edge& b) {
         return std::tuple(a.lo[0], a.surface, a.index) < std::tuple(b.lo[0], b.surface, b.index);
     });
     std::vector<SurfaceMeeting> all;
@@ -261,7 +262,7 @@ Result<std::vector<SurfaceMeeting>> meetings(std::span<const SurfaceEdges> surfa
                               text("more than ", most, " pairs of edges are at most ", gap, " apart"));
             all.push_back(*std::move(m));
         }
-    std::ranges::sort(all, {}, key);
+    sort(all, {}, key);
     return all;
 }
 

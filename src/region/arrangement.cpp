@@ -19,6 +19,7 @@
 #include "arrangement_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <cmath>
 #include <tuple>
@@ -96,7 +97,7 @@ public:
 private:
     void unite_cuts(std::size_t i, Meetings& m) {
         std::vector<Cut>& cuts = m.cuts[i];
-        std::ranges::sort(cuts, {}, [](const Cut& c) { return std::pair(c.at.lo, c.at.hi); });
+        sort(cuts, {}, [](const Cut& c) { return std::pair(c.at.lo, c.at.hi); });
         std::vector<Cut> united;
         for (const Cut& c : cuts) {
             if (!united.empty()) {
@@ -237,7 +238,7 @@ private:
                 between.push_back(
                     {std::size_t(std::min(x.from, x.to)), std::size_t(std::max(x.from, x.to)), e});
         }
-        std::ranges::sort(between);
+        sort(between);
         const double most = std::max(near_.accuracy, kTwin * out_.scale);
         for (std::size_t i = 0; i < between.size(); ++i)
             for (std::size_t k = i + 1;

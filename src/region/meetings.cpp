@@ -28,6 +28,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/double_double.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/intersect/curve_curve.hpp>
 #include <freiform/poly/exact.hpp>
 
@@ -210,7 +211,7 @@ private:
         if (!tree_.each_pair(look, step))
             return refuse(RefusalKind::limit, "max_pairs",
                           text("more than ", max_pairs_, " pairs of segments may meet"));
-        std::ranges::sort(out.plain), std::ranges::sort(out.rational);
+        sort(out.plain), sort(out.rational);
         return out;
     }
     void consider(const Pair& pair, Pairs& out) {

@@ -22,6 +22,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <cmath>
 #include <optional>
@@ -103,7 +104,7 @@ private:
             const Vec<2> middle = on_edge(e, 0.5);
             order.push_back({-std::max(norm(middle - on_edge(e, 0)), norm(middle - on_edge(e, 1))), l});
         }
-        std::sort(order.begin(), order.end(), [](const auto& x, const auto& y) {
+        sort(order.begin(), order.end(), [](const auto& x, const auto& y) {
             return std::pair(x.first, x.second.edge) < std::pair(y.first, y.second.edge);
         });
         for (std::size_t k = 0; k < std::min<std::size_t>(order.size(), 8); ++k) {

@@ -25,6 +25,7 @@
 #include "arcs_join_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/region/stroke.hpp>
 
 #include <algorithm>
@@ -165,7 +166,7 @@ private:
         std::vector<std::pair<double, Vec<2>>> at{{h_, p + h_ * n}, {0.0, p}, {-h_, p - h_ * n}};
         for (const auto& c : centres)
             if (c) at.push_back({std::clamp(freiform::dot(*c - p, n), -h_, h_), *c});
-        std::sort(at.begin(), at.end(), [](const auto& x, const auto& y) {
+        sort(at.begin(), at.end(), [](const auto& x, const auto& y) {
             return std::pair(-x.first, x.second.c) < std::pair(-y.first, y.second.c);
         });
         Frame f;

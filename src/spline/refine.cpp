@@ -33,6 +33,7 @@
 #include "refine_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/spline/refine.hpp>
 
 #include <algorithm>
@@ -274,7 +275,7 @@ std::vector<double> ranked_knots(const Slab& s, double reach) {
         const double cost = removal_cost(s, breaks[i], m, reach);
         if (std::isfinite(cost)) ranked.emplace_back(cost, stored);
     }
-    std::sort(ranked.begin(), ranked.end());
+    sort(ranked.begin(), ranked.end());
     std::vector<double> knots;
     for (const auto& [cost, knot] : ranked) knots.push_back(knot);
     return knots;
@@ -289,7 +290,7 @@ Result<Thinner> fewer_knots(Slab given, double tolerance) {
         bool success = false;
         for (std::size_t count = ranked.size(); count > 0 && !success; count /= 2) {
             std::vector<double> gone(ranked.begin(), ranked.begin() + std::ptrdiff_t(count));
-            std::sort(gone.begin(), gone.end());
+            sort(gone.begin(), gone.end());
             if (auto next = attempt(given, best.slab, gone); next && next->bound <= tolerance) {
                 best = std::move(*next);
                 success = true;

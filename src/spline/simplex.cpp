@@ -23,6 +23,7 @@
 //
 // Why not the form of Horner: it is O(n^2) a point instead of O(n^3), but loses the bound near corners.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/spline/simplex.hpp>
 #include <freiform/spline/simplex_convert.hpp>
 
@@ -202,7 +203,7 @@ template <class P>
 SimplexPatch<2, P> over(const SimplexPatch<2, P>& s, const std::array<Barycentric, 3>& corner) {
     const int n = s.degree();
     std::array<std::size_t, 3> order{0, 1, 2};
-    std::sort(order.begin(), order.end(), [&](auto x, auto y) { return corner[x] < corner[y]; });
+    sort(order.begin(), order.end(), [&](auto x, auto y) { return corner[x] < corner[y]; });
     std::vector<P> out(s.coefficients().size());
     Scratch<P> first, second, third;
     first = s.coefficients();

@@ -23,6 +23,7 @@
 #include "spline/simplex_bounded_detail.hpp"
 
 #include <freiform/basis/bspline.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/spline/simplex_convert.hpp>
 
 #include <algorithm>
@@ -105,7 +106,7 @@ Flat over_quadrilateral(const Flat& b, int coords, int n, const std::array<Place
     if (n == 0) return b;
     std::array<std::size_t, 4> order{0, 1, 2, 3};
     const auto key = [&](std::size_t x) { return std::array{d[x][0].value, d[x][1].value, d[x][2].value}; };
-    std::sort(order.begin(), order.end(), [&](auto x, auto y) { return key(x) < key(y); });
+    sort(order.begin(), order.end(), [&](auto x, auto y) { return key(x) < key(y); });
     std::array<int, 4> times{};
     Flat first = b;
     for (int a0 = 0; a0 <= n; ++a0) {

@@ -22,6 +22,7 @@
 
 #include <freiform/core/bounded.hpp>
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -212,7 +213,7 @@ struct Group {
 
 // In cyclic order; the last may reach over the end of the loop.
 std::vector<Group> groups_of(std::vector<Group> all, const Interval& whole) {
-    std::sort(all.begin(), all.end(), [](const Group& a, const Group& b) { return a.on.lo < b.on.lo; });
+    sort(all.begin(), all.end(), [](const Group& a, const Group& b) { return a.on.lo < b.on.lo; });
     std::vector<Group> out;
     const auto unite = [](Group& a, const Group& b) {
         a.contacts.insert(a.contacts.end(), b.contacts.begin(), b.contacts.end());

@@ -24,6 +24,7 @@
 #include "trim/loop_links_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 #include <freiform/query/crossings.hpp>
 #include <freiform/trim/loops.hpp>
 
@@ -68,7 +69,7 @@ Result<std::vector<Wound>> points_inside(const Links& all, const Loop& loop, std
             if (!hits) return std::unexpected(hits.error());
             for (const auto& hit : *hits) x.push_back(hit.point[0]);
         }
-        std::sort(x.begin(), x.end());
+        sort(x.begin(), x.end());
         for (std::size_t i = 1; i < x.size(); ++i) {
             const Vec<2> q = all.given({{x[i - 1] + (x[i] - x[i - 1]) / 2, y}});
             if (const Inside in = query->at(q); in.winding != 0) found.push_back({q, in.winding});

@@ -215,7 +215,7 @@ TEST(GltfAnimation, refuses_what_contradicts_itself) {
     test::expect_refusal(read_gltf_animations("glTF"), RefusalKind::unreadable, "");
     test::expect_refusal(
         read_gltf_animations(std::string("glTF\2\0\0\0\xff\xff\xff\xff\xff\xff\xff\xffJSON", 20)),
-        RefusalKind::unreadable, "");
+        RefusalKind::unreadable, "byte 8");
     EXPECT_TRUE(read_gltf_animations(R"({"asset": {"version": "2.0"}})")->empty());
 }
 

@@ -2,6 +2,7 @@
 #include "gallery/gallery.hpp"
 #include "gallery/space.hpp"
 
+#include <freiform/core/sort.hpp>
 #include <freiform/trim/inside.hpp>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ Points crossings_right_of(const Vec<2>& p, const TrimmedSurface& s) {
             if (x > p[0]) out.push_back({{x, p[1]}});
         }
     }
-    std::ranges::sort(out, {}, [](const Vec<2>& q) { return q[0]; });
+    sort(out, {}, [](const Vec<2>& q) { return q[0]; });
     return out;
 }
 

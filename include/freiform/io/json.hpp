@@ -14,7 +14,7 @@ namespace freiform::json {
 enum class Kind : unsigned char { null, boolean, number, string, array, object };
 std::string_view name_of(Kind kind);  // with its article: "a number", "an array"
 
-// How deep arrays and objects may lie within each other.
+// How deep arrays and objects may lie within each other in documents.
 inline constexpr int kMaxDepth = 64;
 
 struct Node {
@@ -73,9 +73,9 @@ private:
 };
 
 // Refuses, with line and column, what is not JSON in UTF-8, a key that appears twice in an object, and what
-// is deeper than kMaxDepth. Memory: at most 24 bytes per byte of text. Texts of 4 GiB and more are refused
-// (kind limit).
-Result<Tree> parse(std::string_view text);
+// is deeper than max_depth (the parser itself does not mind). Memory: at most 24 bytes per byte of text.
+// Texts of 4 GiB and more are refused (kind limit).
+Result<Tree> parse(std::string_view text, std::size_t max_depth = kMaxDepth);
 
 // "line 3, column 7" of the character at `offset`; columns count characters, from 1.
 std::string position(std::string_view text, std::size_t offset);

@@ -7,6 +7,7 @@
 // is a convex function, so over A it is largest at a corner of A; the parts that own corners which are too
 // far away are halved until there are none.
 #pragma once
+#include <freiform/core/sort.hpp>
 #include <freiform/query/hull.hpp>
 #include <freiform/query/pair_search.hpp>
 
@@ -59,7 +60,7 @@ ConvexHull<D> hull_of_parts(Side& side, double tolerance, double slip, int max_p
             farthest = std::max(farthest, apart);
             if (apart > tolerance) open.push_back(i);
         }
-        std::ranges::sort(open);
+        sort(open);
         bool any = false;
         std::vector<int> next;
         for (const int i : leaves) {

@@ -1,13 +1,11 @@
-// Matrices of glTF, and the place where a text stops being JSON.
+// Matrices of glTF nodes.
 #pragma once
 #include <freiform/core/vec.hpp>
 
 #include <array>
-#include <nlohmann/json.hpp>
 
 namespace freiform {
 
-using Json = nlohmann::json;
 using NodeMatrix = std::array<double, 16>;  // by columns
 
 inline constexpr NodeMatrix kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -37,26 +35,5 @@ inline Vec<3> turned(const NodeMatrix& m, const Vec<3>& n) {
 inline double determinant(const NodeMatrix& m) {
     return dot(Vec<3>{{m[0], m[1], m[2]}}, cross(Vec<3>{{m[4], m[5], m[6]}}, Vec<3>{{m[8], m[9], m[10]}}));
 }
-
-// Says where a text stops being JSON; the parser itself only says that it does.
-struct Locator : nlohmann::json_sax<Json> {
-    std::size_t byte = 0;
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
-    bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override { return true; }
-    bool key(string_t&) override { return true; }
-    bool end_object() override { return true; }
-    bool start_array(std::size_t) override { return true; }
-    bool end_array() override { return true; }
-    bool parse_error(std::size_t at, const std::string&, const nlohmann::detail::exception&) override {
-        byte = at;
-        return false;
-    }
-};
 
 }  // namespace freiform
