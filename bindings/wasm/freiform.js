@@ -74,6 +74,7 @@ class Instance {
       },
       digits: (x, at, room) =>
         utf8.encodeInto(x.toExponential(), new Uint8Array(this.exports.memory.buffer, at, room)).written,
+      number: (at, size) => Number(this.string(at, size)),
       progress: (part) => (this.progress && this.progress(part) === false ? 0 : 1),
     } };
     for (const { module: from, name } of WebAssembly.Module.imports(module))

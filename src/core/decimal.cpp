@@ -54,10 +54,13 @@ Literal literal_of(std::string_view s) {
 }
 
 #ifdef __wasm__
-// With their tables the functions of the C++ library take as much to load as twenty commands; pages have
-// them.
-__attribute__((import_module("freiform"), import_name("digits"))) extern "C" std::size_t ff_page_digits(
-    double x, char* to, std::size_t room);
+// What pages have themselves: in the libraries of C and C++ it takes as much to load as twenty commands.
+#define FF_IMPORT(name) __attribute__((import_module("freiform"), import_name(name)))
+// x.toExponential() as ASCII; its length.
+FF_IMPORT("digits") extern "C" std::size_t ff_page_digits(double x, char* to, std::size_t room);
+// Number(text).
+FF_IMPORT("number") extern "C" double ff_page_number(const char* text, std::size_t size);
+#undef FF_IMPORT
 
 std::size_t digits_of(double x, char* to, std::size_t room) { return ff_page_digits(x, to, room); }
 #else
@@ -139,7 +142,7 @@ ScannedReal scan_real(std::string_view s) {
     // once.
     constexpr double kExact = 22;
     if (l.cut || l.digits > std::uint64_t(1) << 53 || std::abs(l.power) > kExact)
-        return {std::strtod(std::string(s.substr(0, l.length)).c_str(), nullptr), l.length};
+        return {ff_page_number(s.data(), l.length), l.length};
     double ten = 1;
     for (double i = std::abs(l.power); i > 0; --i) ten *= 10;
     const double x = l.power < 0 ? double(l.digits) / ten : double(l.digits) * ten;

@@ -2,8 +2,10 @@
 
 #include <freiform/spline/prepared.hpp>
 
+#include <cstdarg>
 #include <cstdlib>
 #include <new>
+#include <unistd.h>
 
 namespace freiform::wasm {
 
@@ -31,6 +33,37 @@ void refuse_to_page(std::string_view kind, std::string_view where, std::string_v
 bool progress(double part) { return ff_page_progress(part) != 0; }
 
 }  // namespace freiform::wasm
+
+// The last words of the C++ library, without printf, which nothing else asks for.
+namespace {
+
+[[noreturn]] void end_with_words(std::string_view format, va_list words) {
+    std::string said;
+    for (std::size_t i = 0; i < format.size(); ++i) {
+        const bool is_word = format.substr(i, 2) == "%s";
+        if (is_word)
+            said += va_arg(words, const char*), ++i;
+        else
+            said += format[i];
+    }
+    ::write(STDERR_FILENO, said.data(), said.size());
+    std::abort();
+}
+
+}  // namespace
+
+_LIBCPP_BEGIN_NAMESPACE_STD
+void __libcpp_verbose_abort(const char* format, ...) noexcept {
+    va_list words;
+    va_start(words, format);
+    end_with_words(format, words);
+}
+_LIBCPP_END_NAMESPACE_STD
+extern "C" void __abort_message(const char* format, ...) {
+    va_list words;
+    va_start(words, format);
+    end_with_words(format, words);
+}
 
 using freiform::wasm::reply;
 

@@ -44,6 +44,7 @@ export async function run(module, words = []) {
   };
   const imports = { wasi_snapshot_preview1: {}, freiform: {
     digits: (x, at, room) => utf8.encodeInto(x.toExponential(), new Uint8Array(memory.buffer, at, room)).written,
+    number: (at, size) => Number(text.decode(new Uint8Array(memory.buffer, at, size))),
   } };
   for (const { module: from, name } of WebAssembly.Module.imports(module))
     if (from === 'wasi_snapshot_preview1') imports.wasi_snapshot_preview1[name] = wasi[name] ?? (() => kNoSuchFunction);
