@@ -13,8 +13,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// What a text says, as long as it is that of a number: its first digits, and the power of ten of the last
-// one.
+// What a text says as long as it is that of a number: its first digits, and the power of ten of the last one.
 struct Literal {
     std::uint64_t digits = 0;  // at most 19; of the others only the power is kept
     double power = 0;
@@ -138,8 +137,7 @@ std::string rounded_text(double x, int digits) {
 ScannedReal scan_real(std::string_view s) {
     const Literal l = literal_of(s);
     if (l.length == 0) return {};
-    // [Clinger 1990: How to read floating point numbers accurately] where both are doubles, it is rounded
-    // once.
+    // Where digits and power of ten are doubles, one operation rounds once [Clinger 1990].
     constexpr double kExact = 22;
     if (l.cut || l.digits > std::uint64_t(1) << 53 || std::abs(l.power) > kExact)
         return {ff_page_number(s.data(), l.length), l.length};

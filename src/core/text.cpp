@@ -15,12 +15,12 @@ std::string text_of(const Decimal& d, double x) {
     std::string plain = fixed_text(d), with_power = scientific_text(d);
     if (plain.size() > with_power.size()) return with_power;
     if (d.exponent <= d.size) return plain;
-    std::string whole = d.negative ? "-" : "";
+    const std::string_view sign = d.negative ? "-" : "";
     const double size = std::abs(x),
                  last = std::fmod(size, 1e11);  // 11 digits; those before them are exact, too
-    if (size < 9e18) return whole + std::to_string(std::llround(size));
-    whole += std::to_string(std::llround((size - last) / 1e11));
-    return whole + std::to_string(100'000'000'000 + std::llround(last)).substr(1);
+    if (size < 9e18) return text(sign, std::llround(size));
+    return text(sign, std::llround((size - last) / 1e11),
+                text(100'000'000'000 + std::llround(last)).substr(1));
 }
 
 std::string text_of(double x) {
@@ -39,13 +39,17 @@ std::string text_of(float x) {
 }
 
 void append_number(std::string& s, std::floating_point auto x) { s += text_of(x); }
-void append_number(std::string& s, std::integral auto x) { s += std::to_string(x); }
 #else
-void append_number(std::string& s, auto x) {
+void append_number(std::string& s, std::floating_point auto x) {
     char buffer[40];
     s.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
 }
 #endif
+
+void append_number(std::string& s, std::integral auto x) {
+    char buffer[24];
+    s.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
+}
 
 }  // namespace
 

@@ -55,8 +55,8 @@ TEST(SmallSort, asks_for_n_log_n_comparisons) {
         }
 }
 
-// The adversary of quicksort: it decides how large elements are only when they are compared, so that the
-// pivot is always small [McIlroy 1999: A killer adversary for quicksort].
+// It decides how large elements are only when they are compared, so that the pivot is always small
+// [McIlroy 1999].
 TEST(SmallSort, an_adversary_gains_nothing) {
     constexpr int n = 4000;
     std::vector<int> value(n, n), x(n);

@@ -24,9 +24,9 @@ void sift_down(I heap, std::ptrdiff_t i, std::ptrdiff_t n, const Less& less) {
     }
 }
 
-// Quicksort [Hoare 1962: Quicksort] about the median of three; what is short by insertion, and what does not
-// become short after `depth` steps by a heap [Williams 1964: Algorithm 232, Heapsort]. A fifth of the code of
-// std::sort, of which the web module would have 65 instances.
+// Quicksort [Hoare 1962] about the median of three; what is short by insertion, and what does not become
+// short after `depth` steps by a heap [Williams 1964]. A fifth of the code of std::sort, of which the web
+// module would have 65 instances.
 template <class I, class Less>
 void small_sort(I first, I last, const Less& less, int depth) {
     while (last - first > 16) {
