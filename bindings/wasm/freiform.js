@@ -72,8 +72,11 @@ class Instance {
       refuse: (kind, kindSize, where, whereSize, message, messageSize) => {
         throw new FreiformError(this.string(kind, kindSize), this.string(where, whereSize), this.string(message, messageSize));
       },
-      digits: (x, at, room) =>
-        utf8.encodeInto(x.toExponential(), new Uint8Array(this.exports.memory.buffer, at, room)).written,
+      digits: (x, at) => {
+        const s = x.toExponential(), bytes = this.#bytes();
+        for (let i = 0; i < s.length; ++i) bytes[at + i] = s.charCodeAt(i);
+        return s.length;
+      },
       number: (at, size) => Number(this.string(at, size)),
       progress: (part) => (this.progress && this.progress(part) === false ? 0 : 1),
     } };
@@ -89,7 +92,13 @@ class Instance {
     return this;
   }
 
-  string(at, size) { return text.decode(new Uint8Array(this.exports.memory.buffer, at, size)); }
+  // All memory; its buffer is another one when it has grown.
+  #bytes() {
+    if (this.view?.buffer !== this.exports.memory.buffer) this.view = new Uint8Array(this.exports.memory.buffer);
+    return this.view;
+  }
+
+  string(at, size) { return text.decode(this.#bytes().subarray(at, at + size)); }
 
   // Calls ff_NAME; whatever goes wrong becomes a FreiformError.
   call(name, ...values) {

@@ -55,13 +55,13 @@ Literal literal_of(std::string_view s) {
 #ifdef __wasm__
 // What pages have themselves: in the libraries of C and C++ it takes as much to load as twenty commands.
 #define FF_IMPORT(name) __attribute__((import_module("freiform"), import_name(name)))
-// x.toExponential() as ASCII; its length.
-FF_IMPORT("digits") extern "C" std::size_t ff_page_digits(double x, char* to, std::size_t room);
+// x.toExponential() as ASCII, at most 24 characters; its length.
+FF_IMPORT("digits") extern "C" std::size_t ff_page_digits(double x, char* to);
 // Number(text).
 FF_IMPORT("number") extern "C" double ff_page_number(const char* text, std::size_t size);
 #undef FF_IMPORT
 
-std::size_t digits_of(double x, char* to, std::size_t room) { return ff_page_digits(x, to, room); }
+std::size_t digits_of(double x, char* to, std::size_t) { return ff_page_digits(x, to); }
 #else
 std::size_t digits_of(double x, char* to, std::size_t room) {
     return std::size_t(std::to_chars(to, to + room, x, std::chars_format::scientific).ptr - to);
@@ -103,34 +103,40 @@ Decimal rounded(Decimal d, int digits) {
     return d;
 }
 
-std::string fixed_text(const Decimal& d) {
-    std::string s(d.text());
-    const int behind = d.size - d.exponent;
-    if (d.size == 0)
-        s = "0";
-    else if (d.exponent <= 0)
-        s.insert(0, "0." + std::string(std::size_t(-d.exponent), '0'));
-    else if (behind > 0)
-        s.insert(std::size_t(d.exponent), 1, '.');
+void append_fixed(std::string& s, const Decimal& d) {
+    const std::string_view digits = d.size == 0 ? "0" : d.text();
+    const int before = d.size == 0 ? 1 : d.exponent, n = int(digits.size());
+    if (d.negative) s += '-';
+    if (before <= 0)
+        s.append("0.").append(std::size_t(-before), '0').append(digits);
+    else if (before < n)
+        s.append(digits.substr(0, std::size_t(before)))
+            .append(1, '.')
+            .append(digits.substr(std::size_t(before)));
     else
-        s.append(std::size_t(-behind), '0');
-    return d.negative ? "-" + s : s;
+        s.append(digits).append(std::size_t(before - n), '0');
 }
 
-std::string scientific_text(const Decimal& d) {
-    std::string s(d.size == 0 ? "0" : d.text());
-    if (d.size > 1) s.insert(1, 1, '.');
+void append_scientific(std::string& s, const Decimal& d) {
+    const std::string_view digits = d.size == 0 ? "0" : d.text();
     const int power = d.size == 0 ? 0 : d.exponent - 1;
+    if (d.negative) s += '-';
+    s += digits[0];
+    if (d.size > 1) s.append(1, '.').append(digits.substr(1));
     s += power < 0 ? "e-" : "e+";
     if (std::abs(power) < 10) s += '0';
     append_text(s, std::abs(power));
-    return d.negative ? "-" + s : s;
 }
 
 std::string rounded_text(double x, int digits) {
     if (!std::isfinite(x)) return text(x);
     const Decimal d = rounded(shortest_decimal(x), digits);
-    return d.exponent > digits || d.exponent <= -4 ? scientific_text(d) : fixed_text(d);
+    std::string s;
+    if (d.exponent > digits || d.exponent <= -4)
+        append_scientific(s, d);
+    else
+        append_fixed(s, d);
+    return s;
 }
 
 #ifdef __wasm__

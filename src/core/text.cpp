@@ -1,6 +1,7 @@
 #include <freiform/core/decimal.hpp>
 #include <freiform/core/text.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <concepts>
@@ -11,34 +12,42 @@ namespace {
 #ifdef __wasm__
 // As std::to_chars writes it: without a power of ten where that is not longer, whole numbers to the last
 // digit.
-std::string text_of(const Decimal& d, double x) {
-    std::string plain = fixed_text(d), with_power = scientific_text(d);
-    if (plain.size() > with_power.size()) return with_power;
-    if (d.exponent <= d.size) return plain;
-    const std::string_view sign = d.negative ? "-" : "";
+void append_decimal(std::string& s, const Decimal& d, double x) {
+    const int power = std::abs(d.exponent - 1);
+    const int plain = d.exponent <= 0 ? 2 - d.exponent + d.size
+                                      : std::max(d.exponent, d.size + (d.exponent < d.size)),
+              with_power = d.size + (d.size > 1) + (power < 100 ? 4 : 5);
+    if (d.size > 0 && plain > with_power) return append_scientific(s, d);
+    if (d.exponent <= d.size) return append_fixed(s, d);
     const double size = std::abs(x),
                  last = std::fmod(size, 1e11);  // 11 digits; those before them are exact, too
-    if (size < 9e18) return text(sign, std::llround(size));
-    return text(sign, std::llround((size - last) / 1e11),
-                text(100'000'000'000 + std::llround(last)).substr(1));
+    if (d.negative) s += '-';
+    if (size < 9e18) return append_text(s, std::llround(size));
+    append_text(s, std::llround((size - last) / 1e11));
+    s += text(100'000'000'000 + std::llround(last)).substr(1);
 }
 
-std::string text_of(double x) {
-    if (std::isnan(x)) return std::signbit(x) ? "-nan" : "nan";
-    if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
-    return text_of(shortest_decimal(x), x);
+void append_number(std::string& s, double x) {
+    if (std::isfinite(x))
+        append_decimal(s, shortest_decimal(x), x);
+    else
+        s.append(std::signbit(x) ? "-" : "").append(std::isnan(x) ? "nan" : "inf");
 }
 
-// The fewest digits of its value that read back to it.
-std::string text_of(float x) {
-    if (!std::isfinite(x)) return text_of(double(x));
+// The fewest digits of its value that read back to it: at most nine, mostly eight.
+void append_number(std::string& s, float x) {
+    if (!std::isfinite(x)) return append_number(s, double(x));
     const Decimal all = shortest_decimal(double(x));
-    Decimal d = rounded(all, 1);
-    for (int digits = 2; float(scan_real(scientific_text(d)).value) != x; ++digits) d = rounded(all, digits);
-    return text_of(d, double(x));
+    Decimal d = rounded(all, 9);
+    while (d.size > 1) {
+        const Decimal shorter = rounded(all, d.size - 1);
+        std::string tried;
+        append_scientific(tried, shorter);
+        if (float(scan_real(tried).value) != x) break;
+        d = shorter;
+    }
+    append_decimal(s, d, double(x));
 }
-
-void append_number(std::string& s, std::floating_point auto x) { s += text_of(x); }
 #else
 void append_number(std::string& s, std::floating_point auto x) {
     char buffer[40];

@@ -63,7 +63,7 @@ std::vector<double> ticks(const Interval& on) {
 DrawnText number(double value, const Interval& range) {
     const double most = std::max(std::abs(range.lo), std::abs(range.hi));
     std::string digits = text(std::abs(value));
-    if (most >= 1e-4 && most < 1e6) digits = fixed_text(shortest_decimal(std::abs(value)));
+    if (most >= 1e-4 && most < 1e6) digits.clear(), append_fixed(digits, shortest_decimal(std::abs(value)));
     return plain_text(value < 0 ? text("\u2212", digits) : digits);
 }
 

@@ -16,6 +16,17 @@ namespace {
 constexpr double kLargest = std::numeric_limits<double>::max(),
                  kLeast = std::numeric_limits<double>::denorm_min();
 
+std::string fixed_text(const Decimal& d) {
+    std::string s;
+    append_fixed(s, d);
+    return s;
+}
+std::string scientific_text(const Decimal& d) {
+    std::string s;
+    append_scientific(s, d);
+    return s;
+}
+
 template <class T, class... Format>
 std::string of_standard_library(T x, Format... format) {
     char buffer[400];

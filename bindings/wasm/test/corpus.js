@@ -43,7 +43,7 @@ export async function run(module, words = []) {
     proc_exit: (code) => { throw new Ended(code); },
   };
   const imports = { wasi_snapshot_preview1: {}, freiform: {
-    digits: (x, at, room) => utf8.encodeInto(x.toExponential(), new Uint8Array(memory.buffer, at, room)).written,
+    digits: (x, at) => utf8.encodeInto(x.toExponential(), new Uint8Array(memory.buffer, at)).written,
     number: (at, size) => Number(text.decode(new Uint8Array(memory.buffer, at, size))),
   } };
   for (const { module: from, name } of WebAssembly.Module.imports(module))

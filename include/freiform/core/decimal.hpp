@@ -22,9 +22,9 @@ Decimal shortest_decimal(double x);
 Decimal rounded(Decimal d, int digits);
 
 // Without a power of ten: "0.00012".
-std::string fixed_text(const Decimal& d);
+void append_fixed(std::string& s, const Decimal& d);
 // With one: "1.2e-04".
-std::string scientific_text(const Decimal& d);
+void append_scientific(std::string& s, const Decimal& d);
 
 // To so many significant digits, with a power of ten from 10^digits on and below 0.0001.
 std::string rounded_text(double x, int digits);
