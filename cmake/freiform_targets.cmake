@@ -118,9 +118,10 @@ function(freiform_isa)
         if(file MATCHES "/src/kernel/evaluate_")
             list(APPEND flags -ffp-contract=fast)
         endif()
-        # Modules are compiled for size, but for what evaluates.
+        # Modules are compiled for size (-Oz); what evaluates a little less so. With -O3 scattered points take 3 to 14 % less
+        # time, grids and meshes as much, and the module is 25 kB larger after gzip.
         if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32 AND file MATCHES "/src/(kernel|spline/prepared[a-z_]*\\.cpp)")
-            list(APPEND flags -O3)
+            list(APPEND flags -Os)
         endif()
         if(flags)
             set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}" SKIP_PRECOMPILE_HEADERS ON)

@@ -23,7 +23,7 @@ test('the module is small', () => {
   const all = size('freiform.wasm') + gzipSync(readFileSync(join(root, 'bindings/wasm/freiform.js'))).length;
   const curves = size('freiform-curves.wasm');
   console.log(`gzipped: everything ${all} bytes, curves and surfaces alone ${curves}`);
-  assert(all < 1.43e6 && curves < 2.9e5, `${all} and ${curves}`);
+  assert(all < 1.405e6 && curves < 2.65e5, `${all} and ${curves}`);
 });
 
 test('shapes alone have values and nearest points, and no commands', async () => {
