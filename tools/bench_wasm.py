@@ -25,8 +25,8 @@ console.log(JSON.stringify(speed(await load(readFileSync('%(wasm)s/freiform.wasm
 PAGE = """# The WebAssembly module beside the native kernels
 
 Made by `tools/bench_wasm.py` ({rounds} rounds in alternation); do not edit. A rational bicubic surface of 20 x 20 control points; nanoseconds for
-a point, medians of the rounds; native ones in processor time, the module's the least of 100 repetitions by the clock, after a second of the same work (an engine's first code takes up to eight times as long). `base` are the native kernels for every x86-64, without AVX and without fused products; the module's numbers contain its
-interface and, of the grid, the copy of the answer. Load when it began: {load:.1f} on {cores} processors.
+a point, medians of the rounds; native ones in processor time, the module's the least of 100 repetitions by the clock, after a second of the same work. `base` are the native kernels for every x86-64, without AVX and without fused products; the module's numbers contain its
+interface and the copy of the answer into arrays that are there. Load when it began: {load:.1f} on {cores} processors.
 
 | work | native, base | native, {best} | module in node | to base | module in Chromium | to base |
 |---|---:|---:|---:|---:|---:|---:|

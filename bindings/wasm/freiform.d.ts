@@ -83,8 +83,11 @@ export interface Shape {
   // A bound of |computed - exact| of each coordinate that `evaluate` gives without derivatives.
   readonly valueErrorBound: number;
   // On the tensor grid of the axes, the last axis fastest; of curves, surfaces and volumes. Normals (unit vectors of
-  // Su x Sv, zero where that is zero) and curvatures are for surfaces in space.
-  grid(axes: Numbers[], options?: { normals?: boolean; curvatures?: boolean }): Grid;
+  // Su x Sv, zero where that is zero) and curvatures are for surfaces in space. Points and normals go into the arrays of
+  // `out` (a grid of the same size will do) where it has them: what is asked for each picture need not take new memory.
+  grid(axes: Numbers[], options?: {
+    normals?: boolean; curvatures?: boolean; out?: { points?: Float64Array; normals?: Float64Array };
+  }): Grid;
   // Values (order 0) or derivatives of all basis functions along an axis: at.length * size[axis] numbers, row by row.
   basis(at: Numbers, options?: { axis?: number; order?: number }): Float64Array;
   // All intermediate points of de Casteljau and de Boor at a parameter.

@@ -135,6 +135,12 @@ class Instance {
     }
   }
 
+  // `out`, or a new array, with the numbers at an address.
+  fill(out, at, count) {
+    if (!out) return this.copy(Float64Array, at, count);
+    out.set(new Float64Array(this.exports.memory.buffer, at, count));
+    return out;
+  }
   copy(Type, at, count) { return new Type(this.exports.memory.buffer, at, count).slice(); }
   reply() { return this.string(this.call('text'), this.call('text_size')); }
   replyBytes() { return this.copy(Uint8Array, this.call('text'), this.call('text_size')); }
@@ -144,6 +150,10 @@ class Instance {
 }
 
 const doubles = (a) => (a instanceof Float64Array ? a : Float64Array.from(a));
+function checkRoom(out, count, where) {
+  if (out && out.length !== count)
+    throw new FreiformError('usage', where, `has room for ${out.length} numbers, ${count} were expected`);
+}
 const product = (numbers) => numbers.reduce((a, b) => a * b, 1);
 
 // Partial derivatives of n variables up to order k.
@@ -219,26 +229,25 @@ class Shape {
     if (!Number.isInteger(derivatives) || derivatives < 0)
       throw new FreiformError('usage', 'derivatives', 'an order from 0 was expected');
     const count = u.length / n, size = count * this.dimension * jetSize(n, derivatives);
-    if (out && out.length !== size)
-      throw new FreiformError('usage', 'out', `has room for ${out.length} numbers, ${size} were expected`);
+    checkRoom(out, size, 'out');
     return this.#instance.with([u, size], (from, to) => {
       this.#instance.call('evaluate', this.handle, from, count, derivatives, to);
-      if (!out) return this.#instance.copy(Float64Array, to, size);
-      out.set(new Float64Array(this.#instance.exports.memory.buffer, to, size));
-      return out;
+      return this.#instance.fill(out, to, size);
     });
   }
 
-  grid(axes, { normals = false, curvatures = false } = {}) {
+  grid(axes, { normals = false, curvatures = false, out = {} } = {}) {
     const all = axes.map(doubles), sizes = Uint32Array.from(all, (a) => a.length);
     const flat = new Float64Array(all.reduce((n, a) => n + a.length, 0));
     all.reduce((from, a) => (flat.set(a, from), from + a.length), 0);
     const count = product([...sizes]);
+    checkRoom(out.points, count * this.dimension, 'out.points');
+    checkRoom(out.normals, 3 * count, 'out.normals');
     return this.#instance.with([flat, sizes, count * this.dimension, normals ? 3 * count : null, curvatures ? 2 * count : null],
       (from, of, to, n, c) => {
         this.#instance.call('grid', this.handle, from, of, sizes.length, to, n, c);
-        const grid = { points: this.#instance.copy(Float64Array, to, count * this.dimension) };
-        if (normals) grid.normals = this.#instance.copy(Float64Array, n, 3 * count);
+        const grid = { points: this.#instance.fill(out.points, to, count * this.dimension) };
+        if (normals) grid.normals = this.#instance.fill(out.normals, n, 3 * count);
         if (curvatures) {
           const pairs = this.#instance.copy(Float64Array, c, 2 * count);
           grid.gauss = pairs.filter((_, i) => i % 2 === 0);

@@ -99,6 +99,12 @@ export const tests = {
     check(nearAll(g.normals.slice(6, 9), [0, 0, 1]) && nearAll(g.gauss, Array(6).fill(0)), 'normals');
     check(near(g.mean[2], -0.5), `mean curvature ${g.mean[2]}`);
     check(refusal(() => s.grid([[0, 2], [0]])).kind === 'out_of_domain', 'outside');
+    const moved = s.grid([[0, 0.25, 1], [0, 1]], { normals: true }), points = moved.points, normals = moved.normals;
+    const again = s.grid([[0, 0.5, 1], [0, 1]], { normals: true, out: moved });
+    check(again.points === points && again.normals === normals, 'filled');
+    check(nearAll(points, g.points) && nearAll(normals, g.normals), 'filled again');
+    check(refusal(() => s.grid([[0], [0]], { out: { points } })).where === 'out.points', 'room for points');
+    check(refusal(() => s.grid([[0], [0]], { out: { normals } })).where === 'out.normals', 'room for normals');
     s.free();
   },
 
