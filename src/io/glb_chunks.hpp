@@ -13,7 +13,6 @@ namespace freiform {
 
 struct GlbChunks {
     std::string_view json, binary;
-    std::size_t json_at = 20;  // where it begins in the file
 };
 // Refuses, by "byte N", sizes that contradict each other, and (unsupported) versions other than 2.
 Result<GlbChunks> chunks_of_glb(std::string_view bytes);

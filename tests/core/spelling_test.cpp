@@ -34,6 +34,7 @@ TEST(ScanNumber, takes_all_of_a_finite_number_and_nothing_else) {
     EXPECT_EQ(scan_number<double>("1e-3"), 1e-3);
     EXPECT_EQ(scan_number<double>("+2"), 2.0);
     EXPECT_TRUE(std::signbit(*scan_number<double>("-0")));
+    EXPECT_EQ(scan_number<double>("1e-400"), 0.0);
     EXPECT_EQ(scan_number<int>("-7"), -7);
     for (const char* bad : {"", "+", "+-1", "1x", " 1", "nan", "inf", "1e999", "0x10", "1,5"})
         EXPECT_FALSE(scan_number<double>(bad)) << bad;

@@ -26,6 +26,24 @@ test('the module is small', () => {
   assert(all < 1.405e6 && curves < 2.65e5, `${all} and ${curves}`);
 });
 
+// A list of commands that is longer than any memory: the C++ library ends the module.
+test('the C++ library says why it ends', () => {
+  const module = new WebAssembly.Module(readFileSync(join(modules, 'freiform.wasm'))), imports = {};
+  let memory, said = '';
+  for (const { module: from, name } of WebAssembly.Module.imports(module)) (imports[from] ??= {})[name] = () => 0;
+  imports.wasi_snapshot_preview1.fd_write = (_fd, list, count, written) => {
+    const view = new DataView(memory.buffer), [at, size] = [0, 4].map((k) => view.getUint32(list + k, true));
+    said += Buffer.from(memory.buffer, at, size);
+    view.setUint32(written, size, true);
+    return 0;
+  };
+  const { exports } = new WebAssembly.Instance(module, imports);
+  memory = exports.memory;
+  exports._initialize();
+  assert.throws(() => exports.ff_command(0, -1), WebAssembly.RuntimeError);
+  assert.match(said, /^length_error was thrown .* "basic_string"$/);
+});
+
 test('shapes alone have values and nearest points, and no commands', async () => {
   const small = await load(readFileSync(join(modules, 'freiform-curves.wasm')));
   const names = Object.keys(tests).filter((n) => /curve is evaluated|says what it is|dragging|grid|basis|nearest|memory/.test(n));
