@@ -10,22 +10,22 @@ struct BlockJudge {
     double tolerance;
     const CurvatureTree::Block& block;
 
-    // Of the cell of this size in the lower corner of the box, `plain` of whose triangles' corners are plain.
-    double bound(const Bending& at, const Box<2>& box, const Vec<2>& cell, int plain) const {
-        const std::array<Vec<2>, 3> corner{box.lo, box.lo + Vec<2>{{cell[0], 0}},
-                                           box.lo + Vec<2>{{0, cell[1]}}};
-        const double found = judge(at, box, corner, plain, block.node).bound;
-        return found <= tolerance ? found : kInfinity;
+    double within(double bound) const { return bound <= tolerance ? bound : kInfinity; }
+
+    // Of a cell of this size in the box, `plain` of whose triangles' corners are plain.
+    double bound(const Bending& at, const Box<2>& box, const Vec<2>& cell, double error, int plain) const {
+        return within(judge.cell(at, box, cell, error, plain, block.node).bound);
     }
 
     JudgedBlock leaf() const {
         const Bending& at = tree.part_bendings(block)[0];
         const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
+        const double error = judge.cell_error(at, block.box, cell);
         JudgedBlock out;
         out.scale = at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
-        out.flat = bound(at, block.box, cell, 3);
-        if (!tree.is_all_plain()) out.usual = bound(at, block.box, cell, 0);
-        if (std::isfinite(out.usual)) out.footless = bound(at, block.box, cell, 1);
+        out.flat = within(error);
+        if (!tree.is_all_plain()) out.usual = bound(at, block.box, cell, error, 0);
+        if (std::isfinite(out.usual)) out.footless = bound(at, block.box, cell, error, 1);
         return out;
     }
 
@@ -39,10 +39,11 @@ struct BlockJudge {
         for (int i = 0; i < parts.cells(0); ++i)
             for (int j = 0; j < parts.cells(1); ++j, ++at) {
                 const Box<2> box{parts.at(i, j), parts.at(i + 1, j + 1)};
-                out.usual = std::max(out.usual, bound(*at, box, cell, all_plain ? 3 : 0));
+                const double error = judge.cell_error(*at, box, cell);
+                out.usual = std::max(out.usual, bound(*at, box, cell, error, all_plain ? 3 : 0));
                 if (!std::isfinite(out.usual)) return out;
                 if (!all_plain && std::isfinite(out.footless))
-                    out.footless = std::max(out.footless, bound(*at, box, cell, 1));
+                    out.footless = std::max(out.footless, bound(*at, box, cell, error, 1));
             }
         return out;
     }

@@ -250,7 +250,7 @@ std::optional<std::pair<int, double>> CurvatureTree::worst_kink(const Box<2>& bo
 }
 
 void CurvatureTree::find_corners() {
-    ParameterTable seen(nodes_.size() / 16);  // most are of blocks
+    ParameterTable seen(nodes_.count() / 16);  // most are of blocks
     std::vector<int> stack{0};
     while (!stack.empty()) {
         const int at = stack.back();
@@ -274,13 +274,14 @@ void CurvatureTree::find_corners() {
 Vec<2> CurvatureTree::mean_leaf() const {
     Vec<2> sum{};
     double count = 0;
-    for (const Node& n : nodes_)
-        if (n.child < 0 && !n.outside) {
-            const Vec<2> size = n.box.hi - n.box.lo;
-            const Halves halves = n.block < 0 ? Halves{} : blocks_[std::size_t(n.block)].halves;
-            const double along[2] = {std::ldexp(1.0, halves[0]), std::ldexp(1.0, halves[1])};
-            sum += Vec<2>{{along[1] * size[0], along[0] * size[1]}}, count += along[0] * along[1];
-        }
+    nodes_.each_place([&](std::size_t i) {
+        const Node& n = nodes_[i];
+        if (n.child >= 0 || n.outside) return;
+        const Vec<2> size = n.box.hi - n.box.lo;
+        const Halves halves = n.block < 0 ? Halves{} : blocks_[std::size_t(n.block)].halves;
+        const double along[2] = {std::ldexp(1.0, halves[0]), std::ldexp(1.0, halves[1])};
+        sum += Vec<2>{{along[1] * size[0], along[0] * size[1]}}, count += along[0] * along[1];
+    });
     return (1 / std::max(count, 1.0)) * sum;
 }
 

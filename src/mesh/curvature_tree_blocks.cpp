@@ -99,23 +99,31 @@ double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box
     return mean >= kFewCells && most <= kWaste * mean ? mean : 0;
 }
 
-// Of each part of the box, row by row.
-void CurvatureTree::bound_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
-                                const BoxBending& all, const Variation* varies,
-                                std::vector<Bending>& out) const {
+// Adds what is known of each part of the box, row by row, and finds what holds in all of them; false as soon
+// as the box needs more cells than `most`.
+bool CurvatureTree::add_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
+                              const BoxBending& all, const Variation* varies, double most, double tolerance,
+                              Curvature& together) {
     const auto lines = std::array{halved(box.side(0), halves[0]), halved(box.side(1), halves[1])};
     for (std::size_t i = 0; i + 1 < lines[0].size(); ++i)
         for (std::size_t j = 0; j + 1 < lines[1].size(); ++j) {
             const Box<2> part{{{lines[0][i], lines[1][j]}}, {{lines[0][i + 1], lines[1][j + 1]}}};
+            Bending found;
             if (!varies) {
-                out.push_back(bending_of(surface, part, knows_normals_));
+                found = bending_of(surface, part, knows_normals_);
             } else {
                 const auto middle =
                     jet<2>(surface.geometry(), {part.side(0).middle(), part.side(1).middle()});
-                out.push_back(bending_from_middle(surface, part, knows_normals_, middle, *varies));
+                found = bending_from_middle(surface, part, knows_normals_, middle, *varies);
             }
-            out.back().full.restrict_to(all.full);
+            found.full.restrict_to(all.full);
+            part_bendings_.push_back(found);
+            const Curvature matters = found.least > 0 && knows_normals_ ? found.seen(0) : found.full;
+            if (i + j == 0) together = matters;
+            together.include(matters);
+            if (!(cells_for(together, box.hi - box.lo, tolerance) <= most)) return false;
         }
+    return true;
 }
 
 // Makes a block of a leaf, if cells keep the tolerance and are not many more than are seen to be needed.
@@ -136,10 +144,10 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
     Vec<2> size = box.hi - box.lo;
     const Halves parts = parts_for(seen, size, tolerance);
     const std::size_t first = part_bendings_.size();
-    bound_parts(surface, box, parts, known, is_smooth ? &varies : nullptr, part_bendings_);
-    const auto of_parts = std::span(part_bendings_).subspan(first);
     Curvature matters;
-    for (const Bending& b : of_parts) matters.include(b.least > 0 && knows_normals_ ? b.seen(0) : b.full);
+    bool worth = add_parts(surface, box, parts, known, is_smooth ? &varies : nullptr, kWaste * cells,
+                           tolerance, matters);
+    const auto of_parts = std::span(part_bendings_).subspan(first);
 
     size = box.hi - box.lo;
     const auto is_fine = [&] {
@@ -148,7 +156,6 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
             if (!keeps(b, size, false, b.full.along(size[0], size[1]) / 8, tolerance)) return false;
         return true;
     };
-    bool worth = cells_for(matters, size, tolerance) <= kWaste * cells;
     while (worth && !is_fine()) {
         halve_longer(matters, size, halves);
         worth = halves[0] + halves[1] <= kMostHalves;
@@ -193,11 +200,11 @@ bool CurvatureTree::is_deep(int leaf) const {
 
 void CurvatureTree::take_leaves(bool is_shared) {
     std::vector<int> leaves;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    nodes_.each_place([&](std::size_t i) {
         const Node& n = nodes_[i];
-        if (n.child >= 0 || n.is_block() || !n.inside || n.has_columns() || meets_kink(n.box)) continue;
+        if (n.child >= 0 || n.is_block() || !n.inside || n.has_columns() || meets_kink(n.box)) return;
         leaves.push_back(int(i));
-    }
+    });
     std::vector<char> deep(leaves.size());
     parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(),
                  [&](std::size_t i) { deep[i] = is_deep(leaves[i]); });

@@ -2,7 +2,7 @@
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
 #include "chunks_detail.hpp"
-#include "unfilled_detail.hpp"
+#include "segments_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
 
@@ -257,8 +257,9 @@ private:
                       const Jet<2, 2, Vec<3>>& middle, double tolerance) const;
     bool make_block(const DerivativeQuery<2, 3>& surface, int node, const Jet<2, 2, Vec<3>>& middle,
                     double cells, double tolerance, BoxBending& known);
-    void bound_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
-                     const BoxBending& all, const Variation* varies, std::vector<Bending>& out) const;
+    bool add_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
+                   const BoxBending& all, const Variation* varies, double most, double tolerance,
+                   Curvature& together);
     const Bending& bending(const Node& leaf) const { return bendings_[std::size_t(leaf.slot)]; }
     const Curvature& full(const Node& n) const {
         return n.child < 0 ? bending(n).full : sums_[std::size_t(n.slot)];
@@ -278,9 +279,9 @@ private:
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
     std::span<const std::array<int, 2>> segments_;  // while it is made
     static constexpr int kOneCell = -2;
-    std::vector<Node, Unfilled<Node>> nodes_;
-    Chunks<Bending> bendings_;                          // of leaves that are not outside
-    std::vector<Curvature, Unfilled<Curvature>> sums_;  // of S over other nodes
+    Segments<Node> nodes_;
+    Chunks<Bending> bendings_;  // of leaves that are not outside; neighbours may share one
+    Segments<Curvature> sums_;  // of S over other nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;
     std::vector<Block> blocks_;

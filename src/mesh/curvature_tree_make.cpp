@@ -22,6 +22,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace freiform {
@@ -31,7 +32,8 @@ namespace {
 constexpr double kLittleTilt = 0.125;
 constexpr std::size_t kPartsOfTree = 64;
 constexpr double kLeavesAtOnce = 16;
-constexpr long long kFewNumbers = 96;  // of a piece: asking them is as cheap as a sample
+constexpr std::size_t kLeavesCounted = 256;  // at once
+constexpr long long kFewNumbers = 96;        // of a piece: asking them is as cheap as a sample
 
 // The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
 int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
@@ -66,7 +68,7 @@ public:
     };
 
     Grower(CurvatureTree& tree, Task& task, const BoxBending& outer)
-        : tree_(tree), task_(task), outers_{outer} {}
+        : tree_(tree), task_(task), outers_{{outer}} {}
     // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
     std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
     // Each of them by itself.
@@ -79,22 +81,35 @@ public:
 
 private:
     bool is_leaf(Node& node, const BoxBending& known);
-    void stay_whole(Node& node, const BoxBending& known) { node.slot = int(tree_.bendings_.add(known)); }
+    // What is known of a box, and its place in the tree once a leaf has it: neighbours share it.
+    struct Outer {
+        BoxBending known;
+        int slot = -1;
+    };
+    // Whether all together are not too many. Asked from time to time, as threads that count together wait for
+    // each other.
+    bool count_leaves() { return (task_.leaves += std::exchange(uncounted_, 0)) <= task_.max_leaves; }
+    void stay_whole(Node& node, Outer& outer) {
+        if (outer.slot < 0) outer.slot = int(tree_.bendings_.add(outer.known));
+        node.slot = outer.slot;
+    }
     void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
-    bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
+    bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer, bool& found);
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
     struct Place {  // where in the tree what a part has begins
-        std::size_t nodes = 0, variations = 0, blocks = 0, part_bendings = 0, bendings = 0, sums = 0;
+        std::size_t nodes = 0, nodes_end = 0, variations = 0, blocks = 0, part_bendings = 0, bendings = 0,
+                    sums = 0;
     };
     void add(std::vector<CurvatureTree>& parts, std::span<const Item> items);
     void put(const CurvatureTree& part, const Item& item, const Place& place);
 
     CurvatureTree& tree_;
     Task& task_;
-    std::vector<BoxBending> outers_;  // what items refer to
-    double length_[2] = {};           // of the sides of the box that was looked at last
-    bool fine_ = false;               // whether its error is small enough
+    std::vector<Outer> outers_;  // what items refer to
+    double length_[2] = {};      // of the sides of the box that was looked at last
+    std::size_t uncounted_ = 0;  // leaves that the task does not know of
+    bool fine_ = false;          // whether its error is small enough
 };
 
 // What is known of the box decides; whether it is fine, and whether it stays whole.
@@ -125,15 +140,17 @@ void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, V
     tree_.variations_.push_back(variation);
 }
 
-// Whether the box, which is inside, is a leaf that stands for many.
-bool CurvatureTree::Grower::is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer) {
+// Whether the box, which is inside, is a leaf that stands for many. `found`: whether `outer` is of the box.
+bool CurvatureTree::Grower::is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer,
+                                     bool& found) {
     const double tolerance = task_.demands.tolerance;
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
     const double cells = tree_.cells_seen(task_.surface, box, middle, tolerance);
     if (!(cells > 0)) return false;
+    found = true;
     if (!tree_.make_block(task_.surface, item.node, middle, cells, tolerance, outer)) return false;
     const auto& halves = tree_.blocks_.back().halves;
-    task_.leaves += (std::size_t(1) << (halves[0] + halves[1])) - 1;
+    uncounted_ += (std::size_t(1) << (halves[0] + halves[1])) - 1;
     return true;
 }
 
@@ -151,9 +168,10 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     node.variation = item.variation;
     node.inside = inside;
     // Bounds of a larger box do for this one where they are hardly larger: not where normals turn.
-    const BoxBending& around = outers_[std::size_t(item.outer)];
+    Outer& shared = outers_[std::size_t(item.outer)];
+    const BoxBending& around = shared.known;
     if (around.least > 0 && around.tilt <= kLittleTilt && is_leaf(node, around)) {
-        stay_whole(node, around);
+        stay_whole(node, shared);
         return std::nullopt;
     }
     // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but the
@@ -169,8 +187,8 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     // and what varies tell.
     BoxBending outer = around;
     const bool may_be_block = task_.blocks && inside && cut && !node.has_columns();
-    if (may_be_block && is_block(item, middle, outer)) return std::nullopt;
-    bool found = may_be_block;  // others than those around
+    bool found = false;  // others than those around
+    if (may_be_block && is_block(item, middle, outer, found)) return std::nullopt;
     if (item.variation >= 0) {
         outer = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
                                     tree_.variations_[std::size_t(item.variation)]);
@@ -202,12 +220,13 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
             cut = tree_.cut(node, axis);
         }
         if (!cut) {  // also where there is no double between the ends
-            stay_whole(node, outer);
+            Outer own{outer};
+            stay_whole(node, own);
             return std::nullopt;
         }
     }
-    if (++task_.leaves > task_.max_leaves) return too_many_leaves();
-    if (found) outers_.push_back(outer);
+    if (++uncounted_ >= kLeavesCounted && !count_leaves()) return too_many_leaves();
+    if (found) outers_.push_back({outer});
     split(item, found ? int(outers_.size()) - 1 : item.outer, *cut, inside, items);
     return std::nullopt;
 }
@@ -215,15 +234,16 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
 void CurvatureTree::Grower::split(const Item& item, int outer, const Cut& cut, bool inside,
                                   std::vector<Item>& items) {
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
-    const int child = int(tree_.nodes_.size()), variation = tree_.nodes_[std::size_t(item.node)].variation;
+    const int child = int(tree_.nodes_.end()), variation = tree_.nodes_[std::size_t(item.node)].variation;
     tree_.nodes_[std::size_t(item.node)].child = child;
     Box<2> part[2] = {box, box};
     part[0].hi[cut.axis] = part[1].lo[cut.axis] = cut.at;
     const auto columns = tree_.nodes_[std::size_t(item.node)].columns;
     for (const int half : {0, 1}) {
-        Node& n = tree_.nodes_.emplace_back(Node{part[half], item.node});
+        Node n{part[half], item.node};
         n.columns = columns;
         if (cut.column > 0) n.columns[std::size_t(cut.axis)][half == 0 ? 1 : 0] = std::uint8_t(cut.column);
+        tree_.nodes_.add(n);
     }
     for (const int half : {1, 0}) {
         items.push_back({child + half, item.depth + 1, outer, {}, inside, variation});
@@ -243,6 +263,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std
             outers_.erase(outers_.begin() + item.outer + 1, outers_.end());
         if (auto bad = take(item, items)) return bad;
     }
+    if (!count_leaves()) return too_many_leaves();
     return std::nullopt;
 }
 
@@ -257,7 +278,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
     };
     if (!task_.in_parts) {  // into this tree at once, in the order in which parts are added below
         for (std::size_t i = 0; i < items.size(); ++i) {
-            const BoxBending& outer = outers_[std::size_t(items[i].outer)];
+            const BoxBending& outer = outers_[std::size_t(items[i].outer)].known;
             std::vector<Item> own{std::move(items[i])};
             own.front().outer = 0;
             bad[i] = Grower(tree_, task_, outer).grow(own, 0);
@@ -272,48 +293,49 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         part.sharp_ = tree_.sharp_;
         part.columns_ = tree_.columns_;
         part.segments_ = tree_.segments_;
-        part.nodes_.push_back(tree_.nodes_[std::size_t(items[i].node)]);
+        part.nodes_.add(tree_.nodes_[std::size_t(items[i].node)]);
         std::vector<Item> own{items[i]};
         own.front().node = own.front().outer = 0;
         if (own.front().variation >= 0) {
             part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
             own.front().variation = 0;
         }
-        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)]).grow(own, 0);
-        if (!bad[i] && !part.sum_up(part.nodes_.size())) task_.all_flat = false;
+        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)].known).grow(own, 0);
+        if (!bad[i] && !part.sum_up(part.nodes_.end())) task_.all_flat = false;
     });
     if (auto first = worst()) return first;
     add(parts, items);
     return std::nullopt;
 }
 
-// Parts that have been grown from the items, one behind the other. Their room is given back.
+// Parts that have been grown from the items, as they are, one behind the other.
 void CurvatureTree::Grower::add(std::vector<CurvatureTree>& parts, std::span<const Item> items) {
     std::vector<Place> places;
     Place end;
-    end.nodes = tree_.nodes_.size(), end.variations = tree_.variations_.size();
+    end.variations = tree_.variations_.size();
     end.blocks = tree_.blocks_.size(), end.part_bendings = tree_.part_bendings_.size();
-    end.sums = tree_.sums_.size();
     for (CurvatureTree& p : parts) {
+        end.nodes_end = p.nodes_.end();
+        end.nodes = tree_.nodes_.take(std::move(p.nodes_));
+        end.nodes_end += end.nodes;
         end.bendings = tree_.bendings_.take(std::move(p.bendings_));
+        end.sums = tree_.sums_.take(std::move(p.sums_));
         places.push_back(end);
-        end.nodes += p.nodes_.size() - 1;  // the first is there: the item's
         end.variations += p.variations_.size(), end.blocks += p.blocks_.size();
-        end.part_bendings += p.part_bendings_.size(), end.sums += p.sums_.size();
+        end.part_bendings += p.part_bendings_.size();
     }
-    tree_.nodes_.resize(end.nodes);
     tree_.variations_.resize(end.variations);
     tree_.blocks_.resize(end.blocks);
     tree_.part_bendings_.resize(end.part_bendings);
-    tree_.sums_.resize(end.sums);
     parallel_for(parts.size(), 1, [&](std::size_t i) {
         put(parts[i], items[i], places[i]);
         parts[i] = {};
     });
 }
 
+// The numbers of its nodes are there already; what they refer to becomes what it is in the tree.
 void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, const Place& place) {
-    const int nodes = int(place.nodes) - 1, variations = int(place.variations), blocks = int(place.blocks);
+    const int nodes = int(place.nodes), variations = int(place.variations), blocks = int(place.blocks);
     for (std::size_t k = 0; k < part.blocks_.size(); ++k) {
         Block b = part.blocks_[k];
         b.first_part += int(place.part_bendings);
@@ -324,18 +346,21 @@ void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, con
     };
     copy(part.part_bendings_, tree_.part_bendings_, place.part_bendings);
     copy(part.variations_, tree_.variations_, place.variations);
-    copy(part.sums_, tree_.sums_, place.sums);
-    const int parent = tree_.nodes_[std::size_t(item.node)].parent;
-    for (std::size_t k = 0; k < part.nodes_.size(); ++k) {
-        Node n = part.nodes_[k];
-        n.parent = k == 0 ? parent : n.parent == 0 ? item.node : nodes + n.parent;
+    Node& top = tree_.nodes_[std::size_t(item.node)];
+    const int parent = top.parent;
+    for (std::size_t k = place.nodes; k < place.nodes_end; ++k) {
+        Node& n = tree_.nodes_[k];
+        n.parent = n.parent == 0 ? item.node : nodes + n.parent;
         if (n.child >= 0) n.child += nodes;
         if (n.variation >= 0) n.variation += variations;
         if (n.block >= 0) n.block += blocks;
         if (n.slot >= 0) n.slot += int(n.child < 0 ? place.bendings : place.sums);
-        const std::size_t at = k == 0 ? std::size_t(item.node) : std::size_t(nodes) + k;
-        tree_.nodes_[at] = n;
     }
+    Node& first = tree_.nodes_[place.nodes];  // the item's box: known by its number before
+    top = first;
+    top.parent = parent;
+    first = {};
+    first.outside = true;
 }
 
 bool CurvatureTree::sum_up(std::size_t end) {
@@ -347,8 +372,7 @@ bool CurvatureTree::sum_up(std::size_t end) {
             if (n.outside) continue;
             Curvature both = full(a.outside ? b : a);
             if (!a.outside && !b.outside) both.include(full(b));
-            n.slot = int(sums_.size());
-            sums_.push_back(both);
+            n.slot = int(sums_.add(both));
             n.whole = a.whole && b.whole;
         } else if (!n.outside) {
             all_flat = all_flat && n.flat;
@@ -380,7 +404,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         for (const Kink& k : tree.kinks_[std::size_t(d)])
             if (!is_rounding(k, (root.hi - root.lo)[d], demands.tolerance))
                 tree.sharp_[std::size_t(d)].push_back(k.at);
-    tree.nodes_.push_back({root, 0});
+    tree.nodes_.add({root, 0});
     tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
     BoxBending any;
@@ -391,11 +415,10 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     Grower grower(tree, task, any);
     std::vector<Grower::Item> items{{0, 0, 0, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.is_shared ? kPartsOfTree : 0);
-    const std::size_t top = tree.nodes_.size();
+    const std::size_t top = tree.nodes_.end();
     if (!bad && demands.is_shared) bad = grower.grow_parts(std::move(items));
-    if (!bad && task.leaves > max_leaves) bad = grower.too_many_leaves();
     if (bad) return std::unexpected(*bad);
-    if (tree.sum_up(task.in_parts ? top : tree.nodes_.size()) && task.all_flat) tree.knows_normals_ = false;
+    if (tree.sum_up(task.in_parts ? top : tree.nodes_.end()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
     if (ways.blocks) tree.take_leaves(demands.is_shared);
     tree.find_corners();

@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kMargin = 0.125;  // of the box of the face: what is looked at beyond it
 
+// linear_interpolation_bound of a half, whose smallest circle has the diagonal of the cell as diameter.
+double half_cell_bound(const Curvature& c, const Vec<2>& sides) { return c.error(sides) * (1 + 1e-14); }
+
 }  // namespace
 
 Judge::Judge(const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, const Box<2>& face,
@@ -29,8 +32,26 @@ Curvature Judge::over_clamped(const Box<2>& box) const {
 
 Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
                             int plain, int near_place) const {
-    const auto& [a, b, c] = corner;
-    const double e = linear_interpolation_bound(at.full, a, b, c) + tree_.kink_bound(box);
+    const auto bound_from = [&](const Curvature& c) {
+        return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
+    };
+    const double e = bound_from(at.full) + tree_.kink_bound(box);
+    return judged(at, box, bound_from, e, plain, near_place);
+}
+
+double Judge::cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sides) const {
+    return half_cell_bound(at.full, sides) + tree_.kink_bound(box);
+}
+
+Judgement Judge::cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
+                      int near_place) const {
+    const auto bound_from = [&](const Curvature& c) { return half_cell_bound(c, sides); };
+    return judged(at, box, bound_from, error, plain, near_place);
+}
+
+template <class BoundFrom>
+Judgement Judge::judged(const Bending& at, const Box<2>& box, const BoundFrom& bound_from, double e,
+                        int plain, int near_place) const {
     Judgement k{false, kInfinity, e, at.full};
     if (plain == 3) {
         k.bound = e;
@@ -39,7 +60,7 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     if (!(at.least > 0)) return k;
     // Where a foot straight below would not do, none will.
     const Curvature straight = plain > 0 ? at.full : at.seen(0);
-    if (e > tolerance_ && (plain > 0 || linear_interpolation_bound(straight, a, b, c) > tolerance_)) {
+    if (e > tolerance_ && (plain > 0 || bound_from(straight) > tolerance_)) {
         k.curvature = straight;
         return k;
     }
@@ -58,9 +79,7 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
         if (!shift.exists) return false;
         k.shifted = true;
         const Curvature seen = at.seen(shift.turn);
-        const double bound = plain > 0
-                                 ? shift.way(e)
-                                 : std::min(e, shift.across(linear_interpolation_bound(seen, a, b, c), e));
+        const double bound = plain > 0 ? shift.way(e) : std::min(e, shift.across(bound_from(seen), e));
         if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : seen;
         return k.bound <= tolerance_;
     };

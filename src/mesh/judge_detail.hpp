@@ -19,8 +19,15 @@ public:
     // the box, in the tree.
     Judgement operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain,
                          int near_place) const;
+    // The same of halves of a cell with these sides, whose interpolation error is at most `error`.
+    Judgement cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
+                   int near_place) const;
+    double cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sides) const;
 
 private:
+    template <class BoundFrom>  // second derivatives
+    Judgement judged(const Bending& at, const Box<2>& box, const BoundFrom& bound_from, double error,
+                     int plain, int near_place) const;
     Curvature over_clamped(const Box<2>& box) const;
 
     const CurvatureTree& tree_;

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 namespace freiform {
@@ -20,23 +22,28 @@ bool has_kinks(const DerivativeQuery<2, 3>& surface) {
     return !surface.kinks(0).empty() || !surface.kinks(1).empty();
 }
 
+// Of length 1, where both tangents are there and not parallel.
+std::optional<Vec<3>> regular_normal(const Jet<2, 1, Vec<3>>& j) {
+    const Vec<3> m = cross(j.d[1], j.d[2]);
+    if (!(norm(m) > 1e-9 * norm(j.d[1]) * norm(j.d[2])) || !(max_abs(j.d[1]) > 0) || !(max_abs(j.d[2]) > 0))
+        return std::nullopt;
+    return unit(m);
+}
+
 }  // namespace
 
-// Unit normal, from the jet at uv; where the surface has none (a pole), that of a point a little inside the
-// triangle. First derivatives above `usual` are not small.
+// Unit normal at uv where it is not plain to see; where the surface has none (a pole), that of a point a
+// little inside the triangle. First derivatives above `usual` are not small.
 Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
-                              const Jet<2, 1, Vec<3>>& here, const Vec<2>& usual) const {
+                              const Vec<2>& usual) const {
     const SurfaceGeometry& surface = model_.faces[f].surface;
     for (double step : {0.0, 1e-6, 1e-4, 1e-2, 0.5}) {
-        const Vec<2> at = (1 - step) * uv + step * inwards;
-        const auto j = step == 0 ? here : jet<1>(surface, at.c);
-        const Vec<3> m = cross(j.d[1], j.d[2]);
-        if (norm(m) > 1e-9 * norm(j.d[1]) * norm(j.d[2]) && max_abs(j.d[1]) > 0 && max_abs(j.d[2]) > 0) {
+        const auto j = jet<1>(surface, step == 0 ? uv.c : ((1 - step) * uv + step * inwards).c);
+        if (const auto n = regular_normal(j)) {
             // A vanishing derivative leaves the direction of the other to chance.
-            if (norm(j.d[1]) > usual[0] && norm(j.d[2]) > usual[1]) return unit(m);
+            if (norm(j.d[1]) > usual[0] && norm(j.d[2]) > usual[1]) return *n;
             const auto inner = jet<1>(surface, inwards.c);
-            if (norm(j.d[1]) > 1e-9 * norm(inner.d[1]) && norm(j.d[2]) > 1e-9 * norm(inner.d[2]))
-                return unit(m);
+            if (norm(j.d[1]) > 1e-9 * norm(inner.d[1]) && norm(j.d[2]) > 1e-9 * norm(inner.d[2])) return *n;
         }
     }
     return {};
@@ -135,34 +142,50 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
     Sides sides;
     if (has_kinks(*queries_[f])) sides = sides_of(f), out.triangles = std::move(sides.triangles);
     const std::vector<Vec<2>>& place = out.triangles.empty() ? m.uv : sides.place;
-    std::vector<Vec<2>> inwards(place.size());
-    for (const auto& t : out.triangles.empty() ? m.triangles : out.triangles)
-        for (const int v : t)
-            inwards[std::size_t(v)] =
-                (1.0 / 3) * (place[std::size_t(t[0])] + place[std::size_t(t[1])] + place[std::size_t(t[2])]);
-    // Faces are looked at in parallel, and the vertices of large ones.
-    const auto each_vertex = [&](const std::function<void(std::size_t)>& look) {
-        parallel_for(place.size(), kVerticesAtOnce, look);
-    };
-    std::vector<Jet<2, 1, Vec<3>>> jets(place.size());
-    each_vertex([&](std::size_t i) { jets[i] = jet<1>(surface, place[i].c); });
-    Vec<2> usual{};
-    for (const auto& j : jets)
-        for (int d = 0; d < 2; ++d) usual[d] = std::max(usual[d], 1e-6 * norm(j.d[std::size_t(d + 1)]));
     out.vertices.resize(place.size());
-    each_vertex([&](std::size_t i) {
-        const Vec<3> normal = normal_at(f, place[i], inwards[i], jets[i], usual);
-        out.vertices[i].uv = i < m.uv.size() ? m.uv[i] : m.uv[std::size_t(sides.copy_of[i - m.uv.size()])];
-        out.vertices[i].normal = flip ? -normal : normal;
-    });
-    for (std::size_t i = 0; i < m.uv.size(); ++i) {
-        out.vertices[i].point = m.point[i];
-        if (m.point[i] >= 0) continue;
-        out.inner.push_back(place[i] == m.uv[i] ? jets[i].value() : jet<0>(surface, m.uv[i].c).value());
-        out.vertices[i].point = -int(out.inner.size());
-    }
+    std::size_t inner = 0;
+    for (std::size_t i = 0; i < m.uv.size(); ++i)
+        out.vertices[i].point = m.point[i] >= 0 ? m.point[i] : -int(++inner);
+    out.inner.resize(inner);
     for (std::size_t i = m.uv.size(); i < place.size(); ++i)
         out.vertices[i].point = out.vertices[std::size_t(sides.copy_of[i - m.uv.size()])].point;
+    // Faces are looked at in parallel, and the vertices of large ones.
+    struct Tangents {  // their lengths
+        double u = 0, v = 0;
+        bool are_regular = false;
+    };
+    std::vector<Tangents> tangents(place.size());
+    parallel_for(place.size(), kVerticesAtOnce, [&](std::size_t i) {
+        MeshVertex& v = out.vertices[i];
+        const bool is_own = i < m.uv.size();
+        v.uv = is_own ? m.uv[i] : m.uv[std::size_t(sides.copy_of[i - m.uv.size()])];
+        const auto j = jet<1>(surface, place[i].c);
+        const auto normal = regular_normal(j);
+        tangents[i] = {norm(j.d[1]), norm(j.d[2]), normal.has_value()};
+        if (normal) v.normal = flip ? -*normal : *normal;
+        if (is_own && v.point < 0)
+            out.inner[std::size_t(-1 - v.point)] =
+                place[i] == v.uv ? j.value() : jet<0>(surface, v.uv.c).value();
+    });
+    Vec<2> usual{};
+    for (const Tangents& t : tangents)
+        usual = {{std::max(usual[0], 1e-6 * t.u), std::max(usual[1], 1e-6 * t.v)}};
+    const auto is_plain = [&](std::size_t i) {
+        return tangents[i].are_regular && tangents[i].u > usual[0] && tangents[i].v > usual[1];
+    };
+    std::map<std::size_t, Vec<2>> inwards;  // of the others: the middle of a triangle
+    for (std::size_t i = 0; i < place.size(); ++i)
+        if (!is_plain(i)) inwards.insert({i, {}});
+    if (inwards.empty()) return out;
+    for (const auto& t : out.triangles.empty() ? m.triangles : out.triangles)
+        for (const int v : t)
+            if (const auto found = inwards.find(std::size_t(v)); found != inwards.end())
+                found->second = (1.0 / 3) * (place[std::size_t(t[0])] + place[std::size_t(t[1])] +
+                                             place[std::size_t(t[2])]);
+    for (const auto& [i, middle] : inwards) {
+        const Vec<3> normal = normal_at(f, place[i], middle, usual);
+        out.vertices[i].normal = flip ? -normal : normal;
+    }
     return out;
 }
 

@@ -84,8 +84,7 @@ private:
     FaceLook look_of(std::size_t face, bool flip) const;
     Tessellation collect();
     void measure_angles(Tessellation& out) const;
-    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards, const Jet<2, 1, Vec<3>>& here,
-                     const Vec<2>& usual) const;
+    Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards, const Vec<2>& usual) const;
     double rounding_of(std::size_t face) const;
 
     const Model& model_;
