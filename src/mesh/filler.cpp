@@ -183,14 +183,13 @@ Filler::Known Filler::found(int triangle, int& place) const {
         if (const Judgement second = judge_(own, box, corner, plain, place); second.bound <= k.bound)
             static_cast<Judgement&>(k) = second;
     };
-    bool hopeless = false;  // by what is seen in the middle already
-    if (const Variation* varies = tree_.variation_in(place)) {
-        const auto middle = jet<2>(surface_.geometry(), (0.5 * (box.lo + box.hi)).c);
-        hopeless = !(linear_interpolation_bound(seen_at(middle, plain < 3), corner[0], corner[1],
-                                                corner[2]) <= demands_.tolerance);
+    const auto middle = jet<2>(surface_.geometry(), (0.5 * (box.lo + box.hi)).c);
+    const bool hopeless = !(linear_interpolation_bound(seen_at(middle, plain < 3), corner[0], corner[1],
+                                                       corner[2]) <= demands_.tolerance);
+    if (const Variation* varies = tree_.variation_in(place))
         judge_by(bending_from_middle(surface_, box, plain < 3, middle, *varies));
-    }
-    if (!(k.bound <= demands_.tolerance) && !hopeless) judge_by(bending_of(surface_, box, plain < 3));
+    if (!(k.bound <= demands_.tolerance) && !hopeless)
+        judge_by(bending_of(surface_, box, plain < 3, middle));
     return k;
 }
 

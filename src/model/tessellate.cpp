@@ -49,7 +49,7 @@ SharedWork::SharedWork(const Model& model)
 
 Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
-    parallel_for(model_.edges.size(), 4, [&](std::size_t e) {
+    parallel_for(model_.edges.size(), 1, [&](std::size_t e) {
         if (edges_->mesh(int(e)).uses.empty()) return;
         if (auto ok = edges_->discretise(int(e), edge_demands(), std::size_t(options_.max_triangles)); !ok)
             failed[e] = ok.error();
