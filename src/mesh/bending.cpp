@@ -27,6 +27,22 @@
 // tangent DS(x) d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle with a sine of at most the
 // swing of n . DS over the least stretch; from y to x by one of at most K way / (least - K way).
 //
+// In a cell: T within a box with the middle m and half sides h_u, h_v, v_i its corners, l_i the barycentric
+// coordinates of y, d_i = v_i - y, g = N(x) . S. Taylor's formula with its remainder gives
+//     g(y) - L g(y) = - sum l_i int_0^1 (1 - t) D^2 g(y + t d_i)(d_i, d_i) dt.
+// With |y - m| = (r_u h_u, r_v h_v), y + t d_i is at most (1 - t) r + t half sides from m along each axis,
+// and N(x) turns from n by what n . DS swings over |y - m|, so second derivatives there are at most those in
+// the middle, third ones times that, and the turn times those beside n; int (1 - t) t = 1/6, int (1 - t)^2 =
+// 1/3:
+//     |g - L g| <= 1/2 sum l_i Q(d_i),   Q of  c + r_u c_u + r_v c_v,
+// c what is in the middle, a third of what the half sides add, and the turn from y to x; c_u two thirds of
+// what h_u adds, and what N turns by over h_u. In the metric that gives both sides the same share of mixed
+// derivatives, sum l_i |d_i|^2 <= R^2 - |y - m|^2 (curvature_tree.cpp) for c, and <= R^2 for the others: the
+// bound is half the largest of A h_u^2 (1 - r_u^2) + r_u Q_u + B h_v^2 (1 - r_v^2) + r_v Q_v. Where the error
+// is large, y is near m, where little is known by less; bounds over the whole box are as if y were at its
+// edge. Other middles than that of the box count by their distance from it. Saddles: the same with du^2 or
+// dv^2 alone in Q.
+//
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so
 // by the invariance of the degree every x in D is G(y) for some y, or is y + s (G(y) - y) for some y of the
@@ -114,6 +130,18 @@ void add_signs(Curvature& along, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, co
     along.sure_vv = sure(j(0, 2), change.vv);
 }
 
+Bending::Middle middle_of(const std::array<Interval, 2>& on, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j,
+                          const Curvature& slip, const std::array<double, 4>& third) {
+    const auto of = [&](const Vec<3>& second, double by) {
+        return (std::abs(dot(n, second)) + 8 * kUnitRoundoff * norm(second) + by) * kSumSlack;
+    };
+    return {{{on[0].middle(), on[1].middle()}},
+            of(j(2, 0), slip.uu),
+            of(j(1, 1), slip.uv),
+            of(j(0, 2), slip.vv),
+            third};
+}
+
 // Of second derivatives less their part along n.
 Curvature beside_of(const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, const Curvature& change) {
     const auto of = [&](const Vec<3>& second, double by) {
@@ -193,6 +221,7 @@ BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, b
         const Vec<2> half = half_sides(on);
         add_signs(along, *n, j, change_by(half, thirds(both.along), *slip));
         beside = beside_of(*n, j, change_by(half, thirds(both.all), *slip));
+        out.middle = middle_of(on, *n, j, *slip, thirds(both.along));
     }
     add_normals(out, on, j.d[1], j.d[2], *n, along, beside);
     return out;
@@ -223,6 +252,7 @@ BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2
         Curvature{std::abs(dot(*n, j(2, 0))), std::abs(dot(*n, j(1, 1))), std::abs(dot(*n, j(0, 2)))}.plus(
             kSumSlack, change_along);
     add_signs(seen, *n, j, change_along);
+    out.middle = middle_of(on, *n, j, slip, along);
     add_normals(out, on, j(1, 0), j(0, 1), *n, seen, beside_of(*n, j, change));
     return out;
 }
@@ -235,8 +265,60 @@ Curvature Bending::seen_along(double apart) const {
     return out;
 }
 
+namespace {
+
+// The largest of (1 - x^2) p + x r for x from 0 to 1.
+double largest_sum(double p, double r) { return r < 2 * p ? p + r * (r / (4 * p)) : r; }
+
+}  // namespace
+
+double Bending::seen_error(const Box<2>& cell, double turn) const {
+    const Curvature seen = seen_along(tilt + turn);
+    const double usual = seen.error(cell.hi - cell.lo);
+    return knows_middle() ? std::min(usual, steady_error(cell, turn, seen)) : usual;
+}
+
+double Bending::steady_error(const Box<2>& cell, double turn, const Curvature& seen) const {
+    const std::array<Interval, 2> on{cell.side(0), cell.side(1)};
+    const Vec<2> h = half_sides(on);
+    Vec<2> off{};
+    for (int d = 0; d < 2; ++d) {
+        const Interval& x = on[std::size_t(d)];
+        off[d] = std::abs(x.middle() - middle.at[d]) +
+                 4 * kUnitRoundoff * std::max({std::abs(x.lo), std::abs(x.hi), std::abs(middle.at[d])});
+    }
+    const auto turned = [&](double du, double dv) {
+        const double u = (across.uu * du + across.uv * dv) / a, v = (across.uv * du + across.vv * dv) / b;
+        return kChord / least * std::sqrt(u * u + v * v);
+    };
+    // alpha + what is seen of second derivatives so far away, and of those beside n by normals that turn.
+    const auto& t = middle.third;
+    const auto of = [&](double du, double dv, double turns) {
+        return Curvature{du * t[0] + dv * t[1] + turns * beside.uu, du * t[1] + dv * t[2] + turns * beside.uv,
+                         du * t[2] + dv * t[3] + turns * beside.vv};
+    };
+    const double still = turned(off[0], off[1]) + kChord / least * kRounding + turn;
+    Curvature here = of(off[0] + h[0] / 3, off[1] + h[1] / 3, still);
+    here = here.plus(1, {middle.uu, middle.uv, middle.vv});
+    const Curvature by_u = of(h[0] * (2.0 / 3), 0, turned(h[0], 0)),
+                    by_v = of(0, h[1] * (2.0 / 3), turned(0, h[1]));
+    const double uu = h[0] * h[0], uv = h[0] * h[1], vv = h[1] * h[1];
+    double error = largest_sum(here.uu * uu + here.uv * uv, by_u.along(h[0], h[1])) +
+                   largest_sum(here.vv * vv + here.uv * uv, by_v.along(h[0], h[1]));
+    if (seen.is_saddle()) {
+        const double mixed = seen.uv * seen.uv;
+        const double up = largest_sum((here.uu + mixed / std::abs(seen.sure_vv)) * uu, by_u.uu * uu) +
+                          by_v.uu * uu,
+                     down = largest_sum((here.vv + mixed / std::abs(seen.sure_uu)) * vv, by_v.vv * vv) +
+                            by_u.vv * vv;
+        error = std::min(error, std::max(up, down));
+    }
+    return error / 2 * (1 + 1e-13);
+}
+
 void Bending::include(const Bending& o) {
     full.include(o.full);
+    middle = {};
     if (least > 0 && o.least > 0) {
         const double apart = norm(n - o.n) * (1 + 1e-14);
         across.include(o.seen_along(apart));

@@ -24,8 +24,11 @@ struct BlockJudge {
         JudgedBlock out;
         out.scale = at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
         out.flat = within(error);
-        if (!tree.is_all_plain()) out.usual = bound(at, block.box, cell, error, 0);
-        if (std::isfinite(out.usual)) out.footless = bound(at, block.box, cell, error, 1);
+        const auto with = [&](int plain) {
+            return within(judge.leaf(at, block.box, error, plain, block.node).bound);
+        };
+        if (!tree.is_all_plain()) out.usual = with(0);
+        if (std::isfinite(out.usual)) out.footless = with(1);
         return out;
     }
 

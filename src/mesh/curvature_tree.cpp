@@ -41,6 +41,8 @@ namespace freiform {
 
 namespace {
 
+constexpr double kBeyond = 1.5;  // what surfaces may bend beside a leaf, times what they do within
+
 // Half of the squared min-containment radius with the metric diag(A, B).
 double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
     const auto length2 = [&](const Vec<2>& p, const Vec<2>& q) {
@@ -145,9 +147,23 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
     return shift.exists && shift.across(b.seen(shift.turn).error(size), error) <= tolerance;
 }
 
+// What only the sharper bound allows has to allow for what is beside the cell, too: where blocks fail, the
+// triangles around them have that bound for less.
+bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, double error,
+                          double tolerance) const {
+    if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
+    if (!knows_normals_ || kinks || !b.knows_middle()) return false;
+    const Shift shift = shift_of(b, error, b.full, kBeyond);
+    return shift.exists && shift.across(b.seen_error(cell, shift.turn), error) <= tolerance;
+}
+
 bool CurvatureTree::accept(Node& node, const Bending& known, double error, double tolerance) const {
     node.flat = error <= tolerance;
-    return node.flat || keeps(known, node.box.hi - node.box.lo, meets_kink(node.box), error, tolerance);
+    if (node.flat) return true;
+    const bool kinks = meets_kink(node.box);
+    return node.inside && !node.has_columns()
+               ? keeps(known, node.box, kinks, error, tolerance)
+               : keeps(known, node.box.hi - node.box.lo, kinks, error, tolerance);
 }
 
 bool CurvatureTree::meets_kink(const Box<2>& box) const {

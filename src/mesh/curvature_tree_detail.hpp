@@ -4,6 +4,7 @@
 #include "chunks_detail.hpp"
 #include "segments_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -84,12 +85,26 @@ struct Bending {
     double a = 0, b = 0;  // what makes parameters lengths
     double least = 0,
            most = 0;  // |DS d| is between these multiples of |(a du, b dv)|; least = 0: nothing is known
+    // Of a box: bounds of the second derivatives of n . S in its middle, infinite if they are not known, and
+    // of the third ones in all of it: uuu, uuv, uvv, vvv.
+    struct Middle {
+        Vec<2> at{};
+        double uu = kInfinity, uv = 0, vv = 0;
+        std::array<double, 4> third{};
+    } middle = {};
 
     void include(const Bending& o);
     // Of what is seen along normals that are within `turn` of some here.
     Curvature seen(double turn) const { return seen_along(tilt + turn); }
     // The same along vectors of length 1 that are within `apart` of n.
     Curvature seen_along(double apart) const;
+    // Bound of the interpolation error of what is seen along normals that are within `turn` of the one below,
+    // in the halves of a cell of the box that this is of.
+    double seen_error(const Box<2>& cell, double turn) const;
+    bool knows_middle() const { return middle.uu < kInfinity; }
+
+private:
+    double steady_error(const Box<2>& cell, double turn, const Curvature& seen) const;
 };
 
 // Of S over the box, with bounds of |S_u| and |S_v|. `knows_normals`: false leaves all else unknown.
@@ -246,9 +261,10 @@ private:
         double at;
         int column = 0;  // that begins there, if it is not 0
     };
-    // Whether the two triangles of a box of this size keep the tolerance, without a shift or with one, which
-    // kinks do not allow.
+    // Whether the two triangles of a box of this size, or of this box, keep the tolerance, without a shift or
+    // with one, which kinks do not allow.
     bool keeps(const Bending& b, const Vec<2>& size, bool kinks, double error, double tolerance) const;
+    bool keeps(const Bending& b, const Box<2>& cell, bool kinks, double error, double tolerance) const;
     bool accept(Node& node, const Bending& known, double error, double tolerance) const;
     std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       double tolerance) const;

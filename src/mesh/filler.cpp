@@ -188,8 +188,7 @@ Filler::Known Filler::found(int triangle, int& place) const {
                                                        corner[2]) <= demands_.tolerance);
     if (const Variation* varies = tree_.variation_in(place))
         judge_by(bending_from_middle(surface_, box, plain < 3, middle, *varies));
-    if (!(k.bound <= demands_.tolerance) && !hopeless)
-        judge_by(bending_of(surface_, box, plain < 3, middle));
+    if (!(k.bound <= demands_.tolerance) && !hopeless) judge_by(bending_of(surface_, box, plain < 3, middle));
     return k;
 }
 

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kMargin = 0.125;  // of the box of the face: what is looked at beyond it
 
-// linear_interpolation_bound of a half, whose smallest circle has the diagonal of the cell as diameter.
-double half_cell_bound(const Curvature& c, const Vec<2>& sides) { return c.error(sides) * (1 + 1e-14); }
+constexpr double kGrow = 1 + 1e-14;  // roundings of bounds over cells
 
 }  // namespace
 
@@ -32,25 +31,34 @@ Curvature Judge::over_clamped(const Box<2>& box) const {
 
 Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
                             int plain, int near_place) const {
-    const auto bound_from = [&](const Curvature& c) {
+    const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
-    const double e = bound_from(at.full) + tree_.kink_bound(box);
-    return judged(at, box, bound_from, e, plain, near_place);
+    const double e = error_of(at.full) + tree_.kink_bound(box);
+    const auto seen_error = [&](double turn) {
+        return std::min(error_of(at.seen(turn)), at.seen_error(box, turn) * kGrow);
+    };
+    return judged(at, box, seen_error, e, plain, near_place);
 }
 
+// The smallest circle around a half has the diagonal of the cell as diameter.
 double Judge::cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sides) const {
-    return half_cell_bound(at.full, sides) + tree_.kink_bound(box);
+    return at.full.error(sides) * kGrow + tree_.kink_bound(box);
 }
 
 Judgement Judge::cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
                       int near_place) const {
-    const auto bound_from = [&](const Curvature& c) { return half_cell_bound(c, sides); };
-    return judged(at, box, bound_from, error, plain, near_place);
+    const auto seen_error = [&](double turn) { return at.seen(turn).error(sides) * kGrow; };
+    return judged(at, box, seen_error, error, plain, near_place);
 }
 
-template <class BoundFrom>
-Judgement Judge::judged(const Bending& at, const Box<2>& box, const BoundFrom& bound_from, double e,
+Judgement Judge::leaf(const Bending& at, const Box<2>& box, double error, int plain, int near_place) const {
+    const auto seen_error = [&](double turn) { return at.seen_error(box, turn) * kGrow; };
+    return judged(at, box, seen_error, error, plain, near_place);
+}
+
+template <class SeenError>
+Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double e,
                         int plain, int near_place) const {
     Judgement k{false, kInfinity, e, at.full};
     if (plain == 3) {
@@ -59,9 +67,8 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const BoundFrom& b
     }
     if (!(at.least > 0)) return k;
     // Where a foot straight below would not do, none will.
-    const Curvature straight = plain > 0 ? at.full : at.seen(0);
-    if (e > tolerance_ && (plain > 0 || bound_from(straight) > tolerance_)) {
-        k.curvature = straight;
+    if (e > tolerance_ && (plain > 0 || seen_error(0) > tolerance_)) {
+        k.curvature = plain > 0 ? at.full : at.seen(0);
         return k;
     }
     const Vec<2> reach = reach_of(at, e);
@@ -78,9 +85,8 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const BoundFrom& b
         const Shift shift = shift_of(at, e, near, reflected);
         if (!shift.exists) return false;
         k.shifted = true;
-        const Curvature seen = at.seen(shift.turn);
-        const double bound = plain > 0 ? shift.way(e) : std::min(e, shift.across(bound_from(seen), e));
-        if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : seen;
+        const double bound = plain > 0 ? shift.way(e) : std::min(e, shift.across(seen_error(shift.turn), e));
+        if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : at.seen(shift.turn);
         return k.bound <= tolerance_;
     };
     // What holds everywhere first, then what holds in the part of the tree that has all of it.

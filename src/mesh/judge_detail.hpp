@@ -23,10 +23,12 @@ public:
     Judgement cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
                    int near_place) const;
     double cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sides) const;
+    // The same of halves of the box itself, or of triangles of points on its sides.
+    Judgement leaf(const Bending& at, const Box<2>& box, double error, int plain, int near_place) const;
 
 private:
-    template <class BoundFrom>  // second derivatives
-    Judgement judged(const Bending& at, const Box<2>& box, const BoundFrom& bound_from, double error,
+    template <class SeenError>  // of what is seen along normals that turn by so much
+    Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
                      int plain, int near_place) const;
     Curvature over_clamped(const Box<2>& box) const;
 

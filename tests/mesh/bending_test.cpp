@@ -1,0 +1,205 @@
+// What is seen of the interpolation error in a cell, along normals that turn, is not more than what is said
+// from the middle of the box, and what is said is useful.
+#include "mesh/curvature_tree_detail.hpp"
+#include "support/random.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <functional>
+#include <gtest/gtest.h>
+
+namespace freiform {
+namespace {
+
+using test::must;
+using test::Random;
+
+// Control points there are those of the identity.
+double greville(const BSplineBasis& basis, int i) {
+    double sum = 0;
+    for (int k = 1; k <= basis.degree(); ++k) sum += basis.knots()[std::size_t(i + k)];
+    return sum / basis.degree();
+}
+
+// z over the plane, times `height`; its parameter lines are moved by up to `aside`.
+template <class P>
+SurfaceGeometry graph(const BSplineBasis& basis, double height, const std::function<double(int, int)>& z,
+                      const std::function<double()>& weight, const std::function<double()>& aside) {
+    const int n = basis.size();
+    std::vector<P> c;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const Vec<3> at{{greville(basis, i) + aside(), greville(basis, k) + aside(), height * z(i, k)}};
+            if constexpr (std::same_as<P, Hom<3>>)
+                c.push_back(weighted(at, weight()));
+            else
+                c.push_back(at);
+        }
+    return must(Surface<P>::make({basis, basis}, Net<2, P>({n, n}, c)));
+}
+
+double one() { return 1; }
+double none() { return 0; }
+
+// A random part of the interval, or all of it.
+Interval part_of(Random& random, const Interval& all, bool is_all) {
+    if (is_all) return all;
+    const double a = random.real(all.lo, all.hi), b = random.real(all.lo, all.hi);
+    return {std::min(a, b), std::max(a, b)};
+}
+
+// The largest of |m . (S - L)| in triangles of points on the sides of the cell, m of length 1 within `turn`
+// of the normals.
+double largest_seen(Random& random, const SurfaceGeometry& s, const Box<2>& cell, double turn) {
+    const auto at = [&](double x, double y) {
+        return Vec<2>{
+            {cell.lo[0] + x * (cell.hi[0] - cell.lo[0]), cell.lo[1] + y * (cell.hi[1] - cell.lo[1])}};
+    };
+    const double x = random.real(0, 1), y = random.real(0, 1);
+    const std::array<std::array<Vec<2>, 3>, 4> triangles{{{at(0, 0), at(1, 0), at(1, 1)},
+                                                          {at(0, 0), at(1, 1), at(0, 1)},
+                                                          {at(0, 0), at(1, y), at(x, 1)},
+                                                          {at(x, 0), at(1, y), at(0, 1)}}};
+    double most = 0;
+    for (const auto& t : triangles) {
+        std::array<Vec<3>, 3> corner;
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = jet<0>(s, t[k].c).value();
+        for (int i = 0; i <= 12; ++i)
+            for (int k = 0; i + k <= 12; ++k) {
+                const double l = i / 12.0, m = k / 12.0, n = 1 - l - m;
+                const auto j = jet<1>(s, (l * t[0] + m * t[1] + n * t[2]).c);
+                const Vec<3> error = j.value() - (l * corner[0] + m * corner[1] + n * corner[2]);
+                const Vec<3> normal = unit(cross(j(1, 0), j(0, 1)));
+                // The worst direction of so much: towards the error, along the surface.
+                const Vec<3> aside = error - dot(normal, error) * normal;
+                for (const double sign : {1.0, -1.0}) {
+                    const Vec<3> turned = norm(aside) > 0 ? sign * unit(aside) : Vec<3>{};
+                    const double sine = turn * std::sqrt(1 - turn * turn / 4);
+                    const Vec<3> seen = std::sqrt(1 - sine * sine) * normal + sine * turned;
+                    most = std::max(most, std::abs(dot(seen, error)));
+                }
+            }
+    }
+    return most;
+}
+
+struct Found {
+    int known = 0, sharper = 0;
+    double sharpest = 0;
+};
+
+// In boxes of the surface, so large in parts of all of it, and in parts of them. `most_turn` of normals
+// beyond those at the samples.
+Found look_at(Random& random, const SurfaceGeometry& s, const Interval& on, int boxes, const Interval& sizes,
+              double most_turn) {
+    const DerivativeQuery<2, 3> surface(s);
+    Found out;
+    for (int k = 0; k < boxes; ++k) {
+        Box<2> box;
+        for (int d = 0; d < 2; ++d) {
+            const double size = on.length() * random.real(sizes.lo, sizes.hi);
+            box.lo[d] = random.real(on.lo, on.hi - size);
+            box.hi[d] = box.lo[d] + size;
+        }
+        if (!surface.is_twice_smooth({box.side(0), box.side(1)})) continue;
+        const bool is_all = k % 2 == 0;
+        const Interval u = part_of(random, box.side(0), is_all), v = part_of(random, box.side(1), is_all);
+        const Box<2> cell{{{u.lo, v.lo}}, {{u.hi, v.hi}}};
+        const auto middle = jet<2>(s, {box.side(0).middle(), box.side(1).middle()});
+        Variation varies;
+        const double turn = random.real(0, most_turn);
+        for (const Bending& b : {Bending(bending_of(surface, box, true, middle, &varies)),
+                                 Bending(bending_from_middle(surface, box, true, middle, varies))}) {
+            if (!(b.least > 0)) continue;
+            EXPECT_TRUE(b.knows_middle());
+            const double said = b.seen_error(cell, turn), usual = b.seen(turn).error(cell.hi - cell.lo);
+            const double most = largest_seen(random, s, cell, turn);
+            EXPECT_LE(most, said * (1 + 1e-9));
+            EXPECT_LE(said, usual);
+            ++out.known;
+            out.sharper += said < 0.8 * usual;
+            out.sharpest = std::max(out.sharpest, most / said);
+        }
+    }
+    return out;
+}
+
+TEST(Bending, what_cells_show_is_bounded_from_the_middle_of_a_box) {
+    Random random(31);
+    const auto z = [&](int, int) { return random.real(-1, 1); };
+    const auto weight = [&] { return random.real(0.7, 1.4); };
+    const auto aside = [&] { return random.real(-0.4, 0.4); };
+    const auto basis = *BSplineBasis::clamped_uniform(3, 7);
+    for (const SurfaceGeometry& s :
+         {graph<Vec<3>>(basis, 0.4, z, weight, aside), graph<Hom<3>>(basis, 0.4, z, weight, aside)}) {
+        const Found found = look_at(random, s, {0, 4}, 1000, {0.01, 0.15}, 0.1);
+        EXPECT_GT(found.known, 500);
+        EXPECT_GT(found.sharper, found.known / 4);
+        EXPECT_GT(found.sharpest, 0.5);
+    }
+}
+
+// Nearly flat, so that normals hardly turn: sums of cubic splines of u and of v with a knot in the middle,
+// whose second derivatives grow to both sides of it, or are anything else.
+TEST(Bending, cubic_splines_are_seen_nearly_as_they_are) {
+    Random random(32);
+    double sharpest = 0;
+    const auto basis = *BSplineBasis::clamped_uniform(3, 5);
+    for (int k = 0; k < 400; ++k) {
+        std::array<double, 5> p{}, q{};
+        const double both = k % 3 == 0 ? random.real(0, 0.1) : 0, by_v = random.integer(0, 1);
+        for (double& x : p) x = random.real(-1, 1);
+        for (double& x : q) x = by_v * random.real(-1, 1);
+        if (k % 2 == 0) {  // even about the middle
+            p[4] = p[0], p[3] = p[1];
+            q[4] = q[0], q[3] = q[1];
+        }
+        const auto z = [&](int i, int j) { return p[std::size_t(i)] + q[std::size_t(j)] + both * i * j; };
+        const Found found = look_at(random, graph<Vec<3>>(basis, 1e-5, z, one, none), {0, 2}, 2, {1, 1}, 0);
+        EXPECT_EQ(found.known, 4);
+        sharpest = std::max(sharpest, found.sharpest);
+    }
+    EXPECT_GT(sharpest, 0.97);
+}
+
+// Third derivatives are 0, but where the curve is slow, its normals turn faster than in the middle: away from
+// it in small cells, and within large ones.
+TEST(Bending, normals_that_turn_are_counted) {
+    const auto basis = *BSplineBasis::clamped_uniform(2, 3);
+    const auto line = *BSplineBasis::clamped_uniform(1, 2);
+    double small = 0, whole = 0;
+    for (const double c : {0.02, 0.05, 0.1, 0.15}) {  // (u + c u^2, v, u^2 / 20), u from -1 to 1
+        std::vector<Vec<3>> points;
+        for (const Vec<2>& p : {Vec<2>{{-1 + c, 0.05}}, Vec<2>{{-c, -0.05}}, Vec<2>{{1 + c, 0.05}}})
+            for (const double v : {0.0, 1.0}) points.push_back({{p[0], v, p[1]}});
+        const SurfaceGeometry s = must(Surface<Vec<3>>::make({basis, line}, Net<2, Vec<3>>({3, 2}, points)));
+        const DerivativeQuery<2, 3> surface(s);
+        const Bending b = bending_of(surface, {{{0, 0}}, {{1, 1}}}, true);
+        ASSERT_TRUE(b.least > 0 && b.knows_middle());
+        Random random(34);
+        for (const Box<2>& cell : {Box<2>{{{0, 0}}, {{1, 1}}}, Box<2>{{{0, 0}}, {{0.02, 1}}}}) {
+            const double most = largest_seen(random, s, cell, 0), said = b.seen_error(cell, 0);
+            EXPECT_LE(most, said * (1 + 1e-9)) << c;
+            const double size = cell.hi[0] - cell.lo[0];
+            const double flat = b.across.uu * size * size / 8;  // normals as in the middle
+            (size < 1 ? small : whole) = std::max(size < 1 ? small : whole, most / flat);
+        }
+    }
+    EXPECT_GT(small, 1.2);
+    EXPECT_GT(whole, 1.01);
+}
+
+TEST(Bending, of_several_boxes_knows_no_middle) {
+    Random random(33);
+    const SurfaceGeometry s = graph<Vec<3>>(
+        *BSplineBasis::clamped_uniform(3, 4), 0.2, [&](int, int) { return random.real(-1, 1); }, one, none);
+    const DerivativeQuery<2, 3> surface(s);
+    Bending both = bending_of(surface, {{{0, 0}}, {{0.1, 0.1}}}, true);
+    const Bending other = bending_of(surface, {{{0.1, 0}}, {{0.2, 0.1}}}, true);
+    ASSERT_TRUE(both.knows_middle() && other.knows_middle());
+    both.include(other);
+    EXPECT_FALSE(both.knows_middle());
+}
+
+}  // namespace
+}  // namespace freiform
