@@ -285,6 +285,7 @@ private:
     // Those away from the boundary, as blocks. `is_shared`: all threads may be used.
     void take_leaves(bool is_shared);
     bool is_deep(int leaf) const;
+    void reserve(std::size_t nodes);  // before there are any
     // Of the first `end` nodes, whose children are there: what holds for both children. Whether all of these
     // leaves are flat, so that the tree can do without normals.
     bool sum_up(std::size_t end);

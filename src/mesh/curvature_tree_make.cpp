@@ -11,18 +11,15 @@
 //
 // Accuracy. The sample is off by roundings for which DerivativeQuery::second_rounding has a bound. Why not
 // for small pieces: with 16 control points of four numbers the sample costs as much as the bound.
-#include "curvature_tree_detail.hpp"
+#include "curvature_tree_grower_detail.hpp"
 #include "serial_detail.hpp"
 
 #include <freiform/core/constants.hpp>
-#include <freiform/core/parallel.hpp>
 #include <freiform/mesh/segment_box.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace freiform {
@@ -33,7 +30,13 @@ constexpr double kLittleTilt = 0.125;
 constexpr std::size_t kPartsOfTree = 64;
 constexpr double kLeavesAtOnce = 16;
 constexpr std::size_t kLeavesCounted = 256;  // at once
+constexpr double kNodesOfTriangle = 1.5;     // expected
+constexpr double kMostNodes = 1 << 20;       // expected: 80 MiB
 constexpr long long kFewNumbers = 96;        // of a piece: asking them is as cheap as a sample
+
+std::size_t expected_nodes(const FaceDemands& demands) {
+    return std::size_t(std::min(kNodesOfTriangle * demands.expected_triangles, kMostNodes));
+}
 
 // The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.
 int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2]) {
@@ -44,73 +47,6 @@ int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2
 }
 
 }  // namespace
-
-// Splits boxes. What it makes of a box depends on that box and the bounds around it alone, so parts of a tree
-// can be grown by themselves.
-class CurvatureTree::Grower {
-public:
-    struct Item {
-        int node = 0, depth = 0;
-        int outer = 0;  // in outers_: of the smallest box around it of which bounds have been found
-        std::vector<std::array<int, 2>> near;
-        bool inside = false;  // wholly
-        int variation = -1;   // over some box around it
-    };
-    struct Task {
-        const DerivativeQuery<2, 3>& surface;
-        std::span<const Vec<2>> polygon;
-        const FaceDemands& demands;
-        std::size_t max_leaves;
-        bool blocks = false;
-        bool in_parts = false;  // each part of the tree by itself, for threads
-        std::atomic<std::size_t> leaves{1};
-        std::atomic<bool> all_flat{true};  // of the parts that have been summed up
-    };
-
-    Grower(CurvatureTree& tree, Task& task, const BoxBending& outer)
-        : tree_(tree), task_(task), outers_{{outer}} {}
-    // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
-    std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
-    // Each of them by itself.
-    std::optional<Refusal> grow_parts(std::vector<Item> items);
-    Refusal too_many_leaves() const {
-        return {RefusalKind::limit, "max_triangles",
-                text("the tolerance ", task_.demands.tolerance, " needs more than ", 2 * task_.max_leaves,
-                     " triangles")};
-    }
-
-private:
-    bool is_leaf(Node& node, const BoxBending& known);
-    // What is known of a box, and its place in the tree once a leaf has it: neighbours share it.
-    struct Outer {
-        BoxBending known;
-        int slot = -1;
-    };
-    // Whether all together are not too many. Asked from time to time, as threads that count together wait for
-    // each other.
-    bool count_leaves() { return (task_.leaves += std::exchange(uncounted_, 0)) <= task_.max_leaves; }
-    void stay_whole(Node& node, Outer& outer) {
-        if (outer.slot < 0) outer.slot = int(tree_.bendings_.add(outer.known));
-        node.slot = outer.slot;
-    }
-    void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
-    bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer, bool& found);
-    std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
-    void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
-    struct Place {  // where in the tree what a part has begins
-        std::size_t nodes = 0, nodes_end = 0, variations = 0, blocks = 0, part_bendings = 0, bendings = 0,
-                    sums = 0;
-    };
-    void add(std::vector<CurvatureTree>& parts, std::span<const Item> items);
-    void put(const CurvatureTree& part, const Item& item, const Place& place);
-
-    CurvatureTree& tree_;
-    Task& task_;
-    std::vector<Outer> outers_;  // what items refer to
-    double length_[2] = {};      // of the sides of the box that was looked at last
-    std::size_t uncounted_ = 0;  // leaves that the task does not know of
-    bool fine_ = false;          // whether its error is small enough
-};
 
 // What is known of the box decides; whether it is fine, and whether it stays whole.
 bool CurvatureTree::Grower::is_leaf(Node& node, const BoxBending& known) {
@@ -267,100 +203,9 @@ std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std
     return std::nullopt;
 }
 
-std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items) {
-    std::vector<std::optional<Refusal>> bad(items.size());
-    // All together need too many leaves, or none of them says so: which one does is chance.
-    const auto worst = [&]() -> std::optional<Refusal> {
-        for (const bool limit : {true, false})
-            for (const auto& b : bad)
-                if (b && (!limit || b->kind == RefusalKind::limit)) return b;
-        return std::nullopt;
-    };
-    if (!task_.in_parts) {  // into this tree at once, in the order in which parts are added below
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const BoxBending& outer = outers_[std::size_t(items[i].outer)].known;
-            std::vector<Item> own{std::move(items[i])};
-            own.front().outer = 0;
-            bad[i] = Grower(tree_, task_, outer).grow(own, 0);
-        }
-        return worst();
-    }
-    std::vector<CurvatureTree> parts(items.size());
-    parallel_for(items.size(), 1, [&](std::size_t i) {
-        CurvatureTree& part = parts[i];
-        part.knows_normals_ = tree_.knows_normals_;
-        part.kinks_ = tree_.kinks_;
-        part.sharp_ = tree_.sharp_;
-        part.columns_ = tree_.columns_;
-        part.segments_ = tree_.segments_;
-        part.nodes_.add(tree_.nodes_[std::size_t(items[i].node)]);
-        std::vector<Item> own{items[i]};
-        own.front().node = own.front().outer = 0;
-        if (own.front().variation >= 0) {
-            part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
-            own.front().variation = 0;
-        }
-        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)].known).grow(own, 0);
-        if (!bad[i] && !part.sum_up(part.nodes_.end())) task_.all_flat = false;
-    });
-    if (auto first = worst()) return first;
-    add(parts, items);
-    return std::nullopt;
-}
-
-// Parts that have been grown from the items, as they are, one behind the other.
-void CurvatureTree::Grower::add(std::vector<CurvatureTree>& parts, std::span<const Item> items) {
-    std::vector<Place> places;
-    Place end;
-    end.variations = tree_.variations_.size();
-    end.blocks = tree_.blocks_.size(), end.part_bendings = tree_.part_bendings_.size();
-    for (CurvatureTree& p : parts) {
-        end.nodes_end = p.nodes_.end();
-        end.nodes = tree_.nodes_.take(std::move(p.nodes_));
-        end.nodes_end += end.nodes;
-        end.bendings = tree_.bendings_.take(std::move(p.bendings_));
-        end.sums = tree_.sums_.take(std::move(p.sums_));
-        places.push_back(end);
-        end.variations += p.variations_.size(), end.blocks += p.blocks_.size();
-        end.part_bendings += p.part_bendings_.size();
-    }
-    tree_.variations_.resize(end.variations);
-    tree_.blocks_.resize(end.blocks);
-    tree_.part_bendings_.resize(end.part_bendings);
-    parallel_for(parts.size(), 1, [&](std::size_t i) {
-        put(parts[i], items[i], places[i]);
-        parts[i] = {};
-    });
-}
-
-// The numbers of its nodes are there already; what they refer to becomes what it is in the tree.
-void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, const Place& place) {
-    const int nodes = int(place.nodes), variations = int(place.variations), blocks = int(place.blocks);
-    for (std::size_t k = 0; k < part.blocks_.size(); ++k) {
-        Block b = part.blocks_[k];
-        b.first_part += int(place.part_bendings);
-        tree_.blocks_[place.blocks + k] = b;
-    }
-    const auto copy = [](const auto& from, auto& to, std::size_t at) {
-        std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t(at));
-    };
-    copy(part.part_bendings_, tree_.part_bendings_, place.part_bendings);
-    copy(part.variations_, tree_.variations_, place.variations);
-    Node& top = tree_.nodes_[std::size_t(item.node)];
-    const int parent = top.parent;
-    for (std::size_t k = place.nodes; k < place.nodes_end; ++k) {
-        Node& n = tree_.nodes_[k];
-        n.parent = n.parent == 0 ? item.node : nodes + n.parent;
-        if (n.child >= 0) n.child += nodes;
-        if (n.variation >= 0) n.variation += variations;
-        if (n.block >= 0) n.block += blocks;
-        if (n.slot >= 0) n.slot += int(n.child < 0 ? place.bendings : place.sums);
-    }
-    Node& first = tree_.nodes_[place.nodes];  // the item's box: known by its number before
-    top = first;
-    top.parent = parent;
-    first = {};
-    first.outside = true;
+void CurvatureTree::reserve(std::size_t nodes) {
+    nodes_.reserve(nodes);
+    sums_.reserve(nodes / 2);
 }
 
 bool CurvatureTree::sum_up(std::size_t end) {
@@ -404,6 +249,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
         for (const Kink& k : tree.kinks_[std::size_t(d)])
             if (!is_rounding(k, (root.hi - root.lo)[d], demands.tolerance))
                 tree.sharp_[std::size_t(d)].push_back(k.at);
+    const std::size_t nodes = expected_nodes(demands);
+    if (demands.is_shared && is_serial()) tree.reserve(nodes);
     tree.nodes_.add({root, 0});
     tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
@@ -411,7 +258,13 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
     // Parts of a tree are made by themselves for threads alone. Asked once: others may change their number.
-    Grower::Task task{surface, polygon, demands, max_leaves, ways.blocks, demands.is_shared && !is_serial()};
+    Grower::Task task{surface,
+                      polygon,
+                      demands,
+                      max_leaves,
+                      ways.blocks,
+                      demands.is_shared && !is_serial(),
+                      nodes / kPartsOfTree};
     Grower grower(tree, task, any);
     std::vector<Grower::Item> items{{0, 0, 0, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.is_shared ? kPartsOfTree : 0);

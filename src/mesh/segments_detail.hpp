@@ -1,5 +1,6 @@
 // A sequence that takes up another one as it is: what parts have made need not be copied.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -24,7 +25,9 @@ public:
         for (const auto& s : segments_) all += s.size();
         return all;
     }
-    // Moves what the last segment has.
+    // So many elements will not be moved; REQUIRES an empty sequence.
+    void reserve(std::size_t elements) { segments_.emplace_back().reserve(std::min(elements, kLongest)); }
+    // May move what the last segment has.
     std::size_t add(const T& x) {
         if (segments_.empty() || segments_.back().size() == kLongest) segments_.emplace_back();
         segments_.back().push_back(x);

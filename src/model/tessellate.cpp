@@ -81,9 +81,10 @@ bool Tessellator::is_large(std::size_t f) const {
 }
 
 FaceDemands Tessellator::face_demands(std::size_t f) const {
-    return {tolerance_,          options_.max_edge, options_.max_angle,
-            options_.max_aspect, options_.quads,    f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
-            is_large(f)};
+    return {tolerance_,         options_.max_edge,
+            options_.max_angle, options_.max_aspect,
+            options_.quads,     f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
+            is_large(f),        f < sizes_.size() ? sizes_[f] : 0};
 }
 
 Result<void> Tessellator::match_grids() {

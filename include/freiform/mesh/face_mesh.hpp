@@ -65,6 +65,8 @@ struct FaceDemands {
     const GridLines* lines = nullptr;
     // Work inside of this face is for all threads. Results are the same for any number of them.
     bool is_shared = false;
+    // About how many there will be, for memory that is not moved while it grows; 0 where nothing is known.
+    double expected_triangles = 0;
 
     bool shapes_triangles() const {
         return std::isfinite(max_edge) || std::isfinite(max_angle) || std::isfinite(max_aspect);
