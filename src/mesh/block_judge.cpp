@@ -22,7 +22,6 @@ struct BlockJudge {
         const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
         const double error = judge.cell_error(at, block.box, cell);
         JudgedBlock out;
-        out.scale = at.least > 0 ? Vec<2>{{at.a, at.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
         out.flat = within(error);
         const auto with = [&](int plain) {
             return within(judge.leaf(at, block.box, error, plain, block.node).bound);

@@ -48,7 +48,6 @@ struct BlockGrid {
 // tolerance.
 struct JudgedBlock {
     double usual = kInfinity, footless = kInfinity, flat = kInfinity;
-    Vec<2> scale{};  // what makes parameters lengths, of leaves
 };
 
 JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,

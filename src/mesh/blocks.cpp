@@ -319,8 +319,13 @@ private:
             return;
         }
         places.clear();
+        const auto block = tree_.block(l.block);
+        const Bending& bends = tree_.part_bendings(block)[0];
+        const Vec<2> size = block.box.hi - block.box.lo;
+        const Vec<2> scale =  // what makes parameters lengths
+            bends.least > 0 ? Vec<2>{{bends.a, bends.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
         for (const int at : border_of(l)) {
-            const Vec<2> x = table_.points()[std::size_t(at)] - box_of(l).lo, scale = judged(l).scale;
+            const Vec<2> x = table_.points()[std::size_t(at)] - block.box.lo;
             places.push_back({{x[0] * scale[0], x[1] * scale[1]}});
         }
         found.clear();

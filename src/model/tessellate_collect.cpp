@@ -22,6 +22,14 @@ bool has_kinks(const DerivativeQuery<2, 3>& surface) {
     return !surface.kinks(0).empty() || !surface.kinks(1).empty();
 }
 
+template <class T>
+void append(std::vector<T>& to, std::vector<T>&& more) {
+    if (to.capacity() == 0)
+        to = std::move(more);
+    else
+        to.insert(to.end(), more.begin(), more.end());
+}
+
 // Of length 1, where both tangents are there and not parallel.
 std::optional<Vec<3>> regular_normal(const Jet<2, 1, Vec<3>>& j) {
     const Vec<3> m = cross(j.d[1], j.d[2]);
@@ -216,33 +224,35 @@ Tessellation Tessellator::collect() {
         points += looks[f].inner.size(), vertices += looks[f].vertices.size(),
             triangles += meshes_[f].triangles.size();
     out.mesh.points.reserve(points);
-    out.mesh.vertices.reserve(vertices);
-    out.mesh.triangles.reserve(triangles);
+    if (faces() > 1) {  // of one they are taken as they are
+        out.mesh.vertices.reserve(vertices);
+        out.mesh.triangles.reserve(triangles);
+    }
     for (std::size_t f = 0; f < faces(); ++f) {
         const Face& face = model_.faces[f];
         if (is_refused(f)) {
             out.refused.push_back({int(f), face.name, *refusals_[f]});
             continue;
         }
-        const FaceMesh& m = meshes_[f];
+        FaceMesh& m = meshes_[f];
         const bool flip = face.reversed != bool(flipped[f]);
         const int base = int(out.mesh.vertices.size());
         const int inner = int(out.mesh.points.size());
-        out.mesh.points.insert(out.mesh.points.end(), looks[f].inner.begin(), looks[f].inner.end());
-        for (MeshVertex v : looks[f].vertices) {
+        append(out.mesh.points, std::move(looks[f].inner));
+        for (MeshVertex& v : looks[f].vertices)
             if (v.point < 0) v.point = inner - 1 - v.point;
-            out.mesh.vertices.push_back(v);
-        }
+        append(out.mesh.vertices, std::move(looks[f].vertices));
         MeshPart part{face.name, face.colour, int(out.mesh.triangles.size()), 0, int(f)};
         if (!part.colour && body_colour[f]) part.colour = *body_colour[f];
-        const auto& triangles_here = looks[f].triangles.empty() ? m.triangles : looks[f].triangles;
-        for (std::size_t k = 0; k < triangles_here.size(); ++k) {
-            // Turned over, the second half of a quad is the first.
-            auto t = triangles_here[flip && k < 2 * std::size_t(m.quads) ? k ^ 1 : k];
+        auto triangles_here = std::move(looks[f].triangles.empty() ? m.triangles : looks[f].triangles);
+        // Turned over, the second half of a quad is the first.
+        for (std::size_t k = 0; flip && k < 2 * std::size_t(m.quads); k += 2)
+            std::swap(triangles_here[k], triangles_here[k + 1]);
+        for (auto& t : triangles_here) {
             if (flip) std::swap(t[1], t[2]);
             for (int& i : t) i += base;
-            out.mesh.triangles.push_back(t);
         }
+        append(out.mesh.triangles, std::move(triangles_here));
         part.quads = m.quads;
         out.quads += m.quads;
         part.count = int(out.mesh.triangles.size()) - part.first;
