@@ -35,7 +35,8 @@ constexpr double kMostNodes = 1 << 20;       // expected: 80 MiB
 constexpr long long kFewNumbers = 96;        // of a piece: asking them is as cheap as a sample
 
 std::size_t expected_nodes(const FaceDemands& demands) {
-    return std::size_t(std::min(kNodesOfTriangle * demands.expected_triangles, kMostNodes));
+    const double nodes = kNodesOfTriangle * demands.expected_triangles;
+    return std::size_t(nodes < kMostNodes ? nodes : kMostNodes);
 }
 
 // The axis along which a box of this size is to be cut: where the curvature asks for it, else the longer one.

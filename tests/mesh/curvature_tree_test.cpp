@@ -82,6 +82,34 @@ TEST(CurvatureTree, bounds_second_derivatives_at_samples) {
     }
 }
 
+// As few as are counted at once, and many more: by one thread and by all.
+TEST(CurvatureTree, no_more_leaves_are_made_than_are_allowed) {
+    Random random(6);
+    const SurfaceGeometry s = waves(random);
+    const DerivativeQuery<2, 3> surface(s);
+    const std::vector<Vec<2>> polygon{{{0, 0}}, {{5, 0}}, {{5, 5}}, {{0, 5}}};
+    const std::vector<std::array<int, 2>> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+    for (const double tolerance : {0.1, 2e-3}) {
+        std::vector<std::size_t> fewest;
+        for (const bool is_shared : {false, true}) {
+            std::size_t refused = 1, enough = 100'000;
+            while (enough - refused > 1) {
+                const std::size_t most = (refused + enough) / 2;
+                const auto tree = CurvatureTree::make(surface, polygon, segments,
+                                                      {.tolerance = tolerance, .is_shared = is_shared}, most);
+                if (!tree) {
+                    EXPECT_EQ(tree.error().kind, RefusalKind::limit);
+                }
+                (tree ? enough : refused) = most;
+            }
+            fewest.push_back(enough);
+        }
+        EXPECT_EQ(fewest[0], fewest[1]);
+        EXPECT_GT(fewest[0], 20u);
+        EXPECT_EQ(fewest[0]<256, tolerance> 0.01) << fewest[0];
+    }
+}
+
 // So many control points for each piece that leaves are judged by samples; C1 at some of its knots, and
 // rational.
 SurfaceGeometry many_waves(Random& random) {

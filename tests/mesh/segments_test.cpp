@@ -38,5 +38,15 @@ TEST(Segments, another_one_is_taken_up_as_it_is) {
         }
 }
 
+TEST(Segments, what_has_room_is_not_moved) {
+    Segments<int> all;
+    all.reserve(1000);
+    const std::size_t first = all.add(0);
+    const int* address = &all[first];
+    for (int i = 1; i < 1000; ++i) all.add(i);
+    EXPECT_EQ(&all[first], address);
+    EXPECT_EQ(all.count(), 1000u);
+}
+
 }  // namespace
 }  // namespace freiform
