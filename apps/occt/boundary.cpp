@@ -15,6 +15,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <TopoDS_Vertex.hxx>
+#include <algorithm>
 #include <limits>
 
 namespace freiform::occt {
@@ -62,7 +63,7 @@ Result<int> Converter::edge(const TopoDS_Edge& oriented, const TopoDS_Face& f) {
     const auto e = TopoDS::Edge(oriented.Oriented(TopAbs_FORWARD));
     if (int i = 0; edges_.Find(e, i)) return i;
     Edge made;
-    made.tolerance = BRep_Tool::Tolerance(e);
+    made.tolerance = std::max(BRep_Tool::Tolerance(e), document_.resolution);
     double lo = 0, hi = 0;
     made.degenerate = BRep_Tool::Degenerated(e);
     const Handle(Geom_Curve) c = made.degenerate ? Handle(Geom_Curve)() : BRep_Tool::Curve(e, lo, hi);
@@ -185,6 +186,16 @@ Handle(Geom_Plane) as_plane(Handle(Geom_Surface) s) {
 
 }  // namespace
 
+// Whether the piece is a degenerate edge where there is one already: the reader has added both, then.
+bool Converter::is_second_pole(const Piece& p, const std::vector<Piece>& pieces) const {
+    const auto is_degenerate = [&](const Piece& x) {
+        return out_.model.edges[std::size_t(x.coedge.edge)].degenerate;
+    };
+    return is_degenerate(p) && std::any_of(pieces.begin(), pieces.end(), [&](const Piece& q) {
+               return is_degenerate(q) && q.from == p.from;
+           });
+}
+
 // REQUIRES f oriented forward.
 Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
     const Handle(Geom_Surface) s = BRep_Tool::Surface(f);
@@ -205,6 +216,7 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
                 continue;
             auto p = piece(TopoDS::Edge(i.Value()), f, plane);
             if (!p) return std::unexpected(p.error());
+            if (is_second_pole(*p, pieces)) ++out_.doubts;
             add_hull(used, p->coedge.curve, out_.model.edges[std::size_t(p->coedge.edge)].range);
             pieces.push_back(std::move(*p));
         }

@@ -42,10 +42,13 @@ private:
     Result<Face> geometry_of(const TopoDS_Face& f);
     Result<Loop> loop_of(std::vector<Piece> pieces, std::vector<Loop>& more);
     Result<Piece> piece(const TopoDS_Edge& e, const TopoDS_Face& f, const Handle(Geom_Plane) & plane);
+    bool is_second_pole(const Piece& p, const std::vector<Piece>& pieces) const;
     Result<int> edge(const TopoDS_Edge& e, const TopoDS_Face& f);
     int vertex(const TopoDS_Vertex& v);
     // Where a degenerate edge is.
     const Vec<3>& vertex_of(const Edge& e) const { return out_.model.vertices[std::size_t(e.start)].point; }
+    // A length in the unit of the file, for people.
+    double in_file(double length) const { return length / document_.factor; }
     // `bound` may be infinite: then nothing is proven, and the estimate is all there is.
     void report(int edge, std::string what, double bound, double estimate);
     Result<void> check_tolerance(Face& f, std::string_view where);

@@ -1,9 +1,15 @@
 // Idea. STEP and IGES are read twice removed from what they say: the reader scales all lengths to a unit that
-// the program chooses. So the unit of the file is looked up first and chosen, and the factor is 1.
+// the program chooses. So the unit of a STEP file is looked up first and chosen, and the factor is 1. Where
+// another unit than millimetres is chosen the reader takes parameter curves of IGES files wrongly (it looks
+// for seams where they are not, and puts edges far from faces), and where numbers are small it loses edges, as
+// its tolerances are not relative. So IGES files are read as if their numbers were millimetres, which leaves
+// these as they are, or as the millimetres that they are: whoever asks divides by the factor.
 #include "document.hpp"
 
+#include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
@@ -254,7 +260,18 @@ Result<Document> read_step(const std::string& path) {
     return out;
 }
 
-Result<Document> read_iges(const std::string& path) {
+// The longest side of the box of all parts, 0 if they are empty.
+double size_of(const Document& document) {
+    Bnd_Box box;
+    for (const Part& part : document.parts) BRepBndLib::AddClose(part.shape.Moved(part.at), box);
+    if (box.IsVoid()) return 0;
+    const gp_XYZ side = box.CornerMax().XYZ() - box.CornerMin().XYZ();
+    return std::max({side.X(), side.Y(), side.Z()});
+}
+
+constexpr double kCoarse = 1e-3;  // of the size: resolutions that are larger are none
+
+Result<Document> read_iges(const std::string& path, Lengths lengths) {
     IGESCAFControl_Reader reader;
     reader.SetLayerMode(false);
     const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
@@ -270,12 +287,20 @@ Result<Document> read_iges(const std::string& path) {
     const Unit* unit = flag > 0 && flag < 12 && flag != 3 ? unit_named(kFlags[flag]) : unit_named(named);
     const Unit& chosen = unit != nullptr ? *unit : *unit_named("MM");
     const Handle(TDocStd_Document) document = new_document();
-    set_unit(document, chosen.millimetres);
-    global.SetCascadeUnit(chosen.millimetres);
+    set_unit(document, 1);
+    global.SetCascadeUnit(1);
+    if (lengths == Lengths::as_written) {
+        global.SetUnitFlag(2);
+        global.SetUnitName(new TCollection_HAsciiString("MM"));
+    }
     model->SetGlobalSection(global);
     Handle(TDocStd_Document) target = document;
     const bool done = reader.Transfer(target);
     Document out = collect({target, reader.WS()}, std::string(chosen.ours));
+    out.millimetres = chosen.millimetres;
+    if (lengths == Lengths::in_millimetres) out.factor = out.millimetres;
+    if (const double r = out.factor * global.Resolution(); r > 0 && r <= kCoarse * size_of(out))
+        out.resolution = r;
     if (!done || out.parts.empty())
         return unreadable(path, "IGES", text(model->NbEntities(), " entities, but none that makes a shape"));
     return out;
@@ -293,12 +318,12 @@ Result<Document> read_brep(const std::string& path) {
 
 }  // namespace
 
-Result<Document> read_document(const std::string& path, Format format) {
+Result<Document> read_document(const std::string& path, Format format, Lengths lengths) {
     switch (format) {
         case Format::step:
             return read_step(path);
         case Format::iges:
-            return read_iges(path);
+            return read_iges(path, lengths);
         case Format::brep:
             return read_brep(path);
     }

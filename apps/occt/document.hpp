@@ -30,11 +30,17 @@ struct Part {
 
 struct Document {
     std::string unit;
+    double factor = 1;       // lengths are so many times those of the file
+    double millimetres = 1;  // of IGES: the unit of the file
+    double resolution = 0;   // what the file (IGES) says that its edges may be off by; 0: nothing
     std::vector<Part> parts;
     std::vector<Refusal> refused;                               // what the reader itself left out
     std::function<Attributes(const TopoDS_Shape&)> attributes;  // of a face or solid of a part
 };
 
-Result<Document> read_document(const std::string& path, Format format);
+// How the lengths of an IGES file are read: its numbers as if they were millimetres, or as millimetres.
+enum class Lengths { as_written, in_millimetres };
+
+Result<Document> read_document(const std::string& path, Format format, Lengths lengths = Lengths::as_written);
 
 }  // namespace freiform::occt

@@ -10,6 +10,7 @@
 
 #include <freiform/io/file.hpp>
 #include <freiform/io/model_binary.hpp>
+#include <freiform/model/rescale.hpp>
 
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -109,12 +110,51 @@ bool ran_out_of_memory() {
     return false;
 }
 
+// What becomes of a file, and how well it went.
+struct Reading {
+    occt::Document document;
+    occt::Conversion conversion;
+    double size = 0;   // the longest side of the box of its vertices
+    double worst = 0;  // the largest tolerance of an edge, of that size
+};
+
+Result<Reading> read(const Arguments& a, occt::Lengths lengths) {
+    auto document = occt::read_document(a.input, a.format, lengths);
+    if (!document) return std::unexpected(document.error());
+    Reading out{*std::move(document), {}};
+    out.conversion = occt::convert(out.document);
+    Box<3> box;
+    for (const Vertex& v : out.conversion.model.vertices) box.add(v.point);
+    for (int d = 0; d < 3 && !box.is_empty(); ++d) out.size = std::max(out.size, box.side(d).length());
+    for (const Edge& e : out.conversion.model.edges) out.worst = std::max(out.worst, e.tolerance / out.size);
+    return out;
+}
+
+// An IGES file is read in the other way, too, where that may be better: where the reader's tolerances are not
+// small against the numbers of the file, where it leaves out a face, a pole has two edges, or an edge is far off.
+Result<Reading> read(const Arguments& a) {
+    constexpr double kSmall = 8, kFarOff = 1e-4;
+    auto written = read(a, occt::Lengths::as_written);
+    if (!written || written->document.millimetres == 1) return written;
+    const bool is_small = written->document.millimetres > 1 && written->size < kSmall;
+    const occt::Conversion& c = written->conversion;
+    if (!is_small && c.doubts == 0 && c.model.refused.empty() && written->worst <= kFarOff) return written;
+    auto other = read(a, occt::Lengths::in_millimetres);
+    if (!other) return written;
+    const auto faults = [](const Reading& r) {
+        return std::pair(r.conversion.model.refused.size(), r.conversion.doubts);
+    };
+    const auto mine = faults(*written), others = faults(*other);
+    const bool is_better = others != mine ? others < mine : is_small || other->worst < written->worst;
+    return is_better ? std::move(other) : std::move(written);
+}
+
 int run(const Arguments& a, int output) {
-    auto document = occt::read_document(a.input, a.format);
-    if (!document && ran_out_of_memory())
+    auto reading = read(a);
+    if (!reading && ran_out_of_memory())
         return say({RefusalKind::limit, a.input, "the memory limit is too small for this file"});
-    if (!document) return say(document.error());
-    occt::Conversion c = occt::convert(*document);
+    if (!reading) return say(reading.error());
+    occt::Conversion& c = reading->conversion;
     if (c.model.faces.empty() && c.model.edges.empty()) {
         if (c.model.refused.empty())
             return say({RefusalKind::no_answer, a.input, "the file has no faces and no curves"});
@@ -124,6 +164,8 @@ int run(const Arguments& a, int output) {
     if (a.verify && !occt::verify(c, a.input)) return 1;
     auto model = make_model(std::move(c.model));
     if (!model) return say({RefusalKind::unreadable, model.error().where, model.error().message});
+    if (const double factor = reading->document.factor; factor != 1) model = divided(*model, factor);
+    if (!model) return say(model.error());
     const std::string bytes = to_binary(*model);
     if (a.output == "-") {
         if (auto ok = write_all(output, bytes); !ok) return say(ok.error());

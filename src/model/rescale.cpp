@@ -8,12 +8,13 @@ namespace freiform {
 
 namespace {
 
+template <class Change>
 class Rescaler {
 public:
-    explicit Rescaler(int exponent) : exponent_(exponent) {}
+    explicit Rescaler(Change change) : change_(change) {}
 
     double operator()(double x) {
-        const double y = std::ldexp(x, exponent_);
+        const double y = change_(x);
         finite_ = finite_ && std::isfinite(y);
         return y;
     }
@@ -49,19 +50,19 @@ public:
     bool is_finite() const { return finite_; }
 
 private:
-    int exponent_;
+    Change change_;
     bool finite_ = true;
 };
 
-}  // namespace
-
-Result<Model> rescaled(const Model& model, int exponent) {
-    Rescaler scale(exponent);
+// `change` in words: for refusals.
+template <class Change>
+Result<Model> changed(const Model& model, Change change, const std::string& words) {
+    Rescaler scale(change);
     Model out = model;
     const auto check = [&](const char* what, std::size_t i) -> Result<void> {
         if (scale.is_finite()) return {};
         return refuse(RefusalKind::nonfinite, text(what, "[", i, "]"),
-                      text("times 2^", exponent, " is beyond the largest double"));
+                      text(words, " is beyond the largest double"));
     };
     for (std::size_t i = 0; i < out.vertices.size(); ++i) {
         Vertex& v = out.vertices[i];
@@ -85,6 +86,18 @@ Result<Model> rescaled(const Model& model, int exponent) {
     }
     for (Repair& r : out.repairs) r.distance = scale(r.distance);
     return out;
+}
+
+}  // namespace
+
+Result<Model> rescaled(const Model& model, int exponent) {
+    return changed(
+        model, [=](double x) { return std::ldexp(x, exponent); }, text("times 2^", exponent));
+}
+
+Result<Model> divided(const Model& model, double by) {
+    return changed(
+        model, [=](double x) { return x / by; }, text("divided by ", by));
 }
 
 }  // namespace freiform

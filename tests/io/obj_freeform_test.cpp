@@ -54,7 +54,7 @@ TEST(ObjFreeform, solids_come_back_as_faces_that_fit) {
     const std::vector<Model> solids = {*prism(ring, {{1, 0.5, 2}}),
                                        *solid_of_revolution(ring, about, 1.5),
                                        *solid_of_revolution(ring, about, 2 * kPi),
-                                       torus(3, 1),
+                                       torus(3.0, 1.0),
                                        sphere({{1, 2, 3}}, 1),
                                        frustum(2, 1, 3)};
     for (std::size_t i = 0; i < solids.size(); ++i) {

@@ -114,7 +114,7 @@ TEST_P(SolidFiles, keep_volumes_shells_and_faces) {
             EXPECT_NEAR(volume(back, 1e-1), angle * (5 * kPi * 4 - 5.25 * kPi * 0.5), 0.03 * angle * 55)
                 << angle;
         }
-    EXPECT_NEAR(volume(read_again({"mm", {{"", torus(3, 1)}}}, iges), 5e-2), 2 * kPi * kPi * 3, 2);
+    EXPECT_NEAR(volume(read_again({"mm", {{"", torus(3.0, 1.0)}}}, iges), 5e-2), 2 * kPi * kPi * 3, 2);
     EXPECT_NEAR(volume(read_again({"mm", {{"", sphere({{1, 2, 3}}, 1)}}}, iges), 1e-2), 4.0 / 3 * kPi, 0.1);
     EXPECT_NEAR(volume(read_again({"mm", {{"", frustum(2, 1, 3)}}}, iges), 5e-2), 7 * kPi, 0.5);
 }
@@ -249,7 +249,7 @@ TEST(IgesText, is_refused_where_it_cannot_say_it) {
         Curve<Vec<4>>::make({must(BSplineBasis::bezier(1))}, Net<1, Vec<4>>({2}, {Vec<4>{}, Vec<4>{}}));
     expect_refusal(write_iges({"", {{"m", must(line)}}}), RefusalKind::unsupported, "objects[0] \"m\"",
                    "is a curve");
-    Model bare = torus(3, 1);
+    Model bare = torus(3.0, 1.0);
     bare.faces[0].loops.clear();
     expect_refusal(write_iges({"", {{"m", bare}}}), RefusalKind::unsupported,
                    "objects[0] \"m\".faces[0].loops", "without boundary");

@@ -55,4 +55,18 @@ TEST(Rescale, there_and_back_is_where_it_was_and_infinity_is_refused) {
     expect_refusal(rescaled(torus(3, 1), 1023), RefusalKind::nonfinite, "vertices[0]", "2^1023");
 }
 
+TEST(Rescale, divided_numbers_are_those_of_another_unit) {
+    const Model m = test::sphere({{25.4, 50.8, 0}}, 2.54);
+    const auto inches = divided(m, 25.4);
+    ASSERT_TRUE(inches);
+    for (const Vec<2>& at : {Vec<2>{{0.5, 0.25}}, Vec<2>{{2, 1}}}) {
+        const Vec<3> before = jet<0>(m.faces[0].surface, at.c).value(),
+                     after = jet<0>(inches->faces[0].surface, at.c).value();
+        for (int d = 0; d < 3; ++d) EXPECT_NEAR(25.4 * after[d], before[d], 1e-14 * 50.8);
+    }
+    for (std::size_t i = 0; i < m.edges.size(); ++i)
+        EXPECT_EQ(inches->edges[i].tolerance, m.edges[i].tolerance / 25.4);
+    expect_refusal(divided(torus(3, 1), 1e-320), RefusalKind::nonfinite, "vertices[0]", "1e-320");
+}
+
 }  // namespace
