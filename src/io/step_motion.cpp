@@ -110,7 +110,8 @@ double on_conic(const Conic<3>& c, const Vec<3>& p) {
                                             : b;
 }
 
-// Newton's method from the best of some samples.
+// Newton's method from the best of some samples; from the other end, too, where an end is nearest: of a closed
+// curve that may be the side on which p is.
 template <class C>
 double on_spline(const C& c, const Vec<3>& p) {
     const std::vector<double> breaks = c.basis().breaks();
@@ -123,19 +124,22 @@ double on_spline(const C& c, const Vec<3>& p) {
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
         for (int k = 1; k <= each; ++k) look(breaks[i] + (breaks[i + 1] - breaks[i]) * k / each);
     const Interval on = c.domain()[0];
-    double t = best;
-    for (int i = 0; i < 20; ++i) {
-        const auto j = c.template jet<2>(t);
-        const Vec<3> r = j.d[0] - p;
-        const double slope = dot(r, j.d[1]), full = dot(j.d[1], j.d[1]) + dot(r, j.d[2]),
-                     simple = dot(j.d[1], j.d[1]);
-        const double by = full > 0.1 * simple ? full : simple;
-        if (!(by > 0)) break;
-        const double next = clamped(t - slope / by, on);
-        if (next == t) break;
-        t = next;
-        look(t);
-    }
+    const auto from = [&](double t) {
+        for (int i = 0; i < 20; ++i) {
+            const auto j = c.template jet<2>(t);
+            const Vec<3> r = j.d[0] - p;
+            const double slope = dot(r, j.d[1]), full = dot(j.d[1], j.d[1]) + dot(r, j.d[2]),
+                         simple = dot(j.d[1], j.d[1]);
+            const double by = full > 0.1 * simple ? full : simple;
+            if (!(by > 0)) break;
+            const double next = clamped(t - slope / by, on);
+            if (next == t) break;
+            t = next;
+            look(t);
+        }
+    };
+    from(best);
+    if (best == on.lo || best == on.hi) from(best == on.lo ? on.hi : on.lo);
     return best;
 }
 

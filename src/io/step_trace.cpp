@@ -11,6 +11,8 @@
 // curves are continued from inside.
 #include "step_trace.hpp"
 
+#include <freiform/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +22,10 @@ namespace {
 
 constexpr int kMostPieces = 600;  // backstop
 constexpr double kApart = 1e-6;   // of the range: places where pieces begin
+// Of an edge: where its parameter curve begins, the first of them near enough to the surface. Near is so much
+// of what is asked for, and so many times as far as the place before.
+constexpr double kMiddles[] = {0.46875, 0.21875, 0.78125, 0.09375, 0.90625};
+constexpr double kNear = 10, kFarther = 2;
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
 int spans_of(const CurveGeometry<3>& c) {
@@ -36,6 +42,7 @@ int spans_of(const CurveGeometry<3>& c) {
 struct TraceNode {
     double t = 0;
     Vec<2> at{}, before{}, after{};  // the slopes on both sides: the edge may have a corner here
+    double gap = 0;                  // how far from the edge it is on the surface
 };
 
 class Tracer {
@@ -77,9 +84,17 @@ private:
 
     Result<Trace> on_curved() {
         if (auto told = image()) return *told;
-        const double middle = on_.lo + 0.46875 * on_.length();
-        const auto j = jet<1>(c_, middle);
-        const Foot start = foot_by_images(chart_, j.d[0], j.d[1], middle, on_, accuracy_, images_);
+        if (auto side = along_side()) return *side;
+        double middle = 0;
+        Foot start;
+        start.distance = kInfinity;
+        for (const double x : kMiddles) {
+            if (start.distance <= kNear * accuracy_) break;
+            const double t = on_.lo + x * on_.length();
+            const auto j = jet<1>(c_, t);
+            const Foot f = foot_by_images(chart_, j.d[0], j.d[1], t, on_, accuracy_, images_);
+            if (f.regular && f.distance < start.distance) start = f, middle = t;
+        }
         if (!start.regular) return through_pole();
         if (auto straight = line(start, middle)) return *straight;
         return spline(start, middle);
@@ -111,6 +126,38 @@ private:
             if (holds_everywhere(out, std::max(spans_of(c_), spans_of(c)))) return out;
         }
         return std::nullopt;
+    }
+
+    // Along the end of a spline that does not close, or along its extrusion: known without looking for feet,
+    // which where it folds are many. From one corner to another, or with the parameter of the edge.
+    std::optional<Trace> along_side() const {
+        const auto* extrusion = std::get_if<Extrusion>(&chart_.surface());
+        for (int k = 0; k < 2; ++k)
+            if (chart_.period(k) > 0 || (!chart_.is_spline(k) && !(extrusion && k == 1))) return std::nullopt;
+        const auto on = chart_.whole();
+        for (int k = 0; k < (extrusion ? 1 : 2); ++k) {
+            const Interval& along = on[std::size_t(k)];
+            std::vector<Vec<2>> ways{{{along.lo, along.hi}}, {{along.hi, along.lo}}};
+            if (along.lo <= on_.lo && on_.hi <= along.hi) ways.push_back({{on_.lo, on_.hi}});
+            for (const Vec<2>& way : ways)
+                for (const bool high : {false, true}) {
+                    Vec<2> from, to;
+                    from[k] = way[0], to[k] = way[1];
+                    from[1 - k] = to[1 - k] =
+                        extrusion ? height(*extrusion, way[0]) : high ? on[std::size_t(1 - k)].hi : on[std::size_t(1 - k)].lo;
+                    if (!(gap_at(from, on_.lo) <= accuracy_) || !(gap_at(to, on_.hi) <= accuracy_)) continue;
+                    const Vec<2> d = (1 / on_.length()) * (to - from);
+                    Trace out;
+                    out.curve = Line<2>{from - on_.lo * d, d};
+                    if (holds_everywhere(out, spans_of(c_)) && out.gap <= accuracy_) return out;
+                }
+        }
+        return std::nullopt;
+    }
+    // Where the edge begins above a place of the profile.
+    double height(const Extrusion& s, double u) const {
+        const Vec<3> up = jet<0>(c_, on_.lo).value() - jet<0>(s.profile, u).value();
+        return dot(up, s.direction) / dot(s.direction, s.direction);
     }
 
     double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }
@@ -194,6 +241,7 @@ private:
     // A node at out.t, where the nearest point is.
     void place(const Foot& f, TraceNode& out) const {
         out.at = f.at;
+        out.gap = f.distance;
         out.before = out.after = f.slope;
         if (!has_corner(out.t)) return;
         const auto left = jet<1>(c_, std::nextafter(out.t, on_.lo));
@@ -224,6 +272,7 @@ private:
             if (norm(p.point - j.d[0]) <= norm(chart_.point(out.at) - j.d[0]) + accuracy_)
                 out.at[p.axis] = p.at;
         out.before = out.after = g.slope;
+        out.gap = norm(chart_.point(out.at) - j.d[0]);
         return true;
     }
     bool has_corner(double t) const {
@@ -308,19 +357,22 @@ private:
         out.curve = joined(done);
         return out;
     }
-    // As `node`, in smaller steps where one is too large.
-    bool advance(TraceNode from, double t, TraceNode& out) const {
+    // As `node`, in smaller steps where one is too large: where the surface folds it may lead to another part
+    // of it, which is farther from the edge.
+    bool advance(const TraceNode& from, double t, TraceNode& out) const {
+        bool found = false;
         for (int steps = 1; steps <= 64; steps *= 8) {
-            TraceNode at = from;
+            TraceNode at = from, next;
             bool good = true;
             for (int i = 1; i <= steps && good; ++i) {
                 const double to = i == steps ? t : from.t + (t - from.t) * i / steps;
-                good = node(to, at, out);
-                at = out;
+                good = node(to, at, next);
+                at = next;
             }
-            if (good) return true;
+            if (good && (!found || at.gap < out.gap)) out = at, found = true;
+            if (found && out.gap <= kNear * accuracy_ + kFarther * from.gap) break;
         }
-        return false;
+        return found;
     }
 
     static CurveGeometry<2> joined(const std::vector<TraceNode>& nodes) {

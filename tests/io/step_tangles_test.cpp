@@ -214,6 +214,23 @@ TEST(StepTangles, faces_of_real_files_whose_boundaries_ran_into_themselves_are_m
     }
 }
 
+// Edges that lie on their surface where it folds, so that the nearest point from a place before leads to another
+// part of it, and vertices on both sides of where a closed spline begins.
+TEST(StepFindings, edges_on_folds_and_past_the_ends_of_closed_splines_are_followed) {
+    for (const char* name :
+         {"folded_face.stp", "beyond_the_seam.stp", "folded_profile.stp", "flat_extrusion.stp"}) {
+        SCOPED_TRACE(name);
+        const auto path = std::filesystem::path(FREIFORM_SOURCE_DIR) / "tests/data/step" / name;
+        const Model m = must(read_step(must(read_file(path.string(), 1 << 20))));
+        ASSERT_EQ(m.faces.size(), 1u);
+        EXPECT_TRUE(m.refused.empty());
+        for (const Edge& e : m.edges) EXPECT_LE(e.tolerance, 1e-6);
+        const auto t = must(tessellate(m, {.tolerance = 1e-3 * summary(m).box.diagonal()}));
+        EXPECT_TRUE(t.refused.empty());
+        EXPECT_LE(t.boundary_gap, 1e-6);
+    }
+}
+
 // Each was once read wrongly or not in time. What is in it must be a model that can be meshed, or a refusal.
 TEST(StepFindings, every_file_that_was_one_is_read_or_refused_and_meshed) {
     int files = 0;
