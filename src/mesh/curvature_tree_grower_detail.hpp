@@ -46,6 +46,7 @@ public:
 
 private:
     bool is_leaf(Node& node, const BoxBending& known);
+    void set_lengths(const Jet<2, 2, Vec<3>>& middle, const Vec<2>& size);
     // What is known of a box, and its place in the tree once a leaf has it: neighbours share it.
     struct Outer {
         BoxBending known;

@@ -62,6 +62,11 @@ bool CurvatureTree::Grower::is_leaf(Node& node, const BoxBending& known) {
     return fine_ && longer <= task_.demands.max_edge && round;
 }
 
+// Of sides as long as the middle says.
+void CurvatureTree::Grower::set_lengths(const Jet<2, 2, Vec<3>>& middle, const Vec<2>& size) {
+    for (int d = 0; d < 2; ++d) length_[d] = norm(middle.d[std::size_t(d + 1)]) * size[d];
+}
+
 // Control points. What holds for the whole holds for a part: of very small boxes rounding would make the
 // bound larger.
 void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
@@ -115,7 +120,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     // last boxes, they need not be found.
     const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
     const Curvature seen = seen_at(middle, tree_.knows_normals_);
-    for (int d = 0; d < 2; ++d) length_[d] = norm(middle.d[std::size_t(d + 1)]) * size[d];
+    set_lengths(middle, size);
     const double asked = seen.error(size);
     std::optional<Cut> cut;
     if (asked > tolerance && item.depth < kMaxTreeDepth)
@@ -152,6 +157,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
             // Beside kinks all of the error is asked for.
             const bool beside_kinks = tree_.is_sharp() && tree_.meets_kink(box);
             const Curvature matters = outer.least > 0 && !beside_kinks ? outer.seen(0) : outer.full;
+            if (!std::isfinite(error)) set_lengths(middle, size);  // bounds of which say nothing
             const int axis = fine_ || !std::isfinite(error) ? int(length_[0] < length_[1])
                                                             : longer_side(matters, size, length_);
             cut = tree_.cut(node, axis);

@@ -200,5 +200,31 @@ TEST(CurvatureTree, of_a_face_that_is_alone_is_the_same_tree) {
     }
 }
 
+// Of an offset surface over a box along which normals turn by half a turn nothing is bounded: the longer side is
+// what has to be cut then, not always the same.
+TEST(CurvatureTree, boxes_without_bounds_are_cut_along_their_longer_side) {
+    const auto bent = *BSplineBasis::clamped_uniform(3, 4), straight = *BSplineBasis::clamped_uniform(1, 2);
+    for (const bool along_u : {true, false}) {
+        std::vector<Vec<3>> c;
+        const Vec<3> arc[] = {{{1, 0, 0}}, {{1, 1.3, 0}}, {{-1, 1.3, 0}}, {{-1, 0, 0}}};
+        const auto at = [&](int k, int z) { return arc[k] + Vec<3>{{0, 0, 0.2 * z}}; };
+        for (int i = 0; i < (along_u ? 4 : 2); ++i)
+            for (int k = 0; k < (along_u ? 2 : 4); ++k) c.push_back(along_u ? at(i, k) : at(k, i));
+        const SurfaceGeometry base =
+            along_u ? must(Surface<Vec<3>>::make({bent, straight}, Net<2, Vec<3>>({4, 2}, c)))
+                    : must(Surface<Vec<3>>::make({straight, bent}, Net<2, Vec<3>>({2, 4}, c)));
+        // Half the least radius inwards.
+        const SurfaceGeometry s =
+            OffsetSurface{std::make_shared<SurfaceGeometry>(base), along_u ? 0.3 : -0.3};
+        const DerivativeQuery<2, 3> surface(s);
+        ASSERT_FALSE(std::isfinite(surface({Interval{0, 1}, Interval{0, 1}})(2, 0)));
+        const std::vector<Vec<2>> polygon{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
+        const std::vector<std::array<int, 2>> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+        // So coarse that nothing else asks for a cut.
+        const auto tree = CurvatureTree::make(surface, polygon, segments, {.tolerance = 10}, 100);
+        EXPECT_TRUE(tree) << along_u << ": " << tree.error().message;
+    }
+}
+
 }  // namespace
 }  // namespace freiform
