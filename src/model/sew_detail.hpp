@@ -4,9 +4,12 @@
 #include <freiform/model/edge_gap.hpp>
 #include <freiform/model/sew.hpp>
 
+#include <optional>
 #include <span>
 
 namespace freiform {
+
+inline constexpr int kPlacesPerSpan = 4;  // of a trace, at least
 
 // Part of an edge, with places along it. Places are for finding; nothing is proven by them.
 struct EdgeTrace {
@@ -24,8 +27,8 @@ struct EdgeFoot {
     double t = 0, distance = 0;
     Vec<3> point{};
 };
-// The nearest point, from the nearest places by Newton's method. An estimate.
-EdgeFoot foot_on(const EdgeTrace& edge, const Vec<3>& p);
+// The nearest point, from the nearest places and a guess by Newton's method. An estimate.
+EdgeFoot foot_on(const EdgeTrace& edge, const Vec<3>& p, std::optional<double> guess = std::nullopt);
 
 // A monotone map from the parameters of one edge to those of another: cubic between nodes.
 struct EdgeMap {

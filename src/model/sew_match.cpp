@@ -31,9 +31,10 @@ namespace freiform {
 
 namespace {
 
-constexpr int kFewestPlaces = 32, kMostPlaces = 2000, kPlacesPerSpan = 4;
+constexpr int kFewestPlaces = 32, kMostPlaces = 2000;
 constexpr int kFeetFirst = 9;
-constexpr int kNewtonSteps = 24;
+constexpr int kNewtonSteps = 24, kHalvings = 8;
+constexpr std::size_t kStarts = 3;  // of a foot
 constexpr int kMostNodes = 256;  // a backstop
 constexpr double kSlack = 1.5;   // a bound up to this times what was measured is good enough
 // Slopes are those so far (of the step) inside of a node: at the ends of pieces without a length to speak of,
@@ -54,6 +55,12 @@ std::vector<double> breaks_inside(const CurveGeometry<D>& curve, Interval on, bo
         },
         curve);
     return inside;
+}
+
+// Where it would be if the two ran at the same speed.
+double same_place(const EdgeTrace& from, const EdgeTrace& onto, bool reversed, double t) {
+    const double x = (t - from.on.lo) / from.on.length();
+    return clamped(onto.on.lo + (reversed ? 1 - x : x) * onto.on.length(), onto.on);
 }
 
 double slope_of_foot(const EdgeTrace& stays, const EdgeTrace& other, double t, double s) {
@@ -102,7 +109,8 @@ std::optional<EdgeMap> map_with(const EdgeTrace& stays, const EdgeTrace& other, 
         for (int i = 0; i < parts; ++i)
             map.nodes.push_back({fixed[k] + (fixed[k + 1] - fixed[k]) * i / parts});
     map.nodes.push_back({fixed.back()});
-    for (EdgeMap::Node& n : map.nodes) n.s = foot_on(other, jet<0>(*stays.curve, n.t).value()).t;
+    for (EdgeMap::Node& n : map.nodes) 
+        n.s = foot_on(other, jet<0>(*stays.curve, n.t).value(), same_place(stays, other, reversed, n.t)).t;
     map.nodes.front().s = reversed ? other.on.hi : other.on.lo;
     map.nodes.back().s = reversed ? other.on.lo : other.on.hi;
     for (std::size_t k = 0; k + 1 < map.nodes.size(); ++k) {
@@ -141,17 +149,18 @@ std::vector<double> fixed_nodes(const EdgeTrace& stays, const EdgeTrace& other) 
 }
 
 // What was measured between the two: at a few feet in each direction first, which tells most pairs apart.
-double measured_apart(const EdgeTrace& a, const EdgeTrace& b, double enough) {
+double measured_apart(const EdgeTrace& a, const EdgeTrace& b, bool reversed, double enough) {
     double most = 0;
     for (int way = 0; way < 2; ++way) {
         const EdgeTrace &from = way ? b : a, &onto = way ? a : b;
         for (int k = 0; k < kFeetFirst && most <= enough; ++k) {
             const double t = from.on.lo + from.on.length() * (k + 0.5) / kFeetFirst;
-            most = std::max(most, foot_on(onto, jet<0>(*from.curve, t).value()).distance);
+            most = std::max(most, foot_on(onto, jet<0>(*from.curve, t).value(), same_place(from, onto, reversed, t))
+                                      .distance);
         }
     }
     for (std::size_t k = 0; k < a.at.size() && most <= enough; ++k)
-        most = std::max(most, foot_on(b, a.at[k]).distance);
+        most = std::max(most, foot_on(b, a.at[k], same_place(a, b, reversed, a.t[k])).distance);
     return most;
 }
 
@@ -178,34 +187,76 @@ EdgeTrace trace_of(const CurveGeometry<3>& curve, Interval on) {
     return out;
 }
 
-EdgeFoot foot_on(const EdgeTrace& edge, const Vec<3>& p) {
-    double best = kInfinity, t = edge.on.lo;
-    for (std::size_t k = 0; k + 1 < edge.at.size(); ++k) {
+namespace {
+
+// Newton's method from t, with shorter steps where one leads away.
+EdgeFoot foot_from(const EdgeTrace& edge, const Vec<3>& p, double t) {
+    const auto at = [&](double x) {
+        const Vec<3> point = jet<0>(*edge.curve, x).value();
+        return EdgeFoot{x, norm(point - p), point};
+    };
+    EdgeFoot foot = at(t);
+    for (int step = 0; step < kNewtonSteps; ++step) {
+        const auto c = jet<2>(*edge.curve, foot.t);
+        const Vec<3> off = c(0) - p;
+        const double speed2 = dot(c(1), c(1)), down = speed2 + dot(off, c(2));
+        double by = dot(off, c(1)) / (down > speed2 / 4 ? down : speed2);
+        if (!std::isfinite(by)) break;
+        EdgeFoot next = at(clamped(foot.t - by, edge.on));
+        for (int k = 0; k < kHalvings && !(next.distance <= foot.distance); ++k)
+            next = at(clamped(foot.t - (by /= 2), edge.on));
+        if (!(next.distance <= foot.distance) || next.t == foot.t) break;
+        const bool settled = std::abs(next.t - foot.t) <= 0x1p-44 * edge.on.length();
+        foot = next;
+        if (settled) break;
+    }
+    return foot;
+}
+
+}  // namespace
+
+EdgeFoot foot_on(const EdgeTrace& edge, const Vec<3>& p, std::optional<double> guess) {
+    struct Start {
+        double distance = kInfinity, t = 0;
+        std::size_t chord = 0;
+    };
+    // Of the chords that are nearer than those before and after them the nearest few: where a curve turns
+    // much, the nearest chord may belong to another part of it; at a sharp turn, to the chord beside.
+    std::array<Start, kStarts> starts{};
+    const auto add = [&](const Start& s) {
+        for (std::size_t k = 0; k < starts.size(); ++k)
+            if (s.distance < starts[k].distance) {
+                std::copy_backward(starts.begin() + std::ptrdiff_t(k), starts.end() - 1, starts.end());
+                starts[k] = s;
+                return;
+            }
+    };
+    const auto on_chord = [&](std::size_t k) {
         const Vec<3> d = edge.at[k + 1] - edge.at[k], to = p - edge.at[k];
         const double length2 = dot(d, d);
         const double part = length2 > 0 ? std::clamp(dot(to, d) / length2, 0.0, 1.0) : 0;
-        const double distance = norm(to - part * d);
-        if (distance < best) best = distance, t = edge.t[k] + part * (edge.t[k + 1] - edge.t[k]);
+        return Start{norm(to - part * d), edge.t[k] + part * (edge.t[k + 1] - edge.t[k]), k};
+    };
+    Start before, last;
+    for (std::size_t k = 0; k + 1 < edge.at.size(); ++k) {
+        const Start here = on_chord(k);
+        if (last.distance <= before.distance && last.distance < here.distance) add(last);
+        before = last, last = here;
     }
-    EdgeFoot foot{t, norm(jet<0>(*edge.curve, t).value() - p), jet<0>(*edge.curve, t).value()};
-    for (int step = 0; step < kNewtonSteps; ++step) {
-        const auto c = jet<2>(*edge.curve, t);
-        const Vec<3> off = c(0) - p;
-        const double speed2 = dot(c(1), c(1)), down = speed2 + dot(off, c(2));
-        const double by = dot(off, c(1)) / (down > speed2 / 4 ? down : speed2);
-        const double next = clamped(t - by, edge.on);
-        if (!std::isfinite(next) || next == t) break;
-        const Vec<3> point = jet<0>(*edge.curve, next).value();
-        const double distance = norm(point - p);
-        if (!(distance <= foot.distance)) break;
-        const bool settled = std::abs(next - t) <= 0x1p-44 * edge.on.length();
-        foot = {next, distance, point};
-        t = next;
-        if (settled) break;
-    }
-    for (const bool last : {false, true})
-        if (const double d = norm(edge.end(last) - p); d < foot.distance)
-            foot = {last ? edge.on.hi : edge.on.lo, d, edge.end(last)};
+    if (last.distance <= before.distance) add(last);
+    EdgeFoot foot{edge.on.lo, kInfinity, edge.end(false)};
+    if (guess) foot = foot_from(edge, p, *guess);
+    const auto look = [&](double t) {
+        if (const EdgeFoot f = foot_from(edge, p, t); f.distance < foot.distance) foot = f;
+    };
+    for (const Start& s : starts)
+        if (s.distance < kInfinity) look(s.t);
+    const std::size_t nearest = starts.front().chord;
+    if (nearest > 0) look((edge.t[nearest - 1] + edge.t[nearest]) / 2);
+    if (nearest + 2 < edge.t.size()) look((edge.t[nearest + 1] + edge.t[nearest + 2]) / 2);
+    for (const bool end : {false, true})
+        if (const double d = norm(edge.end(end) - p); d < foot.distance)
+            foot = {end ? edge.on.hi : edge.on.lo, d, edge.end(end)};
     return foot;
 }
 
@@ -228,13 +279,13 @@ double EdgeMap::slope(double t) const {
 Result<EdgeMatch> match(const EdgeTrace& stays, const EdgeTrace& other, bool reversed, double tolerance) {
     const double ends =
         std::max(norm(stays.end(false) - other.end(reversed)), norm(stays.end(true) - other.end(!reversed)));
-    const double apart = std::max(ends, ends <= tolerance ? measured_apart(stays, other, tolerance) : 0);
+    const double apart = std::max(ends, ends <= tolerance ? measured_apart(stays, other, reversed, tolerance) : 0);
     if (!(apart <= tolerance))
         return refuse(RefusalKind::no_answer, "edges", text("they are ", apart, " apart"));
     const Extrusion swept{*other.curve, {{0, 0, 1}}, SurfaceKind::general};
     const SurfaceGeometry surface = swept;
     const DerivativeQuery<2, 3> query(surface);
-    const double enough = std::max(kSlack * apart, kFine * tolerance);
+    const double enough = std::min(tolerance, std::max(kSlack * apart, kFine * tolerance));
     const auto fixed = fixed_nodes(stays, other);
     std::optional<EdgeMatch> best;
     for (int parts = 1; parts * int(fixed.size() - 1) <= kMostNodes; parts *= 2) {

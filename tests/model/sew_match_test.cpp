@@ -1,0 +1,107 @@
+// Are two edges one? Curves that wind, which are near themselves elsewhere, and curves that agree at their breaks.
+#include "model/sew_detail.hpp"
+#include "support/random.hpp"
+#include "support/shapes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace freiform {
+namespace {
+
+using test::must;
+using test::Random;
+
+// Of few pieces and a high degree, with control points far to both sides, as approximations have them.
+Curve<Vec<3>> winding(Random& random) {
+    const auto basis = *BSplineBasis::make(8, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0.49, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 10; ++i) {
+        const double far = (i % 2 ? 300 : -300) * std::sin(test::kPi * i / 9);
+        c.push_back({{5.0 * i + far * random.real(0.6, 1), random.real(-1, 1), far * random.real(0.6, 1)}});
+    }
+    return must(Curve<Vec<3>>::make({basis}, Net<1, Vec<3>>({10}, c)));
+}
+
+TEST(SewMatch, curves_that_wind_are_those_that_run_the_other_way) {
+    Random random(5);
+    for (int k = 0; k < 300; ++k) {
+        const auto there = winding(random), back = reverse(there, 0);
+        const CurveGeometry<3> a = there, b = back;
+        const EdgeTrace one = trace_of(a, there.domain()[0]), other = trace_of(b, back.domain()[0]);
+        const auto found = match(one, other, true, 1e-7);
+        ASSERT_TRUE(found) << k << ": " << found.error().message;
+        EXPECT_LE(found->bound, 1e-7);
+        EXPECT_FALSE(match(one, other, false, 1e-7)) << k;
+    }
+}
+
+// Two lines 0.7 of the tolerance apart, which at the same parameter are more than it apart.
+TEST(SewMatch, what_is_good_enough_is_within_the_tolerance) {
+    const double tolerance = 1e-5, speed = 0.72 * 2 * tolerance;
+    const auto curve = [](std::vector<Vec<3>> points) -> CurveGeometry<3> {
+        const int degree = int(points.size()) - 1;
+        return must(Curve<Vec<3>>::make({*BSplineBasis::bezier(degree)},
+                                        Net<1, Vec<3>>({degree + 1}, std::move(points))));
+    };
+    const double beside = 0.7 * tolerance;
+    const auto a = curve({{{0, 0, 0}}, {{1, 0, 0}}}),
+               b = curve({{{0, beside, 0}}, {{0.5 + speed, beside, 0}}, {{1, beside, 0}}});
+    const auto found = match(trace_of(a, {0, 1}), trace_of(b, {0, 1}), false, tolerance);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(found->bound, tolerance);
+    EXPECT_GE(found->bound, beside);
+}
+
+TEST(SewMatch, feet_of_points_of_a_winding_curve_are_these_points) {
+    Random random(7);
+    int missed = 0;
+    for (int k = 0; k < 100; ++k) {
+        const auto c = winding(random);
+        const CurveGeometry<3> curve = c;
+        const EdgeTrace trace = trace_of(curve, c.domain()[0]);
+        for (int i = 0; i < 50; ++i)
+            missed += foot_on(trace, c(random.real(trace.on.lo, trace.on.hi))).distance > 1e-9;
+    }
+    EXPECT_LE(missed, 10);  // of 5,000: they are estimates
+}
+
+// Both of 32 pieces between the same points; the second has an arch over each piece of the first.
+TEST(SewMatch, gaps_are_looked_at_between_breaks_too) {
+    constexpr double kArch = 1e-3;
+    std::vector<double> straight{0}, arched{0};
+    std::vector<Vec<3>> line{{{0, 0, 0}}}, arches{{{0, 0, 0}}};
+    for (int k = 0; k < 32; ++k) {
+        straight.push_back(k);
+        arched.insert(arched.end(), 2, k);
+        line.push_back({{k + 1.0, 0, 0}});
+        arches.push_back({{k + 0.5, 0, 2 * kArch}});
+        arches.push_back({{k + 1.0, 0, 0}});
+    }
+    straight.insert(straight.end(), 2, 32);
+    arched.insert(arched.end(), 3, 32);
+    Model m;
+    const auto add = [&](int degree, std::vector<double> knots, std::vector<Vec<3>> points) {
+        const int size = int(points.size());
+        const auto curve = must(Curve<Vec<3>>::make({must(BSplineBasis::make(degree, std::move(knots)))},
+                                                    Net<1, Vec<3>>({size}, std::move(points))));
+        const int v = int(m.vertices.size());
+        m.vertices.push_back({{{0, 0, 0}}, 0});
+        m.vertices.push_back({{{32, 0, 0}}, 0});
+        m.edges.push_back({curve, false, {0, 32}, v, v + 1, 0, ""});
+        Face f;
+        f.surface = Extrusion{curve, {{0, 1, 0}}};
+        f.loops = {{{{int(m.edges.size()) - 1, false, Line<2>{{{0, 0}}, {{1, 0}}}}}}};
+        m.faces.push_back(std::move(f));
+    };
+    add(1, straight, line);
+    add(2, arched, arches);
+    const auto gaps = remaining_gaps(m, 1e-6);
+    ASSERT_EQ(gaps.size(), 2u);
+    for (const RemainingGap& g : gaps) {
+        EXPECT_GE(g.gap, kArch / 2) << g.edge;
+        EXPECT_LE(g.gap, 1.1 * kArch) << g.edge;
+    }
+}
+
+}  // namespace
+}  // namespace freiform
