@@ -11,7 +11,7 @@ namespace freiform::occt {
 
 struct Conversion {
     Model model;
-    int doubts = 0;  // places where a wire seems to be read wrongly
+    int doubts = 0;                  // places where a wire seems to be read wrongly
     std::vector<TopoDS_Face> faces;  // what model.faces[i] was made from, in its place, oriented forward
     std::vector<TopoDS_Edge> edges;  // what model.edges[i] was made from, in its place
 };

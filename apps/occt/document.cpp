@@ -1,9 +1,9 @@
 // Idea. STEP and IGES are read twice removed from what they say: the reader scales all lengths to a unit that
 // the program chooses. So the unit of a STEP file is looked up first and chosen, and the factor is 1. Where
 // another unit than millimetres is chosen the reader takes parameter curves of IGES files wrongly (it looks
-// for seams where they are not, and puts edges far from faces), and where numbers are small it loses edges, as
-// its tolerances are not relative. So IGES files are read as if their numbers were millimetres, which leaves
-// these as they are, or as the millimetres that they are: whoever asks divides by the factor.
+// for seams where they are not, and puts edges far from faces), and where numbers are small it loses edges,
+// as its tolerances are not relative. So IGES files are read as if their numbers were millimetres, which
+// leaves these as they are, or as the millimetres that they are: whoever asks divides by the factor.
 #include "document.hpp"
 
 #include <BRepBndLib.hxx>

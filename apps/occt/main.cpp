@@ -131,7 +131,8 @@ Result<Reading> read(const Arguments& a, occt::Lengths lengths) {
 }
 
 // An IGES file is read in the other way, too, where that may be better: where the reader's tolerances are not
-// small against the numbers of the file, where it leaves out a face, a pole has two edges, or an edge is far off.
+// small against the numbers of the file, where it leaves out a face, a pole has two edges, or an edge is far
+// off.
 Result<Reading> read(const Arguments& a) {
     constexpr double kSmall = 8, kFarOff = 1e-4;
     auto written = read(a, occt::Lengths::as_written);

@@ -68,8 +68,8 @@ void Converter::prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspe
                     suspect.replaced ? " is replaced by a spline that follows the edge"
                                      : " ends before the edge does and is stretched");
     if (beyond)
-        what += text(changed ? ", but " : "", "lies up to ", in_file(found), " beside ", changed ? "it" : where,
-                     "; the file says at most ", in_file(stated));
+        what += text(changed ? ", but " : "", "lies up to ", in_file(found), " beside ",
+                     changed ? "it" : where, "; the file says at most ", in_file(stated));
     report(c.edge, std::move(what), gap.bound, estimate);
     e.tolerance = std::max(e.tolerance, distance);
 }
@@ -91,9 +91,9 @@ Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
             double worst = sampled_gap(f.surface, e, vertex_of(e), c.curve);
             const bool replaced = improve(f, c, size, worst);
             if (size > 0 && !(worst < kHopeless * size))
-                return refuse(RefusalKind::ill_conditioned, "parameter curve",
-                              text("misses its edge by ", in_file(worst), "; the face has a size of ",
-                                   in_file(size)));
+                return refuse(
+                    RefusalKind::ill_conditioned, "parameter curve",
+                    text("misses its edge by ", in_file(worst), "; the face has a size of ", in_file(size)));
             const bool stretched = std::find(stretched_.begin(), stretched_.end(),
                                              std::pair(c.edge, c.reversed)) != stretched_.end();
             if (replaced || stretched || kMargin * worst > e.tolerance)

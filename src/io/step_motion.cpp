@@ -110,8 +110,8 @@ double on_conic(const Conic<3>& c, const Vec<3>& p) {
                                             : b;
 }
 
-// Newton's method from the best of some samples; from the other end, too, where an end is nearest: of a closed
-// curve that may be the side on which p is.
+// Newton's method from the best of some samples; from the other end, too, where an end is nearest: of a
+// closed curve that may be the side on which p is.
 template <class C>
 double on_spline(const C& c, const Vec<3>& p) {
     const std::vector<double> breaks = c.basis().breaks();

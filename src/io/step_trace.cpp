@@ -143,8 +143,9 @@ private:
                 for (const bool high : {false, true}) {
                     Vec<2> from, to;
                     from[k] = way[0], to[k] = way[1];
-                    from[1 - k] = to[1 - k] =
-                        extrusion ? height(*extrusion, way[0]) : high ? on[std::size_t(1 - k)].hi : on[std::size_t(1 - k)].lo;
+                    from[1 - k] = to[1 - k] = extrusion ? height(*extrusion, way[0])
+                                              : high    ? on[std::size_t(1 - k)].hi
+                                                        : on[std::size_t(1 - k)].lo;
                     if (!(gap_at(from, on_.lo) <= accuracy_) || !(gap_at(to, on_.hi) <= accuracy_)) continue;
                     const Vec<2> d = (1 / on_.length()) * (to - from);
                     Trace out;

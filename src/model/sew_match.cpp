@@ -35,8 +35,8 @@ constexpr int kFewestPlaces = 32, kMostPlaces = 2000;
 constexpr int kFeetFirst = 9;
 constexpr int kNewtonSteps = 24, kHalvings = 8;
 constexpr std::size_t kStarts = 3;  // of a foot
-constexpr int kMostNodes = 256;  // a backstop
-constexpr double kSlack = 1.5;   // a bound up to this times what was measured is good enough
+constexpr int kMostNodes = 256;     // a backstop
+constexpr double kSlack = 1.5;      // a bound up to this times what was measured is good enough
 // Slopes are those so far (of the step) inside of a node: at the ends of pieces without a length to speak of,
 // which images have where a break lies beside a knot of the surface, derivatives are noise.
 constexpr double kBeside = 0x1p-30;
@@ -109,7 +109,7 @@ std::optional<EdgeMap> map_with(const EdgeTrace& stays, const EdgeTrace& other, 
         for (int i = 0; i < parts; ++i)
             map.nodes.push_back({fixed[k] + (fixed[k + 1] - fixed[k]) * i / parts});
     map.nodes.push_back({fixed.back()});
-    for (EdgeMap::Node& n : map.nodes) 
+    for (EdgeMap::Node& n : map.nodes)
         n.s = foot_on(other, jet<0>(*stays.curve, n.t).value(), same_place(stays, other, reversed, n.t)).t;
     map.nodes.front().s = reversed ? other.on.hi : other.on.lo;
     map.nodes.back().s = reversed ? other.on.lo : other.on.hi;
@@ -155,8 +155,9 @@ double measured_apart(const EdgeTrace& a, const EdgeTrace& b, bool reversed, dou
         const EdgeTrace &from = way ? b : a, &onto = way ? a : b;
         for (int k = 0; k < kFeetFirst && most <= enough; ++k) {
             const double t = from.on.lo + from.on.length() * (k + 0.5) / kFeetFirst;
-            most = std::max(most, foot_on(onto, jet<0>(*from.curve, t).value(), same_place(from, onto, reversed, t))
-                                      .distance);
+            most = std::max(
+                most,
+                foot_on(onto, jet<0>(*from.curve, t).value(), same_place(from, onto, reversed, t)).distance);
         }
     }
     for (std::size_t k = 0; k < a.at.size() && most <= enough; ++k)
@@ -279,7 +280,8 @@ double EdgeMap::slope(double t) const {
 Result<EdgeMatch> match(const EdgeTrace& stays, const EdgeTrace& other, bool reversed, double tolerance) {
     const double ends =
         std::max(norm(stays.end(false) - other.end(reversed)), norm(stays.end(true) - other.end(!reversed)));
-    const double apart = std::max(ends, ends <= tolerance ? measured_apart(stays, other, reversed, tolerance) : 0);
+    const double apart =
+        std::max(ends, ends <= tolerance ? measured_apart(stays, other, reversed, tolerance) : 0);
     if (!(apart <= tolerance))
         return refuse(RefusalKind::no_answer, "edges", text("they are ", apart, " apart"));
     const Extrusion swept{*other.curve, {{0, 0, 1}}, SurfaceKind::general};

@@ -1,5 +1,5 @@
-// IGES files in other units than millimetres, whose solids have no parameter curves of their own: what is read of
-// them is closed and as large as it is. The inputs are solids of tests, written by Open CASCADE.
+// IGES files in other units than millimetres, whose solids have no parameter curves of their own: what is
+// read of them is closed and as large as it is. The inputs are solids of tests, written by Open CASCADE.
 #include <freiform/io/exchange.hpp>
 #include <freiform/model/sew.hpp>
 #include <freiform/model/tessellate.hpp>
@@ -54,8 +54,9 @@ TEST_P(IgesUnits, solids_are_closed_and_have_their_size) {
 
 // Volumes and areas are those of the solids before they were written.
 INSTANTIATE_TEST_SUITE_P(Files, IgesUnits,
-                         ::testing::Values(Solid{"revolved_inch.iges", "inch", 2, 1056.89 / (25.4 * 25.4 * 25.4),
-                                                 531.791 / (25.4 * 25.4), 1e-3},
+                         ::testing::Values(Solid{"revolved_inch.iges", "inch", 2,
+                                                 1056.89 / (25.4 * 25.4 * 25.4), 531.791 / (25.4 * 25.4),
+                                                 1e-3},
                                            Solid{"cut_cone_cm.iges", "cm", 5, 1555.17, 918.06, 0.02}),
                          [](const auto& parameter) { return std::string(parameter.param.unit); });
 

@@ -214,8 +214,8 @@ TEST(StepTangles, faces_of_real_files_whose_boundaries_ran_into_themselves_are_m
     }
 }
 
-// Edges that lie on their surface where it folds, so that the nearest point from a place before leads to another
-// part of it, and vertices on both sides of where a closed spline begins.
+// Edges that lie on their surface where it folds, so that the nearest point from a place before leads to
+// another part of it, and vertices on both sides of where a closed spline begins.
 TEST(StepFindings, edges_on_folds_and_past_the_ends_of_closed_splines_are_followed) {
     for (const char* name :
          {"folded_face.stp", "beyond_the_seam.stp", "folded_profile.stp", "flat_extrusion.stp"}) {

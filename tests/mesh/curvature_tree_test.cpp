@@ -200,8 +200,8 @@ TEST(CurvatureTree, of_a_face_that_is_alone_is_the_same_tree) {
     }
 }
 
-// Of an offset surface over a box along which normals turn by half a turn nothing is bounded: the longer side is
-// what has to be cut then, not always the same.
+// Of an offset surface over a box along which normals turn by half a turn nothing is bounded: the longer side
+// is what has to be cut then, not always the same.
 TEST(CurvatureTree, boxes_without_bounds_are_cut_along_their_longer_side) {
     const auto bent = *BSplineBasis::clamped_uniform(3, 4), straight = *BSplineBasis::clamped_uniform(1, 2);
     for (const bool along_u : {true, false}) {

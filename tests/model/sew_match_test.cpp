@@ -1,4 +1,5 @@
-// Are two edges one? Curves that wind, which are near themselves elsewhere, and curves that agree at their breaks.
+// Are two edges one? Curves that wind, which are near themselves elsewhere, and curves that agree at their
+// breaks.
 #include "model/sew_detail.hpp"
 #include "support/random.hpp"
 #include "support/shapes.hpp"
