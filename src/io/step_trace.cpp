@@ -128,37 +128,10 @@ private:
         return std::nullopt;
     }
 
-    // Along the end of a spline that does not close, or along its extrusion: known without looking for feet,
-    // which where it folds are many. From one corner to another, or with the parameter of the edge.
     std::optional<Trace> along_side() const {
-        const auto* extrusion = std::get_if<Extrusion>(&chart_.surface());
-        for (int k = 0; k < 2; ++k)
-            if (chart_.period(k) > 0 || (!chart_.is_spline(k) && !(extrusion && k == 1))) return std::nullopt;
-        const auto on = chart_.whole();
-        for (int k = 0; k < (extrusion ? 1 : 2); ++k) {
-            const Interval& along = on[std::size_t(k)];
-            std::vector<Vec<2>> ways{{{along.lo, along.hi}}, {{along.hi, along.lo}}};
-            if (along.lo <= on_.lo && on_.hi <= along.hi) ways.push_back({{on_.lo, on_.hi}});
-            for (const Vec<2>& way : ways)
-                for (const bool high : {false, true}) {
-                    Vec<2> from, to;
-                    from[k] = way[0], to[k] = way[1];
-                    from[1 - k] = to[1 - k] = extrusion ? height(*extrusion, way[0])
-                                              : high    ? on[std::size_t(1 - k)].hi
-                                                        : on[std::size_t(1 - k)].lo;
-                    if (!(gap_at(from, on_.lo) <= accuracy_) || !(gap_at(to, on_.hi) <= accuracy_)) continue;
-                    const Vec<2> d = (1 / on_.length()) * (to - from);
-                    Trace out;
-                    out.curve = Line<2>{from - on_.lo * d, d};
-                    if (holds_everywhere(out, spans_of(c_)) && out.gap <= accuracy_) return out;
-                }
-        }
+        for (const Line<2>& line : lines_along_sides(chart_, c_, on_, accuracy_))
+            if (Trace out{line}; holds_everywhere(out, spans_of(c_)) && out.gap <= accuracy_) return out;
         return std::nullopt;
-    }
-    // Where the edge begins above a place of the profile.
-    double height(const Extrusion& s, double u) const {
-        const Vec<3> up = jet<0>(c_, on_.lo).value() - jet<0>(s.profile, u).value();
-        return dot(up, s.direction) / dot(s.direction, s.direction);
     }
 
     double gap_at(const Vec<2>& uv, double t) const { return norm(chart_.point(uv) - jet<0>(c_, t).value()); }

@@ -29,6 +29,11 @@ Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, 
 // Nothing if the surface is no plane. The gap is a bound, in exact arithmetic.
 std::optional<Trace> trace_on_plane(const SurfaceGeometry& surface, const CurveGeometry<3>& c, Interval on);
 
+// Straight lines whose ends are those of the edge: along the ends of a spline that does not close, from one
+// corner to another or with the parameter of the edge, and likewise along the extrusion of one.
+std::vector<Line<2>> lines_along_sides(const Chart& chart, const CurveGeometry<3>& c, Interval on,
+                                       double accuracy);
+
 // Where the surface shrinks to a point or folds, slopes mean nothing: a polygon of nearest points, if it is
 // nowhere further from the edge than `rough`.
 std::optional<Trace> polygon_of_feet(const Chart& chart, const CurveGeometry<3>& c, Interval on,

@@ -23,6 +23,22 @@ struct EdgeTrace {
 };
 EdgeTrace trace_of(const CurveGeometry<3>& curve, Interval on);
 
+// Of a spline, inside the interval; `kinks_only`: those where it may have corners.
+template <int D>
+std::vector<double> breaks_inside(const CurveGeometry<D>& curve, Interval on, bool kinks_only) {
+    std::vector<double> inside;
+    std::visit(
+        [&](const auto& c) {
+            if constexpr (requires { c.net(); })
+                for (const double b : c.basis().breaks())
+                    if (on.lo < b && b < on.hi &&
+                        (!kinks_only || c.basis().multiplicity(b) >= c.basis().degree()))
+                        inside.push_back(b);
+        },
+        curve);
+    return inside;
+}
+
 struct EdgeFoot {
     double t = 0, distance = 0;
     Vec<3> point{};
