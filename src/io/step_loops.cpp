@@ -207,12 +207,16 @@ bool LoopBuilder::is_closed_surface() const {
     return true;
 }
 
+// One that goes around all of the surface is its boundary, however it runs.
+bool LoopBuilder::goes_around_all(const Chain& c, double all) { return std::abs(c.area) > all * (1 - 1e-6); }
+
 // Holes to the picture of the parameters in which they lie inside the others.
-void LoopBuilder::place_holes() {
+void LoopBuilder::place_holes(double all) {
     std::size_t outer = chains_.size();
+    const auto size = [&](const Chain& c) { return goes_around_all(c, all) ? std::abs(c.area) : c.area; };
     for (std::size_t i = 0; i < chains_.size(); ++i)
-        if (outer == chains_.size() || chains_[i].area > chains_[outer].area) outer = i;
-    if (outer == chains_.size() || !(chains_[outer].area > 0)) return;
+        if (outer == chains_.size() || size(chains_[i]) > size(chains_[outer])) outer = i;
+    if (outer == chains_.size() || !(size(chains_[outer]) > 0)) return;
     for (std::size_t i = 0; i < chains_.size(); ++i) {
         if (i == outer || chains_[i].outline.empty()) continue;
         Chain& c = chains_[i];
@@ -220,12 +224,10 @@ void LoopBuilder::place_holes() {
         for (int n = 0; n < 25 && !done; ++n) {
             constexpr int kOrder[] = {0, 1, -1, 2, -2};
             const Vec<2> by{{kOrder[n % 5] * chart_.period(0), kOrder[n / 5] * chart_.period(1)}};
-            Vec<2> middle{};
             std::size_t in = 0;
             for (const Vec<2>& p : c.outline) in += inside(p + by, chains_[outer].outline) ? 1 : 0;
             done = 2 * in > c.outline.size();
             if (done) move(c, by);
-            (void)middle;
         }
     }
 }
@@ -261,7 +263,7 @@ void LoopBuilder::into_domain() {
 // The largest loop is the outer one, and runs counter-clockwise; the others are its holes.
 void LoopBuilder::set_right(double all) {
     const auto outer = std::ranges::max_element(chains_, {}, [](const Chain& c) { return std::abs(c.area); });
-    if (outer == chains_.end() || !(outer->area < 0) || outer->area < -all * (1 - 1e-6)) return;
+    if (outer == chains_.end() || !(outer->area < 0) || goes_around_all(*outer, all)) return;
     is_wrong = true;
     if (wrong_way != WrongWay::turned) return;
     for (Chain& c : chains_)
@@ -281,10 +283,9 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
                 "way";
             turn_around(c);
         }
-    // One that goes around all of the surface is its boundary, however it runs.
     const double all = chart_.whole()[0].length() * chart_.whole()[1].length();
     const bool only_holes = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
-        return c.area < 0 && !(c.area < -all * (1 - 1e-6));
+        return c.area < 0 && !goes_around_all(c, all);
     });
     if (!is_closed_surface()) set_right(all);
     if (only_holes && (is_closed_surface() || chains_.empty())) {
@@ -316,7 +317,7 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
         }
         add_rectangle(on);
     }
-    place_holes();
+    place_holes(all);
     into_domain();
     std::vector<std::vector<Use>> out;
     for (Chain& c : chains_) out.push_back(std::move(c.uses));

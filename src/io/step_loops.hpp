@@ -63,7 +63,8 @@ private:
     bool is_closed_surface() const;
     void set_right(double all);
     bool rounds_pole(const Chain& c) const;
-    void place_holes();
+    static bool goes_around_all(const Chain& c, double all);
+    void place_holes(double all);
     void into_domain();
     int vertex_near(const Vec<3>& p);
 

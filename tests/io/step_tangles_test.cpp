@@ -231,6 +231,26 @@ TEST(StepFindings, edges_on_folds_and_past_the_ends_of_closed_splines_are_follow
     }
 }
 
+// A closed surface may be cut along both seams, by a loop that runs the wrong way: its holes are inside all
+// the same.
+TEST(StepFindings, holes_lie_inside_a_boundary_that_goes_around_all_of_a_surface) {
+    const auto path = std::filesystem::path(FREIFORM_SOURCE_DIR) / "tests/data/step/torus_with_holes.stp";
+    const Model m = must(read_step(must(read_file(path.string(), 1 << 20))));
+    ASSERT_EQ(m.faces.size(), 1u);
+    ASSERT_EQ(m.faces[0].loops.size(), 3u);
+    for (const Loop& l : m.faces[0].loops)
+        for (const Coedge& c : l.coedges) {
+            const Interval range = m.edges[std::size_t(c.edge)].range;
+            for (int i = 0; i <= 16; ++i) {
+                const Vec<2> uv = jet<0>(c.curve, range.lo + range.length() * i / 16).value();
+                for (int d = 0; d < 2; ++d) {
+                    EXPECT_GE(uv[d], -1e-9);
+                    EXPECT_LE(uv[d], kTwoPi + 1e-9);
+                }
+            }
+        }
+}
+
 // Each was once read wrongly or not in time. What is in it must be a model that can be meshed, or a refusal.
 TEST(StepFindings, every_file_that_was_one_is_read_or_refused_and_meshed) {
     int files = 0;
