@@ -96,6 +96,8 @@ Result<Model> rescaled(const Model& model, int exponent) {
 }
 
 Result<Model> divided(const Model& model, double by) {
+    if (!(by > 0) || !std::isfinite(by))
+        return refuse(RefusalKind::invalid, "by", text("is ", by, "; a positive number is expected"));
     return changed(
         model, [=](double x) { return x / by; }, text("divided by ", by));
 }

@@ -1,6 +1,7 @@
 #include "support/refusal.hpp"
 #include "support/solids.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/model/rescale.hpp>
 
 #include <gtest/gtest.h>
@@ -66,6 +67,8 @@ TEST(Rescale, divided_numbers_are_those_of_another_unit) {
     }
     for (std::size_t i = 0; i < m.edges.size(); ++i)
         EXPECT_EQ(inches->edges[i].tolerance, m.edges[i].tolerance / 25.4);
+    for (const double by : {0.0, -1.0, kInfinity, std::nan("")})
+        expect_refusal(divided(m, by), RefusalKind::invalid, "by", "positive");
     expect_refusal(divided(torus(3, 1), 1e-320), RefusalKind::nonfinite, "vertices[0]", "1e-320");
 }
 

@@ -215,6 +215,10 @@ class Model:
     def rescale(self, exponent: int) -> Model:
         return _core.model_rescaled(self._c, exponent)
 
+    @from_header("model/rescale:divided")
+    def divide(self, by: float) -> Model:
+        return _core.model_divided(self._c, by)
+
     @from_header("model/sew:sew")
     def sew(self, tolerance: float) -> Sewing:
         return _core.model_sew(self._c, tolerance)

@@ -196,6 +196,10 @@ void bind_model_questions(py::module_& m) {
         },
         py::arg("model"), py::arg("exponent"));
     m.def(
+        "model_divided",
+        [](const ModelHandle& h, double by) { return answer([&] { return divided(*h.model, by); }); },
+        py::arg("model"), py::arg("by"));
+    m.def(
         "model_sew",
         [](const ModelHandle& h, double tolerance) {
             return answer([&] { return sew(*h.model, {tolerance}); });

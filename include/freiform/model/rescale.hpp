@@ -8,7 +8,7 @@ namespace freiform {
 // numbers that become smaller than 2^-1022, which move by less than 2^-1074. Refuses (nonfinite) what would
 // become infinite.
 Result<Model> rescaled(const Model& model, int exponent);
-// Likewise divided by a positive number: each is rounded.
+// Likewise divided by a positive number: each is rounded. Refuses (invalid) other numbers.
 Result<Model> divided(const Model& model, double by);
 
 }  // namespace freiform
