@@ -2,7 +2,7 @@
 // breaks.
 #include "model/sew_detail.hpp"
 #include "support/random.hpp"
-#include "support/shapes.hpp"
+#include "support/solids.hpp"
 
 #include <gtest/gtest.h>
 
