@@ -140,7 +140,13 @@ Result<Reading> read(const Arguments& a) {
     const bool is_small = written->document.millimetres > 1 && written->size < kSmall;
     const occt::Conversion& c = written->conversion;
     if (!is_small && c.doubts == 0 && c.model.refused.empty() && written->worst <= kFarOff) return written;
-    auto other = read(a, occt::Lengths::in_millimetres);
+    auto other = [&]() -> Result<Reading> {
+        try {
+            return read(a, occt::Lengths::in_millimetres);
+        } catch (const Standard_Failure& f) {  // what is read already is not lost for it
+            return refuse(RefusalKind::unreadable, a.input, f.GetMessageString());
+        }
+    }();
     if (!other) return written;
     const auto faults = [](const Reading& r) {
         return std::pair(r.conversion.model.refused.size(), r.conversion.doubts);
