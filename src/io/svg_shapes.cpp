@@ -11,6 +11,12 @@ namespace freiform::svg {
 
 namespace {
 
+Path path_of(Subpath s) {
+    Path out;
+    out.subpaths.push_back(std::move(s));
+    return out;
+}
+
 // Its corners rounded by quarters of ellipses; none if a side is not positive.
 Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx, std::optional<double> ry) {
     if (!(size[0] > 0) || !(size[1] > 0)) return {};
@@ -35,18 +41,19 @@ Path rectangle(const Vec<2>& at, const Vec<2>& size, std::optional<double> rx, s
     line_to({{at[0] + a, end[1]}}), corner({{at[0], end[1]}}, {{at[0], end[1] - b}});
     line_to({{at[0], at[1] + b}}), corner(at, s.start);
     line_to(s.start);
-    return {{std::move(s)}};
+    return path_of(std::move(s));
 }
 
 // Lines through pairs of numbers, an odd last one apart.
 Path polygon(const std::vector<double>& v, bool closed) {
     if (v.size() < 4) return {};
     Subpath s{{{v[0], v[1]}}, {}, closed};
+    s.segments.reserve(v.size() / 2);
     for (std::size_t i = 2; i + 1 < v.size(); i += 2)
         s.segments.push_back({1, {Vec<2>{{v[i - 2], v[i - 1]}}, Vec<2>{{v[i], v[i + 1]}}}, 1});
     const Vec<2> last = s.segments.back().back();
     if (closed && !(last == s.start)) s.segments.push_back({1, {last, s.start}, 1});
-    return {{std::move(s)}};
+    return path_of(std::move(s));
 }
 
 }  // namespace
@@ -95,11 +102,11 @@ std::optional<Path> outline(std::string_view element,
         if (!rx || *rx < 0) rx = ry;
         if (!ry || *ry < 0) ry = rx;
         if (!(rx.value_or(0) > 0) || !(ry.value_or(0) > 0)) return Path();
-        return Path{{ellipse({{x("cx"), y("cy")}}, *rx, *ry)}};
+        return path_of(ellipse({{x("cx"), y("cy")}}, *rx, *ry));
     }
     if (element == "line") {
         const Vec<2> a{{x("x1"), y("y1")}}, b{{x("x2"), y("y2")}};
-        return Path{{{a, {{1, {a, b}, 1}}, false}}};
+        return path_of({a, {{1, {a, b}, 1}}, false});
     }
     if (element == "polyline" || element == "polygon")
         return polygon(number_list(attribute("points")), element == "polygon");
