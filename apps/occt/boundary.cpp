@@ -196,6 +196,44 @@ bool Converter::is_second_pole(const Piece& p, const std::vector<Piece>& pieces)
            });
 }
 
+// Moves one side of the seam by a period, so that the boundary runs round all of the surface, with the poles
+// between the sides.
+void Converter::open_slit(Loop& loop, const Slit& slit) {
+    std::rotate(loop.coedges.begin(), loop.coedges.begin() + std::ptrdiff_t(slit.turn), loop.coedges.end());
+    const int along = 1 - slit.axis;
+    const auto end_of = [&](const Coedge& c, bool last) {
+        const Interval on = out_.model.edges[std::size_t(c.edge)].range;
+        return jet<0>(c.curve, last != c.reversed ? on.hi : on.lo).value();
+    };
+    const auto runs_up = [&](const Coedge& c) { return end_of(c, true)[along] > end_of(c, false)[along]; };
+    // The face is on the left: u = u0 + period runs up, v = v0 + period down.
+    for (Coedge& c : loop.coedges)
+        if (runs_up(c) == (slit.axis == 0)) {
+            Vec<2> by{};
+            by[slit.axis] = slit.period;
+            c.curve = moved_by(c.curve, by);
+        }
+    const auto pole = [&](const Coedge& before, const Coedge& after) {
+        const Edge& e = out_.model.edges[std::size_t(before.edge)];
+        Edge made;
+        made.degenerate = true;
+        made.range = {0, 1};
+        made.start = made.end = before.reversed ? e.start : e.end;
+        made.tolerance = e.tolerance;
+        const Vec<2> from = end_of(before, true);
+        stated_.push_back(made.tolerance);
+        out_.edges.push_back({});
+        out_.model.edges.push_back(std::move(made));
+        return Coedge{int(out_.model.edges.size()) - 1, false, Line<2>{from, end_of(after, false) - from}};
+    };
+    for (std::size_t i = 0; i < loop.coedges.size(); ++i) {
+        const std::size_t next = (i + 1) % loop.coedges.size();
+        if (runs_up(loop.coedges[i]) == runs_up(loop.coedges[next])) continue;
+        const Coedge between = pole(loop.coedges[i], loop.coedges[next]);
+        loop.coedges.insert(loop.coedges.begin() + std::ptrdiff_t(++i), between);
+    }
+}
+
 // REQUIRES f oriented forward.
 Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
     const Handle(Geom_Surface) s = BRep_Tool::Surface(f);
@@ -217,7 +255,6 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
             auto p = piece(TopoDS::Edge(i.Value()), f, plane);
             if (!p) return std::unexpected(p.error());
             if (is_second_pole(*p, pieces)) ++out_.doubts;
-            add_hull(used, p->coedge.curve, out_.model.edges[std::size_t(p->coedge.edge)].range);
             pieces.push_back(std::move(*p));
         }
         if (pieces.empty()) continue;
@@ -230,6 +267,18 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
     if (out.loops.empty())
         return refuse(RefusalKind::unsupported, "face",
                       "has no boundary, and its surface has none that could take its place");
+    const std::array<double, 2> period{s->IsUPeriodic() ? s->UPeriod() : 0,
+                                       s->IsVPeriodic() ? s->VPeriod() : 0};
+    if (out.loops.size() == 1) {
+        const double close = std::max(out.tolerance, document_.resolution);
+        if (const auto slit = slit_of(out.loops[0], out_.model.edges, s, period, close))
+            open_slit(out.loops[0], *slit);
+    }
+    for (Loop& loop : out.loops) {
+        remove_bridges(loop, out_.model.edges, period);
+        for (const Coedge& c : loop.coedges)
+            add_hull(used, c.curve, out_.model.edges[std::size_t(c.edge)].range);
+    }
     auto converted = surface(s, {used.side(0), used.side(1)});
     if (!converted) return std::unexpected(converted.error());
     out.surface = std::move(*converted);

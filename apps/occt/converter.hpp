@@ -1,6 +1,7 @@
 // How a model comes about, shape by shape. What the parts of the file share has a place here: a map from
 // shapes to indices, what the file states of tolerances, and what will have to be reported.
 #pragma once
+#include "bridges.hpp"
 #include "convert.hpp"
 
 #include <freiform/model/edge_gap.hpp>
@@ -42,6 +43,7 @@ private:
     Result<Face> geometry_of(const TopoDS_Face& f);
     Result<Loop> loop_of(std::vector<Piece> pieces, std::vector<Loop>& more);
     Result<Piece> piece(const TopoDS_Edge& e, const TopoDS_Face& f, const Handle(Geom_Plane) & plane);
+    void open_slit(Loop& loop, const Slit& slit);
     bool is_second_pole(const Piece& p, const std::vector<Piece>& pieces) const;
     Result<int> edge(const TopoDS_Edge& e, const TopoDS_Face& f);
     int vertex(const TopoDS_Vertex& v);

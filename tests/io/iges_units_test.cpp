@@ -9,6 +9,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <numbers>
 #include <support/solids.hpp>
 #include <unistd.h>
 
@@ -73,6 +74,53 @@ TEST_F(IgesUnits, the_resolution_of_the_file_is_the_tolerance_of_its_edges) {
     ASSERT_TRUE(read) << read.error().message;
     for (const Edge& e : read->edges) EXPECT_NEAR(e.tolerance, 3.93701e-5, 1e-12);
     fs::remove(path);
+}
+
+// What files and their reader leave behind, once each: ends of edges beside the vertices they share, twice
+// the tolerance from one to the other; an edge that lies in such a gap, and that one face has alone; a seam
+// whose two sides are one in the parameters. All of it is closed.
+TEST_F(IgesUnits, gaps_at_vertices_and_seams_in_one_place_are_closed) {
+    const Solid solids[] = {{"ends_beside_vertices.iges", "cm", 14, 2.684877, 12.91348, 0.004},
+                            {"short_edge_in_a_gap.iges", "mm", 7, 5979.542, 2022.323, 0.05},
+                            {"seam_in_one_place.iges", "mm", 1, 798.0574, 452.1391, 0.02}};
+    for (const Solid& x : solids) {
+        SCOPED_TRACE(x.name);
+        const auto read = read_with_occt((kFolder / x.name).string());
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(read->unit, x.unit);
+        EXPECT_EQ(int(read->faces.size()), x.faces);
+        EXPECT_TRUE(read->refused.empty());
+        const auto sewn = sew(*read, {.tolerance = largest_tolerance(*read)});
+        ASSERT_TRUE(sewn) << sewn.error().message;
+        EXPECT_TRUE(sewn->remaining.empty());
+        EXPECT_EQ(summary(sewn->model).open_edges, 0);
+        const auto made = tessellate(sewn->model, {.tolerance = x.tolerance});
+        ASSERT_TRUE(made) << made.error().message;
+        EXPECT_TRUE(made->refused.empty());
+        EXPECT_EQ(made->topology.open_edges + made->topology.non_manifold_edges, 0);
+        EXPECT_LE(made->boundary_gap, x.tolerance);
+        EXPECT_NEAR(test::signed_volume(made->mesh), x.volume, x.area * x.tolerance);
+    }
+}
+
+// The reader joins parameter curves that are a turn apart by edges around the whole surface.
+TEST_F(IgesUnits, no_face_covers_its_surface_more_than_once) {
+    const auto read = read_with_occt((kFolder / "full_turns_too_many.iges").string());
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->faces.size(), 1u);
+    ASSERT_EQ(read->faces[0].loops.size(), 1u);
+    EXPECT_EQ(read->faces[0].loops[0].coedges.size(), 4u);
+    const auto made = tessellate(*read, {.tolerance = 1e-6});
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(made->refused.empty());
+    double area = 0;
+    for (std::size_t i = 0; i < made->mesh.triangles.size(); ++i) {
+        const auto p = made->mesh.points_of(i);
+        const auto at = [&](std::size_t k) { return made->mesh.points[std::size_t(p[k])]; };
+        area += norm(cross(at(1) - at(0), at(2) - at(0))) / 2;
+    }
+    // A quarter of a cylinder: its radius times pi / 2 times its length.
+    EXPECT_NEAR(area, 0.02923075455 * (std::numbers::pi / 2) * 0.407471797, 1e-6);
 }
 
 }  // namespace

@@ -1,0 +1,116 @@
+#include "bridges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::occt {
+
+namespace {
+
+constexpr double kNear = 1e-6;  // of a period
+
+// The periods that a bridge goes along both parameters; nothing where the coedge is none.
+std::optional<Vec<2>> periods_of(const Coedge& c, const Edge& e, const std::array<double, 2>& period) {
+    const auto* line = std::get_if<Line<2>>(&c.curve);
+    if (line == nullptr || e.degenerate || e.start != e.end) return std::nullopt;
+    const Vec<2> by = (c.reversed ? -e.range.length() : e.range.length()) * line->direction;
+    Vec<2> turns{};
+    for (int k = 0; k < 2; ++k) {
+        const double p = period[std::size_t(k)];
+        turns[k] = p > 0 ? std::round(by[k] / p) : 0;
+        const double scale = p > 0 ? p : std::abs(by[1 - k]);
+        if (!(std::abs(by[k] - turns[k] * p) <= kNear * scale)) return std::nullopt;
+    }
+    return turns[0] != 0 || turns[1] != 0 ? std::optional(turns) : std::nullopt;
+}
+
+Vec<3> at(const Handle(Geom_Surface) & s, const Vec<2>& uv) {
+    const gp_Pnt p = s->Value(uv[0], uv[1]);
+    return {{p.X(), p.Y(), p.Z()}};
+}
+
+}  // namespace
+
+CurveGeometry<2> moved_by(const CurveGeometry<2>& curve, const Vec<2>& by) {
+    return std::visit(
+        [&](const auto& c) -> CurveGeometry<2> {
+            using C = std::remove_cvref_t<decltype(c)>;
+            if constexpr (std::same_as<C, Line<2>>) {
+                return Line<2>{c.origin + by, c.direction};
+            } else if constexpr (std::same_as<C, Conic<2>>) {
+                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
+            } else {
+                auto net = c.net();
+                for (auto& p : net.flat()) {
+                    if constexpr (Space<typename C::Coefficients>::kRational)
+                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
+                    else
+                        p += by;
+                }
+                return C::trusted(c.bases(), std::move(net));
+            }
+        },
+        curve);
+}
+
+std::optional<Slit> slit_of(const Loop& loop, const std::vector<Edge>& edges, const Handle(Geom_Surface) & s,
+                            const std::array<double, 2>& period, double close) {
+    for (int axis = 0; axis < 2; ++axis) {
+        const double turn = period[std::size_t(axis)];
+        if (!(turn > 0)) continue;
+        const int along = 1 - axis;
+        Box<2> box;
+        std::vector<double> ways;
+        for (const Coedge& c : loop.coedges) {
+            const Interval on = edges[std::size_t(c.edge)].range;
+            for (int i = 0; i <= 8; ++i) box.add(jet<0>(c.curve, on.lo + on.length() * i / 8).value());
+            const double by = (jet<0>(c.curve, on.hi).value() - jet<0>(c.curve, on.lo).value())[along];
+            ways.push_back(c.reversed ? -by : by);
+        }
+        if (!(box.side(axis).length() <= kNear * turn) || !(box.side(along).length() > 0)) continue;
+        Slit slit{axis, turn, box.side(along), 0};
+        int turns = 0;
+        for (std::size_t i = 0; i < ways.size(); ++i)
+            if ((ways[i] > 0) != (ways[(i + ways.size() - 1) % ways.size()] > 0)) slit.turn = i, ++turns;
+        bool poles = turns == 2;
+        for (const double end : {slit.between.lo, slit.between.hi})
+            for (int i = 0; i < 4 && poles; ++i) {
+                Vec<2> a{}, b{};
+                a[along] = b[along] = end;
+                a[axis] = box.lo[axis], b[axis] = box.lo[axis] + turn * i / 4;
+                poles = norm(at(s, a) - at(s, b)) <= close;
+            }
+        if (poles) return slit;
+    }
+    return std::nullopt;
+}
+
+void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period) {
+    Vec<2> sum{}, crossed{};
+    Box<2> box;
+    for (const Coedge& c : loop.coedges) {
+        const Edge& e = edges[std::size_t(c.edge)];
+        for (const double t : {e.range.lo, e.range.hi}) box.add(jet<0>(c.curve, t).value());
+        const auto turns = periods_of(c, e, period);
+        if (!turns) continue;
+        sum += *turns;
+        for (int k = 0; k < 2; ++k) crossed[k] += std::abs((*turns)[k]);
+    }
+    if (sum[0] != 0 || sum[1] != 0) return;
+    bool over = false;
+    for (int k = 0; k < 2; ++k)
+        over = over || (crossed[k] > 0 && box.side(k).length() > (1 + kNear) * period[std::size_t(k)]);
+    if (!over) return;
+    std::vector<Coedge> kept;
+    for (Coedge& c : loop.coedges) {
+        if (const auto turns = periods_of(c, edges[std::size_t(c.edge)], period)) {
+            sum += *turns;
+            continue;
+        }
+        c.curve = moved_by(c.curve, {{-sum[0] * period[0], -sum[1] * period[1]}});
+        kept.push_back(std::move(c));
+    }
+    loop.coedges = std::move(kept);
+}
+
+}  // namespace freiform::occt
