@@ -2,6 +2,7 @@
 #include "hull_bounds.hpp"
 #include "input.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/bounds.hpp>
@@ -56,12 +57,12 @@ public:
     // Where derivatives have no bounds: the surface over the box of the loops contains the face; the loops
     // are part of it.
     Result<BoundsAnswer> operator()(const TrimmedSurface& t) const {
-        if (t.loops.empty()) return std::visit(*this, t.surface);
+        if (t.loops.empty()) return visit_one(*this, t.surface);
         Document one;
         one.objects.push_back({"", t, {}});
         if (const auto model = scene_of(one))
             if (const auto b = tight(*model)) return answer_of(b->box, b->slack);
-        return std::visit(
+        return visit_one(
             [&](const auto& s) -> Result<BoundsAnswer> {
                 const auto domain = s.domain();
                 Box<3> inner;
@@ -125,7 +126,7 @@ private:
             const Vec<2> uv = jet<0>(curve, on.lo + on.length() * i / kSamples).value();
             inner.add(s(Param<2>{uv[0], uv[1]}));
         }
-        std::visit(
+        visit_one(
             [&](const auto& c) {
                 if constexpr (requires { c.net(); }) {
                     for (const auto& p : points(c)) in_domain.add(p);
@@ -199,7 +200,7 @@ Result<void> run_bounds(Context& context, const BoundsArguments& options) {
     for (std::size_t k = 0; k < input->chosen.size(); ++k) {
         const std::size_t i = input->chosen[k];
         const Object& o = document.objects[i];
-        const auto answer = std::visit(Bounding(options.accuracy), o.shape);
+        const auto answer = visit_one(Bounding(options.accuracy), o.shape);
         if (!answer) return refuse_within(object_label(document, i), answer.error());
         w.new_line(1)
             .begin_object()

@@ -5,6 +5,7 @@
 #include "joint_units.hpp"
 #include "surface_joints.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/query/continuity.hpp>
 
@@ -67,7 +68,7 @@ std::string without_knots(const Shape& shape) {
 
 // The knot lines of a surface or volume along one axis.
 Result<std::vector<KnotLine>> lines_along(const Shape& shape, int axis, const ContinuityOptions& options) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> Result<std::vector<KnotLine>> {
             if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
                 if constexpr (std::remove_cvref_t<decltype(s)>::kParams > 1)

@@ -3,6 +3,7 @@
 #include "convert_changes.hpp"
 #include "input.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
@@ -27,7 +28,7 @@ struct Report {
 };
 
 Result<TrimmedSurface> oriented(const TrimmedSurface& t, const std::string& label, Report& report) {
-    const auto sides = std::visit([](const auto& s) { return s.domain(); }, t.surface);
+    const auto sides = visit_one([](const auto& s) { return s.domain(); }, t.surface);
     const double gap = TrimmedSurface::kSlack * std::hypot(sides[0].length(), sides[1].length());
     auto done = orient_loops(t.loops, {gap, gap});
     if (!done) return std::unexpected(done.error());

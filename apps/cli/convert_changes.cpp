@@ -3,6 +3,7 @@
 #include "input.hpp"
 
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/refine.hpp>
@@ -20,7 +21,7 @@ constexpr std::string_view kAxisNames = "uvw";
 // The library's functions for patches of any kind, on shapes. REQUIRES a curve, surface or volume.
 template <class F>
 Result<Shape> with_patch(const Shape& shape, F&& change) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> Result<Shape> {
             if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>) {
                 auto converted = change(s);
@@ -173,7 +174,7 @@ private:
         Pieces all;
         double worst = 0;
         for (const ConvertedPiece& piece : all_.pieces) {
-            const auto done = std::visit(
+            const auto done = visit_one(
                 [&](const auto& s) -> Result<void> {
                     if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
                         if constexpr (std::remove_cvref_t<decltype(s)>::kParams == 2) {
@@ -198,7 +199,7 @@ private:
     void to_bezier() {
         Pieces all;
         for (const ConvertedPiece& piece : all_.pieces)
-            std::visit(
+            visit_one(
                 [&](const auto& s) {
                     if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
                         add_bezier_pieces(s, piece.suffix, all);
@@ -264,7 +265,7 @@ Result<Changed> converted(const Shape& shape, const ConvertArguments& options) {
         return refuse(
             RefusalKind::no_answer, "",
             text("is a ", type, "; the options that change a shape are for curves, surfaces and volumes"));
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> Result<Changed> {
             if constexpr (TriangularPatch<std::remove_cvref_t<decltype(s)>>)
                 return changed_triangle(s, options);

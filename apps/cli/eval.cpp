@@ -2,6 +2,7 @@
 #include "input.hpp"
 
 #include <freiform/core/scan.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/io/points.hpp>
 #include <freiform/spline/accurate.hpp>
 #include <freiform/spline/construction.hpp>
@@ -156,7 +157,7 @@ struct Evaluation {
         }
         return answer_point;
     }
-    Result<EvalAnswer> operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
+    Result<EvalAnswer> operator()(const TrimmedSurface& t) const { return visit_one(*this, t.surface); }
     Result<EvalAnswer> operator()(const Model&) const { return {}; }
 };
 
@@ -171,7 +172,7 @@ Result<EvalAnswer> answer_point(const Shape& shape, const Question& q) {
                       "surface or volume");
     const std::size_t parameters = bases_of(shape).empty() ? 2 : bases_of(shape).size();
     if (auto ok = check_count(q, parameters); !ok) return std::unexpected(ok.error());
-    auto found = std::visit(Evaluation{q}, shape);
+    auto found = visit_one(Evaluation{q}, shape);
     if (!found) return moved(std::move(found.error()), q.index);
     if (!is_finite(found->point) || !std::ranges::all_of(found->derivatives, is_finite))
         return refuse(RefusalKind::ill_conditioned, text("at[", q.index, "]"),

@@ -1,6 +1,7 @@
 // info: what a file contains.
 #include "input.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/mesh_file.hpp>
 
@@ -48,13 +49,13 @@ Facts facts_about(const S& s) {
 }
 
 Facts facts_of(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [](const auto& s) -> Facts {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S> || TriangularPatch<S>) {
                 return facts_about(s);
             } else if constexpr (std::same_as<S, TrimmedSurface>) {
-                Facts f = std::visit([](const auto& surface) { return facts_about(surface); }, s.surface);
+                Facts f = visit_one([](const auto& surface) { return facts_about(surface); }, s.surface);
                 f.loops = s.loops.size();
                 return f;
             } else {

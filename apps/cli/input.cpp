@@ -1,5 +1,6 @@
 #include "input.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/mesh_file.hpp>
@@ -75,7 +76,7 @@ void remark_left_out(const Input& input, std::size_t i) {
 Result<Model> model_of_trimmed(const TrimmedSurface& t) {
     Model m;
     Face face;
-    std::visit([&](const auto& s) { face.surface = s; }, t.surface);
+    visit_one([&](const auto& s) { face.surface = s; }, t.surface);
     for (const auto& curves : t.loops) {
         Loop loop;
         for (const auto& c : curves) {
@@ -96,13 +97,13 @@ Result<Model> model_of_trimmed(const TrimmedSurface& t) {
 }
 
 std::span<const BSplineBasis> bases_of(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [](const auto& s) -> std::span<const BSplineBasis> {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>)
                 return s.bases();
             else if constexpr (std::same_as<S, TrimmedSurface>)
-                return std::visit(
+                return visit_one(
                     [](const auto& surface) -> std::span<const BSplineBasis> { return surface.bases(); },
                     s.surface);
             else
@@ -130,12 +131,12 @@ struct Boxing {
     ControlBox operator()(const S& s) const {
         return box_of<typename S::Coefficients>(s.coefficients());
     }
-    ControlBox operator()(const TrimmedSurface& t) const { return std::visit(*this, t.surface); }
+    ControlBox operator()(const TrimmedSurface& t) const { return visit_one(*this, t.surface); }
     ControlBox operator()(const Model&) const { return {}; }
 };
 
 }  // namespace
 
-ControlBox control_box(const Shape& shape) { return std::visit(Boxing(), shape); }
+ControlBox control_box(const Shape& shape) { return visit_one(Boxing(), shape); }
 
 }  // namespace freiform::cli

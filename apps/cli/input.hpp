@@ -2,6 +2,8 @@
 #pragma once
 #include "command.hpp"
 
+#include <freiform/core/visit.hpp>
+
 namespace freiform::cli {
 
 struct Input {
@@ -31,7 +33,7 @@ void remark_left_out(const Input& input, std::size_t i);
 // two dozen shapes need no code of their own.
 template <class F>
 bool with_curve(const Shape& shape, F&& f) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) {
             if constexpr (TensorPatch<std::remove_cvref_t<decltype(s)>>)
                 if constexpr (std::remove_cvref_t<decltype(s)>::kParams == 1) return f(s), true;

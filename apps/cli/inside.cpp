@@ -1,6 +1,7 @@
 // inside: which points lie in a trimmed face, a closed plane curve or a closed body.
 #include "input.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/points.hpp>
 #include <freiform/model/inside.hpp>
 
@@ -45,7 +46,7 @@ public:
     Result<std::vector<PointRow>> operator()(const TrimmedSurface& t) const {
         std::vector<std::vector<CurveGeometry<2>>> loops = t.loops;
         Box<2> box;
-        std::visit(
+        visit_one(
             [&](const auto& s) {
                 for (int d = 0; d < 2; ++d)
                     box.lo[d] = s.basis(d).domain().lo, box.hi[d] = s.basis(d).domain().hi;
@@ -115,7 +116,7 @@ Result<void> run_inside(const Context& context, const InsideArguments& options) 
     std::string plain;
     w.begin_object().key("results").begin_array();
     for (const std::size_t o : input->chosen) {
-        const auto rows = std::visit(ask, input->object(o).shape);
+        const auto rows = visit_one(ask, input->object(o).shape);
         if (!rows) return input->about(o, rows.error());
         for (std::size_t i = 0; i < rows->size(); ++i) {
             const PointRow& row = (*rows)[i];

@@ -2,6 +2,7 @@
 #include "model_contacts.hpp"
 #include "surface_meetings.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/intersect/curve_curve.hpp>
 #include <freiform/intersect/curve_surface.hpp>
 #include <freiform/io/document.hpp>
@@ -250,7 +251,7 @@ Result<std::vector<Chosen>> operands(const Input& input) {
     std::vector<Chosen> out;
     for (const std::size_t i : input.chosen) {
         std::optional<std::size_t> trimmed;
-        std::visit(
+        visit_one(
             [&](const auto& s) {
                 if constexpr (std::constructible_from<Operand, decltype(s)>)
                     out.push_back({i, Operand(s)});

@@ -1,9 +1,11 @@
 #include "nearest_objects.hpp"
 
+#include <freiform/core/visit.hpp>
+
 namespace freiform::cli {
 
 Result<void> add_object(const Input& input, std::size_t i, std::string_view reason, ObjectSet& out) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> Result<void> {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S> || TriangularPatch<S>) {

@@ -2,6 +2,7 @@
 
 #include "input.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 
 namespace freiform::cli {
@@ -35,7 +36,7 @@ Result<PlaneRegion> read_region(const Context& context, const std::string& file,
     PlaneRegion region;
     region.unit = input->document->unit;
     for (const std::size_t i : input->chosen) {
-        const bool taken = std::visit(
+        const bool taken = visit_one(
             [&](const auto& s) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, Curve<Vec<2>>> || std::same_as<S, Curve<Hom<2>>>) {

@@ -3,6 +3,7 @@
 #include "point_commands.hpp"
 #include "regions.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/make/revolve.hpp>
 
@@ -103,7 +104,7 @@ Result<void> run_revolve(const Context& context, const RevolveArguments& options
     Revolving revolving(options, answer);
     for (const std::size_t i : *objects) {
         const Object& object = document->objects[i];
-        const auto done = std::visit(
+        const auto done = visit_one(
             [&](const auto& s) -> Result<void> {
                 if constexpr (requires { revolving.curve(s, object.name); })
                     return revolving.curve(s, object.name);

@@ -3,6 +3,7 @@
 #include "input.hpp"
 #include "point_commands.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/section.hpp>
 
@@ -210,7 +211,7 @@ Result<void> run_section(const Context& context, const SectionArguments& options
     Cutting cutting(*input, plane, options);
     std::size_t surfaces = 0;
     for (const std::size_t i : input->chosen) {
-        const auto done = std::visit(
+        const auto done = visit_one(
             [&](const auto& s) -> Result<void> {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, Surface<Vec<3>>> || std::same_as<S, Surface<Hom<3>>>)

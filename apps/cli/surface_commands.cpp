@@ -2,6 +2,7 @@
 
 #include "point_commands.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/spline/in_space.hpp>
 
@@ -17,7 +18,7 @@ Result<SpaceCurves> read_space_curves(const Context& context, const std::string&
     all.unit = document->unit;
     for (const std::size_t i : *objects) {
         const Object& o = document->objects[i];
-        const bool is_curve = std::visit(
+        const bool is_curve = visit_one(
             [&](const auto& s) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (TensorPatch<S>)

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "joint_units.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 
 namespace freiform::cli {
@@ -39,7 +40,7 @@ std::string first_text(char kind, const std::vector<LargestJump>& jumps, int ord
 }  // namespace
 
 void SurfaceNeighbours::add(const Shape& shape, std::size_t index, const ContinuityOptions& options) {
-    std::visit(
+    visit_one(
         [&](const auto& s) {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>)

@@ -1,6 +1,7 @@
 // Everything that a document stores. The variant is closed: a program that has to know what kind of thing it
 // holds visits it once, at its edge; algorithms take the types themselves.
 #pragma once
+#include <freiform/core/visit.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/spline/patch.hpp>
 #include <freiform/spline/simplex.hpp>
@@ -43,7 +44,7 @@ concept TriangularPatch = requires(const S& s) {
 
 // "curve", "surface", "volume", "triangle", "trimmed", "model": the `type` of the document.
 inline std::string_view type_name(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [](const auto& s) -> std::string_view {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>)

@@ -8,6 +8,7 @@
 // there as the smallest turn from one tangent to the other takes it. A part keeps what it begins with, so
 // bounds of parts add up.
 #include <freiform/animate/motion.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/make/frame_sweep.hpp>
 
 #include <algorithm>
@@ -98,13 +99,13 @@ Result<Trajectory> Trajectory::make(const Curve<P>& curve, const Motion& motion,
 }
 
 Measure Trajectory::length() const {
-    return std::visit([](const auto& of) { return of.length.total(); }, way_->of);
+    return visit_one([](const auto& of) { return of.length.total(); }, way_->of);
 }
 
 Result<Trajectory::State> Trajectory::at(double time) const {
     if (std::isnan(time)) return refuse(RefusalKind::nonfinite, "time", "a number is expected");
     const Motion::State m = motion_.at(time);
-    return std::visit(
+    return visit_one(
         [&](const auto& of) -> Result<State> {
             const auto place = of.length.parameter(std::min(m.distance, of.length.total().value));
             if (!place) return std::unexpected(place.error());

@@ -6,6 +6,7 @@
 #include "part_spline_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/make/revolve.hpp>
 
@@ -179,7 +180,7 @@ Result<PartSpline> part_spline(const SurfaceGeometry& surface, const std::array<
         if (!(std::isfinite(side.lo) && std::isfinite(side.hi) && side.lo < side.hi))
             return refuse(RefusalKind::invalid, "on",
                           text("[", side.lo, ", ", side.hi, "] is no interval of finite length"));
-    return std::visit([&](const auto& s) { return part_of(s, on); }, surface);
+    return visit_one([&](const auto& s) { return part_of(s, on); }, surface);
 }
 
 }  // namespace freiform::detail

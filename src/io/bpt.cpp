@@ -1,4 +1,5 @@
 #include <freiform/core/scan.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 
 #include <algorithm>
@@ -82,7 +83,7 @@ void append_patch(std::string& s, std::span<const BSplineBasis> bases, const std
 
 // Why a shape has no place in the format; empty if it has one.
 std::string obstacle(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> std::string {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (std::same_as<S, Surface<Vec<3>>> || std::same_as<S, Surface<Hom<3>>>) {

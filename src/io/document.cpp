@@ -1,5 +1,6 @@
 #include "document_detail.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/make/named_curve.hpp>
 
@@ -76,7 +77,7 @@ Result<Object> object_of(Result<Shape> shape) {
 
 // How many colours a shape has room for: one per control point.
 std::size_t room_for_colours(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [](const auto& s) -> std::size_t {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>)
@@ -178,7 +179,7 @@ std::string write_document(const Document& document) {
         w.new_line(2).begin_object();
         if (!o.name.empty()) w.field("name", o.name);
         w.field("type", type_name(o.shape));
-        std::visit(
+        visit_one(
             [&](const auto& s) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (TensorPatch<S>) {
@@ -189,7 +190,7 @@ std::string write_document(const Document& document) {
                     write_model(w, s);
                 } else {
                     w.key("surface").begin_object();
-                    std::visit([&](const auto& surface) { write_patch(w, surface, {}); }, s.surface);
+                    visit_one([&](const auto& surface) { write_patch(w, surface, {}); }, s.surface);
                     w.end_object().key("loops").begin_array();
                     for (const auto& loop : s.loops) {
                         w.begin_array();

@@ -1,6 +1,8 @@
 // Solid models of a document, and the curves and surfaces that only models and trimmed surfaces have.
 #include "document_detail.hpp"
 
+#include <freiform/core/visit.hpp>
+
 namespace freiform::document_detail {
 
 namespace {
@@ -111,7 +113,7 @@ Result<SurfaceGeometry> read_surface(json::Value v, bool may_be_offset) {
     }
     auto patch = read_space_patch(v);
     if (!patch) return std::unexpected(patch.error());
-    return std::visit([](auto&& s) { return SurfaceGeometry(std::move(s)); }, std::move(*patch));
+    return visit_one([](auto&& s) { return SurfaceGeometry(std::move(s)); }, std::move(*patch));
 }
 
 Result<SurfaceGeometry> read_offset(json::Value v) {

@@ -1,6 +1,8 @@
 // The other direction of document_model.cpp.
 #include "document_detail.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <array>
 
 namespace freiform::document_detail {
@@ -47,7 +49,7 @@ void write_surface_fields(json::Writer& w, const Surface<P>& s) {
 template <int D>
 void write_curve_object(json::Writer& w, const CurveGeometry<D>& c) {
     w.begin_object();
-    std::visit([&](const auto& g) { write_curve_fields(w, g); }, c);
+    visit_one([&](const auto& g) { write_curve_fields(w, g); }, c);
     w.end_object();
 }
 
@@ -155,7 +157,7 @@ void write_curve(json::Writer& w, const CurveGeometry<3>& c) { write_curve_objec
 
 void write_surface(json::Writer& w, const SurfaceGeometry& s) {
     w.begin_object();
-    std::visit([&](const auto& g) { write_surface_fields(w, g); }, s);
+    visit_one([&](const auto& g) { write_surface_fields(w, g); }, s);
     w.end_object();
 }
 

@@ -5,6 +5,8 @@
 #include "io/drawing_detail.hpp"
 #include "io/drawing_lift.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -53,10 +55,10 @@ void extend(Extent& extent, const Shape& shape) {
             if constexpr (std::same_as<S, Model>)
                 extent.hull.add(summary(s).box);
             else
-                std::visit([&](const auto& patch) { add(patch.net().flat()); }, s.surface);
+                visit_one([&](const auto& patch) { add(patch.net().flat()); }, s.surface);
         }
     };
-    std::visit(visit, shape);
+    visit_one(visit, shape);
 }
 
 // `hides`: surfaces hide what is behind them; `corners`: gets a box of points of them in the first round.

@@ -3,6 +3,7 @@
 #include "io/drawing_detail.hpp"
 #include "io/drawing_lift.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 
 #include <algorithm>
@@ -139,9 +140,9 @@ private:
     }
 
     void add_trimmed(const TrimmedSurface& s) {
-        if (s.loops.empty()) return std::visit([&](const auto& patch) { add_shape(patch); }, s.surface);
+        if (s.loops.empty()) return visit_one([&](const auto& patch) { add_shape(patch); }, s.surface);
         const SurfaceGeometry surface =
-            std::visit([](const auto& patch) { return SurfaceGeometry(patch); }, s.surface);
+            visit_one([](const auto& patch) { return SurfaceGeometry(patch); }, s.surface);
         DrawnGroup g{s_.name, "edges", s_.colour, 1.8, {}, {}, {}};
         for (const auto& loop : s.loops)
             for (const CurveGeometry<2>& c : loop)
@@ -168,7 +169,7 @@ private:
         }
         for (const Face& face : model.faces)
             if (face.loops.empty())
-                std::visit(
+                visit_one(
                     [&](const auto& s) {
                         if constexpr (requires { s.net(); }) add_patch(s);
                     },
@@ -201,7 +202,7 @@ void add_object(Sketch& sketch, const Document& document, std::size_t index) {
     sketch.name = name.empty() ? sketch.label : name;
     sketch.colour = sketch.colour_of(index);
     sketch.behind = {};
-    std::visit([&](const auto& s) { Composer(sketch).add_shape(s); }, document.objects[index].shape);
+    visit_one([&](const auto& s) { Composer(sketch).add_shape(s); }, document.objects[index].shape);
     add_behind(sketch);
 }
 

@@ -11,6 +11,7 @@
 #include "io/drawing_lift.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/mesh/level_lines.hpp>
@@ -89,7 +90,7 @@ Document in_space(const Document& document, std::span<const std::size_t> objects
     out.unit = document.unit;
     for (const std::size_t i : objects) {
         Object object = document.objects[i];
-        std::visit(
+        visit_one(
             [&](const auto& s) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (TensorPatch<S>)
@@ -271,7 +272,7 @@ private:
 }  // namespace
 
 bool has_faces(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [](const auto& s) {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S>) {

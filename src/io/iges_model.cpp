@@ -16,6 +16,7 @@
 // Why not 144 for each face: nothing then says that faces share edges, and every reader guesses.
 #include "iges_file.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/make/image_curve.hpp>
 
 namespace freiform::detail {
@@ -24,7 +25,7 @@ namespace {
 
 // What a parameter curve covers, or somewhat more.
 void add_extent(Box<2>& box, const CurveGeometry<2>& curve, Interval on) {
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<2>>) {
@@ -91,7 +92,7 @@ private:
 
     template <int D>
     Result<int> spline(const CurveGeometry<D>& curve, IgesUse use = IgesUse::part) {
-        return std::visit(
+        return visit_one(
             [&](const auto& x) -> Result<int> {
                 if constexpr (requires { x.net(); })
                     return file_.add(x, use);
@@ -147,7 +148,7 @@ private:
         Box<2> used;
         for (const Loop& l : f.loops)
             for (const Coedge& c : l.coedges) add_extent(used, c.curve, m_.edges[std::size_t(c.edge)].range);
-        const auto surface = std::visit([&](const auto& s) { return one(s, used); }, f.surface);
+        const auto surface = visit_one([&](const auto& s) { return one(s, used); }, f.surface);
         if (!surface) return surface;
         std::vector<std::string> values = {text(*surface), text(f.loops.size()),
                                            f.loops.size() == 1 ? "1" : "0"};
@@ -207,7 +208,7 @@ private:
         const bool whole = std::holds_alternative<Conic<3>>(s.profile);  // the angles that are used
         const auto profile = space_spline(s.profile, whole ? used.side(0) : domain(s.profile)[0]);
         if (!profile) return std::unexpected(profile.error());
-        return std::visit(
+        return visit_one(
             [&](const auto& c) -> Result<int> {
                 if constexpr (requires { c.net(); }) {
                     using P = typename std::remove_cvref_t<decltype(c)>::Coefficients;

@@ -8,6 +8,7 @@
 // References: the Initial Graphics Exchange Specification, version 5.3, 4.4, 4.23, 4.24, 4.34 and 4.36.
 #include "iges_file.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/iges.hpp>
 #include <freiform/make/image_curve.hpp>
@@ -21,7 +22,7 @@ using detail::IgesUse;
 
 Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curves, const TrimmedSurface& t,
                       int surface) {
-    const SurfaceGeometry geometry = std::visit(
+    const SurfaceGeometry geometry = visit_one(
         [](const auto& s) -> SurfaceGeometry {
             const auto open = IgesFile::cut(s);  // which refused nothing when the surface was written
             return open ? *open : s;
@@ -39,9 +40,9 @@ Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curve
             else
                 return refuse(RefusalKind::unsupported, "", "a curve that is no spline");
         };
-        const auto one = std::visit([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
+        const auto one = visit_one([&](const auto& x) { return add_spline(x, IgesUse::parameters); }, *flat);
         if (!one) return one;
-        const auto other = std::visit([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
+        const auto other = visit_one([&](const auto& x) { return add_spline(x, IgesUse::part); }, *image);
         if (!other) return other;
         chains[0].push_back(*one), chains[1].push_back(*other);
     }
@@ -61,7 +62,7 @@ Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curve
 Result<int> iges_trimmed(IgesFile& file, const TrimmedSurface& t) {
     const auto turned = detail::oriented_loops(t);
     if (!turned) return std::unexpected(turned.error());
-    const auto surface = std::visit([&](const auto& s) { return file.add(s, IgesUse::part); }, t.surface);
+    const auto surface = visit_one([&](const auto& s) { return file.add(s, IgesUse::part); }, t.surface);
     if (!surface || turned->loops.empty()) return surface;
     std::vector<int> outer, holes;
     for (std::size_t l = 0; l < turned->loops.size(); ++l) {
@@ -88,7 +89,7 @@ Result<std::string> write_iges(const Document& document) {
     IgesFile file;
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
-        const auto done = std::visit(
+        const auto done = visit_one(
             [&](const auto& s) -> Result<int> {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, TrimmedSurface>) return iges_trimmed(file, s);

@@ -10,6 +10,7 @@
 // References: the specification of the object file format in Wavefront's Advanced Visualizer manual, appendix
 // B.
 #include <freiform/core/scan.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/io/obj_freeform.hpp>
 
 #include <algorithm>
@@ -203,7 +204,7 @@ private:
             if (!i || *i == 0 || *i > count || *i < -count)
                 return wrong(
                     text("\"", word.substr(0, 24), "\" is none of the ", count, " curves (curv2) so far"));
-            const auto cut = std::visit(
+            const auto cut = visit_one(
                 [&](const auto& c) -> Result<CurveGeometry<2>> {
                     return part(c, 0, {*lo, *hi});
                 },

@@ -6,6 +6,7 @@
 // B.
 #include "written_point.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/obj_freeform.hpp>
 #include <freiform/model/spline_faces.hpp>
@@ -63,7 +64,7 @@ public:
 
     // Trimming curves stand before their surface. Returns the number of the curve; nothing for an ellipse.
     std::optional<int> add_trimming(const CurveGeometry<2>& curve) {
-        return std::visit(
+        return visit_one(
             [&](const auto& c) -> std::optional<int> {
                 if constexpr (requires { c.net(); }) {
                     using P = typename std::remove_cvref_t<decltype(c)>::Coefficients;
@@ -138,7 +139,7 @@ Result<void> add_trimmed(ObjFreeformWriter& w, const std::string& name, const Tr
         }
         loops.push_back(std::move(loop));
     }
-    std::visit([&](const auto& s) { w.begin_surface(name, s); }, t.surface);
+    visit_one([&](const auto& s) { w.begin_surface(name, s); }, t.surface);
     for (const std::string& loop : loops) w.out += loop + "\n";
     w.end();
     return {};
@@ -157,7 +158,7 @@ Result<void> add_faces(ObjFreeformWriter& w, const std::string& name, const Mode
         auto face = spline_face_of(w, model, f);
         if (!face) return refuse_within(text("faces[", f, "]"), face.error());
         // Outer loops counter-clockwise, holes clockwise: what the format demands.
-        const auto sides = std::visit([](const auto& s) { return s.domain(); }, face->surface);
+        const auto sides = visit_one([](const auto& s) { return s.domain(); }, face->surface);
         const double gap = TrimmedSurface::kSlack * std::hypot(sides[0].length(), sides[1].length());
         if (auto turned = orient_loops(face->loops, {gap, gap})) face->loops = std::move(turned->loops);
         const std::string& own = model.faces[f].name;
@@ -170,7 +171,7 @@ Result<void> add_faces(ObjFreeformWriter& w, const std::string& name, const Mode
 Result<void> add_objects(ObjFreeformWriter& w, const Document& document) {
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
-        const auto done = std::visit(
+        const auto done = visit_one(
             [&](const auto& s) -> Result<void> {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, TrimmedSurface>) {

@@ -1,3 +1,4 @@
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/model/assemble.hpp>
@@ -60,7 +61,7 @@ public:
     explicit SceneBuilder(const Document& document) : document_(document), builder_(document.unit) {}
 
     Result<void> add(std::size_t index) {
-        return std::visit([&](const auto& s) { return add_shape(index, s); }, document_.objects[index].shape);
+        return visit_one([&](const auto& s) { return add_shape(index, s); }, document_.objects[index].shape);
     }
 
     Result<Scene> finish() && {

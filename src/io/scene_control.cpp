@@ -1,5 +1,6 @@
 #include "io/drawing_lift.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/spline/in_space.hpp>
 
@@ -47,17 +48,17 @@ void add_shape(ControlNet& to, const Shape& shape) {
         } else if constexpr (TriangularPatch<S>) {
             if constexpr (Space<typename S::Coefficients>::kDim < 4) add_net(to, s);
         } else if constexpr (std::same_as<S, TrimmedSurface>) {
-            std::visit([&](const auto& patch) { add_net(to, patch); }, s.surface);
+            visit_one([&](const auto& patch) { add_net(to, patch); }, s.surface);
         } else {
             for (const Face& face : s.faces)
-                std::visit(
+                visit_one(
                     [&](const auto& patch) {
                         if constexpr (requires { patch.net(); }) add_net(to, patch);
                     },
                     face.surface);
         }
     };
-    std::visit(visit, shape);
+    visit_one(visit, shape);
 }
 
 }  // namespace

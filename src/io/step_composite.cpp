@@ -19,6 +19,7 @@
 #include "step_shape.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ namespace freiform::step {
 namespace {
 
 std::size_t control_points(const CurveGeometry<3>& c) {
-    return std::visit(
+    return visit_one(
         [](const auto& g) -> std::size_t {
             if constexpr (requires { g.net(); })
                 return g.net().flat().size();

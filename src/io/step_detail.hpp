@@ -5,6 +5,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/result.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/geometry.hpp>
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
@@ -27,7 +28,7 @@ inline std::string quoted(std::string_view name) { return "'" + step::encoded(na
 
 // The parts between knots where only the place goes on: readers take edges to be smooth.
 inline Result<std::vector<CurveGeometry<2>>> without_corners(const CurveGeometry<2>& curve) {
-    return std::visit(
+    return visit_one(
         [](const auto& c) -> Result<std::vector<CurveGeometry<2>>> {
             std::vector<CurveGeometry<2>> parts;
             if constexpr (requires { c.net(); }) {
@@ -49,7 +50,7 @@ inline Result<std::vector<CurveGeometry<2>>> without_corners(const CurveGeometry
 
 // Outer loops counter-clockwise, holes clockwise, all cut at their corners.
 inline Result<OrientedLoops> oriented_loops(const TrimmedSurface& t) {
-    const auto sides = std::visit([](const auto& s) { return s.domain(); }, t.surface);
+    const auto sides = visit_one([](const auto& s) { return s.domain(); }, t.surface);
     const double gap = TrimmedSurface::kSlack * std::hypot(sides[0].length(), sides[1].length());
     auto out = orient_loops(t.loops, {gap, gap});
     if (!out) return out;
@@ -97,14 +98,14 @@ public:
     int point(const Vec<3>& p) { return e_.add(text("CARTESIAN_POINT('',", triple(p), ")")); }
 
     Result<int> curve(const CurveGeometry<3>& c) {
-        return std::visit([&](const auto& x) { return one(x); }, c);
+        return visit_one([&](const auto& x) { return one(x); }, c);
     }
 
     // A curve in space that is the image of a parameter curve of a surface, and says so.
     Result<int> surface_curve(const CurveGeometry<3>& in_space, const CurveGeometry<2>& c, int of_surface) {
         const auto space = curve(in_space);
         if (!space) return space;
-        const auto flat = std::visit(
+        const auto flat = visit_one(
             [&](const auto& x) -> Result<int> {
                 if constexpr (requires { x.net(); })
                     return one(x);
@@ -124,7 +125,7 @@ public:
     }
 
     Result<int> surface(const SurfaceGeometry& s) {
-        return std::visit([&](const auto& x) { return one(x); }, s);
+        return visit_one([&](const auto& x) { return one(x); }, s);
     }
 
     template <class P>

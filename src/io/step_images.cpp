@@ -7,6 +7,7 @@
 #include "step_trace.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,7 @@ std::vector<CurveGeometry<3>> GeometryReader::images(std::uint32_t curve, std::u
 }
 
 std::optional<CurveGeometry<2>> without_last_coordinate(const CurveGeometry<3>& c) {
-    return std::visit(
+    return visit_one(
         [](const auto& g) -> std::optional<CurveGeometry<2>> {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (std::same_as<G, Line<3>>) {

@@ -11,6 +11,7 @@
 
 #include "step_trace.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/model/edge_gap.hpp>
 
 #include <algorithm>
@@ -60,7 +61,7 @@ private:
         return j(1)[0] * k(1, 0) + j(1)[1] * k(0, 1);
     }
     bool has_corner(double t) const {
-        return std::visit(
+        return visit_one(
             [&](const auto& g) {
                 if constexpr (requires { g.net(); })
                     return on_.lo < t && t < on_.hi && g.basis().multiplicity(t) >= g.basis().degree();

@@ -6,6 +6,8 @@
 #include "step_geometry.hpp"
 #include "step_trace.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -56,7 +58,7 @@ Patch<N, P> moved_patch(const Patch<N, P>& s, const Motion& by) {
 }  // namespace
 
 CurveGeometry<3> moved(const CurveGeometry<3>& curve, const Motion& by) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> CurveGeometry<3> {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<3>>)
@@ -83,7 +85,7 @@ SurfaceGeometry moved(const SurfaceGeometry& surface, const Motion& by) {
 }
 
 CurveGeometry<3> reversed(const CurveGeometry<3>& curve) {
-    return std::visit(
+    return visit_one(
         [](const auto& c) -> CurveGeometry<3> {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<3>>)
@@ -146,7 +148,7 @@ double on_spline(const C& c, const Vec<3>& p) {
 }  // namespace
 
 double parameter_of(const CurveGeometry<3>& curve, const Vec<3>& p, double& distance) {
-    const double t = std::visit(
+    const double t = visit_one(
         [&](const auto& c) {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<3>>)
@@ -162,7 +164,7 @@ double parameter_of(const CurveGeometry<3>& curve, const Vec<3>& p, double& dist
 }
 
 CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> CurveGeometry<2> {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<2>>) {

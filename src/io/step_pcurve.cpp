@@ -12,6 +12,8 @@
 #include "step_lift.hpp"
 #include "step_shape.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +45,7 @@ Vec<2> parameter_units(const SurfaceGeometry& s, double angle) {
 // The first two coordinates, each times its unit.
 CurveGeometry<2> flattened(const CurveGeometry<3>& c, const Vec<2>& unit) {
     const auto flat = [&](const auto& p) { return Vec<2>{{unit[0] * p[0], unit[1] * p[1]}}; };
-    return std::visit(
+    return visit_one(
         [&](const auto& g) -> CurveGeometry<2> {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (std::same_as<G, Line<3>>) {
@@ -74,7 +76,7 @@ std::optional<CurveGeometry<3>> raised(const SurfaceGeometry& surface, const Cur
     if (l == nullptr) return std::nullopt;
     const auto direction = [&](const auto& d) { return d[0] * l->direction + d[1] * s->direction; };
     const auto point = [&](const auto& p) { return l->origin + direction(p); };
-    return std::visit(
+    return visit_one(
         [&](const auto& g) -> CurveGeometry<3> {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (std::same_as<G, Line<2>>) {

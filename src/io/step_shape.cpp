@@ -5,6 +5,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <set>
@@ -379,11 +380,11 @@ Part ShapeReader::finish() {
         else
             return std::size_t(0);
     };
-    for (const Edge& e : m.edges) out_.bytes += sizeof(Edge) + (e.curve ? std::visit(numbers, *e.curve) : 0);
+    for (const Edge& e : m.edges) out_.bytes += sizeof(Edge) + (e.curve ? visit_one(numbers, *e.curve) : 0);
     for (const Face& f : m.faces) {
-        out_.bytes += sizeof(Face) + std::visit(numbers, f.surface);
+        out_.bytes += sizeof(Face) + visit_one(numbers, f.surface);
         for (const Loop& l : f.loops)
-            for (const Coedge& c : l.coedges) out_.bytes += sizeof(Coedge) + std::visit(numbers, c.curve);
+            for (const Coedge& c : l.coedges) out_.bytes += sizeof(Coedge) + visit_one(numbers, c.curve);
     }
     out_.bytes += m.vertices.size() * sizeof(Vertex);
     return std::move(out_);

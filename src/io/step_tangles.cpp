@@ -19,6 +19,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -37,7 +38,7 @@ constexpr int kMostOfPiece = 600;  // points of one parameter curve
 std::vector<double> places_on(const CurveGeometry<2>& curve, Interval on, int each) {
     std::vector<double> breaks{on.lo};
     const bool straight = std::holds_alternative<Line<2>>(curve);
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             if constexpr (requires { g.net(); }) {
                 const auto all = g.basis().breaks();
@@ -96,7 +97,7 @@ bool stays_in_corner(const std::vector<std::vector<Use>>& loops, const Model& mo
 
 Box<3> box_of(const Edge& e) {
     Box<3> box;
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (std::same_as<G, Line<3>>) {

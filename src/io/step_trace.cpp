@@ -12,6 +12,7 @@
 #include "step_trace.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ constexpr double kNear = 10, kFarther = 2;
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
 int spans_of(const CurveGeometry<3>& c) {
-    return std::visit(
+    return visit_one(
         [](const auto& g) {
             if constexpr (requires { g.net(); })
                 return std::min(2 * int(g.net().flat().size()), 400);
@@ -102,7 +103,7 @@ private:
 
     // Straight, or with its first and last control point there: joints are closed by moving those.
     bool begins_and_ends_with_edge(const CurveGeometry<3>& image) const {
-        return std::visit(
+        return visit_one(
             [&](const auto& g) {
                 if constexpr (requires { g.net(); }) {
                     const BSplineBasis& b = g.basis();
@@ -250,7 +251,7 @@ private:
         return true;
     }
     bool has_corner(double t) const {
-        return std::visit(
+        return visit_one(
             [&](const auto& g) {
                 if constexpr (requires { g.net(); })
                     return on_.lo < t && t < on_.hi && g.basis().multiplicity(t) >= g.basis().degree();

@@ -4,6 +4,7 @@
 
 #include <freiform/core/result.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <span>
@@ -45,7 +46,7 @@ template <int D>
 std::vector<double> places_along(const CurveGeometry<D>& c, Interval on, int parts, std::size_t most) {
     std::vector<double> all;
     for (int i = 0; i <= parts; ++i) all.push_back(i == parts ? on.hi : on.lo + on.length() * i / parts);
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             if constexpr (requires { g.net(); }) {
                 const auto breaks = g.basis().breaks();

@@ -1,6 +1,8 @@
 // Parameter curves on planes: edges in other coordinates.
 #include "step_trace.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +22,7 @@ std::optional<Trace> trace_on_plane(const SurfaceGeometry& surface, const CurveG
     const auto point = [&](const Vec<3>& p) { return direction(p - l->origin); };
     const auto height = [&](const Vec<3>& p) { return std::abs(dot(p - l->origin, n)); };
     Trace out;
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (std::same_as<G, Line<3>>) {

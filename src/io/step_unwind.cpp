@@ -2,6 +2,8 @@
 // clamped first, so that each turn begins with the point where the last one ended.
 #include "step_shape.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -60,11 +62,11 @@ SurfaceGeometry unwound(const SurfaceGeometry& surface, const Chart& chart, cons
         };
         const auto change = [&](SurfaceGeometry& s) {
             if (auto* e = std::get_if<Extrusion>(&s))
-                std::visit(longer, e->profile);
+                visit_one(longer, e->profile);
             else if (auto* r = std::get_if<Revolution>(&s))
-                std::visit(longer, r->profile);
+                visit_one(longer, r->profile);
             else
-                std::visit(longer, s);
+                visit_one(longer, s);
         };
         if (const auto* o = std::get_if<OffsetSurface>(&out)) {
             SurfaceGeometry base = *o->base;

@@ -21,6 +21,7 @@
 #include "step_detail.hpp"
 #include "step_product.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
@@ -50,7 +51,7 @@ std::optional<CurveGeometry<3>> lifted(const CurveGeometry<2>& curve, const Surf
         linear = p[3] - p[1] == p[2] - p[0];
     }
     if (!linear) return std::nullopt;
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> std::optional<CurveGeometry<3>> {
             if constexpr (requires { c.net(); }) {
                 const auto at = [&](const Vec<2>& uv) { return jet<0>(s, uv.c).value(); };
@@ -198,8 +199,8 @@ private:
             else
                 return 0;
         };
-        const std::size_t n = std::visit(points, image);
-        return n > 0 && n <= std::visit(points, edge) && std::visit(points, surface) > 0;
+        const std::size_t n = visit_one(points, image);
+        return n > 0 && n <= visit_one(points, edge) && visit_one(points, surface) > 0;
     }
 
     // The curve in space, or the image of the parameter curve with that beside it.
@@ -285,7 +286,7 @@ Result<std::string> write_step(const Document& given) {
     std::vector<int> curves;
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
-        const auto done = std::visit(
+        const auto done = visit_one(
             [&](const auto& s) -> Result<void> {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, Model>) {

@@ -1,5 +1,6 @@
 // Documents as SVG and back.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/io/svg.hpp>
 
 #include <algorithm>
@@ -56,7 +57,7 @@ Document document_of(const SvgPicture& picture) {
         for (const Subpath& s : shape.path.subpaths) {
             ++part;
             if (s.segments.empty()) continue;
-            std::visit(
+            visit_one(
                 [&](auto curve) {
                     out.objects.push_back({part > 1 ? text(name, "/", part) : name, std::move(curve), {}});
                 },
@@ -74,7 +75,7 @@ Result<SvgOfDocument> picture_of(const Document& document, double tolerance) {
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
         const std::string label = text("objects[", i, "]");
-        auto subpath = std::visit(
+        auto subpath = visit_one(
             [&](const auto& s) -> Result<SubpathOfCurve> {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, Curve<Vec<2>>> || std::same_as<S, Curve<Hom<2>>>)

@@ -21,6 +21,7 @@
 // Why not an approximation by cubics? Files would hold edges that are near the surface; these lie on it. The
 // price is the degree, 18 for a cubic on a bicubic surface, which readers take up to 25.
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/poly/roots.hpp>
@@ -209,7 +210,7 @@ private:
 
 template <int D>
 Result<CurveGeometry<D>> spline_of_part(const CurveGeometry<D>& curve, Interval on) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> Result<CurveGeometry<D>> {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<D>>) {

@@ -1,3 +1,4 @@
+#include <freiform/core/visit.hpp>
 #include <freiform/model/assemble.hpp>
 
 #include <algorithm>
@@ -71,7 +72,7 @@ int ModelBuilder::vertex_at(const Vec<3>& p) {
 
 // The coedge along a side of a surface; its edge is an old one if that is the same curve.
 Coedge ModelBuilder::coedge_for(const SplineCurve& curve, const Vec<2>& from, const Vec<2>& to) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> Coedge {
             using C = std::remove_cvref_t<decltype(c)>;
             const auto net = c.net().flat();
@@ -101,7 +102,7 @@ Coedge ModelBuilder::coedge_for(const SplineCurve& curve, const Vec<2>& from, co
 Result<int> ModelBuilder::add(SplineSurface surface, std::string name, std::optional<Colour> colour) {
     Face face;
     face.name = std::move(name), face.colour = colour;
-    std::visit(
+    visit_one(
         [&](auto& s) {
             const bool closed[2] = {s.basis(0).is_closed(), s.basis(1).is_closed()};
             s = opened(std::move(s));
@@ -163,7 +164,7 @@ Result<int> ModelBuilder::add_trimmed(SplineSurface surface,
                                       std::optional<Colour> colour) {
     Face face;
     face.name = std::move(name), face.colour = colour;
-    std::visit([&](auto& s) { face.surface = opened(std::move(s)); }, surface);
+    visit_one([&](auto& s) { face.surface = opened(std::move(s)); }, surface);
     std::map<std::array<double, 2>, int> vertex_at;  // loops that touch in a vertex have it in common
     for (std::size_t l = 0; l < loops.size(); ++l) {
         if (loops[l].empty()) return refuse(RefusalKind::invalid, text("loops[", l, "]"), "has no curves");

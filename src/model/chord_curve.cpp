@@ -21,6 +21,8 @@
 // these are.
 #include "chord_curve_detail.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,7 +65,7 @@ std::optional<ChordFrame> frame_of(const Vec<3>& chord, const Vec<3>& bend) {
 }
 
 ChordCurve::ChordCurve(const CurveGeometry<3>& curve) : query_(curve) {
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             using C = std::remove_cvref_t<decltype(c)>;
             straight_ = std::same_as<C, Line<3>>;
@@ -176,7 +178,7 @@ struct AffineImage {
 
 // Along the parameter line where parameter 1 - axis is `at`.
 std::optional<CurveGeometry<3>> parameter_line(const SurfaceGeometry& surface, int axis, double at) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> std::optional<CurveGeometry<3>> {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (std::same_as<S, Extrusion>) {
@@ -202,7 +204,7 @@ std::optional<LiftedCurve> lifted(const SurfaceGeometry& surface, const CurveGeo
     };
     if (const auto* e = std::get_if<Extrusion>(&surface))
         if (const auto* line = std::get_if<Line<3>>(&e->profile))
-            return make(std::visit(AffineImage{line->origin, line->direction, e->direction}, curve), 0, 1,
+            return make(visit_one(AffineImage{line->origin, line->direction, e->direction}, curve), 0, 1,
                         true);
     const auto* line = std::get_if<Line<2>>(&curve);
     if (!line) return std::nullopt;
@@ -214,7 +216,7 @@ std::optional<LiftedCurve> lifted(const SurfaceGeometry& surface, const CurveGeo
 }
 
 double distance_of_twins(const CurveGeometry<3>& a, const CurveGeometry<3>& b) {
-    return std::visit(
+    return visit_one(
         [&](const auto& x) {
             using C = std::remove_cvref_t<decltype(x)>;
             const C* y = std::get_if<C>(&b);

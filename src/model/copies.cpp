@@ -11,6 +11,7 @@
 #include "copies_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,7 @@ std::vector<Part> parts_of(const Model& model) {
 
 // Points that move with a curve, to find the motion by.
 void add_points(const CurveGeometry<3>& curve, std::vector<Vec<3>>& out) {
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<3>>)

@@ -46,6 +46,7 @@
 #include <freiform/core/parallel.hpp>
 #include <freiform/core/sort.hpp>
 #include <freiform/core/text.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/model/edge_continuity.hpp>
 #include <freiform/model/edge_gap.hpp>
 
@@ -67,7 +68,7 @@ constexpr int kCurvaturePlaces = 16;
 struct PreparedFace {
     explicit PreparedFace(const Face& f)
         : face(&f), query(f.surface), seams(seams_of(f.surface)), ends(limits(f.surface)) {
-        std::visit(
+        visit_one(
             [&](const auto& surface) {
                 if constexpr (requires { surface.net(); })
                     for (int k = 0; k < 2; ++k) degree[std::size_t(k)] = surface.basis(k).degree();
@@ -245,7 +246,7 @@ private:
         std::vector<double> t{edge_.range.lo, edge_.range.hi};
         for (int i = 1; i < 4; ++i) t.push_back(edge_.range.lo + edge_.range.length() * i / 4);
         for (const FaceAlong& s : side_)
-            std::visit(
+            visit_one(
                 [&](const auto& c) {
                     if constexpr (requires { c.net(); })
                         for (const double x : c.basis().breaks())

@@ -41,6 +41,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/model/edge_gap.hpp>
 
 #include <algorithm>
@@ -139,7 +140,7 @@ private:
 // The ranges of splines contain `range`, and neither curve is torn inside.
 bool Prover::is_covered() const {
     const auto contains = [&](const auto& curve) {
-        return std::visit(
+        return visit_one(
             [&](const auto& c) {
                 if constexpr (requires { c.net(); })
                     return c.domain()[0].lo <= range_.lo && range_.hi <= c.domain()[0].hi;
@@ -159,7 +160,7 @@ bool Prover::is_covered() const {
 std::vector<double> Prover::cuts() const {
     std::vector<double> t{range_.lo, range_.hi};
     const auto add = [&](const auto& curve) {
-        std::visit(
+        visit_one(
             [&](const auto& c) {
                 if constexpr (requires { c.net(); })
                     for (double x : c.basis().breaks())

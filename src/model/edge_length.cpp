@@ -29,6 +29,7 @@
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/model/edge_length.hpp>
 #include <freiform/query/checks.hpp>
 
@@ -81,7 +82,7 @@ private:
     std::vector<Interval> parts_of(Interval on) const {
         std::vector<double> t{on.lo, on.hi};
         for (int i = 1; i < 4; ++i) t.push_back(on.lo + on.length() * i / 4);
-        std::visit(
+        visit_one(
             [&](const auto& c) {
                 if constexpr (requires { c.net(); })
                     for (const double x : c.basis().breaks())
@@ -161,7 +162,7 @@ private:
 
 // Of the length of a lift over `over`, of coefficients that are off by d each.
 double moved_by(const CurveGeometry<3>& lift, Interval over, double d) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) {
             if constexpr (requires { c.net(); })
                 return 2 * double(c.net().flat().size()) * d;

@@ -18,6 +18,7 @@
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ double first_part(double parts) {
 // others, nor of those on closed knots, whose parameters may go around.
 std::array<PiecewiseBound, 2> second_by_pieces(const DerivativeQuery<1, 2>& curve) {
     std::array<PiecewiseBound, 2> out;
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             if constexpr (requires { c.net(); }) {
                 const auto breaks = c.basis().breaks();
@@ -67,7 +68,7 @@ std::array<PiecewiseBound, 2> second_by_pieces(const DerivativeQuery<1, 2>& curv
 }  // namespace
 
 CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> CurveGeometry<1> {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (std::same_as<C, Line<2>>) {

@@ -11,6 +11,7 @@
 #include "face_box_detail.hpp"
 #include "face_parts_detail.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/query/bounds.hpp>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ bool is_divisible(const FacePart& p) {
 Box<3> box_of_spline(const SurfaceGeometry& surface, double accuracy) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const Box<3> all{Box<3>::filled(-kInfinity), Box<3>::filled(kInfinity)};
-    return std::visit(
+    return visit_one(
         [&](const auto& s) {
             if constexpr (requires { s.net(); }) {
                 const auto tight = tight_box(s, accuracy, kMostBoxParts);

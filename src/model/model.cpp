@@ -1,5 +1,6 @@
 #include "face_box_detail.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -165,7 +166,7 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
         });
     }
     if (torn)  // a spline that jumps: its control points contain it as well
-        std::visit(
+        visit_one(
             [&](const auto& g) {
                 if constexpr (requires { g.net(); })
                     for (const auto& p : points(g)) box.add(p);
@@ -183,7 +184,7 @@ std::array<Interval, 2> parameter_box(const Model& m, const Face& f) {
         for (const Coedge& c : l.coedges)
             box.add(box_of<1, 2>(c.curve, {m.edges[std::size_t(c.edge)].range}));
     std::array<Interval, 2> on{box.side(0), box.side(1)};
-    if (std::visit(
+    if (visit_one(
             [](const auto& s) {
                 return requires { s.net(); };
             },

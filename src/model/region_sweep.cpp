@@ -18,6 +18,7 @@
 // depth.
 #include "region_sweep_detail.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
@@ -165,7 +166,7 @@ private:
 Result<void> each_point(const RegionLoops& region, const std::function<void(const Vec<2>&)>& f) {
     for (std::size_t l = 0; l < region.size(); ++l)
         for (std::size_t c = 0; c < region[l].size(); ++c) {
-            const bool spline = std::visit(
+            const bool spline = visit_one(
                 [&](const auto& curve) {
                     if constexpr (requires { curve.net(); }) {
                         for (const auto& p : curve.net().flat()) f(project(p));

@@ -1,4 +1,5 @@
 // Every number that is a length is multiplied; weights, parameters and directions of length 1 are none.
+#include <freiform/core/visit.hpp>
 #include <freiform/model/rescale.hpp>
 
 #include <algorithm>
@@ -35,7 +36,7 @@ public:
         return Patch<N, P>::trusted(patch.bases(), Net<N, P>(patch.net().extent(), std::move(points)));
     }
     CurveGeometry<3> operator()(const CurveGeometry<3>& curve) {
-        return std::visit([&](const auto& c) -> CurveGeometry<3> { return (*this)(c); }, curve);
+        return visit_one([&](const auto& c) -> CurveGeometry<3> { return (*this)(c); }, curve);
     }
     Extrusion operator()(const Extrusion& s) { return {(*this)(s.profile), (*this)(s.direction), s.kind}; }
     Revolution operator()(const Revolution& s) {
@@ -45,7 +46,7 @@ public:
         return {std::make_shared<const SurfaceGeometry>((*this)(*s.base)), (*this)(s.distance)};
     }
     SurfaceGeometry operator()(const SurfaceGeometry& surface) {
-        return std::visit([&](const auto& s) -> SurfaceGeometry { return (*this)(s); }, surface);
+        return visit_one([&](const auto& s) -> SurfaceGeometry { return (*this)(s); }, surface);
     }
     bool is_finite() const { return finite_; }
 

@@ -17,6 +17,7 @@
 // enough.
 #include <freiform/core/constants.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/make/conic.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/make/revolve.hpp>
@@ -87,7 +88,7 @@ Result<MappedCurve> profile_of(const CurveGeometry<3>& given, Interval used) {
 
 template <class F>
 Result<MappedSurface> with_spline(const CurveGeometry<3>& curve, F&& f) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> Result<MappedSurface> {
             if constexpr (requires { c.net(); })
                 return f(c);
@@ -154,7 +155,7 @@ Result<MappedSurface> spline_of(const Surface<P>& s, const Box<2>&) {
 // The curve where the spline has it.
 Result<CurveGeometry<2>> mapped(const CurveGeometry<2>& curve, const std::array<AxisMap, 2>& map) {
     if (map[0].arcs == 0 && map[1].arcs == 0) return curve;
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> Result<CurveGeometry<2>> {
             if constexpr (requires { c.net(); }) {
                 const Vec<2> from = project(c.net().flat().front()), to = project(c.net().flat().back());
@@ -183,7 +184,7 @@ constexpr int kMostCubics = 4096;   // a backstop
 // The ends of the range, breaks of the curve, and where it crosses the joints of arcs.
 std::vector<double> steps_of(const CurveGeometry<2>& curve, Interval on, const std::array<AxisMap, 2>& map) {
     std::vector<double> t{on.lo, on.hi};
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             if constexpr (requires { c.net(); })
                 for (const double b : c.basis().breaks())
@@ -261,7 +262,7 @@ Result<CurveGeometry<2>> followed_across(const Coedge& c, const Edge& e, Across&
         return refuse(RefusalKind::unsupported, "",
                       "a loop that crosses an angle, without a curve in space that it could follow");
     const SurfaceGeometry spline =
-        std::visit([](const auto& s) { return SurfaceGeometry(s); }, how.made.surface);
+        visit_one([](const auto& s) { return SurfaceGeometry(s); }, how.made.surface);
     const DerivativeQuery<2, 3> before(how.given), after(spline);
     const EdgeGapOptions fine{.target = how.tolerance / 8};
     const double own = edge_gap(before, c.curve, *e.curve, e.range, fine).bound;
@@ -280,7 +281,7 @@ Result<CurveGeometry<2>> followed_across(const Coedge& c, const Edge& e, Across&
 
 Result<CurveGeometry<2>> in_direction(Result<CurveGeometry<2>> curve, bool reversed) {
     if (!curve || !reversed) return curve;
-    return std::visit(
+    return visit_one(
         [](const auto& x) -> Result<CurveGeometry<2>> {
             if constexpr (requires { x.net(); })
                 return reverse(x, 0);
@@ -297,7 +298,7 @@ Result<SplineFace> converted(const Model& model, std::size_t face, double tolera
         for (const Coedge& c : l.coedges) {
             const auto curve = parameter_spline(c.curve, model.edges[std::size_t(c.edge)].range);
             if (!curve) return std::unexpected(curve.error());
-            std::visit(
+            visit_one(
                 [&](const auto& x) {
                     if constexpr (requires { x.net(); })
                         for (const auto& p : x.net().flat()) used.add(project(p));
@@ -305,7 +306,7 @@ Result<SplineFace> converted(const Model& model, std::size_t face, double tolera
                 *curve);
         }
     if (f.loops.empty()) return refuse(RefusalKind::unsupported, "loops", "a face without boundary");
-    auto made = std::visit([&](const auto& s) { return spline_of(s, used); }, f.surface);
+    auto made = visit_one([&](const auto& s) { return spline_of(s, used); }, f.surface);
     if (!made) return std::unexpected(made.error());
     Across across{f.surface, *made, tolerance};
     std::vector<std::vector<CurveGeometry<2>>> loops;

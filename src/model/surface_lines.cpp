@@ -3,6 +3,7 @@
 // within that distance of the isoline, is cut off where the face is, and lies on the triangles themselves: no
 // triangle that it runs on can hide it. Outlines are moved from the chord to the surface, because they decide
 // how smooth a drawing looks.
+#include <freiform/core/visit.hpp>
 #include <freiform/mesh/level_lines.hpp>
 #include <freiform/model/surface_lines.hpp>
 
@@ -67,7 +68,7 @@ std::vector<double> isoline_levels(const SurfaceGeometry& surface, int axis, con
     }
     const BSplineBasis* basis = nullptr;
     int degrees = 0;
-    std::visit(
+    visit_one(
         [&](const auto& s) {
             if constexpr (requires { s.net(); }) {
                 basis = &s.basis(axis);

@@ -1,5 +1,6 @@
 // Where a surface is not smooth: knots of low multiplicity of what it is made of, and the ends of splines.
 #pragma once
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/geometry.hpp>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ inline void add_seams(std::vector<SurfaceSeam>& seams, const BSplineBasis& basis
 }
 
 inline void add_seams(std::vector<SurfaceSeam>& seams, const CurveGeometry<3>& profile, int less) {
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             if constexpr (requires { c.net(); }) add_seams(seams, c.basis(), less);
         },
@@ -35,7 +36,7 @@ inline std::array<std::vector<SurfaceSeam>, 2> seams_of(const SurfaceGeometry& o
     const auto* offset = std::get_if<OffsetSurface>(&outer);
     const int less = offset ? 1 : 0;
     std::array<std::vector<SurfaceSeam>, 2> seams;
-    std::visit(
+    visit_one(
         [&](const auto& s) {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (std::same_as<S, Extrusion>) {

@@ -6,6 +6,7 @@
 #include "region_sweep_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/in_space.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
@@ -51,7 +52,7 @@ struct Motion {
 };
 
 CurveGeometry<3> moved(const CurveGeometry<2>& curve, const Motion& motion) {
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> CurveGeometry<3> {
             if constexpr (requires { c.net(); }) {
                 auto s = in_space(c);

@@ -17,6 +17,7 @@
 #include "path/flatten_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <numbers>
 
@@ -122,7 +123,7 @@ Result<Polyline<D>> flatten(const CurveGeometry<D>& curve, Interval on, const Fl
     if (!(on.lo < on.hi) || !std::isfinite(on.lo) || !std::isfinite(on.hi))
         return refuse(RefusalKind::invalid, "on", text("[", on.lo, ", ", on.hi, "] is no interval"));
     if (auto ok = detail::check_options(options); !ok) return std::unexpected(ok.error());
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> Result<Polyline<D>> {
             if constexpr (requires { c.net(); }) {
                 if (on == c.domain()[0]) return flatten(c, options);

@@ -32,6 +32,7 @@
 #include "query/gauss_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/query/length.hpp>
 
 #include <cmath>
@@ -166,7 +167,7 @@ Result<Measure> length(const CurveGeometry<3>& curve, Interval on, double accura
         return refuse(RefusalKind::invalid, "on",
                       text("[", on.lo, ", ", on.hi, "] is not a finite interval"));
     if (on.lo == on.hi) return Measure{};
-    return std::visit(
+    return visit_one(
         [&](const auto& c) -> Result<Measure> {
             using C = std::remove_cvref_t<decltype(c)>;
             if constexpr (requires { c.net(); }) {

@@ -5,6 +5,7 @@
 // between are parts of segments.
 #include "arcs_detail.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/query/length.hpp>
 #include <freiform/region/stroke.hpp>
 
@@ -131,8 +132,8 @@ Result<Path> dashed(const Path& path, const StrokeStyle& style, double accuracy)
         }
         if (s.closed && s.segments.back().back() != s.start)
             s.segments.push_back({1, {s.segments.back().back(), s.start}, 1});
-        const auto ok = std::visit([&](const auto& curve) { return cut(s, curve, *pattern, accuracy, out); },
-                                   curve_of(s));
+        const auto ok =
+            visit_one([&](const auto& curve) { return cut(s, curve, *pattern, accuracy, out); }, curve_of(s));
         if (!ok) return refuse_within(text("path.subpaths[", i, "]"), ok.error());
     }
     return out;

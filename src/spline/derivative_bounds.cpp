@@ -11,6 +11,7 @@
 #include "swept_bounds_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <algorithm>
@@ -117,7 +118,7 @@ using detail::bounds_of;
 template <std::size_t N, int D>
 DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&geometry) {
     thinnest_.fill(kInfinity);
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); }) {
@@ -155,7 +156,7 @@ DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&ge
 
 template <std::size_t N, int D>
 DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval, N>& box, int order) const {
-    return std::visit(
+    return visit_one(
         [&](const auto& g) -> DerivativeBounds<N> {
             if constexpr (requires { g.net(); })
                 return bounds_of(
@@ -176,7 +177,7 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
 template <std::size_t N, int D>
 DerivativeBounds<N> DerivativeQuery<N, D>::along(const Vec<D>& n, const std::array<Interval, N>& box,
                                                  int order) const {
-    return std::visit(
+    return visit_one(
         [&](const auto& g) -> DerivativeBounds<N> {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); })
@@ -199,7 +200,7 @@ template <std::size_t N, int D>
 std::array<DerivativeBounds<N>, 2> DerivativeQuery<N, D>::along_two(const std::array<Vec<D>, 2>& n,
                                                                     const std::array<Interval, N>& box,
                                                                     int order) const {
-    return std::visit(
+    return visit_one(
         [&](const auto& g) -> std::array<DerivativeBounds<N>, 2> {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); })
@@ -216,7 +217,7 @@ template <std::size_t N, int D>
 typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n,
                                                                  const std::array<Interval, N>& box,
                                                                  int order) const {
-    return std::visit(
+    return visit_one(
         [&](const auto& g) -> Both {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); }) {
@@ -236,7 +237,7 @@ typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n
 
 PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>& curve, Interval on) {
     PlaneCurveBounds out;
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             using G = std::remove_cvref_t<decltype(g)>;
             if constexpr (requires { g.net(); }) {

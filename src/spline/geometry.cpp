@@ -1,5 +1,6 @@
 // Values, derivatives and checks of the analytic curves and surfaces; splines answer for themselves.
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/geometry.hpp>
 
 #include <algorithm>
@@ -45,57 +46,57 @@ struct ConicAt {
 
 template <int D>
 std::array<Interval, 1> domain(const CurveGeometry<D>& curve) {
-    return std::visit(Overloaded{[](const Line<D>&) {
-                                     return std::array{Interval{-kInfinity, kInfinity}};
-                                 },
-                                 [](const Conic<D>& c) {
-                                     return std::array{c.kind == ConicKind::ellipse
-                                                           ? Interval{0, kTwoPi}
-                                                           : Interval{-kInfinity, kInfinity}};
-                                 },
-                                 [](const auto& spline) { return spline.domain(); }},
-                      curve);
+    return visit_one(Overloaded{[](const Line<D>&) {
+                                    return std::array{Interval{-kInfinity, kInfinity}};
+                                },
+                                [](const Conic<D>& c) {
+                                    return std::array{c.kind == ConicKind::ellipse
+                                                          ? Interval{0, kTwoPi}
+                                                          : Interval{-kInfinity, kInfinity}};
+                                },
+                                [](const auto& spline) { return spline.domain(); }},
+                     curve);
 }
 
 std::array<Interval, 2> domain(const SurfaceGeometry& surface) {
     const SurfaceGeometry* s = &surface;
     if (const auto* offset = std::get_if<OffsetSurface>(s)) s = offset->base.get();
-    return std::visit(Overloaded{[](const Extrusion& e) {
-                                     return std::array{domain(e.profile)[0], Interval{-kInfinity, kInfinity}};
-                                 },
-                                 [](const Revolution& r) {
-                                     return std::array{Interval{0, kTwoPi}, domain(r.profile)[0]};
-                                 },
-                                 [](const OffsetSurface&) { return std::array<Interval, 2>{}; },
-                                 [](const auto& spline) { return spline.domain(); }},
-                      *s);
+    return visit_one(Overloaded{[](const Extrusion& e) {
+                                    return std::array{domain(e.profile)[0], Interval{-kInfinity, kInfinity}};
+                                },
+                                [](const Revolution& r) {
+                                    return std::array{Interval{0, kTwoPi}, domain(r.profile)[0]};
+                                },
+                                [](const OffsetSurface&) { return std::array<Interval, 2>{}; },
+                                [](const auto& spline) { return spline.domain(); }},
+                     *s);
 }
 
 std::array<Interval, 2> limits(const SurfaceGeometry& surface) {
     static constexpr Interval kNone{-kInfinity, kInfinity};
     const auto of_profile = [](const CurveGeometry<3>& profile) {
-        return std::visit(
+        return visit_one(
             Overloaded{[](const Line<3>&) { return kNone; }, [](const Conic<3>&) { return kNone; },
                        [](const auto& spline) { return spline.domain()[0]; }},
             profile);
     };
     const auto* offset = std::get_if<OffsetSurface>(&surface);
-    return std::visit(Overloaded{[&](const Extrusion& e) {
-                                     return std::array{of_profile(e.profile), kNone};
-                                 },
-                                 [&](const Revolution& r) {
-                                     return std::array{kNone, of_profile(r.profile)};
-                                 },
-                                 [](const OffsetSurface&) {
-                                     return std::array{kNone, kNone};
-                                 },
-                                 [](const auto& spline) { return spline.domain(); }},
-                      offset ? *offset->base : surface);
+    return visit_one(Overloaded{[&](const Extrusion& e) {
+                                    return std::array{of_profile(e.profile), kNone};
+                                },
+                                [&](const Revolution& r) {
+                                    return std::array{kNone, of_profile(r.profile)};
+                                },
+                                [](const OffsetSurface&) {
+                                    return std::array{kNone, kNone};
+                                },
+                                [](const auto& spline) { return spline.domain(); }},
+                     offset ? *offset->base : surface);
 }
 
 template <int D>
 Result<void> check(const CurveGeometry<D>& curve) {
-    return std::visit(
+    return visit_one(
         Overloaded{[](const Line<D>& l) -> Result<void> {
                        if (!is_finite(l.origin) || !is_finite(l.direction))
                            return refuse(RefusalKind::nonfinite, "line", "origin or direction is not finite");
@@ -144,20 +145,20 @@ Result<void> check(const SurfaceGeometry& surface) {
 
 template <int K, int D>
 Jet<1, K, Vec<D>> jet(const CurveGeometry<D>& curve, double t) {
-    return std::visit(Overloaded{[&](const Line<D>& l) {
-                                     Jet<1, K, Vec<D>> j;
-                                     j.d[0] = l.origin + t * l.direction;
-                                     if constexpr (K >= 1) j.d[1] = l.direction;
-                                     return j;
-                                 },
-                                 [&](const Conic<D>& c) {
-                                     Jet<1, K, Vec<D>> j;
-                                     const ConicAt<D> at(c, t);
-                                     for (int k = 0; k <= K; ++k) j.d[std::size_t(k)] = at.derivative(k);
-                                     return j;
-                                 },
-                                 [&](const auto& spline) { return spline.template jet<K>(t); }},
-                      curve);
+    return visit_one(Overloaded{[&](const Line<D>& l) {
+                                    Jet<1, K, Vec<D>> j;
+                                    j.d[0] = l.origin + t * l.direction;
+                                    if constexpr (K >= 1) j.d[1] = l.direction;
+                                    return j;
+                                },
+                                [&](const Conic<D>& c) {
+                                    Jet<1, K, Vec<D>> j;
+                                    const ConicAt<D> at(c, t);
+                                    for (int k = 0; k <= K; ++k) j.d[std::size_t(k)] = at.derivative(k);
+                                    return j;
+                                },
+                                [&](const auto& spline) { return spline.template jet<K>(t); }},
+                     curve);
 }
 
 namespace {
@@ -231,7 +232,7 @@ Jet<2, K, Vec<3>> jet_of(const OffsetSurface& o, const Param<2>& uv) {
 
 template <int K>
 Jet<2, K, Vec<3>> jet(const SurfaceGeometry& surface, const Param<2>& uv) {
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> Jet<2, K, Vec<3>> {
             if constexpr (requires { s.template jet<K>(uv); })
                 return s.template jet<K>(uv);
@@ -250,31 +251,31 @@ Vec<3> normal(const SurfaceGeometry& surface, const Param<2>& uv) {
 
 template <int D>
 std::string_view kind_name(const CurveGeometry<D>& curve) {
-    return std::visit(Overloaded{[](const Line<D>&) { return std::string_view("line"); },
-                                 [](const Conic<D>& c) -> std::string_view {
-                                     if (c.kind == ConicKind::hyperbola) return "hyperbola";
-                                     if (c.kind == ConicKind::parabola) return "parabola";
-                                     return dot(c.x, c.x) == dot(c.y, c.y) ? "circle" : "ellipse";
-                                 },
-                                 [](const Curve<Vec<D>>&) { return std::string_view("bspline"); },
-                                 [](const Curve<Hom<D>>&) { return std::string_view("nurbs"); }},
-                      curve);
+    return visit_one(Overloaded{[](const Line<D>&) { return std::string_view("line"); },
+                                [](const Conic<D>& c) -> std::string_view {
+                                    if (c.kind == ConicKind::hyperbola) return "hyperbola";
+                                    if (c.kind == ConicKind::parabola) return "parabola";
+                                    return dot(c.x, c.x) == dot(c.y, c.y) ? "circle" : "ellipse";
+                                },
+                                [](const Curve<Vec<D>>&) { return std::string_view("bspline"); },
+                                [](const Curve<Hom<D>>&) { return std::string_view("nurbs"); }},
+                     curve);
 }
 
 std::string_view kind_name(const SurfaceGeometry& surface) {
     static constexpr std::string_view kNames[] = {"", "plane", "cylinder", "cone", "sphere", "torus"};
-    return std::visit(Overloaded{[](const Extrusion& e) {
-                                     return e.kind == SurfaceKind::general ? std::string_view("extrusion")
-                                                                           : kNames[int(e.kind)];
-                                 },
-                                 [](const Revolution& r) {
-                                     return r.kind == SurfaceKind::general ? std::string_view("revolution")
-                                                                           : kNames[int(r.kind)];
-                                 },
-                                 [](const OffsetSurface&) { return std::string_view("offset"); },
-                                 [](const Surface<Vec<3>>&) { return std::string_view("bspline"); },
-                                 [](const Surface<Hom<3>>&) { return std::string_view("nurbs"); }},
-                      surface);
+    return visit_one(Overloaded{[](const Extrusion& e) {
+                                    return e.kind == SurfaceKind::general ? std::string_view("extrusion")
+                                                                          : kNames[int(e.kind)];
+                                },
+                                [](const Revolution& r) {
+                                    return r.kind == SurfaceKind::general ? std::string_view("revolution")
+                                                                          : kNames[int(r.kind)];
+                                },
+                                [](const OffsetSurface&) { return std::string_view("offset"); },
+                                [](const Surface<Vec<3>>&) { return std::string_view("bspline"); },
+                                [](const Surface<Hom<3>>&) { return std::string_view("nurbs"); }},
+                     surface);
 }
 
 // Every analytic value is a sum of at most eight products of a coordinate with a sine, cosine or parameter,
@@ -282,7 +283,7 @@ std::string_view kind_name(const SurfaceGeometry& surface) {
 template <int D>
 double value_error_bound(const CurveGeometry<D>& curve, const std::array<Interval, 1>& on) {
     const double t = std::max(std::abs(on[0].lo), std::abs(on[0].hi));
-    return std::visit(
+    return visit_one(
         Overloaded{[&](const Line<D>& l) {
                        return 64 * kUnitRoundoff * (max_abs(l.origin) + t * max_abs(l.direction));
                    },
@@ -297,7 +298,7 @@ double value_error_bound(const CurveGeometry<D>& curve, const std::array<Interva
 }
 
 double value_error_bound(const SurfaceGeometry& surface, const std::array<Interval, 2>& on) {
-    return std::visit(
+    return visit_one(
         Overloaded{[&](const Extrusion& e) {
                        const double v = std::max(std::abs(on[1].lo), std::abs(on[1].hi));
                        return 2 * value_error_bound(e.profile, {on[0]}) +

@@ -3,6 +3,7 @@
 #include "trim/chain_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/bezier.hpp>
 
 #include <algorithm>
@@ -48,14 +49,14 @@ double end_rounding(const Curve<P>& c) {
 }  // namespace
 
 Hom<2> ChainPiece::start() const {
-    return std::visit([](const auto& n) { return lift(n.front()); }, net);
+    return visit_one([](const auto& n) { return lift(n.front()); }, net);
 }
 Hom<2> ChainPiece::end() const {
-    return std::visit([](const auto& n) { return lift(n.back()); }, net);
+    return visit_one([](const auto& n) { return lift(n.back()); }, net);
 }
 std::vector<Hom<2>> ChainPiece::lifted() const {
     std::vector<Hom<2>> all;
-    std::visit(
+    visit_one(
         [&](const auto& n) {
             for (const auto& p : n) all.push_back(lift(p));
         },

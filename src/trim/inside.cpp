@@ -4,6 +4,7 @@
 #include "trim/chain_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/poly/arc_index.hpp>
 #include <freiform/trim/inside.hpp>
 
@@ -42,7 +43,7 @@ Result<InsideQuery> InsideQuery::make(std::span<const std::vector<CurveGeometry<
         if (const Conic<2>* e = detail::ellipse_of(loops[l]))
             query.ellipses_.push_back({e->centre, e->x, e->y});
         for (std::size_t i = 0; i < chain->size(); ++i) {
-            std::visit([&](const auto& net) { query.add_arc(std::span(net)); }, (*chain)[i].net);
+            visit_one([&](const auto& net) { query.add_arc(std::span(net)); }, (*chain)[i].net);
             const Hom<2> end = (*chain)[i].end(), start = (*chain)[(i + 1) % chain->size()].start();
             if (end != start) query.add_arc(std::span<const Hom<2>>(std::array{end, start}));
         }

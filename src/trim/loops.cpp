@@ -25,6 +25,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/query/crossings.hpp>
 #include <freiform/trim/loops.hpp>
 
@@ -170,7 +171,7 @@ Result<Checked> checked(std::span<const Loop> loops, const LoopTolerance& tolera
 Loop turned(const Loop& loop) {
     Loop back;
     for (auto c = loop.rbegin(); c != loop.rend(); ++c)
-        back.push_back(std::visit(
+        back.push_back(visit_one(
             []<class C>(const C& curve) -> CurveGeometry<2> {
                 if constexpr (requires { curve.basis(); }) return reverse(curve, 0);
                 C other = curve;

@@ -10,6 +10,7 @@
 // it: control points count as known up to the slack.
 #include "trim/loop_links_detail.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
@@ -28,7 +29,7 @@ using Loops = std::vector<std::vector<CurveGeometry<2>>>;
 // The box that curves have to stay in: closed axes go round, so that every parameter is inside.
 Box<2> allowed(const std::variant<Surface<Vec<3>>, Surface<Hom<3>>>& surface) {
     Box<2> box;
-    std::visit(
+    visit_one(
         [&](const auto& s) {
             for (int d = 0; d < 2; ++d) {
                 const Interval on = s.basis(d).domain();
@@ -109,7 +110,7 @@ Result<void> check_loop(const std::vector<CurveGeometry<2>>& loop, const Box<2>&
             return refuse(
                 RefusalKind::invalid, at,
                 text("a ", kind_name(loop[i]), " has no ends; a loop is made of splines and ellipses"));
-        if (const auto p = std::visit([&](const auto& c) { return point_outside(c, box); }, loop[i]))
+        if (const auto p = visit_one([&](const auto& c) { return point_outside(c, box); }, loop[i]))
             return refuse(RefusalKind::out_of_domain, at,
                           text("leaves the domain of the surface at (", (*p)[0], ", ", (*p)[1], ")"));
     }
@@ -139,7 +140,7 @@ using Loop = std::vector<CurveGeometry<2>>;
 Box<2> box_of(const Loop& loop) {
     Box<2> box;
     for (const auto& curve : loop)
-        std::visit(
+        visit_one(
             [&]<class C>(const C& c) {
                 if constexpr (requires { c.net(); })
                     for (const auto& p : c.net().flat()) box.add(project(p));
@@ -154,7 +155,7 @@ Box<2> box_of(const Loop& loop) {
 Loop shifted(const Loop& loop, const Vec<2>& by) {
     Loop moved;
     for (const auto& curve : loop)
-        moved.push_back(std::visit(
+        moved.push_back(visit_one(
             [&]<class C>(const C& c) -> CurveGeometry<2> {
                 if constexpr (requires { c.net(); }) {
                     auto net = c.net();
@@ -216,7 +217,7 @@ Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surfac
                                             Loops loops) {
     const Box<2> box = allowed(surface);
     Vec<2> slack;
-    std::visit(
+    visit_one(
         [&](const auto& s) {
             for (int d = 0; d < 2; ++d) slack[d] = kSlack * s.basis(d).domain().length();
         },
@@ -225,7 +226,7 @@ Result<TrimmedSurface> TrimmedSurface::make(std::variant<Surface<Vec<3>>, Surfac
         if (auto ok = check_loop(loops[i], box, slack); !ok)
             return refuse_within(text("loops[", i, "]"), ok.error());
     if (auto ok = check_crossings(loops, slack); !ok) return std::unexpected(ok.error());
-    const Vec<2> period = std::visit(
+    const Vec<2> period = visit_one(
         [](const auto& s) {
             Vec<2> p;
             for (int d = 0; d < 2; ++d) p[d] = s.basis(d).is_closed() ? s.basis(d).domain().length() : 0;

@@ -3,6 +3,7 @@
 #include "gallery/space.hpp"
 
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/trim/inside.hpp>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ Plot& region(Plot& plot, const TrimmedSurface& s, const Colour& colour) {
     plot.panel.groups.push_back(holes);
     for (const auto& loop : s.loops)
         for (const CurveGeometry<2>& c : loop)
-            std::visit(
+            visit_one(
                 [&](const auto& curve) {
                     if constexpr (requires { curve.net(); })
                         plot.curve(curve, {colour, 2.2, "", {}});

@@ -1,6 +1,8 @@
 // Values, grids, bases and nearest points of shapes: what is asked many times a second.
 #include "shapes.hpp"
 
+#include <freiform/core/visit.hpp>
+
 #include <cmath>
 
 namespace freiform::wasm {
@@ -116,7 +118,7 @@ void ff_evaluate(int handle, const double* at, std::size_t count, int order, dou
     const auto* fast = order <= 2 ? prepared(h, p) : nullptr;
     const auto done =
         fast ? fast->evaluate(parameters, order, jet_size(p.bases.size(), order), {out}, Outside::refuse)
-             : std::visit(Slow{parameters, order, out}, h.object.shape);
+             : visit_one(Slow{parameters, order, out}, h.object.shape);
     if (!done) refuse_to_page(done.error());
 }
 
@@ -124,7 +126,7 @@ FF_EXPORT(error_bound) double ff_error_bound(int handle) {
     Held& h = held(handle);
     const Parts p = parts_of(h.object.shape);
     if (const auto* fast = prepared(h, p)) return fast->error_bound(0);
-    return std::visit(
+    return visit_one(
         [](const auto& s) -> double {
             if constexpr (requires { s.value_error_bound(); })
                 return s.value_error_bound();
@@ -151,7 +153,7 @@ void ff_grid(int handle, const double* axes, const std::size_t* sizes, std::size
     if (!fast) {
         if (normals || curvatures)
             refuse_to_page("unsupported", "", "the surface is too extreme for normals on a grid");
-        if (const auto done = std::visit(Slow{grid_parameters(all), 0, out}, h.object.shape); !done)
+        if (const auto done = visit_one(Slow{grid_parameters(all), 0, out}, h.object.shape); !done)
             refuse_to_page(done.error());
         return;
     }
@@ -202,7 +204,7 @@ FF_EXPORT(nearest) void ff_nearest(int handle, const double* points, std::size_t
     if (count % std::size_t(dim) != 0)
         refuse_to_page("invalid", "points", text("has ", count, " numbers, points have ", dim));
     if (!h.nearest) {
-        const auto object = std::visit(
+        const auto object = visit_one(
             [](const auto& s) -> std::optional<NearestObject> {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (TensorPatch<S> || TriangularPatch<S>)

@@ -1,6 +1,7 @@
 // Holding shapes: reading them, describing them, writing them.
 #include "shapes.hpp"
 
+#include <freiform/core/visit.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/json.hpp>
 #if FREIFORM_MODELS
@@ -117,13 +118,13 @@ void let_go(int handle) {
 }
 
 Parts parts_of(const Shape& shape) {
-    return std::visit(
+    return visit_one(
         [](const auto& s) -> Parts {
             using S = std::remove_cvref_t<decltype(s)>;
             if constexpr (TensorPatch<S> || TriangularPatch<S>)
                 return parts_of_patch(s);
             else if constexpr (std::same_as<S, TrimmedSurface>)
-                return std::visit([](const auto& surface) { return parts_of_patch(surface); }, s.surface);
+                return visit_one([](const auto& surface) { return parts_of_patch(surface); }, s.surface);
             else
                 return {};
         },
@@ -184,7 +185,7 @@ int ff_with(int handle, const double* points, std::size_t count, const double* w
     if (weight_count != 0 && weight_count != p.coefficients.count())
         refuse_to_page("invalid", "weights",
                        text("has ", weight_count, " numbers, ", p.coefficients.count(), " were expected"));
-    auto shape = std::visit(
+    auto shape = visit_one(
         [&](const auto& s) {
             return with_coefficients(s, {points, count}, {weights, weight_count});
         },
