@@ -7,7 +7,10 @@
 // would leave it goes along the end instead.
 #include "step_chart.hpp"
 
+#include "step_geometry.hpp"
+
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +24,6 @@ constexpr double kSingular = 1e-10;
 constexpr double kHeld = 1e-7;    // of a domain, by which a step has to leave it
 constexpr int kMostSamples = 40;  // of a grid, along each axis
 
-// The part of a vector across a unit vector.
-Vec<3> across(const Vec<3>& d, const Vec<3>& axis) { return d - dot(d, axis) * axis; }
-
 // Solves J^T J d = J^T r. False where the directions of the parameters are all but parallel.
 bool solve(const Vec<3>& su, const Vec<3>& sv, const Vec<3>& r, Vec<2>& d) {
     const double a = dot(su, su), b = dot(su, sv), c = dot(sv, sv), det = a * c - b * b;
@@ -33,30 +33,14 @@ bool solve(const Vec<3>& su, const Vec<3>& sv, const Vec<3>& r, Vec<2>& d) {
     return true;
 }
 
-// Where the radial coordinate C + A cos v + B sin v of an ellipse in the plane of the axis vanishes.
-struct AxisCrossing {
-    bool any = false;
-    double middle = 0, half = 0;  // positive between middle - half and middle + half
-};
-AxisCrossing crossing(const Revolution& s, const Conic<3>& c, double close) {
-    const Vec<3> out = across(c.centre - s.origin, s.axis), x = across(c.x, s.axis), y = across(c.y, s.axis);
-    Vec<3> e = norm(x) >= norm(y) ? x : y;
-    if (norm(out) > norm(e)) e = out;
-    e = unit(e);
-    if (norm(out - dot(out, e) * e) + norm(x - dot(x, e) * e) + norm(y - dot(y, e) * e) > close) return {};
-    const double a = dot(x, e), b = dot(y, e), k = dot(out, e), h = std::hypot(a, b);
-    if (std::abs(k) > h + close) return {};
-    return {true, std::atan2(b, a), std::acos(std::clamp(-k / h, -1.0, 1.0))};
-}
-
 std::vector<double> samples_of(const SurfaceGeometry& s, int axis, const Interval& on) {
     std::vector<double> places;
-    std::visit(
+    visit_one(
         [&](const auto& g) {
             if constexpr (requires { g.net(); })
                 places = g.basis(axis).breaks();
             else if constexpr (requires { g.profile; })
-                std::visit(
+                visit_one(
                     [&](const auto& c) {
                         if constexpr (requires { c.net(); }) places = c.basis().breaks();
                     },
@@ -100,68 +84,6 @@ Chart::Chart(const SurfaceGeometry& surface, double close) : s_(&surface), close
             a[p.axis] = b[p.axis] = p.at;
             return !(norm(point(a) - point(b)) <= close);
         });
-}
-
-void Chart::profile_traits(const CurveGeometry<3>& profile, int axis, double close) {
-    const auto k = std::size_t(axis);
-    if (const auto* c = std::get_if<Conic<3>>(&profile)) {
-        period_[k] = c->kind == ConicKind::ellipse ? kTwoPi : 0;
-    } else if (!std::holds_alternative<Line<3>>(profile)) {
-        spline_[k] = true;
-        const Interval on = whole_[k];
-        if (norm(jet<0>(profile, on.lo).value() - jet<0>(profile, on.hi).value()) <= close)
-            period_[k] = on.length();
-    }
-}
-
-void Chart::poles_of(const Revolution& s, double close) {
-    const auto add = [&](double v) {
-        const Vec<3> p = jet<0>(s.profile, v).value();
-        if (norm(across(p - s.origin, s.axis)) <= close)
-            poles_.push_back({1, v, s.origin + dot(p - s.origin, s.axis) * s.axis});
-    };
-    if (const auto* l = std::get_if<Line<3>>(&s.profile)) {
-        const Vec<3> d = across(l->direction, s.axis), o = across(l->origin - s.origin, s.axis);
-        if (dot(d, d) > 0) add(-dot(o, d) / dot(d, d));
-    } else if (const auto* c = std::get_if<Conic<3>>(&s.profile)) {
-        if (c->kind != ConicKind::ellipse) return;
-        const AxisCrossing at = crossing(s, *c, close);
-        if (!at.any) return;
-        whole_[1] = {at.middle - at.half, at.middle + at.half};
-        add(whole_[1].lo);
-        add(whole_[1].hi);
-    } else {
-        add(whole_[1].lo);
-        add(whole_[1].hi);
-    }
-}
-
-// Splines: opposite sides that agree, sides that are one point.
-void Chart::poles_of_sides(double stated) {
-    std::visit(
-        [&](const auto& s) {
-            if constexpr (requires { s.net(); }) {
-                Box<3> box;
-                for (const Vec<3>& p : points(s)) box.add(p);
-                const double close = std::min(stated, 1e-3 * box.diagonal());
-                for (int axis = 0; axis < 2; ++axis) {
-                    const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
-                    const auto a = points(lo), b = points(hi);
-                    double apart = 0;
-                    for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, norm(a[i] - b[i]));
-                    if (apart <= close && weights(lo) == weights(hi))
-                        period_[std::size_t(axis)] = s.basis(axis).domain().length();
-                    for (const auto* side : {&a, &b}) {
-                        double size = 0;
-                        for (const Vec<3>& p : *side) size = std::max(size, norm(p - side->front()));
-                        const Interval on = s.basis(axis).domain();
-                        if (size <= close)
-                            poles_.push_back({axis, side == &a ? on.lo : on.hi, side->front()});
-                    }
-                }
-            }
-        },
-        std::holds_alternative<OffsetSurface>(*s_) ? *std::get<OffsetSurface>(*s_).base : *s_);
 }
 
 Vec<2> Chart::wrapped(Vec<2> uv) const {
@@ -260,7 +182,7 @@ std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
     if (const auto* e = std::get_if<Extrusion>(s)) {
         const auto* l = std::get_if<Line<3>>(&e->profile);
         const auto* c = std::get_if<Conic<3>>(&e->profile);
-        if (!l && !(c && c->kind == ConicKind::ellipse)) return std::nullopt;
+        if (!l && !c) return std::nullopt;
         // p - origin = a X + b Y + v D
         const Vec<3> x = l ? l->direction : c->x, y = l ? cross(l->direction, e->direction) : c->y,
                      d = e->direction;
@@ -268,13 +190,17 @@ std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
         const double det = dot(n, d);
         if (det == 0) return std::nullopt;
         const double a = dot(cross(y, d), r) / det, b = dot(cross(d, x), r) / det, v = dot(n, r) / det;
-        return Vec<2>{{l ? a : std::atan2(b, a), v}};
+        return Vec<2>{{l                                 ? a
+                       : c->kind == ConicKind::ellipse   ? std::atan2(b, a)
+                       : c->kind == ConicKind::hyperbola ? std::asinh(b)
+                                                         : b,
+                       v}};
     }
     const auto* r = std::get_if<Revolution>(s);
     if (!r) return std::nullopt;
     const auto* l = std::get_if<Line<3>>(&r->profile);
     const auto* c = std::get_if<Conic<3>>(&r->profile);
-    if (!l && !(c && c->kind == ConicKind::ellipse)) return std::nullopt;
+    if (!l && !c) return std::nullopt;
     // Both half-planes of the axis through p, turned back to the profile.
     const Vec<3> q = p - r->origin;
     const Vec<3> seen = across(q, r->axis),
@@ -290,13 +216,8 @@ std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
     for (const double sign : {1.0, -1.0}) {
         const double u = std::atan2(sign * dot(seen, side), sign * dot(seen, e));
         const Vec<3> x = r->origin + dot(q, r->axis) * r->axis + (sign * norm(seen)) * e;
-        double v = 0;
-        if (l) {
-            v = dot(x - l->origin, l->direction) / dot(l->direction, l->direction);
-        } else {
-            const Vec<3> d = x - c->centre;
-            v = std::atan2(dot(d, c->y) / dot(c->y, c->y), dot(d, c->x) / dot(c->x, c->x));
-        }
+        double off = 0;
+        const double v = parameter_of(r->profile, x, off);
         const Vec<2> at{{u, v}};
         const double distance = norm(jet<0>(*s, at.c).value() - p);
         // The half-plane of the profile itself wins, but for a good reason.
@@ -351,7 +272,7 @@ Vec<2> Chart::locate(const Vec<3>& p) const {
 std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
     if (const auto* e = std::get_if<Extrusion>(s_)) {
         if (axis == 0) return Line<3>{jet<0>(e->profile, wrapped({{at, 0}})[0]).value(), e->direction};
-        return std::visit(
+        return visit_one(
             [&](const auto& c) -> std::optional<CurveGeometry<3>> {
                 using C = std::remove_cvref_t<decltype(c)>;
                 const Vec<3> by = at * e->direction;
@@ -374,7 +295,7 @@ std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
             const Vec<3> along = dot(d, r->axis) * r->axis;
             return Conic<3>{ConicKind::ellipse, r->origin + along, d - along, cross(r->axis, d - along)};
         }
-        return std::visit(
+        return visit_one(
             [&](const auto& c) -> std::optional<CurveGeometry<3>> {
                 using C = std::remove_cvref_t<decltype(c)>;
                 if constexpr (std::same_as<C, Line<3>>)
@@ -386,7 +307,7 @@ std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
             },
             r->profile);
     }
-    return std::visit(
+    return visit_one(
         [&](const auto& s) -> std::optional<CurveGeometry<3>> {
             if constexpr (requires { s.net(); })
                 return freiform::iso(s, axis, wrapped({{at, at}})[axis]);

@@ -8,6 +8,9 @@
 
 namespace freiform::step {
 
+// The part of a vector across a unit vector.
+inline Vec<3> across(const Vec<3>& d, const Vec<3>& axis) { return d - dot(d, axis) * axis; }
+
 // All points with parameter `axis` equal to `at` are one.
 struct Pole {
     int axis = 1;

@@ -251,6 +251,28 @@ TEST(StepFindings, holes_lie_inside_a_boundary_that_goes_around_all_of_a_surface
         }
 }
 
+// What parabolas and hyperbolas make shrinks to a point where they meet the axis, though they go on beyond.
+TEST(StepFindings, revolutions_of_open_conics_end_where_they_meet_the_axis) {
+    struct Solid {
+        const char* name;
+        double volume, area;
+    };
+    for (const Solid& x :
+         {Solid{"paraboloid.stp", 1118.766, 613.384}, Solid{"hyperboloid.stp", 46.03278, 104.6634}}) {
+        SCOPED_TRACE(x.name);
+        const auto path = std::filesystem::path(FREIFORM_SOURCE_DIR) / "tests/data/step" / x.name;
+        const Model m = must(read_step(must(read_file(path.string(), 1 << 20))));
+        EXPECT_TRUE(m.refused.empty());
+        for (const Edge& e : m.edges) EXPECT_LE(e.tolerance, 1e-5);
+        const double tolerance = 1e-3 * summary(m).box.diagonal();
+        const auto t = must(tessellate(m, {.tolerance = tolerance}));
+        EXPECT_TRUE(t.refused.empty());
+        EXPECT_EQ(t.topology.open_edges, 0);
+        EXPECT_LE(t.boundary_gap, 1e-5);
+        EXPECT_NEAR(signed_volume(t.mesh), x.volume, x.area * tolerance);
+    }
+}
+
 // Each was once read wrongly or not in time. What is in it must be a model that can be meshed, or a refusal.
 TEST(StepFindings, every_file_that_was_one_is_read_or_refused_and_meshed) {
     int files = 0;

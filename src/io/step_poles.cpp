@@ -1,0 +1,117 @@
+// Where the parameters of a surface are periodic, and where it shrinks to a point.
+#include "step_chart.hpp"
+#include "step_geometry.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace freiform::step {
+
+namespace {
+
+constexpr double kSingular = 1e-10;
+
+// Those of a t^2 + b t + c, where they touch one between; `scale`: what a is small against. What there is not
+// is not finite.
+std::array<double, 2> roots(double a, double b, double c, double scale) {
+    if (!(std::abs(a) > kSingular * scale)) return {-c / b, kInfinity};
+    const double square = b * b - 4 * a * c;
+    if (!(square > kSingular * b * b)) return {-b / (2 * a), kInfinity};
+    const double q = -0.5 * (b + std::copysign(std::sqrt(square), b));
+    return {q / a, c / q};
+}
+
+// Where the radial coordinate of a conic in the plane of the axis vanishes: C + A cos v + B sin v, likewise
+// with cosh and sinh, or C + A v^2 + B v.
+struct AxisCrossing {
+    bool any = false;
+    double middle = 0, half = 0;    // of ellipses: positive between middle - half and middle + half
+    std::array<double, 2> roots{};  // of others
+};
+AxisCrossing crossing(const Revolution& s, const Conic<3>& c, double close) {
+    const Vec<3> out = across(c.centre - s.origin, s.axis), x = across(c.x, s.axis), y = across(c.y, s.axis);
+    Vec<3> e = norm(x) >= norm(y) ? x : y;
+    if (norm(out) > norm(e)) e = out;
+    e = unit(e);
+    if (norm(out - dot(out, e) * e) + norm(x - dot(x, e) * e) + norm(y - dot(y, e) * e) > close) return {};
+    const double a = dot(x, e), b = dot(y, e), k = dot(out, e), h = std::hypot(a, b);
+    if (c.kind == ConicKind::parabola) return {true, 0, 0, roots(a, b, k, norm(c.x))};
+    if (c.kind == ConicKind::hyperbola) {
+        const auto t = roots(a + b, 2 * k, a - b, h);
+        return {true, 0, 0, {std::log(t[0]), std::log(t[1])}};
+    }
+    if (std::abs(k) > h + close) return {};
+    return {true, std::atan2(b, a), std::acos(std::clamp(-k / h, -1.0, 1.0)), {}};
+}
+
+}  // namespace
+
+void Chart::profile_traits(const CurveGeometry<3>& profile, int axis, double close) {
+    const auto k = std::size_t(axis);
+    if (const auto* c = std::get_if<Conic<3>>(&profile)) {
+        period_[k] = c->kind == ConicKind::ellipse ? kTwoPi : 0;
+    } else if (!std::holds_alternative<Line<3>>(profile)) {
+        spline_[k] = true;
+        const Interval on = whole_[k];
+        if (norm(jet<0>(profile, on.lo).value() - jet<0>(profile, on.hi).value()) <= close)
+            period_[k] = on.length();
+    }
+}
+
+void Chart::poles_of(const Revolution& s, double close) {
+    const auto add = [&](double v) {
+        if (!std::isfinite(v)) return;
+        const Vec<3> p = jet<0>(s.profile, v).value();
+        if (norm(across(p - s.origin, s.axis)) <= close)
+            poles_.push_back({1, v, s.origin + dot(p - s.origin, s.axis) * s.axis});
+    };
+    if (const auto* l = std::get_if<Line<3>>(&s.profile)) {
+        const Vec<3> d = across(l->direction, s.axis), o = across(l->origin - s.origin, s.axis);
+        if (dot(d, d) > 0) add(-dot(o, d) / dot(d, d));
+    } else if (const auto* c = std::get_if<Conic<3>>(&s.profile)) {
+        AxisCrossing at = crossing(s, *c, close);
+        if (!at.any) return;
+        if (c->kind == ConicKind::ellipse) {
+            whole_[1] = {at.middle - at.half, at.middle + at.half};
+            at.roots = {whole_[1].lo, whole_[1].hi};
+        }
+        for (const double v : at.roots) add(v);
+    } else {
+        add(whole_[1].lo);
+        add(whole_[1].hi);
+    }
+}
+
+// Splines: opposite sides that agree, sides that are one point.
+void Chart::poles_of_sides(double stated) {
+    visit_one(
+        [&](const auto& s) {
+            if constexpr (requires { s.net(); }) {
+                Box<3> box;
+                for (const Vec<3>& p : points(s)) box.add(p);
+                const double close = std::min(stated, 1e-3 * box.diagonal());
+                for (int axis = 0; axis < 2; ++axis) {
+                    const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
+                    const auto a = points(lo), b = points(hi);
+                    double apart = 0;
+                    for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, norm(a[i] - b[i]));
+                    if (apart <= close && weights(lo) == weights(hi))
+                        period_[std::size_t(axis)] = s.basis(axis).domain().length();
+                    for (const auto* side : {&a, &b}) {
+                        double size = 0;
+                        for (const Vec<3>& p : *side) size = std::max(size, norm(p - side->front()));
+                        const Interval on = s.basis(axis).domain();
+                        if (size <= close)
+                            poles_.push_back({axis, side == &a ? on.lo : on.hi, side->front()});
+                    }
+                }
+            }
+        },
+        std::holds_alternative<OffsetSurface>(*s_) ? *std::get<OffsetSurface>(*s_).base : *s_);
+}
+
+}  // namespace freiform::step
