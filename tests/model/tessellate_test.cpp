@@ -284,6 +284,20 @@ TEST(Tessellate, knots_a_rounding_apart_end_in_a_mesh_or_a_refusal) {
     }
 }
 
+TEST(Tessellate, a_boundary_that_runs_back_along_itself_is_refused) {
+    Model m = frustum(2, 1, 3);
+    auto& coedges = m.faces[0].loops[0].coedges;  // of the wall: its seam, there and back
+    const Coedge seam = coedges[1];
+    coedges = {seam, {seam.edge, !seam.reversed, seam.curve}};
+    const auto t = tessellate(m, {.tolerance = 0.01});
+    ASSERT_TRUE(t);
+    ASSERT_EQ(t->refused.size(), 1u);
+    EXPECT_EQ(t->refused[0].face, 0);
+    EXPECT_EQ(t->refused[0].reason.kind, RefusalKind::invalid);
+    EXPECT_NE(t->refused[0].reason.message.find("encloses nothing"), std::string::npos);
+    EXPECT_EQ(t->mesh.parts.size(), 2u);
+}
+
 TEST(Tessellate, an_open_loop_is_refused_and_the_other_faces_are_delivered) {
     Model m = frustum(2, 1, 3);
     auto& coedges = m.faces[0].loops[0].coedges;
