@@ -15,9 +15,11 @@
 //   - edges of which 4 b or more is all their extent: they are points within what is known of them;
 //   - ends at which any edge has an extent of at most 2 d: that edge could be what lies between the two ends
 //     (a short edge along a long one, where the other face has one edge for both);
-//   - ends that would make both ends of an edge one vertex, or put vertices of one chain farther apart than
-//     the tolerance.
-// But if the two are opposite sides of one face, the edges of its loop between them may become closed: the
+//   - ends that would make both ends of an edge one vertex, or vertices one that no point is within the
+//     tolerance of. What becomes one is where the first was, or in the middle where that is too far.
+// But an open edge no longer than vertices may lie apart that become one may be what a file has in their gap,
+// where its other face has none. It becomes a point with them where the pair is far larger.
+// And if the two are opposite sides of one face, the edges of its loop between them may become closed: the
 // face is a full turn, and the two its seam. Such edges have to be four times as large as the tolerance, so
 // strips that are narrower than it are not rolled up.
 //
@@ -46,6 +48,7 @@ Sewer::Sewer(const Model& model, double tolerance) : tolerance_(tolerance), m_(m
     for (const Face& f : m_.faces) queries_.push_back(std::make_unique<DerivativeQuery<2, 3>>(f.surface));
     vertex_of_.resize(m_.vertices.size());
     std::iota(vertex_of_.begin(), vertex_of_.end(), 0);
+    before_ = m_.vertices;
 }
 
 void Sewer::refused(int edge, const Refusal& why, int rank) {
@@ -53,21 +56,25 @@ void Sewer::refused(int edge, const Refusal& why, int rank) {
     if (!fresh && rank < it->second.first) it->second = {rank, why};
 }
 
+Box<3> Sewer::box_of(std::span<const int> chain) const {
+    Box<3> box;
+    for (const int v : chain) box.add(before_[std::size_t(v)].point);
+    return box;
+}
+
 void Sewer::unite(int v, int w) {
     const int a = std::min(vertex(v), vertex(w)), b = std::max(vertex(v), vertex(w));
     if (a == b) return;
-    const Vec<3>& at = m_.vertices[std::size_t(a)].point;
-    auto& chain = chain_[a];
-    std::vector<int> others = std::move(chain_[b]);
-    others.push_back(b);
+    const std::vector<int> others = chain_of(b);
     chain_.erase(b);
-    for (const int x : others) {
-        const double moved = norm(m_.vertices[std::size_t(x)].point - at);
-        out_.vertex_moved = std::max(out_.vertex_moved, moved);
-        Vertex& kept = m_.vertices[std::size_t(a)];
-        kept.tolerance = std::max({kept.tolerance, m_.vertices[std::size_t(x)].tolerance, moved});
-        chain.push_back(x);
-    }
+    auto& chain = chain_[a];
+    chain.insert(chain.end(), others.begin(), others.end());
+    // Where the first was, or in the middle where that is too far from another.
+    Vec<3>& at = m_.vertices[std::size_t(a)].point;
+    at = before_[std::size_t(a)].point;
+    for (const int x : chain)
+        if (!(norm(before_[std::size_t(x)].point - before_[std::size_t(a)].point) <= tolerance_))
+            at = middle_of(box_of(chain_of(a)));
     vertex_of_[std::size_t(b)] = a;
     ++out_.vertices_joined;
 }
@@ -107,6 +114,7 @@ bool Sewer::join(std::vector<Part>& parts, std::vector<int>& stays_for, std::vec
         if (part.ends[last] >= 0) return;
         part.ends[last] = int(m_.vertices.size());
         m_.vertices.push_back({part.trace.end(last == 1), 0});
+        before_.push_back(m_.vertices.back());
         vertex_of_.push_back(part.ends[last]);
         parts[last == 1 ? at(i) + 1 : at(i) - 1].ends[1 - last] = part.ends[last];
     };
@@ -221,6 +229,22 @@ void Sewer::rebuild() {
         edge.tolerance = std::max(edge.tolerance, sewn.face_bound);
         out_.joined.push_back(std::move(sewn));
     }
+    for (const auto& [root, others] : chain_) {
+        Vertex& kept = m_.vertices[std::size_t(root)];
+        const std::vector<int> all = chain_of(root);
+        for (const int v : all) {
+            const Vertex& was = before_[std::size_t(v)];
+            kept.tolerance = std::max(kept.tolerance, was.tolerance + norm(was.point - kept.point));
+            for (const int w : all)
+                out_.vertex_moved =
+                    std::max(out_.vertex_moved, norm(was.point - before_[std::size_t(w)].point));
+        }
+    }
+    for (const auto& [e, extent] : points_) {
+        Edge& edge = m_.edges[std::size_t(e)];
+        edge.degenerate = true, edge.curve.reset(), edge.end = edge.start;
+        edge.tolerance = std::max(edge.tolerance, extent);
+    }
     std::vector<int> edge_at(m_.edges.size(), -1), vertex_at(m_.vertices.size(), -1);
     std::vector<Edge> edges;
     std::map<int, std::pair<int, Refusal>> why;
@@ -244,6 +268,10 @@ void Sewer::rebuild() {
     for (SewnEdge& s : out_.joined) s.edge = edge_at[std::size_t(s.edge)];
     if (!given_.empty())
         for (Approximation& a : m_.approximations) a.where = "before sewing, " + a.where;
+    for (const auto& [e, extent] : points_)
+        m_.approximations.push_back({text("edges[", edge_at[std::size_t(e)], "]"),
+                                     "has become a point: it is no longer than its vertices were apart",
+                                     std::nullopt, extent});
     m_.edges = std::move(edges), m_.vertices = std::move(vertices), why_ = std::move(why);
     std::vector<std::vector<int>> faces(m_.edges.size());
     for (std::size_t f = 0; f < m_.faces.size(); ++f)
@@ -262,6 +290,7 @@ Sewing Sewer::run() {
     }
     for (int i = 1; i < kPasses && pass(true); ++i) {
     }
+    find_points();
     rebuild();
     orient(m_, out_.joined, out_.flipped, out_.twisted);
     unite_shells(m_, out_.joined);

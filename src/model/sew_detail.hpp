@@ -1,6 +1,7 @@
 // What sewing is made of: looking along edges, proving that two are the same, and telling faces their
 // outside.
 #pragma once
+#include <freiform/core/visit.hpp>
 #include <freiform/model/edge_gap.hpp>
 #include <freiform/model/sew.hpp>
 
@@ -27,7 +28,7 @@ EdgeTrace trace_of(const CurveGeometry<3>& curve, Interval on);
 template <int D>
 std::vector<double> breaks_inside(const CurveGeometry<D>& curve, Interval on, bool kinks_only) {
     std::vector<double> inside;
-    std::visit(
+    visit_one(
         [&](const auto& c) {
             if constexpr (requires { c.net(); })
                 for (const double b : c.basis().breaks())
@@ -76,8 +77,17 @@ struct FollowedCurve {
 Result<FollowedCurve> followed(const DerivativeQuery<2, 3>& surface, const CurveGeometry<2>& on_surface,
                                const EdgeTrace& stays, const EdgeMatch& match, double allowed);
 
+// `sum`: its sign tells whether the normals of a closed part, turned over where `inward`, point out of what
+// it encloses; 0 where samples cannot tell. An estimate. `box`: of the samples.
+struct Facing {
+    double sum = 0;
+    Box<3> box;
+};
+Facing facing(const Model& model, std::span<const int> part, std::span<const char> inward);
+
 // Turns faces over until neighbours along edges with two faces agree, in every part of the model that has an
-// edge of `joined`; as few as possible.
+// edge of `joined`: where that closes it outward, unless it agrees already and may be a hollow in another;
+// else as few as possible.
 void orient(Model& model, std::span<const SewnEdge> joined, std::vector<int>& flipped,
             std::vector<int>& twisted);
 // Shells that are connected by edges of `joined` become one.

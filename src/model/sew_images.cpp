@@ -8,6 +8,7 @@
 #include "sewer_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/model/edge_gap.hpp>
 
@@ -20,7 +21,7 @@ namespace {
 
 // The largest distance of control points from the first, and of the first from the origin.
 std::array<double, 2> spread_of_image(const CurveGeometry<3>& curve) {
-    return std::visit(
+    return visit_one(
         [](const auto& c) -> std::array<double, 2> {
             if constexpr (requires { c.net(); }) {
                 const Vec<3> first = project(c.net().flat().front());
@@ -43,7 +44,7 @@ struct FollowingImage {
 
 // The breaks of the parameter curve, which may have kinks there.
 std::vector<double> image_breaks(const CurveGeometry<2>& flat) {
-    return std::visit(
+    return visit_one(
         [](const auto& c) -> std::vector<double> {
             if constexpr (requires { c.net(); }) {
                 const auto breaks = c.basis().breaks();

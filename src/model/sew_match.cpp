@@ -23,6 +23,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/core/visit.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -32,12 +33,15 @@ namespace freiform {
 namespace {
 
 constexpr int kFeetFirst = 9;
-constexpr int kMostNodes = 256;  // a backstop
-constexpr double kSlack = 1.5;   // a bound up to this times what was measured is good enough
+constexpr int kMostNodes = 256;      // a backstop
+constexpr int kMostFollowed = 4096;  // likewise, of a parameter curve that follows
+constexpr double kSlack = 1.5;       // a bound up to this times what was measured is good enough
 // Slopes are those so far (of the step) inside of a node: at the ends of pieces without a length to speak of,
 // which images have where a break lies beside a knot of the surface, derivatives are noise.
 constexpr double kBeside = 0x1p-30;
-constexpr double kFine = 1.0 / 8;  // so is one up to this times the tolerance
+constexpr double kFine = 1.0 / 8;                     // so is one up to this times the tolerance
+constexpr double kFineExtent = 1.0 / 16;              // and up to this times the extent
+constexpr double kWithin = 0.995, kTightest = 1.002;  // what is close to the tolerance is bounded closely
 
 // Where it would be if the two ran at the same speed.
 double same_place(const EdgeTrace& from, const EdgeTrace& onto, bool reversed, double t) {
@@ -175,14 +179,17 @@ Result<EdgeMatch> match(const EdgeTrace& stays, const EdgeTrace& other, bool rev
     const Extrusion swept{*other.curve, {{0, 0, 1}}, SurfaceKind::general};
     const SurfaceGeometry surface = swept;
     const DerivativeQuery<2, 3> query(surface);
-    const double enough = std::min(tolerance, std::max(kSlack * apart, kFine * tolerance));
+    // Of short edges finer: those that are no larger than the bound are told from points by it.
+    const double fine = std::min(kFine * tolerance, kFineExtent * std::min(stays.extent, other.extent));
+    const double enough = std::min(tolerance, std::max(kSlack * apart, fine));
+    EdgeGapOptions how{.target = fine};
+    how.factor = std::clamp(kWithin * tolerance / apart, kTightest, how.factor);
     const auto fixed = fixed_nodes(stays, other);
     std::optional<EdgeMatch> best;
     for (int parts = 1; parts * int(fixed.size() - 1) <= kMostNodes; parts *= 2) {
         auto map = map_with(stays, other, reversed, fixed, parts);
         if (!map) continue;
-        const EdgeGap gap =
-            edge_gap(query, plane_curve_of(*map), *stays.curve, stays.on, {.target = kFine * tolerance});
+        const EdgeGap gap = edge_gap(query, plane_curve_of(*map), *stays.curve, stays.on, how);
         if (!best || gap.bound < best->bound) best = EdgeMatch{*std::move(map), gap.bound};
         if (best->bound <= enough) break;
     }
@@ -262,6 +269,32 @@ std::optional<CurveGeometry<2>> hermite(const CurveGeometry<2>& p, const EdgeMap
     return Curve<Vec<2>>::trusted({std::move(*basis)}, Net<1, Vec<2>>({size}, std::move(net)));
 }
 
+// The parameter curve at the speed of an affine map: exactly, but for the rounding of knots. Nothing for
+// conics, whose speed is their own.
+std::optional<CurveGeometry<2>> at_speed(const CurveGeometry<2>& on_surface, const EdgeMap& map) {
+    const EdgeMap::Node &a = map.nodes.front(), &b = map.nodes.back();
+    const double slope = a.after;
+    return visit_one(
+        [&](const auto& c) -> std::optional<CurveGeometry<2>> {
+            using C = std::remove_cvref_t<decltype(c)>;
+            if constexpr (std::same_as<C, Line<2>>) {
+                return Line<2>{c.origin + (a.s - slope * a.t) * c.direction, slope * c.direction};
+            } else if constexpr (std::same_as<C, Conic<2>>) {
+                return std::nullopt;
+            } else {
+                if (c.basis().is_closed()) return std::nullopt;
+                std::vector<double> knots;
+                for (const double s : c.basis().knots())
+                    knots.push_back(s == a.s ? a.t : s == b.s ? b.t : a.t + (s - a.s) / slope);
+                if (slope < 0) std::reverse(knots.begin(), knots.end());
+                auto basis = BSplineBasis::make(c.basis().degree(), std::move(knots));
+                if (!basis) return std::nullopt;
+                return C::trusted({*basis}, slope < 0 ? reverse(c, 0).net() : c.net());
+            }
+        },
+        on_surface);
+}
+
 }  // namespace
 
 Result<FollowedCurve> followed(const DerivativeQuery<2, 3>& surface, const CurveGeometry<2>& on_surface,
@@ -272,17 +305,14 @@ Result<FollowedCurve> followed(const DerivativeQuery<2, 3>& surface, const Curve
     };
     const auto& nodes = match.map.nodes;
     double reached = kInfinity;
-    if (const auto* line = std::get_if<Line<2>>(&on_surface); line && match.map.is_affine) {
-        const double slope = nodes[0].after;
-        const Vec<2> origin = line->origin + (nodes[0].s - slope * nodes[0].t) * line->direction;
-        const CurveGeometry<2> exact = Line<2>{origin, slope * line->direction};
-        reached = bound_of(exact);
-        if (reached <= allowed) return FollowedCurve{exact, reached};
+    if (const auto exact = match.map.is_affine ? at_speed(on_surface, match.map) : std::nullopt) {
+        reached = bound_of(*exact);
+        if (reached <= allowed) return FollowedCurve{*exact, reached};
     }
     const double first = nodes.front().s, last = nodes.back().s;
     const Interval on{std::min(first, last), std::max(first, last)};
     const Places places = places_of(on_surface, stays, match.map, on, last < first);
-    for (int parts = 1; parts == 1 || parts * int(places.t.size()) <= 2 * kMostNodes; parts *= 2) {
+    for (int parts = 1; parts == 1 || parts * int(places.t.size()) <= kMostFollowed; parts *= 2) {
         const auto curve = hermite(on_surface, match.map, places, parts, on, last < first);
         if (!curve) break;
         const double bound = bound_of(*curve);

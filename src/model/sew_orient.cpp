@@ -56,10 +56,16 @@ struct Use {
     bool forward = false;  // the mesh runs along the edge in the direction of its parameter
 };
 
-std::vector<std::vector<Use>> uses_of(const Model& model) {
-    std::vector<char> flip(model.faces.size(), 0);
+// By face: its normal as its shell has it is that of its surface turned over.
+std::vector<char> turned_over_in(const Model& model) {
+    std::vector<char> over(model.faces.size(), 0);
     for (const Shell& s : model.shells)
-        for (const FaceUse& u : s.faces) flip[std::size_t(u.face)] = u.reversed;
+        for (const FaceUse& u : s.faces) over[std::size_t(u.face)] = u.reversed;
+    for (std::size_t f = 0; f < over.size(); ++f) over[f] = bool(over[f]) != model.faces[f].reversed;
+    return over;
+}
+
+std::vector<std::vector<Use>> uses_of(const Model& model, std::span<const char> turned_over) {
     std::vector<std::vector<Use>> uses(model.edges.size());
     for (std::size_t f = 0; f < model.faces.size(); ++f) {
         std::vector<Side2> all;
@@ -71,8 +77,7 @@ std::vector<std::vector<Use>> uses_of(const Model& model) {
                 all.insert(all.end(), own.begin(), own.end());
             }
         for (const auto& [edge, own] : middles)
-            uses[std::size_t(edge)].push_back(
-                {int(f), is_left(all, own) != (model.faces[f].reversed != bool(flip[f]))});
+            uses[std::size_t(edge)].push_back({int(f), is_left(all, own) != bool(turned_over[f])});
     }
     return uses;
 }
@@ -81,19 +86,28 @@ std::vector<std::vector<Use>> uses_of(const Model& model) {
 
 void orient(Model& model, std::span<const SewnEdge> joined, std::vector<int>& flipped,
             std::vector<int>& twisted) {
-    const auto uses = uses_of(model);
+    const std::vector<char> turned_over = turned_over_in(model);
+    const auto uses = uses_of(model, turned_over);
     struct Neighbour {
         int face, edge;
         bool turned;  // one of the two has to be turned over
     };
     std::vector<std::vector<Neighbour>> neighbours(model.faces.size());
+    std::vector<char> is_open(model.faces.size(), 0);
     for (std::size_t e = 0; e < uses.size(); ++e) {
+        for (const Use& u : uses[e])
+            if (uses[e].size() != 2 && !model.edges[e].degenerate) is_open[std::size_t(u.face)] = 1;
         if (uses[e].size() != 2 || uses[e][0].face == uses[e][1].face || model.edges[e].degenerate) continue;
         const bool turned = uses[e][0].forward == uses[e][1].forward;
         for (std::size_t k = 0; k < 2; ++k)
             neighbours[std::size_t(uses[e][k].face)].push_back({uses[e][1 - k].face, int(e), turned});
     }
     std::vector<int> side(model.faces.size(), -1);
+    struct Connected {
+        std::vector<int> faces;
+        Facing facing;  // of a closed one, as its first face has it
+    };
+    std::vector<Connected> parts;
     for (const SewnEdge& s : joined)
         for (const int seed : s.faces) {
             if (side[std::size_t(seed)] >= 0) continue;
@@ -108,14 +122,33 @@ void orient(Model& model, std::span<const SewnEdge> joined, std::vector<int>& fl
                         part.push_back(n.face);
                     } else if (its != wanted) {
                         twisted.push_back(n.edge);
+                        is_open[std::size_t(n.face)] = 1;
                     }
                 }
-            const auto over =
-                std::count_if(part.begin(), part.end(), [&](int f) { return side[std::size_t(f)] == 1; });
-            const int turn = 2 * std::size_t(over) > part.size() ? 0 : 1;
-            for (const int f : part)
-                if (side[std::size_t(f)] == turn) flipped.push_back(f);
+            parts.push_back({std::move(part), {}});
         }
+    for (Connected& p : parts) {
+        bool closed = true;
+        std::vector<char> inward;
+        for (const int f : p.faces) {
+            closed = closed && !is_open[std::size_t(f)];
+            inward.push_back(char(turned_over[std::size_t(f)] ^ side[std::size_t(f)]));
+        }
+        if (closed) p.facing = facing(model, p.faces, inward);
+    }
+    for (const Connected& p : parts) {
+        std::size_t over = 0;
+        for (const int f : p.faces) over += std::size_t(side[std::size_t(f)]);
+        const bool mixed = over != 0 && over != p.faces.size();
+        int turn = 2 * over > p.faces.size() ? 0 : 1;
+        const Box<3>& box = p.facing.box;
+        bool inside = false;
+        for (const Connected& o : parts)
+            inside = inside || (&o != &p && o.facing.box.contains(box.lo) && o.facing.box.contains(box.hi));
+        if (p.facing.sum != 0 && (mixed || !inside)) turn = p.facing.sum > 0 ? 1 : 0;
+        for (const int f : p.faces)
+            if (side[std::size_t(f)] == turn) flipped.push_back(f);
+    }
     for (auto* list : {&flipped, &twisted}) {
         sort(list->begin(), list->end());
         list->erase(std::unique(list->begin(), list->end()), list->end());

@@ -166,6 +166,36 @@ bool Sewer::may_close(int edge, const Part& side) const {
                        [&](const Coedge& c) { return stays(c.edge) == stays(edge); });
 }
 
+// Is it no longer than vertices may lie apart that become one, and used by one face alone?
+bool Sewer::may_vanish(int e) const {
+    return is_open(std::size_t(e)) && !is_group(e) && extent_[std::size_t(e)] <= 2 * tolerance_;
+}
+
+// Edges that are still open and have become points, of faces that are far larger.
+void Sewer::find_points() {
+    owners_ = owners_of(m_);
+    measure_extents();
+    for (std::size_t e = 0; e < m_.edges.size(); ++e) {
+        const Edge& edge = m_.edges[e];
+        if (owners_[e].uses != 1 || edge.degenerate || vertex(edge.start) != vertex(edge.end) ||
+            !may_vanish(int(e)))
+            continue;
+        double largest = 0;
+        for (const Loop& l : m_.faces[std::size_t(owners_[e].face)].loops)
+            for (const Coedge& c : l.coedges) largest = std::max(largest, extent_[std::size_t(c.edge)]);
+        if (largest > kExtents * tolerance_) points_.push_back({int(e), extent_[e]});
+    }
+}
+
+// The vertices that are one with v by now, the one that stays first; -1 alone where a cut ends.
+std::vector<int> Sewer::chain_of(int v) const {
+    if (v < 0) return {-1};
+    std::vector<int> all{vertex(v)};
+    if (const auto chain = chain_.find(all[0]); chain != chain_.end())
+        all.insert(all.end(), chain->second.begin(), chain->second.end());
+    return all;
+}
+
 // Why the pair may not be joined although it is near enough.
 std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair& p) const {
     const double bound = p.match->bound;
@@ -175,20 +205,23 @@ std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair&
             text("is ", b.trace.extent, " large, too short to be told from a point within ", bound)};
     std::map<int, int> becomes;  // what both unions together do
     for (const bool last : {false, true}) {
-        const int v = a.ends[last], w = b.ends[p.reversed != last];
         const Vec<3>&at = a.trace.end(last), &of = b.trace.end(p.reversed != last);
-        for (const int x : {v, w}) {
-            if (x < 0) continue;
-            const int root = vertex(x);
-            std::vector<int> all{root};
-            if (const auto chain = chain_.find(root); chain != chain_.end())
-                all.insert(all.end(), chain->second.begin(), chain->second.end());
-            for (const int y : all) {
-                becomes[vertex(y)] = last ? 1 : 0;
-                const Vec<3>& point = m_.vertices[std::size_t(y)].point;
-                if (!(std::max(norm(point - at), norm(point - of)) <= tolerance_))
+        // Vertices that would be one. An edge may end a little beside its vertex, which is not what counts.
+        const std::array<std::vector<int>, 2> chains{chain_of(a.ends[last]),
+                                                     chain_of(b.ends[p.reversed != last])};
+        const auto point = [&](std::size_t k, int y) {
+            return y >= 0 ? before_[std::size_t(y)].point : k == 0 ? at : of;
+        };
+        Box<3> box;
+        for (std::size_t k = 0; k < 2; ++k)
+            for (const int y : chains[k]) box.add(point(k, y));
+        for (std::size_t k = 0; k < 2; ++k)
+            for (const int y : chains[k]) {
+                if (!(norm(point(k, y) - middle_of(box)) <= tolerance_))
                     return Refusal{RefusalKind::ill_conditioned, text("vertices[", y, "]"),
-                                   text("would become one with a vertex farther away than ", tolerance_)};
+                                   text("would be one with vertices farther away than twice ", tolerance_)};
+                if (y < 0) continue;
+                becomes[vertex(y)] = last ? 1 : 0;
                 const auto edges = edges_at_.find(y);
                 if (edges == edges_at_.end()) continue;
                 for (const int e : edges->second)
@@ -197,7 +230,6 @@ std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair&
                                        text("is ", extent_[std::size_t(e)],
                                             " large and may lie between two ends ", norm(at - of), " apart")};
             }
-        }
     }
     // Ends of one edge that are different vertices stay different, but for rims that a seam closes.
     const bool seam = is_seam(a, b, p);
@@ -205,22 +237,20 @@ std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair&
         return x.ends[0] >= 0 && x.ends[1] >= 0 && vertex(x.ends[0]) == vertex(x.ends[1]);
     };
     const bool closes = is_closed(a) || is_closed(b);
+    const bool are_large = std::min(a.trace.extent, b.trace.extent) > kExtents * tolerance_;
     const auto name = [&](int v) {
         const int root = vertex(v);
         const auto it = becomes.find(root);
         return it == becomes.end() ? root : closes ? -1 : -1 - it->second;
     };
     for (const auto& [root, which] : becomes) {
-        std::vector<int> all{root};
-        if (const auto chain = chain_.find(root); chain != chain_.end())
-            all.insert(all.end(), chain->second.begin(), chain->second.end());
-        for (const int y : all) {
+        for (const int y : chain_of(root)) {
             const auto edges = edges_at_.find(y);
             if (edges == edges_at_.end()) continue;
             for (const int e : edges->second) {
                 const Edge& edge = m_.edges[std::size_t(e)];
                 if (vertex(edge.start) != vertex(edge.end) && name(edge.start) == name(edge.end) &&
-                    !(seam && may_close(e, a)))
+                    !(seam && may_close(e, a)) && !(are_large && may_vanish(e)))
                     return Refusal{RefusalKind::ill_conditioned, text("edges[", e, "]"),
                                    "both its ends would become one vertex"};
             }

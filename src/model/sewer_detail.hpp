@@ -15,6 +15,8 @@ struct Owner {
 
 std::vector<Owner> owners_of(const Model& m);
 
+inline Vec<3> middle_of(const Box<3>& box) { return box.lo + 0.5 * (box.hi - box.lo); }
+
 // Curves in space for edges of one face that have none, and poles named as such (sew_images.cpp).
 void give_images(Model& m, double tolerance);
 
@@ -60,11 +62,15 @@ private:
     std::vector<Pair> candidates(const std::vector<Part>& parts) const;
     bool is_seam(const Part& a, const Part& b, const Pair& p) const;
     bool may_close(int edge, const Part& side) const;
+    bool may_vanish(int e) const;
+    void find_points();
+    std::vector<int> chain_of(int v) const;
     std::optional<Refusal> obstacle(const Part& a, const Part& b, const Pair& p) const;
     void measure_extents();
     bool pass(bool cut);
     bool join(std::vector<Part>& parts, std::vector<int>& stays_for, std::vector<char>& given, Pair p,
               bool pairs_only, std::vector<std::pair<Pair, FollowedCurve>>& done);
+    Box<3> box_of(std::span<const int> chain) const;
     void unite(int v, int w);
     void cut_edges(const std::vector<Part>& parts, std::vector<int>& edge_of);
     void refused(int edge, const Refusal& why, int rank);
@@ -76,10 +82,12 @@ private:
     Sewing out_;
     std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> queries_;
     std::vector<Owner> owners_;
-    std::vector<int> vertex_of_;                // a forest: the smallest number of those that became one
-    std::map<int, std::vector<int>> chain_;     // by that number: the others
-    std::map<int, std::vector<int>> edges_at_;  // by vertex, as it was before joining
-    std::vector<double> extent_;                // of edges
+    std::vector<int> vertex_of_;                  // a forest: the smallest number of those that became one
+    std::map<int, std::vector<int>> chain_;       // by that number: the others
+    std::vector<Vertex> before_;                  // as vertices were before they became one with others
+    std::map<int, std::vector<int>> edges_at_;    // by vertex, as it was before joining
+    std::vector<double> extent_;                  // of edges
+    std::vector<std::pair<int, double>> points_;  // edges that became points, with their extents
     std::map<int, Given> given_;
     std::map<int, std::vector<int>> members_;     // by the edge that stays
     std::map<int, std::pair<int, Refusal>> why_;  // the nearest miss of an edge, with a rank

@@ -53,6 +53,81 @@ TEST(SewMatch, what_is_good_enough_is_within_the_tolerance) {
     EXPECT_GE(found->bound, beside);
 }
 
+// Splines that are beside each other by a little less than the tolerance in many places.
+TEST(SewMatch, what_is_nearly_the_tolerance_apart_is_proven_to_be_within_it) {
+    const double tolerance = 1e-3;
+    Random random(3);
+    for (int k = 0; k < 20; ++k) {
+        const int degree = 3 + k % 4, size = 200;
+        std::vector<Vec<3>> here;
+        for (int i = 0; i < size; ++i) here.push_back({{i + random.real(-9, 9), random.real(-9, 9), 0}});
+        auto there = here;
+        for (int i = 1; i + 1 < size; ++i) there[std::size_t(i)][2] = random.real(-1, 1);
+        const auto curve = [&](std::vector<Vec<3>> points) {
+            return must(Curve<Vec<3>>::make({must(BSplineBasis::clamped_uniform(degree, size))},
+                                            Net<1, Vec<3>>({size}, std::move(points))));
+        };
+        const Interval on = curve(here).domain()[0];
+        const auto bent = curve(there);
+        double most = 0;
+        for (int i = 0; i <= 100'000; ++i)
+            most = std::max(most, std::abs(bent(on.lo + on.length() * i / 1e5)[2]));
+        const double share = random.real(0.9, 0.98);
+        for (Vec<3>& p : there) p[2] *= share * tolerance / most;
+        const CurveGeometry<3> a = curve(here), b = curve(there);
+        const auto found = match(trace_of(a, on), trace_of(b, on), false, tolerance);
+        ASSERT_TRUE(found) << k << ", " << share << ": " << found.error().message;
+        EXPECT_LE(found->bound, tolerance);
+        EXPECT_GE(found->bound, share * tolerance * (1 - 1e-5));
+    }
+}
+
+// Of edges that are short beside the tolerance the bound is small beside them, so that they can be told from
+// points.
+TEST(SewMatch, short_edges_are_bounded_by_their_size) {
+    const double size = 5e-4, tolerance = 2e-3;
+    const auto curve = [](std::vector<Vec<3>> points) -> CurveGeometry<3> {
+        const int degree = int(points.size()) - 1;
+        return must(Curve<Vec<3>>::make({*BSplineBasis::bezier(degree)},
+                                        Net<1, Vec<3>>({degree + 1}, std::move(points))));
+    };
+    const auto a = curve({{{0, 0, 0}}, {{size, 0, 0}}}),
+               b = curve({{{0, 0, 0}}, {{0.9 * size, 0, 0}}, {{0.95 * size, 0, 0}}, {{size, 0, 0}}});
+    const auto found = match(trace_of(a, {0, 1}), trace_of(b, {0, 1}), false, tolerance);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(found->bound, size / 8);
+}
+
+// One curve at half the speed and backwards: its parameter curve is the same curve, whatever it winds.
+TEST(SewMatch, at_another_speed_parameter_curves_stay_what_they_are) {
+    Random random(11);
+    const SurfaceGeometry plane = Extrusion{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+    const DerivativeQuery<2, 3> query(plane);
+    std::vector<double> knots(9, 0.0), halved(9, 7.0);
+    std::vector<Vec<2>> flat;
+    for (int i = 1; i < 12; ++i) knots.push_back(i);
+    for (int i = 1; i < 12; ++i) halved.push_back(7 + 2 * i);
+    knots.insert(knots.end(), 9, 12.0), halved.insert(halved.end(), 9, 31.0);
+    for (int i = 0; i < 20; ++i) flat.push_back({{i + random.real(-300, 300), random.real(-300, 300)}});
+    const auto on_surface =
+        must(Curve<Vec<2>>::make({*BSplineBasis::make(8, knots)}, Net<1, Vec<2>>({20}, flat)));
+    std::vector<Vec<3>> there, back;
+    for (const Vec<2>& p : flat) there.push_back({{p[0], p[1], 0}});
+    back.assign(there.rbegin(), there.rend());
+    const CurveGeometry<3> other =
+        must(Curve<Vec<3>>::make({*BSplineBasis::make(8, knots)}, Net<1, Vec<3>>({20}, there)));
+    const CurveGeometry<3> stays =
+        must(Curve<Vec<3>>::make({*BSplineBasis::make(8, halved)}, Net<1, Vec<3>>({20}, back)));
+    const EdgeTrace trace = trace_of(stays, {7, 31});
+    const auto found = match(trace, trace_of(other, {0, 12}), true, 1e-6);
+    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_TRUE(found->map.is_affine);
+    const auto follows = followed(query, on_surface, trace, *found, 1e-3);
+    ASSERT_TRUE(follows) << follows.error().message;
+    EXPECT_LE(follows->bound, 1e-3);
+    EXPECT_EQ(std::get<Curve<Vec<2>>>(follows->curve).net().flat().size(), flat.size());
+}
+
 TEST(SewMatch, feet_of_points_of_a_winding_curve_are_these_points) {
     Random random(7);
     int missed = 0;

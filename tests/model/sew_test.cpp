@@ -124,6 +124,63 @@ TEST(Sew, faces_that_look_the_wrong_way_are_turned_over) {
     EXPECT_NEAR(std::abs(signed_volume(t->mesh)), 1, 1e-12);
 }
 
+// A cube whose sides look inward, all or all but the first `outward`, shrunk by `size` about its middle.
+Model inward_cube(int outward, double size = 1) {
+    Patchwork p;
+    const int quads[6][4] = {{0, 2, 1, 3}, {4, 5, 6, 7}, {0, 1, 4, 5},
+                             {2, 6, 3, 7}, {0, 4, 2, 6}, {1, 3, 5, 7}};
+    const Vec<3> middle{{0.5, 0.5, 0.5}};
+    for (int i = 0; i < 6; ++i) {
+        std::array<Vec<3>, 4> c;
+        for (int k = 0; k < 4; ++k) {
+            const int turned = i < outward || k == 0 || k == 3 ? k : 3 - k;
+            c[std::size_t(k)] = middle + size * (corner(quads[i][turned]) - middle);
+        }
+        p.add(c);
+    }
+    return p.model();
+}
+
+TEST(Sew, what_becomes_closed_looks_outward) {
+    for (const int outward : {0, 1, 2, 5}) {
+        const Model loose = inward_cube(outward);
+        const auto s = sew(loose, {.tolerance = 1e-6});
+        ASSERT_TRUE(s);
+        expect_sound(*s, loose);
+        EXPECT_EQ(int(s->flipped.size()), 6 - outward);
+        const auto t = tessellate(s->model, {.tolerance = 0.01});
+        EXPECT_EQ(t->topology.misoriented_edges, 0);
+        EXPECT_NEAR(signed_volume(t->mesh), 1, 1e-12) << outward;
+    }
+}
+
+TEST(Sew, what_may_be_a_hollow_keeps_its_side) {
+    Model both = loose_cube(0);
+    const Model hollow = inward_cube(0, 0.5);
+    const int vertices = int(both.vertices.size()), edges = int(both.edges.size()),
+              faces = int(both.faces.size());
+    for (const Vertex& v : hollow.vertices) both.vertices.push_back(v);
+    for (Edge e : hollow.edges) {
+        e.start += vertices, e.end += vertices;
+        both.edges.push_back(e);
+    }
+    for (Face f : hollow.faces) {
+        for (Coedge& c : f.loops[0].coedges) c.edge += edges;
+        both.shells[0].faces.push_back({int(both.faces.size()), false});
+        both.faces.push_back(f);
+    }
+    const Model loose = *make_model(both);
+    const auto s = sew(loose, {.tolerance = 1e-6});
+    ASSERT_TRUE(s);
+    EXPECT_TRUE(s->flipped.empty());
+    EXPECT_NEAR(signed_volume(tessellate(s->model, {.tolerance = 0.01})->mesh), 1 - 0.125, 1e-12);
+    // One of its sides is wrong now, so nothing is known of what it was.
+    Model mixed = loose;
+    mixed.faces[std::size_t(faces)].reversed = true;
+    EXPECT_NEAR(signed_volume(tessellate(sew(mixed, {.tolerance = 1e-6})->model, {.tolerance = 0.01})->mesh),
+                1 + 0.125, 1e-12);
+}
+
 TEST(Sew, what_is_farther_apart_than_the_tolerance_stays_and_is_named) {
     Patchwork p;
     p.add({corner(0), corner(1), corner(2), corner(3)});

@@ -46,10 +46,12 @@ struct Sewing {
     double tolerance = 0;
     int open_before = 0;  // edges with one face
     std::vector<SewnEdge> joined;
-    int split = 0;             // cuts of edges that met several shorter ones
-    int vertices_joined = 0;   // vertices that became one with another
-    double vertex_moved = 0;   // the largest distance between two such, exact but for rounding
-    std::vector<int> flipped;  // faces that were turned over, so that neighbours agree on the outside
+    int split = 0;            // cuts of edges that met several shorter ones
+    int vertices_joined = 0;  // vertices that became one with another
+    double vertex_moved = 0;  // the largest distance between two such, exact but for rounding
+    // Faces that were turned over, so that neighbours agree on the outside, and closed parts face outward (by
+    // an estimate; those that agree already stay as they are where they may be a hollow in another).
+    std::vector<int> flipped;
     std::vector<int> twisted;  // edges whose two faces can not agree (a Moebius strip)
     std::vector<RemainingGap> remaining;
     std::vector<Opening> openings;
@@ -58,8 +60,10 @@ struct Sewing {
 // Two edges are joined if a map from one onto the other is found with which their whole curves are proven to
 // lie within the tolerance of each other (edge_gap), if that is small against the edges themselves, and if no
 // other edge would lose its length by it; nearest pairs first. An edge along which ends of others lie is cut
-// there. The face of an edge that is given up gets a parameter curve that follows the one that stays. Curves
-// and surfaces are not moved. Edges without a curve in space get the image of their parameter curve first
+// there; vertices that become one lie where the first was, or in their middle where that is too far. An edge
+// of one face that is no longer than such vertices are apart becomes a point (which `approximations` name).
+// The face of an edge that is given up gets a parameter curve that follows the one that stays. Curves and
+// surfaces are not moved. Edges without a curve in space get the image of their parameter curve first
 // (make/image_curve.hpp; where its degree is too high a spline that follows within a proven 1/32 of the
 // tolerance, which `approximations` name; what has neither is left alone), those that are one point become
 // degenerate, and these are left alone. Numbers of edges and vertices change, those of faces do not; texts of
