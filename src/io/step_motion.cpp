@@ -9,6 +9,7 @@
 #include <freiform/core/visit.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace freiform::step {
@@ -112,19 +113,30 @@ double on_conic(const Conic<3>& c, const Vec<3>& p) {
                                             : b;
 }
 
-// Newton's method from the best of some samples; from the other end, too, where an end is nearest: of a
-// closed curve that may be the side on which p is.
+// Newton's method from the best few of some samples that are nearer than their neighbours: where a curve
+// comes near itself, the nearest sample may belong to the other part. From the other end, too, where an end
+// is nearest: of a closed curve that may be the side on which p is.
 template <class C>
 double on_spline(const C& c, const Vec<3>& p) {
     const std::vector<double> breaks = c.basis().breaks();
     const int each = std::clamp(2000 / int(breaks.size()), 1, 4 + 2 * c.basis().degree());
-    double best = breaks.front(), least = norm(c(best) - p);
-    const auto look = [&](double t) {
-        const double d = norm(c(t) - p);
-        if (d < least) least = d, best = t;
-    };
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-        for (int k = 1; k <= each; ++k) look(breaks[i] + (breaks[i + 1] - breaks[i]) * k / each);
+    std::vector<double> at, off;
+    for (std::size_t i = 0; i < breaks.size(); ++i)
+        for (int k = 0; k < (i + 1 < breaks.size() ? each : 1); ++k) {
+            at.push_back(k == 0 ? breaks[i] : breaks[i] + (breaks[i + 1] - breaks[i]) * k / each);
+            off.push_back(norm(c(at.back()) - p));
+        }
+    std::array<std::size_t, 3> starts{};  // nearest first
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if ((i > 0 && off[i - 1] < off[i]) || (i + 1 < at.size() && off[i + 1] <= off[i])) continue;
+        std::size_t k = std::min(found, starts.size() - 1);
+        if (found == starts.size() && !(off[i] < off[starts[k]])) continue;
+        found = std::min(found + 1, starts.size());
+        for (; k > 0 && off[i] < off[starts[k - 1]]; --k) starts[k] = starts[k - 1];
+        starts[k] = i;
+    }
+    double best = at[starts[0]], least = off[starts[0]];
     const Interval on = c.domain()[0];
     const auto from = [&](double t) {
         for (int i = 0; i < 20; ++i) {
@@ -137,10 +149,10 @@ double on_spline(const C& c, const Vec<3>& p) {
             const double next = clamped(t - slope / by, on);
             if (next == t) break;
             t = next;
-            look(t);
+            if (const double d = norm(c(t) - p); d < least) least = d, best = t;
         }
     };
-    from(best);
+    for (std::size_t k = 0; k < found; ++k) from(at[starts[k]]);
     if (best == on.lo || best == on.hi) from(best == on.lo ? on.hi : on.lo);
     return best;
 }

@@ -1,5 +1,7 @@
 // Boundaries that run into themselves where edges lie beside the surface, holes that touch what is around
 // them, parameter curves whose pieces have bounded derivatives, and every file that was once a finding.
+#include "io/step_geometry.hpp"
+
 #include <freiform/io/file.hpp>
 #include <freiform/io/step_read.hpp>
 #include <freiform/model/tessellate.hpp>
@@ -270,6 +272,24 @@ TEST(StepFindings, revolutions_of_open_conics_end_where_they_meet_the_axis) {
         EXPECT_EQ(t.topology.open_edges, 0);
         EXPECT_LE(t.boundary_gap, 1e-5);
         EXPECT_NEAR(signed_volume(t.mesh), x.volume, x.area * tolerance);
+    }
+}
+
+// Of a curve that runs beside itself the parameter of a point is that of the turn that it is on.
+TEST(StepFindings, points_of_a_curve_that_nearly_meets_itself_have_their_own_parameter) {
+    std::vector<Vec<3>> points;
+    for (int i = 0; i < 60; ++i) {
+        const double turn = 2.2 * kTwoPi * i / 59, r = 1 + 3e-3 * turn / kTwoPi;
+        points.push_back({{r * std::cos(turn), r * std::sin(turn), 0}});
+    }
+    const auto spiral =
+        must(Curve<Vec<3>>::make({must(BSplineBasis::clamped_uniform(3, 60))}, Net<1, Vec<3>>({60}, points)));
+    const Interval on = spiral.domain()[0];
+    for (int i = 0; i <= 1000; ++i) {
+        const double t = on.lo + on.length() * i / 1000;
+        double off = 1;
+        EXPECT_NEAR(step::parameter_of(CurveGeometry<3>(spiral), spiral(t), off), t, 1e-6) << i;
+        EXPECT_LE(off, 1e-9);
     }
 }
 
