@@ -15,8 +15,10 @@ namespace freiform {
 
 namespace {
 
-constexpr double kNoPole = 1e-4;     // of the box of the loop in the parameter plane
-constexpr double kSamePlace = 1e-9;  // of the box of the face: one vertex, not two sides of a seam
+constexpr double kNoPole = 1e-4;       // of the box of the loop in the parameter plane
+constexpr double kOnLine = 0x1p-40;    // of the domain: rounding
+constexpr double kNearLine = 0x1p-28;  // of the domain: of the digits that files have
+constexpr double kSamePlace = 1e-9;    // of the box of the face: one vertex, not two sides of a seam
 
 struct Run {
     std::vector<Vec<2>> uv;
@@ -24,13 +26,36 @@ struct Run {
     std::vector<BoundaryOfFace::Source> sources;  // one fewer
 };
 
-Run run_of(const Coedge& coedge, const SurfaceGeometry& surface, const EdgeMesh& mesh) {
+// Parameter curves may leave the domain by rounding, or run a rounding, of doubles or of the digits of a
+// file, beside its end or a line where second derivatives jump: then they are on it, if that moves them by no
+// more than the tolerance of the edge (the gap counts it). Else what lies across would count for all along
+// the line, and points beside one line would leave triangles that no point makes better.
+Vec<2> settled(Vec<2> uv, const std::array<Interval, 2>& on, const DerivativeQuery<2, 3>& surface,
+               double tolerance) {
+    uv = clamped(uv, on);
+    for (int d = 0; d < 2; ++d) {
+        const auto lines = surface.bends(d);
+        if (lines.empty()) continue;
+        const double length = lines.back() - lines.front(), room = kNearLine * length;
+        const auto after = std::lower_bound(lines.begin(), lines.end(), uv[d] - room);
+        if (after == lines.end() || !(*after <= uv[d] + room)) continue;
+        const double by = std::abs(*after - uv[d]);
+        if (by <= kOnLine * length ||
+            norm(jet<1>(surface.geometry(), uv.c).d[std::size_t(d + 1)]) * by <= tolerance)
+            uv[d] = *after;
+    }
+    return uv;
+}
+
+Run run_of(const Coedge& coedge, const Edge& edge, const DerivativeQuery<2, 3>& surface,
+           const EdgeMesh& mesh) {
     Run run;
-    const auto on = limits(surface);  // parameter curves may leave it by rounding
+    const auto on = limits(surface.geometry());
     const int n = int(mesh.parameters.size());
     for (int k = 0; k < n; ++k) {
         const int i = coedge.reversed ? n - 1 - k : k;
-        run.uv.push_back(clamped(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on));
+        run.uv.push_back(settled(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on, surface,
+                                 edge.tolerance));
         run.points.push_back(mesh.points[std::size_t(i)]);
         if (k + 1 < n) run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
     }
@@ -69,7 +94,7 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
         std::vector<Run> runs;
         Box<2> box;
         for (const Coedge& c : coedges) {
-            runs.push_back(run_of(c, f.surface, edges.mesh(c.edge)));
+            runs.push_back(run_of(c, model.edges[std::size_t(c.edge)], surface, edges.mesh(c.edge)));
             for (const Vec<2>& p : runs.back().uv) box.add(p);
         }
         // A pole that has no length in the parameter plane either is left to the joint of its neighbours, and

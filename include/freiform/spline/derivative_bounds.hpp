@@ -94,6 +94,9 @@ public:
     }
     // Inside the domain, in increasing order. Between kinks the first derivative is continuous.
     std::span<const Kink> kinks(int axis) const { return kinks_[std::size_t(axis)]; }
+    // Of a spline: the ends of its domain, and where second derivatives may jump, in increasing order. Else
+    // empty.
+    std::span<const double> bends(int axis) const { return bends_[std::size_t(axis)]; }
     // How many numbers the control points of a polynomial or rational piece are; 0 where there is no spline.
     long long piece_numbers() const { return piece_numbers_; }
     // The largest quotient of two weights of one piece; 1 where there are none.
