@@ -79,11 +79,11 @@ Result<FollowedCurve> followed(const DerivativeQuery<2, 3>& surface, const Curve
 
 // `sum`: its sign tells whether the normals of a closed part, turned over where `inward`, point out of what
 // it encloses; 0 where samples cannot tell. An estimate. `box`: of the samples.
-struct Facing {
+struct PartFacing {
     double sum = 0;
     Box<3> box;
 };
-Facing facing(const Model& model, std::span<const int> part, std::span<const char> inward);
+PartFacing facing(const Model& model, std::span<const int> part, std::span<const char> inward);
 
 // Turns faces over until neighbours along edges with two faces agree, in every part of the model that has an
 // edge of `joined`: where that closes it outward, unless it agrees already and may be a hollow in another;

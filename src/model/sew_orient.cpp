@@ -105,7 +105,7 @@ void orient(Model& model, std::span<const SewnEdge> joined, std::vector<int>& fl
     std::vector<int> side(model.faces.size(), -1);
     struct Connected {
         std::vector<int> faces;
-        Facing facing;  // of a closed one, as its first face has it
+        PartFacing facing;  // of a closed one, as its first face has it
     };
     std::vector<Connected> parts;
     for (const SewnEdge& s : joined)

@@ -57,12 +57,12 @@ double integral(const Model& m, const Face& f, const Vec<3>& from, int rows, Box
 
 }  // namespace
 
-Facing facing(const Model& model, std::span<const int> part, std::span<const char> inward) {
+PartFacing facing(const Model& model, std::span<const int> part, std::span<const char> inward) {
     // Seen from a vertex of its: large coordinates would cost digits.
     const Loop& first = model.faces[std::size_t(part.front())].loops.front();
     const Edge& edge = model.edges[std::size_t(first.coedges.front().edge)];
     const Vec<3> from = model.vertices[std::size_t(edge.start)].point;
-    Facing out;
+    PartFacing out;
     double coarse = 0;
     for (std::size_t i = 0; i < part.size(); ++i) {
         const Face& f = model.faces[std::size_t(part[i])];
