@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <gp_Pnt.hxx>
 
 namespace freiform::occt {
 
