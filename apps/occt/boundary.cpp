@@ -211,7 +211,7 @@ void Converter::open_slit(Loop& loop, const Slit& slit) {
         if (runs_up(c) == (slit.axis == 0)) {
             Vec<2> by{};
             by[slit.axis] = slit.period;
-            c.curve = moved_by(c.curve, by);
+            c.curve = translated(c.curve, by);
         }
     const auto pole = [&](const Coedge& before, const Coedge& after) {
         const Edge& e = out_.model.edges[std::size_t(before.edge)];

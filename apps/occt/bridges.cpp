@@ -32,28 +32,6 @@ Vec<3> at(const Handle(Geom_Surface) & s, const Vec<2>& uv) {
 
 }  // namespace
 
-CurveGeometry<2> moved_by(const CurveGeometry<2>& curve, const Vec<2>& by) {
-    return std::visit(
-        [&](const auto& c) -> CurveGeometry<2> {
-            using C = std::remove_cvref_t<decltype(c)>;
-            if constexpr (std::same_as<C, Line<2>>) {
-                return Line<2>{c.origin + by, c.direction};
-            } else if constexpr (std::same_as<C, Conic<2>>) {
-                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
-            } else {
-                auto net = c.net();
-                for (auto& p : net.flat()) {
-                    if constexpr (Space<typename C::Coefficients>::kRational)
-                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
-                    else
-                        p += by;
-                }
-                return C::trusted(c.bases(), std::move(net));
-            }
-        },
-        curve);
-}
-
 std::optional<Slit> slit_of(const Loop& loop, const std::vector<Edge>& edges, const Handle(Geom_Surface) & s,
                             const std::array<double, 2>& period, double close) {
     for (int axis = 0; axis < 2; ++axis) {
@@ -69,12 +47,12 @@ std::optional<Slit> slit_of(const Loop& loop, const std::vector<Edge>& edges, co
             ways.push_back(c.reversed ? -by : by);
         }
         if (!(box.side(axis).length() <= kNear * turn) || !(box.side(along).length() > 0)) continue;
-        Slit slit{axis, turn, box.side(along), 0};
+        Slit slit{axis, turn, 0};
         int turns = 0;
         for (std::size_t i = 0; i < ways.size(); ++i)
             if ((ways[i] > 0) != (ways[(i + ways.size() - 1) % ways.size()] > 0)) slit.turn = i, ++turns;
         bool poles = turns == 2;
-        for (const double end : {slit.between.lo, slit.between.hi})
+        for (const double end : {box.lo[along], box.hi[along]})
             for (int i = 0; i < 4 && poles; ++i) {
                 Vec<2> a{}, b{};
                 a[along] = b[along] = end;
@@ -108,7 +86,7 @@ void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array
             sum += *turns;
             continue;
         }
-        c.curve = moved_by(c.curve, {{-sum[0] * period[0], -sum[1] * period[1]}});
+        c.curve = translated(c.curve, {{-sum[0] * period[0], -sum[1] * period[1]}});
         kept.push_back(std::move(c));
     }
     loop.coedges = std::move(kept);

@@ -11,8 +11,6 @@
 
 namespace freiform::occt {
 
-CurveGeometry<2> moved_by(const CurveGeometry<2>& curve, const Vec<2>& by);
-
 // Leaves them out and moves what lies between them by their periods, where they go as far forth as back and
 // the loop with them is longer than a period: no face covers its surface twice. Circles at the ends of a
 // seam, which look the same, span one period. `period`: of both parameters, 0 for none.
@@ -23,7 +21,6 @@ void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array
 struct Slit {
     int axis = 0;          // of the parameter that is periodic
     double period = 0;     // of it
-    Interval between;      // the poles, in the other one
     std::size_t turn = 0;  // the first coedge that runs the other way than the one before it
 };
 // Nothing where the loop is not all of a slit. `close`: points nearer than this are one.

@@ -101,7 +101,7 @@ void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& nex
         const double move = std::round((to[o] - next.start[o]) / turn) * turn;
         Vec<2> shift{};
         shift[o] = move;
-        next.coedge.curve = shifted(next.coedge.curve, shift);
+        next.coedge.curve = translated(next.coedge.curve, shift);
         next.start += shift, next.end += shift;
         to[o] = next.start[o];
     }
@@ -117,7 +117,7 @@ void LoopBuilder::attach(std::vector<Use>& done, Use next) const {
             if (const double turn = chart_.period(k); turn > 0)
                 by[k] = std::round((done.back().end[k] - next.start[k]) / turn) * turn;
     if (by[0] != 0 || by[1] != 0) {
-        next.coedge.curve = shifted(next.coedge.curve, by);
+        next.coedge.curve = translated(next.coedge.curve, by);
         next.start += by, next.end += by;
     }
     done.push_back(std::move(next));
@@ -192,7 +192,7 @@ void LoopBuilder::measure(Chain& c) const {
 void LoopBuilder::move(Chain& c, const Vec<2>& by) const {
     if (by[0] == 0 && by[1] == 0) return;
     for (Use& u : c.uses) {
-        u.coedge.curve = shifted(u.coedge.curve, by);
+        u.coedge.curve = translated(u.coedge.curve, by);
         u.start += by, u.end += by;
     }
     for (Vec<2>& p : c.outline) p += by;

@@ -175,26 +175,4 @@ double parameter_of(const CurveGeometry<3>& curve, const Vec<3>& p, double& dist
     return t;
 }
 
-CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by) {
-    return visit_one(
-        [&](const auto& c) -> CurveGeometry<2> {
-            using C = std::remove_cvref_t<decltype(c)>;
-            if constexpr (std::same_as<C, Line<2>>) {
-                return Line<2>{c.origin + by, c.direction};
-            } else if constexpr (std::same_as<C, Conic<2>>) {
-                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
-            } else {
-                auto net = c.net();
-                for (auto& p : net.flat()) {
-                    if constexpr (std::same_as<C, Curve<Vec<2>>>)
-                        p += by;
-                    else
-                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
-                }
-                return C::trusted(c.bases(), std::move(net));
-            }
-        },
-        curve);
-}
-
 }  // namespace freiform::step

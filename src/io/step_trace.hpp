@@ -74,6 +74,4 @@ Foot foot_by_images(const Chart& chart, const Vec<3>& p, const Vec<3>& motion, d
 // None of conics.
 std::optional<CurveGeometry<2>> without_last_coordinate(const CurveGeometry<3>& c);
 
-CurveGeometry<2> shifted(const CurveGeometry<2>& curve, const Vec<2>& by);
-
 }  // namespace freiform::step

@@ -15,13 +15,14 @@
 //   - edges of which 4 b or more is all their extent: they are points within what is known of them;
 //   - ends at which any edge has an extent of at most 2 d: that edge could be what lies between the two ends
 //     (a short edge along a long one, where the other face has one edge for both);
-//   - ends that would make both ends of an edge one vertex, or vertices one that no point is within the
-//     tolerance of. What becomes one is where the first was, or in the middle where that is too far.
-// But an open edge no longer than vertices may lie apart that become one may be what a file has in their gap,
-// where its other face has none. It becomes a point with them where the pair is far larger.
-// And if the two are opposite sides of one face, the edges of its loop between them may become closed: the
-// face is a full turn, and the two its seam. Such edges have to be four times as large as the tolerance, so
-// strips that are narrower than it are not rolled up.
+//   - ends that would make both ends of an edge one vertex, or vertices one that are not all within the
+//     tolerance of the middle of their box. What becomes one is where the first was, or in that middle where
+//     the first is too far from another.
+// But an open edge no longer than such vertices may lie apart may be what a file has in their gap, where its
+// other face has none. It becomes a point with them where the pair is far larger, and so do open edges of
+// that size that are closed, in a loop that is far larger. And if the two are opposite sides of one face, the
+// edges of its loop between them may become closed: the face is a full turn, and the two its seam. Such edges
+// have to be four times as large as the tolerance, so strips that are narrower than it are not rolled up.
 //
 // Accuracy. The bounds of joined edges are proven; that no pair is missed is not: feet and places are
 // samples. What is left is reported, so a miss is seen.
@@ -270,7 +271,7 @@ void Sewer::rebuild() {
         for (Approximation& a : m_.approximations) a.where = "before sewing, " + a.where;
     for (const auto& [e, extent] : points_)
         m_.approximations.push_back({text("edges[", edge_at[std::size_t(e)], "]"),
-                                     "has become a point: it is no longer than its vertices were apart",
+                                     text("has become a point: it is no larger than twice ", tolerance_),
                                      std::nullopt, extent});
     m_.edges = std::move(edges), m_.vertices = std::move(vertices), why_ = std::move(why);
     std::vector<std::vector<int>> faces(m_.edges.size());

@@ -5,6 +5,7 @@
 #include <freiform/model/edge_gap.hpp>
 #include <freiform/model/sew.hpp>
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -76,6 +77,10 @@ struct FollowedCurve {
 // (not_converged) if it cannot be brought within `allowed` of it.
 Result<FollowedCurve> followed(const DerivativeQuery<2, 3>& surface, const CurveGeometry<2>& on_surface,
                                const EdgeTrace& stays, const EdgeMatch& match, double allowed);
+
+// Sides of a polygon along a parameter curve, in the direction of its parameter.
+using Side2 = std::array<Vec<2>, 2>;
+std::vector<Side2> sides_along(const CurveGeometry<2>& curve, Interval on);
 
 // `sum`: its sign tells whether the normals of a closed part, turned over where `inward`, point out of what
 // it encloses; 0 where samples cannot tell. An estimate. `box`: of the samples.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kSidesPerCoedge = 24;
 
-using Side2 = std::array<Vec<2>, 2>;
+}  // namespace
 
 std::vector<Side2> sides_along(const CurveGeometry<2>& curve, Interval on) {
     std::vector<Side2> sides;
@@ -34,6 +34,8 @@ std::vector<Side2> sides_along(const CurveGeometry<2>& curve, Interval on) {
     }
     return sides;
 }
+
+namespace {
 
 // Is the face on the left of the coedge's curve, seen in the direction of growing parameters?
 bool is_left(std::span<const Side2> all, std::size_t own) {

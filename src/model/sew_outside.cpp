@@ -16,25 +16,17 @@ namespace freiform {
 namespace {
 
 constexpr int kRows = 12, kEach = 6;  // midpoints of a row, in each of its parts inside
-constexpr int kSides = 24;            // of a coedge
 
 // The integral over a face, seen from `from`; its sign that of the normal of the surface.
 double integral(const Model& m, const Face& f, const Vec<3>& from, int rows, Box<3>& seen) {
-    std::vector<std::array<Vec<2>, 2>> sides;
+    std::vector<Side2> sides;
     Box<2> box;
     for (const Loop& l : f.loops)
-        for (const Coedge& c : l.coedges) {
-            const Interval on = m.edges[std::size_t(c.edge)].range;
-            Vec<2> last = jet<0>(c.curve, on.lo).value();
-            box.add(last);
-            for (int k = 1; k <= kSides; ++k) {
-                const double t = k == kSides ? on.hi : on.lo + on.length() * k / kSides;
-                const Vec<2> next = jet<0>(c.curve, t).value();
-                sides.push_back({last, next});
-                box.add(next);
-                last = next;
+        for (const Coedge& c : l.coedges)
+            for (const Side2& s : sides_along(c.curve, m.edges[std::size_t(c.edge)].range)) {
+                sides.push_back(s);
+                box.add(s[0]), box.add(s[1]);
             }
-        }
     const auto limits_of_surface = limits(f.surface);
     double sum = 0;
     for (int row = 0; row < rows; ++row) {

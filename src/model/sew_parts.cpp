@@ -171,7 +171,7 @@ bool Sewer::may_vanish(int e) const {
     return is_open(std::size_t(e)) && !is_group(e) && extent_[std::size_t(e)] <= 2 * tolerance_;
 }
 
-// Edges that are still open and have become points, of faces that are far larger.
+// Edges that are still open and have become points, in loops that are far larger.
 void Sewer::find_points() {
     owners_ = owners_of(m_);
     measure_extents();
@@ -180,9 +180,11 @@ void Sewer::find_points() {
         if (owners_[e].uses != 1 || edge.degenerate || vertex(edge.start) != vertex(edge.end) ||
             !may_vanish(int(e)))
             continue;
+        // A loop of its own stays: without it there would be no hole.
+        const Owner& o = owners_[e];
         double largest = 0;
-        for (const Loop& l : m_.faces[std::size_t(owners_[e].face)].loops)
-            for (const Coedge& c : l.coedges) largest = std::max(largest, extent_[std::size_t(c.edge)]);
+        for (const Coedge& c : m_.faces[std::size_t(o.face)].loops[std::size_t(o.loop)].coedges)
+            largest = std::max(largest, extent_[std::size_t(c.edge)]);
         if (largest > kExtents * tolerance_) points_.push_back({int(e), extent_[e]});
     }
 }
@@ -218,8 +220,9 @@ std::optional<Refusal> Sewer::obstacle(const Part& a, const Part& b, const Pair&
         for (std::size_t k = 0; k < 2; ++k)
             for (const int y : chains[k]) {
                 if (!(norm(point(k, y) - middle_of(box)) <= tolerance_))
-                    return Refusal{RefusalKind::ill_conditioned, text("vertices[", y, "]"),
-                                   text("would be one with vertices farther away than twice ", tolerance_)};
+                    return Refusal{
+                        RefusalKind::ill_conditioned, text("edges[", (k == 0 ? a : b).edge, "]"),
+                        text("would end in a vertex whose middle is farther away than ", tolerance_)};
                 if (y < 0) continue;
                 becomes[vertex(y)] = last ? 1 : 0;
                 const auto edges = edges_at_.find(y);

@@ -317,6 +317,28 @@ double value_error_bound(const SurfaceGeometry& surface, const std::array<Interv
         surface);
 }
 
+CurveGeometry<2> translated(const CurveGeometry<2>& curve, const Vec<2>& by) {
+    return visit_one(
+        [&](const auto& c) -> CurveGeometry<2> {
+            using C = std::remove_cvref_t<decltype(c)>;
+            if constexpr (std::same_as<C, Line<2>>) {
+                return Line<2>{c.origin + by, c.direction};
+            } else if constexpr (std::same_as<C, Conic<2>>) {
+                return Conic<2>{c.kind, c.centre + by, c.x, c.y};
+            } else {
+                auto net = c.net();
+                for (auto& p : net.flat()) {
+                    if constexpr (std::same_as<C, Curve<Vec<2>>>)
+                        p += by;
+                    else
+                        p = Hom<2>{{p[0] + p.weight() * by[0], p[1] + p.weight() * by[1], p.weight()}};
+                }
+                return C::trusted(c.bases(), std::move(net));
+            }
+        },
+        curve);
+}
+
 #define FF_INSTANTIATE_CURVE_GEOMETRY(D)                                   \
     template std::array<Interval, 1> domain(const CurveGeometry<D>&);      \
     template Result<void> check(const CurveGeometry<D>&);                  \

@@ -284,6 +284,41 @@ TEST(Sew, edges_shorter_than_the_tolerance_do_not_collapse) {
     EXPECT_TRUE(said);
 }
 
+TEST(Sew, holes_smaller_than_the_tolerance_stay_holes) {
+    const double r = 1e-3;
+    Model m;
+    Face f;
+    f.surface = Extrusion{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+    const Vec<2> corners[] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
+    Loop outer;
+    for (int k = 0; k < 4; ++k) {
+        const Vec<2> a = corners[k], d = corners[(k + 1) % 4] - a;
+        m.vertices.push_back({{{a[0], a[1], 0}}, 0});
+        m.edges.push_back(
+            {Line<3>{{{a[0], a[1], 0}}, {{d[0], d[1], 0}}}, false, {0, 1}, k, (k + 1) % 4, 0, ""});
+        outer.coedges.push_back({k, false, Line<2>{a, d}});
+    }
+    m.vertices.push_back({{{0.5 + r, 0.5, 0}}, 0});
+    m.edges.push_back({Conic<3>{ConicKind::ellipse, {{0.5, 0.5, 0}}, {{r, 0, 0}}, {{0, -r, 0}}},
+                       false,
+                       {0, 2 * kPi},
+                       4,
+                       4,
+                       0,
+                       ""});
+    const Loop hole{{{4, false, Conic<2>{ConicKind::ellipse, {{0.5, 0.5}}, {{r, 0}}, {{0, -r}}}}}};
+    f.loops = {outer, hole};
+    m.faces = {f};
+    m.shells = {{{{0, false}}, false}};
+    m.bodies = {{{0}, false, "", {}}};
+    const Model loose = *make_model(std::move(m));
+    const auto s = sew(loose, {.tolerance = 10 * r});
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->remaining.size(), 5u);
+    EXPECT_TRUE(s->model.approximations.empty());
+    EXPECT_EQ(summary(s->model).degenerate_edges, 0);
+}
+
 TEST(Sew, closed_edges_with_different_seams_and_speeds_meet) {
     for (const double turn : {0.0, 1.0, kPi}) {
         // A disc whose rim starts at `turn`, as a rational spline, under the wall of a cone.

@@ -1,5 +1,7 @@
 // What std::visit does, for one variant.
 #pragma once
+#include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <variant>
 

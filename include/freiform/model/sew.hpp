@@ -60,13 +60,14 @@ struct Sewing {
 // Two edges are joined if a map from one onto the other is found with which their whole curves are proven to
 // lie within the tolerance of each other (edge_gap), if that is small against the edges themselves, and if no
 // other edge would lose its length by it; nearest pairs first. An edge along which ends of others lie is cut
-// there; vertices that become one lie where the first was, or in their middle where that is too far. An edge
-// of one face that is no longer than such vertices are apart becomes a point (which `approximations` name).
-// The face of an edge that is given up gets a parameter curve that follows the one that stays. Curves and
-// surfaces are not moved. Edges without a curve in space get the image of their parameter curve first
-// (make/image_curve.hpp; where its degree is too high a spline that follows within a proven 1/32 of the
-// tolerance, which `approximations` name; what has neither is left alone), those that are one point become
-// degenerate, and these are left alone. Numbers of edges and vertices change, those of faces do not; texts of
+// there; vertices become one that are all within the tolerance of the first, or of the middle of their box,
+// and lie there. An edge that one face has alone, no larger than twice the tolerance and between vertices
+// that became one, becomes a point if its loop is far larger (which `approximations` name). The face of an
+// edge that is given up gets a parameter curve that follows the one that stays. Curves and surfaces are not
+// moved. Edges without a curve in space get the image of their parameter curve first (make/image_curve.hpp;
+// where its degree is too high a spline that follows within a proven 1/32 of the tolerance, which
+// `approximations` name; what has neither is left alone), those that are one point become degenerate, and
+// these are left alone. Numbers of edges and vertices change, those of faces do not; texts of
 // `approximations` name old numbers and say so. Results do not depend on the number of threads. Refuses a
 // tolerance that is not a positive number.
 //   auto sewn = sew(model, {.tolerance = 1e-3});

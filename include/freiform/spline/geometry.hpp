@@ -74,6 +74,9 @@ inline Vec<2> clamped(const Vec<2>& uv, const std::array<Interval, 2>& limits) {
     return {{clamped(uv[0], limits[0]), clamped(uv[1], limits[1])}};
 }
 
+// The curve with its points moved by this, at the same parameters. Off by the rounding of its coordinates.
+CurveGeometry<2> translated(const CurveGeometry<2>& curve, const Vec<2>& by);
+
 // Refuses numbers that are not finite, directions and radii that vanish where none may.
 template <int D>
 Result<void> check(const CurveGeometry<D>& curve);
