@@ -124,6 +124,7 @@ FUNCTION_EXCEPTIONS = {
     "squad": "RotationTrack(kind='squad')",
     "surface_normals": "Mesh.normals",
     "to_text": "repr",
+    "translated": "of parameter curves within models; Curve.transform moves curves",
     "transposed": "numpy",
     "uniform_subdivision": "Basis.halve_uniform gives its matrix",
     "unit_box": "for C++",
