@@ -50,6 +50,7 @@ struct Context {
     std::string output;  // -o; empty or "-": standard output
     std::string to;      // --to; empty: the ending of `output` decides
     Limits limits;
+    bool in_part = false;  // the action was done but for what its report names as refused: exit code 1
     std::function<Result<void>()> action;
 
     ReadOptions read_options() const;

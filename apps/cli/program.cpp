@@ -125,7 +125,8 @@ int perform(CommandLine& line, std::vector<std::string> arguments) {
     if (!context.action) return usage_error(context, "which command? freiform --help lists them");
     enforce(context);
     const auto done = context.action();
-    return done ? 0 : report(context, name_of(done.error().kind), done.error(), exit_code(done.error().kind));
+    if (!done) return report(context, name_of(done.error().kind), done.error(), exit_code(done.error().kind));
+    return context.in_part ? exit_code(RefusalKind::no_answer) : 0;
 }
 
 }  // namespace
@@ -136,8 +137,8 @@ int run(std::vector<std::string> arguments) {
     CommandLine line(
         context, "freiform", "Free-form curves and surfaces whose answers carry a bound that holds.",
         "FILE may be - for standard input. freiform COMMAND --help has examples.\n"
-        "Exit codes: 0 done, 1 no answer, 2 wrong usage, 3 unreadable or invalid input, 4 a limit was\n"
-        "reached, 5 reading or writing failed.");
+        "Exit codes: 0 done, 1 no answer, or a mesh without the faces that its report names as refused,\n"
+        "2 wrong usage, 3 unreadable or invalid input, 4 a limit was reached, 5 reading or writing failed.");
 #if defined(__cpp_exceptions)
     try {
         return perform(line, std::move(arguments));

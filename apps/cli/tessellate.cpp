@@ -60,6 +60,17 @@ Result<void> is_of_use(const Result<Tessellation>& t, double timeout) {
                   text("no face could be meshed: ", first.reason.message));
 }
 
+// What is missing in the mesh, in one sentence; empty where nothing is.
+std::string missing(const Tessellation& t, const Model& model) {
+    const std::size_t n = t.refused.size() + model.refused.size();
+    if (n == 0) return {};
+    const auto [where, reason] =
+        t.refused.empty() ? std::pair(model.refused[0].where, model.refused[0].message)
+                          : std::pair(text("face ", t.refused[0].face), t.refused[0].reason.message);
+    return text("the mesh is without ", n == 1 ? "one face that was" : text(n, " faces that were"),
+                " refused", n == 1 ? "" : "; the first", ": ", where, ": ", reason);
+}
+
 Result<void> run_tessellate(Context& context, const TessellateArguments& options) {
     const double start = now();
     // The mesh may go to standard output; then the report does not.
@@ -124,6 +135,10 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
             if (format == MeshFormat::glb || format == MeshFormat::stl)
                 report.rounding = float_rounding(mesh);
         }
+        if (const std::string without = missing(*results[i], *model); !without.empty()) {
+            remark(without);
+            context.in_part = true;
+        }
         report.seconds = {read, sew, now() - written, now() - start};
         if (output == "-") return {};
         if (context.json)
@@ -147,7 +162,11 @@ void add_tessellate(CommandLine& line) {
                  "  freiform tessellate part.step --tolerance 1,0.1,0.01 -o part-%.glb\n"
                  "  freiform tessellate part.iges --sew 0.001 --angle 15 -o part.stl\n"
                  "  freiform tessellate part.step --tolerance 0.05 --quads -o part.obj\n"
-                 "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply");
+                 "  freiform tessellate part.step --tolerance 0.05 --to ply -o - > part.ply\n"
+                 "\n"
+                 "Faces that cannot be done are named in the report (\"refused\"); the others are meshed, "
+                 "and the exit\n"
+                 "code is 1.");
     command.file(options->file);
     command.numbers(
         "--tolerance", options->tolerances,

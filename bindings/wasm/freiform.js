@@ -455,7 +455,7 @@ class Freiform {
     const { code, stdout, stderr, files: made } = this.command(args, files);
     const said = text.decode(stdout);
     const answer = /^\s*[{[]/.test(said) ? JSON.parse(said) : null;
-    if (code !== 0) {
+    if (code !== 0 && (answer?.error || !answer)) {
       const { kind = 'crash', where = '', message = stderr.trim() } = answer?.error ?? {};
       throw new FreiformError(kind, where, message);
     }

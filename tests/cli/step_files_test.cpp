@@ -56,6 +56,30 @@ TEST_F(CliStep, repair_is_asked_for_and_says_what_it_did) {
     EXPECT_EQ(run({"info", open, "--repair", "--reader", "occt"}).code, 2);
 }
 
+TEST_F(CliStep, a_mesh_without_the_faces_that_were_refused_ends_with_1_and_says_so) {
+    // A square, and a face around three of its sides.
+    std::string s = polygon_file({{0, 0}, {3, 0}, {3, 2}, {0, 2}},
+                                 "#20=ADVANCED_FACE('',(#21),#7,.T.);\n#21=FACE_OUTER_BOUND('',#22,.T.);\n"
+                                 "#22=EDGE_LOOP('',(#500,#501,#502));\n");
+    s.replace(s.find("(#12)"), 5, "(#12,#20)");
+    const std::string part = file("part.step", s),
+                      whole = file("whole.step", polygon_file({{0, 0}, {3, 0}, {3, 2}}));
+    const Ran r = run({"tessellate", part, "--tolerance", "0.1", "-o", path("part.stl"), "--json"});
+    EXPECT_EQ(r.code, 1);
+    EXPECT_NE(r.err.find("without one face that was refused: #20 ADVANCED_FACE: "), std::string::npos)
+        << r.err;
+    const Json j = Json::parse(r.out);
+    EXPECT_EQ(j["triangles"], 2);
+    EXPECT_EQ(j["refused"].size(), 1u);
+    EXPECT_FALSE(j.contains("error"));
+    EXPECT_EQ(Json::parse(run({"info", path("part.stl"), "--json"}).out)["triangles"], 2);
+    const Ran piped = run({"tessellate", part, "--tolerance", "0.1", "--to", "ply", "-o", "-"});
+    EXPECT_EQ(piped.code, 1);
+    EXPECT_TRUE(piped.out.starts_with("ply\n"));
+    EXPECT_NE(piped.err.find("refused"), std::string::npos) << piped.err;
+    EXPECT_EQ(run({"tessellate", whole, "--tolerance", "0.1"}).code, 0);
+}
+
 TEST_F(CliStep, a_file_of_triangles_alone_is_a_mesh) {
     const std::string mesh =
         file("mesh.step", flat_file("#8=TESSELLATED_SHAPE_REPRESENTATION('',(#10),#1);\n"
