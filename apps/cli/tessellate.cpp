@@ -60,15 +60,18 @@ Result<void> is_of_use(const Result<Tessellation>& t, double timeout) {
                   text("no face could be meshed: ", first.reason.message));
 }
 
-// What is missing in the mesh, in one sentence; empty where nothing is.
+// What is missing in the mesh, in one sentence; empty where nothing is. Curves that bound no face, and triangles
+// beside exact shapes, which a reader leaves out of a whole file, are not.
 std::string missing(const Tessellation& t, const Model& model) {
-    const std::size_t n = t.refused.size() + model.refused.size();
+    std::size_t n = t.refused.size();
+    std::string first;
+    if (n > 0) first = text("face ", t.refused[0].face, ": ", t.refused[0].reason.message);
+    for (const Refusal& r : model.refused)
+        if (!(r.kind == RefusalKind::unsupported && r.where == "file") && n++ == 0)
+            first = text(r.where, ": ", r.message);
     if (n == 0) return {};
-    const auto [where, reason] =
-        t.refused.empty() ? std::pair(model.refused[0].where, model.refused[0].message)
-                          : std::pair(text("face ", t.refused[0].face), t.refused[0].reason.message);
-    return text("the mesh is without ", n == 1 ? "one face that was" : text(n, " faces that were"),
-                " refused", n == 1 ? "" : "; the first", ": ", where, ": ", reason);
+    return text("the mesh is without ",
+                n == 1 ? "one face that was refused: " : text(n, " faces that were refused; the first: "), first);
 }
 
 Result<void> run_tessellate(Context& context, const TessellateArguments& options) {

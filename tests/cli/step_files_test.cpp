@@ -78,6 +78,13 @@ TEST_F(CliStep, a_mesh_without_the_faces_that_were_refused_ends_with_1_and_says_
     EXPECT_TRUE(piped.out.starts_with("ply\n"));
     EXPECT_NE(piped.err.find("refused"), std::string::npos) << piped.err;
     EXPECT_EQ(run({"tessellate", whole, "--tolerance", "0.1"}).code, 0);
+    // Curves that bound no face are left out, and nothing is missing in the mesh.
+    std::string lines = polygon_file({{0, 0}, {3, 0}, {3, 2}},
+                                     "#30=GEOMETRIC_CURVE_SET('',(#31));\n#31=POLYLINE('',(#100,#101));\n");
+    lines.replace(lines.find("(#10)"), 5, "(#10,#30)");
+    const Ran beside = run({"tessellate", file("lines.step", lines), "--tolerance", "0.1", "--json"});
+    EXPECT_EQ(beside.code, 0) << beside.err;
+    EXPECT_EQ(Json::parse(beside.out)["refused"].size(), 1u) << beside.out;
 }
 
 TEST_F(CliStep, a_file_of_triangles_alone_is_a_mesh) {
