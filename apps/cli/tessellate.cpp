@@ -60,8 +60,8 @@ Result<void> is_of_use(const Result<Tessellation>& t, double timeout) {
                   text("no face could be meshed: ", first.reason.message));
 }
 
-// What is missing in the mesh, in one sentence; empty where nothing is. Curves that bound no face, and triangles
-// beside exact shapes, which a reader leaves out of a whole file, are not.
+// What is missing in the mesh, in one sentence; empty where nothing is. Curves that bound no face, and
+// triangles beside exact shapes, which a reader leaves out of a whole file, are not.
 std::string missing(const Tessellation& t, const Model& model) {
     std::size_t n = t.refused.size();
     std::string first;
@@ -71,7 +71,8 @@ std::string missing(const Tessellation& t, const Model& model) {
             first = text(r.where, ": ", r.message);
     if (n == 0) return {};
     return text("the mesh is without ",
-                n == 1 ? "one face that was refused: " : text(n, " faces that were refused; the first: "), first);
+                n == 1 ? "one face that was refused: " : text(n, " faces that were refused; the first: "),
+                first);
 }
 
 Result<void> run_tessellate(Context& context, const TessellateArguments& options) {

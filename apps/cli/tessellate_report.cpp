@@ -62,6 +62,7 @@ void write_report(json::Writer& w, const TessellateReport& r) {
         .field("faces", model.faces.size());
     if (r.how.quads) w.field("quads", t.quads);
     w.field("open_edges", t.topology.open_edges).field("non_manifold_edges", t.topology.non_manifold_edges);
+    w.field("misoriented_edges", t.topology.misoriented_edges);
     w.field("error_bound", t.error_bound).field("boundary_gap", t.boundary_gap);
     w.field("degenerate_triangles", t.topology.degenerate_triangles);
     w.field("predicted_triangles", std::ceil(predicted_triangles(model, r.how)));
@@ -106,6 +107,9 @@ std::string report_text(const TessellateReport& r) {
                   " triangles that are no half of one\n");
     s += text("open edges      ", t.topology.open_edges, "\n");
     if (t.topology.non_manifold_edges > 0) s += text("non-manifold    ", t.topology.non_manifold_edges, "\n");
+    if (t.topology.misoriented_edges > 0)
+        s += text("misoriented     ", t.topology.misoriented_edges,
+                  " edges, of faces that look the wrong way\n");
     if (t.topology.degenerate_triangles > 0)
         s += text("degenerate      ", t.topology.degenerate_triangles, "\n");
     s += text("error bound     ", t.error_bound, " (tolerance ", r.how.tolerance,

@@ -124,6 +124,7 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
         auto ids = g->references(1, "edges");
         if (!ids) return std::unexpected(ids.error());
         if (!forward) std::reverse(ids->begin(), ids->end());
+        std::vector<Oriented> around;
         for (const std::uint32_t id : *ids) {
             const auto o = Fields::of(f_, id, Type::ORIENTED_EDGE, 5);
             if (!o) return std::unexpected(o.error());
@@ -131,10 +132,13 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
             if (!of) return std::unexpected(of.error());
             const auto made = edge(*of);
             if (!made) return std::unexpected(made.error());
-            const bool along = o->flag(4) == forward;
-            for (std::size_t k = 0; k < made->size(); ++k)
-                if (auto ok = append((*made)[along ? k : made->size() - 1 - k], along, *of); !ok) return ok;
+            around.push_back({id, *of, {made->begin(), made->end()}, o->flag(4) == forward});
         }
+        turn_edges(around);
+        for (const Oriented& e : around)
+            for (std::size_t k = 0; k < e.made.size(); ++k)
+                if (auto ok = append(e.made[e.along ? k : e.made.size() - 1 - k], e.along, e.edge); !ok)
+                    return ok;
     }
     if (uses.empty()) return {};
     if (auto ok = close_loop(*at, uses, chart, size, loosely); !ok) return ok;

@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kSingular = 1e-10;
 
+// Ends this part of the way between them apart, or further, are not meant to meet: what is as small as the
+// tolerance of the file closes nowhere.
+constexpr double kApart = 1e-3;
+
 // Those of a t^2 + b t + c, where they touch one between; `scale`: what a is small against. What there is not
 // is not finite.
 std::array<double, 2> roots(double a, double b, double c, double scale) {
@@ -57,8 +61,16 @@ void Chart::profile_traits(const CurveGeometry<3>& profile, int axis, double clo
     } else if (!std::holds_alternative<Line<3>>(profile)) {
         spline_[k] = true;
         const Interval on = whole_[k];
-        if (norm(jet<0>(profile, on.lo).value() - jet<0>(profile, on.hi).value()) <= close)
-            period_[k] = on.length();
+        const Vec<3> first = jet<0>(profile, on.lo).value();
+        const double apart = norm(first - jet<0>(profile, on.hi).value());
+        double way = 0;
+        visit_one(
+            [&](const auto& p) {
+                if constexpr (requires { p.net(); })
+                    for (const Vec<3>& x : points(p)) way = std::max(way, norm(x - first));
+            },
+            profile);
+        if (apart <= std::min(close, kApart * way)) period_[k] = on.length();
     }
 }
 
@@ -91,15 +103,19 @@ void Chart::poles_of_sides(double stated) {
     visit_one(
         [&](const auto& s) {
             if constexpr (requires { s.net(); }) {
+                const auto all = points(s);
+                const auto row = std::size_t(s.net().extent()[1]);
                 Box<3> box;
-                for (const Vec<3>& p : points(s)) box.add(p);
-                const double close = std::min(stated, 1e-3 * box.diagonal());
+                for (const Vec<3>& p : all) box.add(p);
+                const double close = std::min(stated, kApart * box.diagonal());
                 for (int axis = 0; axis < 2; ++axis) {
                     const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
                     const auto a = points(lo), b = points(hi);
-                    double apart = 0;
+                    double apart = 0, way = 0;
                     for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, norm(a[i] - b[i]));
-                    if (apart <= close && weights(lo) == weights(hi))
+                    for (std::size_t i = 0; i < all.size(); ++i)
+                        way = std::max(way, norm(all[i] - a[axis == 0 ? i % row : i / row]));
+                    if (apart <= std::min(close, kApart * way) && weights(lo) == weights(hi))
                         period_[std::size_t(axis)] = s.basis(axis).domain().length();
                     for (const auto* side : {&a, &b}) {
                         double size = 0;

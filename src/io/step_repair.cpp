@@ -4,6 +4,8 @@
 //
 // - Open loops are refused, with the gap. A repair puts a straight edge between the end of one edge and the
 //   start of the next. Nothing else moves, and faces whose loops have the same gap share the edge.
+// - Edges that run against both their neighbours are taken the other way, and it is told: between the same
+//   vertices no other loop can be meant.
 // - Edges far beside their surface are refused, with the distance. A repair takes them: the parameter curve
 //   follows the edge as near as the surface comes to it, and what is left is the tolerance of the edge.
 // - Of loops that run the wrong way around a face, where the surface is not closed, it is told: some programs
@@ -17,6 +19,7 @@
 #include "step_shape.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace freiform::step {
 
@@ -31,6 +34,52 @@ constexpr int kLooks = 64;  // at an edge
 
 double ShapeReader::repair_limit(double size) const {
     return options_.repair_limit > 0 ? options_.repair_limit : kRepairs * size;
+}
+
+// Where the vertices of a loop follow each other in one sense alone, which is not that of its flags. Not two
+// edges: either may be wrong.
+void ShapeReader::turn_edges(std::vector<Oriented>& loop) {
+    std::vector<std::size_t> place;
+    std::vector<std::array<int, 2>> ends;  // as the edge runs, not the loop
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+        std::array<int, 2> of{-1, -1};
+        for (const EdgeMade& part : loop[k].made) {
+            if (part.empty) continue;
+            const Edge& e = out_.model.edges[std::size_t(part.edge)];
+            if (of[0] < 0) of[0] = part.flipped ? e.end : e.start;
+            of[1] = part.flipped ? e.start : e.end;
+        }
+        if (of[0] >= 0) place.push_back(k), ends.push_back(of);
+    }
+    const std::size_t n = ends.size();
+    if (n < 3) return;
+    const auto closes = [&](const std::vector<char>& along) {
+        for (std::size_t k = 0; k < n; ++k)
+            if (ends[k][along[k] ? 1 : 0] != ends[(k + 1) % n][along[(k + 1) % n] ? 0 : 1]) return false;
+        return true;
+    };
+    std::vector<char> given;
+    for (const std::size_t k : place) given.push_back(loop[k].along);
+    if (closes(given)) return;
+    std::vector<std::vector<char>> found;
+    for (const char first : {char(0), char(1)}) {
+        std::vector<char> along(given);
+        along[0] = first;
+        for (std::size_t k = 1; k < n; ++k) {
+            const int at = ends[k - 1][along[k - 1] ? 1 : 0];
+            if (ends[k][0] != ends[k][1]) along[k] = ends[k][0] == at;
+        }
+        if (closes(along)) found.push_back(std::move(along));
+    }
+    if (found.size() != 1) return;
+    for (std::size_t k = 0; k < n; ++k) {
+        if (found[0][k] == given[k]) continue;
+        loop[place[k]].along = !loop[place[k]].along;
+        report(-1,
+               text(f_.label(loop[place[k]].instance),
+                    ": runs against its neighbours, and is taken the other way"),
+               0.0, 0);
+    }
 }
 
 Result<void> ShapeReader::close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart,

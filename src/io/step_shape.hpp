@@ -63,6 +63,12 @@ private:
         bool empty = false;    // no longer than the tolerance: left out of loops
         std::uint32_t curve = kMissing;
     };
+    // An edge as a loop runs through it.
+    struct Oriented {
+        std::uint32_t instance, edge;
+        std::vector<EdgeMade> made;
+        bool along;
+    };
     // A segment of a composite curve, as that runs through it.
     struct Segment {
         std::uint32_t instance, curve;  // itself, and the curve that it is a part of
@@ -128,6 +134,7 @@ private:
     // polygons within more and more times the tolerance.
     Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size, int loosely = 0);
     // step_repair.cpp: what contradicts itself beyond the tolerance, refused or made right.
+    void turn_edges(std::vector<Oriented>& loop);
     Result<void> close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart, double size,
                             int loosely);
     Result<void> accept_gap(std::uint32_t edge, const Use& use, const Chart& chart, double size);

@@ -31,9 +31,11 @@ struct CoedgeQuery {
 };
 
 struct EdgeMesh {
-    std::vector<double> parameters;  // increasing, the ends of the edge's range included
-    std::vector<int> points;         // shared mesh points, one for each parameter
-    bool collapsed = false;          // all its points are one
+    std::vector<double> parameters;        // increasing, the ends of the edge's range included
+    std::vector<int> points;               // shared mesh points, one for each parameter
+    bool collapsed = false;                // all its points are one
+    Interval kept{-kInfinity, kInfinity};  // of the parameters: those outside are the vertices at the ends
+    double moved = 0;                      // how far what became a point is from it, at most
     double bound = 0;  // of the distance between polyline and curve, on the edge and on its faces
     std::vector<std::unique_ptr<CoedgeQuery>> uses;
     std::unique_ptr<ChordCurve> curve;

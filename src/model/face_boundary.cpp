@@ -19,6 +19,7 @@ constexpr double kNoPole = 1e-4;       // of the box of the loop in the paramete
 constexpr double kOnLine = 0x1p-40;    // of the domain: rounding
 constexpr double kNearLine = 0x1p-28;  // of the domain: of the digits that files have
 constexpr double kSamePlace = 1e-9;    // of the box of the face: one vertex, not two sides of a seam
+constexpr double kNearPlace = 1e-6;    // likewise, where the model is not more accurate
 
 struct Run {
     std::vector<Vec<2>> uv;
@@ -54,11 +55,13 @@ Run run_of(const Coedge& coedge, const Edge& edge, const DerivativeQuery<2, 3>& 
     const int n = int(mesh.parameters.size());
     for (int k = 0; k < n; ++k) {
         const int i = coedge.reversed ? n - 1 - k : k;
+        if (!mesh.kept.contains(mesh.parameters[std::size_t(i)])) continue;
         run.uv.push_back(settled(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on, surface,
                                  edge.tolerance));
         run.points.push_back(mesh.points[std::size_t(i)]);
-        if (k + 1 < n) run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
+        run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
     }
+    run.sources.pop_back();
     return run;
 }
 
@@ -66,20 +69,38 @@ double length_in(const Vec<2>& d, const Vec<2>& size) {
     return std::max(size[0] > 0 ? std::abs(d[0]) / size[0] : 0, size[1] > 0 ? std::abs(d[1]) / size[1] : 0);
 }
 
-// Loops that touch in a vertex have it at the same place of the parameter plane but for rounding.
-void unite(FaceBoundary& polygon) {
+// How far the surface moves at most between two parameters.
+double moved_between(const DerivativeQuery<2, 3>& surface, const Vec<2>& a, const Vec<2>& b) {
+    Box<2> around;
+    around.add(a);
+    around.add(b);
+    const auto s = surface({around.side(0), around.side(1)}, 1);
+    return s(1, 0) * std::abs(b[0] - a[0]) + s(0, 1) * std::abs(b[1] - a[1]);
+}
+
+// Loops that touch in a vertex have it at the same place of the parameter plane but for rounding, or for what
+// the model says of its accuracy there. How far that moves them at most.
+double unite(FaceBoundary& polygon, const DerivativeQuery<2, 3>& surface, double tolerance) {
     Box<2> box;
     for (const Vec<2>& p : polygon.uv) box.add(p);
     std::map<int, std::vector<int>> corners_at;
+    double most = 0;
     for (std::size_t i = 0; i < polygon.uv.size(); ++i) {
         auto& others = corners_at[polygon.point[i]];
-        for (const int k : others)
-            if (length_in(polygon.uv[i] - polygon.uv[std::size_t(k)], box.hi - box.lo) < kSamePlace) {
-                polygon.uv[i] = polygon.uv[std::size_t(k)];
-                break;
-            }
+        for (const int k : others) {
+            const Vec<2> there = polygon.uv[std::size_t(k)], jump = polygon.uv[i] - there;
+            if (jump == Vec<2>{}) break;
+            const double length = length_in(jump, box.hi - box.lo);
+            if (!(length < kNearPlace)) continue;
+            const double moved = moved_between(surface, polygon.uv[i], there);
+            if (!(length < kSamePlace || moved <= tolerance)) continue;
+            most = std::max(most, moved);
+            polygon.uv[i] = there;
+            break;
+        }
         others.push_back(int(i));
     }
+    return most;
 }
 
 }  // namespace
@@ -103,6 +124,7 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
         for (std::size_t c = 0; c < coedges.size(); ++c) {
             Box<2> own;
             for (const Vec<2>& p : runs[c].uv) own.add(p);
+            out.gap = std::max(out.gap, edges.mesh(coedges[c].edge).moved);
             if (edges.mesh(coedges[c].edge).collapsed) continue;
             if (!model.edges[std::size_t(coedges[c].edge)].degenerate ||
                 length_in(own.hi - own.lo, box.hi - box.lo) > kNoPole)
@@ -120,11 +142,7 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
             const Vec<2> jump = next.uv.front() - run.uv.back();
             bool join = false;
             if (jump != Vec<2>{}) {
-                Box<2> around;
-                around.add(run.uv.back());
-                around.add(next.uv.front());
-                const auto s = surface({around.side(0), around.side(1)}, 1);
-                const double moved = s(1, 0) * std::abs(jump[0]) + s(0, 1) * std::abs(jump[1]);
+                const double moved = moved_between(surface, run.uv.back(), next.uv.front());
                 const auto tolerance_of = [&](const Coedge& use) {
                     const Edge& e = model.edges[std::size_t(use.edge)];
                     return std::max({e.tolerance, model.vertices[std::size_t(e.start)].tolerance,
@@ -152,7 +170,7 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
         const int end = int(out.polygon.uv.size());
         for (int i = first; i < end; ++i) out.polygon.segments.push_back({i, i + 1 < end ? i + 1 : first});
     }
-    unite(out.polygon);
+    out.gap = std::max(out.gap, unite(out.polygon, surface, f.tolerance));
     for (std::size_t i = 0; i < out.polygon.uv.size(); ++i) {
         const Vec<3> on = jet<0>(f.surface, out.polygon.uv[i].c).value();
         out.gap = std::max(out.gap, norm(on - mesh_points[std::size_t(out.polygon.point[i])]));

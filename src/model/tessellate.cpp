@@ -225,11 +225,12 @@ Result<void> Tessellator::fill_all() {
         if (round == kManifoldRounds) break;
         which = faces_to_mend();
     }
-    // A loop that runs back along itself; where edges became points the face is smaller than the tolerance.
+    // A loop that runs back along itself; where parts of edges became points the face is smaller than the
+    // tolerance.
     for (std::size_t f = 0; f < faces(); ++f) {
         bool empty = !is_refused(f) && meshes_[f].triangles.empty();
         for (const Loop& l : model_.faces[f].loops)
-            for (const Coedge& c : l.coedges) empty = empty && !edges_->mesh(c.edge).collapsed;
+            for (const Coedge& c : l.coedges) empty = empty && !(edges_->mesh(c.edge).moved > 0);
         if (empty)
             refusals_[f] = Refusal{RefusalKind::invalid, "loops",
                                    "the boundary encloses nothing in the parameter plane"};

@@ -21,6 +21,7 @@ namespace {
 constexpr int kConflictRounds = 12;  // each cuts the segments that touch
 constexpr int kGrowingRounds = 3;    // conflicts get more by cutting: curves that lie on each other
 constexpr double kLeastPart = 0.1;   // of a segment, that is cut from it
+constexpr double kOnePlace = 1e-6;   // of the box of the face in the parameter plane
 
 }  // namespace
 
@@ -38,6 +39,9 @@ void Tessellator::number_points() {
             const auto [a, b] = std::minmax({first_of(model_.edges[e].start), first_of(model_.edges[e].end)});
             same[std::size_t(b)] = a;
         }
+    for (const auto& [a, b] : together_)
+        if (const int i = first_of(a), j = first_of(b); i != j)
+            same[std::size_t(std::max(i, j))] = std::min(i, j);
     const auto at_vertex = [&](int v) {
         v = first_of(v);
         if (of_vertex[std::size_t(v)] < 0) {
@@ -54,9 +58,15 @@ void Tessellator::number_points() {
         mesh.points.front() = at_vertex(edge.start);
         mesh.points.back() = at_vertex(edge.end);
         for (std::size_t k = 1; k + 1 < mesh.points.size(); ++k) {
-            const bool is_point = edge.degenerate || mesh.collapsed;
-            mesh.points[k] = is_point ? mesh.points.front() : int(points_.size());
-            if (!is_point) points_.push_back(edges_->position(int(e), mesh.parameters[k]));
+            const double t = mesh.parameters[k];
+            if (edge.degenerate || mesh.collapsed || t <= mesh.kept.lo) {
+                mesh.points[k] = mesh.points.front();
+            } else if (t >= mesh.kept.hi) {
+                mesh.points[k] = mesh.points.back();
+            } else {
+                mesh.points[k] = int(points_.size());
+                points_.push_back(edges_->position(int(e), t));
+            }
         }
     }
 }
@@ -75,6 +85,21 @@ void Tessellator::refuse_boundary(std::size_t f, const BoundaryConflict& conflic
     const int edge = s < 0 ? -1 : boundaries_[f].sources[std::size_t(s)].edge;
     refusals_[f] = Refusal{RefusalKind::invalid, edge < 0 ? std::string("loops") : text("edges[", edge, "]"),
                            text("the boundary touches itself in the parameter plane: ", conflict.message)};
+}
+
+// The edges whose segments touch, or that have a corner where they do.
+std::set<int> Tessellator::edges_of(std::size_t f, std::span<const BoundaryConflict> conflicts) const {
+    const BoundaryOfFace& boundary = boundaries_[f];
+    std::set<int> out;
+    for (const BoundaryConflict& conflict : conflicts) {
+        for (const int s : {conflict.first, conflict.second})
+            if (s >= 0) out.insert(boundary.sources[std::size_t(s)].edge);
+        for (std::size_t s = 0; conflict.corner >= 0 && s < boundary.polygon.segments.size(); ++s)
+            if (std::ranges::count(boundary.polygon.segments[s], conflict.corner) > 0)
+                out.insert(boundary.sources[s].edge);
+    }
+    out.erase(-1);
+    return out;
 }
 
 // Segments to cut. One of two that cross is cut beside an end of the other: where curves touch in a common
@@ -116,11 +141,11 @@ std::vector<Tessellator::Cut> Tessellator::cuts_for(std::size_t f, const Boundar
 
 // The faces that had to be refused. Then cuts have been made that nobody needs; `before` keeps what was there
 // before the first.
-std::vector<std::size_t> Tessellator::cut_conflicts(std::vector<std::vector<double>>& before) {
+std::vector<Tessellator::Clash> Tessellator::cut_conflicts(std::vector<std::vector<double>>& before) {
     std::vector<char> stale(faces(), 1);
     std::vector<std::size_t> known(faces(), 0);  // conflicts in the round before
     std::vector<int> growing(faces(), 0);
-    std::vector<std::size_t> refused;
+    std::vector<Clash> refused;
     for (int round = 0;; ++round) {
         number_points();
         std::vector<std::vector<BoundaryConflict>> conflicts(faces());
@@ -139,7 +164,7 @@ std::vector<std::size_t> Tessellator::cut_conflicts(std::vector<std::vector<doub
                 const auto here = cuts_for(f, conflict);
                 if (here.empty() || hopeless) {
                     refuse_boundary(f, conflict);
-                    refused.push_back(f);
+                    refused.push_back({f, edges_of(f, conflicts[f])});
                     break;
                 }
                 for (const Cut& cut : here) cuts.try_emplace({cut.edge, cut.segment}, cut.part);
@@ -156,36 +181,147 @@ std::vector<std::size_t> Tessellator::cut_conflicts(std::vector<std::vector<doub
     }
 }
 
-// Whether the edge is shorter than the tolerance of the model there.
-bool Tessellator::is_tiny(int e, double tolerance) const {
+// What the model says of its accuracy there.
+double Tessellator::accuracy_at(int e, int vertex, double of_face) const {
+    return std::max(
+        {model_.edges[std::size_t(e)].tolerance, model_.vertices[std::size_t(vertex)].tolerance, of_face});
+}
+
+// Makes the edge a point, if it is shorter than the tolerance of the model there.
+bool Tessellator::collapse(int e, double of_face) {
     const Edge& edge = model_.edges[std::size_t(e)];
-    const EdgeMesh& mesh = edges_->mesh(e);
-    if (edge.degenerate || edge.start == edge.end) return false;
-    const Vertex &from = model_.vertices[std::size_t(edge.start)],
-                 &to = model_.vertices[std::size_t(edge.end)];
-    double reach = norm(to.point - from.point);
-    for (const double t : mesh.parameters) reach = std::max(reach, norm(edges_->position(e, t) - from.point));
-    return reach + mesh.bound <= std::max({edge.tolerance, from.tolerance, to.tolerance, tolerance});
+    EdgeMesh& mesh = edges_->mesh(e);
+    if (mesh.collapsed || edge.degenerate || edge.start == edge.end) return false;
+    const Vec<3> from = model_.vertices[std::size_t(edge.start)].point;
+    double reach = norm(model_.vertices[std::size_t(edge.end)].point - from);
+    for (const double t : mesh.parameters) reach = std::max(reach, norm(edges_->position(e, t) - from));
+    reach += mesh.bound;
+    if (!(reach <= std::max(accuracy_at(e, edge.start, of_face), accuracy_at(e, edge.end, of_face))))
+        return false;
+    mesh.moved = reach;
+    return mesh.collapsed = true;
+}
+
+// Makes what is within the tolerance of the model from an end of the edge part of the vertex there.
+bool Tessellator::shorten(int e, double of_face) {
+    const Edge& edge = model_.edges[std::size_t(e)];
+    EdgeMesh& mesh = edges_->mesh(e);
+    if (mesh.collapsed || edge.degenerate) return false;
+    const auto& t = mesh.parameters;
+    Interval kept = mesh.kept;
+    double moved = mesh.moved;
+    const auto walk = [&](int vertex, auto begin, auto end, double& limit) {
+        const Vec<3> at = model_.vertices[std::size_t(vertex)].point;
+        const double accuracy = accuracy_at(e, vertex, of_face);
+        double before = norm(edges_->position(e, *begin) - at);
+        for (; begin + 1 != end; ++begin) {
+            const auto [a, b] = std::minmax(*begin, *(begin + 1));
+            const double there = norm(edges_->position(e, *(begin + 1)) - at),
+                         reach = std::max(before, there) + edges_->part(e, a, b, edge_demands()).bound;
+            if (!(reach <= accuracy)) return;
+            limit = *(begin + 1), before = there, moved = std::max(moved, reach);
+        }
+    };
+    walk(edge.start, t.begin(), t.end(), kept.lo);
+    walk(edge.end, t.rbegin(), t.rend(), kept.hi);
+    if (kept == mesh.kept || !(kept.lo < kept.hi)) return false;
+    mesh.kept = kept, mesh.moved = moved;
+    return true;
+}
+
+// Two points of the boundary at one place in space and in the parameter plane leave a triangle without area.
+// If both are vertices they are to be one; else the edges that have them run along each other.
+Tessellator::Doubled Tessellator::doubled(std::size_t f) const {
+    const auto& polygon = boundaries_[f].polygon;
+    const auto point = [&](int i) { return polygon.point[std::size_t(i)]; };
+    std::vector<std::pair<std::array<double, 3>, int>> places;
+    for (std::size_t i = 0; i < polygon.uv.size(); ++i)
+        places.push_back({points_[std::size_t(point(int(i)))].c, int(i)});
+    sort(places.begin(), places.end());
+    Box<2> box;
+    for (const Vec<2>& p : polygon.uv) box.add(p);
+    Doubled out;
+    for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+        const auto [i, j] = std::pair(places[k].second, places[k + 1].second);
+        if (point(i) == point(j) || places[k].first != places[k + 1].first) continue;
+        const Vec<2> apart = polygon.uv[std::size_t(i)] - polygon.uv[std::size_t(j)];
+        bool near = true;
+        for (int d = 0; d < 2; ++d) near &= std::abs(apart[d]) <= kOnePlace * (box.hi[d] - box.lo[d]);
+        if (!near) continue;
+        std::array<int, 2> vertex{-1, -1};
+        for (const Loop& loop : model_.faces[f].loops)
+            for (const Coedge& use : loop.coedges) {
+                const Edge& edge = model_.edges[std::size_t(use.edge)];
+                const auto& points = edges_->mesh(use.edge).points;
+                for (const auto& [p, v] :
+                     {std::pair(points.front(), edge.start), std::pair(points.back(), edge.end)})
+                    if (p == point(i) || p == point(j)) vertex[p == point(j)] = v;
+            }
+        if (vertex[0] >= 0 && vertex[1] >= 0) {
+            out.vertices.push_back({vertex[0], vertex[1]});
+            continue;
+        }
+        BoundaryConflict there;
+        for (there.corner = i;; there.corner = j) {
+            out.edges.merge(edges_of(f, std::span(&there, 1)));
+            if (there.corner == j) break;
+        }
+    }
+    return out;
+}
+
+// Parameters without the cuts that were in vain, but with the ends of what is left of edges.
+void Tessellator::undo_cuts(const std::vector<std::vector<double>>& before) {
+    for (std::size_t e = 0; e < before.size(); ++e) {
+        EdgeMesh& mesh = edges_->mesh(int(e));
+        mesh.parameters = before[e];
+        for (const double end : {mesh.kept.lo, mesh.kept.hi})
+            if (const auto at = std::ranges::lower_bound(mesh.parameters, end);
+                at != mesh.parameters.begin() && at != mesh.parameters.end() && *at != end)
+                mesh.parameters.insert(at, end);
+    }
 }
 
 void Tessellator::resolve_conflicts() {
     std::vector<std::vector<double>> before;
     for (;;) {
         bool again = false;
-        std::set<int> points;  // edges that become points, of several faces mostly
-        for (const std::size_t f : cut_conflicts(before)) {
+        std::set<int> changed;  // edges of several faces mostly
+        const auto change = [&](std::size_t f, int e, bool whole) {
+            const double accuracy = model_.faces[f].tolerance;
+            if (changed.contains(e)) return true;
+            if (whole ? collapse(e, accuracy) : shorten(e, accuracy)) changed.insert(e);
+            return changed.contains(e);
+        };
+        const auto unite = [&](const Doubled& twice) {
+            together_.insert(together_.end(), twice.vertices.begin(), twice.vertices.end());
+            again = again || !twice.vertices.empty();
+            return !twice.vertices.empty();
+        };
+        auto clashes = cut_conflicts(before);
+        for (Clash& clash : clashes) {
             again = again || !before.empty();
-            for (const Loop& loop : model_.faces[f].loops)
-                for (const Coedge& use : loop.coedges)
-                    if (points.contains(use.edge) ||
-                        (!edges_->mesh(use.edge).collapsed && is_tiny(use.edge, model_.faces[f].tolerance))) {
-                        points.insert(use.edge);
-                        refusals_[f].reset();
-                    }
+            Doubled twice = doubled(clash.face);
+            clash.edges.merge(twice.edges);
+            bool changes = unite(twice);
+            for (const Loop& loop : model_.faces[clash.face].loops)
+                for (const Coedge& use : loop.coedges) changes |= change(clash.face, use.edge, true);
+            if (!changes)
+                for (const int e : clash.edges) changes |= change(clash.face, e, false);
+            if (changes) refusals_[clash.face].reset();
         }
-        for (const int e : points) edges_->mesh(e).collapsed = again = true;
-        if (!again) return;
-        for (std::size_t e = 0; e < before.size(); ++e) edges_->mesh(int(e)).parameters = before[e];
+        if (changed.empty() && !again) {
+            std::vector<Doubled> twice(faces());
+            parallel_for(faces(), 16, [&](std::size_t f) {
+                if (!is_refused(f)) twice[f] = doubled(f);
+            });
+            for (std::size_t f = 0; f < faces(); ++f) {
+                unite(twice[f]);
+                for (const int e : twice[f].edges) change(f, e, false);
+            }
+        }
+        if (changed.empty() && !again) return;
+        undo_cuts(before);
     }
 }
 

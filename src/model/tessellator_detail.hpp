@@ -6,6 +6,9 @@
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
 
+#include <set>
+#include <span>
+
 namespace freiform {
 
 // What triangles beside the boundary add to the bound of an edge at most: see bending.cpp.
@@ -57,8 +60,23 @@ private:
         double part;
     };
     std::vector<Cut> cuts_for(std::size_t face, const BoundaryConflict& conflict) const;
-    std::vector<std::size_t> cut_conflicts(std::vector<std::vector<double>>& before);
-    bool is_tiny(int edge, double tolerance) const;
+    // A face whose boundary touches itself, and the edges that do.
+    struct Clash {
+        std::size_t face;
+        std::set<int> edges;
+    };
+    std::vector<Clash> cut_conflicts(std::vector<std::vector<double>>& before);
+    std::set<int> edges_of(std::size_t face, std::span<const BoundaryConflict> conflicts) const;
+    // Points of a boundary at one place: vertices, and the edges that have the others.
+    struct Doubled {
+        std::vector<std::pair<int, int>> vertices;
+        std::set<int> edges;
+    };
+    Doubled doubled(std::size_t face) const;
+    double accuracy_at(int edge, int vertex, double of_face) const;
+    bool collapse(int edge, double of_face);
+    bool shorten(int edge, double of_face);
+    void undo_cuts(const std::vector<std::vector<double>>& before);
     void resolve_conflicts();
     Result<void> fill(std::span<const std::size_t> which);
     Result<void> fill_all();
@@ -93,7 +111,8 @@ private:
     double tolerance_ = 0, rounding_ = 0;
     const std::vector<std::unique_ptr<DerivativeQuery<2, 3>>>& queries_;
     EdgeMesher* edges_;
-    std::vector<Vec<3>> points_;  // on vertices and edges
+    std::vector<Vec<3>> points_;                 // on vertices and edges
+    std::vector<std::pair<int, int>> together_;  // vertices that are one point
     std::vector<BoundaryOfFace> boundaries_;
     std::vector<std::optional<GridLines>> grids_;  // of faces that are rectangles, where quads are asked for
     std::vector<FaceMesh> meshes_;

@@ -81,6 +81,72 @@ TEST(StepLoops, segments_of_a_boundary_that_run_the_wrong_way_are_turned_and_tol
     EXPECT_NEAR(area_of(turned), 6, 1e-9);
 }
 
+TEST(StepLoops, edges_that_run_against_both_their_neighbours_are_turned_and_told) {
+    const std::vector<Corner> corners{{0, 0}, {3, 0}, {3, 2}, {1, 2}, {0, 1}};
+    const auto file = [&](const std::vector<int>& turned) {
+        std::string s = polygon_file(corners);
+        for (const int i : turned)  // the flag of its use
+            s.replace(s.find(text(",#", 400 + i, ",.T.")) + 6, 3, ".F.");
+        return s;
+    };
+    EXPECT_EQ(times_told(must(read_step(file({}))), "against"), 0);
+    for (const auto& turned : {std::vector{1}, {4}, {0}, {2, 3}, {0, 4}, {0, 2, 4}}) {
+        const Model m = must(read_step(file(turned)));
+        ASSERT_EQ(m.faces.size(), 1u) << turned[0] << (m.refused.empty() ? "" : m.refused[0].message);
+        EXPECT_NEAR(area_of(m), 5.5, 1e-9);
+        EXPECT_EQ(times_told(m, "runs against its neighbours"), int(turned.size()));
+        EXPECT_EQ(times_told(m, text("#", 500 + turned[0], " ORIENTED_EDGE")), 1);
+    }
+    // All of them: the loop in its own sense; nothing else about it is doubtful.
+    EXPECT_EQ(times_told(must(read_step(file({0, 1, 2, 3, 4}))), "runs against its neighbours"), 5);
+    // A boundary with a gap has no sense that closes it.
+    std::string open = file({1});
+    open.replace(open.find("#502,"), 5, "");
+    const Model gap = must(read_step(open));
+    ASSERT_EQ(gap.refused.size(), 1u);
+    EXPECT_NE(gap.refused[0].message.find("is not closed"), std::string::npos) << gap.refused[0].message;
+}
+
+// Profiles whose ends are nearer to each other than the tolerance of the file, one of them because all of it
+// is: that does not go around.
+TEST(StepLoops, surfaces_as_narrow_as_the_tolerance_do_not_close) {
+    const auto file = [](double width, bool of_points) {
+        const auto at = [&](int i, double x, double z) {
+            return text("#", i, "=CARTESIAN_POINT('',(", x, ",0.,", z, "));\n");
+        };
+        std::string s = at(100, 0, 0.9) + at(101, width / 2, 1) + at(102, -width / 2, 1) +
+                        at(103, width / 2, 0) + at(104, -width / 2, 0);
+        s +=
+            of_points
+                ? "#9=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,((#103,#101),(#104,#102)),.UNSPECIFIED.,.F.,.F.,.F.,"
+                  "(2,2),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.);\n"
+                : "#9=SURFACE_OF_LINEAR_EXTRUSION('',#80,#81);\n";
+        s += "#80=B_SPLINE_CURVE_WITH_KNOTS('',1,(#103,#104),.UNSPECIFIED.,.F.,.F.,(2,2),(0.,1.),."
+             "UNSPECIFIED.);\n"
+             "#81=VECTOR('',#82,1.);\n#82=DIRECTION('',(0.,0.,1.));\n"
+             "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+             "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n"
+             "#14=EDGE_LOOP('',(#500,#501,#502));\n";
+        for (int i = 0; i < 3; ++i) {
+            const int k = (i + 1) % 3;
+            s += text("#", 200 + i, "=VERTEX_POINT('',#", 100 + i, ");\n#", 300 + i,
+                      "=B_SPLINE_CURVE_WITH_KNOTS('',1,(#", 100 + i, ",#", 100 + k,
+                      "),.UNSPECIFIED.,.F.,.F.,(2,2),(0.,1.),.UNSPECIFIED.);\n#", 400 + i, "=EDGE_CURVE('',#",
+                      200 + i, ",#", 200 + k, ",#", 300 + i, ",.T.);\n#", 500 + i, "=ORIENTED_EDGE('',*,*,#",
+                      400 + i, ",.T.);\n");
+        }
+        return flat_file(s);
+    };
+    for (const bool of_points : {false, true})
+        for (const double width : {0.3, 1e-5, 1e-6}) {
+            const Model m = must(read_step(file(width, of_points)));
+            ASSERT_EQ(m.faces.size(), 1u) << width << (m.refused.empty() ? "" : m.refused[0].message);
+            const auto t = must(tessellate(m, {.tolerance = 0.01}));
+            ASSERT_TRUE(t.refused.empty()) << width << t.refused[0].reason.message;
+            EXPECT_EQ(t.mesh.triangles.size(), 1u);
+        }
+}
+
 // A sphere of radius 2 with the part below or above a circle, and a seam from there to a pole.
 std::string cap_file(bool south, bool circle_forward) {
     const char* z = south ? "-2." : "2.";

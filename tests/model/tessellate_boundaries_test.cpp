@@ -89,6 +89,103 @@ TEST(Boundaries, edges_shorter_than_the_tolerance_of_the_file_become_points) {
     }
 }
 
+// A square with a triangle cut out of it that touches the middle of the lower side, there `below` it in the
+// parameter plane. `own`: the triangle has a vertex of its own for that.
+Model touched_square(double tolerance, double below, bool own) {
+    Model m;
+    const std::vector<Vec<2>> outer{{{0, 0}}, {{0.5, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}},
+        inner{{{0.5, 0}}, {{0.3, 0.4}}, {{0.7, 0.4}}};
+    for (const Vec<2>& p : outer) m.vertices.push_back({on_plane(p), tolerance});
+    for (const Vec<2>& p : inner) m.vertices.push_back({on_plane(p), tolerance});
+    Face f;
+    f.surface = kParameterPlane;
+    f.tolerance = tolerance;
+    for (const auto* polygon : {&outer, &inner}) {
+        const int first = polygon == &outer ? 0 : int(outer.size()), n = int(polygon->size());
+        Loop loop;
+        for (int i = 0; i < n; ++i) {
+            const int k = (i + 1) % n;
+            const Vec<2> a = (*polygon)[std::size_t(i)], b = (*polygon)[std::size_t(k)];
+            const auto vertex = [&](int at) { return first > 0 && at == 0 && !own ? 1 : first + at; };
+            const auto place = [&](const Vec<2>& p) {
+                return first > 0 && p[1] == 0 ? p - Vec<2>{{0, below}} : p;
+            };
+            loop.coedges.push_back({int(m.edges.size()), false, side_between(place(a), place(b))});
+            m.edges.push_back(
+                {side_between(on_plane(a), on_plane(b)), false, {0, 1}, vertex(i), vertex(k), tolerance, ""});
+        }
+        f.loops.push_back(loop);
+    }
+    m.faces = {f};
+    m.shells = {{{{0, false}}}};
+    m.bodies = {{{0}, false, "", {}}};
+    return *make_model(std::move(m));
+}
+
+TEST(Boundaries, loops_that_touch_in_a_vertex_within_the_tolerance_have_it_at_one_place) {
+    for (const double below : {1e-8, -1e-8}) {
+        const auto t = *tessellate(touched_square(1e-6, below, false), {.tolerance = 0.01});
+        ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+        EXPECT_EQ(t.mesh.points.size(), 7u);
+        EXPECT_EQ(t.topology.open_edges, 8);
+        EXPECT_GE(t.boundary_gap, 1e-8);
+        EXPECT_LE(t.boundary_gap, 4e-8);
+    }
+    EXPECT_EQ(tessellate(touched_square(1e-9, 1e-8, false), {.tolerance = 0.01})->refused.size(), 1u);
+}
+
+TEST(Boundaries, two_vertices_at_one_place_are_one_point) {
+    for (const double below : {0.0, 0x1p-54, -0x1p-54}) {
+        const auto t = *tessellate(touched_square(1e-7, below, true), {.tolerance = 0.01});
+        ASSERT_TRUE(t.refused.empty()) << below << t.refused[0].reason.message;
+        EXPECT_EQ(t.mesh.points.size(), 7u) << below;
+        EXPECT_EQ(t.topology.degenerate_triangles, 0) << below;
+        EXPECT_EQ(t.topology.open_edges, 8) << below;
+    }
+}
+
+// A square of which a corner is the tip of a spike without width that two of its sides run along.
+TEST(Boundaries, that_run_along_each_other_within_the_tolerance_begin_where_they_part) {
+    constexpr double kLong = 1e-5;
+    const auto bent = [](const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
+        return Curve<Vec<2>>::trusted({*BSplineBasis::make(1, std::vector{0., 0., 0.5, 1., 1.})},
+                                      Net<1, Vec<2>>({3}, {a, b, c}));
+    };
+    const auto lifted = [](const Curve<Vec<2>>& c) {
+        std::vector<Vec<3>> p;
+        for (const Vec<2>& q : c.net().flat()) p.push_back(on_plane(q));
+        return Curve<Vec<3>>::trusted(c.bases(), Net<1, Vec<3>>({3}, std::move(p)));
+    };
+    for (const double tolerance : {1e-4, 1e-7})
+        for (const double beside : {0.0, 1e-13, -1e-13}) {
+            Model m;
+            const Vec<2> tip{{0, -kLong}}, corner{{0, 0}}, right{{1, 0}}, top{{1, 1}}, left{{0, 1}},
+                other{{beside, 0}};
+            for (const Vec<2>& p : {tip, right, top, left}) m.vertices.push_back({on_plane(p), tolerance});
+            const auto first = bent(tip, corner, right), last = bent(left, corner, tip);
+            m.edges.push_back({lifted(first), false, {0, 1}, 0, 1, tolerance, ""});
+            m.edges.push_back(
+                {side_between(on_plane(right), on_plane(top)), false, {0, 1}, 1, 2, tolerance, ""});
+            m.edges.push_back(
+                {side_between(on_plane(top), on_plane(left)), false, {0, 1}, 2, 3, tolerance, ""});
+            m.edges.push_back({lifted(last), false, {0, 1}, 3, 0, tolerance, ""});
+            const auto t = *tessellate(of_faces(std::move(m), {{{0, false, first},
+                                                                {1, false, side_between(right, top)},
+                                                                {2, false, side_between(top, left)},
+                                                                {3, false, bent(left, other, tip)}}}),
+                                       {.tolerance = 0.01});
+            if (tolerance < kLong) {
+                EXPECT_EQ(t.refused.size() + std::size_t(t.topology.degenerate_triangles > 0), 1u) << beside;
+                continue;
+            }
+            ASSERT_TRUE(t.refused.empty()) << beside << " " << t.refused[0].reason.message;
+            EXPECT_EQ(t.mesh.triangles.size(), 2u) << beside;
+            EXPECT_EQ(t.mesh.points.size(), 4u) << beside;
+            EXPECT_GE(t.boundary_gap, kLong);
+            EXPECT_LE(t.boundary_gap, 2 * kLong);
+        }
+}
+
 // Two sides on one line whose parameter curves make a corner: the triangle there has no area in space.
 TEST(Boundaries, that_are_straight_in_space_alone_have_no_triangle_without_area) {
     for (int i = 0; i < 20; ++i) {
