@@ -62,7 +62,7 @@ std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Ve
             make_use({i, true, Line<2>{line.origin - period, line.direction}}, e)};
 }
 
-// Whether the outline of a chain that winds crosses the segment from p to q.
+// Whether the outline of a chain that winds crosses the segment from p to q, or has a corner on it.
 bool LoopBuilder::crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q, int axis) const {
     const double turn = chart_.period(axis);
     const auto side = [](const Vec<2>& x, const Vec<2>& y, const Vec<2>& z) { return cross(y - x, z - x); };
@@ -72,6 +72,9 @@ bool LoopBuilder::crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q, int 
             if (i + 1 == c.outline.size()) s[axis] += c.winding[std::size_t(axis)] * turn;
             r[axis] += k * turn, s[axis] += k * turn;
             const auto same = [&](const Vec<2>& x, const Vec<2>& y) { return norm(x - y) <= 1e-9 * turn; };
+            const double part = dot(r - p, q - p) / dot(q - p, q - p);
+            if (part > 0 && part < 1 && !same(r, p) && !same(r, q) && same(r, p + part * (q - p)))
+                return true;
             if (same(r, p) || same(s, p) || same(r, q) || same(s, q)) continue;
             if (side(p, q, r) * side(p, q, s) < 0 && side(r, s, p) * side(r, s, q) < 0) return true;
         }

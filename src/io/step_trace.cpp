@@ -229,11 +229,16 @@ private:
         const auto j = jet<1>(c_, t);
         Foot f = chart_.foot(j.d[0], j.d[1], guess);
         out.t = t;
-        if (f.regular && near(f.at, guess)) {
+        const bool is_end = t == on_.lo || t == on_.hi;
+        // All parameters of a pole are as near.
+        const bool at_pole = is_end && std::ranges::any_of(chart_.poles(), [&](const Pole& p) {
+                                 return norm(p.point - j.d[0]) <= f.distance + accuracy_;
+                             });
+        if (f.regular && near(f.at, guess) && !at_pole) {
             place(f, out);
             return true;
         }
-        if (t != on_.lo && t != on_.hi) return false;
+        if (!is_end) return false;
         // At a pole: continued from a place just inside.
         const double inside = t + (t == on_.lo ? 1 : -1) * 1e-4 * on_.length();
         const auto k = jet<1>(c_, inside);
@@ -242,7 +247,7 @@ private:
         if (!g.regular) return false;
         out.at = chart_.inside(g.at + (t - inside) * g.slope);
         // A corner where the directions of the parameters are parallel.
-        if (near(f.at, out.at) && f.distance < norm(chart_.point(out.at) - j.d[0])) out.at = f.at;
+        if (!at_pole && near(f.at, out.at) && f.distance < norm(chart_.point(out.at) - j.d[0])) out.at = f.at;
         for (const Pole& p : chart_.poles())
             if (norm(p.point - j.d[0]) <= norm(chart_.point(out.at) - j.d[0]) + accuracy_)
                 out.at[p.axis] = p.at;

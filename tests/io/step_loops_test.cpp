@@ -4,6 +4,7 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <support/corpus.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
@@ -181,6 +182,55 @@ TEST(StepLoops, what_a_loop_with_a_seam_to_a_pole_encloses_is_on_the_side_of_the
 
 // Files whose faces were refused once: edges at poles and folds, segments that run backwards, seams across
 // keyseats, edges of half a nanometre.
+// A tube of radius 1 without a seam, from z = 0 to a rim that is 2 high on one side and `low` on the other; a
+// step of the rim is above the vertex of the lower circle. The loop of the rim begins with its edge `first`.
+std::string stepped_tube(double low, int first) {
+    std::string s =
+        "#9=CYLINDRICAL_SURFACE('',#5,1.);\n#8=SHAPE_REPRESENTATION('',(#10),#1);\n"
+        "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+        "#12=ADVANCED_FACE('',(#13,#15),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n#14=EDGE_LOOP('',(#500));\n"
+        "#15=FACE_BOUND('',#16,.T.);\n#20=DIRECTION('',(0.,0.,1.));\n#21=VECTOR('',#20,1.);\n";
+    const double x[] = {1, 1, -1, -1, 1}, z[] = {0, 2, 2, low, low};
+    for (int i = 0; i < 5; ++i)
+        s += text("#", 100 + i, "=CARTESIAN_POINT('',(", x[i], ",0.,", z[i], "));\n#", 200 + i,
+                  "=VERTEX_POINT('',#", 100 + i, ");\n#", 600 + i, "=CARTESIAN_POINT('',(0.,0.,", z[i],
+                  "));\n#", 700 + i, "=AXIS2_PLACEMENT_3D('',#", 600 + i, ",$,$);\n");
+    const struct {
+        int from, to;
+        const char* along;  // the loop
+    } edges[] = {{0, 0, ".T."}, {1, 2, ".F."}, {3, 2, ".T."}, {3, 4, ".F."}, {4, 1, ".F."}};
+    for (int i = 0; i < 5; ++i) {
+        const auto [from, to, along] = edges[i];
+        s += i == 2 || i == 4 ? text("#", 300 + i, "=LINE('',#", 100 + from, ",#21);\n")
+                              : text("#", 300 + i, "=CIRCLE('',#", 700 + from, ",1.);\n");
+        s += text("#", 400 + i, "=EDGE_CURVE('',#", 200 + from, ",#", 200 + to, ",#", 300 + i, ",.T.);\n#",
+                  500 + i, "=ORIENTED_EDGE('',*,*,#", 400 + i, ",", along, ");\n");
+    }
+    s += "#16=EDGE_LOOP('',(";
+    for (int i = 0; i < 4; ++i) s += text(i > 0 ? ",#" : "#", 501 + (first + 3 * i) % 4);
+    return flat_file(s += "));\n");
+}
+
+TEST(StepLoops, seams_end_at_the_first_corner_above_where_they_begin) {
+    for (const double low : {0.5, 1.5, 3.0})
+        for (int first = 0; first < 4; ++first) {
+            const Model m = must(read_step(stepped_tube(low, first)));
+            ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+            EXPECT_EQ(summary(m).seams, 1);
+            EXPECT_NEAR(area_of(m, 1e-3), std::numbers::pi * (2 + low), 0.01) << low << " " << first;
+        }
+}
+
+// A quarter of a sphere of radius 9 as a rational spline with numbers of ten digits; two edges begin at its
+// pole.
+TEST(StepLoops, edges_that_begin_at_the_pole_of_a_spline_keep_to_their_meridians) {
+    const Model m = must(
+        read_step(must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/data/step/quarter_dome.stp"), 1 << 20))));
+    ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+    EXPECT_NEAR(area_of(m, 1e-3), 81 * std::numbers::pi, 0.1);
+    for (const Edge& e : m.edges) EXPECT_LT(e.tolerance, 1e-7);
+}
+
 TEST(StepLoops, faces_of_real_files_are_read_and_can_be_meshed) {
     for (const char* name : {"step/bug24595_281390.stp", "step/plate_mode_samples_creo.stp", "step/t4mec.stp",
                              "step/trj10_b2-oc-214.stp"}) {
