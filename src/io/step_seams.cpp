@@ -2,7 +2,8 @@
 //
 // Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice,
 // one period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest
-// in the period, so that it is an isoparametric line where there is one, and keeps away from holes. The
+// in the period, so that it is an isoparametric line where there is one, and with nothing across it. Where a
+// hole is across each, there are two such edges, and a corner of the hole is between them. The
 // rectangle of parameters that a surface without any boundary gets has seams and poles as its sides.
 #include "step_loops.hpp"
 
@@ -14,6 +15,12 @@
 #include <tuple>
 
 namespace freiform::step {
+
+namespace {
+
+constexpr int kMostTries = 4000;  // corners of holes, to lead a seam by way of
+
+}  // namespace
 
 // The chain from another of its edges on.
 void LoopBuilder::turn_to(Chain& c, std::size_t first) const {
@@ -62,23 +69,34 @@ std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Ve
             make_use({i, true, Line<2>{line.origin - period, line.direction}}, e)};
 }
 
-// Whether the outline of a chain that winds crosses the segment from p to q, or has a corner on it.
-bool LoopBuilder::crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q, int axis) const {
-    const double turn = chart_.period(axis);
+// Whether the outline of a chain crosses the segment from p to q, or has a corner on it.
+bool LoopBuilder::crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q) const {
+    const std::array<double, 2> turn{chart_.period(0), chart_.period(1)};
+    const double near = 1e-9 * std::max(turn[0], turn[1]);
     const auto side = [](const Vec<2>& x, const Vec<2>& y, const Vec<2>& z) { return cross(y - x, z - x); };
-    for (int k = -1; k <= 1; ++k)
+    const auto same = [&](const Vec<2>& x, const Vec<2>& y) { return norm(x - y) <= near; };
+    for (int n = 0; n < 9; ++n) {
+        if ((turn[0] == 0 && n % 3 != 1) || (turn[1] == 0 && n / 3 != 1)) continue;
+        const Vec<2> by{{(n % 3 - 1) * turn[0], (n / 3 - 1) * turn[1]}};
         for (std::size_t i = 0; i < c.outline.size(); ++i) {
             Vec<2> r = c.outline[i], s = c.outline[(i + 1) % c.outline.size()];
-            if (i + 1 == c.outline.size()) s[axis] += c.winding[std::size_t(axis)] * turn;
-            r[axis] += k * turn, s[axis] += k * turn;
-            const auto same = [&](const Vec<2>& x, const Vec<2>& y) { return norm(x - y) <= 1e-9 * turn; };
+            for (int k = 0; k < 2 && i + 1 == c.outline.size(); ++k)
+                s[k] += c.winding[std::size_t(k)] * turn[std::size_t(k)];
+            r += by, s += by;
             const double part = dot(r - p, q - p) / dot(q - p, q - p);
             if (part > 0 && part < 1 && !same(r, p) && !same(r, q) && same(r, p + part * (q - p)))
                 return true;
             if (same(r, p) || same(s, p) || same(r, q) || same(s, q)) continue;
             if (side(p, q, r) * side(p, q, s) < 0 && side(r, s, p) * side(r, s, q) < 0) return true;
         }
+    }
     return false;
+}
+
+// Between two chains that wind: neither of them nor a hole is across.
+bool LoopBuilder::is_free(const Chain& a, const Chain& b, const Vec<2>& p, const Vec<2>& q) const {
+    const auto across = [&](const Chain& c) { return crosses(c, p, q); };
+    return !across(a) && !across(b) && std::none_of(chains_.begin(), chains_.end(), across);
 }
 
 // One chain from a to b along the seam; `a` winds so that the face is on the side of b.
@@ -86,57 +104,119 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
     const double turn = chart_.period(axis);
     const auto k = std::size_t(axis);
     const double forward = axis == 0 ? a.winding[k] : -a.winding[k];
-    // The pair of corners with the shortest way along the axis, no hole in it, and no edge across it.
+    const auto shift = [&](const Vec<2>& from, const Vec<2>& to, bool ahead) {
+        Vec<2> by{};
+        by[axis] = std::round((from[axis] - to[axis]) / turn) * turn;
+        if (const double other = chart_.period(1 - axis); other > 0 && ahead) {
+            const double way = forward * (to[1 - axis] - from[1 - axis]);
+            by[1 - axis] = -forward * std::floor((way - 1e-9 * other) / other) * other;
+        }
+        return by;
+    };
+    // The pair of corners with the shortest way along the axis, and nothing across it.
     struct Pair {
         double cost;
         std::size_t i, j;
     };
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < a.uses.size() && i < 64; ++i)
-        for (std::size_t j = 0; j < b.uses.size() && j < 64; ++j) {
-            const double way = std::remainder(a.uses[i].start[axis] - b.uses[j].start[axis], turn);
-            double cost = std::abs(way);
-            for (const Chain& c : chains_) {
-                if (c.winding[0] != 0 || c.winding[1] != 0 || c.outline.empty()) continue;
-                Box<2> box;
-                for (const Vec<2>& p : c.outline) box.add(p);
-                const double lo = std::remainder(box.lo[axis] - a.uses[i].start[axis], turn);
-                if (lo + (box.hi[axis] - box.lo[axis]) > 0 && lo < 0) cost += turn;
-                if (lo + (box.hi[axis] - box.lo[axis]) > turn) cost += turn;
-            }
-            pairs.push_back({cost, i, j});
-        }
+        for (std::size_t j = 0; j < b.uses.size() && j < 64; ++j)
+            pairs.push_back(
+                {std::abs(std::remainder(a.uses[i].start[axis] - b.uses[j].start[axis], turn)), i, j});
     sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
         return std::tie(x.cost, x.i, x.j) < std::tie(y.cost, y.i, y.j);
     });
-    std::size_t best_i = pairs.front().i, best_j = pairs.front().j;
-    for (std::size_t n = 0; n < pairs.size() && n < 64; ++n) {
-        const Vec<2> from = a.uses[pairs[n].i].start;
-        Vec<2> to = b.uses[pairs[n].j].start;
-        to[axis] += std::round((from[axis] - to[axis]) / turn) * turn;
-        if (chart_.period(1 - axis) > 0 || !(crosses(a, from, to, axis) || crosses(b, from, to, axis))) {
-            best_i = pairs[n].i, best_j = pairs[n].j;
-            break;
-        }
-    }
-    turn_to(a, best_i);
-    turn_to(b, best_j);
+    pairs.resize(std::min(pairs.size(), std::size_t(64)));
+    Pair best = pairs.front();
+    const auto ends = [&](const Pair& x) {
+        const Vec<2> p = a.uses[x.i].start, q = b.uses[x.j].start;
+        return std::array{p, q + shift(p, q, true)};
+    };
+    // A hole between them, the corner where the way comes to it, and that where it goes on.
+    std::size_t hole = chains_.size();
+    std::array<std::size_t, 2> corner{};
+    const auto find = [&] {
+        for (const Pair& x : pairs)
+            if (const auto [p, q] = ends(x); is_free(a, b, p, q)) return best = x, true;
+        int tries = 0;
+        for (const Pair& x : pairs)
+            for (std::size_t h = 0; h < chains_.size() && tries < kMostTries; ++h) {
+                const auto& c = chains_[h];
+                if (c.uses.empty() || c.winding[0] != 0 || c.winding[1] != 0) continue;
+                const auto way = ends(x);
+                const Vec<2> by = shift(way[0], c.uses.front().start, false);
+                std::array<bool, 2> found{};
+                for (std::size_t end = 0; end < 2; ++end)
+                    for (std::size_t i = 0; i < c.uses.size() && !found[end] && ++tries < kMostTries; ++i)
+                        found[end] = is_free(a, b, way[end], c.uses[i].start + by), corner[end] = i;
+                if (found[0] && found[1]) return best = x, hole = h, true;
+            }
+        return false;
+    };
+    find();
+    turn_to(a, best.i);
+    turn_to(b, best.j);
+    const Vec<2> end = a.uses.back().end;
     Vec<2> period{};
-    period[axis] = a.uses.back().end[axis] - a.uses.front().start[axis];
-    Vec<2> by{};
-    by[axis] = std::round((a.uses.back().end[axis] - b.uses.front().start[axis]) / turn) * turn;
-    if (const double other = chart_.period(1 - axis); other > 0) {
-        const double ahead = forward * (b.uses.front().start[1 - axis] - a.uses.back().end[1 - axis]);
-        by[1 - axis] = -forward * std::floor((ahead - 1e-9 * other) / other) * other;
+    period[axis] = end[axis] - a.uses.front().start[axis];
+    move(b, shift(end, b.uses.front().start, true));
+    const Vec<2> to = b.uses.front().start;
+    std::vector<Use> back;
+    int from = a.uses.front().from;
+    Vec<2> at = end;
+    if (hole < chains_.size()) {
+        Chain c = std::move(chains_[hole]);
+        chains_.erase(chains_.begin() + std::ptrdiff_t(hole));
+        move(c, shift(a.uses.front().start, c.uses.front().start, false));
+        const std::size_t n = c.uses.size();
+        turn_to(c, corner[0]);
+        const std::size_t on = (corner[1] + n - corner[0]) % n;
+        auto uses = seam(from, c.uses.front().from, at, c.uses.front().start + period, period);
+        from = c.uses[on].from, at = c.uses[on].start + period;
+        back.assign(c.uses.begin() + std::ptrdiff_t(on), c.uses.end());
+        back.push_back(std::move(uses[1]));
+        c.uses.resize(on);
+        move(c, period);
+        a.uses.push_back(std::move(uses[0]));
+        for (Use& u : c.uses) a.uses.push_back(std::move(u));
     }
-    move(b, by);
-    auto uses =
-        seam(a.uses.front().from, b.uses.front().from, a.uses.back().end, b.uses.front().start, period);
+    auto uses = seam(from, b.uses.front().from, at, to, period);
     a.uses.push_back(std::move(uses[0]));
     for (Use& u : b.uses) a.uses.push_back(std::move(u));
     a.uses.push_back(std::move(uses[1]));
+    for (Use& u : back) a.uses.push_back(std::move(u));
     a.winding = {0, 0};
     measure(a);
+}
+
+// A seam of the file that a hole lies across is taken away again: two chains that wind are left.
+void LoopBuilder::release_seams() {
+    const auto part = [&](const std::vector<Use>& uses, std::size_t from, std::size_t to) {
+        Chain c;
+        for (; from != to; from = (from + 1) % uses.size()) c.uses.push_back(uses[from]);
+        for (int k = 0; k < 2 && !c.uses.empty(); ++k)
+            if (const double turn = chart_.period(k); turn > 0)
+                c.winding[std::size_t(k)] =
+                    int(std::round((c.uses.back().end[k] - c.uses.front().start[k]) / turn));
+        measure(c);
+        return c;
+    };
+    for (std::size_t n = 0; n < chains_.size(); ++n) {
+        const auto& uses = chains_[n].uses;
+        for (std::size_t j = 2; j < uses.size(); ++j)
+            for (std::size_t i = 0; i + 1 < j; ++i) {
+                if (uses[i].coedge.edge != uses[j].coedge.edge) continue;
+                Chain first = part(uses, i + 1, j), second = part(uses, (j + 1) % uses.size(), i);
+                if (first.winding == second.winding || second.uses.empty()) continue;
+                const bool is_across = std::ranges::any_of(chains_, [&](const Chain& c) {
+                    return &c != &chains_[n] && crosses(c, uses[i].start, uses[i].end);
+                });
+                if (!is_across) continue;
+                chains_[n] = std::move(first);
+                chains_.push_back(std::move(second));
+                return release_seams();
+            }
+    }
 }
 
 void LoopBuilder::join_pole(Chain& c, const Pole& pole) {

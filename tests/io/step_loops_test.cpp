@@ -221,6 +221,46 @@ TEST(StepLoops, seams_end_at_the_first_corner_above_where_they_begin) {
         }
 }
 
+// A tube of radius 1 from z = 0 to z = 3 with a window between the angles -half and half, and z from 1 to 2,
+// above the vertices of its circles; with a seam through the window, or none.
+std::string windowed_tube(double half, bool seam) {
+    std::string s =
+        "#9=CYLINDRICAL_SURFACE('',#5,1.);\n#8=SHAPE_REPRESENTATION('',(#10),#1);\n"
+        "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+        "#20=DIRECTION('',(0.,0.,1.));\n#21=VECTOR('',#20,1.);\n#17=FACE_BOUND('',#18,.T.);\n"
+        "#18=EDGE_LOOP('',(#505,#504,#513,#512));\n#13=FACE_BOUND('',#14,.T.);\n#15=FACE_BOUND('',#16,.T.);\n"
+        "#16=EDGE_LOOP('',(#511));\n";
+    s += seam ? "#12=ADVANCED_FACE('',(#13,#17),#9,.T.);\n#14=EDGE_LOOP('',(#500,#506,#511,#516));\n"
+              : "#12=ADVANCED_FACE('',(#13,#15,#17),#9,.T.);\n#14=EDGE_LOOP('',(#500));\n";
+    const double angle[] = {0, 0, -half, half, half, -half}, z[] = {0, 3, 1, 1, 2, 2};
+    for (int i = 0; i < 6; ++i)
+        s += text("#", 100 + i, "=CARTESIAN_POINT('',(", std::cos(angle[i]), ",", std::sin(angle[i]), ",",
+                  z[i], "));\n#", 200 + i, "=VERTEX_POINT('',#", 100 + i, ");\n#", 600 + i,
+                  "=CARTESIAN_POINT('',(0.,0.,", z[i], "));\n#", 700 + i, "=AXIS2_PLACEMENT_3D('',#", 600 + i,
+                  ",$,$);\n");
+    // Circles, the lower and upper side of the window, its right and left one, the seam.
+    const int from[] = {0, 1, 2, 3, 5, 2, 0}, to[] = {0, 1, 3, 4, 4, 5, 1};
+    for (int i = 0; i < 7; ++i) {
+        s += z[from[i]] != z[to[i]] ? text("#", 300 + i, "=LINE('',#", 100 + from[i], ",#21);\n")
+                                    : text("#", 300 + i, "=CIRCLE('',#", 700 + from[i], ",1.);\n");
+        s += text("#", 400 + i, "=EDGE_CURVE('',#", 200 + from[i], ",#", 200 + to[i], ",#", 300 + i,
+                  ",.T.);\n#", 500 + i, "=ORIENTED_EDGE('',*,*,#", 400 + i, ",.T.);\n#", 510 + i,
+                  "=ORIENTED_EDGE('',*,*,#", 400 + i, ",.F.);\n");
+    }
+    return flat_file(s);
+}
+
+TEST(StepLoops, seams_go_around_holes_that_lie_across_all_their_ways) {
+    for (const double half : {0.3, 1.5, 3.0})
+        for (const bool seam : {false, true}) {
+            const Model m = must(read_step(windowed_tube(half, seam)));
+            ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+            EXPECT_EQ(m.faces[0].loops.size(), 1u);
+            EXPECT_NEAR(area_of(m, 1e-3), 6 * std::numbers::pi - 2 * half, 0.02) << half << seam;
+            EXPECT_EQ(must(tessellate(m, {.tolerance = 0.05})).topology.non_manifold_edges, 0);
+        }
+}
+
 // A quarter of a sphere of radius 9 as a rational spline with numbers of ten digits; two edges begin at its
 // pole.
 TEST(StepLoops, edges_that_begin_at_the_pole_of_a_spline_keep_to_their_meridians) {
