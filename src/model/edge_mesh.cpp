@@ -130,8 +130,8 @@ Vec<3> EdgeMesher::position(int edge, double t) const {
 void EdgeMesher::forget() {
     for (EdgeMesh& mesh : edges_) {
         mesh.parameters.clear(), mesh.points.clear();
-        mesh.bound = mesh.moved = 0, mesh.collapsed = false;
-        mesh.kept = {-kInfinity, kInfinity};
+        mesh.bound = 0, mesh.collapsed = false;
+        mesh.lengthen();
     }
 }
 

@@ -36,6 +36,7 @@ struct EdgeMesh {
     bool collapsed = false;                // all its points are one
     Interval kept{-kInfinity, kInfinity};  // of the parameters: those outside are the vertices at the ends
     double moved = 0;                      // how far what became a point is from it, at most
+    void lengthen() { kept = {-kInfinity, kInfinity}, moved = 0; }
     double bound = 0;  // of the distance between polyline and curve, on the edge and on its faces
     std::vector<std::unique_ptr<CoedgeQuery>> uses;
     std::unique_ptr<ChordCurve> curve;

@@ -88,18 +88,14 @@ void Tessellator::refuse_boundary(std::size_t f, const BoundaryConflict& conflic
 }
 
 // The edges whose segments touch, or that have a corner where they do.
-std::set<int> Tessellator::edges_of(std::size_t f, std::span<const BoundaryConflict> conflicts) const {
+void Tessellator::edges_of(std::size_t f, const BoundaryConflict& conflict, std::vector<int>& out) const {
     const BoundaryOfFace& boundary = boundaries_[f];
-    std::set<int> out;
-    for (const BoundaryConflict& conflict : conflicts) {
-        for (const int s : {conflict.first, conflict.second})
-            if (s >= 0) out.insert(boundary.sources[std::size_t(s)].edge);
-        for (std::size_t s = 0; conflict.corner >= 0 && s < boundary.polygon.segments.size(); ++s)
-            if (std::ranges::count(boundary.polygon.segments[s], conflict.corner) > 0)
-                out.insert(boundary.sources[s].edge);
+    for (std::size_t s = 0; s < boundary.sources.size(); ++s) {
+        const auto& ends = boundary.polygon.segments[s];
+        const bool has = ends[0] == conflict.corner || ends[1] == conflict.corner ||
+                         int(s) == conflict.first || int(s) == conflict.second;
+        if (has && boundary.sources[s].edge >= 0) out.push_back(boundary.sources[s].edge);
     }
-    out.erase(-1);
-    return out;
 }
 
 // Segments to cut. One of two that cross is cut beside an end of the other: where curves touch in a common
@@ -164,7 +160,8 @@ std::vector<Tessellator::Clash> Tessellator::cut_conflicts(std::vector<std::vect
                 const auto here = cuts_for(f, conflict);
                 if (here.empty() || hopeless) {
                     refuse_boundary(f, conflict);
-                    refused.push_back({f, edges_of(f, conflicts[f])});
+                    refused.push_back({f, {}});
+                    for (const auto& c : conflicts[f]) edges_of(f, c, refused.back().edges);
                     break;
                 }
                 for (const Cut& cut : here) cuts.try_emplace({cut.edge, cut.segment}, cut.part);
@@ -261,11 +258,7 @@ Tessellator::Doubled Tessellator::doubled(std::size_t f) const {
             out.vertices.push_back({vertex[0], vertex[1]});
             continue;
         }
-        BoundaryConflict there;
-        for (there.corner = i;; there.corner = j) {
-            out.edges.merge(edges_of(f, std::span(&there, 1)));
-            if (there.corner == j) break;
-        }
+        for (const int corner : {i, j}) edges_of(f, {-1, -1, corner, {}}, out.edges);
     }
     return out;
 }
@@ -284,13 +277,15 @@ void Tessellator::undo_cuts(const std::vector<std::vector<double>>& before) {
 
 void Tessellator::resolve_conflicts() {
     std::vector<std::vector<double>> before;
+    std::vector<std::vector<int>> shortened(faces());
+    std::vector<char> clashed(faces(), 0);
     for (;;) {
         bool again = false;
         std::set<int> changed;  // edges of several faces mostly
         const auto change = [&](std::size_t f, int e, bool whole) {
             const double accuracy = model_.faces[f].tolerance;
-            if (changed.contains(e)) return true;
-            if (whole ? collapse(e, accuracy) : shorten(e, accuracy)) changed.insert(e);
+            if (!changed.contains(e) && (whole ? collapse(e, accuracy) : shorten(e, accuracy)))
+                changed.insert(e);
             return changed.contains(e);
         };
         const auto unite = [&](const Doubled& twice) {
@@ -298,17 +293,30 @@ void Tessellator::resolve_conflicts() {
             again = again || !twice.vertices.empty();
             return !twice.vertices.empty();
         };
-        auto clashes = cut_conflicts(before);
-        for (Clash& clash : clashes) {
+        for (Clash& clash : cut_conflicts(before)) {
+            const std::size_t f = clash.face;
             again = again || !before.empty();
-            Doubled twice = doubled(clash.face);
-            clash.edges.merge(twice.edges);
+            const Doubled twice = doubled(f);
+            clash.edges.insert(clash.edges.end(), twice.edges.begin(), twice.edges.end());
             bool changes = unite(twice);
-            for (const Loop& loop : model_.faces[clash.face].loops)
-                for (const Coedge& use : loop.coedges) changes |= change(clash.face, use.edge, true);
-            if (!changes)
-                for (const int e : clash.edges) changes |= change(clash.face, e, false);
-            if (changes) refusals_[clash.face].reset();
+            for (const Loop& loop : model_.faces[f].loops)
+                for (const Coedge& use : loop.coedges) changes |= change(f, use.edge, true);
+            if (!changes && shortened[f].empty())
+                for (const int e : clash.edges)
+                    if (change(f, e, false)) changes = true, shortened[f].push_back(e);
+            if (changes) {
+                refusals_[f].reset();
+                continue;
+            }
+            // In vain: the edges are whole again, also for faces that did not like it.
+            clashed[f] = 1;
+            for (const int e : shortened[f]) {
+                EdgeMesh& mesh = edges_->mesh(e);
+                mesh.lengthen(), again = true;
+                for (const auto& use : mesh.uses)
+                    if (const auto g = std::size_t(use->face); clashed[g] && shortened[g].empty())
+                        refusals_[g].reset(), clashed[g] = 0;
+            }
         }
         if (changed.empty() && !again) {
             std::vector<Doubled> twice(faces());

@@ -6,7 +6,6 @@
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
 
-#include <set>
 #include <span>
 
 namespace freiform {
@@ -63,14 +62,14 @@ private:
     // A face whose boundary touches itself, and the edges that do.
     struct Clash {
         std::size_t face;
-        std::set<int> edges;
+        std::vector<int> edges;
     };
     std::vector<Clash> cut_conflicts(std::vector<std::vector<double>>& before);
-    std::set<int> edges_of(std::size_t face, std::span<const BoundaryConflict> conflicts) const;
+    void edges_of(std::size_t face, const BoundaryConflict& conflict, std::vector<int>& out) const;
     // Points of a boundary at one place: vertices, and the edges that have the others.
     struct Doubled {
         std::vector<std::pair<int, int>> vertices;
-        std::set<int> edges;
+        std::vector<int> edges;
     };
     Doubled doubled(std::size_t face) const;
     double accuracy_at(int edge, int vertex, double of_face) const;
