@@ -48,7 +48,8 @@ Vec<2> settled(Vec<2> uv, const std::array<Interval, 2>& on, const DerivativeQue
     return uv;
 }
 
-Run run_of(const Coedge& coedge, const Edge& edge, const DerivativeQuery<2, 3>& surface,
+// `tolerance`: of the edge.
+Run run_of(const Coedge& coedge, double tolerance, const DerivativeQuery<2, 3>& surface,
            const EdgeMesh& mesh) {
     Run run;
     const auto on = limits(surface.geometry());
@@ -56,8 +57,8 @@ Run run_of(const Coedge& coedge, const Edge& edge, const DerivativeQuery<2, 3>& 
     for (int k = 0; k < n; ++k) {
         const int i = coedge.reversed ? n - 1 - k : k;
         if (!mesh.kept.contains(mesh.parameters[std::size_t(i)])) continue;
-        run.uv.push_back(settled(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on, surface,
-                                 edge.tolerance));
+        run.uv.push_back(
+            settled(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on, surface, tolerance));
         run.points.push_back(mesh.points[std::size_t(i)]);
         run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
     }
@@ -115,7 +116,11 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
         std::vector<Run> runs;
         Box<2> box;
         for (const Coedge& c : coedges) {
-            runs.push_back(run_of(c, model.edges[std::size_t(c.edge)], surface, edges.mesh(c.edge)));
+            // No edge is more accurate than both its ends.
+            const Edge& e = model.edges[std::size_t(c.edge)];
+            const double at_ends = std::min(model.vertices[std::size_t(e.start)].tolerance,
+                                            model.vertices[std::size_t(e.end)].tolerance);
+            runs.push_back(run_of(c, std::max(e.tolerance, at_ends), surface, edges.mesh(c.edge)));
             for (const Vec<2>& p : runs.back().uv) box.add(p);
         }
         // A pole that has no length in the parameter plane either is left to the joint of its neighbours, and

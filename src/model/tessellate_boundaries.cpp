@@ -301,9 +301,10 @@ void Tessellator::resolve_conflicts() {
             bool changes = unite(twice);
             for (const Loop& loop : model_.faces[f].loops)
                 for (const Coedge& use : loop.coedges) changes |= change(f, use.edge, true);
-            if (!changes && shortened[f].empty())
+            if (!changes)
                 for (const int e : clash.edges)
-                    if (change(f, e, false)) changes = true, shortened[f].push_back(e);
+                    if (std::ranges::find(shortened[f], e) == shortened[f].end() && change(f, e, false))
+                        changes = true, shortened[f].push_back(e);
             if (changes) {
                 refusals_[f].reset();
                 continue;
