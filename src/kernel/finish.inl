@@ -127,7 +127,7 @@ FF_INLINE void flush_tile(Sinks<N, K>& to) {
 
 // One vector of points, of which `left` are asked for.
 template <int N, int K>
-FF_INLINE void finish(const Net& net, V (*s)[4], int left, const Output& out, Sinks<N, K>& to) {
+FF_SHARED void finish(const Net& net, V (*s)[4], int left, const Output& out, Sinks<N, K>& to) {
     constexpr int kCount = Slots<N, K>::kCount;
     if (to.points) {
         put_three(to.jets, s[0], left);

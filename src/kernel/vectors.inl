@@ -8,6 +8,13 @@
 
 #define FF_INLINE static inline __attribute__((always_inline))
 #define FF_BODY __attribute__((always_inline))
+// Large, and called once for each vector of parameters. In a module, whose size counts, it is there once: 6 kB of it
+// with gzip, and 7 % of the time of normals.
+#if defined(__wasm__)
+#define FF_SHARED static __attribute__((noinline))
+#else
+#define FF_SHARED FF_INLINE
+#endif
 
 // f(0) .. f(count - 1): written out one after the other where the number is known when compiling (Count >=
 // 0).
