@@ -18,6 +18,8 @@ constexpr double kSingular = 1e-10;
 // Ends this part of the way between them apart, or further, are not meant to meet: what is as small as the
 // tolerance of the file closes nowhere.
 constexpr double kApart = 1e-3;
+// Nor is a side a point that is not much shorter than the surface is wide elsewhere.
+constexpr double kShrunk = 0.1;
 
 // Those of a t^2 + b t + c, where they touch one between; `scale`: what a is small against. What there is not
 // is not finite.
@@ -108,20 +110,24 @@ void Chart::poles_of_sides(double stated) {
                 Box<3> box;
                 for (const Vec<3>& p : all) box.add(p);
                 const double close = std::min(stated, kApart * box.diagonal());
-                for (int axis = 0; axis < 2; ++axis) {
+                std::array<double, 2> way{};
+                for (std::size_t i = 0; i < all.size(); ++i) {
+                    way[0] = std::max(way[0], norm(all[i] - all[i % row]));
+                    way[1] = std::max(way[1], norm(all[i] - all[i - i % row]));
+                }
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const int axis = int(k);
                     const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
                     const auto a = points(lo), b = points(hi);
-                    double apart = 0, way = 0;
+                    double apart = 0;
                     for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, norm(a[i] - b[i]));
-                    for (std::size_t i = 0; i < all.size(); ++i)
-                        way = std::max(way, norm(all[i] - a[axis == 0 ? i % row : i / row]));
-                    if (apart <= std::min(close, kApart * way) && weights(lo) == weights(hi))
-                        period_[std::size_t(axis)] = s.basis(axis).domain().length();
+                    if (apart <= std::min(close, kApart * way[k]) && weights(lo) == weights(hi))
+                        period_[k] = s.basis(axis).domain().length();
                     for (const auto* side : {&a, &b}) {
                         double size = 0;
                         for (const Vec<3>& p : *side) size = std::max(size, norm(p - side->front()));
                         const Interval on = s.basis(axis).domain();
-                        if (size <= close)
+                        if (size <= std::min(close, kShrunk * way[1 - k]))
                             poles_.push_back({axis, side == &a ? on.lo : on.hi, side->front()});
                     }
                 }

@@ -148,6 +148,16 @@ TEST(StepLoops, surfaces_as_narrow_as_the_tolerance_do_not_close) {
         }
 }
 
+// A strip 1.8 long and 1.5e-6 wide, of a file with the tolerance 2e-6, whose short sides are two edges each.
+TEST(StepLoops, the_short_sides_of_a_strip_as_narrow_as_the_tolerance_are_no_poles) {
+    const Model m = must(
+        read_step(must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/data/step/narrow_strip.stp"), 1 << 20))));
+    ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+    EXPECT_EQ(summary(m).edges, 6);
+    EXPECT_EQ(summary(m).degenerate_edges, 0);
+    EXPECT_NEAR(area_of(m, 1e-3), 1.79999894 * 1.466471987e-6, 1e-9);
+}
+
 // A sphere of radius 2 with the part below or above a circle, and a seam from there to a pole.
 std::string cap_file(bool south, bool circle_forward) {
     const char* z = south ? "-2." : "2.";
