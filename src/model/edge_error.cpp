@@ -48,6 +48,9 @@ namespace {
 constexpr double kSteep = 0.55;  // speed across the chord beside that along it: cos atan is above 7/8
 constexpr double kDirectionSlack = 1 + 0x1p-40;  // more than the roundings of directions and sums below
 
+// The larger one; where there is no bound, as at singular points of an offset, infinity times zero is none.
+double worse(double a, double b) { return b <= a ? a : std::isnan(b) ? kInfinity : b; }
+
 // Bounds of second derivatives.
 struct SecondBounds {
     double uu = 0, uv = 0, vv = 0;
@@ -116,7 +119,7 @@ double OnFace::crude() const {
     const double h = on.length();
     const double bend =
         std::min(first[0] * change[0] + first[1] * change[1], stretch * (h * h * plane.both(2)));
-    return std::max(along(speed) + bend, along(chord)) / 8 + kinks();
+    return worse(along(speed) + bend, along(chord)) / 8 + kinks();
 }
 
 std::optional<std::pair<double, double>> OnFace::across() const {
@@ -192,7 +195,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
             Box<2> box;
             box.add(from), box.add(to);
             if (!use->lift->on_plane)
-                out.triangle = std::max(
+                out.triangle = worse(
                     out.triangle, error_beside(surface, box, surface({box.side(0), box.side(1)}), to - from));
             if (degenerate) continue;
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
@@ -205,20 +208,20 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
         }
         const OnFace face(surface, *use, a, b);
         double sliver = face.along(face.sag) / 8 + face.kinks();
-        out.triangle = std::max(out.triangle, error_beside(surface, face.box, face.over, face.chord));
+        out.triangle = worse(out.triangle, error_beside(surface, face.box, face.over, face.chord));
         if (!degenerate) {
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, face.box).angle);
             double polyline = face.crude();
-            if (polyline > tolerance)
+            if (!(polyline <= tolerance))
                 if (const auto better = face.across(); better && better->first < polyline) {
                     polyline = better->first;
                     const Vec<2> wide{{face.sag[0] + better->second * std::abs(face.chord[0]),
                                        face.sag[1] + better->second * std::abs(face.chord[1])}};
                     sliver = face.along(wide) / 8 + face.kinks();
                 }
-            out.polyline = std::max(out.polyline, polyline);
+            out.polyline = worse(out.polyline, polyline);
         }
-        out.sliver = std::max(out.sliver, sliver);
+        out.sliver = worse(out.sliver, sliver);
     }
     return out;
 }

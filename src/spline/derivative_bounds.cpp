@@ -167,7 +167,7 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
             else if constexpr (requires { g.profile; })
                 return bounds_of(g, *profile_, box, order);
             else if constexpr (requires { g.base; })
-                return bounds_of(g, *base_, box);
+                return bounds_of(g, detail::NormalBounds(*base_, box));
             else
                 return bounds_of(g, box[0]);
         },
@@ -189,7 +189,7 @@ DerivativeBounds<N> DerivativeQuery<N, D>::along(const Vec<D>& n, const std::arr
             else if constexpr (std::same_as<G, Revolution>)
                 return bounds_along(g, n, *profile_, box, order, (*this)(box, order));
             else if constexpr (requires { g.base; })
-                return (*this)(box, order);
+                return bounds_along(g, n, *base_, detail::NormalBounds(*base_, box), box);
             else
                 return bounds_along(g, n, box[0]);
         },
@@ -228,6 +228,9 @@ typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n
                 Both out{(*this)(box, order), {}};
                 out.along = bounds_along(g, n, *profile_, box, order, out.all);
                 return out;
+            } else if constexpr (requires { g.base; }) {
+                const detail::NormalBounds normal(*base_, box);
+                return {bounds_of(g, normal), bounds_along(g, n, *base_, normal, box)};
             } else {
                 return {(*this)(box, order), along(n, box, order)};
             }

@@ -1,8 +1,12 @@
 // Bounds of derivatives of lines and conics, of what profiles sweep, and of offsets.
 //
-// Offsets: O = S + d n with n = m / |m|, m = S_u x S_v:   |n_a| <= |m_a| / L,  |n_ab|
-// <= |m_ab| / L + 3 |m_a| |m_b| / L^2, L a lower bound of |m| on the box: |m| at its middle less the
-// variation by m_u, m_v.
+// Offsets: O = S + d n, n = m / |m|, m = S_u x S_v. L is a lower bound of |m| on the box: |m| at its middle
+// less the variation by m_u, m_v; |n_a| <= |m_a| / L to begin with. Better, since n_a is tangent and n_a .
+// S_b = -n . S_ab, and a tangent vector t is at most (|t . S_u| |S_v| + |t . S_v| |S_u|) / |m| long:
+//     |n_a| <= (|n . S_au| |S_v| + |n . S_av| |S_u|) / L,    |n . S_ab| <= |n0 . S_ab| + e |S_ab|
+// for the normal n0 in the middle and e >= |n - n0|. Likewise n_ab, whose part across is -n_a . n_b, and
+// n_ab . S_c = -(n_a . S_bc + n_b . S_ac + n . S_abc). Along a vector w of length 1, e >= |w - n|:
+//     |w . n_a| <= e |n_a|,    |w . n_ab| <= |n_a| |n_b| + e |n_ab|.
 //
 // Along n: for a revolution with u = u0 + s, and w = n_across turned back by u0,
 //     n . S_i = w_i . (cos s q_j + sin s (axis x q_j)) for i > 0, q_j the j-th derivative of the profile
@@ -144,27 +148,76 @@ inline DerivativeBounds<2> bounds_along(const Revolution& r, const Vec<3>& n,
     return out;
 }
 
-inline DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3>& base,
-                                     const std::array<Interval, 2>& box) {
-    const auto s = base(box, 3);
-    const auto& S = s.d;
-    const double mu = S[3] * S[2] + S[1] * S[4], mv = S[4] * S[2] + S[1] * S[5];
-    const double second[3] = {S[6] * S[2] + 2 * S[3] * S[4] + S[1] * S[7],
-                              S[7] * S[2] + S[3] * S[5] + S[1] * S[8],
-                              S[8] * S[2] + 2 * S[4] * S[5] + S[1] * S[9]};
-    const auto at = jet<1>(*o.base, {box[0].middle(), box[1].middle()});
-    const double least =
-        norm(cross(at.d[1], at.d[2])) * (1 - 1e-12) - mu * box[0].length() / 2 - mv * box[1].length() / 2;
+// The unit normal of a surface over a box: at its middle, and bounds of its derivatives; `all` are those of
+// the surface. Infinite where the normal may vanish.
+struct NormalBounds {
+    NormalBounds(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& box);
+    // Of |n - the normal|, or of what stands the other way.
+    double beside(const Vec<3>& n) const {
+        return std::min(norm(n - middle), norm(n + middle)) + varies() + 64 * kUnitRoundoff;
+    }
+    double varies() const { return first[0] * half[0] + first[1] * half[1]; }
+    DerivativeBounds<2> all;
+    Vec<3> middle{};
+    double half[2], first[2] = {kInfinity, kInfinity}, second[3] = {kInfinity, kInfinity, kInfinity};
+};
+
+inline NormalBounds::NormalBounds(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& box)
+    : half{box[0].length() / 2, box[1].length() / 2} {
+    const auto at = jet<1>(surface.geometry(), {box[0].middle(), box[1].middle()});
+    const Vec<3> across = cross(at.d[1], at.d[2]);
+    const bool regular = norm(across) > 0;
+    middle = regular ? unit(across) : Vec<3>{{0, 0, 1}};
+    const auto [whole, along] = surface.both(middle, box, 3);
+    all = whole;
+    const auto &S = all.d, &A = along.d;
+    const double m[2] = {S[3] * S[2] + S[1] * S[4], S[4] * S[2] + S[1] * S[5]};
+    const double least = norm(across) * (1 - 1e-12) - m[0] * half[0] - m[1] * half[1];
+    if (!regular || !(least > 0)) return;
+    for (int a = 0; a < 2; ++a) first[a] = m[a] / least;
+    const double grow = 1 + 64 * kUnitRoundoff;
+    const auto seen = [&](std::size_t k) { return A[k] + beside(middle) * S[k]; };
+    // In the tangent plane, from its parts along S_u and S_v.
+    const auto from_parts = [&](double u, double v) { return grow * (u * S[2] + v * S[1]) / least; };
+    for (int round = 0; round < 2; ++round) {
+        const double uu = seen(3), uv = seen(4), vv = seen(5);
+        first[0] = std::min(first[0], from_parts(uu, uv));
+        first[1] = std::min(first[1], from_parts(uv, vv));
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t a = k == 2, b = k >= 1;
+        const auto part = [&](std::size_t c) {
+            return first[a] * S[3 + b + c] + first[b] * S[3 + a + c] + seen(6 + a + b + c);
+        };
+        second[k] = first[a] * first[b] + from_parts(part(0), part(1));
+    }
+}
+
+inline DerivativeBounds<2> bounds_of(const OffsetSurface& o, const NormalBounds& n) {
+    const auto& s = n.all.d;
     DerivativeBounds<2> out;
     out.d.fill(kInfinity);
-    if (!(least > 0)) return out;
-    const double d = std::abs(o.distance), m[2] = {mu, mv}, grow = 1 + 64 * kUnitRoundoff;
-    out.d[0] = S[0] + 2 * d;
-    for (int a = 0; a < 2; ++a) out.d[std::size_t(1 + a)] = grow * (S[std::size_t(1 + a)] + d * m[a] / least);
-    for (int k = 0; k < 3; ++k)
-        out.d[std::size_t(3 + k)] =
-            grow *
-            (S[std::size_t(3 + k)] + d * (second[k] / least + 3 * m[k == 2] * m[k >= 1] / (least * least)));
+    if (!std::isfinite(n.first[0])) return out;
+    const double d = std::abs(o.distance), grow = 1 + 64 * kUnitRoundoff;
+    out.d[0] = s[0] + 2 * d;
+    for (std::size_t a = 0; a < 2; ++a) out.d[1 + a] = grow * (s[1 + a] + d * n.first[a]);
+    for (std::size_t k = 0; k < 3; ++k) out.d[3 + k] = grow * (s[3 + k] + d * n.second[k]);
+    return out;
+}
+
+inline DerivativeBounds<2> bounds_along(const OffsetSurface& o, const Vec<3>& w,
+                                        const DerivativeQuery<2, 3>& base, const NormalBounds& n,
+                                        const std::array<Interval, 2>& box) {
+    DerivativeBounds<2> out = bounds_of(o, n);
+    if (!std::isfinite(n.first[0])) return out;
+    const auto s = base.along(w, box, 2);
+    const double d = std::abs(o.distance), grow = 1 + 64 * kUnitRoundoff, beside = n.beside(w);
+    for (std::size_t a = 0; a < 2; ++a)
+        out.d[1 + a] = std::min(out.d[1 + a], grow * (s.d[1 + a] + d * beside * n.first[a]));
+    for (std::size_t k = 0; k < 3; ++k)
+        out.d[3 + k] =
+            std::min(out.d[3 + k],
+                     grow * (s.d[3 + k] + d * (n.first[k == 2] * n.first[k >= 1] + beside * n.second[k])));
     return out;
 }
 

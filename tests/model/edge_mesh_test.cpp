@@ -1,6 +1,7 @@
 // The passes that place the ends of chords, each by its law (edge_mesh.cpp, edge_error.cpp).
 #include "model/edge_mesh_detail.hpp"
 #include "support/random.hpp"
+#include "support/shapes.hpp"
 #include "support/solids.hpp"
 
 #include <gtest/gtest.h>
@@ -164,6 +165,24 @@ TEST(EdgeMesh, chords_on_faces_are_judged_across) {
         worst = std::max(worst, bound / most);
     }
     EXPECT_LE(worst, 1.8);
+}
+
+// Over all of it nothing is known of the normal, and so nothing of the offset.
+TEST(EdgeMesh, no_bound_is_not_the_bound_zero) {
+    const auto base = std::make_shared<const SurfaceGeometry>(rolling(5, 0.2));
+    for (int axis = 0; axis < 2; ++axis) {
+        Line<2> side;
+        side.origin[1 - axis] = 1;
+        side.direction[axis] = 1;
+        const OneFace f(side, {0, 1}, OffsetSurface{base, 0.3});
+        ASSERT_EQ((*f.surfaces[0])({Interval{1, 1}, Interval{0, 1}})(0, 2), kInfinity);
+        const SegmentError whole = f.mesher->error(0, 0, 1, 0.05, false);
+        EXPECT_EQ(whole.polyline, kInfinity);
+        EXPECT_EQ(whole.triangle, kInfinity);
+        const SegmentError part = f.mesher->error(0, 0.5, 0.55, 0.05, false);
+        EXPECT_LT(part.polyline, 0.05);
+        EXPECT_GT(part.polyline, 0);
+    }
 }
 
 TEST(EdgeMesh, edges_are_cut_where_they_have_kinks_but_not_for_rounding) {

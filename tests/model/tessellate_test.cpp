@@ -284,6 +284,42 @@ TEST(Tessellate, knots_a_rounding_apart_end_in_a_mesh_or_a_refusal) {
     }
 }
 
+// All of a surface, its sides as edges without curves.
+Model all_of(const SurfaceGeometry& surface) {
+    const auto on = domain(surface);
+    const Vec<2> at[] = {
+        {{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].lo}}, {{on[0].hi, on[1].hi}}, {{on[0].lo, on[1].hi}}};
+    Model m;
+    Face f;
+    f.surface = surface;
+    f.loops.emplace_back();
+    for (int i = 0; i < 4; ++i) {
+        const Vec<2> from = at[i], to = at[(i + 1) % 4];
+        m.vertices.push_back({jet<0>(surface, from.c).value(), 1e-9});
+        m.edges.push_back({{}, false, {0, 1}, i, (i + 1) % 4, 1e-9, ""});
+        f.loops[0].coedges.push_back({i, false, Line<2>{from, to - from}});
+    }
+    m.faces = {f};
+    m.shells = {{{{0, false}}, false}};
+    m.bodies = {{{0}, false, "", {}}};
+    return *make_model(std::move(m));
+}
+
+// They were refused after many points had been tried: where nothing is known of an edge, its error was
+// nothing.
+TEST(Tessellate, offsets_of_splines_of_several_pieces_are_meshed) {
+    for (const auto& [height, distance] :
+         {std::pair{0.0, 0.3}, {0.2, 0.3}, {0.2, -0.5}, {1.0, 0.2}, {1.0, 1.5}})
+        for (const double tolerance : {0.05, 0.005}) {
+            const auto base = std::make_shared<const SurfaceGeometry>(rolling(8, height));
+            const Model m = all_of(OffsetSurface{base, distance});
+            const auto t = *tessellate(m, {.tolerance = tolerance});
+            ASSERT_TRUE(t.refused.empty()) << height << " " << distance << t.refused[0].reason.message;
+            EXPECT_LE(t.error_bound, tolerance);
+            EXPECT_LE(sampled_deviation(m, t), t.error_bound + t.boundary_gap) << height << " " << distance;
+        }
+}
+
 // A face that ends at a knot of its surface, which bends far more beyond it; the parameter curve of the end
 // runs `beyond` it.
 Model ends_at_a_knot(double beyond, double of_edges = 1e-7, double of_vertices = 0) {

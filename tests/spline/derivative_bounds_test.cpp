@@ -333,6 +333,24 @@ TEST(DerivativeBounds, of_coordinates_of_plane_curves_hold_for_each_by_itself) {
     }
 }
 
+// Over a plane whose parameters run unevenly: an offset bends along its normal no more than that plane does.
+TEST(DerivativeBounds, of_offsets_along_the_normal_are_not_those_of_all) {
+    const SurfaceGeometry plane = rolling(5, 0);
+    const SurfaceGeometry offset = OffsetSurface{std::make_shared<const SurfaceGeometry>(plane), 0.3};
+    const DerivativeQuery<2, 3> query(offset);
+    const Interval on = domain(plane)[0];
+    for (const double part : {0.05, 0.01}) {
+        const double size = part * on.length();
+        for (int i = 0; i < 10; ++i) {
+            const double lo = on.lo + 0.1 * i * (on.length() - size);
+            const auto [all, along] =
+                query.both({{0, 0, 1}}, {Interval{lo, lo + size}, Interval{lo, lo + size}});
+            for (std::size_t s = 3; s < 6; ++s)
+                EXPECT_LE(along.d[s], 40 * part * part * all(0, 1)) << part << " " << i;
+        }
+    }
+}
+
 TEST(DerivativeBounds, the_thinnest_piece_is_the_shortest_knot_span) {
     const auto basis = *BSplineBasis::make(2, {0, 0, 0, 1, 1.25, 4, 4, 4});
     const auto spline =

@@ -150,4 +150,15 @@ std::vector<PointOf<P>> samples_of(const Patch<N, P>& patch, int steps) {
     return out;
 }
 
+// n x n points a unit apart as a cubic spline of knots that are not as far apart as its points: flat, or a
+// wave.
+inline SurfaceGeometry rolling(int n, double height) {
+    std::vector<Vec<3>> net;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k)
+            net.push_back({{double(i), double(k), height * std::sin(1.3 * i) * std::cos(1.1 * k)}});
+    const auto basis = *BSplineBasis::clamped_uniform(3, n);
+    return *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({n, n}, std::move(net)));
+}
+
 }  // namespace freiform::test
