@@ -21,6 +21,7 @@ namespace {
 constexpr int kConflictRounds = 12;  // each cuts the segments that touch
 constexpr int kGrowingRounds = 3;    // conflicts get more by cutting: curves that lie on each other
 constexpr double kLeastPart = 0.1;   // of a segment, that is cut from it
+constexpr double kLittle = 0.1;      // of an edge, that may become part of the vertex at its end
 constexpr double kOnePlace = 1e-6;   // of the box of the face in the parameter plane
 
 }  // namespace
@@ -145,14 +146,17 @@ std::vector<Tessellator::Clash> Tessellator::cut_conflicts(std::vector<std::vect
     for (int round = 0;; ++round) {
         number_points();
         std::vector<std::vector<BoundaryConflict>> conflicts(faces());
+        std::vector<char> open(faces(), 0);
         parallel_for(faces(), 1, [&](std::size_t f) {
             if (is_refused(f)) return;
             assemble(f);  // point numbers change with every cut
-            if (!is_refused(f) && stale[f]) conflicts[f] = find_conflicts(boundaries_[f].polygon);
+            open[f] = is_refused(f);
+            if (!open[f] && stale[f]) conflicts[f] = find_conflicts(boundaries_[f].polygon);
         });
         std::map<std::pair<int, int>, double, std::greater<>> cuts;  // later segments of an edge first
         std::fill(stale.begin(), stale.end(), 0);
         for (std::size_t f = 0; f < faces(); ++f) {
+            if (open[f]) refused.push_back({f, true, {}});
             growing[f] = round > 0 && conflicts[f].size() > known[f] ? growing[f] + 1 : 0;
             known[f] = conflicts[f].size();
             const bool hopeless = round == kConflictRounds || growing[f] == kGrowingRounds;
@@ -160,7 +164,7 @@ std::vector<Tessellator::Clash> Tessellator::cut_conflicts(std::vector<std::vect
                 const auto here = cuts_for(f, conflict);
                 if (here.empty() || hopeless) {
                     refuse_boundary(f, conflict);
-                    refused.push_back({f, {}});
+                    refused.push_back({f, false, {}});
                     for (const auto& c : conflicts[f]) edges_of(f, c, refused.back().edges);
                     break;
                 }
@@ -209,8 +213,9 @@ bool Tessellator::shorten(int e, double of_face) {
     double moved = mesh.moved;
     const auto walk = [&](int vertex, auto begin, auto end, double& limit) {
         const Vec<3> at = model_.vertices[std::size_t(vertex)].point;
-        const double accuracy = accuracy_at(e, vertex, of_face);
-        double before = norm(edges_->position(e, *begin) - at);
+        double before = norm(edges_->position(e, *begin) - at), extent = 0;
+        for (auto i = begin; i != end; ++i) extent = std::max(extent, norm(edges_->position(e, *i) - at));
+        const double accuracy = std::min(accuracy_at(e, vertex, of_face), kLittle * extent);
         for (; begin + 1 != end; ++begin) {
             const auto [a, b] = std::minmax(*begin, *(begin + 1));
             const double there = norm(edges_->position(e, *(begin + 1)) - at),
@@ -295,12 +300,15 @@ void Tessellator::resolve_conflicts() {
         };
         for (Clash& clash : cut_conflicts(before)) {
             const std::size_t f = clash.face;
-            again = again || !before.empty();
-            const Doubled twice = doubled(f);
-            clash.edges.insert(clash.edges.end(), twice.edges.begin(), twice.edges.end());
-            bool changes = unite(twice);
-            for (const Loop& loop : model_.faces[f].loops)
-                for (const Coedge& use : loop.coedges) changes |= change(f, use.edge, true);
+            bool changes = false;
+            if (!clash.open) {
+                again = again || !before.empty();
+                const Doubled twice = doubled(f);
+                clash.edges.insert(clash.edges.end(), twice.edges.begin(), twice.edges.end());
+                changes = unite(twice);
+                for (const Loop& loop : model_.faces[f].loops)
+                    for (const Coedge& use : loop.coedges) changes |= change(f, use.edge, true);
+            }
             if (!changes)
                 for (const int e : clash.edges)
                     if (std::ranges::find(shortened[f], e) == shortened[f].end() && change(f, e, false))

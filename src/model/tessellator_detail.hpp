@@ -59,9 +59,10 @@ private:
         double part;
     };
     std::vector<Cut> cuts_for(std::size_t face, const BoundaryConflict& conflict) const;
-    // A face whose boundary touches itself, and the edges that do.
+    // A face whose boundary touches itself, and the edges that do; or one that is open.
     struct Clash {
         std::size_t face;
+        bool open;
         std::vector<int> edges;
     };
     std::vector<Clash> cut_conflicts(std::vector<std::vector<double>>& before);
