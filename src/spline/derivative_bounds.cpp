@@ -112,6 +112,7 @@ double spread_of_weights(const BezierPieces<N, P>& pieces) {
 
 using detail::bounds_along;
 using detail::bounds_of;
+using detail::bounds_of_both;
 
 }  // namespace
 
@@ -167,7 +168,7 @@ DerivativeBounds<N> DerivativeQuery<N, D>::operator()(const std::array<Interval,
             else if constexpr (requires { g.profile; })
                 return bounds_of(g, *profile_, box, order);
             else if constexpr (requires { g.base; })
-                return bounds_of(g, detail::NormalBounds(*base_, box));
+                return bounds_of(g, *base_, box);
             else
                 return bounds_of(g, box[0]);
         },
@@ -189,7 +190,7 @@ DerivativeBounds<N> DerivativeQuery<N, D>::along(const Vec<D>& n, const std::arr
             else if constexpr (std::same_as<G, Revolution>)
                 return bounds_along(g, n, *profile_, box, order, (*this)(box, order));
             else if constexpr (requires { g.base; })
-                return bounds_along(g, n, *base_, detail::NormalBounds(*base_, box), box);
+                return bounds_of_both(g, n, *base_, box).second;
             else
                 return bounds_along(g, n, box[0]);
         },
@@ -229,8 +230,8 @@ typename DerivativeQuery<N, D>::Both DerivativeQuery<N, D>::both(const Vec<D>& n
                 out.along = bounds_along(g, n, *profile_, box, order, out.all);
                 return out;
             } else if constexpr (requires { g.base; }) {
-                const detail::NormalBounds normal(*base_, box);
-                return {bounds_of(g, normal), bounds_along(g, n, *base_, normal, box)};
+                const auto [all, along] = bounds_of_both(g, n, *base_, box);
+                return {all, along};
             } else {
                 return {(*this)(box, order), along(n, box, order)};
             }

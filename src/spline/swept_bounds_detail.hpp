@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace freiform::detail {
 
@@ -219,6 +220,18 @@ inline DerivativeBounds<2> bounds_along(const OffsetSurface& o, const Vec<3>& w,
             std::min(out.d[3 + k],
                      grow * (s.d[3 + k] + d * (n.first[k == 2] * n.first[k >= 1] + beside * n.second[k])));
     return out;
+}
+
+// Of all, and along w.
+inline std::pair<DerivativeBounds<2>, DerivativeBounds<2>> bounds_of_both(
+    const OffsetSurface& o, const Vec<3>& w, const DerivativeQuery<2, 3>& base,
+    const std::array<Interval, 2>& box) {
+    const NormalBounds n(base, box);
+    return {bounds_of(o, n), bounds_along(o, w, base, n, box)};
+}
+inline DerivativeBounds<2> bounds_of(const OffsetSurface& o, const DerivativeQuery<2, 3>& base,
+                                     const std::array<Interval, 2>& box) {
+    return bounds_of(o, NormalBounds(base, box));
 }
 
 }  // namespace freiform::detail
