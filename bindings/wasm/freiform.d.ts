@@ -206,6 +206,7 @@ export interface Freiform {
   //     run('nearest', curve, { points: [[2, 3]] }).json                       an option that wants a file
   // Inputs that are strings: words as they are if they are short and have no line break or bracket, else texts of files.
   // Without `to` the answer (of commands that make something, a document) is in .json; with it the file in .bytes.
+  // Faces that cannot be meshed are missing in the file; .report.refused names them, and .remarks says so.
   run(command: CommandName, inputs?: Source | Source[] | Point[] | Point[][], options?: Options): Reply;
   // The same as a person types it, with files by name; files that it makes are in `files`.
   command(args: string[], files?: Record<string, string | Uint8Array>): {

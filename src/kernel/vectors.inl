@@ -8,8 +8,8 @@
 
 #define FF_INLINE static inline __attribute__((always_inline))
 #define FF_BODY __attribute__((always_inline))
-// Large, and called once for each vector of parameters. In a module, whose size counts, it is there once: 6 kB of it
-// with gzip, and 7 % of the time of normals.
+// Large, and called once for each vector of parameters. In a module, whose size counts, it is there once: 6
+// kB of it with gzip, and 7 % of the time of normals.
 #if defined(__wasm__)
 #define FF_SHARED static __attribute__((noinline))
 #else
