@@ -2,9 +2,10 @@
 //
 // Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice,
 // one period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest
-// in the period, so that it is an isoparametric line where there is one, and with nothing across it. Where a
-// hole is across each, there are two such edges, and a corner of the hole is between them. The
-// rectangle of parameters that a surface without any boundary gets has seams and poles as its sides.
+// in the period, so that it is an isoparametric line where there is one, and with nothing across it. Where
+// something is across each, there are two such edges, to a corner of a hole and on from another: the boundary
+// of the hole between these is passed on one side, the rest of it on the other, a period apart. The rectangle
+// of parameters that a surface without any boundary gets has seams and poles as its sides.
 #include "step_loops.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -135,9 +136,12 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
     // A hole between them, the corner where the way comes to it, and that where it goes on.
     std::size_t hole = chains_.size();
     std::array<std::size_t, 2> corner{};
-    const auto find = [&] {
+    const auto choose = [&] {
         for (const Pair& x : pairs)
-            if (const auto [p, q] = ends(x); is_free(a, b, p, q)) return best = x, true;
+            if (const auto [p, q] = ends(x); is_free(a, b, p, q)) {
+                best = x;
+                return;
+            }
         int tries = 0;
         for (const Pair& x : pairs)
             for (std::size_t h = 0; h < chains_.size() && tries < kMostTries; ++h) {
@@ -149,11 +153,13 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
                 for (std::size_t end = 0; end < 2; ++end)
                     for (std::size_t i = 0; i < c.uses.size() && !found[end] && ++tries < kMostTries; ++i)
                         found[end] = is_free(a, b, way[end], c.uses[i].start + by), corner[end] = i;
-                if (found[0] && found[1]) return best = x, hole = h, true;
+                if (found[0] && found[1]) {
+                    best = x, hole = h;
+                    return;
+                }
             }
-        return false;
     };
-    find();
+    choose();
     turn_to(a, best.i);
     turn_to(b, best.j);
     const Vec<2> end = a.uses.back().end;
@@ -203,6 +209,7 @@ void LoopBuilder::release_seams() {
     };
     for (std::size_t n = 0; n < chains_.size(); ++n) {
         const auto& uses = chains_[n].uses;
+        if (chains_[n].winding != std::array{0, 0}) continue;
         for (std::size_t j = 2; j < uses.size(); ++j)
             for (std::size_t i = 0; i + 1 < j; ++i) {
                 if (uses[i].coedge.edge != uses[j].coedge.edge) continue;

@@ -4,7 +4,7 @@
 // than the tolerances of the vertex, the edges and the face (or the gap is rounding) and the jump is short
 // against the segments beside it, the end is moved onto the next start, and the move counts as gap. If the
 // jump is long but the surface stands still along it (a pole that the file has no edge for), a segment joins
-// the two. Anything else is an open loop.
+// the two. Anything else is an open loop. Loops that have a vertex in common get one place for it likewise.
 #include "face_boundary_detail.hpp"
 
 #include <algorithm>

@@ -230,7 +230,10 @@ Result<void> Tessellator::fill_all() {
     for (std::size_t f = 0; f < faces(); ++f) {
         bool empty = !is_refused(f) && meshes_[f].triangles.empty();
         for (const Loop& l : model_.faces[f].loops)
-            for (const Coedge& c : l.coedges) empty = empty && !(edges_->mesh(c.edge).moved > 0);
+            for (const Coedge& c : l.coedges) {
+                const EdgeMesh& mesh = edges_->mesh(c.edge);
+                empty = empty && !mesh.collapsed && !(mesh.moved > 0);
+            }
         if (empty)
             refusals_[f] = Refusal{RefusalKind::invalid, "loops",
                                    "the boundary encloses nothing in the parameter plane"};

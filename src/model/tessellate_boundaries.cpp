@@ -4,7 +4,11 @@
 // Polygons of curves that are apart can cross where the curves come near each other: their segments are cut
 // until none does. Curves that cross because the file says so within its tolerance stay crossed: the more
 // segments, the more of them do. Mostly an edge is to blame that is shorter than the tolerance; as a point it
-// does no harm, and what it moves counts as gap.
+// does no harm. Else what of the edges that clash lies within the tolerance of their vertices becomes part of
+// these: curves of intersections begin with spikes that their neighbours have, too. Where that does not help,
+// the edges are whole again. Vertices of one face at one place are one point in any case, for two of them
+// would leave triangles without area. What becomes a point is moved by `EdgeMesh::moved` at most, which
+// counts as gap.
 #include "tessellator_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -322,9 +326,11 @@ void Tessellator::resolve_conflicts() {
             for (const int e : shortened[f]) {
                 EdgeMesh& mesh = edges_->mesh(e);
                 mesh.lengthen(), again = true;
-                for (const auto& use : mesh.uses)
-                    if (const auto g = std::size_t(use->face); clashed[g] && shortened[g].empty())
-                        refusals_[g].reset(), clashed[g] = 0;
+                for (const auto& use : mesh.uses) {
+                    const auto g = std::size_t(use->face);
+                    if (g != f && !is_refused(g)) std::erase(shortened[g], e);
+                    if (clashed[g] && shortened[g].empty()) refusals_[g].reset(), clashed[g] = 0;
+                }
             }
         }
         if (changed.empty() && !again) {

@@ -155,11 +155,11 @@ struct NormalBounds {
     NormalBounds(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& box);
     // Of |n - the normal|, or of what stands the other way.
     double beside(const Vec<3>& n) const {
-        return std::min(norm(n - middle), norm(n + middle)) + varies() + 64 * kUnitRoundoff;
+        return std::min(norm(n - middle), norm(n + middle)) + first[0] * half[0] + first[1] * half[1] + slip;
     }
-    double varies() const { return first[0] * half[0] + first[1] * half[1]; }
     DerivativeBounds<2> all;
     Vec<3> middle{};
+    double slip = kInfinity;  // the rounding of `middle`, and more
     double half[2], first[2] = {kInfinity, kInfinity}, second[3] = {kInfinity, kInfinity, kInfinity};
 };
 
@@ -173,8 +173,13 @@ inline NormalBounds::NormalBounds(const DerivativeQuery<2, 3>& surface, const st
     all = whole;
     const auto &S = all.d, &A = along.d;
     const double m[2] = {S[3] * S[2] + S[1] * S[4], S[4] * S[2] + S[1] * S[5]};
-    const double least = norm(across) * (1 - 1e-12) - m[0] * half[0] - m[1] * half[1];
+    // First derivatives are rounded as values divided by the thinnest piece are, for each degree.
+    const double value = 64 * surface.value_error(box);
+    const double rounding = value / surface.thinnest_piece(0) * S[2] +
+                            value / surface.thinnest_piece(1) * S[1] + 64 * kUnitRoundoff * S[1] * S[2];
+    const double least = norm(across) - rounding - m[0] * half[0] - m[1] * half[1];
     if (!regular || !(least > 0)) return;
+    slip = 2 * rounding / least + 64 * kUnitRoundoff;
     for (int a = 0; a < 2; ++a) first[a] = m[a] / least;
     const double grow = 1 + 64 * kUnitRoundoff;
     const auto seen = [&](std::size_t k) { return A[k] + beside(middle) * S[k]; };

@@ -144,9 +144,12 @@ TEST(Boundaries, two_vertices_at_one_place_are_one_point) {
     }
 }
 
-// A square of which a corner is the tip of a spike without width that two of its sides run along.
-TEST(Boundaries, that_run_along_each_other_within_the_tolerance_begin_where_they_part) {
-    constexpr double kLong = 1e-5;
+// A square of which a corner is the tip of a spike without width that two of its sides run along; the second
+// one `beside` it in the parameter plane. Or a face of the same edges whose boundary crosses itself, and
+// after it that square, or a face on the other side of one of the two.
+enum class Spiked { square, torn_and_square, torn_and_other_side };
+constexpr double kSpike = 1e-5;
+Model spiked(double tolerance, double beside, Spiked what) {
     const auto bent = [](const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
         return Curve<Vec<2>>::trusted({*BSplineBasis::make(1, std::vector{0., 0., 0.5, 1., 1.})},
                                       Net<1, Vec<2>>({3}, {a, b, c}));
@@ -156,34 +159,63 @@ TEST(Boundaries, that_run_along_each_other_within_the_tolerance_begin_where_they
         for (const Vec<2>& q : c.net().flat()) p.push_back(on_plane(q));
         return Curve<Vec<3>>::trusted(c.bases(), Net<1, Vec<3>>({3}, std::move(p)));
     };
-    for (const double tolerance : {1e-4, 1e-7})
-        for (const double beside : {0.0, 1e-13, -1e-13}) {
-            Model m;
-            const Vec<2> tip{{0, -kLong}}, corner{{0, 0}}, right{{1, 0}}, top{{1, 1}}, left{{0, 1}},
-                other{{beside, 0}};
-            for (const Vec<2>& p : {tip, right, top, left}) m.vertices.push_back({on_plane(p), tolerance});
-            const auto first = bent(tip, corner, right), last = bent(left, corner, tip);
-            m.edges.push_back({lifted(first), false, {0, 1}, 0, 1, tolerance, ""});
-            m.edges.push_back(
-                {side_between(on_plane(right), on_plane(top)), false, {0, 1}, 1, 2, tolerance, ""});
-            m.edges.push_back(
-                {side_between(on_plane(top), on_plane(left)), false, {0, 1}, 2, 3, tolerance, ""});
-            m.edges.push_back({lifted(last), false, {0, 1}, 3, 0, tolerance, ""});
-            const auto t = *tessellate(of_faces(std::move(m), {{{0, false, first},
-                                                                {1, false, side_between(right, top)},
-                                                                {2, false, side_between(top, left)},
-                                                                {3, false, bent(left, other, tip)}}}),
-                                       {.tolerance = 0.01});
-            if (tolerance < kLong) {
-                EXPECT_EQ(t.refused.size() + std::size_t(t.topology.degenerate_triangles > 0), 1u) << beside;
-                continue;
-            }
-            ASSERT_TRUE(t.refused.empty()) << beside << " " << t.refused[0].reason.message;
-            EXPECT_EQ(t.mesh.triangles.size(), 2u) << beside;
-            EXPECT_EQ(t.mesh.points.size(), 4u) << beside;
-            EXPECT_GE(t.boundary_gap, kLong);
-            EXPECT_LE(t.boundary_gap, 2 * kLong);
-        }
+    Model m;
+    const Vec<2> tip{{0, -kSpike}}, corner{{0, 0}}, right{{1, 0}}, top{{1, 1}}, left{{0, 1}},
+        other{{beside, 0}}, across{{-1, 0.5}};
+    for (const Vec<2>& p : {tip, right, top, left}) m.vertices.push_back({on_plane(p), tolerance});
+    const auto first = bent(tip, corner, right), last = bent(left, corner, tip);
+    m.edges.push_back({lifted(first), false, {0, 1}, 0, 1, tolerance, ""});
+    m.edges.push_back({side_between(on_plane(right), on_plane(top)), false, {0, 1}, 1, 2, tolerance, ""});
+    m.edges.push_back({side_between(on_plane(top), on_plane(left)), false, {0, 1}, 2, 3, tolerance, ""});
+    m.edges.push_back({lifted(last), false, {0, 1}, 3, 0, tolerance, ""});
+    const auto loop = [&](const Vec<2>& third) {
+        return std::vector<Coedge>{{0, false, first},
+                                   {1, false, side_between(right, third)},
+                                   {2, false, side_between(third, left)},
+                                   {3, false, bent(left, other, tip)}};
+    };
+    std::vector<std::vector<Coedge>> loops;
+    if (what != Spiked::square) loops.push_back(loop(across));
+    if (what != Spiked::torn_and_other_side) loops.push_back(loop(top));
+    if (what == Spiked::torn_and_other_side) {
+        const Vec<2> low{{0.5, -1}};
+        m.vertices.push_back({on_plane(low), tolerance});
+        m.edges.push_back({side_between(on_plane(tip), on_plane(low)), false, {0, 1}, 0, 4, tolerance, ""});
+        m.edges.push_back({side_between(on_plane(low), on_plane(right)), false, {0, 1}, 4, 1, tolerance, ""});
+        loops.push_back(
+            {{0, true, first}, {4, false, side_between(tip, low)}, {5, false, side_between(low, right)}});
+    }
+    return of_faces(std::move(m), loops);
+}
+
+TEST(Boundaries, that_run_along_each_other_within_the_tolerance_begin_where_they_part) {
+    for (const double beside : {0.0, 1e-13, -1e-13}) {
+        const auto t = *tessellate(spiked(1e-4, beside, Spiked::square), {.tolerance = 0.01});
+        ASSERT_TRUE(t.refused.empty()) << beside << " " << t.refused[0].reason.message;
+        EXPECT_EQ(t.mesh.triangles.size(), 2u) << beside;
+        EXPECT_EQ(t.mesh.points.size(), 4u) << beside;
+        EXPECT_GE(t.boundary_gap, kSpike);
+        EXPECT_LE(t.boundary_gap, 2 * kSpike);
+        const auto accurate = *tessellate(spiked(1e-7, beside, Spiked::square), {.tolerance = 0.01});
+        EXPECT_EQ(accurate.refused.size() + std::size_t(accurate.topology.degenerate_triangles > 0), 1u)
+            << beside;
+    }
+}
+
+// What a face was given in vain another that needs it still gets, and no other has it.
+TEST(Boundaries, that_cannot_be_mended_take_nothing_from_their_neighbours) {
+    for (const double beside : {0.0, 1e-13, -1e-13}) {
+        const auto t = *tessellate(spiked(1e-4, beside, Spiked::torn_and_square), {.tolerance = 0.01});
+        ASSERT_EQ(t.refused.size(), 1u) << beside << " " << t.refused.back().reason.message;
+        EXPECT_EQ(t.refused[0].face, 0);
+        EXPECT_EQ(t.mesh.triangles.size(), 2u) << beside;
+        EXPECT_EQ(t.topology.degenerate_triangles, 0) << beside;
+        EXPECT_LE(t.boundary_gap, 2 * kSpike);
+    }
+    const auto t = *tessellate(spiked(1e-4, 0, Spiked::torn_and_other_side), {.tolerance = 0.01});
+    ASSERT_EQ(t.refused.size(), 1u);
+    EXPECT_EQ(t.mesh.triangles.size(), 2u);
+    EXPECT_EQ(t.boundary_gap, 0);
 }
 
 // Two sides on one line whose parameter curves make a corner: the triangle there has no area in space.
