@@ -5,27 +5,30 @@
 //
 // Notation: D the meshed part of the parameter plane, L the piecewise linear map of D onto the mesh, which
 // agrees with S at the corners of triangles; N unit normal of S; |(x, y)|' = |(a x, b y)| for lengths a, b of
-// S_u, S_v; e >= |S - L| on a triangle T (curvature_tree.cpp); least |d|' <= |DS d| <= most |d|' on T; K:
+// S_u, S_v; e >= |S - L| on a triangle T (curvature_tree.cpp); least |d|' <= |DS d| on T; K:
 // |D^2 S(c, d)| <= K |c|' |d|' near T; q = e K / least^2.
 //
 // The foot of p = L(y), y in T: the minimum of f(x) = |S(x) - p|^2 / 2 over the disc |x - y|' <= r = 2.5 e /
-// least.  On its edge |S(x) - S(y)| >= least r - K r^2 / 2 = 2.5 e (1 - 1.25 q) > 2 e, so |S(x) - p| > e >=
-// |S(y) - p|: the minimum is inside. Where K |S(x) - p| < |DS(x) d|^2 / |d|'^2, f is strictly convex, and
-// |DS(x) d| >= (least - K r) |d|', |S(x) - p| <= most r + K r^2 / 2 + e; so this is so if
-//     q (1 + 2.5 most / least + 3.125 q) < (1 - 2.5 q)^2.
-// Then there is one critical point F(y) inside, it depends continuously on y, and is the same from the
-// triangles on both sides of an edge: their discs intersect in a convex set, where the minimum is again
-// inside.
+// least, where q <= 0.15. On its edge s = |S(x) - S(y)| >= least r - K r^2 / 2 = (2.5 - 3.125 q) e > 2 e, so
+// |S(x) - p| > e >= |S(y) - p|: the minimum is inside. There also, as DS(x) (x - y) is S(x) - S(y) but for K
+// r^2 / 2 = 3.125 q e,
+//     (S(x) - p) . DS(x) (x - y) >= s^2 - s e - (s + e) 3.125 q e > 0,
+// so the gradient points outwards and the critical points inside, counted with their signs, are one. At each
+// of them S(x) - p is along N(x), |S(x) - p| = |N(x) . (S(y) - p) + N(x) . (S(x) - S(y))| <= e + K r^2 / 2,
+// and |DS(x) d| >= (least - K r) |d|', so D^2 f is positive there, for q (1 + 3.125 q) < (1 - 2.5 q)^2. Then
+// there is one critical point F(y) inside, it depends continuously on y, and is the same from the triangles
+// on both sides of an edge: their discs intersect in a convex set, where the minimum is again inside.
 //
 // How far: x = F(y). p - S(x) is along N(x), so the part of S(y) - S(x) along the surface is at most e, and
-// |DS(x) (y - x)| <= e + K |y - x|'^2 / 2 gives |y - x|' <= e / (least (1 - 3.75 q)) =: way.
-// The distance: |p - S(x)| = |N(x) . (S(y) - p) + N(x) . (S(x) - S(y))|. The first term is a linear
+// (least - K |y - x|') |y - x|' <= |DS(x) (y - x)| <= e + K |y - x|'^2 / 2. For |y - x|' = w e / least this
+// is w - 3/2 q w^2 <= 1, so w <= far = 2 / (1 + sqrt(1 - 6 q)): the other root is beyond 2.5. way = far e /
+// least. The distance: |p - S(x)| = |N(x) . (S(y) - p) + N(x) . (S(x) - S(y))|. The first term is a linear
 // interpolation error of the function N(x) . S, which has the second derivatives that are seen along N(x):
 // with |N(x) - n| <= t those along n and t times those of the part of S across n, for N(x) is cos s n + sin s
-// b, b a unit vector across n, sin s <= t (`Bending::seen`). The second is at most K way^2 / 2 = q e / 2 / (1
-// - 3.75 q)^2, for DS(x) (y - x) is orthogonal to N(x). And t: on a box with the middle m and n = N(m), a
-// tangent DS(x) d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle with a sine of at most the
-// swing of n . DS over the least stretch; from y to x by one of at most K way / (least - K way).
+// b, b a unit vector across n, sin s <= t (`Bending::seen`). The second is at most K way^2 / 2 = q e far^2 /
+// 2, for DS(x) (y - x) is orthogonal to N(x). And t: on a box with the middle m and n = N(m), a tangent DS(x)
+// d has n . DS(x) d = n . (DS(x) - DS(m)) d, so N turns by an angle with a sine of at most the swing of n .
+// DS over the least stretch; from y to x by one of at most K way / (least - K way).
 //
 // In a cell: T within a box with the middle m and half sides h_u, h_v, v_i its corners, l_i the barycentric
 // coordinates of y, d_i = v_i - y, g = N(x) . S. Taylor's formula with its remainder gives
@@ -43,6 +46,17 @@
 // edge. Other middles than that of the box count by their distance from it. Saddles: the same with du^2 or
 // dv^2 alone in Q.
 //
+// In one triangle: with H the second derivatives of n . S in the middle, D^2 g is cos s H and a rest that is
+// bounded as above with c less |H|. So the error is at most that of the quadratic function, which is known
+// with all signs (`Quadratic`), and that of the rest. The former is less near corners: in halves of the cell,
+// for A = H_uu h_u^2, B = H_vv h_v^2, C = H_uv h_u h_v (less than 0 for the other diagonal) and (x, y) from
+// -1 to 1,
+//     g - L g = -(A (1 - x^2) + B (1 - y^2) + 2 C (1 - x) (1 + y)) / 2,  x >= y,
+// where (1 - x) (1 + y) is between 0 and both of 1 - x^2 and 1 - y^2; in other triangles it is at most as
+// large as with (|A| + |C|) (1 - x^2) + (|B| + |C|) (1 - y^2). So any mean of that and of the largest error
+// will do, with what the rest adds to it (`Rest::error`). Of two diagonals the better one is that along which
+// A + B and C have opposite signs.
+//
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so
 // by the invariance of the degree every x in D is G(y) for some y, or is y + s (G(y) - y) for some y of the
@@ -52,10 +66,10 @@
 // point y' with S(y') above L(y), |y' - y|' <= 8/7 e / least (edge_error.cpp), which covers nothing new, and
 // then straight to x' = F(y). With E the bound for edges S(y') is within E of L(y), and so is the part of
 // S(y') - S(x') along the surface: |y' - x'|' <= E / (least (1 - 4.33 q)), for |y' - x'|' <= 3.65 e / least;
-// between them |S - L(y)| <= E + K |y' - x'|'^2 / 8, and the rest is less than 1/64 of E if q <= 1/16 (sides
-// of triangles with plain vertices: as before). Triangles with three plain vertices need no F. So a face can
-// have poles and kinks, with plain vertices around them. The other way round, every L(y) is as near to
-// S(G(y)), which may be beyond the boundary of the face by as much.
+// between them |S - L(y)| <= E + K |y' - x'|'^2 / 8, and the rest is less than 1/64 of E if q <= 1/16, which
+// is asked for of triangles at the boundary (sides of those with plain vertices: as before). Triangles with
+// three plain vertices need no F. So a face can have poles and kinks, with plain vertices around them. The
+// other way round, every L(y) is as near to S(G(y)), which may be beyond the boundary of the face by as much.
 //
 // A spline that ends within the disc is thought of as continued by reflection in the points of its border,
 // S(b - h) = 2 S(b) - S(b + h) in one direction, which has continuous first derivatives and three times the
@@ -76,7 +90,7 @@ namespace freiform {
 namespace {
 
 constexpr double kRounding = 1e-6;
-constexpr double kLeastStretch = 0.1, kMostQ = 1.0 / 16;
+constexpr double kLeastStretch = 0.1, kMostQ = 0.15, kMostQAtBoundary = 1.0 / 16;
 constexpr double kDisc = 2.5;
 constexpr double kMuchTurn = 0.1;  // of normals within half a box
 
@@ -132,13 +146,12 @@ void add_signs(Curvature& along, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, co
 
 Bending::Middle middle_of(const std::array<Interval, 2>& on, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j,
                           const Curvature& slip, const std::array<double, 4>& third) {
-    const auto of = [&](const Vec<3>& second, double by) {
-        return (std::abs(dot(n, second)) + 8 * kUnitRoundoff * norm(second) + by) * kSumSlack;
+    const auto off = [&](const Vec<3>& second, double by) {
+        return (8 * kUnitRoundoff * norm(second) + by) * kSumSlack;
     };
     return {{{on[0].middle(), on[1].middle()}},
-            of(j(2, 0), slip.uu),
-            of(j(1, 1), slip.uv),
-            of(j(0, 2), slip.vv),
+            {dot(n, j(2, 0)), dot(n, j(1, 1)), dot(n, j(0, 2))},
+            {off(j(2, 0), slip.uu), off(j(1, 1), slip.uv), off(j(0, 2), slip.vv)},
             third};
 }
 
@@ -196,7 +209,6 @@ void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3
     const double turn = swing(out.across) / least;
     if (!(turn <= kMostTurn)) return;
     out.least = least;
-    out.most = std::sqrt(1 + c) + change;
     out.tilt = kChord * turn;
 }
 
@@ -272,13 +284,27 @@ double largest_sum(double p, double r) { return r < 2 * p ? p + r * (r / (4 * p)
 
 }  // namespace
 
-double Bending::seen_error(const Box<2>& cell, double turn) const {
-    const Curvature seen = seen_along(tilt + turn);
-    const double usual = seen.error(cell.hi - cell.lo);
-    return knows_middle() ? std::min(usual, steady_error(cell, turn, seen)) : usual;
-}
+// What second derivatives seen in a cell are beside those in the middle of the box: `here`, and more away
+// from the middle of the cell, by_u and by_v at its sides.
+struct Bending::Rest {
+    Vec<2> half{};
+    Curvature here, by_u, by_v;
 
-double Bending::steady_error(const Box<2>& cell, double turn, const Curvature& seen) const {
+    // Bound of the interpolation error where that of the part with constant second derivatives is e0 / 2 at
+    // most, and (u (1 - r_u^2) + v (1 - r_v^2)) / 2.
+    double error(double e0, double u, double v) const {
+        const double hu = half[0], hv = half[1], more_u = here.uu * hu * hu + here.uv * hu * hv,
+                     more_v = here.vv * hv * hv + here.uv * hu * hv, at_u = by_u.along(hu, hv),
+                     at_v = by_v.along(hu, hv);
+        double best = kInfinity;
+        for (const double part : {0.0, 0.5, 0.75, 1.0})
+            best = std::min(best, part * e0 + largest_sum((1 - part) * u + more_u, at_u) +
+                                      largest_sum((1 - part) * v + more_v, at_v));
+        return best / 2 * (1 + 1e-13);
+    }
+};
+
+Bending::Rest Bending::rest_in(const Box<2>& cell, double turn) const {
     const std::array<Interval, 2> on{cell.side(0), cell.side(1)};
     const Vec<2> h = half_sides(on);
     Vec<2> off{};
@@ -298,13 +324,24 @@ double Bending::steady_error(const Box<2>& cell, double turn, const Curvature& s
                          du * t[2] + dv * t[3] + turns * beside.vv};
     };
     const double still = turned(off[0], off[1]) + kChord / least * kRounding + turn;
-    Curvature here = of(off[0] + h[0] / 3, off[1] + h[1] / 3, still);
-    here = here.plus(1, {middle.uu, middle.uv, middle.vv});
-    const Curvature by_u = of(h[0] * (2.0 / 3), 0, turned(h[0], 0)),
-                    by_v = of(0, h[1] * (2.0 / 3), turned(0, h[1]));
-    const double uu = h[0] * h[0], uv = h[0] * h[1], vv = h[1] * h[1];
-    double error = largest_sum(here.uu * uu + here.uv * uv, by_u.along(h[0], h[1])) +
-                   largest_sum(here.vv * vv + here.uv * uv, by_v.along(h[0], h[1]));
+    const Curvature here = of(off[0] + h[0] / 3, off[1] + h[1] / 3, still);
+    return {h, here.plus(1, {middle.off[0], middle.off[1], middle.off[2]}),
+            of(h[0] * (2.0 / 3), 0, turned(h[0], 0)), of(0, h[1] * (2.0 / 3), turned(0, h[1]))};
+}
+
+double Bending::seen_error(const Box<2>& cell, double turn) const {
+    const Curvature seen = seen_along(tilt + turn);
+    const double usual = seen.error(cell.hi - cell.lo);
+    return knows_middle() ? std::min(usual, steady_error(rest_in(cell, turn), seen)) : usual;
+}
+
+double Bending::steady_error(const Rest& rest, const Curvature& seen) const {
+    const double hu = rest.half[0], hv = rest.half[1], uu = hu * hu, uv = hu * hv, vv = hv * hv;
+    const Quadratic& q = middle.second;
+    const Curvature here = rest.here.plus(1, {std::abs(q.uu), std::abs(q.uv), std::abs(q.vv)});
+    const Curvature &by_u = rest.by_u, &by_v = rest.by_v;
+    double error = largest_sum(here.uu * uu + here.uv * uv, by_u.along(hu, hv)) +
+                   largest_sum(here.vv * vv + here.uv * uv, by_v.along(hu, hv));
     if (seen.is_saddle()) {
         const double mixed = seen.uv * seen.uv;
         const double up = largest_sum((here.uu + mixed / std::abs(seen.sure_vv)) * uu, by_u.uu * uu) +
@@ -316,6 +353,36 @@ double Bending::steady_error(const Box<2>& cell, double turn, const Curvature& s
     return error / 2 * (1 + 1e-13);
 }
 
+double Bending::halves_error(const Box<2>& cell, double turn) const {
+    const Rest rest = rest_in(cell, turn);
+    const Quadratic& q = middle.second;
+    const bool rising = prefers_rising(cell.hi - cell.lo);
+    const double hu = rest.half[0], hv = rest.half[1], uu = q.uu * hu * hu, vv = q.vv * hv * hv,
+                 uv = (rising ? q.uv : -q.uv) * hu * hv;
+    // Of S - L and of L - S.
+    const double u = std::max({0.0, uu + std::max(uv, 0.0), -uu + std::max(-uv, 0.0)}),
+                 v = std::max({0.0, vv + std::max(uv, 0.0), -vv + std::max(-uv, 0.0)});
+    return rest.error(2 * q.error(half_of(cell, rising)), u, v);
+}
+
+double Bending::cells_error(const Vec<2>& box, const Vec<2>& cell, double turn) const {
+    const Quadratic& q = middle.second;
+    const double hu = box[0] / 2, hv = box[1] / 2, turns = tilt + turn;
+    const auto& t = middle.third;
+    const Curvature rest{hu * t[0] + hv * t[1] + middle.off[0] + turns * beside.uu,
+                         hu * t[1] + hv * t[2] + middle.off[1] + turns * beside.uv,
+                         hu * t[2] + hv * t[3] + middle.off[2] + turns * beside.vv};
+    return (std::max(q.halves_error(cell), q.fan_error(cell)) + rest.along(cell[0], cell[1]) / 8) *
+           (1 + 1e-13);
+}
+
+double Bending::triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const {
+    const Rest rest = rest_in(cell, turn);
+    const Quadratic& q = middle.second;
+    const double hu = rest.half[0], hv = rest.half[1], uv = std::abs(q.uv) * hu * hv;
+    return rest.error(2 * q.error(corner), std::abs(q.uu) * hu * hu + uv, std::abs(q.vv) * hv * hv + uv);
+}
+
 void Bending::include(const Bending& o) {
     full.include(o.full);
     middle = {};
@@ -325,7 +392,6 @@ void Bending::include(const Bending& o) {
         beside.include(o.beside.plus(apart, o.across));
         tilt = std::max(tilt, o.tilt + apart);
         const double a0 = std::min(a, o.a), b0 = std::min(b, o.b);
-        most = std::max(most * std::max(a / a0, b / b0), o.most * std::max(o.a / a0, o.b / b0));
         a = a0, b = b0;
         least = std::min(least, o.least);
     } else {
@@ -338,32 +404,24 @@ Vec<2> reach_of(const Bending& at, double e) {
     return {{r / at.a, r / at.b}};
 }
 
-Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected) {
+Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected, bool is_deep) {
     Shift out;
     if (!(at.least > 0)) return out;
     const double k =
         reflected * (near.uv / (at.a * at.b) + std::max(near.uu / (at.a * at.a), near.vv / (at.b * at.b)));
     const double q = e * k / (at.least * at.least) * (1 + 1e-9);
-    if (!(q <= kMostQ)) return out;
-    const double left = 1 - kDisc * q;
-    if (!(q * (1 + kDisc * at.most / at.least + kDisc * kDisc / 2 * q) < left * left * (1 - 1e-9)))
-        return out;
-    const double turn = q / (1 - 3.75 * q);
+    if (!(q <= (is_deep ? kMostQ : kMostQAtBoundary))) return out;
     out.exists = true;
     out.q = q;
-    out.turn = kChord * turn / (1 - turn);
+    out.far = 2 / (1 + std::sqrt(1 - 6 * q)) * (1 + 1e-9);
+    const double turn = q * out.far / (1 - q * out.far);
+    out.turn = kChord * turn;
     return out;
 }
 
-double Shift::across(double seen, double e) const {
-    const double p = 1 - 3.75 * q;
-    return (seen + q * e / (2 * p * p)) * (1 + 1e-14);
-}
+double Shift::across(double seen, double e) const { return (seen + q * e * far * far / 2) * (1 + 1e-14); }
 
-double Shift::way(double e) const {
-    const double p = 1 - 3.75 * q;
-    return (e + q * e / (8 * p * p)) * (1 + 1e-14);
-}
+double Shift::way(double e) const { return (e + q * e * far * far / 8) * (1 + 1e-14); }
 
 bool is_rounding(const Kink& kink, double side, double tolerance) {
     constexpr double kLittle = 0x1p-8;  // of the tolerance

@@ -17,6 +17,11 @@ struct BlockJudge {
         return within(judge.cell(at, box, cell, error, plain, block.node).bound);
     }
 
+    double halves(const Bending& at, const Box<2>& box, const Vec<2>& cell, double error) const {
+        if (tree.is_all_plain() || !at.knows_middle()) return kInfinity;
+        return within(judge.cells(at, box, cell, error, block.node).bound);
+    }
+
     JudgedBlock leaf() const {
         const Bending& at = tree.part_bendings(block)[0];
         const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
@@ -26,8 +31,11 @@ struct BlockJudge {
         const auto with = [&](int plain) {
             return within(judge.leaf(at, block.box, error, plain, block.node).bound);
         };
-        if (!tree.is_all_plain()) out.usual = with(0);
-        if (std::isfinite(out.usual)) out.footless = with(1);
+        if (tree.is_all_plain()) return out;
+        out.usual = out.halves = with(0);
+        if (!std::isfinite(out.usual) && at.knows_middle())
+            out.halves = within(judge.halves(at, block.box, error, block.node).bound);
+        if (std::isfinite(out.halves)) out.footless = with(1);
         return out;
     }
 
@@ -37,13 +45,16 @@ struct BlockJudge {
         const bool all_plain = tree.is_all_plain();
         const BlockGrid parts(block.box, block.parts);
         const Bending* at = tree.part_bendings(block).data();
-        JudgedBlock out{0, 0};
+        JudgedBlock out{0, 0, kInfinity, 0};
         for (int i = 0; i < parts.cells(0); ++i)
             for (int j = 0; j < parts.cells(1); ++j, ++at) {
                 const Box<2> box{parts.at(i, j), parts.at(i + 1, j + 1)};
                 const double error = judge.cell_error(*at, box, cell);
-                out.usual = std::max(out.usual, bound(*at, box, cell, error, all_plain ? 3 : 0));
-                if (!std::isfinite(out.usual)) return out;
+                const double usual = bound(*at, box, cell, error, all_plain ? 3 : 0);
+                out.usual = std::max(out.usual, usual);
+                out.halves =
+                    std::max(out.halves, std::isfinite(usual) ? usual : halves(*at, box, cell, error));
+                if (!std::isfinite(out.halves)) return out;
                 if (!all_plain && std::isfinite(out.footless))
                     out.footless = std::max(out.footless, bound(*at, box, cell, error, 1));
             }

@@ -19,6 +19,12 @@ struct BlockGrid {
 
     int cells(int axis) const { return int(lines[std::size_t(axis)].size()) - 1; }
     Vec<2> at(int i, int j) const { return {{lines[0][std::size_t(i)], lines[1][std::size_t(j)]}}; }
+    Vec<2> centre(int i, int j) const {
+        const auto middle = [](const std::vector<double>& x, int k) {
+            return Interval{x[std::size_t(k)], x[std::size_t(k) + 1]}.middle();
+        };
+        return {{middle(lines[0], i), middle(lines[1], j)}};
+    }
     Vec<2> largest_cell() const {
         Vec<2> out{};
         for (int d = 0; d < 2; ++d)
@@ -44,10 +50,10 @@ struct BlockGrid {
     }
 };
 
-// Bounds, where all points have feet, some have none, all are plain (of leaves alone); infinite above the
-// tolerance.
+// Bounds, where all points have feet, some have none; of leaves alone also where all are plain, and where all
+// have feet and the leaf is halved by the better diagonal. Infinite above the tolerance.
 struct JudgedBlock {
-    double usual = kInfinity, footless = kInfinity, flat = kInfinity;
+    double usual = kInfinity, footless = kInfinity, flat = kInfinity, halves = kInfinity;
 };
 
 JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,

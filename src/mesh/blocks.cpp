@@ -1,20 +1,19 @@
 // Method. The sides of blocks and of leaves come from halving intervals, and each interval has one place
 // where it is cut, so of the points that two neighbours have on their common side those of the coarser are
 // among those of the finer. A side gets all points that anybody has there, found by halving its steps as long
-// as the middle is one. Cells at the border of a block become fans from their corner inside it, other cells
-// two triangles. Every triangle is within its cell, whose bound it keeps: half the squared radius of the
-// smallest circle around it is no more than that of half the cell (curvature_tree.cpp). What two blocks have
-// on both sides is no outline.
+// as the middle is one. Cells become halves, by the better diagonal, and with more points than corners fans
+// from their corner inside. Every triangle is within its cell, whose bound it keeps: half the squared radius
+// of the smallest circle around it is no more than that of half the cell (curvature_tree.cpp). Where a bound
+// is one of halves alone, cells with more points are cut from their centre (block_triangles.cpp). What two
+// blocks have on both sides is no outline.
 //
 // Blocks of one cell, the leaves, get the best shaped triangles among the points of their sides
 // (leaf_triangles.cpp). Where feet cannot be proven (bending.cpp), all points of a leaf are plain, if all of
 // its error is small enough. Their neighbours have plain points then; those that can do without these feet,
 // do, others become plain in turn or are left to the triangulation. So are blocks near places to avoid: where
 // triangles around them turned out to need plain points that a block counts on.
-#include "block_cells_detail.hpp"
-#include "block_judge_detail.hpp"
+#include "block_triangles_detail.hpp"
 #include "blocks_detail.hpp"
-#include "leaf_triangles_detail.hpp"
 #include "outer_sides_detail.hpp"
 #include "parameter_table_detail.hpp"
 
@@ -71,28 +70,14 @@ private:
         mesh_leaves();
     }
 
-    // Numbers of table_ along the border, counter-clockwise from the lower corner of the box. `step`: where
-    // each cell along it begins; sides follow each other.
-    struct Block {
-        BlockGrid grid;
-        bool needs_foot = false;
-        std::vector<int> border = {}, step = {};
-    };
-
-    // A block of one cell. Small, as there are many.
-    struct Leaf {
-        std::uint32_t block;  // of the tree
-        std::uint16_t count = 0;
-        bool is_plain = false;
-        std::array<int, 4> corner = {};  // numbers of table_
-        const int* border = nullptr;     // in borders_, `count` of them
-    };
+    using Block = MeshedBlock;
+    using Leaf = MeshedLeaf;
     const JudgedBlock& judged(const Leaf& l) const { return judged_[l.block]; }
     Box<2> box_of(const Leaf& l) const { return tree_.block(l.block).box; }
     bool needs_foot(const Leaf& l) const { return !l.is_plain && !std::isfinite(judged(l).footless); }
     double bound_of(const Leaf& l) const {
         const JudgedBlock& j = judged(l);
-        return l.is_plain ? j.flat : std::max(j.usual, std::isfinite(j.footless) ? j.footless : 0);
+        return l.is_plain ? j.flat : std::max(l.bound, std::isfinite(j.footless) ? j.footless : 0);
     }
 
     static Vec<2> corner_of(const Box<2>& b, std::size_t k) {
@@ -135,7 +120,7 @@ private:
             if (const auto block = tree_.block(i); block.first_part >= 0) take(block, judged_[i]);
         std::erase_if(leaves_, [&](Leaf& l) {
             const JudgedBlock& j = judged(l);
-            l.is_plain = !std::isfinite(j.usual);
+            l.is_plain = !std::isfinite(j.halves);
             const bool bad = l.is_plain && !std::isfinite(j.flat);
             if (bad) dissolve(box_of(l));
             return bad;
@@ -149,10 +134,16 @@ private:
 
     void take(const CurvatureTree::Block& b, const JudgedBlock& j) {
         const BlockGrid grid(b.box, b.halves);
-        if (!std::isfinite(j.usual)) return dissolve(grid, kCellRounding * grid.largest_cell());
-        const bool needs_foot = !std::isfinite(j.footless);
-        out_.bound = std::max({out_.bound, j.usual, needs_foot ? 0 : j.footless});
-        blocks_.push_back({grid, needs_foot});
+        const Vec<2> cell = kCellRounding * grid.largest_cell();
+        const bool may_be_any = std::isfinite(j.usual), needs_foot = !std::isfinite(j.footless);
+        if (!may_be_any && !std::isfinite(j.halves)) return dissolve(grid, cell);
+        out_.bound = std::max({out_.bound, may_be_any ? j.usual : j.halves, needs_foot ? 0 : j.footless});
+        CellWays ways;
+        for (const Bending& part : tree_.part_bendings(b)) ways.rising.push_back(part.prefers_rising(cell));
+        for (std::size_t d = 0; d < 2; ++d) ways.part[d] = std::uint8_t(b.halves[d] - b.parts[d]);
+        ways.parts_in_row = 1 << b.parts[1];
+        ways.from_centre = !may_be_any;
+        blocks_.push_back({grid, b, std::move(ways), needs_foot});
     }
 
     void dissolve(const BlockGrid& grid, const Vec<2>& cell) {
@@ -171,7 +162,10 @@ private:
         add_between(m, b, axis, out);
     }
 
+    BlockTriangles triangles_of() const { return {tree_, judge_, tolerance_, table_.points()}; }
+
     void find_sides() {
+        const BlockTriangles triangles = triangles_of();
         for (Block& block : blocks_) {
             std::vector<Vec<2>> own;
             block.grid.each_border_point([&](const Vec<2>& p) { own.push_back(p); });
@@ -183,6 +177,13 @@ private:
             }
             block.step.push_back(int(block.border.size()));
         }
+        std::erase_if(blocks_, [&](const Block& b) {
+            const double bound = b.ways.from_centre ? triangles.bound_from_centres(b) : 0;
+            const bool bad = !std::isfinite(bound);
+            if (bad) dissolve(b.grid, b.grid.largest_cell());
+            if (!bad) out_.bound = std::max(out_.bound, bound);
+            return bad;
+        });
         borders_.resize((leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce);  // of some leaves at a time
         parallel_for(borders_.size(), is_shared_ ? 1 : borders_.size(), [&](std::size_t part) {
             std::vector<int>& border = borders_[part];
@@ -198,16 +199,18 @@ private:
                 }
                 begins[i - first + 1] = border.size();
             }
+            BlockTriangles::Work work;
             for (std::size_t i = first; i < end; ++i) {
                 leaves_[i].border = border.data() + begins[i - first];
                 const std::size_t count = begins[i - first + 1] - begins[i - first];
                 leaves_[i].count = std::uint16_t(std::min(count, kMostAround + 1));
+                triangles.settle(leaves_[i], judged(leaves_[i]), work);
             }
         });
         std::erase_if(leaves_, [&](const Leaf& l) {
-            const bool many = l.count > kMostAround;
-            if (many) dissolve(box_of(l));
-            return many;
+            const bool bad = l.count > kMostAround || !std::isfinite(bound_of(l));
+            if (bad) dissolve(box_of(l));
+            return bad;
         });
     }
 
@@ -284,53 +287,38 @@ private:
         first_other_ = int(outline_.points.size());
         for (const Block& b : blocks_)
             for (const int at : b.border) number(at, first_other_, out_.points);
-        for (const Leaf& l : leaves_)
+        for (Leaf& l : leaves_) {
             for (const int at : border_of(l)) number(at, first_other_, out_.points);
+            if (!l.has_centre) continue;
+            l.centre = first_other_ + int(out_.points.size());
+            out_.points.push_back(middle_of(box_of(l)));
+        }
     }
 
-    static std::span<const int> border_of(const Leaf& l) { return {l.border, l.count}; }
-
-    // Of n points around a leaf there are n - 2 triangles, so each leaf knows where its own begin.
+    // Each leaf knows how many triangles it has, so that it is known where they begin.
     void mesh_leaves() {
         std::vector<std::size_t> first(leaves_.size() + 1, out_.triangles.size());
-        for (std::size_t i = 0; i < leaves_.size(); ++i) first[i + 1] = first[i] + leaves_[i].count - 2;
+        for (std::size_t i = 0; i < leaves_.size(); ++i) first[i + 1] = first[i] + leaves_[i].triangles();
         out_.triangles.resize(first.back());
+        const BlockTriangles triangles = triangles_of();
         const std::size_t parts = (leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce;
         parallel_for(parts, is_shared_ ? 1 : parts, [&](std::size_t part) {
-            std::vector<Vec<2>> places;
-            std::vector<std::array<int, 3>> found;
+            BlockTriangles::Work work;
+            const auto& found = work.found;
             const std::size_t end = std::min(leaves_.size(), (part + 1) * kBlocksAtOnce);
             for (std::size_t i = part * kBlocksAtOnce; i < end; ++i) {
-                const auto border = border_of(leaves_[i]);
-                find_triangles(leaves_[i], places, found);
-                FF_REQUIRE(found.size() == border.size() - 2);
+                const Leaf& l = leaves_[i];
+                const auto border = border_of(l);
+                triangles.find(l, work);
+                FF_REQUIRE(found.size() == l.triangles());
                 for (std::size_t k = 0; k < found.size(); ++k)
-                    for (std::size_t c = 0; c < 3; ++c)
-                        out_.triangles[first[i] + k][c] = point(border[std::size_t(found[k][c])]);
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        const int at = found[k][c];
+                        out_.triangles[first[i] + k][c] =
+                            at == l.count ? l.centre : point(border[std::size_t(at)]);
+                    }
             }
         });
-    }
-
-    // By places in its border.
-    void find_triangles(const Leaf& l, std::vector<Vec<2>>& places,
-                        std::vector<std::array<int, 3>>& found) const {
-        if (l.count == 4) {
-            found.assign({{0, 1, 2}, {0, 2, 3}});
-            return;
-        }
-        places.clear();
-        const auto block = tree_.block(l.block);
-        const Bending& bends = tree_.part_bendings(block)[0];
-        const Vec<2> size = block.box.hi - block.box.lo;
-        const Vec<2> scale =  // what makes parameters lengths
-            bends.least > 0 ? Vec<2>{{bends.a, bends.b}} : Vec<2>{{1 / size[0], 1 / size[1]}};
-        for (const int at : border_of(l)) {
-            const Vec<2> x = table_.points()[std::size_t(at)] - block.box.lo;
-            places.push_back({{x[0] * scale[0], x[1] * scale[1]}});
-        }
-        found.clear();
-        [[maybe_unused]] const bool has_area = add_best_triangles(places, found);
-        FF_REQUIRE(has_area);
     }
 
     // The point of the mesh with this number of table_.
@@ -352,7 +340,11 @@ private:
             for (int j = 1; j < g.cells(1); ++j) out_.points.push_back(g.at(i, j));
         std::vector<int> border;
         for (const int at : block.border) border.push_back(point(at));
-        add_cells(g, border, block.step, first_inner, out_.triangles);
+        const auto add_centre = [&](int i, int j) {
+            out_.points.push_back(g.centre(i, j));
+            return first_other_ + int(out_.points.size()) - 1;
+        };
+        add_cells(g, border, block.step, first_inner, block.ways, add_centre, out_.triangles);
     }
 
     const CurvatureTree& tree_;

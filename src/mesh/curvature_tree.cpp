@@ -118,6 +118,36 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
     return grow * best;
 }
 
+// Definite ones: half the squared radius, in the metric of their sign. The angle opposite the longest side
+// has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <= s2. Others have no
+// extreme inside, and on a side an eighth of what they are along it.
+double Quadratic::error(const std::array<Vec<2>, 3>& corner) const {
+    const Vec<2> side[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
+    double s[3], size = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double u = uu * side[k][0] * side[k][0], v = vv * side[k][1] * side[k][1],
+                     both = 2 * uv * side[k][0] * side[k][1];
+        s[k] = std::abs(u + both + v);
+        size = std::max(size, std::abs(u) + std::abs(both) + std::abs(v));
+    }
+    sort(s, s + 3);
+    const double slip = 16 * kUnitRoundoff * size, beyond = s[0] + s[1] - s[2] + slip;
+    const double least = s[2] / 8 + slip;
+    const bool is_indefinite = uu * vv - uv * uv < -8 * kUnitRoundoff * (std::abs(uu * vv) + uv * uv);
+    if (is_indefinite || beyond <= 0 || !(s[1] > slip)) return least;
+    const double most = (s[0] + slip) / (4 * s[1]), found = beyond * beyond / (4 * s[0] * s[1]);
+    return s[2] / 8 / (1 - std::min(most, found)) + 4 * slip;
+}
+
+double Quadratic::halves_error(const Vec<2>& size) const {
+    return error(half_of({{}, size}, prefers_rising(size)));
+}
+
+double Quadratic::fan_error(const Vec<2>& size) const {
+    const Vec<2> centre = 0.5 * size, u{{size[0], 0}}, v{{0, size[1]}};
+    return std::max(error({Vec<2>{}, u, centre}), error({Vec<2>{}, centre, v}));
+}
+
 // At the kink that is nearest to the middle if there is one, else across the axis, between columns where it
 // has more than one.
 std::optional<CurvatureTree::Cut> CurvatureTree::cut(const Node& node, int axis) const {
@@ -143,7 +173,7 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
                           double tolerance) const {
     if (error <= tolerance) return true;
     if (!knows_normals_ || kinks) return false;
-    const Shift shift = shift_of(b, error, b.full, 1);
+    const Shift shift = shift_of(b, error, b.full, 1, false);
     return shift.exists && shift.across(b.seen(shift.turn).error(size), error) <= tolerance;
 }
 
@@ -153,8 +183,20 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
                           double tolerance) const {
     if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
     if (!knows_normals_ || kinks || !b.knows_middle()) return false;
-    const Shift shift = shift_of(b, error, b.full, kBeyond);
-    return shift.exists && shift.across(b.seen_error(cell, shift.turn), error) <= tolerance;
+    const Shift shift = shift_of(b, error, b.full, kBeyond, true);
+    if (!shift.exists) return false;
+    const auto is_enough = [&](double seen) { return shift.across(seen, error) <= tolerance; };
+    return is_enough(b.seen_error(cell, shift.turn)) || is_enough(b.halves_error(cell, shift.turn));
+}
+
+// The same of all cells of a block in a box of this size.
+bool CurvatureTree::keeps_in_cells(const Bending& b, const Vec<2>& box, const Vec<2>& cell,
+                                   double tolerance) const {
+    const double error = b.full.along(cell[0], cell[1]) / 8;
+    if (keeps(b, cell, false, error, tolerance)) return true;
+    if (!knows_normals_ || !b.knows_middle()) return false;
+    const Shift shift = shift_of(b, error, b.full, kBeyond, true);
+    return shift.exists && shift.across(b.cells_error(box, cell, shift.turn), error) <= tolerance;
 }
 
 bool CurvatureTree::accept(Node& node, const Bending& known, double error, double tolerance) const {

@@ -28,15 +28,19 @@ constexpr double kUneven = 3;                        // samples that differ by m
 constexpr int kMostHalves = 12;                      // of both sides together
 constexpr double kPartError = 4;                     // of a part, times the tolerance
 constexpr int kPartHalves = 8;                       // likewise, into parts
+constexpr double kPartRounding = 1 + 1e-9;           // of the sizes of parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
 constexpr std::size_t kLeavesOfThread = 256;         // that a thread looks at
 constexpr double kDeep = 0.3;                        // of a leaf: nearer to the boundary it makes slivers
 
-// Cells of a box of this size whose triangles are off by the tolerance: sides are chosen so that the
-// derivatives along both count equally.
+// Cells of a box of this size whose halves are off by the tolerance, nearly: sides are chosen so that the
+// derivatives along both count equally, and the better diagonals.
 double cells_for(const Curvature& c, const Vec<2>& size, double tolerance) {
-    double both = std::sqrt(c.uu * c.vv) + c.uv;
-    if (c.is_saddle()) both = std::min(both, std::sqrt(c.apart().uu * c.apart().vv) / 2);
+    const double mean = std::sqrt(c.uu * c.vv), signs = c.sure_uu * c.sure_vv;
+    const double both = signs == 0    ? mean + c.uv
+                        : signs < 0   ? std::max(mean / 2, c.uv)
+                        : c.uv < mean ? mean - c.uv / 2
+                                      : std::max(mean / 2, c.uv - mean);
     return both * size[0] * size[1] / (4 * tolerance);
 }
 
@@ -99,6 +103,11 @@ double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box
     return mean >= kFewCells && most <= kWaste * mean ? mean : 0;
 }
 
+// What has to be small over a part.
+Curvature CurvatureTree::matters_of(const Bending& part) const {
+    return part.least > 0 && knows_normals_ ? part.seen(0) : part.full;
+}
+
 // Adds what is known of each part of the box, row by row, and finds what holds in all of them; false as soon
 // as the box needs more cells than `most`.
 bool CurvatureTree::add_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,
@@ -118,7 +127,7 @@ bool CurvatureTree::add_parts(const DerivativeQuery<2, 3>& surface, const Box<2>
             }
             found.full.restrict_to(all.full);
             part_bendings_.push_back(found);
-            const Curvature matters = found.least > 0 && knows_normals_ ? found.seen(0) : found.full;
+            const Curvature matters = matters_of(found);
             if (i + j == 0) together = matters;
             together.include(matters);
             if (!(cells_for(together, box.hi - box.lo, tolerance) <= most)) return false;
@@ -150,11 +159,14 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
     const auto of_parts = std::span(part_bendings_).subspan(first);
 
     size = box.hi - box.lo;
+    const Vec<2> part =
+        kPartRounding * Vec<2>{{std::ldexp(size[0], -parts[0]), std::ldexp(size[1], -parts[1])}};
     const auto is_fine = [&] {
-        if (matters.error(size) > kAlmost * tolerance) return false;
-        for (const Bending& b : of_parts)
-            if (!keeps(b, size, false, b.full.along(size[0], size[1]) / 8, tolerance)) return false;
-        return true;
+        return std::all_of(of_parts.begin(), of_parts.end(), [&](const Bending& b) {
+            double off = matters_of(b).error(size);
+            if (b.knows_middle()) off = std::min(off, b.cells_error(part, size, 0));
+            return off <= kAlmost * tolerance && keeps_in_cells(b, part, size, tolerance);
+        });
     };
     while (worth && !is_fine()) {
         halve_longer(matters, size, halves);

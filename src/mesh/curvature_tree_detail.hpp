@@ -72,6 +72,26 @@ Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal);
 // from second derivatives that `c` bounds there. See the essay in curvature_tree.cpp.
 double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec<2>& b, const Vec<2>& d);
 
+// A quadratic function: its second derivatives, with their signs.
+struct Quadratic {
+    double uu = 0, uv = 0, vv = 0;
+    // Bound of the distance from its linear interpolant on the triangle, sharp but for rounding.
+    double error(const std::array<Vec<2>, 3>& corner) const;
+    // Of the diagonals of a box of this size the one on which it differs less from its interpolant: whether
+    // that is the one from the lower corner to the upper one.
+    bool prefers_rising(const Vec<2>& size) const {
+        return (uu * size[0] * size[0] + vv * size[1] * size[1]) * uv <= 0;
+    }
+    double halves_error(const Vec<2>& size) const;  // with that diagonal
+    double fan_error(const Vec<2>& size) const;     // of triangles of its sides and its centre
+};
+// A half of the box.
+inline std::array<Vec<2>, 3> half_of(const Box<2>& box, bool rising) {
+    const Vec<2> right{{box.hi[0], box.lo[1]}};
+    return rising ? std::array{box.lo, right, box.hi}
+                  : std::array{right, box.hi, Vec<2>{{box.lo[0], box.hi[1]}}};
+}
+
 inline constexpr double kMostTurn = 0.5;  // sine of what normals may turn by within a box
 inline constexpr double kChord = 1.06;    // chord over sine of angles with such sines
 
@@ -83,13 +103,13 @@ struct Bending {
     Vec<3> n{};           // of length 1
     double tilt = 0;      // |N - n| is at most this
     double a = 0, b = 0;  // what makes parameters lengths
-    double least = 0,
-           most = 0;  // |DS d| is between these multiples of |(a du, b dv)|; least = 0: nothing is known
-    // Of a box: bounds of the second derivatives of n . S in its middle, infinite if they are not known, and
-    // of the third ones in all of it: uuu, uuv, uvv, vvv.
+    double least = 0;     // |DS d| is at least this times |(a du, b dv)|; 0: nothing is known
+    // Of a box: the second derivatives of n . S in its middle, infinite if they are not known, what they are
+    // off by at most, and bounds of the third ones in all of the box: uuu, uuv, uvv, vvv.
     struct Middle {
         Vec<2> at{};
-        double uu = kInfinity, uv = 0, vv = 0;
+        Quadratic second{kInfinity, 0, 0};
+        std::array<double, 3> off{};
         std::array<double, 4> third{};
     } middle = {};
 
@@ -101,10 +121,22 @@ struct Bending {
     // Bound of the interpolation error of what is seen along normals that are within `turn` of the one below,
     // in the halves of a cell of the box that this is of.
     double seen_error(const Box<2>& cell, double turn) const;
-    bool knows_middle() const { return middle.uu < kInfinity; }
+    // The same of the halves of the cell on both sides of the better diagonal, and of one triangle in it; at
+    // most that. REQUIRES knows_middle().
+    double halves_error(const Box<2>& cell, double turn) const;
+    double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const;
+    bool prefers_rising(const Vec<2>& cell) const {
+        return !knows_middle() || middle.second.prefers_rising(cell);
+    }
+    // Of halves of cells of this size anywhere in the box, which has the size `box`, and of triangles of
+    // their sides and centres. REQUIRES knows_middle().
+    double cells_error(const Vec<2>& box, const Vec<2>& cell, double turn) const;
+    bool knows_middle() const { return middle.second.uu < kInfinity; }
 
 private:
-    double steady_error(const Box<2>& cell, double turn, const Curvature& seen) const;
+    struct Rest;
+    Rest rest_in(const Box<2>& cell, double turn) const;
+    double steady_error(const Rest& rest, const Curvature& seen) const;
 };
 
 // Of S over the box, with bounds of |S_u| and |S_v|. `knows_normals`: false leaves all else unknown.
@@ -132,16 +164,16 @@ inline BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>&
 // How points of the mesh find their feet on S.
 struct Shift {
     bool exists = false;
-    double q = 0, turn = 0;  // the normal turns by at most so much on the way
+    double q = 0, far = 1, turn = 0;  // the normal turns by at most so much on the way
     // Bounds of the distance from the foot, where `seen` bounds the interpolation error along normals, and of
     // the distance from places on the way there.
     double across(double seen, double e) const;
     double way(double e) const;
 };
 // e: bound of the whole interpolation error. `near`: bounds as far around as reach_of says; `reflected`: 3 if
-// the surface ends there, else 1.
+// the surface ends there, else 1. `is_deep`: no side is on the boundary of the face.
 Vec<2> reach_of(const Bending& at, double e);
-Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected);
+Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected, bool is_deep);
 
 // Whether a kink adds less to the error of linear interpolation over a box with such a side than anybody
 // sees: arcs written with double knots, say, which are smooth but for the digits of the file. What it adds is
@@ -265,10 +297,12 @@ private:
     // with one, which kinks do not allow.
     bool keeps(const Bending& b, const Vec<2>& size, bool kinks, double error, double tolerance) const;
     bool keeps(const Bending& b, const Box<2>& cell, bool kinks, double error, double tolerance) const;
+    bool keeps_in_cells(const Bending& b, const Vec<2>& box, const Vec<2>& cell, double tolerance) const;
     bool accept(Node& node, const Bending& known, double error, double tolerance) const;
     std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       double tolerance) const;
     // curvature_tree_blocks.cpp
+    Curvature matters_of(const Bending& part) const;
     double cells_seen(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
                       const Jet<2, 2, Vec<3>>& middle, double tolerance) const;
     bool make_block(const DerivativeQuery<2, 3>& surface, int node, const Jet<2, 2, Vec<3>>& middle,

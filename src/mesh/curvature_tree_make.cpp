@@ -47,6 +47,13 @@ int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2
     return by_u >= by_v ? 0 : 1;
 }
 
+// Of halves of a box of this size, by what is seen in the middle: of the better ones, if they may be chosen.
+double least_error(const Curvature& seen, const Jet<2, 2, Vec<3>>& middle, const Vec<2>& size) {
+    const Vec<3> m = cross(middle(1, 0), middle(0, 1));
+    if (!(norm(m) > 0)) return seen.error(size);
+    return Quadratic{seen.sure_uu, dot(unit(m), middle(1, 1)), seen.sure_vv}.halves_error(size);
+}
+
 }  // namespace
 
 // What is known of the box decides; whether it is fine, and whether it stays whole.
@@ -121,7 +128,8 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
     const Curvature seen = seen_at(middle, tree_.knows_normals_);
     set_lengths(middle, size);
-    const double asked = seen.error(size);
+    const bool may_be_halved = inside && tree_.knows_normals_ && !node.has_columns();
+    const double asked = may_be_halved ? least_error(seen, middle, size) : seen.error(size);
     std::optional<Cut> cut;
     if (asked > tolerance && item.depth < kMaxTreeDepth)
         cut = tree_.cut(node, longer_side(seen, size, length_));

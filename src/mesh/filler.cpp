@@ -16,7 +16,8 @@ namespace freiform {
 namespace {
 
 constexpr double kPole = 1.0 / 64;
-constexpr std::size_t kTrianglesAtOnce = 32;    // that a thread judges
+constexpr double kLittleError = 1.0 / 64;     // of the tolerance: triangles without feet had better be large
+constexpr std::size_t kTrianglesAtOnce = 32;  // that a thread judges
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
@@ -27,6 +28,16 @@ constexpr double kNearBoundary =
 void sort_down(std::array<std::pair<double, int>, 3>& x) {
     for (const std::size_t k : {0, 1, 0})
         if (x[k] < x[k + 1]) std::swap(x[k], x[k + 1]);
+}
+
+// By what is seen in the middle.
+double least_error(const Jet<2, 2, Vec<3>>& middle, const std::array<Vec<2>, 3>& corner, bool along_normal) {
+    const Vec<3> m = cross(middle(1, 0), middle(0, 1));
+    if (along_normal && norm(m) > 0) {
+        const Vec<3> n = unit(m);
+        return Quadratic{dot(n, middle(2, 0)), dot(n, middle(1, 1)), dot(n, middle(0, 2))}.error(corner);
+    }
+    return linear_interpolation_bound(seen_at(middle, false), corner[0], corner[1], corner[2]);
 }
 
 }  // namespace
@@ -174,18 +185,18 @@ Filler::Known Filler::found(int triangle, int& place) const {
     Box<2> box;
     for (const Vec<2>& p : corner) box.add(p);
     const int plain = is_plain(v[0]) + is_plain(v[1]) + is_plain(v[2]);
+    const bool is_deep = std::min({v[0], v[1], v[2]}) >= first_kept_;  // those of the boundary come first
     place = tree_.place_of(box, place);
     const Bending over = tree_.over(box, place);
-    Known k{judge_(over, box, corner, plain, place), t_.stamp(triangle), true};
+    Known k{judge_(over, box, corner, plain, place, is_deep), t_.stamp(triangle), true};
     if (k.bound <= demands_.tolerance) return k;
     const auto judge_by = [&](Bending own) {
         own.full.restrict_to(over.full);
-        if (const Judgement second = judge_(own, box, corner, plain, place); second.bound <= k.bound)
+        if (const Judgement second = judge_(own, box, corner, plain, place, is_deep); second.bound <= k.bound)
             static_cast<Judgement&>(k) = second;
     };
     const auto middle = jet<2>(surface_.geometry(), (0.5 * (box.lo + box.hi)).c);
-    const bool hopeless = !(linear_interpolation_bound(seen_at(middle, plain < 3), corner[0], corner[1],
-                                                       corner[2]) <= demands_.tolerance);
+    const bool hopeless = !(least_error(middle, corner, plain < 3) <= demands_.tolerance);
     if (const Variation* varies = tree_.variation_in(place))
         judge_by(bending_from_middle(surface_, box, plain < 3, middle, *varies));
     if (!(k.bound <= demands_.tolerance) && !hopeless) judge_by(bending_of(surface_, box, plain < 3, middle));
@@ -288,7 +299,9 @@ bool Filler::refine(std::size_t max_points) {
                 for (const int i : again) queue.push_back({i, t_.stamp(i)});
                 continue;
             }
-            if (is_stuck()) {  // where else?
+            if (is_stuck() && k.whole > kLittleError * demands_.tolerance) {
+                stuck_at_.clear();    // smaller ones may have feet
+            } else if (is_stuck()) {  // where else?
                 for (std::size_t i = head + 1; i < queue.size(); ++i)
                     if (const int t = queue[i].triangle; t_.stamp(t) == queue[i].stamp)
                         if (const Known& other = known(t); !(other.bound <= demands_.tolerance) &&

@@ -5,6 +5,8 @@
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/mesh/triangulate.hpp>
 
+#include <limits>
+
 namespace freiform {
 
 class Filler {
@@ -85,7 +87,7 @@ private:
     FaceDemands demands_;
     int place_ = 0;  // in the tree, of the triangle that was last judged
     std::size_t most_for_angles_ = 0;
-    int first_kept_ = 0;
+    int first_kept_ = std::numeric_limits<int>::max();
     std::vector<char> kept_;
     std::vector<Vec<2>> stuck_at_;
     std::vector<char> plain_;        // of vertices, as far as one is

@@ -51,7 +51,8 @@ CellError cell_error(const DerivativeQuery<2, 3>& surface, const Box<2>& cell, c
     bool kinked = false;
     for (int d = 0; d < 2; ++d)
         for (const Kink& k : surface.kinks(d)) kinked |= cell.lo[d] <= k.at && k.at <= cell.hi[d];
-    if (const Shift shift = smooth && !kinked ? shift_of(b, error, b.full, 1) : Shift{}; shift.exists) {
+    if (const Shift shift = smooth && !kinked ? shift_of(b, error, b.full, 1, false) : Shift{};
+        shift.exists) {
         const Curvature seen = b.seen(shift.turn);
         const CellError less = parts(seen, shift.across(0, error));
         if (less.x + less.y < out.x + out.y) out = less;

@@ -30,15 +30,17 @@ Curvature Judge::over_clamped(const Box<2>& box) const {
 }
 
 Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
-                            int plain, int near_place) const {
+                            int plain, int near_place, bool is_deep) const {
     const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
     const double e = error_of(at.full) + tree_.kink_bound(box);
     const auto seen_error = [&](double turn) {
-        return std::min(error_of(at.seen(turn)), at.seen_error(box, turn) * kGrow);
+        const double by_all = std::min(error_of(at.seen(turn)), at.seen_error(box, turn) * kGrow);
+        if (by_all <= tolerance_ || !at.knows_middle()) return by_all;
+        return std::min(by_all, at.triangle_error(box, corner, turn) * kGrow);
     };
-    return judged(at, box, seen_error, e, plain, near_place);
+    return judged(at, box, seen_error, e, plain, near_place, is_deep);
 }
 
 // The smallest circle around a half has the diagonal of the cell as diameter.
@@ -49,17 +51,29 @@ double Judge::cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sid
 Judgement Judge::cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
                       int near_place) const {
     const auto seen_error = [&](double turn) { return at.seen(turn).error(sides) * kGrow; };
-    return judged(at, box, seen_error, error, plain, near_place);
+    return judged(at, box, seen_error, error, plain, near_place, true);
 }
 
 Judgement Judge::leaf(const Bending& at, const Box<2>& box, double error, int plain, int near_place) const {
     const auto seen_error = [&](double turn) { return at.seen_error(box, turn) * kGrow; };
-    return judged(at, box, seen_error, error, plain, near_place);
+    return judged(at, box, seen_error, error, plain, near_place, true);
+}
+
+Judgement Judge::cells(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error,
+                       int near_place) const {
+    const Vec<2> size = kGrow * (box.hi - box.lo);
+    const auto seen_error = [&](double turn) { return at.cells_error(size, sides, turn) * kGrow; };
+    return judged(at, box, seen_error, error, 0, near_place, true);
+}
+
+Judgement Judge::halves(const Bending& at, const Box<2>& box, double error, int near_place) const {
+    const auto seen_error = [&](double turn) { return at.halves_error(box, turn) * kGrow; };
+    return judged(at, box, seen_error, error, 0, near_place, true);
 }
 
 template <class SeenError>
 Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double e,
-                        int plain, int near_place) const {
+                        int plain, int near_place, bool is_deep) const {
     Judgement k{false, kInfinity, e, at.full};
     if (plain == 3) {
         k.bound = e;
@@ -82,7 +96,7 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
         }
     // True if it is enough to know that `near` bounds second derivatives around.
     const auto is_enough = [&](const Curvature& near) {
-        const Shift shift = shift_of(at, e, near, reflected);
+        const Shift shift = shift_of(at, e, near, reflected, is_deep);
         if (!shift.exists) return false;
         k.shifted = true;
         const double bound = plain > 0 ? shift.way(e) : std::min(e, shift.across(seen_error(shift.turn), e));

@@ -16,20 +16,28 @@ public:
     Judge(const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, const Box<2>& face,
           double tolerance);
     // A triangle within `box`, of which `at` is known; `plain` of its corners need no foot. `near_place`: of
-    // the box, in the tree.
+    // the box, in the tree. `is_deep`: no side is on the boundary of the face.
     Judgement operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner, int plain,
-                         int near_place) const;
-    // The same of halves of a cell with these sides, whose interpolation error is at most `error`.
+                         int near_place, bool is_deep) const;
+    // The same of halves of a cell, none of which is at the boundary, with these sides, whose interpolation
+    // error is at most `error`.
     Judgement cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
                    int near_place) const;
     double cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sides) const;
     // The same of halves of the box itself, or of triangles of points on its sides.
     Judgement leaf(const Bending& at, const Box<2>& box, double error, int plain, int near_place) const;
+    // Of halves of all cells in the box by the better diagonal, and triangles of their sides and centres, all
+    // of whose corners have feet. REQUIRES at.knows_middle().
+    Judgement cells(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error,
+                    int near_place) const;
+    // Of halves of the box by the better diagonal, all of whose corners have feet. REQUIRES
+    // at.knows_middle().
+    Judgement halves(const Bending& at, const Box<2>& box, double error, int near_place) const;
 
 private:
     template <class SeenError>  // of what is seen along normals that turn by so much
     Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
-                     int plain, int near_place) const;
+                     int plain, int near_place, bool is_deep) const;
     Curvature over_clamped(const Box<2>& box) const;
 
     const CurvatureTree& tree_;

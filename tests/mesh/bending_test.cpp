@@ -48,8 +48,10 @@ Interval part_of(Random& random, const Interval& all, bool is_all) {
     return {std::min(a, b), std::max(a, b)};
 }
 
-// The largest of |m . (S - L)| in triangles of points on the sides of the cell, m of length 1 within `turn`
-// of the normals.
+// The largest of |m . (S - L)| in the triangles, m of length 1 within `turn` of the normals.
+double largest_seen(const SurfaceGeometry& s, std::span<const std::array<Vec<2>, 3>> triangles, double turn);
+
+// The same of triangles of points on the sides of the cell.
 double largest_seen(Random& random, const SurfaceGeometry& s, const Box<2>& cell, double turn) {
     const auto at = [&](double x, double y) {
         return Vec<2>{
@@ -60,6 +62,10 @@ double largest_seen(Random& random, const SurfaceGeometry& s, const Box<2>& cell
                                                           {at(0, 0), at(1, 1), at(0, 1)},
                                                           {at(0, 0), at(1, y), at(x, 1)},
                                                           {at(x, 0), at(1, y), at(0, 1)}}};
+    return largest_seen(s, triangles, turn);
+}
+
+double largest_seen(const SurfaceGeometry& s, std::span<const std::array<Vec<2>, 3>> triangles, double turn) {
     double most = 0;
     for (const auto& t : triangles) {
         std::array<Vec<3>, 3> corner;
@@ -83,10 +89,31 @@ double largest_seen(Random& random, const SurfaceGeometry& s, const Box<2>& cell
     return most;
 }
 
+Vec<2> place_in(Random& random, const Box<2>& box) {
+    return {{random.real(box.lo[0], box.hi[0]), random.real(box.lo[1], box.hi[1])}};
+}
+
 struct Found {
-    int known = 0, sharper = 0;
-    double sharpest = 0;
+    int known = 0, sharper = 0, halved = 0;
+    double sharpest = 0, sharpest_half = 0;
 };
+
+// Halves by the better diagonal, and any triangle in the cell.
+void look_at_parts(Random& random, const SurfaceGeometry& s, const Bending& b, const Box<2>& cell,
+                   double turn, Found& out) {
+    const bool rising = b.prefers_rising(cell.hi - cell.lo);
+    const std::array halves{half_of(cell, rising),
+                            std::array{cell.lo, rising ? cell.hi : Vec<2>{{cell.hi[0], cell.lo[1]}},
+                                       Vec<2>{{cell.lo[0], cell.hi[1]}}}};
+    const double most = largest_seen(s, halves, turn), said = b.halves_error(cell, turn);
+    EXPECT_LE(most, said * (1 + 1e-9));
+    out.halved += said < 0.8 * b.seen_error(cell, turn);
+    out.sharpest_half = std::max(out.sharpest_half, most / said);
+    for (int i = 0; i < 4; ++i) {
+        const std::array t{place_in(random, cell), place_in(random, cell), place_in(random, cell)};
+        EXPECT_LE(largest_seen(s, std::span(&t, 1), turn), b.triangle_error(cell, t, turn) * (1 + 1e-9));
+    }
+}
 
 // In boxes of the surface, so large in parts of all of it, and in parts of them. `most_turn` of normals
 // beyond those at the samples.
@@ -119,6 +146,7 @@ Found look_at(Random& random, const SurfaceGeometry& s, const Interval& on, int 
             ++out.known;
             out.sharper += said < 0.8 * usual;
             out.sharpest = std::max(out.sharpest, most / said);
+            look_at_parts(random, s, b, cell, turn, out);
         }
     }
     return out;
@@ -136,6 +164,8 @@ TEST(Bending, what_cells_show_is_bounded_from_the_middle_of_a_box) {
         EXPECT_GT(found.known, 500);
         EXPECT_GT(found.sharper, found.known / 4);
         EXPECT_GT(found.sharpest, 0.5);
+        EXPECT_GT(found.halved, found.known / 8);
+        EXPECT_GT(found.sharpest_half, 0.6);
     }
 }
 
@@ -187,6 +217,64 @@ TEST(Bending, normals_that_turn_are_counted) {
     }
     EXPECT_GT(small, 1.2);
     EXPECT_GT(whole, 1.01);
+}
+
+// The critical point of the distance from p that Newton's method finds from y.
+Vec<2> foot_from(const SurfaceGeometry& s, const Vec<3>& p, Vec<2> x) {
+    for (int k = 0; k < 30; ++k) {
+        const auto j = jet<2>(s, x.c);
+        const Vec<3> d = j.value() - p, &u = j(1, 0), &v = j(0, 1);
+        const double uu = dot(u, u) + dot(d, j(2, 0)), uv = dot(u, v) + dot(d, j(1, 1)),
+                     vv = dot(v, v) + dot(d, j(0, 2)), det = uu * vv - uv * uv, by_u = dot(u, d),
+                     by_v = dot(v, d);
+        x = x - Vec<2>{{(vv * by_u - uv * by_v) / det, (uu * by_v - uv * by_u) / det}};
+    }
+    return x;
+}
+
+TEST(Shift, feet_are_as_near_as_it_says) {
+    Random random(35);
+    const auto aside = [&] { return random.real(-0.45, 0.45); };
+    const auto z = [&](int, int) { return random.real(-1, 1); };
+    const auto weight = [&] { return random.real(0.5, 2); };
+    int beyond = 0;
+    double farthest = 0;
+    for (int round = 0; round < 300; ++round) {
+        const SurfaceGeometry s = graph<Hom<3>>(*BSplineBasis::clamped_uniform(3, 7), 0.3, z, weight, aside);
+        const DerivativeQuery<2, 3> surface(s);
+        const double size = random.real(0.02, 0.5);
+        const Vec<2> lo = place_in(random, {{{1, 1}}, {{3 - size, 3 - size}}});
+        const Box<2> cell{lo, lo + Vec<2>{{size, size * random.real(0.3, 1)}}};
+        const Bending b = bending_of(surface, cell, true);
+        if (!(b.least > 0) || !b.knows_middle()) continue;
+        const double e = b.full.error(cell.hi - cell.lo);
+        const Vec<2> reach = reach_of(b, e);
+        const Box<2> around{cell.lo - reach, cell.hi + reach};
+        if (around.lo[0] < 0 || around.lo[1] < 0 || around.hi[0] > 4 || around.hi[1] > 4) continue;
+        const auto own = surface({around.side(0), around.side(1)});
+        const Curvature near{own(2, 0), own(1, 1), own(0, 2)};
+        const Shift shift = shift_of(b, e, near, 1, true);
+        EXPECT_GE(shift.exists, shift_of(b, e, near, 1, false).exists);
+        if (!shift.exists) continue;
+        beyond += !shift_of(b, e, near, 1, false).exists;
+        const auto t = half_of(cell, b.prefers_rising(cell.hi - cell.lo));
+        const double across = shift.across(b.halves_error(cell, shift.turn), e);
+        std::array<Vec<3>, 3> corner;
+        for (std::size_t k = 0; k < 3; ++k) corner[k] = jet<0>(s, t[k].c).value();
+        for (int i = 0; i < 20; ++i) {
+            const double l = random.real(0, 1), m = random.real(0, 1 - l), n = 1 - l - m;
+            const Vec<3> p = l * corner[0] + m * corner[1] + n * corner[2];
+            const Vec<2> y = l * t[0] + m * t[1] + n * t[2], x = foot_from(s, p, y), d = x - y;
+            const auto j = jet<1>(s, x.c);
+            const double far = std::hypot(b.a * d[0], b.b * d[1]) * b.least / e;
+            EXPECT_LE(far, shift.far * (1 + 1e-9));
+            EXPECT_LE(norm(j.value() - p), across * (1 + 1e-9));
+            EXPECT_LE(norm(unit(cross(j(1, 0), j(0, 1))) - b.n), b.tilt + shift.turn);
+            farthest = std::max(farthest, far);
+        }
+    }
+    EXPECT_GT(beyond, 10);  // which may not be at the boundary of a face
+    EXPECT_GT(farthest, 0.3);
 }
 
 TEST(Bending, of_several_boxes_knows_no_middle) {

@@ -105,17 +105,20 @@ double sampled_distance(const SurfaceGeometry& s, const FaceMesh& mesh) {
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 7) {
         const auto& t = mesh.triangles[i];
         const auto uv = [&](std::size_t k) { return mesh.uv[std::size_t(t[k])]; };
-        Vec<2> x = (1.0 / 3) * (uv(0) + uv(1) + uv(2));
-        Vec<3> p{};
-        for (std::size_t k = 0; k < 3; ++k) p += (1.0 / 3) * jet<0>(s, uv(k).c).value();
-        for (int step = 0; step < 4; ++step) {  // to the foot, by Gauss and Newton
-            const auto j = jet<1>(s, x.c);
-            const Vec<3> d = p - j.value();
-            const double uu = dot(j.d[1], j.d[1]), u_v = dot(j.d[1], j.d[2]), vv = dot(j.d[2], j.d[2]),
-                         du = dot(d, j.d[1]), dv = dot(d, j.d[2]), det = uu * vv - u_v * u_v;
-            x += Vec<2>{{(vv * du - u_v * dv) / det, (uu * dv - u_v * du) / det}};
+        for (const auto& l :
+             {std::array{1.0 / 3, 1.0 / 3, 1.0 / 3}, {0.5, 0.5, 0.0}, {0.0, 0.5, 0.5}, {0.5, 0.0, 0.5}}) {
+            Vec<2> x{};
+            Vec<3> p{};
+            for (std::size_t k = 0; k < 3; ++k) x += l[k] * uv(k), p += l[k] * jet<0>(s, uv(k).c).value();
+            for (int step = 0; step < 4; ++step) {  // to the foot, by Gauss and Newton
+                const auto j = jet<1>(s, x.c);
+                const Vec<3> d = p - j.value();
+                const double uu = dot(j.d[1], j.d[1]), u_v = dot(j.d[1], j.d[2]), vv = dot(j.d[2], j.d[2]),
+                             du = dot(d, j.d[1]), dv = dot(d, j.d[2]), det = uu * vv - u_v * u_v;
+                x += Vec<2>{{(vv * du - u_v * dv) / det, (uu * dv - u_v * du) / det}};
+            }
+            most = std::max(most, norm(p - jet<0>(s, x.c).value()));
         }
-        most = std::max(most, norm(p - jet<0>(s, x.c).value()));
     }
     return most;
 }
@@ -218,6 +221,74 @@ TEST(Blocks, of_steep_hills_do_without_feet) {
     EXPECT_GT(leaves, 2000);
     EXPECT_GT(plain, 200);
     EXPECT_GT(counted_on, 20);
+}
+
+double wave(double x) { return 0.4 * std::sin(0.02 * x * x); }
+
+// z = wave(x + sign y): parameter lines do not run along the waves, but one diagonal of cells does.
+SurfaceGeometry slanted_waves(double sign) {
+    constexpr int kSize = 12;
+    const auto basis = must(BSplineBasis::clamped_uniform(3, kSize));
+    const auto at = [&](int i) {
+        const std::size_t k = std::size_t(i);
+        return (basis.knots()[k + 1] + basis.knots()[k + 2] + basis.knots()[k + 3]) / 3;
+    };
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < kSize; ++i)
+        for (int k = 0; k < kSize; ++k) c.push_back({{at(i), at(k), wave(at(i) + sign * at(k))}});
+    return must(Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({kSize, kSize}, std::move(c))));
+}
+
+// Triangles that cannot be done without: halves of squares whose sides have this error.
+double triangles_of_waves(double sign, double tolerance) {
+    constexpr double kStep = 1.0 / 32;
+    double sum = 0;
+    for (double x = kStep / 2; x < 9; x += kStep)
+        for (double y = kStep / 2; y < 9; y += kStep) {
+            const double z = x + sign * y;
+            const double bend = (wave(z + kStep) - 2 * wave(z) + wave(z - kStep)) / (kStep * kStep);
+            sum += kStep * kStep * std::abs(bend) / (4 * tolerance);
+        }
+    return sum;
+}
+
+TEST(Blocks, are_halved_along_waves_and_meet_in_the_middle_beside_finer_ones) {
+    int centres = 0;
+    for (const double sign : {1.0, -1.0}) {
+        const SurfaceGeometry s = slanted_waves(sign);
+        const DerivativeQuery<2, 3> surface(s);
+        const FaceBoundary boundary = square_of(9, false);
+        const FaceDemands demands{.tolerance = std::ldexp(sign > 0 ? 1.0 : 0.6, -13)};
+        const auto mesh = must(mesh_face(surface, boundary, demands, 1'000'000));
+        EXPECT_LE(mesh.bound, demands.tolerance);
+        expect_covers_once(mesh, boundary);
+        const double found = sampled_distance(s, mesh);
+        EXPECT_LE(found, mesh.bound);
+        EXPECT_GE(found, 0.7 * mesh.bound);
+        const double least = triangles_of_waves(sign, demands.tolerance);
+        EXPECT_LE(double(mesh.triangles.size()), 2.2 * least + 3 * double(boundary.segments.size()));
+
+        const auto tree = must(
+            CurvatureTree::make(surface, boundary.uv, boundary.segments, demands, 1'000'000, {true, true}));
+        const Judge judge(tree, surface, {{{0, 0}}, {{9, 9}}}, demands.tolerance);
+        const BlockMesh blocks =
+            mesh_blocks(tree, judge, demands.tolerance, false, {}, [](const BlockOutline&) {});
+        std::vector<Vec<2>> points = blocks.outline.points;
+        points.insert(points.end(), blocks.points.begin(), blocks.points.end());
+        int falling = 0, rising = 0;
+        for (const auto& t : blocks.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec<2> d = points[std::size_t(t[(k + 1) % 3])] - points[std::size_t(t[k])];
+                falling += d[0] * d[1]<0, rising += d[0] * d[1]> 0;
+            }
+        EXPECT_GT(sign > 0 ? falling : rising, 3 * (sign > 0 ? rising : falling));
+        for (std::size_t i = 0; i < tree.block_count(); ++i)
+            if (const auto b = tree.block(i); b.first_part < 0) {
+                const Vec<2> middle{{b.box.side(0).middle(), b.box.side(1).middle()}};
+                centres += std::find(points.begin(), points.end(), middle) != points.end();
+            }
+    }
+    EXPECT_GT(centres, 20);
 }
 
 TEST(Blocks, take_no_more_triangles_than_leaves_would_by_much) {

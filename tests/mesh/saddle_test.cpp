@@ -123,6 +123,54 @@ TEST(Saddle, bounds_of_interpolation_hold_and_are_halved) {
     EXPECT_FALSE((Curvature{1, 0, 1, 1, 1}).is_saddle());
 }
 
+TEST(Quadratic, error_is_what_samples_find) {
+    Random random(13);
+    int definite = 0, acute = 0;
+    for (int k = 0; k < 4000; ++k) {
+        const double tiny = k % 5 == 0 ? std::exp2(-random.real(0, 60)) : 1;  // nearly degenerate
+        const double x = random.real(-1, 1), y = random.real(-1, 1), z = tiny * random.real(-1, 1);
+        const Quadratic q{x * x + z, x * y, y * y - z};
+        const auto f = [&](const Vec<2>& p) {
+            return (q.uu * p[0] * p[0] + 2 * q.uv * p[0] * p[1] + q.vv * p[1] * p[1]) / 2;
+        };
+        std::array<Vec<2>, 3> t;
+        for (Vec<2>& p : t) p = {{random.real(-1, 1), random.real(-1, 1)}};
+        double most = 0, inside = 0;
+        for (int i = 0; i <= 60; ++i)
+            for (int j = 0; i + j <= 60; ++j) {
+                const double l = i / 60.0, m = j / 60.0, n = 1 - l - m;
+                const double flat = l * f(t[0]) + m * f(t[1]) + n * f(t[2]);
+                const double off = std::abs(f(l * t[0] + m * t[1] + n * t[2]) - flat);
+                most = std::max(most, off);
+                if (l * m * n > 0) inside = std::max(inside, off);
+            }
+        const double said = q.error(t);
+        EXPECT_GE(said * (1 + 1e-12), most);
+        if (tiny == 1 && std::abs(q.uu * q.vv - q.uv * q.uv) > 1e-6) {
+            EXPECT_LE(said, most * 1.01 + 1e-6);
+            definite += q.uu * q.vv > q.uv * q.uv;
+            acute += inside == most;
+        }
+    }
+    EXPECT_GT(definite, 500);
+    EXPECT_GT(acute, 50);
+}
+
+TEST(Quadratic, takes_the_better_diagonal) {
+    Random random(14);
+    for (int k = 0; k < 1000; ++k) {
+        const Quadratic q{random.real(-1, 1), random.real(-1, 1), random.real(-1, 1)};
+        const Vec<2> size{{random.real(0.1, 1), random.real(0.1, 1)}};
+        const bool rising = q.prefers_rising(size);
+        EXPECT_EQ(q.halves_error(size), q.error(half_of({{}, size}, rising)));
+        EXPECT_LE(q.halves_error(size), q.error(half_of({{}, size}, !rising)) * (1 + 1e-12));
+    }
+    EXPECT_TRUE((Quadratic{1, 0, 1}).prefers_rising({{1, 1}}));
+    EXPECT_FALSE((Quadratic{1, 1, 1}).prefers_rising({{1, 1}}));
+    // A cylinder along the diagonal.
+    EXPECT_NEAR((Quadratic{1, 1, 1}).halves_error({{1, 1}}), 1.0 / 8, 1e-12);
+}
+
 TEST(Saddle, what_is_added_and_included_takes_signs_away) {
     const Curvature saddle{2, 0.5, 3, 1, -2}, rest{1, 1, 1};
     const Curvature less = saddle.plus(0.5, rest);
