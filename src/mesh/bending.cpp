@@ -145,14 +145,17 @@ void add_signs(Curvature& along, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, co
 }
 
 Bending::Middle middle_of(const std::array<Interval, 2>& on, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j,
-                          const Curvature& slip, const std::array<double, 4>& third) {
+                          const Curvature& slip, const std::array<double, 4>& third,
+                          const std::array<double, 4>& whole_third) {
     const auto off = [&](const Vec<3>& second, double by) {
         return (8 * kUnitRoundoff * norm(second) + by) * kSumSlack;
     };
     return {{{on[0].middle(), on[1].middle()}},
             {dot(n, j(2, 0)), dot(n, j(1, 1)), dot(n, j(0, 2))},
             {off(j(2, 0), slip.uu), off(j(1, 1), slip.uv), off(j(0, 2), slip.vv)},
-            third};
+            third,
+            {j(2, 0), j(1, 1), j(0, 2)},
+            whole_third};
 }
 
 // Of second derivatives less their part along n.
@@ -233,7 +236,7 @@ BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, b
         const Vec<2> half = half_sides(on);
         add_signs(along, *n, j, change_by(half, thirds(both.along), *slip));
         beside = beside_of(*n, j, change_by(half, thirds(both.all), *slip));
-        out.middle = middle_of(on, *n, j, *slip, thirds(both.along));
+        out.middle = middle_of(on, *n, j, *slip, thirds(both.along), thirds(both.all));
     }
     add_normals(out, on, j.d[1], j.d[2], *n, along, beside);
     return out;
@@ -264,7 +267,7 @@ BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2
         Curvature{std::abs(dot(*n, j(2, 0))), std::abs(dot(*n, j(1, 1))), std::abs(dot(*n, j(0, 2)))}.plus(
             kSumSlack, change_along);
     add_signs(seen, *n, j, change_along);
-    out.middle = middle_of(on, *n, j, slip, along);
+    out.middle = middle_of(on, *n, j, slip, along, variation.all);
     add_normals(out, on, j(1, 0), j(0, 1), *n, seen, beside_of(*n, j, change));
     return out;
 }
@@ -304,29 +307,54 @@ struct Bending::Rest {
     }
 };
 
-Bending::Rest Bending::rest_in(const Box<2>& cell, double turn) const {
+namespace {
+
+// Half the sides of the cell, and how far its middle is from that of the box.
+std::array<Vec<2>, 2> place_of(const Box<2>& cell, const Vec<2>& middle) {
     const std::array<Interval, 2> on{cell.side(0), cell.side(1)};
-    const Vec<2> h = half_sides(on);
     Vec<2> off{};
     for (int d = 0; d < 2; ++d) {
         const Interval& x = on[std::size_t(d)];
-        off[d] = std::abs(x.middle() - middle.at[d]) +
-                 4 * kUnitRoundoff * std::max({std::abs(x.lo), std::abs(x.hi), std::abs(middle.at[d])});
+        off[d] = std::abs(x.middle() - middle[d]) +
+                 4 * kUnitRoundoff * std::max({std::abs(x.lo), std::abs(x.hi), std::abs(middle[d])});
     }
+    return {half_sides(on), off};
+}
+
+}  // namespace
+
+Bending::Rest Bending::rest_in(const Box<2>& cell, double turn) const {
+    const auto [h, off] = place_of(cell, middle.at);
     const auto turned = [&](double du, double dv) {
         const double u = (across.uu * du + across.uv * dv) / a, v = (across.uv * du + across.vv * dv) / b;
         return kChord / least * std::sqrt(u * u + v * v);
     };
     // alpha + what is seen of second derivatives so far away, and of those beside n by normals that turn.
-    const auto& t = middle.third;
     const auto of = [&](double du, double dv, double turns) {
-        return Curvature{du * t[0] + dv * t[1] + turns * beside.uu, du * t[1] + dv * t[2] + turns * beside.uv,
-                         du * t[2] + dv * t[3] + turns * beside.vv};
+        return change_by({{du, dv}}, middle.third, {}).plus(turns, beside);
     };
     const double still = turned(off[0], off[1]) + kChord / least * kRounding + turn;
     const Curvature here = of(off[0] + h[0] / 3, off[1] + h[1] / 3, still);
     return {h, here.plus(1, {middle.off[0], middle.off[1], middle.off[2]}),
             of(h[0] * (2.0 / 3), 0, turned(h[0], 0)), of(0, h[1] * (2.0 / 3), turned(0, h[1]))};
+}
+
+double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const {
+    const auto [h, off] = place_of(cell, middle.at);
+    const auto& [uu, uv, vv] = middle.whole_second;
+    const std::array size{norm(uu) * h[0] * h[0], norm(uv) * h[0] * h[1], norm(vv) * h[1] * h[1]};
+    std::array<double, 3> s;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
+        s[k] = norm(d[0] * d[0] * uu + 2 * d[0] * d[1] * uv + d[1] * d[1] * vv);
+    }
+    const auto& third = middle.whole_third;
+    const Vec<2> third_of_half = off + (1.0 / 3) * h;
+    const Rest rest{h, change_by(third_of_half, third, {middle.off[0], middle.off[1], middle.off[2]}),
+                    change_by({{h[0] * (2.0 / 3), 0}}, third, {}),
+                    change_by({{0, h[1] * (2.0 / 3)}}, third, {})};
+    const double slip = 128 * kUnitRoundoff * (size[0] + 2 * size[1] + size[2]);
+    return rest.error(2 * largest_of_sides(s, slip), size[0] + size[1], size[2] + size[1]);
 }
 
 double Bending::seen_error(const Box<2>& cell, double turn) const {

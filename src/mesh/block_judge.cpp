@@ -32,6 +32,9 @@ struct BlockJudge {
             return within(judge.leaf(at, block.box, error, plain, block.node).bound);
         };
         if (tree.is_all_plain()) return out;
+        out.flat_halves = std::isfinite(out.flat) || !at.knows_middle()
+                              ? out.flat
+                              : within(judge.whole_halves_error(at, block.box));
         out.usual = out.halves = with(0);
         if (!std::isfinite(out.usual) && at.knows_middle())
             out.halves = within(judge.halves(at, block.box, error, block.node).bound);

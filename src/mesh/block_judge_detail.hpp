@@ -50,10 +50,11 @@ struct BlockGrid {
     }
 };
 
-// Bounds, where all points have feet, some have none; of leaves alone also where all are plain, and where all
-// have feet and the leaf is halved by the better diagonal. Infinite above the tolerance.
+// Bounds, where all points have feet, and some have none; of leaves alone also where all are plain. Those of
+// halves are of cells that are cut by the better diagonal. Infinite above the tolerance.
 struct JudgedBlock {
-    double usual = kInfinity, footless = kInfinity, flat = kInfinity, halves = kInfinity;
+    double usual = kInfinity, footless = kInfinity, flat = kInfinity, halves = kInfinity,
+           flat_halves = kInfinity;
 };
 
 JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,

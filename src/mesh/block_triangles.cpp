@@ -12,16 +12,20 @@
 namespace freiform {
 
 void BlockTriangles::settle(MeshedLeaf& l, const JudgedBlock& of_leaf, Work& work) const {
-    if (l.is_plain || l.count > kMostAround) return;
+    if (l.count > kMostAround) return;
+    const auto attempt = [&](double& bound) {
+        for (const bool has_centre : {false, true}) {
+            if (std::isfinite(bound)) return true;
+            l.has_centre = has_centre;
+            bound = judged(l, work);
+        }
+        return std::isfinite(bound);
+    };
     l.bound = l.count == 4 ? of_leaf.halves : of_leaf.usual;
-    for (const bool has_centre : {false, true}) {
-        if (std::isfinite(l.bound)) return;
-        l.has_centre = has_centre;
-        l.bound = judged(l, work);
-    }
-    if (std::isfinite(l.bound)) return;
-    l.has_centre = false;
-    l.is_plain = std::isfinite(of_leaf.flat);
+    l.flat = l.count == 4 ? of_leaf.flat_halves : of_leaf.flat;
+    if (!l.is_plain && attempt(l.bound)) return;
+    l.is_plain = true;
+    attempt(l.flat);
 }
 
 double BlockTriangles::judged(const MeshedLeaf& l, Work& work) const {
@@ -33,17 +37,18 @@ double BlockTriangles::judged(const MeshedLeaf& l, Work& work) const {
         for (std::size_t k = 0; k < 3; ++k)
             corner[k] = t[k] == l.count ? middle_of(block.box)
                                         : points_[std::size_t(border_of(l)[std::size_t(t[k])])];
-        bound = std::max(bound, judged(tree_.part_bendings(block)[0], block.node, corner));
+        bound =
+            std::max(bound, judged(tree_.part_bendings(block)[0], block.node, corner, l.is_plain ? 3 : 0));
         if (!std::isfinite(bound)) break;
     }
     return bound;
 }
 
-// Infinite above the tolerance.
-double BlockTriangles::judged(const Bending& bends, int node, const std::array<Vec<2>, 3>& corner) const {
+double BlockTriangles::judged(const Bending& bends, int node, const std::array<Vec<2>, 3>& corner,
+                              int plain) const {
     Box<2> box;
     for (const Vec<2>& p : corner) box.add(p);
-    const double bound = judge_(bends, box, corner, 0, node, true).bound;
+    const double bound = judge_(bends, box, corner, plain, node, true).bound;
     return bound <= tolerance_ ? bound : kInfinity;
 }
 
@@ -60,7 +65,7 @@ double BlockTriangles::bound_from_centres(const MeshedBlock& b) const {
         for (std::size_t k = 0; k < around.size(); ++k)
             bound = std::max(
                 bound, judged(bends, b.of_tree.node,
-                              {at(around[k]), at(around[(k + 1) % around.size()]), b.grid.centre(i, j)}));
+                              {at(around[k]), at(around[(k + 1) % around.size()]), b.grid.centre(i, j)}, 0));
     });
     return bound;
 }

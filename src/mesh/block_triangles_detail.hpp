@@ -23,8 +23,9 @@ struct MeshedLeaf {
     bool has_centre = false;         // and its triangles meet there
     std::array<int, 4> corner = {};  // numbers of points
     const int* border = nullptr;     // `count` of them, counter-clockwise from the lower corner
-    double bound = kInfinity;        // of its own triangles, where all points have feet
-    int centre = -1;                 // in the mesh, if it has one
+    // Of its own triangles, where all points have feet, and where none has.
+    double bound = kInfinity, flat = kInfinity;
+    int centre = -1;  // in the mesh, if it has one
     std::size_t triangles() const { return std::size_t(count) - (has_centre ? 0 : 2); }
 };
 inline std::span<const int> border_of(const MeshedLeaf& l) { return {l.border, l.count}; }
@@ -48,8 +49,9 @@ public:
     double bound_from_centres(const MeshedBlock& b) const;
 
 private:
+    // Infinite above the tolerance.
     double judged(const MeshedLeaf& l, Work& work) const;
-    double judged(const Bending& bends, int node, const std::array<Vec<2>, 3>& corner) const;
+    double judged(const Bending& bends, int node, const std::array<Vec<2>, 3>& corner, int plain) const;
 
     const CurvatureTree& tree_;
     const Judge& judge_;

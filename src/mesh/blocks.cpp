@@ -76,8 +76,8 @@ private:
     Box<2> box_of(const Leaf& l) const { return tree_.block(l.block).box; }
     bool needs_foot(const Leaf& l) const { return !l.is_plain && !std::isfinite(judged(l).footless); }
     double bound_of(const Leaf& l) const {
-        const JudgedBlock& j = judged(l);
-        return l.is_plain ? j.flat : std::max(l.bound, std::isfinite(j.footless) ? j.footless : 0);
+        const double footless = judged(l).footless;
+        return l.is_plain ? l.flat : std::max(l.bound, std::isfinite(footless) ? footless : 0);
     }
 
     static Vec<2> corner_of(const Box<2>& b, std::size_t k) {
@@ -121,7 +121,7 @@ private:
         std::erase_if(leaves_, [&](Leaf& l) {
             const JudgedBlock& j = judged(l);
             l.is_plain = !std::isfinite(j.halves);
-            const bool bad = l.is_plain && !std::isfinite(j.flat);
+            const bool bad = l.is_plain && !std::isfinite(std::min(j.flat, j.flat_halves));
             if (bad) dissolve(box_of(l));
             return bad;
         });
@@ -240,7 +240,7 @@ private:
         for (int round = 0; changed && round < kPlainRounds; ++round) {
             changed = false;
             for (Leaf& l : leaves_)
-                if (needs_foot(l) && std::isfinite(judged(l).flat) && meets_plain(border_of(l))) {
+                if (needs_foot(l) && std::isfinite(l.flat) && meets_plain(border_of(l))) {
                     make_plain(l);
                     changed = true;
                 }

@@ -118,25 +118,32 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
     return grow * best;
 }
 
-// Definite ones: half the squared radius, in the metric of their sign. The angle opposite the longest side
-// has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <= s2. Others have no
-// extreme inside, and on a side an eighth of what they are along it.
+// Half the squared radius of the smallest circle around a triangle with such squared sides. The angle
+// opposite the longest has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <=
+// s2.
+double largest_of_sides(std::array<double, 3> s, double slip) {
+    sort(s.data(), s.data() + 3);
+    const double beyond = s[0] + s[1] - s[2] + slip;
+    if (beyond <= 0 || !(s[1] > slip)) return s[2] / 8 + slip;
+    const double most = (s[0] + slip) / (4 * s[1]), found = beyond * beyond / (4 * s[0] * s[1]);
+    return s[2] / 8 / (1 - std::min(most, found)) + 4 * slip;
+}
+
+// The error is sum l_i l_j Q(v_i - v_j) / 2. Of indefinite ones it has no extreme inside, and on a side one
+// of an eighth of what they are along it.
 double Quadratic::error(const std::array<Vec<2>, 3>& corner) const {
     const Vec<2> side[3] = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
-    double s[3], size = 0;
+    std::array<double, 3> s;
+    double size = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double u = uu * side[k][0] * side[k][0], v = vv * side[k][1] * side[k][1],
                      both = 2 * uv * side[k][0] * side[k][1];
         s[k] = std::abs(u + both + v);
         size = std::max(size, std::abs(u) + std::abs(both) + std::abs(v));
     }
-    sort(s, s + 3);
-    const double slip = 16 * kUnitRoundoff * size, beyond = s[0] + s[1] - s[2] + slip;
-    const double least = s[2] / 8 + slip;
+    const double slip = 16 * kUnitRoundoff * size;
     const bool is_indefinite = uu * vv - uv * uv < -8 * kUnitRoundoff * (std::abs(uu * vv) + uv * uv);
-    if (is_indefinite || beyond <= 0 || !(s[1] > slip)) return least;
-    const double most = (s[0] + slip) / (4 * s[1]), found = beyond * beyond / (4 * s[0] * s[1]);
-    return s[2] / 8 / (1 - std::min(most, found)) + 4 * slip;
+    return is_indefinite ? std::max({s[0], s[1], s[2]}) / 8 + slip : largest_of_sides(s, slip);
 }
 
 double Quadratic::halves_error(const Vec<2>& size) const {
@@ -183,10 +190,14 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
                           double tolerance) const {
     if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
     if (!knows_normals_ || kinks || !b.knows_middle()) return false;
-    const Shift shift = shift_of(b, error, b.full, kBeyond, true);
-    if (!shift.exists) return false;
-    const auto is_enough = [&](double seen) { return shift.across(seen, error) <= tolerance; };
-    return is_enough(b.seen_error(cell, shift.turn)) || is_enough(b.halves_error(cell, shift.turn));
+    const auto is_enough = [&](double whole, const auto& seen_error) {
+        const Shift shift = shift_of(b, whole, b.full, kBeyond, true);
+        return shift.exists && shift.across(seen_error(shift.turn), whole) <= tolerance;
+    };
+    const double of_halves = b.whole_halves_error(cell);
+    return of_halves <= tolerance ||
+           is_enough(error, [&](double turn) { return b.seen_error(cell, turn); }) ||
+           is_enough(std::min(error, of_halves), [&](double turn) { return b.halves_error(cell, turn); });
 }
 
 // The same of all cells of a block in a box of this size.

@@ -85,6 +85,9 @@ struct Quadratic {
     double halves_error(const Vec<2>& size) const;  // with that diagonal
     double fan_error(const Vec<2>& size) const;     // of triangles of its sides and its centre
 };
+// What sum l_i l_j s_ij / 2, for barycentric coordinates l, is at most, for s_ij of the sides. `slip`: what
+// they are off by.
+double largest_of_sides(std::array<double, 3> s, double slip);
 // A half of the box.
 inline std::array<Vec<2>, 3> half_of(const Box<2>& box, bool rising) {
     const Vec<2> right{{box.hi[0], box.lo[1]}};
@@ -111,6 +114,9 @@ struct Bending {
         Quadratic second{kInfinity, 0, 0};
         std::array<double, 3> off{};
         std::array<double, 4> third{};
+        // The same of S; `off` is of these, too.
+        std::array<Vec<3>, 3> whole_second{};
+        std::array<double, 4> whole_third{};
     } middle = {};
 
     void include(const Bending& o);
@@ -125,6 +131,11 @@ struct Bending {
     // most that. REQUIRES knows_middle().
     double halves_error(const Box<2>& cell, double turn) const;
     double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const;
+    // Of all of the interpolation error in the triangle. REQUIRES knows_middle().
+    double whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const;
+    double whole_halves_error(const Box<2>& cell) const {
+        return whole_error(cell, half_of(cell, prefers_rising(cell.hi - cell.lo)));
+    }
     bool prefers_rising(const Vec<2>& cell) const {
         return !knows_middle() || middle.second.prefers_rising(cell);
     }

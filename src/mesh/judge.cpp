@@ -34,7 +34,9 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
-    const double e = error_of(at.full) + tree_.kink_bound(box);
+    double e = error_of(at.full);
+    if (at.knows_middle()) e = std::min(e, at.whole_error(box, corner) * kGrow);
+    e += tree_.kink_bound(box);
     const auto seen_error = [&](double turn) {
         const double by_all = std::min(error_of(at.seen(turn)), at.seen_error(box, turn) * kGrow);
         if (by_all <= tolerance_ || !at.knows_middle()) return by_all;
@@ -66,9 +68,13 @@ Judgement Judge::cells(const Bending& at, const Box<2>& box, const Vec<2>& sides
     return judged(at, box, seen_error, error, 0, near_place, true);
 }
 
+double Judge::whole_halves_error(const Bending& at, const Box<2>& box) const {
+    return at.whole_halves_error(box) * kGrow + tree_.kink_bound(box);
+}
+
 Judgement Judge::halves(const Bending& at, const Box<2>& box, double error, int near_place) const {
     const auto seen_error = [&](double turn) { return at.halves_error(box, turn) * kGrow; };
-    return judged(at, box, seen_error, error, 0, near_place, true);
+    return judged(at, box, seen_error, std::min(error, whole_halves_error(at, box)), 0, near_place, true);
 }
 
 template <class SeenError>

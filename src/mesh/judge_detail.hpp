@@ -33,6 +33,7 @@ public:
     // Of halves of the box by the better diagonal, all of whose corners have feet. REQUIRES
     // at.knows_middle().
     Judgement halves(const Bending& at, const Box<2>& box, double error, int near_place) const;
+    double whole_halves_error(const Bending& at, const Box<2>& box) const;  // where they are plain; likewise
 
 private:
     template <class SeenError>  // of what is seen along normals that turn by so much

@@ -51,6 +51,20 @@ Interval part_of(Random& random, const Interval& all, bool is_all) {
 // The largest of |m . (S - L)| in the triangles, m of length 1 within `turn` of the normals.
 double largest_seen(const SurfaceGeometry& s, std::span<const std::array<Vec<2>, 3>> triangles, double turn);
 
+// The largest of |S - L| in the triangle.
+double largest_whole(const SurfaceGeometry& s, const std::array<Vec<2>, 3>& t) {
+    double most = 0;
+    std::array<Vec<3>, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = jet<0>(s, t[k].c).value();
+    for (int i = 0; i <= 12; ++i)
+        for (int k = 0; i + k <= 12; ++k) {
+            const double l = i / 12.0, m = k / 12.0, n = 1 - l - m;
+            const Vec<3> flat = l * corner[0] + m * corner[1] + n * corner[2];
+            most = std::max(most, norm(jet<0>(s, (l * t[0] + m * t[1] + n * t[2]).c).value() - flat));
+        }
+    return most;
+}
+
 // The same of triangles of points on the sides of the cell.
 double largest_seen(Random& random, const SurfaceGeometry& s, const Box<2>& cell, double turn) {
     const auto at = [&](double x, double y) {
@@ -94,8 +108,8 @@ Vec<2> place_in(Random& random, const Box<2>& box) {
 }
 
 struct Found {
-    int known = 0, sharper = 0, halved = 0;
-    double sharpest = 0, sharpest_half = 0;
+    int known = 0, sharper = 0, halved = 0, whole_halved = 0;
+    double sharpest = 0, sharpest_half = 0, sharpest_whole = 0;
 };
 
 // Halves by the better diagonal, and any triangle in the cell.
@@ -109,9 +123,17 @@ void look_at_parts(Random& random, const SurfaceGeometry& s, const Bending& b, c
     EXPECT_LE(most, said * (1 + 1e-9));
     out.halved += said < 0.8 * b.seen_error(cell, turn);
     out.sharpest_half = std::max(out.sharpest_half, most / said);
+    const double whole = b.whole_halves_error(cell);
+    for (const auto& t : halves) {
+        const double found = largest_whole(s, t);
+        EXPECT_LE(found, whole * (1 + 1e-9));
+        out.sharpest_whole = std::max(out.sharpest_whole, found / whole);
+    }
+    out.whole_halved += whole < 0.8 * b.full.error(cell.hi - cell.lo);
     for (int i = 0; i < 4; ++i) {
         const std::array t{place_in(random, cell), place_in(random, cell), place_in(random, cell)};
         EXPECT_LE(largest_seen(s, std::span(&t, 1), turn), b.triangle_error(cell, t, turn) * (1 + 1e-9));
+        EXPECT_LE(largest_whole(s, t), b.whole_error(cell, t) * (1 + 1e-9));
     }
 }
 
@@ -166,6 +188,8 @@ TEST(Bending, what_cells_show_is_bounded_from_the_middle_of_a_box) {
         EXPECT_GT(found.sharpest, 0.5);
         EXPECT_GT(found.halved, found.known / 8);
         EXPECT_GT(found.sharpest_half, 0.6);
+        EXPECT_GT(found.whole_halved, found.known / 8);
+        EXPECT_GT(found.sharpest_whole, 0.6);
     }
 }
 
