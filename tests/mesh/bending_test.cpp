@@ -137,6 +137,20 @@ void look_at_parts(Random& random, const SurfaceGeometry& s, const Bending& b, c
     }
 }
 
+// Of halves, and of triangles of sides and the centre.
+double largest_in_cells(const SurfaceGeometry& s, const Bending& b, const Box<2>& cell, double turn) {
+    const bool rising = b.prefers_rising(cell.hi - cell.lo);
+    const Vec<2> right{{cell.hi[0], cell.lo[1]}}, left{{cell.lo[0], cell.hi[1]}},
+        centre = 0.5 * (cell.lo + cell.hi);
+    const std::array triangles{half_of(cell, rising),
+                               std::array{cell.lo, rising ? cell.hi : right, left},
+                               std::array{cell.lo, right, centre},
+                               std::array{right, cell.hi, centre},
+                               std::array{cell.hi, left, centre},
+                               std::array{left, cell.lo, centre}};
+    return largest_seen(s, triangles, turn);
+}
+
 // In boxes of the surface, so large in parts of all of it, and in parts of them. `most_turn` of normals
 // beyond those at the samples.
 Found look_at(Random& random, const SurfaceGeometry& s, const Interval& on, int boxes, const Interval& sizes,
@@ -169,6 +183,8 @@ Found look_at(Random& random, const SurfaceGeometry& s, const Interval& on, int 
             out.sharper += said < 0.8 * usual;
             out.sharpest = std::max(out.sharpest, most / said);
             look_at_parts(random, s, b, cell, turn, out);
+            EXPECT_LE(largest_in_cells(s, b, cell, turn),
+                      b.cells_error(box.hi - box.lo, cell.hi - cell.lo, turn) * (1 + 1e-9));
         }
     }
     return out;
