@@ -190,14 +190,16 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
                           double tolerance) const {
     if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
     if (!knows_normals_ || kinks || !b.knows_middle()) return false;
-    const auto is_enough = [&](double whole, const auto& seen_error) {
-        const Shift shift = shift_of(b, whole, b.full, kBeyond, true);
-        return shift.exists && shift.across(seen_error(shift.turn), whole) <= tolerance;
-    };
     const double of_halves = b.whole_halves_error(cell);
-    return of_halves <= tolerance ||
-           is_enough(error, [&](double turn) { return b.seen_error(cell, turn); }) ||
-           is_enough(std::min(error, of_halves), [&](double turn) { return b.halves_error(cell, turn); });
+    if (of_halves <= tolerance) return true;
+    for (const bool halves : {false, true}) {
+        const double whole = halves ? std::min(error, of_halves) : error;
+        const Shift shift = shift_of(b, whole, b.full, kBeyond, true);
+        if (!shift.exists) continue;
+        const double seen = halves ? b.halves_error(cell, shift.turn) : b.seen_error(cell, shift.turn);
+        if (shift.across(seen, whole) <= tolerance) return true;
+    }
+    return false;
 }
 
 // The same of all cells of a block in a box of this size.

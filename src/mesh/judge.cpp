@@ -42,7 +42,7 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
         if (by_all <= tolerance_ || !at.knows_middle()) return by_all;
         return std::min(by_all, at.triangle_error(box, corner, turn) * kGrow);
     };
-    return judged(at, box, seen_error, e, plain, near_place, is_deep);
+    return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
 }
 
 // The smallest circle around a half has the diagonal of the cell as diameter.
@@ -53,19 +53,19 @@ double Judge::cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sid
 Judgement Judge::cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
                       int near_place) const {
     const auto seen_error = [&](double turn) { return at.seen(turn).error(sides) * kGrow; };
-    return judged(at, box, seen_error, error, plain, near_place, true);
+    return judged(at, box, std::cref(seen_error), error, plain, near_place, true);
 }
 
 Judgement Judge::leaf(const Bending& at, const Box<2>& box, double error, int plain, int near_place) const {
     const auto seen_error = [&](double turn) { return at.seen_error(box, turn) * kGrow; };
-    return judged(at, box, seen_error, error, plain, near_place, true);
+    return judged(at, box, std::cref(seen_error), error, plain, near_place, true);
 }
 
 Judgement Judge::cells(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error,
                        int near_place) const {
     const Vec<2> size = kGrow * (box.hi - box.lo);
     const auto seen_error = [&](double turn) { return at.cells_error(size, sides, turn) * kGrow; };
-    return judged(at, box, seen_error, error, 0, near_place, true);
+    return judged(at, box, std::cref(seen_error), error, 0, near_place, true);
 }
 
 double Judge::whole_halves_error(const Bending& at, const Box<2>& box) const {
@@ -74,10 +74,10 @@ double Judge::whole_halves_error(const Bending& at, const Box<2>& box) const {
 
 Judgement Judge::halves(const Bending& at, const Box<2>& box, double error, int near_place) const {
     const auto seen_error = [&](double turn) { return at.halves_error(box, turn) * kGrow; };
-    return judged(at, box, seen_error, std::min(error, whole_halves_error(at, box)), 0, near_place, true);
+    return judged(at, box, std::cref(seen_error), std::min(error, whole_halves_error(at, box)), 0, near_place,
+                  true);
 }
 
-template <class SeenError>
 Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double e,
                         int plain, int near_place, bool is_deep) const {
     Judgement k{false, kInfinity, e, at.full};

@@ -2,6 +2,8 @@
 #pragma once
 #include "curvature_tree_detail.hpp"
 
+#include <functional>
+
 namespace freiform {
 
 struct Judgement {
@@ -36,7 +38,7 @@ public:
     double whole_halves_error(const Bending& at, const Box<2>& box) const;  // where they are plain; likewise
 
 private:
-    template <class SeenError>  // of what is seen along normals that turn by so much
+    using SeenError = std::function<double(double)>;  // of what is seen along normals that turn by so much
     Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
                      int plain, int near_place, bool is_deep) const;
     Curvature over_clamped(const Box<2>& box) const;

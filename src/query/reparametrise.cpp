@@ -62,12 +62,20 @@ std::vector<B> product(const std::vector<double>& f, const std::vector<B>& g) {
         }
     return out;
 }
+// Of all dimensions: their code is there once, whatever curves there are.
+using Wide = Vec<4>;
 template <int D>
-std::vector<double> square(const std::vector<Vec<D>>& f) {
+Wide wide(const Vec<D>& x) {
+    Wide out{};
+    for (int c = 0; c < D; ++c) out[c] = x[c];
+    return out;
+}
+
+std::vector<double> square(const std::vector<Wide>& f) {
     std::vector<double> sum;
-    for (int c = 0; c < D; ++c) {
+    for (int c = 0; c < 4; ++c) {
         std::vector<double> one;
-        for (const Vec<D>& v : f) one.push_back(v[c]);
+        for (const Wide& v : f) one.push_back(v[c]);
         const auto q = product(one, one);
         if (c == 0) sum.assign(q.size(), 0);
         for (std::size_t i = 0; i < q.size(); ++i) sum[i] += q[i];
@@ -93,6 +101,104 @@ std::vector<V> composed_with(std::vector<V> b, const std::vector<double>& tau) {
 }
 
 std::vector<double> ones(int degree) { return std::vector<double>(std::size_t(degree) + 1, 1.0); }
+
+double square_of(double x) { return x * x; }
+
+// A part of a piece of length d, and what a quintic is compared with: Bernstein coefficients. Both weights
+// are empty where the piece is a polynomial.
+struct ComparedPart {
+    double d = 0, width = 0;                     // width: in the parameter
+    double from = 0, to = 0;                     // |dc / dv| at the ends if tau were linear
+    std::array<double, 2> bend{};                // c' . c'' / |c'|^2 there
+    std::vector<Wide> hodograph = {};            // of H
+    std::vector<double> speed_weight = {};       // of W
+    double largest = 0, h_slip = 0, w_slip = 0;  // of H
+    Interval w{};                                // of W
+    std::vector<Wide> numerator = {}, r = {};    // both about the start
+    std::vector<double> weight = {};             // of the numerator
+    double off = 0, slip = 0;                    // of the lengths at the ends, and of points
+};
+struct Compared {
+    double bound = 0, speed = 0;
+};
+
+// Nothing where tau is not monotone, or the speed too far from 1.
+std::optional<Compared> compared(const ComparedPart& in) {
+    const double d = in.d;
+    const int p = int(in.numerator.size()) - 1, m = int(in.hodograph.size()) - 1,
+              q = int(in.speed_weight.size()) - 1;
+    // tau' = d / |c'| and tau'' = -d^2 c' . c'' / |c'|^4.
+    const double a = d / in.from / 5, e = d / in.to / 5;
+    const double bend_a = -in.bend[0] * square_of(d / in.from) / 20,
+                 bend_e = -in.bend[1] * square_of(d / in.to) / 20;
+    const std::vector<double> tau{0, a, 2 * a + bend_a, 1 - (2 * e - bend_e), 1 - e, 1};
+    std::vector<double> slope;
+    for (std::size_t k = 0; k < 5; ++k) {
+        if (!(0 <= tau[k] && tau[k] <= 1)) return std::nullopt;
+        slope.push_back(5 * (tau[k + 1] - tau[k]));
+    }
+
+    // The speed of c(tau).
+    std::vector<Wide> hodograph = in.hodograph;
+    for (Wide& x : hodograph) x *= in.width / d;
+    auto fast = square(product(slope, composed_with(std::move(hodograph), tau)));
+    std::vector<double> unit_speed{1};
+    if (q > 0) {
+        auto weight = composed_with(in.speed_weight, tau);
+        weight = product(weight, weight);
+        unit_speed = product(weight, weight);
+    }
+    const int degree = int(std::max(fast.size(), unit_speed.size())) - 1;
+    fast = product(fast, ones(degree + 1 - int(fast.size())));
+    unit_speed = product(unit_speed, ones(degree + 1 - int(unit_speed.size())));
+    double most = 0, size = 0;
+    for (std::size_t k = 0; k < fast.size(); ++k) {
+        most = std::max(most, std::abs(fast[k] - unit_speed[k]));
+        size = std::max({size, std::abs(fast[k]), unit_speed[k]});
+    }
+    double steepest = 0;
+    for (const double x : slope) steepest = std::max(steepest, std::abs(x) * in.width / d);
+    const double scale = std::max(size, square_of(steepest * in.largest));
+    const double roundings = 60.0 * (degree + 10) + 16.0 * m * m + 32.0 * std::max(0, q) * q;
+    most += roundings * kUnitRoundoff * scale +
+            2 * steepest * in.h_slip * steepest * (in.largest + in.h_slip) +
+            8 * in.w_slip * square_of(square_of(in.w.hi));
+    const double deviation = most / square_of(square_of(in.w.lo)) * (1 + 64 * kUnitRoundoff);
+    if (!(deviation <= 0.5)) return std::nullopt;
+
+    // r and its distance from c(tau).
+    double far = d;
+    for (const Wide& x : in.numerator) far = std::max(far, norm(x));
+    for (const Wide& x : in.r) far = std::max(far, norm(x));
+    double lightest = kInfinity, heaviest = 0;
+    std::vector<Wide> numerator;
+    for (std::size_t k = 0; k < in.numerator.size(); ++k) {
+        const double w = in.weight.empty() ? 1 : in.weight[k];
+        numerator.push_back(w * in.numerator[k]);
+        lightest = std::min(lightest, w), heaviest = std::max(heaviest, w);
+    }
+    numerator = product(ones(5), composed_with(std::move(numerator), tau));
+    const auto along = composed_with(in.weight.empty() ? ones(p) : in.weight, tau);
+    const auto other = product(along, in.r);
+    double gap = 0, gap_slope = 0;
+    const int n = int(numerator.size()) - 1;
+    for (int k = 0; k <= n; ++k) {
+        numerator[std::size_t(k)] -= other[std::size_t(k)];
+        gap = std::max(gap, norm(numerator[std::size_t(k)]));
+    }
+    const double noise = (8.0 * p * p + 60 * p + 120) * kUnitRoundoff * far * heaviest;
+    for (int k = 0; k < n; ++k)
+        gap_slope = std::max(gap_slope, norm(numerator[std::size_t(k) + 1] - numerator[std::size_t(k)]));
+    double weight_slope = 0;
+    for (std::size_t k = 0; k + 1 < along.size(); ++k)
+        weight_slope = std::max(weight_slope, std::abs(along[k + 1] - along[k]));
+    gap = (gap + noise) / lightest;
+    gap_slope = (n * (gap_slope + 2 * noise) +
+                 5 * p * (weight_slope + (16.0 * p * p + 60) * kUnitRoundoff * heaviest) * gap) /
+                lightest / d;
+    return Compared{(in.off + deviation * d / 2 + gap + in.slip) * (1 + 64 * kUnitRoundoff),
+                    deviation + gap_slope + 2 * p * in.slip / d};
+}
 
 template <class P>
 class Reparametrisation {
@@ -149,52 +255,7 @@ private:
 
     std::optional<Piece> quintic(std::span<const P> b, const detail::SpeedBlock<D>& h, const Point& start,
                                  const Point& end, double d, double off, double slip) const {
-        const int p = int(b.size()) - 1;
-        const Interval w = h.weights();
-        const double from = h.speed(0) * h.width, to = h.speed(1) * h.width;  // |dc / dv| if tau were linear
         const Frame first = frame(b, false), last = frame(b, true);
-        // tau' = d / |c'| and tau'' = -d^2 c' . c'' / |c'|^4.
-        const double a = d / from / 5, e = d / to / 5;
-        const double bend_a = -first.bend * square_of(d / from) / 20,
-                     bend_e = -last.bend * square_of(d / to) / 20;
-        const std::vector<double> tau{0, a, 2 * a + bend_a, 1 - (2 * e - bend_e), 1 - e, 1};
-        std::vector<double> slope;
-        for (std::size_t k = 0; k < 5; ++k) {
-            if (!(0 <= tau[k] && tau[k] <= 1)) return std::nullopt;
-            slope.push_back(5 * (tau[k + 1] - tau[k]));
-        }
-
-        // The speed of c(tau).
-        std::vector<Point> hodograph(h.h.begin(), h.h.begin() + h.m + 1);
-        for (Point& x : hodograph) x *= h.width / d;
-        auto fast = square(product(slope, composed_with(std::move(hodograph), tau)));
-        std::vector<double> unit_speed{1};
-        if (h.p > 0) {
-            std::vector<double> weight;
-            for (int i = 0; i <= h.p; ++i) weight.push_back(h.w[std::size_t(i)][0]);
-            weight = composed_with(std::move(weight), tau);
-            weight = product(weight, weight);
-            unit_speed = product(weight, weight);
-        }
-        const int degree = int(std::max(fast.size(), unit_speed.size())) - 1;
-        fast = product(fast, ones(degree + 1 - int(fast.size())));
-        unit_speed = product(unit_speed, ones(degree + 1 - int(unit_speed.size())));
-        double most = 0, size = 0;
-        for (std::size_t k = 0; k < fast.size(); ++k) {
-            most = std::max(most, std::abs(fast[k] - unit_speed[k]));
-            size = std::max({size, std::abs(fast[k]), unit_speed[k]});
-        }
-        double steepest = 0;
-        for (const double x : slope) steepest = std::max(steepest, std::abs(x) * h.width / d);
-        const double scale = std::max(size, square_of(steepest * h.largest()));
-        const double roundings = 60.0 * (degree + 10) + 16.0 * h.m * h.m + 32.0 * h.p * h.p;
-        most += roundings * kUnitRoundoff * scale +
-                2 * steepest * h.h_slip * steepest * (h.largest() + h.h_slip) +
-                8 * h.w_slip * square_of(square_of(w.hi));
-        const double deviation = most / square_of(square_of(w.lo)) * (1 + 64 * kUnitRoundoff);
-        if (!(deviation <= 0.5)) return std::nullopt;
-
-        // r and its distance from c(tau).
         Piece out;
         out.r = {start,
                  start + (d / 5) * first.tangent,
@@ -202,44 +263,31 @@ private:
                  end - (2 * d / 5) * last.tangent + (d * d / 20) * last.curvature,
                  end - (d / 5) * last.tangent,
                  end};
-        std::vector<Point> numerator, r;
-        std::vector<double> weight;
-        double far = d, lightest = std::numeric_limits<double>::infinity(), heaviest = 0;
+        ComparedPart part{.d = d,
+                          .width = h.width,
+                          .from = h.speed(0) * h.width,
+                          .to = h.speed(1) * h.width,
+                          .bend = {first.bend, last.bend},
+                          .largest = h.largest(),
+                          .h_slip = h.h_slip,
+                          .w_slip = h.w_slip,
+                          .w = h.weights(),
+                          .off = off,
+                          .slip = slip};
+        for (int i = 0; i <= h.m; ++i) part.hodograph.push_back(wide(h.h[std::size_t(i)]));
+        for (int i = 0; i <= h.p && h.p > 0; ++i) part.speed_weight.push_back(h.w[std::size_t(i)][0]);
         for (const P& x : b) {
-            const double wx = chain_.polynomial() ? 1 : Space<P>::weight(x);
-            weight.push_back(wx);
-            numerator.push_back(wx * (project(x) - start));
-            far = std::max(far, norm(project(x) - start));
-            lightest = std::min(lightest, wx);
-            heaviest = std::max(heaviest, wx);
+            part.numerator.push_back(wide(project(x) - start));
+            if (!chain_.polynomial()) part.weight.push_back(Space<P>::weight(x));
         }
-        for (const Point& x : out.r) r.push_back(x - start), far = std::max(far, norm(x - start));
-        numerator = product(ones(5), composed_with(std::move(numerator), tau));
-        const auto along = composed_with(std::move(weight), tau);
-        const auto other = product(along, r);
-        double gap = 0, gap_slope = 0;
-        const int n = int(numerator.size()) - 1;
-        for (int k = 0; k <= n; ++k) {
-            numerator[std::size_t(k)] -= other[std::size_t(k)];
-            gap = std::max(gap, norm(numerator[std::size_t(k)]));
-        }
-        const double noise = (8.0 * p * p + 60 * p + 120) * kUnitRoundoff * far * heaviest;
-        for (int k = 0; k < n; ++k)
-            gap_slope = std::max(gap_slope, norm(numerator[std::size_t(k) + 1] - numerator[std::size_t(k)]));
-        double weight_slope = 0;
-        for (std::size_t k = 0; k + 1 < along.size(); ++k)
-            weight_slope = std::max(weight_slope, std::abs(along[k + 1] - along[k]));
-        gap = (gap + noise) / lightest;
-        gap_slope = (n * (gap_slope + 2 * noise) +
-                     5 * p * (weight_slope + (16.0 * p * p + 60) * kUnitRoundoff * heaviest) * gap) /
-                    lightest / d;
-        out.bound = (off + deviation * d / 2 + gap + slip) * (1 + 64 * kUnitRoundoff);
-        out.speed = deviation + gap_slope + 2 * p * slip / d;
+        for (const Point& x : out.r) part.r.push_back(wide(x - start));
+        const auto found = compared(part);
+        if (!found) return std::nullopt;
+        out.bound = found->bound;
+        out.speed = found->speed;
         out.good = out.bound <= tolerance_;
         return out;
     }
-
-    static double square_of(double x) { return x * x; }
 
     static Frame frame(std::span<const P> b, bool at_end) {
         const int p = int(b.size()) - 1;
