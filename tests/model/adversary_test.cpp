@@ -65,7 +65,7 @@ TEST(Adversary, a_search_for_the_worst_bump_does_not_break_the_bound) {
     for (int start = 0; start < (kAddressSanitizer ? 1 : 3); ++start) {
         Bump best;
         double most = 0;
-        for (int step = 0; step < (kAddressSanitizer ? 4 : 10); ++step) {
+        for (int step = 0; step < (kAddressSanitizer ? 6 : 10); ++step) {
             const Bump b = step == 0 ? best.moved(rng).moved(rng) : best.moved(rng);
             double bound = 0;
             const double u = used(b.model(), tolerance, bound);
