@@ -24,14 +24,15 @@ std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>
     return out;
 }
 
-void read_layers(const File& f, Styles& styles, std::vector<Refusal>& refused) {
+void read_layers(const File& f, Structure& out) {
+    Styles& styles = out.styles;
     std::unordered_map<std::string, int> known;
     for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
         if (f.type(i) != Type::PRESENTATION_LAYER_ASSIGNMENT) continue;
         const Fields g(f, i, f.part(i, Type::PRESENTATION_LAYER_ASSIGNMENT));
         const auto items = g.references(2, "items");
         if (!items) {
-            refused.push_back(items.error());
+            out.refused.push_back(items.error());
             continue;
         }
         const auto [at, fresh] = known.emplace(g.string(0), int(styles.layers.size()));
@@ -49,8 +50,8 @@ void read_layers(const File& f, Styles& styles, std::vector<Refusal>& refused) {
         sort(layers);
         layers.erase(std::ranges::unique(layers).begin(), layers.end());
         if (layers.size() <= kMostLayers) continue;
-        refused.push_back({RefusalKind::limit, f.label(item),
-                           text("is on ", layers.size(), " layers; ", kMostLayers, " of them are kept")});
+        out.approximations.push_back(
+            {f.label(item), text("is on ", layers.size(), " layers; ", kMostLayers, " of them are kept"), 0});
         layers.resize(kMostLayers);
     }
 }

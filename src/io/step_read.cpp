@@ -26,6 +26,7 @@ public:
         model_.refused = f_.refused;
         append(model_.refused, structure_.refused);
         model_.layers = structure_.styles.layers;
+        model_.approximations = structure_.approximations;
         if (const Context* c = context_of_model(structure_)) model_.unit = c->unit, length_ = c->length;
         if (auto ok = each_place(structure_, length_, options_.memory_bytes / 256,
                                  [this](const Place& p) { return visit(p); });

@@ -23,7 +23,7 @@ public:
 
     Structure run() {
         out_.styles = styles_of(f_);
-        read_layers(f_, out_.styles, out_.refused);
+        read_layers(f_, out_);
         find_representations();
         join_equals();
         make_nodes();

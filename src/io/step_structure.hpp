@@ -32,6 +32,7 @@ struct Structure {
     std::vector<Node> nodes;
     Styles styles;
     std::vector<Refusal> refused;
+    std::vector<Approximation> approximations;
 };
 Structure structure_of(const File& file);
 
@@ -42,6 +43,6 @@ double largest_uncertainty(const File& file);
 Context context_of(const File& file, std::uint32_t context);
 Styles styles_of(const File& file);
 // Into the styles of the file: the layers, and what lies on them.
-void read_layers(const File& file, Styles& styles, std::vector<Refusal>& refused);
+void read_layers(const File& file, Structure& out);
 
 }  // namespace freiform::step

@@ -72,7 +72,7 @@ TEST(StepLayers, models_that_are_joined_have_layers_of_one_name_once) {
     EXPECT_EQ(names_of(*both, both->bodies.at(1).layers), (Names{"x"}));
 }
 
-TEST(StepLayers, layers_that_are_not_there_and_items_on_too_many_are_refused_by_their_place) {
+TEST(StepLayers, layers_that_are_not_there_are_refused_by_their_place_and_items_on_too_many_told) {
     Model m = layered_model("");
     m.faces.at(0).layers = {0};
     expect_refusal(make_model(m), RefusalKind::invalid, "faces[0].layers[0]", "index 0");
@@ -86,9 +86,11 @@ TEST(StepLayers, layers_that_are_not_there_and_items_on_too_many_are_refused_by_
     const Model full = layered_model(many);
     EXPECT_EQ(full.layers.size(), 100u);
     EXPECT_EQ(full.faces.at(0).layers.size(), 64u);
-    ASSERT_EQ(full.refused.size(), 1u);
-    EXPECT_EQ(full.refused[0].where, "#12 ADVANCED_FACE");
-    EXPECT_EQ(full.refused[0].message, "is on 100 layers; 64 of them are kept");
+    EXPECT_TRUE(full.refused.empty());  // no shape is missing
+    ASSERT_EQ(full.approximations.size(), 1u);
+    EXPECT_EQ(full.approximations[0].where, "#12 ADVANCED_FACE");
+    EXPECT_EQ(full.approximations[0].what, "is on 100 layers; 64 of them are kept");
+    EXPECT_EQ(full.approximations[0].bound, 0);
 }
 
 TEST(StepLayers, colours_of_faces_and_bodies_are_written_and_read_again_the_same) {
