@@ -49,13 +49,16 @@
 // In one triangle: with H the second derivatives of n . S in the middle, D^2 g is cos s H and a rest that is
 // bounded as above with c less |H|. So the error is at most that of the quadratic function, which is known
 // with all signs (`Quadratic`), and that of the rest. The former is less near corners: in halves of the cell,
-// for A = H_uu h_u^2, B = H_vv h_v^2, C = H_uv h_u h_v (less than 0 for the other diagonal) and (x, y) from
-// -1 to 1,
+// for A = H_uu h_u^2, B = H_vv h_v^2, C = H_uv h_u h_v (with the other sign for the other diagonal) and (x,
+// y) from -1 to 1,
 //     g - L g = -(A (1 - x^2) + B (1 - y^2) + 2 C (1 - x) (1 + y)) / 2,  x >= y,
 // where (1 - x) (1 + y) is between 0 and both of 1 - x^2 and 1 - y^2; in other triangles it is at most as
 // large as with (|A| + |C|) (1 - x^2) + (|B| + |C|) (1 - y^2). So any mean of that and of the largest error
 // will do, with what the rest adds to it (`Rest::error`). Of two diagonals the better one is that along which
-// A + B and C have opposite signs.
+// A + B and C have opposite signs. All of S - L is -1/2 sum l_i l_j H(v_i - v_j, v_i - v_j), i < j, with the
+// second derivatives H of S, and a rest by its third ones: the same with lengths of vectors, and no normal
+// that turns (`whole_error`). Of all cells of one size in a box the rest is what D^2 g changes by in it, an
+// eighth of it along the diagonal of a cell (`cells_error`).
 //
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so

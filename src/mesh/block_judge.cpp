@@ -27,14 +27,13 @@ struct BlockJudge {
         const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
         const double error = judge.cell_error(at, block.box, cell);
         JudgedBlock out;
-        out.flat = within(error);
+        out.flat = out.flat_halves = within(error);
         const auto with = [&](int plain) {
             return within(judge.leaf(at, block.box, error, plain, block.node).bound);
         };
         if (tree.is_all_plain()) return out;
-        out.flat_halves = std::isfinite(out.flat) || !at.knows_middle()
-                              ? out.flat
-                              : within(judge.whole_halves_error(at, block.box));
+        if (!std::isfinite(out.flat) && at.knows_middle())
+            out.flat_halves = within(judge.whole_halves_error(at, block.box));
         out.usual = out.halves = with(0);
         if (!std::isfinite(out.usual) && at.knows_middle())
             out.halves = within(judge.halves(at, block.box, error, block.node).bound);

@@ -120,7 +120,7 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 
 // Half the squared radius of the smallest circle around a triangle with such squared sides. The angle
 // opposite the longest has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <=
-// s2.
+// s2. Where that would be negative, sides or none, the largest is at the middle of the longest.
 double largest_of_sides(std::array<double, 3> s, double slip) {
     sort(s.data(), s.data() + 3);
     const double beyond = s[0] + s[1] - s[2] + slip;

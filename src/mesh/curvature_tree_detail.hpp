@@ -127,8 +127,8 @@ struct Bending {
     // Bound of the interpolation error of what is seen along normals that are within `turn` of the one below,
     // in the halves of a cell of the box that this is of.
     double seen_error(const Box<2>& cell, double turn) const;
-    // The same of the halves of the cell on both sides of the better diagonal, and of one triangle in it; at
-    // most that. REQUIRES knows_middle().
+    // The same of the halves of the cell on both sides of the better diagonal, and of one triangle in it.
+    // REQUIRES knows_middle().
     double halves_error(const Box<2>& cell, double turn) const;
     double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const;
     // Of all of the interpolation error in the triangle. REQUIRES knows_middle().
