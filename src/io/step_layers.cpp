@@ -17,10 +17,13 @@ void Styles::add_layers(std::vector<int>& to, std::uint32_t item) const {
     to = joined_layers(to, known->second);
 }
 
-std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b) {
+std::vector<int> Styles::joined_layers(const std::vector<int>& a, const std::vector<int>& b) const {
     std::vector<int> out;
     std::ranges::set_union(a, b, std::back_inserter(out));
-    if (out.size() > kMostLayers) out.resize(kMostLayers);
+    if (out.size() > kMostLayers) {
+        left_out += out.size() - kMostLayers;
+        out.resize(kMostLayers);
+    }
     return out;
 }
 

@@ -34,6 +34,7 @@ public:
             return std::unexpected(ok.error());
         tell_tessellated();
         take_curves();
+        tell_layers();
         if (model_.faces.empty() && model_.edges.empty()) return nothing();
         return make_model(std::move(model_));
     }
@@ -42,6 +43,19 @@ private:
     static void append(std::vector<Refusal>& to, const std::vector<Refusal>& more) {
         for (const Refusal& r : more)
             if (to.size() < 1000) to.push_back(r);
+    }
+
+    // Of shapes that are on layers of their own, of what they consist of, and of the places that they stand
+    // at.
+    void tell_layers() {
+        if (const std::size_t n = structure_.styles.left_out)
+            model_.approximations.push_back(
+                {"file",
+                 text(n,
+                      " times a layer is left out: shapes, with what they consist of and are part of, "
+                      "are kept on ",
+                      kMostLayers, " layers"),
+                 0});
     }
 
     // Triangles that stand beside what is exact are not needed; where there is nothing else, they are a mesh.
@@ -154,7 +168,7 @@ private:
             for (int& s : x.shells) s += shells;
             if (!v.name.empty()) x.name = v.name;
             if (!x.colour) x.colour = v.colour;
-            x.layers = joined_layers(x.layers, v.layers);
+            x.layers = structure_.styles.joined_layers(x.layers, v.layers);
             out.bodies.push_back(std::move(x));
         }
         for (std::size_t i = 0; i < m.approximations.size(); ++i) {

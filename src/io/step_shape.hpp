@@ -23,12 +23,13 @@ struct Styles {
     std::vector<Layer> layers;
     std::unordered_map<std::uint32_t, std::vector<int>> on_layers;  // ascending
 
+    mutable std::size_t left_out = 0;  // layers of lists that would have become longer than kMostLayers
+
     // Those of one more item among those that are known already, up to kMostLayers.
     void add_layers(std::vector<int>& to, std::uint32_t item) const;
+    // The layers on either list, both ascending, up to kMostLayers.
+    std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b) const;
 };
-
-// The layers on either list, both ascending, up to kMostLayers.
-std::vector<int> joined_layers(const std::vector<int>& a, const std::vector<int>& b);
 
 struct Part {
     Model model;                           // lengths in the unit of its context

@@ -55,7 +55,7 @@ Result<void> each_place(const Structure& structure, double length, std::uint64_t
             Motion at = c.at;
             at.to.o = scale.scale * at.to.o;
             todo.push_back({{c.node, outer * at, p.name, p.colour ? p.colour : c.colour,
-                             joined_layers(p.layers, c.layers)},
+                             structure.styles.joined_layers(p.layers, c.layers)},
                             v.depth + 1});
         }
     }

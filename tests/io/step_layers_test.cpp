@@ -93,6 +93,31 @@ TEST(StepLayers, layers_that_are_not_there_are_refused_by_their_place_and_items_
     EXPECT_EQ(full.approximations[0].bound, 0);
 }
 
+TEST(StepLayers, what_is_on_too_many_with_what_it_consists_of_or_is_part_of_is_told) {
+    const auto assigned = [](int first, int count, std::string_view item) {
+        std::string out;
+        for (int i = first; i < first + count; ++i)
+            out += text("#", 1000 + i, "=PRESENTATION_LAYER_ASSIGNMENT('", i, "','',(", item, "));\n");
+        return out;
+    };
+    const std::string mapped =
+        "#20=SHAPE_REPRESENTATION('',(#21),#1);\n#21=MAPPED_ITEM('',#22,#5);\n#22=REPRESENTATION_MAP(#5,#8);"
+        "\n";
+    for (const std::string& other : {assigned(40, 30, "#11"), mapped + assigned(40, 30, "#21")}) {
+        const Model m = layered_model(assigned(0, 40, "#10") + other);
+        ASSERT_EQ(m.bodies.size(), 1u);
+        EXPECT_EQ(m.layers.size(), 70u);
+        EXPECT_EQ(m.bodies[0].layers.size(), 64u);
+        EXPECT_TRUE(m.refused.empty());
+        ASSERT_EQ(m.approximations.size(), 1u) << other;
+        EXPECT_EQ(m.approximations[0].where, "file");
+        EXPECT_TRUE(m.approximations[0].what.starts_with("6 times a layer is left out"))
+            << m.approximations[0].what;
+        EXPECT_EQ(m.approximations[0].bound, 0);
+    }
+    EXPECT_TRUE(layered_model(assigned(0, 40, "#10") + assigned(40, 24, "#11")).approximations.empty());
+}
+
 TEST(StepLayers, colours_of_faces_and_bodies_are_written_and_read_again_the_same) {
     Model m = layered_model("");
     const auto again = [&] { return *read_step(*write_step({"mm", {{"", m}}})); };
