@@ -12,12 +12,36 @@
 
 namespace freiform {
 
-double error_beside(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const DerivativeBounds<2>& over,
-                    const Vec<2>& chord) {
+double BoundarySide::error_beside() const {
+    const double kinks =
+        kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
+    const auto cone = apex ? ConeFace::make(*apex, surface, box) : std::nullopt;
+    if (cone) {
+        // Of the side's own line across, where it is one; over boxes that are long along lines bounds are
+        // larger than at their far end.
+        const bool is_level = from[cone->ruled()] == to[cone->ruled()];
+        const double bend = cone->bend(is_level ? over : surface(cone->far_end(box)));
+        return cone->error(bend, {from, to, to}) + kinks;
+    }
     const Curvature second{over(2, 0), over(1, 1), over(0, 2)};
+    const Vec<2> chord = to - from;
     const bool one_way = second.uv == 0 && (second.uu == 0 || second.vv == 0);
-    return second.along(chord[0], chord[1]) / (one_way ? 8 : 6) +
-           kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
+    return second.along(chord[0], chord[1]) / (one_way ? 8 : 6) + kinks;
+}
+
+std::optional<BoundarySide::Bow> BoundarySide::bow() const {
+    const auto cone = apex ? ConeFace::make(*apex, surface, box) : std::nullopt;
+    if (!cone) return std::nullopt;
+    Bow out;
+    out.off[cone->across()] = cone->bow(from, to);
+    if (!(out.off[cone->across()] > 0)) return std::nullopt;
+    out.error = error_beside();
+    return out;
+}
+
+bool is_cone(const Apex& apex, const DerivativeQuery<2, 3>& surface, const Box<2>& face) {
+    return surface.weight_spread() <= kWeightsFarApart && ConeFace::make(apex, surface, face) &&
+           is_worth_a_cone(apex, surface.geometry(), face);
 }
 
 }  // namespace freiform

@@ -2,6 +2,7 @@
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
 #include "chunks_detail.hpp"
+#include "cone_face_detail.hpp"
 #include "segments_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -209,6 +210,7 @@ public:
     // stand for many.
     struct Ways {
         bool knows_normals = true, blocks = false;
+        std::optional<ConeFace> cone = {};  // then without normals and blocks
     };
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut
     // into two triangles whose interpolation bound is at most demands.tolerance, with sides along the axes of
@@ -230,6 +232,10 @@ public:
         return v < 0 ? nullptr : &variations_[std::size_t(v)];
     }
     bool knows_normals() const { return knows_normals_; }
+    const std::optional<ConeFace>& cone() const { return cone_; }
+    // Of the box as the tree takes it: of a cone as at its far end, all lines of which are alike.
+    BoxBending bending_in(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                          const Jet<2, 2, Vec<3>>& middle, Variation* variation = nullptr) const;
     // Where the tree holds the box: the smallest part of it that contains the box, or all of it. Boxes near
     // the one that was asked for before are found from there, others from 0.
     int place_of(const Box<2>& box, int near = 0) const;
@@ -336,6 +342,7 @@ private:
     bool sum_up(std::size_t end);
     void find_corners();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
+    Curvature seen_in(const Jet<2, 2, Vec<3>>& middle) const;
     bool is_sharp() const { return !sharp_[0].empty() || !sharp_[1].empty(); }
     bool is_sharp_inside(const Box<2>& box) const;
     bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
@@ -350,6 +357,7 @@ private:
     std::vector<int> block_leaves_;
     std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
+    std::optional<ConeFace> cone_;
     std::array<std::vector<Kink>, 2> kinks_;
     std::array<std::vector<double>, 2> sharp_;    // where kinks are that are more than rounding
     std::array<std::vector<double>, 2> columns_;  // where they begin and end; none where there is one

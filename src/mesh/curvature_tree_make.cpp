@@ -82,7 +82,7 @@ void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, V
     const bool varies = tree_.varies(task_.surface, box);
     Variation variation;
     const bool knows_normals = tree_.knows_normals_ && !tree_.is_sharp_inside(box);
-    outer = bending_of(task_.surface, box, knows_normals, middle, varies ? &variation : nullptr);
+    outer = tree_.bending_in(task_.surface, box, knows_normals, middle, varies ? &variation : nullptr);
     outer.full.restrict_to(before);
     if (!varies) return;
     node.variation = int(tree_.variations_.size());
@@ -126,7 +126,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but the
     // last boxes, they need not be found.
     const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
-    const Curvature seen = seen_at(middle, tree_.knows_normals_);
+    const Curvature seen = tree_.seen_in(middle);
     set_lengths(middle, size);
     const bool may_be_halved = inside && tree_.knows_normals_ && !node.has_columns();
     const double asked = may_be_halved ? least_error(seen, middle, size) : seen.error(size);
@@ -242,7 +242,25 @@ bool CurvatureTree::sum_up(std::size_t end) {
 }
 
 bool CurvatureTree::varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const {
-    return surface.piece_numbers() > kFewNumbers && surface.is_twice_smooth({box.side(0), box.side(1)});
+    return !cone_ && surface.piece_numbers() > kFewNumbers &&
+           surface.is_twice_smooth({box.side(0), box.side(1)});
+}
+
+Curvature CurvatureTree::seen_in(const Jet<2, 2, Vec<3>>& middle) const {
+    const Curvature all = seen_at(middle, knows_normals_);
+    if (!cone_) return all;
+    return cone_->across() == 0 ? Curvature{all.uu, 0, 0} : Curvature{0, 0, all.vv};
+}
+
+BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
+                                     bool knows_normals, const Jet<2, 2, Vec<3>>& middle,
+                                     Variation* variation) const {
+    if (!cone_) return bending_of(surface, box, knows_normals, middle, variation);
+    const auto far = surface(cone_->far_end(box));
+    BoxBending out;
+    (cone_->across() == 0 ? out.full.uu : out.full.vv) = cone_->bend(far);
+    out.first[0] = far(1, 0), out.first[1] = far(0, 1);
+    return out;
 }
 
 bool CurvatureTree::holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const {
@@ -255,6 +273,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                                           const FaceDemands& demands, std::size_t max_leaves, Ways ways) {
     CurvatureTree tree;
     tree.knows_normals_ = ways.knows_normals;
+    tree.cone_ = ways.cone;
     tree.segments_ = segments;
     for (std::size_t d = 0; d < 2; ++d)
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
@@ -267,7 +286,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     const std::size_t nodes = expected_nodes(demands);
     if (demands.is_shared && is_serial()) tree.reserve(nodes);
     tree.nodes_.add({root, 0});
-    tree.plan_columns(surface, demands.tolerance);
+    if (!tree.cone_) tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};

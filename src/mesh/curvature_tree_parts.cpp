@@ -30,6 +30,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
     parallel_for(items.size(), 1, [&](std::size_t i) {
         CurvatureTree& part = parts[i];
         part.knows_normals_ = tree_.knows_normals_;
+        part.cone_ = tree_.cone_;
         part.kinks_ = tree_.kinks_;
         part.sharp_ = tree_.sharp_;
         part.columns_ = tree_.columns_;

@@ -329,8 +329,12 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
     const bool by_normals =
         (is_swept && !demands.quads) || kinks_are_rounding(surface, box, demands.tolerance);
     const bool blocks = !demands.quads && !demands.shapes_triangles();
-    auto mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, blocks});
+    Result<FaceMesh> mesh = refuse(RefusalKind::not_converged, "mesh", "");
     const auto failed = [&] { return !mesh && mesh.error().kind == RefusalKind::not_converged; };
+    if (demands.apex)
+        if (const auto cone = ConeFace::make(*demands.apex, surface, box))
+            mesh = filled(surface, boundary, demands, max_triangles, extra, {false, false, cone});
+    if (failed()) mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, blocks});
     if (blocks && failed())
         mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, false});
     if (by_normals && failed())

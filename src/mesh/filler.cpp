@@ -196,10 +196,11 @@ Filler::Known Filler::found(int triangle, int& place) const {
             static_cast<Judgement&>(k) = second;
     };
     const auto middle = jet<2>(surface_.geometry(), (0.5 * (box.lo + box.hi)).c);
-    const bool hopeless = !(least_error(middle, corner, plain < 3) <= demands_.tolerance);
+    const bool hopeless = !tree_.cone() && !(least_error(middle, corner, plain < 3) <= demands_.tolerance);
     if (const Variation* varies = tree_.variation_in(place))
         judge_by(bending_from_middle(surface_, box, plain < 3, middle, *varies));
-    if (!(k.bound <= demands_.tolerance) && !hopeless) judge_by(bending_of(surface_, box, plain < 3, middle));
+    if (!(k.bound <= demands_.tolerance) && !hopeless)
+        judge_by(tree_.bending_in(surface_, box, plain < 3, middle));
     return k;
 }
 

@@ -31,6 +31,11 @@ Curvature Judge::over_clamped(const Box<2>& box) const {
 
 Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
                             int plain, int near_place, bool is_deep) const {
+    if (const auto& cone = tree_.cone()) {
+        const double bend = cone->across() == 0 ? at.full.uu : at.full.vv;
+        const double e = cone->error(bend, corner) + tree_.kink_bound(box);
+        return {false, is_turned_over(corner) ? kInfinity : e, e, at.full};
+    }
     const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
@@ -43,6 +48,15 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
         return std::min(by_all, at.triangle_error(box, corner, turn) * kGrow);
     };
     return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
+}
+
+// More than anybody sees.
+bool Judge::is_turned_over(const std::array<Vec<2>, 3>& corner) const {
+    if (!tree_.cone()->is_turned_over(corner)) return false;
+    std::array<Vec<3>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = jet<0>(surface_.geometry(), corner[k].c).value();
+    const double longest = std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])});
+    return norm(cross(p[1] - p[0], p[2] - p[0])) > tolerance_ * longest;
 }
 
 // The smallest circle around a half has the diagonal of the cell as diameter.

@@ -42,6 +42,7 @@ private:
     Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
                      int plain, int near_place, bool is_deep) const;
     Curvature over_clamped(const Box<2>& box) const;
+    bool is_turned_over(const std::array<Vec<2>, 3>& corner) const;  // of a cone
 
     const CurvatureTree& tree_;
     const DerivativeQuery<2, 3>& surface_;

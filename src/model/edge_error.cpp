@@ -30,6 +30,10 @@
 // PiecewiseBound says, which holds for all that is asked of it, that p is off its chord (with Green's
 // function under the integral) and that p' is off the chord's direction.
 //
+// Triangles of cones stand for sides that bow away from c (cone_face.cpp). With L(t) c(s) corresponds, whose
+// projection is the same, so |s - t| / h is at most Q(p(b) - p(a)) / 8 / slope; the segments from c(s) to the
+// bowed side at t are a homotopy likewise, and what is between counts as a sliver.
+//
 // Why not all of C'': the quarter of a rational circle takes up to 1.4 times as many chords.
 #include "chord_curve_detail.hpp"
 #include "edge_mesh_detail.hpp"
@@ -68,7 +72,12 @@ struct OnFace {
     }
     double along(const Vec<2>& d) const { return second.along(d[0], d[1]); }
     double crude() const;
-    std::optional<std::pair<double, double>> across() const;  // the distance, and how much less steady
+    struct Across {
+        double distance;
+        // Parts of the chord: how much wider slivers are, and how far what corresponds is apart.
+        double wider, uneven;
+    };
+    std::optional<Across> across() const;
 
     const DerivativeQuery<2, 3>& surface;
     const CoedgeQuery& use;
@@ -122,7 +131,7 @@ double OnFace::crude() const {
     return worse(along(speed) + bend, along(chord)) / 8 + kinks();
 }
 
-std::optional<std::pair<double, double>> OnFace::across() const {
+std::optional<OnFace::Across> OnFace::across() const {
     const double h = on.length();
     const Vec<2> middle = from + 0.5 * chord, half = 0.5 * (box.hi - box.lo);
     const auto j = jet<2>(surface.geometry(), middle.c);
@@ -174,8 +183,9 @@ std::optional<std::pair<double, double>> OnFace::across() const {
     if (!slope) slope = slope_by(vary(second_of(surface.along((*frame)[0], sides))));
     if (!slope) return std::nullopt;
     const double rounding = 0x1p-44 * (along(speed) + first[0] * change[0] + first[1] * change[1]);
-    return std::pair{(std::max(on_chord, on_curve) / 8 + rounding) * kDirectionSlack + kinks(),
-                     (first[0] * sag[0] + first[1] * sag[1]) / *slope * kDirectionSlack};
+    return Across{(std::max(on_chord, on_curve) / 8 + rounding) * kDirectionSlack + kinks(),
+                  (first[0] * sag[0] + first[1] * sag[1]) / *slope * kDirectionSlack,
+                  (along(chord) / 8 + kinks()) / *slope * kDirectionSlack};
 }
 
 }  // namespace
@@ -189,14 +199,17 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
     const double own = mesh.curve ? out.polyline : kInfinity;
     for (const auto& use : mesh.uses) {
         const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
+        const std::optional<Apex>& apex = apexes_[std::size_t(use->face)];
         if (use->lift) {
             const Vec<2> from = jet<0>(use->coedge->curve, a).value(),
                          to = jet<0>(use->coedge->curve, b).value();
             Box<2> box;
             box.add(from), box.add(to);
             if (!use->lift->on_plane)
-                out.triangle = worse(
-                    out.triangle, error_beside(surface, box, surface({box.side(0), box.side(1)}), to - from));
+                out.triangle =
+                    worse(out.triangle,
+                          BoundarySide{surface, box, surface({box.side(0), box.side(1)}), from, to, apex}
+                              .error_beside());
             if (degenerate) continue;
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
             const Interval there = use->lift->over(on);
@@ -208,18 +221,28 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
         }
         const OnFace face(surface, *use, a, b);
         double sliver = face.along(face.sag) / 8 + face.kinks();
-        out.triangle = worse(out.triangle, error_beside(surface, face.box, face.over, face.chord));
+        const BoundarySide side{surface, face.box, face.over, face.from, face.to, apex};
+        out.triangle = worse(out.triangle, side.error_beside());
+        const auto bow = side.bow();
+        double uneven = 0;  // of the chord, what places on the side and on the chord differ by
         if (!degenerate) {
             if (turns) out.turn = std::max(out.turn, normal_cone(surface, face.box).angle);
             double polyline = face.crude();
             if (!(polyline <= tolerance))
-                if (const auto better = face.across(); better && better->first < polyline) {
-                    polyline = better->first;
-                    const Vec<2> wide{{face.sag[0] + better->second * std::abs(face.chord[0]),
-                                       face.sag[1] + better->second * std::abs(face.chord[1])}};
+                if (const auto better = face.across(); better && better->distance < polyline) {
+                    polyline = better->distance;
+                    const Vec<2> wide{{face.sag[0] + better->wider * std::abs(face.chord[0]),
+                                       face.sag[1] + better->wider * std::abs(face.chord[1])}};
                     sliver = face.along(wide) / 8 + face.kinks();
+                    uneven = better->uneven;
                 }
+            if (bow) polyline = worse(polyline, bow->error);
             out.polyline = worse(out.polyline, polyline);
+        }
+        if (bow) {
+            const Vec<2> wide{{bow->off[0] + uneven * std::abs(face.chord[0]),
+                               bow->off[1] + uneven * std::abs(face.chord[1])}};
+            sliver = worse(sliver, face.along(wide) / 8 + face.kinks());
         }
         out.sliver = worse(out.sliver, sliver);
     }

@@ -88,8 +88,9 @@ CurveGeometry<1> component_of(const CurveGeometry<2>& curve, int i) {
         curve);
 }
 
-EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces)
-    : model_(model), faces_(faces), edges_(model.edges.size()) {
+EdgeMesher::EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces,
+                       std::span<const std::optional<Apex>> apexes)
+    : model_(model), faces_(faces), apexes_(apexes), edges_(model.edges.size()) {
     for (std::size_t f = 0; f < model.faces.size(); ++f)
         for (std::size_t l = 0; l < model.faces[f].loops.size(); ++l) {
             const auto& coedges = model.faces[f].loops[l].coedges;

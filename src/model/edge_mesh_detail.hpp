@@ -4,6 +4,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/model/model.hpp>
+#include <freiform/spline/apex.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <deque>
@@ -59,8 +60,10 @@ struct EdgeDemands {
 
 class EdgeMesher {
 public:
-    // `faces`: one query per face of the model, in order. All must outlive the mesher.
-    EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces);
+    // `faces`: one query per face of the model, in order; `apexes`: of those that are taken as cones. All
+    // must outlive the mesher.
+    EdgeMesher(const Model& model, std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces,
+               std::span<const std::optional<Apex>> apexes);
 
     // Parameters for which every segment keeps the demands. Refuses (limit) beyond `max_segments`.
     Result<void> discretise(int edge, const EdgeDemands& demands, std::size_t max_segments);
@@ -95,6 +98,7 @@ private:
 
     const Model& model_;
     std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces_;
+    std::span<const std::optional<Apex>> apexes_;
     std::vector<EdgeMesh> edges_;
 };
 

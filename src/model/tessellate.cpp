@@ -9,9 +9,11 @@
 // for what lies between polygon and parameter curve. The rounding of evaluated points is added to the bound.
 #include "matched_grids_detail.hpp"
 #include "tessellator_detail.hpp"
+#include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/core/sort.hpp>
+#include <freiform/mesh/chord_triangles.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
 
@@ -28,11 +30,23 @@ namespace freiform {
 namespace {
 
 constexpr int kManifoldRounds = 4;
-constexpr double kLargeFace = 4096;     // triangles
-constexpr double kFlatTriangle = 1e-9;  // of the squared longest side: no area
+constexpr std::size_t kFacesAtATime = 8;  // that a thread looks at for an apex
+constexpr double kLargeFace = 4096;       // triangles
+constexpr double kFlatTriangle = 1e-9;    // of the squared longest side: no area
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+namespace {
+
+std::optional<Apex> apex_of_face(const Model& model, const Face& face, const DerivativeQuery<2, 3>& surface) {
+    const auto apex = apex_of(face.surface);
+    if (!apex) return std::nullopt;
+    const Box<2> box = sampled_box(model, face);
+    return !box.is_empty() && is_cone(*apex, surface, box) ? apex : std::nullopt;
 }
 
 }  // namespace
@@ -45,7 +59,13 @@ SharedWork::SharedWork(const Model& model)
           });
           return all;
       }()),
-      edges(model, queries) {}
+      apexes([&] {
+          std::vector<std::optional<Apex>> all(model.faces.size());
+          parallel_for(all.size(), kFacesAtATime,
+                       [&](std::size_t f) { all[f] = apex_of_face(model, model.faces[f], *queries[f]); });
+          return all;
+      }()),
+      edges(model, queries, apexes) {}
 
 Result<void> Tessellator::discretise_edges() {
     std::vector<std::optional<Refusal>> failed(model_.edges.size());
@@ -81,10 +101,15 @@ bool Tessellator::is_large(std::size_t f) const {
 }
 
 FaceDemands Tessellator::face_demands(std::size_t f) const {
-    return {tolerance_,         options_.max_edge,
-            options_.max_angle, options_.max_aspect,
-            options_.quads,     f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
-            is_large(f),        f < sizes_.size() ? sizes_[f] : 0};
+    return {tolerance_,
+            options_.max_edge,
+            options_.max_angle,
+            options_.max_aspect,
+            options_.quads,
+            f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
+            is_large(f),
+            f < sizes_.size() ? sizes_[f] : 0,
+            f < faces() ? apexes_[f] : std::nullopt};
 }
 
 Result<void> Tessellator::match_grids() {

@@ -18,6 +18,7 @@ constexpr double kBesideBoundary = 1 + 1.0 / 64;
 struct SharedWork {
     explicit SharedWork(const Model& model);
     std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> queries;
+    std::vector<std::optional<Apex>> apexes;  // of faces that are taken as cones
     EdgeMesher edges;
 };
 
@@ -33,6 +34,7 @@ public:
           options_(options),
           sizes_(std::move(sizes)),
           queries_(shared.queries),
+          apexes_(shared.apexes),
           edges_(&shared.edges),
           boundaries_(model.faces.size()),
           meshes_(model.faces.size()),
@@ -110,6 +112,7 @@ private:
     std::vector<double> sizes_;
     double tolerance_ = 0, rounding_ = 0;
     const std::vector<std::unique_ptr<DerivativeQuery<2, 3>>>& queries_;
+    const std::vector<std::optional<Apex>>& apexes_;
     EdgeMesher* edges_;
     std::vector<Vec<3>> points_;                 // on vertices and edges
     std::vector<std::pair<int, int>> together_;  // vertices that are one point

@@ -27,16 +27,10 @@ std::vector<double> predicted(const Model& model, const TessellateOptions& optio
         chords.push_back(std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0));
     parallel_for(model.faces.size(), kFacesAtOnce, [&](std::size_t f) {
         const Face& face = model.faces[f];
-        Box<2> box;
+        const Box<2> box = sampled_box(model, face);
         double along = 0;
         for (const Loop& l : face.loops)
-            for (const Coedge& c : l.coedges) {
-                along += chords[std::size_t(c.edge)];
-                for (int k = 0; k <= 8; ++k) {
-                    const Interval on = model.edges[std::size_t(c.edge)].range;
-                    box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
-                }
-            }
+            for (const Coedge& c : l.coedges) along += chords[std::size_t(c.edge)];
         if (box.is_empty()) return;
         const FaceDemands demands{options.tolerance, options.max_edge};
         out[f] = std::max(estimated_triangles(face.surface, box, demands, samples),
@@ -48,6 +42,17 @@ std::vector<double> predicted(const Model& model, const TessellateOptions& optio
 double sum_of(std::span<const double> x) { return std::accumulate(x.begin(), x.end(), 0.0); }
 
 }  // namespace
+
+Box<2> sampled_box(const Model& model, const Face& face) {
+    Box<2> box;
+    for (const Loop& l : face.loops)
+        for (const Coedge& c : l.coedges)
+            for (int k = 0; k <= 8; ++k) {
+                const Interval on = model.edges[std::size_t(c.edge)].range;
+                box.add(jet<0>(c.curve, k == 8 ? on.hi : on.lo + k * (on.length() / 8)).value());
+            }
+    return box;
+}
 
 double estimated_chords(const CurveGeometry<3>& curve, Interval on, double tolerance) {
     constexpr int kSamples = 8;

@@ -10,6 +10,9 @@ namespace freiform {
 // An estimate above a limit by more than this factor is believed.
 inline constexpr double kFarBeyond = 4;
 
+// Of points on the parameter curves of the face.
+Box<2> sampled_box(const Model& model, const Face& face);
+
 // About how many chords the curve needs within the tolerance, from its curvature at samples; a line none. An
 // estimate.
 double estimated_chords(const CurveGeometry<3>& curve, Interval on, double tolerance);

@@ -30,7 +30,7 @@ std::vector<Side> outer(const OuterSides& sides) {
 
 // Squares of a board, added and removed in any order, beside counting all sides.
 TEST(OuterSides, are_those_of_one_polygon_alone_whatever_was_removed) {
-    Random random(5);
+    test::Random random(5);
     const int n = 6;
     const auto square = [&](int k) {
         const int at = k % n + (k / n) * (n + 1);

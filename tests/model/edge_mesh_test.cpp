@@ -17,6 +17,7 @@ namespace {
 struct OneFace {
     Model model;
     std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> surfaces;
+    std::vector<std::optional<Apex>> apexes;
     std::optional<EdgeMesher> mesher;
 
     OneFace(const CurveGeometry<2>& curve, Interval on,
@@ -33,7 +34,8 @@ struct OneFace {
         f.loops = {{{{0, false, curve}, {1, false, segment(on, b, a)}}}};
         model.faces = {f};
         surfaces.push_back(std::make_unique<DerivativeQuery<2, 3>>(model.faces[0].surface));
-        mesher.emplace(model, surfaces);
+        apexes.push_back(apex_of(model.faces[0].surface));
+        mesher.emplace(model, surfaces, apexes);
     }
     // What the chords of the curve ask for, once it is cut.
     std::vector<double> needs(double tolerance) {
@@ -183,6 +185,24 @@ TEST(EdgeMesh, no_bound_is_not_the_bound_zero) {
         EXPECT_LT(part.polyline, 0.05);
         EXPECT_GT(part.polyline, 0);
     }
+}
+
+// Of a cone: between a straight side and the one that triangles stand for is something, unless both are one.
+TEST(EdgeMesh, slivers_of_cones_are_as_wide_as_sides_bow) {
+    const Revolution cone{Line<3>{{{2, 0, 0}}, {{-1, 0, 1}}}, {}, {{0, 0, 1}}, SurfaceKind::cone};
+    const auto sliver = [&](Vec<2> from, Vec<2> to) {
+        const Line<2> side{from, to - from};
+        const OneFace f(side, {0, 1}, cone);
+        return f.mesher->error(0, 0, 1, 1, false);
+    };
+    EXPECT_EQ(sliver({{0, 0}}, {{0.3, 0}}).sliver, 0);
+    EXPECT_EQ(sliver({{0, 0}}, {{0, 1.5}}).sliver, 0);
+    const SegmentError slanting = sliver({{0, 0}}, {{0.3, 1.5}});
+    // Heights of 1 and 1/4: a third of the width; radius 2.
+    EXPECT_GE(slanting.sliver, 2 * 0.1 * 0.1 / 8);
+    EXPECT_LE(slanting.sliver, 1.2 * 2 * 0.1 * 0.1 / 8);
+    EXPECT_GE(slanting.polyline, 0.3 * 0.3 / 2 * 2 / 9);
+    EXPECT_LE(slanting.triangle, 0.3 * 0.3 / 2 * 2 / 9 * 1.001);
 }
 
 TEST(EdgeMesh, edges_are_cut_where_they_have_kinks_but_not_for_rounding) {

@@ -2,6 +2,7 @@
 #include "support/solids.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/make/revolve.hpp>
 
 #include <ctime>
 #include <gtest/gtest.h>
@@ -181,6 +182,15 @@ TEST(Tessellate, powers_of_two_scale_the_mesh_exactly) {
     }
 }
 
+// Alone, so that threads share its tree.
+Model cone_face() {
+    const auto profile =
+        *Curve<Vec<3>>::make({*BSplineBasis::bezier(1)}, Net<1, Vec<3>>({2}, {{{2, 0, 0}}, {{0, 0, 3}}}));
+    ModelBuilder builder;
+    EXPECT_TRUE(builder.add(revolve(profile, {{}, {{0, 0, 1}}}, 2 * kPi)->surface));
+    return *std::move(builder).finish();
+}
+
 TEST(Tessellate, any_number_of_threads_gives_the_same_bits) {
     std::mt19937 rng(13);
     ModelBuilder single, several;
@@ -188,8 +198,8 @@ TEST(Tessellate, any_number_of_threads_gives_the_same_bits) {
     for (const double height : {0.01, 0.3, 0.02, 0.01, 0.2, 0.01})  // threads share the work of some
         ASSERT_TRUE(several.add(landscape(rng, 3, 8, height)));
     for (const auto& [model, tolerance] :
-         {std::pair(frustum(2, 1, 3), 1e-3), std::pair(*std::move(single).finish(), 1e-3),
-          std::pair(*std::move(several).finish(), 2e-4)}) {
+         {std::pair(frustum(2, 1, 3), 2e-4), std::pair(cone_face(), 1e-7),
+          std::pair(*std::move(single).finish(), 1e-3), std::pair(*std::move(several).finish(), 2e-4)}) {
         set_max_threads(1);
         const auto one = tessellate(model, {.tolerance = tolerance});
         set_max_threads(4);

@@ -17,7 +17,8 @@ inline const char* name_of(Nasty n) {
 struct TrimmedFace {
     Model model;
     Nasty nasty = Nasty::none;
-    double area = 0;  // of the polygons in the parameter plane; exact where all loops are polygons
+    bool cone = false;  // or cylinder, of a free-form curve
+    double area = 0;    // of the polygons in the parameter plane; exact where all loops are polygons
     bool polygons = true;
     double size = 1;  // of the parameter domain
     std::vector<std::vector<Vec<2>>> corners;
@@ -34,8 +35,9 @@ public:
         const int degree = rng_.integer(1, 4), n = rng_.integer(degree + 1, 7);
         const auto u = closed ? *BSplineBasis::periodic(3, {0, 1, 2, 3, 4, 5})
                               : *BSplineBasis::clamped_uniform(degree, n);
-        const int m = rng_.integer(3, 6);
-        const auto v = *BSplineBasis::clamped_uniform(2, m);
+        f.cone = rng_.chance(0.3);
+        const int m = f.cone ? 2 : rng_.integer(3, 6);
+        const auto v = *BSplineBasis::clamped_uniform(f.cone ? 1 : 2, m);
         const double eu = u.domain().hi, ev = v.domain().hi, height = rng_.real(0, 0.4);
         std::vector<Vec<3>> points;
         std::vector<double> weights;
@@ -47,6 +49,15 @@ public:
                                         : Vec<3>{{double(i) / (u.size() - 1), y, z}});
                 weights.push_back(std::exp2(rng_.real(-1, 1)));
             }
+        if (f.cone) {  // the first row is a copy of the second one, nearer to an apex, in it, or moved
+            const Vec<3> apex{{rng_.real(0, 1), rng_.real(-1, 0), rng_.real(1, 2)}};
+            const double part = rng_.chance(0.2) ? 1 : rng_.chance(0.2) ? 0 : rng_.real(0, 0.9);
+            for (int i = 0; i < u.size(); ++i) {
+                const Vec<3> far = points[std::size_t(2 * i + 1)];
+                points[std::size_t(2 * i)] = part == 1 ? far + apex : apex + part * (far - apex);
+                weights[std::size_t(2 * i)] = weights[std::size_t(2 * i + 1)];
+            }
+        }
         surface_ = must(Surface<Vec<3>>::make({u, v}, Net<2, Vec<3>>({u.size(), m}, points)));
         if (rng_.chance(0.4)) {
             std::vector<Hom<3>> c;

@@ -1,14 +1,34 @@
 // How fine the boundary of a face has to be for the triangles beside it.
 #pragma once
 #include <freiform/core/interval.hpp>
+#include <freiform/spline/apex.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 namespace freiform {
 
-// What a triangle with this side of the boundary as longest side is off by at most, all of its error counted:
-// what makes mesh_face succeed. `chord`: the side in the parameter plane; `box` holds it, and `over` bounds
-// derivatives there.
-double error_beside(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const DerivativeBounds<2>& over,
-                    const Vec<2>& chord);
+// A straight side of the boundary of a face, between two places of the parameter plane; `over` bounds
+// derivatives in a box that holds it. `apex`: where the face is taken as a cone (FaceDemands).
+struct BoundarySide {
+    const DerivativeQuery<2, 3>& surface;
+    Box<2> box;
+    DerivativeBounds<2> over;
+    Vec<2> from, to;
+    std::optional<Apex> apex;
+
+    // What a triangle with this side as longest side is off by at most, all of its error counted: what makes
+    // mesh_face succeed.
+    double error_beside() const;
+    // Of a cone: how far, in both parameters, the side is from that which triangles stand for (cone_face.cpp)
+    // at most, and the distance of the latter from the chord in space. Nothing if they are the same.
+    struct Bow {
+        Vec<2> off;
+        double error = 0;
+    };
+    std::optional<Bow> bow() const;
+};
+
+// Whether the face is to be taken as a cone, where `apex` is that of its surface, and `face` its box: if it
+// is on one side of the apex, and triangles are fewer then.
+bool is_cone(const Apex& apex, const DerivativeQuery<2, 3>& surface, const Box<2>& face);
 
 }  // namespace freiform

@@ -1,11 +1,13 @@
 // The triangles of one trimmed surface, given its boundary as polygons in the parameter plane.
 #pragma once
 #include <freiform/core/result.hpp>
+#include <freiform/spline/apex.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,8 @@ struct FaceDemands {
     bool is_shared = false;
     // About how many there will be, for memory that is not moved while it grows; 0 where nothing is known.
     double expected_triangles = 0;
+    // Of a cone whose boundary is as fine as cones ask for (chord_triangles.hpp).
+    std::optional<Apex> apex = {};
 
     bool shapes_triangles() const {
         return std::isfinite(max_edge) || std::isfinite(max_angle) || std::isfinite(max_aspect);

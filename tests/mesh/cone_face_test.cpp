@@ -1,0 +1,230 @@
+// Triangles of cones: what is said of their distance holds, is not far above it, and cones are known.
+#include "mesh/cone_face_detail.hpp"
+#include "support/random.hpp"
+
+#include <freiform/core/constants.hpp>
+#include <freiform/mesh/chord_triangles.hpp>
+
+#include <gtest/gtest.h>
+
+namespace freiform {
+namespace {
+
+using test::must;
+using test::Random;
+
+// About the z-axis, with the apex at the height 3, where v = 6 of a line that is twice as fast.
+Revolution cone() {
+    return {Line<3>{{{2, 0, 0}}, {{-1.0 / 3, 0, 0.5}}}, {{0, 0, 0}}, {{0, 0, 1}}, SurfaceKind::cone};
+}
+
+template <class P>
+Surface<P> rows(Random& rng, const Vec<3>& apex, double part, int ruled, double off = 0) {
+    const auto along = *BSplineBasis::clamped_uniform(3, 6), lines = *BSplineBasis::bezier(1);
+    std::vector<Vec<3>> far;
+    std::vector<double> weight;
+    for (int i = 0; i < 6; ++i) {
+        far.push_back({{std::cos(0.5 * i), std::sin(0.5 * i), 0.2 * rng.real(-1, 1)}});
+        weight.push_back(rng.real(0.7, 1.4));
+    }
+    Index<2> extent{6, 6};
+    extent[std::size_t(ruled)] = 2;
+    Net<2, P> net(extent);
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 2; ++k) {
+            const Vec<3> x = far[std::size_t(i)],
+                         moved =
+                             part == 1 ? x + apex : apex + part * (x - apex) + Vec<3>{{off * i * i, 0, 0}};
+            P& to = net.view()(ruled == 1 ? Index<2>{i, k} : Index<2>{k, i});
+            if constexpr (std::same_as<P, Hom<3>>)
+                to = weighted(k == 1 ? x : moved, weight[std::size_t(i)]);
+            else
+                to = k == 1 ? x : moved;
+        }
+    return must(ruled == 1 ? Surface<P>::make({along, lines}, net) : Surface<P>::make({lines, along}, net));
+}
+
+TEST(ConeFace, apexes_are_found_and_what_is_no_cone_is_told_from_one) {
+    const auto found = apex_of(cone());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->ruled, 1);
+    EXPECT_NEAR(found->at, 6, 1e-14);
+    EXPECT_LE(found->slip, 1e-13);
+    Revolution skew = cone();
+    std::get<Line<3>>(skew.profile).origin[1] = 1e-6;
+    EXPECT_FALSE(apex_of(skew)) << "a hyperboloid";
+    Revolution wall = cone();
+    std::get<Line<3>>(wall.profile).direction = {{0, 0, 1}};
+    EXPECT_FALSE(apex_of(wall)) << "a cylinder";
+    Random rng(5);
+    for (int ruled : {0, 1})
+        for (double part : {0.0, 0.3, 0.999, 1.0, -0.5}) {
+            const Vec<3> apex{{0.3, -0.2, 2}};
+            for (const SurfaceGeometry& s : {SurfaceGeometry(rows<Vec<3>>(rng, apex, part, ruled)),
+                                             SurfaceGeometry(rows<Hom<3>>(rng, apex, part, ruled))}) {
+                const auto a = apex_of(s);
+                ASSERT_TRUE(a) << part;
+                EXPECT_EQ(a->ruled, ruled);
+                EXPECT_LE(a->slip, 1e-11);
+                if (part == 1) {
+                    EXPECT_EQ(a->at, kInfinity);
+                } else {
+                    EXPECT_NEAR(a->at, part / (part - 1), 1e-9 / (1 - part)) << part;
+                }
+            }
+            EXPECT_FALSE(apex_of(rows<Vec<3>>(rng, apex, part == 1 ? 0.5 : part, ruled, 1e-7))) << part;
+        }
+    auto uneven = rows<Hom<3>>(rng, {{0, 0, 2}}, 0.5, 1);
+    Net<2, Hom<3>> net = uneven.net();
+    net.view()(Index<2>{2, 0}) = weighted(project(net.view()(Index<2>{2, 0})), 3.0);
+    EXPECT_FALSE(apex_of(must(Surface<Hom<3>>::make({uneven.basis(0), uneven.basis(1)}, net))))
+        << "lines that are not even";
+}
+
+// The distance of points of the flat triangle from the surface, at the parameters that the essay names.
+double sampled(const SurfaceGeometry& surface, const Apex& apex, double far,
+               const std::array<Vec<2>, 3>& corner) {
+    std::array<Vec<3>, 3> p;
+    std::array<double, 3> y;
+    for (std::size_t i = 0; i < 3; ++i) {
+        p[i] = jet<0>(surface, corner[i].c).value();
+        y[i] = std::isinf(apex.at) ? 1 : (corner[i][apex.ruled] - apex.at) / (far - apex.at);
+    }
+    double most = 0;
+    const int n = 24;
+    for (int i = 0; i <= n; ++i)
+        for (int k = 0; i + k <= n; ++k) {
+            const double l[3] = {double(i) / n, double(k) / n, double(n - i - k) / n};
+            Vec<3> flat{};
+            double height = 0, across = 0, line = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                flat += l[c] * p[c];
+                height += l[c] * y[c];
+                across += l[c] * y[c] * corner[c][1 - apex.ruled];
+                line += l[c] * corner[c][apex.ruled];
+            }
+            if (!(height > 1e-12)) continue;
+            std::array<double, 2> at{};
+            at[std::size_t(apex.ruled)] = line;
+            at[std::size_t(1 - apex.ruled)] = across / height;
+            most = std::max(most, norm(jet<0>(surface, at).value() - flat));
+        }
+    return most;
+}
+
+TEST(ConeFace, bounds_hold_and_are_nearly_reached) {
+    Random rng(17);
+    std::vector<SurfaceGeometry> all{cone()};
+    for (double part : {0.0, 0.4, 1.0})
+        for (int ruled : {0, 1}) {
+            all.push_back(rows<Vec<3>>(rng, {{0.2, 0.1, 2}}, part, ruled));
+            all.push_back(rows<Hom<3>>(rng, {{0.2, 0.1, 2}}, part, ruled));
+        }
+    double best = 0;
+    for (const SurfaceGeometry& s : all) {
+        const DerivativeQuery<2, 3> query(s);
+        const auto apex = apex_of(s);
+        ASSERT_TRUE(apex);
+        const bool is_turned = std::holds_alternative<Revolution>(s);
+        // Of splines all of the domain; of the other one the part below the apex, or above.
+        for (int round = 0; round < 300; ++round) {
+            const bool above = is_turned && round % 2;
+            Box<2> face;
+            for (int d = 0; d < 2; ++d) {
+                const Interval on = is_turned ? d == 0  ? Interval{0, 6}
+                                                : above ? Interval{6, 9}
+                                                        : Interval{-2, 6}
+                                              : domain(s)[std::size_t(d)];
+                face.lo[d] = on.lo, face.hi[d] = on.hi;
+            }
+            const auto cone = ConeFace::make(*apex, query, face);
+            ASSERT_TRUE(cone);
+            EXPECT_EQ(cone->across(), 1 - apex->ruled);
+            const double wide = std::exp2(-rng.integer(2, 6));
+            std::array<Vec<2>, 3> corner;
+            Box<2> box;
+            const Interval on = face.side(cone->across());
+            const double from = rng.real(on.lo, on.hi - wide * on.length());
+            for (Vec<2>& c : corner) {
+                const Interval lines = face.side(apex->ruled);
+                c[apex->ruled] =
+                    rng.chance(0.2) ? (rng.chance(0.5) ? lines.lo : lines.hi) : rng.real(lines.lo, lines.hi);
+                c[cone->across()] = from + rng.real(0, 1) * wide * on.length();
+                box.add(c);
+            }
+            const double bend = cone->bend(query(cone->far_end(box)));
+            const double bound = cone->error(bend, corner);
+            const Interval lines = face.side(apex->ruled);
+            const double far = lines.hi - apex->at >= apex->at - lines.lo ? lines.hi : lines.lo;
+            const double measured = sampled(s, *apex, far, corner);
+            EXPECT_LE(measured, bound) << round;
+            best = std::max(best, measured / bound);
+        }
+    }
+    EXPECT_GE(best, 0.95);
+}
+
+TEST(ConeFace, faces_on_both_sides_of_the_apex_and_flat_ones_are_taken_otherwise) {
+    const SurfaceGeometry s = cone();
+    const DerivativeQuery<2, 3> query(s);
+    const Apex apex = *apex_of(s);
+    const auto face = [](double lo, double hi) { return Box<2>{{{0, lo}}, {{6, hi}}}; };
+    EXPECT_TRUE(is_cone(apex, query, face(0, 5)));
+    EXPECT_TRUE(is_cone(apex, query, face(0, 6)));
+    EXPECT_TRUE(is_cone(apex, query, face(0, std::nextafter(6, 7))));
+    EXPECT_TRUE(is_cone(apex, query, face(6, 9)));
+    EXPECT_FALSE(is_cone(apex, query, face(0, 6.1)));
+    const auto beyond = ConeFace::make(apex, query, face(0, 6 + 0x1p-37)),
+               before = ConeFace::make(apex, query, face(0, 6));
+    ASSERT_TRUE(beyond && before);
+    const std::array<Vec<2>, 3> nothing{{{{1, 0}}, {{1, 1}}, {{1, 2}}}};
+    EXPECT_GT(beyond->error(1, nothing), before->error(1, nothing) + 0x1p-38);
+    const SurfaceGeometry flat = Revolution{Line<3>{{{2, 0, 0}}, {{-1, 0, 0.05}}}, {{0, 0, 0}}, {{0, 0, 1}}};
+    EXPECT_FALSE(is_cone(*apex_of(flat), DerivativeQuery<2, 3>(flat), face(0, 1)));
+}
+
+// A side that is straight between parameters is where `bow` says beside that of flat triangles.
+TEST(ConeFace, sides_bow_as_far_as_is_said) {
+    const SurfaceGeometry s = cone();
+    const DerivativeQuery<2, 3> query(s);
+    const auto face = ConeFace::make(*apex_of(s), query, {{{0, 0}}, {{6, 6}}});
+    Random rng(3);
+    for (int round = 0; round < 200; ++round) {
+        const Vec<2> a{{rng.real(0, 6), rng.real(0, 6)}},
+            b{{rng.real(0, 6), rng.chance(0.1) ? a[1] : rng.real(0, 6)}};
+        const double bow = face->bow(a, b), ya = 6 - a[1], yb = 6 - b[1];
+        double most = 0;
+        for (int k = 1; k < 200; ++k) {
+            const double t = k / 200.0, y = (1 - t) * ya + t * yb;
+            most = std::max(
+                most, std::abs(((1 - t) * ya * a[0] + t * yb * b[0]) / y - ((1 - t) * a[0] + t * b[0])));
+        }
+        EXPECT_LE(most, bow * (1 + 1e-12) + 1e-14);
+        EXPECT_GE(most, 0.9 * bow - 1e-12);
+    }
+}
+
+TEST(ConeFace, triangles_are_turned_over_if_their_points_are) {
+    const SurfaceGeometry s = cone();
+    const DerivativeQuery<2, 3> query(s);
+    const auto face = ConeFace::make(*apex_of(s), query, {{{0, 0}}, {{6, 6}}});
+    Random rng(9);
+    int turned = 0;
+    for (int round = 0; round < 500; ++round) {
+        std::array<Vec<2>, 3> c;
+        for (Vec<2>& p : c) p = {{rng.real(0, 0.3), rng.real(0, 6)}};
+        if (cross(c[1] - c[0], c[2] - c[0]) < 0) std::swap(c[1], c[2]);
+        std::array<Vec<3>, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = jet<0>(s, c[i].c).value();
+        const Vec<3> n = cross(p[1] - p[0], p[2] - p[0]);
+        const auto j = jet<1>(s, {0.15, 3});
+        const double seen = dot(unit(cross(j.d[1], j.d[2])), n) / norm(n);
+        if (std::abs(seen) < 0.8) continue;  // hardly any area, or far from the middle
+        EXPECT_EQ(face->is_turned_over(c), seen < 0) << round;
+        turned += seen < 0;
+    }
+    EXPECT_GT(turned, 3);
+}
+
+}  // namespace
+}  // namespace freiform
