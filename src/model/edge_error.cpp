@@ -199,7 +199,8 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
     const double own = mesh.curve ? out.polyline : kInfinity;
     for (const auto& use : mesh.uses) {
         const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
-        const std::optional<Apex>& apex = apexes_[std::size_t(use->face)];
+        std::optional<Apex> apex = apexes_[std::size_t(use->face)];
+        if (apex && !apex->is_true_to(tolerance)) apex.reset();
         if (use->lift) {
             const Vec<2> from = jet<0>(use->coedge->curve, a).value(),
                          to = jet<0>(use->coedge->curve, b).value();

@@ -109,7 +109,8 @@ FaceDemands Tessellator::face_demands(std::size_t f) const {
             f < grids_.size() && grids_[f] ? &*grids_[f] : nullptr,
             is_large(f),
             f < sizes_.size() ? sizes_[f] : 0,
-            f < faces() ? apexes_[f] : std::nullopt};
+            f < faces() && apexes_[f] && apexes_[f]->is_true_to(edge_demands().tolerance) ? apexes_[f]
+                                                                                          : std::nullopt};
 }
 
 Result<void> Tessellator::match_grids() {

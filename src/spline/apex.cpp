@@ -5,7 +5,8 @@
 // found from A_j - A_0 = k (B_j - B_0) by least squares; P from the means of the rows. What is left of A_j -
 // P - k (B_j - P) bounds the slip by convexity: it is largest in the row A, and nothing in the row B. B is
 // the row that extends farther, so |k| is at most about 1; where it is 1 the rows are moved copies, and
-// cylinders of what is left.
+// the surface is a cylinder. Weights that differ by a part e move points by 2 e of the size, at most, against
+// those of either row.
 //
 // Of revolutions of Q + v D about an axis: at the v where the line is nearest to the axis; its distance from
 // there is the slip, turned.
@@ -21,9 +22,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kMostSlip = 0x1p-40;      // of the size
-constexpr double kEqualWeights = 0x1p-44;  // relative
-constexpr double kFarApex = 1 - 0x1p-20;   // k, beyond which it is a cylinder, if anything
+constexpr double kMostSlip = 0x1p-16;     // of the size
+constexpr double kFarApex = 1 - 0x1p-20;  // k, beyond which it is a cylinder, if anything
 constexpr double kRoundings = 64 * kUnitRoundoff;
 
 std::optional<Apex> apex_of(const Revolution& s) {
@@ -39,64 +39,59 @@ std::optional<Apex> apex_of(const Revolution& s) {
     return Apex{1, at, slip};
 }
 
-// The points of one row, which run along the other axis.
+struct Row {
+    std::vector<Vec<3>> points;
+    std::vector<double> weights;
+};
+
+// One of two rows along the other axis, if there are no more.
 template <class P>
-std::vector<Vec<3>> row_of(const Surface<P>& s, int axis, int which) {
+Row row_of(const Surface<P>& s, int axis, int which) {
     const NetView<2, const P> net = s.net().view();
-    std::vector<Vec<3>> out;
-    for (int i = 0; i < net.extent[std::size_t(1 - axis)]; ++i)
-        out.push_back(project(net(axis == 0 ? Index<2>{which, i} : Index<2>{i, which})));
+    Row out;
+    for (int i = 0; i < net.extent[std::size_t(1 - axis)]; ++i) {
+        const P& p = net(axis == 0 ? Index<2>{which, i} : Index<2>{i, which});
+        out.points.push_back(project(p));
+        out.weights.push_back(Space<P>::weight(p));
+    }
     return out;
 }
 
-template <class P>
-bool has_equal_weights(const Surface<P>& s, int axis) {
-    if constexpr (Space<P>::kRational) {
-        const NetView<2, const P> net = s.net().view();
-        for (int i = 0; i < net.extent[std::size_t(1 - axis)]; ++i) {
-            const double a = Space<P>::weight(net(axis == 0 ? Index<2>{0, i} : Index<2>{i, 0})),
-                         b = Space<P>::weight(net(axis == 0 ? Index<2>{1, i} : Index<2>{i, 1}));
-            if (!(std::abs(a - b) <= kEqualWeights * std::min(a, b))) return false;
-        }
-    }
-    return true;
+Vec<3> mean_of(const std::vector<Vec<3>>& row) {
+    Vec<3> sum{};
+    for (const Vec<3>& p : row) sum += p;
+    return (1.0 / double(row.size())) * sum;
 }
 
-template <class P>
-std::optional<Apex> apex_of(const Surface<P>& s, int axis) {
-    const auto& basis = s.basis(axis);
-    if (basis.degree() != 1 || s.net().extent()[std::size_t(axis)] != 2 || !has_equal_weights(s, axis))
-        return std::nullopt;
-    const Interval on = basis.domain();
-    std::vector<Vec<3>> near = row_of(s, axis, 0), far = row_of(s, axis, 1);
+// Of the lines from the row at the parameter on.lo to that at on.hi.
+std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far) {
+    const std::size_t n = near.points.size();
+    double uneven = 0;  // weights, relatively
+    for (std::size_t j = 0; j < n; ++j)
+        uneven = std::max(
+            uneven, std::abs(near.weights[j] - far.weights[j]) / std::min(near.weights[j], far.weights[j]));
+    Vec<3> a = mean_of(near.points), b = mean_of(far.points);
+    double of_near = 0, of_far = 0, both = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+        const Vec<3> x = near.points[j] - a, y = far.points[j] - b;
+        of_near += dot(x, x), of_far += dot(y, y), both += dot(x, y);
+    }
     double from = on.lo, to = on.hi;
-    const auto mean = [](const std::vector<Vec<3>>& row) {
-        Vec<3> sum{};
-        for (const Vec<3>& p : row) sum += p;
-        return (1.0 / double(row.size())) * sum;
-    };
-    const auto extent = [&](const std::vector<Vec<3>>& row) {
-        double sum = 0;
-        for (const Vec<3>& p : row) sum += dot(p - mean(row), p - mean(row));
-        return sum;
-    };
-    if (extent(near) > extent(far)) std::swap(near, far), std::swap(from, to);
-    const Vec<3> a = mean(near), b = mean(far);
-    double both = 0;
-    for (std::size_t j = 0; j < near.size(); ++j) both += dot(near[j] - a, far[j] - b);
-    const double k = both / extent(far);
+    if (of_near > of_far)
+        std::swap(near, far), std::swap(a, b), std::swap(from, to), std::swap(of_near, of_far);
+    const double k = both / of_far;
     if (!std::isfinite(k)) return std::nullopt;
     const bool is_cylinder = k > kFarApex;
     const Vec<3> apex = is_cylinder ? b : (1 / (1 - k)) * (a - k * b);
     const Vec<3> by = is_cylinder ? a - b : Vec<3>{};
     const double scale = is_cylinder ? 1 : k;
     double slip = 0, size = norm(by);
-    for (std::size_t j = 0; j < near.size(); ++j) {
-        slip = std::max(slip, norm(near[j] - apex - by - scale * (far[j] - apex)));
-        size = std::max({size, norm(far[j] - apex), norm(near[j] - apex)});
+    for (std::size_t j = 0; j < n; ++j) {
+        const Vec<3> x = near.points[j] - apex, y = far.points[j] - apex;
+        slip = std::max(slip, norm(x - by - scale * y));
+        size = std::max({size, norm(x), norm(y)});
     }
-    slip += kRoundings * (norm(apex) + size);
-    if constexpr (Space<P>::kRational) slip += 4 * kEqualWeights * size;
+    slip += kRoundings * (norm(apex) + size) + 8 * uneven * size;
     if (!(slip <= kMostSlip * size)) return std::nullopt;
     return Apex{axis, is_cylinder ? kInfinity : (from - k * to) / (1 - k), slip};
 }
@@ -107,8 +102,14 @@ std::optional<Apex> apex_of(const SurfaceGeometry& surface) {
     return visit_one(
         [](const auto& s) -> std::optional<Apex> {
             if constexpr (requires { s.net(); }) {
-                if (auto found = apex_of(s, 1)) return found;
-                return apex_of(s, 0);
+                for (const int axis : {1, 0}) {
+                    const auto& basis = s.basis(axis);
+                    if (basis.degree() != 1 || s.net().extent()[std::size_t(axis)] != 2) continue;
+                    if (auto found =
+                            apex_of_rows(axis, basis.domain(), row_of(s, axis, 0), row_of(s, axis, 1)))
+                        return found;
+                }
+                return std::nullopt;
             } else if constexpr (std::same_as<std::remove_cvref_t<decltype(s)>, Revolution>) {
                 return apex_of(s);
             } else {

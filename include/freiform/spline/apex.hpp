@@ -13,6 +13,8 @@ struct Apex {
     int ruled = 1;  // the axis whose parameter lines are straight
     double at = 0;  // its parameter in the apex
     double slip = 0;
+    // Whether it is nothing beside a tolerance.
+    bool is_true_to(double tolerance) const { return slip <= 0x1p-8 * tolerance; }
 };
 
 // Of splines with two rows of control points that are scaled copies of each other, and of revolutions of
