@@ -39,9 +39,11 @@ std::optional<BoundarySide::Bow> BoundarySide::bow() const {
     return out;
 }
 
-bool is_cone(const Apex& apex, const DerivativeQuery<2, 3>& surface, const Box<2>& face) {
-    return surface.weight_spread() <= kWeightsFarApart && ConeFace::make(apex, surface, face) &&
-           is_worth_a_cone(apex, surface.geometry(), face);
+std::optional<Apex> apex_for(const SurfaceGeometry& surface, const Box<2>& face) {
+    const auto apex = apex_of(surface);
+    return apex && !face.is_empty() && is_on_one_side(*apex, face) && is_worth_a_cone(*apex, surface, face)
+               ? apex
+               : std::nullopt;
 }
 
 }  // namespace freiform

@@ -44,12 +44,18 @@ constexpr double kWorth = 0.25;  // of second derivatives, what is seen along th
 
 }  // namespace
 
+bool is_on_one_side(const Apex& apex, const Box<2>& face) {
+    const Interval on = face.side(apex.ruled);
+    const double before = apex.at - on.lo, behind = on.hi - apex.at, height = std::max(before, behind);
+    return height > 0 && std::min(before, behind) <= kBeyondApex * height;
+}
+
 std::optional<ConeFace> ConeFace::make(const Apex& apex, const DerivativeQuery<2, 3>& surface,
                                        const Box<2>& face) {
+    if (!is_on_one_side(apex, face)) return std::nullopt;
     const Interval on = face.side(apex.ruled);
     const double before = apex.at - on.lo, behind = on.hi - apex.at;
-    const double height = std::max(before, behind), beyond = std::max(0.0, std::min(before, behind));
-    if (!(height > 0) || !(beyond <= kBeyondApex * height)) return std::nullopt;
+    const double beyond = std::max(0.0, std::min(before, behind));
     ConeFace out;
     out.ruled_ = apex.ruled;
     out.at_ = apex.at;

@@ -37,8 +37,10 @@ private:
     double at_ = 0, far_ = 0, slip_ = 0;
 };
 
-// Whether triangles are fewer where the face is taken as a cone: not where it is hardly curved for its size,
-// as in a plane.
+// A little beyond the apex is on both.
+bool is_on_one_side(const Apex& apex, const Box<2>& face);
+
+// Whether the surface is curved for its size, as it is not where it is nearly a plane.
 bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box<2>& face);
 
 }  // namespace freiform

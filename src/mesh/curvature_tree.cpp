@@ -70,30 +70,48 @@ Curvature seen_at(const Jet<2, 2, Vec<3>>& j, bool along_normal) {
     return {std::abs(uu), std::abs(dot(n, j(1, 1))), std::abs(vv), uu, vv};
 }
 
+namespace {
+
+// In a part of the face of the size h, one of `count` along each axis. Half of the error for each direction,
+// and what mixed derivatives ask for beside it; halving makes boxes finer than necessary, by kHalving on
+// average. What is seen along the normal counts, where there is one, and a little of the rest; and the whole
+// may be as much as feet allow (bending.cpp).
+double triangles_at(const Jet<2, 2, Vec<3>>& j, const Vec<2>& h, int count, const FaceDemands& demands) {
+    constexpr double kHalving = 1.5, kHalvedLength = 2, kAside = 1.0 / 16, kFootQ = 0.1;
+    const double tolerance = demands.tolerance, part = 1.0 / count;
+    const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
+    const bool has_normal = norm(m) > 0;
+    double whole = tolerance;
+    if (has_normal) {
+        const double a = norm(j(1, 0)), b = norm(j(0, 1)),
+                     least = 1 - std::abs(dot(j(1, 0), j(0, 1))) / (a * b);
+        const double bent =
+            norm(j(1, 1)) / (a * b) + std::max(norm(j(2, 0)) / (a * a), norm(j(0, 2)) / (b * b));
+        whole = std::max(whole, kFootQ * least / bent);
+    }
+    const auto bend = [&](const Vec<3>& second) {  // beside 8 tolerances
+        const double all = norm(second), seen = std::abs(dot(n, second)) + kAside * all;
+        return kHalving * (has_normal ? std::max(seen, all * (tolerance / whole)) : all) / (8 * tolerance);
+    };
+    const auto cuts = [&](const Vec<3>& first, const Vec<3>& second, double length) {
+        const double by_length = norm(first) * length / demands.max_edge;
+        return std::sqrt(part * part + 2 * bend(second) * length * length +
+                         kHalvedLength * by_length * by_length);
+    };
+    return 2 *
+           (cuts(j(1, 0), j(2, 0), h[0]) * cuts(j(0, 1), j(0, 2), h[1]) + 2 * bend(j(1, 1)) * h[0] * h[1]);
+}
+
+}  // namespace
+
 double estimated_triangles(const SurfaceGeometry& surface, const Box<2>& box, const FaceDemands& demands,
                            int samples) {
-    // Half of the error for each direction, and what mixed derivatives ask for beside it; halving makes boxes
-    // finer than necessary, by kHalving on average.
-    constexpr double kHalving = 1.5, kAside = 1.0 / 16;
-    const double part = 1.0 / samples, allowed = 8 * demands.tolerance;
-    const Vec<2> h = part * (box.hi - box.lo);
+    const Vec<2> h = (1.0 / samples) * (box.hi - box.lo);
     double sum = 0;
     for (int i = 0; i < samples; ++i)
-        for (int k = 0; k < samples; ++k) {
-            const auto j = jet<2>(surface, {box.lo[0] + (i + 0.5) * h[0], box.lo[1] + (k + 0.5) * h[1]});
-            // What is seen along the normal counts, where there is one, and a little of the rest.
-            const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
-            const auto bend = [&](const Vec<3>& second) {
-                return norm(n) > 0 ? std::abs(dot(n, second)) + kAside * norm(second) : norm(second);
-            };
-            const auto cuts = [&](const Vec<3>& first, const Vec<3>& second, double length) {
-                const double by_length = norm(first) * length / demands.max_edge;
-                return std::sqrt(part * part + 2 * kHalving * bend(second) * length * length / allowed +
-                                 by_length * by_length);
-            };
-            sum += 2 * (cuts(j(1, 0), j(2, 0), h[0]) * cuts(j(0, 1), j(0, 2), h[1]) +
-                        2 * kHalving * bend(j(1, 1)) * h[0] * h[1] / allowed);
-        }
+        for (int k = 0; k < samples; ++k)
+            sum += triangles_at(jet<2>(surface, {box.lo[0] + (i + 0.5) * h[0], box.lo[1] + (k + 0.5) * h[1]}),
+                                h, samples, demands);
     return std::isfinite(sum) ? sum : 0;
 }
 

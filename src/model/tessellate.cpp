@@ -40,17 +40,6 @@ double now() {
 
 }  // namespace
 
-namespace {
-
-std::optional<Apex> apex_of_face(const Model& model, const Face& face, const DerivativeQuery<2, 3>& surface) {
-    const auto apex = apex_of(face.surface);
-    if (!apex) return std::nullopt;
-    const Box<2> box = sampled_box(model, face);
-    return !box.is_empty() && is_cone(*apex, surface, box) ? apex : std::nullopt;
-}
-
-}  // namespace
-
 SharedWork::SharedWork(const Model& model)
     : queries([&] {
           std::vector<std::unique_ptr<DerivativeQuery<2, 3>>> all(model.faces.size());
@@ -61,8 +50,10 @@ SharedWork::SharedWork(const Model& model)
       }()),
       apexes([&] {
           std::vector<std::optional<Apex>> all(model.faces.size());
-          parallel_for(all.size(), kFacesAtATime,
-                       [&](std::size_t f) { all[f] = apex_of_face(model, model.faces[f], *queries[f]); });
+          parallel_for(all.size(), kFacesAtATime, [&](std::size_t f) {
+              if (queries[f]->weight_spread() <= kWeightsFarApart)
+                  all[f] = apex_for(model.faces[f].surface, sampled_box(model, model.faces[f]));
+          });
           return all;
       }()),
       edges(model, queries, apexes) {}

@@ -7,6 +7,7 @@
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/mesh/chord_triangles.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <cmath>
@@ -33,8 +34,10 @@ std::vector<double> predicted(const Model& model, const TessellateOptions& optio
             for (const Coedge& c : l.coedges) along += chords[std::size_t(c.edge)];
         if (box.is_empty()) return;
         const FaceDemands demands{options.tolerance, options.max_edge};
-        out[f] = std::max(estimated_triangles(face.surface, box, demands, samples),
-                          along + 2 * double(face.loops.size()) - 4);
+        const double around = along + 2 * double(face.loops.size()) - 4;
+        const auto apex = std::isinf(options.max_edge) ? apex_for(face.surface, box) : std::nullopt;
+        const bool is_cone = apex && apex->is_true_to(options.tolerance);
+        out[f] = std::max(is_cone ? 0 : estimated_triangles(face.surface, box, demands, samples), around);
     });
     return out;
 }

@@ -35,7 +35,6 @@ std::optional<Apex> apex_of(const Revolution& s) {
     if (!(norm(d) > kRoundings * speed)) return std::nullopt;
     const double at = -dot(q, d) / dot(d, d), size = norm(from) + std::abs(at) * speed;
     const double slip = norm(q + at * d) + kRoundings * (size + norm(s.origin));
-    if (!(slip <= kMostSlip * size)) return std::nullopt;
     return Apex{1, at, slip};
 }
 

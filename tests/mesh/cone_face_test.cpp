@@ -57,7 +57,12 @@ TEST(ConeFace, apexes_are_found_and_what_is_no_cone_is_told_from_one) {
     EXPECT_TRUE(apex_of(skew)->is_true_to(1e-3));
     EXPECT_FALSE(apex_of(skew)->is_true_to(1e-4));
     std::get<Line<3>>(skew.profile).origin[1] = 1e-3;
-    EXPECT_FALSE(apex_of(skew));
+    EXPECT_NEAR(apex_of(skew)->slip, 1e-3, 1e-12);
+    Revolution from_apex = cone();
+    std::get<Line<3>>(from_apex.profile).origin = from_apex.origin = {{1, 2, 3}};
+    ASSERT_TRUE(apex_of(from_apex));
+    EXPECT_EQ(apex_of(from_apex)->at, 0);
+    EXPECT_TRUE(apex_of(from_apex)->is_true_to(1e-9));
     Revolution wall = cone();
     std::get<Line<3>>(wall.profile).direction = {{0, 0, 1}};
     EXPECT_FALSE(apex_of(wall)) << "a cylinder";
@@ -177,18 +182,18 @@ TEST(ConeFace, faces_on_both_sides_of_the_apex_and_flat_ones_are_taken_otherwise
     const DerivativeQuery<2, 3> query(s);
     const Apex apex = *apex_of(s);
     const auto face = [](double lo, double hi) { return Box<2>{{{0, lo}}, {{6, hi}}}; };
-    EXPECT_TRUE(is_cone(apex, query, face(0, 5)));
-    EXPECT_TRUE(is_cone(apex, query, face(0, 6)));
-    EXPECT_TRUE(is_cone(apex, query, face(0, std::nextafter(6, 7))));
-    EXPECT_TRUE(is_cone(apex, query, face(6, 9)));
-    EXPECT_FALSE(is_cone(apex, query, face(0, 6.1)));
+    EXPECT_TRUE(apex_for(s, face(0, 5)));
+    EXPECT_TRUE(apex_for(s, face(0, 6)));
+    EXPECT_TRUE(apex_for(s, face(0, std::nextafter(6, 7))));
+    EXPECT_TRUE(apex_for(s, face(6, 9)));
+    EXPECT_FALSE(apex_for(s, face(0, 6.1)));
     const auto beyond = ConeFace::make(apex, query, face(0, 6 + 0x1p-37)),
                before = ConeFace::make(apex, query, face(0, 6));
     ASSERT_TRUE(beyond && before);
     const std::array<Vec<2>, 3> nothing{{{{1, 0}}, {{1, 1}}, {{1, 2}}}};
     EXPECT_GT(beyond->error(1, nothing), before->error(1, nothing) + 0x1p-38);
     const SurfaceGeometry flat = Revolution{Line<3>{{{2, 0, 0}}, {{-1, 0, 0.05}}}, {{0, 0, 0}}, {{0, 0, 1}}};
-    EXPECT_FALSE(is_cone(*apex_of(flat), DerivativeQuery<2, 3>(flat), face(0, 1)));
+    EXPECT_FALSE(apex_for(flat, face(0, 1)));
 }
 
 // A side that is straight between parameters is where `bow` says beside that of flat triangles.

@@ -47,8 +47,8 @@ TEST(TessellateDemands, predictions_are_of_the_right_size) {
                 how.max_edge = longest;
                 const double predicted = predicted_triangles(m, how);
                 const double made = double(tessellate(m, how)->mesh.triangles.size());
-                EXPECT_LE(predicted, 4 * made) << tolerance << " " << longest;
-                EXPECT_GE(predicted, made / 4) << tolerance << " " << longest;
+                EXPECT_LE(predicted, 2 * made) << tolerance << " " << longest;
+                EXPECT_GE(predicted, made / 2) << tolerance << " " << longest;
             }
         }
 }

@@ -27,8 +27,8 @@ struct BoundarySide {
     std::optional<Bow> bow() const;
 };
 
-// Whether the face is to be taken as a cone, where `apex` is that of its surface, and `face` its box: if it
-// is on one side of the apex, and triangles are fewer then.
-bool is_cone(const Apex& apex, const DerivativeQuery<2, 3>& surface, const Box<2>& face);
+// Of the surface, if a face in this box is to be taken as a cone: on one side of the apex, and with fewer
+// triangles then: not where it is hardly curved for its size, as in a plane.
+std::optional<Apex> apex_for(const SurfaceGeometry& surface, const Box<2>& face);
 
 }  // namespace freiform

@@ -18,7 +18,7 @@ struct Apex {
 };
 
 // Of splines with two rows of control points that are scaled copies of each other, and of revolutions of
-// lines that meet their axis. Nothing for others.
+// lines that meet their axis, or nearly do, for their slip. Nothing for others.
 std::optional<Apex> apex_of(const SurfaceGeometry& surface);
 
 }  // namespace freiform
