@@ -16,13 +16,7 @@ double BoundarySide::error_beside() const {
     const double kinks =
         kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
     const auto cone = apex ? ConeFace::make(*apex, surface, box) : std::nullopt;
-    if (cone) {
-        // Of the side's own line across, where it is one; over boxes that are long along lines bounds are
-        // larger than at their far end.
-        const bool is_level = from[cone->ruled()] == to[cone->ruled()];
-        const double bend = cone->bend(is_level ? over : surface(cone->far_end(box)));
-        return cone->error(bend, {from, to, to}) + kinks;
-    }
+    if (cone) return cone->error(cone->bends(surface, box), {from, to, to}) + kinks;
     const Curvature second{over(2, 0), over(1, 1), over(0, 2)};
     const Vec<2> chord = to - from;
     const bool one_way = second.uv == 0 && (second.uu == 0 || second.vv == 0);
@@ -30,7 +24,7 @@ double BoundarySide::error_beside() const {
 }
 
 std::optional<BoundarySide::Bow> BoundarySide::bow() const {
-    const auto cone = apex ? ConeFace::make(*apex, surface, box) : std::nullopt;
+    const auto cone = apex && !(apex->radius > 0) ? ConeFace::make(*apex, surface, box) : std::nullopt;
     if (!cone) return std::nullopt;
     Bow out;
     out.off[cone->across()] = cone->bow(from, to);
@@ -41,9 +35,7 @@ std::optional<BoundarySide::Bow> BoundarySide::bow() const {
 
 std::optional<Apex> apex_for(const SurfaceGeometry& surface, const Box<2>& face) {
     const auto apex = apex_of(surface);
-    return apex && !face.is_empty() && is_on_one_side(*apex, face) && is_worth_a_cone(*apex, surface, face)
-               ? apex
-               : std::nullopt;
+    return apex && !face.is_empty() && is_worth_a_cone(*apex, surface, face) ? apex : std::nullopt;
 }
 
 }  // namespace freiform

@@ -23,6 +23,20 @@
 // one in space as its corners (u y, y) are, which those of long thin ones at bowed sides need not be as
 // their parameters are.
 //
+// Spheres, S(u, v) = A(v) + h(v) c(u) with A on the axis and c a circle of radius 1, are compared likewise:
+// with U and V = sum l_i v_i, k_i = l_i h(v_i). Its centre as origin, a point p of the triangle is R - |p| <=
+// R - N . p from the sphere, N the normal at (U, V). As N . S(U, V) = R, that is N . (S(U, V) - p): of the
+// circles cos s (sum k_i - sum k_i cos(u_i - U)) <= cos s / 2 sum k_i (u_i - U)^2, cos s = h(V) / R, and of
+// the profile R (1 - sum l_i cos(v_i - V)) <= R/2 sum l_i (v_i - V)^2. So with M = h / R for the largest h,
+// and R for what is along, the distance is at most half of the largest h_i M (u_i - u)^2 + R (v_i - v)^2 for
+// any (u, v), here middles of sides and of the circle through the corners. Around poles that asks for a fan
+// where feet (q in bending.cpp) ask for ever smaller triangles. Nothing is left out: let G be the projection
+// of L from the centre. Triangles that keep to R / 8 are smaller than R, so that nowhere G is opposite to S,
+// and the degree of G is that of S. On the boundary a point first goes along its side to the one y' with
+// S(y') above L (edge_error.cpp), which is within E of L, then along a great circle to G, which is within e;
+// between them the distance is at most that of the farther one and (E + e)^2 / (8 R), which counts as a
+// sliver.
+//
 // Why not by what is seen along normals: S_uv / |S_u| is 1 / y, so feet near the apex have to be looked for
 // in parts of the height there. Why not developed into the plane: the curves of trims would have to follow.
 #include "cone_face_detail.hpp"
@@ -39,10 +53,9 @@ namespace {
 
 constexpr double kGrow = 1 + 1e-12;
 constexpr double kBeyondApex = 0x1p-36;  // of the height of the face
-constexpr int kSamples = 5;
-constexpr double kWorth = 0.25;  // of second derivatives, what is seen along the normal
-
-}  // namespace
+constexpr int kSamples = 9;
+constexpr double kLessThanTurn = 3.2;  // from pole to pole, with roundings
+constexpr double kWorth = 0.25;        // of second derivatives, what is seen along the normal
 
 bool is_on_one_side(const Apex& apex, const Box<2>& face) {
     const Interval on = face.side(apex.ruled);
@@ -50,70 +63,134 @@ bool is_on_one_side(const Apex& apex, const Box<2>& face) {
     return height > 0 && std::min(before, behind) <= kBeyondApex * height;
 }
 
+// From the axis.
+double height_of(const Revolution& s, const Apex& apex, double v) {
+    const Vec<3> p = jet<0>(s.profile, v).value();
+    return dot(p - s.origin, apex.outwards) + 32 * kUnitRoundoff * (norm(p) + norm(s.origin));
+}
+
+}  // namespace
+
 std::optional<ConeFace> ConeFace::make(const Apex& apex, const DerivativeQuery<2, 3>& surface,
                                        const Box<2>& face) {
+    ConeFace out;
+    out.apex_ = apex;
+    out.slip_ = 2 * apex.slip;  // of corners, and of what they are compared with
+    if (apex.radius > 0) {
+        out.sphere_ = std::get_if<Revolution>(&surface.geometry());
+        return out;
+    }
     if (!is_on_one_side(apex, face)) return std::nullopt;
     const Interval on = face.side(apex.ruled);
     const double before = apex.at - on.lo, behind = on.hi - apex.at;
     const double beyond = std::max(0.0, std::min(before, behind));
-    ConeFace out;
-    out.ruled_ = apex.ruled;
-    out.at_ = apex.at;
     out.far_ = behind >= before ? on.hi : on.lo;
-    out.slip_ = 2 * apex.slip;  // of corners, and of what they are compared with
-    if (beyond > 0) {
-        const auto first = surface(out.far_end(face));
-        out.slip_ += 2 * beyond * (apex.ruled == 0 ? first(1, 0) : first(0, 1));
-    }
+    if (beyond > 0) out.slip_ += 2 * beyond * out.bends(surface, face).first[apex.ruled];
     return out;
 }
 
-std::array<Interval, 2> ConeFace::far_end(const Box<2>& box) const {
+ConeFace::Bends ConeFace::bends(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const {
     std::array<Interval, 2> on{box.side(0), box.side(1)};
-    on[std::size_t(ruled_)] = {far_, far_};
-    return on;
+    if (!sphere_) on[std::size_t(ruled())] = {far_, far_};
+    const auto over = surface(on);
+    Bends out{over(2, 0), over(0, 2), {over(1, 0), over(0, 1)}};
+    if (ruled() == 0) std::swap(out.across, out.along);
+    if (!sphere_) {
+        out.along = 0;
+        return out;
+    }
+    // Lines across are as high as at one end, but for what the profile bends between.
+    const double length = on[1].length();
+    const double highest =
+        std::max(height_of(*sphere_, apex_, on[1].lo), height_of(*sphere_, apex_, on[1].hi));
+    out.across = std::max(0.0, std::min(out.across, highest + out.along * (length * length / 8) * kGrow));
+    out.across *= seen_across(out.across);
+    return out;
 }
 
 double ConeFace::height(const Vec<2>& p) const {
-    if (std::isinf(at_)) return 1;
-    const double whole = far_ - at_;
-    const double off = 4 * kUnitRoundoff * (std::abs(p[ruled_]) + std::abs(at_) + std::abs(far_));
-    return std::clamp(((p[ruled_] - at_) + std::copysign(off, whole)) / whole, 0.0, 1.0);
+    if (sphere_) return height_of(*sphere_, apex_, p[1]);
+    if (std::isinf(apex_.at)) return 1;
+    const double v = p[ruled()], whole = far_ - apex_.at;
+    const double off = 4 * kUnitRoundoff * (std::abs(v) + std::abs(apex_.at) + std::abs(far_));
+    return std::clamp(((v - apex_.at) + std::copysign(off, whole)) / whole, 0.0, 1.0);
 }
 
-double ConeFace::error(double bend, const std::array<Vec<2>, 3>& corner) const {
-    double most = 0;
+// Of second derivatives across, where lines are as high as this: all, but of spheres.
+double ConeFace::seen_across(double highest) const {
+    return apex_.radius > 0 ? std::min(1.0, highest / apex_.radius * kGrow) : 1;
+}
+
+double ConeFace::error(const Bends& bends, const std::array<Vec<2>, 3>& corner) const {
+    std::array<double, 3> height, root;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec<2>&p = corner[i], &q = corner[(i + 1) % 3];
-        const double a = std::sqrt(height(p)), b = std::sqrt(height(q));
-        if (!(a + b > 0)) continue;
-        const double r = (p - q)[across()] * (a * b / (a + b));
-        most = std::max(most, r * r);
+        height[i] = this->height(corner[i]);
+        if (!(height[i] >= 0)) return kInfinity;
+        root[i] = std::sqrt(height[i]);
     }
-    return (most > 0 ? bend * most / 2 * kGrow : 0) + slip_;
+    double across_bend = bends.across;
+    if (sphere_) {
+        const auto [lo, hi] = std::minmax({corner[0][1], corner[1][1], corner[2][1]});
+        across_bend = seen_across(std::max({height[0], height[1], height[2]}) +
+                                  bends.along * ((hi - lo) * (hi - lo) / 8));
+    }
+    const auto reach = [&](double u, double v) {
+        double most = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double x = corner[i][across()] - u, y = corner[i][ruled()] - v;
+            const double along = bends.along > 0 ? bends.along * y * y : 0;
+            most = std::max(most, (height[i] > 0 ? across_bend * height[i] * x * x : 0) + along);
+        }
+        return most;
+    };
+    double best = kInfinity;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t k = (i + 1) % 3;
+        const Vec<2>&p = corner[i], &q = corner[k];
+        const double sum = root[i] + root[k], part = sum > 0 ? root[k] / sum : 0.5;
+        best = std::min(best, reach(p[across()] + part * (q - p)[across()], 0.5 * (p + q)[ruled()]));
+    }
+    // The middle of the circle through the corners, all as high as the highest.
+    const double scale_x = std::sqrt(across_bend) * std::max({root[0], root[1], root[2]}),
+                 scale_y = std::sqrt(bends.along);
+    const auto scaled = [&](const Vec<2>& d) {
+        return Vec<2>{{scale_x * d[across()], scale_y * d[ruled()]}};
+    };
+    const Vec<2> a = scaled(corner[1] - corner[0]), b = scaled(corner[2] - corner[0]);
+    const double twice = 2 * cross(a, b), aa = dot(a, a), bb = dot(b, b);
+    const Vec<2> centre{{(aa * b[1] - bb * a[1]) / twice, (bb * a[0] - aa * b[0]) / twice}};
+    if (std::isfinite(centre[0] + centre[1]) && scale_x * scale_y > 0)
+        best = std::min(
+            best, reach(corner[0][across()] + centre[0] / scale_x, corner[0][ruled()] + centre[1] / scale_y));
+    return best / 2 * kGrow + slip_;
 }
 
 double ConeFace::bow(const Vec<2>& from, const Vec<2>& to) const {
-    const double a = std::sqrt(height(from)), b = std::sqrt(height(to));
+    const double a = std::sqrt(std::max(0.0, height(from))), b = std::sqrt(std::max(0.0, height(to)));
     const double width = std::abs((to - from)[across()]);
     return a + b > 0 ? width * (std::abs(a - b) / (a + b)) * kGrow : width;
 }
 
 bool ConeFace::is_turned_over(const std::array<Vec<2>, 3>& corner) const {
-    const auto twice_area = [](const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; };
     std::array<Vec<2>, 3> plain, developed;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double x = (corner[i] - corner[0])[across()], y = height(corner[i]);
+        const double x = (corner[i] - corner[0])[across()], y = corner[i][ruled()];
         plain[i] = {{x, y}};
-        developed[i] = {{x * y, y}};
+        developed[i] = {{x * height(corner[i]), y}};
     }
-    const double before = twice_area(plain[1] - plain[0], plain[2] - plain[0]),
-                 behind = twice_area(developed[1] - developed[0], developed[2] - developed[0]);
+    const double before = cross(plain[1] - plain[0], plain[2] - plain[0]),
+                 behind = cross(developed[1] - developed[0], developed[2] - developed[0]);
     return (before < 0 && behind > 0) || (before > 0 && behind < 0);
 }
 
 bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box<2>& face) {
     const Interval lines = face.side(apex.ruled), on = face.side(1 - apex.ruled);
+    if (apex.radius > 0) {
+        const auto& s = std::get<Revolution>(surface);
+        return std::min(height_of(s, apex, lines.lo), height_of(s, apex, lines.hi)) >= 0 &&
+               height_of(s, apex, lines.middle()) > 0 && lines.length() < kLessThanTurn;
+    }
+    if (!is_on_one_side(apex, face)) return false;
     const double far = lines.hi - apex.at >= apex.at - lines.lo ? lines.hi : lines.lo;
     double seen = 0, all = 0;
     for (int k = 0; k < kSamples; ++k) {

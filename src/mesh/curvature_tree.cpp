@@ -80,7 +80,7 @@ double triangles_at(const Jet<2, 2, Vec<3>>& j, const Vec<2>& h, int count, cons
     constexpr double kHalving = 1.5, kHalvedLength = 2, kAside = 1.0 / 16, kFootQ = 0.1;
     const double tolerance = demands.tolerance, part = 1.0 / count;
     const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
-    const bool has_normal = norm(m) > 0;
+    const bool has_normal = norm(m) > 0 && !demands.apex;  // of cones all counts, but for mixed derivatives
     double whole = tolerance;
     if (has_normal) {
         const double a = norm(j(1, 0)), b = norm(j(0, 1)),
@@ -98,8 +98,8 @@ double triangles_at(const Jet<2, 2, Vec<3>>& j, const Vec<2>& h, int count, cons
         return std::sqrt(part * part + 2 * bend(second) * length * length +
                          kHalvedLength * by_length * by_length);
     };
-    return 2 *
-           (cuts(j(1, 0), j(2, 0), h[0]) * cuts(j(0, 1), j(0, 2), h[1]) + 2 * bend(j(1, 1)) * h[0] * h[1]);
+    const double mixed = demands.apex ? 0 : 2 * bend(j(1, 1)) * h[0] * h[1];
+    return 2 * (cuts(j(1, 0), j(2, 0), h[0]) * cuts(j(0, 1), j(0, 2), h[1]) + mixed);
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ std::vector<double> halved(const Interval& on, int times) {
 double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
                                  const Jet<2, 2, Vec<3>>& middle, double tolerance) const {
     const Vec<2> size = box.hi - box.lo;
-    const Curvature bent = seen_at(middle, knows_normals_);
+    const Curvature bent = seen_in(middle);
     const double here = cells_for(bent, size, tolerance);
     if (!(here >= kFewCells / kWaste) || !(here <= kManyCells)) return 0;
     if (knows_normals_) {
@@ -94,8 +94,7 @@ double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box
     for (int k = 0; k < 4; ++k) {
         const Vec<2> at{
             {box.lo[0] + (k & 1 ? 0.875 : 0.125) * size[0], box.lo[1] + (k & 2 ? 0.875 : 0.125) * size[1]}};
-        const double cells =
-            cells_for(seen_at(jet<2>(surface.geometry(), at.c), knows_normals_), size, tolerance);
+        const double cells = cells_for(seen_in(jet<2>(surface.geometry(), at.c)), size, tolerance);
         if (!(cells <= kUneven * here) || !(here <= kUneven * cells)) return 0;
         most = std::max(most, cells), sum += cells;
     }
@@ -117,14 +116,9 @@ bool CurvatureTree::add_parts(const DerivativeQuery<2, 3>& surface, const Box<2>
     for (std::size_t i = 0; i + 1 < lines[0].size(); ++i)
         for (std::size_t j = 0; j + 1 < lines[1].size(); ++j) {
             const Box<2> part{{{lines[0][i], lines[1][j]}}, {{lines[0][i + 1], lines[1][j + 1]}}};
-            Bending found;
-            if (!varies) {
-                found = bending_of(surface, part, knows_normals_);
-            } else {
-                const auto middle =
-                    jet<2>(surface.geometry(), {part.side(0).middle(), part.side(1).middle()});
-                found = bending_from_middle(surface, part, knows_normals_, middle, *varies);
-            }
+            const auto middle = jet<2>(surface.geometry(), {part.side(0).middle(), part.side(1).middle()});
+            Bending found = varies ? bending_from_middle(surface, part, knows_normals_, middle, *varies)
+                                   : bending_in(surface, part, knows_normals_, middle);
             found.full.restrict_to(all.full);
             part_bendings_.push_back(found);
             const Curvature matters = matters_of(found);
@@ -141,11 +135,11 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
                                const Jet<2, 2, Vec<3>>& middle, double cells, double tolerance,
                                BoxBending& known) {
     const Box<2> box = nodes_[std::size_t(node)].box;
-    const Curvature seen = seen_at(middle, knows_normals_), before = known.full;
+    const Curvature seen = seen_in(middle), before = known.full;
     if (meets_kink(box)) return false;
-    const bool is_smooth = surface.is_twice_smooth({box.side(0), box.side(1)});
+    const bool is_smooth = !cone_ && surface.is_twice_smooth({box.side(0), box.side(1)});
     Variation varies;
-    known = bending_of(surface, box, knows_normals_, middle, is_smooth ? &varies : nullptr);
+    known = bending_in(surface, box, knows_normals_, middle, is_smooth ? &varies : nullptr);
     known.full.restrict_to(before);
     if (!known.full.is_finite()) return false;
 

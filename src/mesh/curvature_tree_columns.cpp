@@ -8,6 +8,8 @@
 // Why not cut any box into thirds: cuts of neighbours would not fit each other. Columns of the whole box do.
 #include "curvature_tree_detail.hpp"
 
+#include <functional>
+
 namespace freiform {
 
 namespace {
@@ -41,18 +43,21 @@ double cells_of(const ColumnSample& s, Vec<2> size, double tolerance) {
     return cells;
 }
 
-std::array<int, 2> columns_for(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance) {
+// `cone_seen`: of cones, what counts of derivatives.
+using ConeSeen = std::function<Curvature(const Jet<2, 2, Vec<3>>&)>;
+std::array<int, 2> columns_for(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance,
+                               const ConeSeen& cone_seen) {
     const Vec<2> size = box.hi - box.lo;
     std::vector<ColumnSample> samples;
     for (int i = 0; i < kColumnSamples; ++i)
         for (int k = 0; k < kColumnSamples; ++k) {
             const auto j = jet<2>(surface.geometry(), {box.lo[0] + (i + 0.5) / kColumnSamples * size[0],
                                                        box.lo[1] + (k + 0.5) / kColumnSamples * size[1]});
-            ColumnSample s{seen_at(j, true), {}, norm(j(1, 0)), norm(j(0, 1))};
+            ColumnSample s{cone_seen ? cone_seen(j) : seen_at(j, true), {}, norm(j(1, 0)), norm(j(0, 1))};
             if (!(s.a * s.b > 0) || !s.along.is_finite()) continue;
             const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
             const auto rest = [&](const Vec<3>& x) { return norm(x - dot(n, x) * n); };
-            s.beside = {rest(j(2, 0)), rest(j(1, 1)), rest(j(0, 2))};
+            if (!cone_seen) s.beside = {rest(j(2, 0)), rest(j(1, 1)), rest(j(0, 2))};
             if (error_of(s, size) > kColumnRoom * tolerance) samples.push_back(s);
         }
     std::array<int, 2> best{1, 1};
@@ -76,7 +81,8 @@ std::array<int, 2> columns_for(const DerivativeQuery<2, 3>& surface, const Box<2
 void CurvatureTree::plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance) {
     Node& root = nodes_[0];
     if (worst_kink(root.box)) return;  // boxes are cut there
-    const auto counts = columns_for(surface, root.box, tolerance);
+    const auto counts = columns_for(surface, root.box, tolerance,
+                                    cone_ ? ConeSeen([&](const auto& j) { return seen_in(j); }) : ConeSeen());
     for (std::size_t d = 0; d < 2; ++d) {
         if (counts[d] == 1) continue;
         const Interval on = root.box.side(int(d));

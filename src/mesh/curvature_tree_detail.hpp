@@ -210,7 +210,7 @@ public:
     // stand for many.
     struct Ways {
         bool knows_normals = true, blocks = false;
-        std::optional<ConeFace> cone = {};  // then without normals and blocks
+        std::optional<ConeFace> cone = {};  // then without normals
     };
     // Splits the box of `polygon` (closed by `segments`, pairs of indices) until a leaf inside it can be cut
     // into two triangles whose interpolation bound is at most demands.tolerance, with sides along the axes of

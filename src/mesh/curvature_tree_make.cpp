@@ -249,17 +249,19 @@ bool CurvatureTree::varies(const DerivativeQuery<2, 3>& surface, const Box<2>& b
 Curvature CurvatureTree::seen_in(const Jet<2, 2, Vec<3>>& middle) const {
     const Curvature all = seen_at(middle, knows_normals_);
     if (!cone_) return all;
-    return cone_->across() == 0 ? Curvature{all.uu, 0, 0} : Curvature{0, 0, all.vv};
+    // What is seen along normals is all that counts of spheres.
+    return {cone_->is_sphere() ? seen_at(middle, true).uu : all.uu, 0, all.vv};
 }
 
 BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
                                      bool knows_normals, const Jet<2, 2, Vec<3>>& middle,
                                      Variation* variation) const {
     if (!cone_) return bending_of(surface, box, knows_normals, middle, variation);
-    const auto far = surface(cone_->far_end(box));
+    const ConeFace::Bends bends = cone_->bends(surface, box);
     BoxBending out;
-    (cone_->across() == 0 ? out.full.uu : out.full.vv) = cone_->bend(far);
-    out.first[0] = far(1, 0), out.first[1] = far(0, 1);
+    out.full = cone_->across() == 0 ? Curvature{bends.across, 0, bends.along}
+                                    : Curvature{bends.along, 0, bends.across};
+    out.first[0] = bends.first[0], out.first[1] = bends.first[1];
     return out;
 }
 
@@ -286,7 +288,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     const std::size_t nodes = expected_nodes(demands);
     if (demands.is_shared && is_serial()) tree.reserve(nodes);
     tree.nodes_.add({root, 0});
-    if (!tree.cone_) tree.plan_columns(surface, demands.tolerance);
+    if (!tree.cone_ || tree.cone_->is_sphere()) tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};

@@ -333,7 +333,7 @@ Result<FaceMesh> mesh_face(const DerivativeQuery<2, 3>& surface, const FaceBound
     const auto failed = [&] { return !mesh && mesh.error().kind == RefusalKind::not_converged; };
     if (demands.apex)
         if (const auto cone = ConeFace::make(*demands.apex, surface, box))
-            mesh = filled(surface, boundary, demands, max_triangles, extra, {false, false, cone});
+            mesh = filled(surface, boundary, demands, max_triangles, extra, {false, blocks, cone});
     if (failed()) mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, blocks});
     if (blocks && failed())
         mesh = filled(surface, boundary, demands, max_triangles, extra, {by_normals, false});

@@ -32,8 +32,9 @@ Curvature Judge::over_clamped(const Box<2>& box) const {
 Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::array<Vec<2>, 3>& corner,
                             int plain, int near_place, bool is_deep) const {
     if (const auto& cone = tree_.cone()) {
-        const double bend = cone->across() == 0 ? at.full.uu : at.full.vv;
-        const double e = cone->error(bend, corner) + tree_.kink_bound(box);
+        ConeFace::Bends bends{at.full.uu, at.full.vv, {}};
+        if (cone->across() == 1) std::swap(bends.across, bends.along);
+        const double e = cone->error(bends, corner) + tree_.kink_bound(box);
         return {false, is_turned_over(corner) ? kInfinity : e, e, at.full};
     }
     const auto error_of = [&](const Curvature& c) {

@@ -34,6 +34,8 @@
 // projection is the same, so |s - t| / h is at most Q(p(b) - p(a)) / 8 / slope; the segments from c(s) to the
 // bowed side at t are a homotopy likewise, and what is between counts as a sliver.
 //
+// Spheres: the same, whose slivers depend on what is asked for alone.
+//
 // Why not all of C'': the quarter of a rational circle takes up to 1.4 times as many chords.
 #include "chord_curve_detail.hpp"
 #include "edge_mesh_detail.hpp"
@@ -49,6 +51,8 @@ namespace freiform {
 
 namespace {
 
+constexpr double kBothSides =
+    0.52;  // (E + e)^2 / 8 for E and e up to a tolerance, a little less than that of faces
 constexpr double kSteep = 0.55;  // speed across the chord beside that along it: cos atan is above 7/8
 constexpr double kDirectionSlack = 1 + 0x1p-40;  // more than the roundings of directions and sums below
 
@@ -201,6 +205,8 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
         const DerivativeQuery<2, 3>& surface = *faces_[std::size_t(use->face)];
         std::optional<Apex> apex = apexes_[std::size_t(use->face)];
         if (apex && !apex->is_true_to(tolerance)) apex.reset();
+        if (apex && apex->radius > 0)
+            out.sliver = worse(out.sliver, kBothSides * tolerance * tolerance / apex->radius);
         if (use->lift) {
             const Vec<2> from = jet<0>(use->coedge->curve, a).value(),
                          to = jet<0>(use->coedge->curve, b).value();

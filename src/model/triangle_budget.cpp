@@ -33,11 +33,13 @@ std::vector<double> predicted(const Model& model, const TessellateOptions& optio
         for (const Loop& l : face.loops)
             for (const Coedge& c : l.coedges) along += chords[std::size_t(c.edge)];
         if (box.is_empty()) return;
-        const FaceDemands demands{options.tolerance, options.max_edge};
-        const double around = along + 2 * double(face.loops.size()) - 4;
-        const auto apex = std::isinf(options.max_edge) ? apex_for(face.surface, box) : std::nullopt;
-        const bool is_cone = apex && apex->is_true_to(options.tolerance);
-        out[f] = std::max(is_cone ? 0 : estimated_triangles(face.surface, box, demands, samples), around);
+        FaceDemands demands{options.tolerance, options.max_edge};
+        demands.apex = apex_for(face.surface, box);
+        if (demands.apex && !demands.apex->is_true_to(options.tolerance)) demands.apex.reset();
+        // Of cones only longest sides ask for points inside.
+        const bool is_cone = demands.apex && !(demands.apex->radius > 0) && std::isinf(options.max_edge);
+        out[f] = std::max(is_cone ? 0 : estimated_triangles(face.surface, box, demands, samples),
+                          along + 2 * double(face.loops.size()) - 4);
     });
     return out;
 }

@@ -1,4 +1,4 @@
-// Whether a surface is a cone or a cylinder.
+// Whether a surface is a cone, a cylinder or a sphere.
 //
 // Of splines: with the control points A_j and B_j of the two rows, and equal weights in both, S is a cone if
 // A_j - P = k (B_j - P) for all j, for then S(u, v) - P is a multiple of the curve of the row B less P. k is
@@ -9,7 +9,8 @@
 // those of either row.
 //
 // Of revolutions of Q + v D about an axis: at the v where the line is nearest to the axis; its distance from
-// there is the slip, turned.
+// there is the slip, turned. Of circles: what its vectors are beside the plane of the axis, and what they and
+// the centre are off those of a circle about a point of it.
 #include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/spline/apex.hpp>
@@ -26,16 +27,35 @@ constexpr double kMostSlip = 0x1p-16;     // of the size
 constexpr double kFarApex = 1 - 0x1p-20;  // k, beyond which it is a cylinder, if anything
 constexpr double kRoundings = 64 * kUnitRoundoff;
 
+std::optional<Apex> sphere_of(const Revolution& s) {
+    const auto* circle = std::get_if<Conic<3>>(&s.profile);
+    if (!circle || circle->kind != ConicKind::ellipse) return std::nullopt;
+    const auto across = [&](const Vec<3>& x) { return x - dot(x, s.axis) * s.axis; };
+    const Vec<3> x = across(circle->x), y = across(circle->y), out = norm(x) > norm(y) ? x : y;
+    Apex found;
+    found.radius = (norm(circle->x) + norm(circle->y)) / 2;
+    if (!(norm(out) > 0) || !(found.radius > 0)) return std::nullopt;
+    found.outwards = unit(out);
+    const auto beside = [&](const Vec<3>& d) { return norm(d - dot(d, found.outwards) * found.outwards); };
+    found.slip = norm(across(circle->centre - s.origin)) + beside(x) + beside(y) +
+                 std::abs(norm(circle->x) - norm(circle->y)) +
+                 std::abs(dot(circle->x, circle->y)) / found.radius +
+                 kRoundings * (norm(circle->centre) + norm(s.origin) + found.radius);
+    return found.slip <= kMostSlip * found.radius ? std::optional(found) : std::nullopt;
+}
+
 std::optional<Apex> apex_of(const Revolution& s) {
     const auto* line = std::get_if<Line<3>>(&s.profile);
-    if (!line) return std::nullopt;
+    if (!line) return sphere_of(s);
     const auto across = [&](const Vec<3>& x) { return x - dot(x, s.axis) * s.axis; };
     const Vec<3> from = line->origin - s.origin, q = across(from), d = across(line->direction);
     const double speed = norm(line->direction);
     if (!(norm(d) > kRoundings * speed)) return std::nullopt;
     const double at = -dot(q, d) / dot(d, d), size = norm(from) + std::abs(at) * speed;
     const double slip = norm(q + at * d) + kRoundings * (size + norm(s.origin));
-    return Apex{1, at, slip};
+    Apex out;
+    out.at = at, out.slip = slip;
+    return out;
 }
 
 struct Row {
@@ -92,7 +112,10 @@ std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far) {
     }
     slip += kRoundings * (norm(apex) + size) + 8 * uneven * size;
     if (!(slip <= kMostSlip * size)) return std::nullopt;
-    return Apex{axis, is_cylinder ? kInfinity : (from - k * to) / (1 - k), slip};
+    Apex out;
+    out.ruled = axis, out.slip = slip;
+    out.at = is_cylinder ? kInfinity : (from - k * to) / (1 - k);
+    return out;
 }
 
 }  // namespace

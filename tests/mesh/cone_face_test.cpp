@@ -165,8 +165,7 @@ TEST(ConeFace, bounds_hold_and_are_nearly_reached) {
                 c[cone->across()] = from + rng.real(0, 1) * wide * on.length();
                 box.add(c);
             }
-            const double bend = cone->bend(query(cone->far_end(box)));
-            const double bound = cone->error(bend, corner);
+            const double bound = cone->error(cone->bends(query, box), corner);
             const Interval lines = face.side(apex->ruled);
             const double far = lines.hi - apex->at >= apex->at - lines.lo ? lines.hi : lines.lo;
             const double measured = sampled(s, *apex, far, corner);
@@ -191,9 +190,63 @@ TEST(ConeFace, faces_on_both_sides_of_the_apex_and_flat_ones_are_taken_otherwise
                before = ConeFace::make(apex, query, face(0, 6));
     ASSERT_TRUE(beyond && before);
     const std::array<Vec<2>, 3> nothing{{{{1, 0}}, {{1, 1}}, {{1, 2}}}};
-    EXPECT_GT(beyond->error(1, nothing), before->error(1, nothing) + 0x1p-38);
+    const ConeFace::Bends bends{1, 0, {}};
+    EXPECT_GT(beyond->error(bends, nothing), before->error(bends, nothing) + 0x1p-38);
     const SurfaceGeometry flat = Revolution{Line<3>{{{2, 0, 0}}, {{-1, 0, 0.05}}}, {{0, 0, 0}}, {{0, 0, 1}}};
     EXPECT_FALSE(apex_for(flat, face(0, 1)));
+}
+
+Revolution sphere(double radius) {
+    const Vec<3> centre{{1, 2, 3}}, up = unit(Vec<3>{{1, 1, 2}}), out = unit(Vec<3>{{1, -1, 0}});
+    return {Conic<3>{ConicKind::ellipse, centre, radius * out, radius * up}, centre + 4.0 * up, up,
+            SurfaceKind::sphere};
+}
+
+// Points of a triangle are as far from the sphere as the centre is nearer to it than the radius.
+TEST(ConeFace, bounds_of_spheres_hold_and_are_nearly_reached) {
+    Random rng(23);
+    const double radius = 2;
+    const SurfaceGeometry s = sphere(radius);
+    const DerivativeQuery<2, 3> query(s);
+    const auto apex = apex_of(s);
+    ASSERT_TRUE(apex);
+    EXPECT_NEAR(apex->radius, radius, 1e-15);
+    EXPECT_LE(apex->slip, 1e-12);
+    EXPECT_FALSE(apex->is_true_to(0.3)) << "much of the radius";
+    EXPECT_TRUE(apex->is_true_to(0.2));
+    EXPECT_TRUE(apex_for(s, {{{0, -kTwoPi / 4}}, {{kTwoPi, kTwoPi / 4}}}));
+    EXPECT_FALSE(apex_for(s, {{{0, -1.6}}, {{kTwoPi, 1.5}}})) << "beyond a pole";
+    EXPECT_FALSE(apex_for(s, {{{0, 1.6}}, {{kTwoPi, 4.6}}})) << "the other half of the circle";
+    const auto face = *ConeFace::make(*apex, query, {});
+    double best = 0;
+    for (int round = 0; round < 4000; ++round) {
+        const double wide = std::exp2(-rng.real(1, 7));
+        const double v = rng.chance(0.3) ? kTwoPi / 4 - wide : rng.real(-kTwoPi / 4, kTwoPi / 4 - wide);
+        const double cosine = std::max(0.2, std::cos(v)), tall = wide, broad = std::min(2.0, wide / cosine);
+        std::array<Vec<2>, 3> corner;
+        Box<2> box;
+        for (Vec<2>& c : corner) {
+            c = {{rng.real(0, broad), rng.chance(0.2) ? v + tall : rng.real(v, v + tall)}};
+            box.add(c);
+        }
+        const double bound = face.error(face.bends(query, box), corner);
+        std::array<Vec<3>, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = jet<0>(s, corner[i].c).value() - Vec<3>{{1, 2, 3}};
+        double nearest = radius;
+        for (int i = 0; i <= 24; ++i)
+            for (int k = 0; i + k <= 24; ++k)
+                nearest = std::min(nearest, norm((1.0 / 24) * (double(i) * p[0] + double(k) * p[1] +
+                                                               double(24 - i - k) * p[2])));
+        EXPECT_LE(radius - nearest, bound + 1e-14) << round;
+        best = std::max(best, (radius - nearest) / bound);
+    }
+    EXPECT_GE(best, 0.95);
+    Revolution egg = sphere(radius);
+    std::get<Conic<3>>(egg.profile).y *= 1.001;
+    EXPECT_FALSE(apex_of(egg));
+    Revolution ring = sphere(radius);
+    ring.origin += Vec<3>{{0.1, -0.1, 0}};
+    EXPECT_FALSE(apex_of(ring));
 }
 
 // A side that is straight between parameters is where `bow` says beside that of flat triangles.
