@@ -16,6 +16,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSingular = 1e-7;  // |S_u x S_v| of that inside the triangle: a pole up to rounding
 constexpr double kLeftOut = 0.05;   // of the area, at each end
+constexpr int kFootSteps = 4;
 
 double pick(const SurfaceCurvature& c, SurfaceField field, bool flipped) {
     switch (field) {
@@ -46,6 +47,24 @@ double curvature(const SurfaceGeometry& surface, const Vec<2>& uv, const Vec<2>&
     return std::isfinite(value) ? value : kNan;
 }
 
+// The distance of the point from the surface, from what is near the parameters: no less than the true one.
+double distance_near(const SurfaceGeometry& surface, const Vec<3>& p, Vec<2> uv,
+                     const std::array<Interval, 2>& ends) {
+    double best = norm(jet<0>(surface, uv.c).value() - p);
+    for (int step = 0; step < kFootSteps; ++step) {  // Gauss-Newton
+        const auto j = jet<1>(surface, uv.c);
+        const Vec<3> off = p - j.d[0];
+        const double a = dot(j.d[1], j.d[1]), b = dot(j.d[1], j.d[2]), c = dot(j.d[2], j.d[2]),
+                     det = a * c - b * b, u = dot(j.d[1], off), v = dot(j.d[2], off);
+        if (!(det > 0)) break;
+        const Vec<2> next = clamped(uv + Vec<2>{{(c * u - b * v) / det, (a * v - b * u) / det}}, ends);
+        const double distance = norm(jet<0>(surface, next.c).value() - p);
+        if (!(distance < best)) break;
+        best = distance, uv = next;
+    }
+    return best;
+}
+
 }  // namespace
 
 FieldValues surface_field(const Model& model, const TriangleMesh& mesh, SurfaceField field) {
@@ -68,7 +87,7 @@ FieldValues surface_field(const Model& model, const TriangleMesh& mesh, SurfaceF
         const MeshVertex& v = mesh.vertices[i];
         const Vec<2> uv = clamped(v.uv, ends), inner = clamped(inside[i], ends);
         if (field == SurfaceField::error) {
-            out.values[i] = norm(jet<0>(surface, uv.c).value() - mesh.points[std::size_t(v.point)]);
+            out.values[i] = distance_near(surface, mesh.points[std::size_t(v.point)], uv, ends);
             return;
         }
         for (const double step : {0.0, 1e-3, 1e-2}) {

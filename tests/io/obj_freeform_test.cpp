@@ -35,7 +35,7 @@ TEST(ObjFreeform, comes_back_to_the_bit) {
 }
 
 double area_and_volume(const Model& m, double& volume) {
-    const auto t = tessellate(m, {.tolerance = 0.02});
+    const auto t = tessellate(m, {.tolerance = 0.005});
     if (!t || !t->refused.empty()) return 0;
     double area = 0;
     for (std::size_t i = 0; i < t->mesh.triangles.size(); ++i) {

@@ -7,8 +7,8 @@ namespace freiform {
 
 // Curvatures in the sense of query/surface_curvature.hpp, for the normal of the mesh (outward where the model
 // has an outside): a sphere of radius r has mean curvature -1/r. error: the distance between a point of the
-// mesh and the point of the surface with the same parameters, so never less than that from the surface; 0 at
-// the vertices that the tessellation put on the surface (mesh/refine.hpp adds others).
+// mesh and the nearest point of the surface that is found from its parameters, so never less than that from
+// the surface; 0 at the vertices that the tessellation put on the surface (mesh/refine.hpp adds others).
 enum class SurfaceField { gauss, mean, greatest, least, error };
 
 struct FieldValues {
