@@ -19,7 +19,7 @@ public:
     bool is_sphere() const { return apex_.radius > 0; }
     int ruled() const { return apex_.ruled; }
     int across() const { return 1 - apex_.ruled; }
-    // Bounds of second derivatives in the box, of lines across that are as high as the highest there, and
+    // Bounds of second derivatives: across, of cones at the far end, of spheres along normals in the box; and
     // along; with those of |S_u| and |S_v|.
     struct Bends {
         double across = 0, along = 0;
@@ -35,8 +35,8 @@ public:
     bool is_turned_over(const std::array<Vec<2>, 3>& corner) const;
 
 private:
-    // The distance from the apex, as a part of that of the far end; of spheres from the axis,
-    // negative beyond it.
+    // The distance from the apex, as a part of that of the far end; of spheres from the axis, negative beyond
+    // it.
     double height(const Vec<2>& p) const;
     double seen_across(double highest) const;
     Apex apex_;
@@ -44,8 +44,8 @@ private:
     const Revolution* sphere_ = nullptr;
 };
 
-// Whether triangles are fewer where the face is taken as a cone: not where it is nearly a plane, or a surface
-// of revolution away from its axis.
+// Whether triangles are fewer, and the face is on one side of the apex: not where a cone is nearly a plane.
+// Spheres from pole to pole.
 bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box<2>& face);
 
 }  // namespace freiform
