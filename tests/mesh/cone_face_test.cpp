@@ -218,6 +218,8 @@ TEST(ConeFace, bounds_of_spheres_hold_and_are_nearly_reached) {
     EXPECT_FALSE(apex_for(s, {{{0, -1.6}}, {{kTwoPi, 1.5}}})) << "beyond a pole";
     EXPECT_FALSE(apex_for(s, {{{0, 1.6}}, {{kTwoPi, 4.6}}})) << "the other half of the circle";
     const auto face = *ConeFace::make(*apex, query, {});
+    const std::array<Vec<2>, 3> beyond{{{{0, 1.5}}, {{1, 1.5}}, {{0.5, 1.7}}}};
+    EXPECT_EQ(face.error(face.bends(query, {{{0, 1.5}}, {{1, 1.7}}}), beyond), kInfinity) << "beyond a pole";
     double best = 0;
     for (int round = 0; round < 4000; ++round) {
         const double wide = std::exp2(-rng.real(1, 7));
