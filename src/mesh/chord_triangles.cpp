@@ -23,14 +23,12 @@ double BoundarySide::error_beside() const {
     return second.along(chord[0], chord[1]) / (one_way ? 8 : 6) + kinks;
 }
 
-std::optional<BoundarySide::Bow> BoundarySide::bow() const {
+std::optional<Vec<2>> BoundarySide::bow() const {
     const auto cone = apex && !(apex->radius > 0) ? ConeFace::make(*apex, surface, box) : std::nullopt;
     if (!cone) return std::nullopt;
-    Bow out;
-    out.off[cone->across()] = cone->bow(from, to);
-    if (!(out.off[cone->across()] > 0)) return std::nullopt;
-    out.error = error_beside();
-    return out;
+    Vec<2> off{};
+    off[cone->across()] = cone->bow(from, to);
+    return off[cone->across()] > 0 ? std::optional(off) : std::nullopt;
 }
 
 std::optional<Apex> apex_for(const SurfaceGeometry& surface, const Box<2>& face) {

@@ -12,7 +12,9 @@
 // as intervals on a line that meet pairwise have a point in common. Chords of circles at two heights that
 // keep a tolerance are joined by triangles that keep it: what is seen of S_uv, which a plane parameter
 // triangle has to count, is not there. A kink of c adds what it adds to chords. Rounding: heights are off by
-// what v and the parameter of the apex are; they are made larger by that.
+// what v and the parameter of the apex are; they are made larger by that. Surfaces that are cones but for a
+// slip: it is a multiple between 0 and 1 of one vector for each u, so against the c of the far end it is no
+// more, once for the corners and once for the place on the surface.
 //
 // Nothing is left out. (u, v) -> (u y, y) makes S linear on lines through the origin, and the triangle above
 // is straight there: it is a triangulation of the same boundary with other sides between the same points. The

@@ -34,7 +34,7 @@
 // projection is the same, so |s - t| / h is at most Q(p(b) - p(a)) / 8 / slope; the segments from c(s) to the
 // bowed side at t are a homotopy likewise, and what is between counts as a sliver.
 //
-// Spheres: the same, whose slivers depend on what is asked for alone.
+// Spheres: likewise, with slivers of (E + e)^2 / (8 R), E and e at most the tolerance of faces.
 //
 // Why not all of C'': the quarter of a rational circle takes up to 1.4 times as many chords.
 #include "chord_curve_detail.hpp"
@@ -51,9 +51,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kBothSides =
-    0.52;  // (E + e)^2 / 8 for E and e up to a tolerance, a little less than that of faces
-constexpr double kSteep = 0.55;  // speed across the chord beside that along it: cos atan is above 7/8
+constexpr double kBothSides = 0.52;  // (E + e)^2 / 8 beside the squared tolerance, a 64th below that of faces
+constexpr double kSteep = 0.55;      // speed across the chord beside that along it: cos atan is above 7/8
 constexpr double kDirectionSlack = 1 + 0x1p-40;  // more than the roundings of directions and sums below
 
 // The larger one; where there is no bound, as at singular points of an offset, infinity times zero is none.
@@ -229,7 +228,8 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
         const OnFace face(surface, *use, a, b);
         double sliver = face.along(face.sag) / 8 + face.kinks();
         const BoundarySide side{surface, face.box, face.over, face.from, face.to, apex};
-        out.triangle = worse(out.triangle, side.error_beside());
+        const double beside = side.error_beside();
+        out.triangle = worse(out.triangle, beside);
         const auto bow = side.bow();
         double uneven = 0;  // of the chord, what places on the side and on the chord differ by
         if (!degenerate) {
@@ -243,12 +243,12 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
                     sliver = face.along(wide) / 8 + face.kinks();
                     uneven = better->uneven;
                 }
-            if (bow) polyline = worse(polyline, bow->error);
+            if (bow) polyline = worse(polyline, beside);
             out.polyline = worse(out.polyline, polyline);
         }
         if (bow) {
-            const Vec<2> wide{{bow->off[0] + uneven * std::abs(face.chord[0]),
-                               bow->off[1] + uneven * std::abs(face.chord[1])}};
+            const Vec<2> wide{
+                {(*bow)[0] + uneven * std::abs(face.chord[0]), (*bow)[1] + uneven * std::abs(face.chord[1])}};
             sliver = worse(sliver, face.along(wide) / 8 + face.kinks());
         }
         out.sliver = worse(out.sliver, sliver);

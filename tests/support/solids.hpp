@@ -112,7 +112,11 @@ inline double distance_to_triangle(const Vec<3>& p, const Vec<3>& a, const Vec<3
         const double t = dot(d, d) > 0 ? std::clamp(dot(p - s, d) / dot(d, d), 0.0, 1.0) : 0;
         return norm(p - (s + t * d));
     };
-    const Vec<3> n = cross(b - a, c - a);
+    // From the shortest side: of two long ones of a needle the cross product has no digits.
+    const double ab = norm(b - a), bc = norm(c - b), ca = norm(a - c);
+    const Vec<3> n = ca >= std::max(ab, bc)   ? cross(b - a, c - b)
+                     : ab >= std::max(bc, ca) ? cross(c - b, a - c)
+                                              : cross(a - c, b - a);
     double best = std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
     if (max_abs(n) == 0) return best;
     const bool over = dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
@@ -143,8 +147,10 @@ inline double sampled_deviation(const Model& model, const Tessellation& t, int k
                     const Vec<2> at = (1 - s - r) * uv(0) + s * uv(1) + r * uv(2);
                     const Vec<3> p = jet<0>(surface, at.c).value();
                     const double from_own = distance_to_triangle(p, own[0], own[1], own[2]);
-                    if (from_own > most)  // another one may be nearer
-                        most = std::max(most, tree.nearest(p).distance);
+                    if (!(from_own > most)) continue;
+                    const auto found = tree.nearest(p);  // another one may be nearer
+                    if (!(found.distance > most)) continue;
+                    most = std::max(most, std::min(from_own, found.distance));
                 }
         }
     }

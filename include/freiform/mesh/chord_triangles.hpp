@@ -19,12 +19,8 @@ struct BoundarySide {
     // mesh_face succeed.
     double error_beside() const;
     // Of a cone: how far, in both parameters, the side is from that which triangles stand for (cone_face.cpp)
-    // at most, and the distance of the latter from the chord in space. Nothing if they are the same.
-    struct Bow {
-        Vec<2> off;
-        double error = 0;
-    };
-    std::optional<Bow> bow() const;
+    // at most; the latter is within error_beside() of the chord in space. Nothing if they are the same.
+    std::optional<Vec<2>> bow() const;
 };
 
 // Of the surface, if a face in this box is to be taken as a cone: on one side of the apex, and with fewer
