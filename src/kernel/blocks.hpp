@@ -10,6 +10,8 @@ inline constexpr int kBlockOrder = 3;       // of differences
 inline constexpr int kBlockDirections = 2;  // along which coordinates are looked at at once
 inline constexpr int kBlockPlanes = 5;      // numbers of a coefficient: four coordinates and a weight
 
+inline constexpr int kRestDifferences = 5;  // from row to row, column to column, and both twice
+
 inline constexpr int lanes_of(int numbers) { return (numbers + 3) / 4 * 4; }
 
 // Coefficients of a block, numbers of one kind in a plane: `rows` rows of `lanes` numbers, a multiple of 4,
@@ -55,6 +57,27 @@ struct BlockFound {
     } of[kBlockOrder + 1][kBlockOrder + 1];
 };
 
+// A block (A, w) of a surface S beside a function M, bilinear in `corner` and with x (1 - x) bulge[0] + y (1
+// - y) bulge[1] more: A - w M, which has two degrees more than A if there are weights. For those share[0][3 I
+// + k], k < 3, and share[1][l * stride + j] are what a factor of degree 2 has in coefficients I and j + l of
+// a product. `linear` and `bulges`: coefficients j of y and y (1 - y). All with zeros after the columns.
+// Bulges are 0 along axes of degree 1 where there are no weights.
+struct RestTask {
+    BlockShape shape;  // of three coordinates
+    const double* numbers = nullptr;
+    double corner[4][3], bulge[2][3];
+    const double* share[2] = {};
+    std::ptrdiff_t stride = 0;
+    const double *linear = nullptr, *bulges = nullptr;
+    double direction[3];
+};
+struct RestFound {
+    double square, across;  // of x . x and |direction . x|, x a coefficient of S - M
+    double largest;         // |coordinate| of A
+    double least_weight, most_weight;
+    double of[kRestDifferences][4];  // of differences of A - w M: x . x, |direction . x|, |weight|
+};
+
 // Sums of w[0][a][i] w[1][b][j] * coefficient (i, j) of 4 numbers each, for all a + b <= order, in graded
 // order. Indices wrap at the extents. REQUIRES order <= 3.
 struct Contraction {
@@ -83,6 +106,7 @@ struct BlockKernels {
     void (*arrange_quadruples)(const Quadruples&, double* to);
     void (*differences)(const BlockTask&, BlockFound&);
     void (*contract)(const Contraction&, double* out);
+    void (*rest)(const RestTask&, RestFound&);
 };
 
 // Those that go with kernels() (evaluate.hpp).

@@ -60,6 +60,17 @@
 // that turns (`whole_error`). Of all cells of one size in a box the rest is what D^2 g changes by in it, an
 // eighth of it along the diagonal of a cell (`cells_error`).
 //
+// By a quadratic function: M quadratic along each axis of a box and S at its corners, R = S - M. Of R there
+// are bounds from control points (block_rest.cpp), of all of it and of n . R, and of its second derivatives:
+// R is small, so that these lose little where weights vary much, which bounds of derivatives of S do. Second
+// derivatives of S are those of M, and at most those of R more. And S - L = (M - L M) + (R - L R), where
+// |R - L R| <= max |R| in halves of the box, at whose corners R is 0, and twice that in other triangles in
+// it. M - L M is known with all signs; along N(x), which turns by t from n, it is that along n, and the part
+// beside n times what N turns by over |y - m| and from y to x (`rest_of_fit`), and n . R becomes |n . R| + t
+// |R| at most (`of_fit`). For one triangle M is S at its corners. Where it is hardly more than a side, such
+// an M may be far from S beside it; then it is S at the ends and in the middle of that side, and what R is at
+// the third corner is added. So what is said of slivers tends to what is true of their sides.
+//
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so
 // by the invariance of the degree every x in D is G(y) for some y, or is y + s (G(y) - y) for some y of the
@@ -84,31 +95,18 @@
 // References: [Milnor 1965] for degrees. Why not all of |S - L|: the wall of a frustum needs a hundred times
 // as many triangles. Why not distances from planes: where the foot leaves a triangle its neighbour has to be
 // looked at.
-#include "curvature_tree_detail.hpp"
-
-#include <freiform/core/constants.hpp>
+#include "bending_detail.hpp"
 
 namespace freiform {
 
 namespace {
 
-constexpr double kRounding = 1e-6;
 constexpr double kLeastStretch = 0.1, kMostQ = 0.15, kMostQAtBoundary = 1.0 / 16;
 constexpr double kDisc = 2.5;
 constexpr double kMuchTurn = 0.1;  // of normals within half a box
 
-constexpr double kSumSlack = 1 + 0x1p-46;  // more than the roundings of sums below
-
 Curvature seconds(const DerivativeBounds<2>& b) { return {b(2, 0), b(1, 1), b(0, 2)}; }
 std::array<double, 4> thirds(const DerivativeBounds<2>& b) { return {b(3, 0), b(2, 1), b(1, 2), b(0, 3)}; }
-
-// Of the box, from the middle, which is rounded, to the ends.
-Vec<2> half_sides(const std::array<Interval, 2>& on) {
-    const auto half = [](const Interval& x) {
-        return x.length() / 2 + 2 * kUnitRoundoff * std::max(std::abs(x.lo), std::abs(x.hi));
-    };
-    return {{half(on[0]), half(on[1])}};
-}
 
 // Bounds of |jet<2> - exact| of S_uu, S_uv, S_vv, where second derivatives are continuous in the box and one
 // is known. Of profiles that are lines or ellipses they are derivatives of the profile, turned, or vectors
@@ -131,13 +129,6 @@ std::optional<Curvature> second_slip(const DerivativeQuery<2, 3>& surface,
     return Curvature{slip, slip, slip};
 }
 
-// What second derivatives change by from the middle, by third ones; with their own error `slip`.
-Curvature change_by(const Vec<2>& half, const std::array<double, 4>& third, const Curvature& slip) {
-    return {(half[0] * third[0] + half[1] * third[1] + slip.uu) * kSumSlack,
-            (half[0] * third[1] + half[1] * third[2] + slip.uv) * kSumSlack,
-            (half[0] * third[2] + half[1] * third[3] + slip.vv) * kSumSlack};
-}
-
 // The signs of n . S_uu and n . S_vv, where they are what they are in the middle.
 void add_signs(Curvature& along, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, const Curvature& change) {
     const auto sure = [&](const Vec<3>& second, double by) {
@@ -158,6 +149,7 @@ Bending::Middle middle_of(const std::array<Interval, 2>& on, const Vec<3>& n, co
             {off(j(2, 0), slip.uu), off(j(1, 1), slip.uv), off(j(0, 2), slip.vv)},
             third,
             {j(2, 0), j(1, 1), j(0, 2)},
+            {off(j(2, 0), slip.uu), off(j(1, 1), slip.uv), off(j(0, 2), slip.vv)},
             whole_third};
 }
 
@@ -181,27 +173,26 @@ bool matters_what_is_beside(const DerivativeQuery<2, 3>& surface, const std::arr
            std::abs(uv) * hu + std::abs(vv) * hv > kMuchTurn * b;
 }
 
-// The normal of the tangents u and v in the middle of the box, where rounding leaves one.
+}  // namespace
+
 std::optional<Vec<3>> normal_in(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& on,
                                 const Vec<3>& u, const Vec<3>& v) {
     const double a = norm(u), b = norm(v);
     const Vec<3> m = cross(u, v);
-    if (!(a * b > 0) || !(norm(m) > kRounding * a * b)) return std::nullopt;
+    if (!(a * b > 0) || !(norm(m) > kBendingRounding * a * b)) return std::nullopt;
     const double side = std::min(a * std::min(on[0].length() / 2, surface.thinnest_piece(0)),
                                  b * std::min(on[1].length() / 2, surface.thinnest_piece(1)));
     if (!(surface.value_error(on) <= 1e-9 * side)) return std::nullopt;
     return unit(m);
 }
 
-// What makes parameters lengths, and how steady the normal is: from the tangents u, v and the normal n in the
-// middle, and `along` and `beside`, bounds of the second derivatives of n . S and of the rest of S.
 void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3>& u, const Vec<3>& v,
                  const Vec<3>& n, const Curvature& along, const Curvature& beside) {
     if (!out.full.is_finite()) return;
     const double a = norm(u), b = norm(v), hu = on[0].length() / 2, hv = on[1].length() / 2;
     const double c = std::abs(dot(u, v)) / (a * b);
     const auto swing = [&](const Curvature& k) {
-        return std::hypot((k.uu * hu + k.uv * hv) / a, (k.uv * hu + k.vv * hv) / b) + kRounding;
+        return std::hypot((k.uu * hu + k.uv * hv) / a, (k.uv * hu + k.vv * hv) / b) + kBendingRounding;
     };
     out.a = a, out.b = b;
     out.n = n;
@@ -217,8 +208,6 @@ void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3
     out.least = least;
     out.tilt = kChord * turn;
 }
-
-}  // namespace
 
 BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
                       const Jet<2, 2, Vec<3>>& j, Variation* variation) {
@@ -257,7 +246,7 @@ BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2
     for (int d = 0; d < 2; ++d)
         out.first[d] = (norm(j.d[std::size_t(d) + 1]) + (d == 0 ? out.full.uu : out.full.uv) * half[0] +
                         (d == 0 ? out.full.uv : out.full.vv) * half[1]) *
-                       (1 + kRounding);
+                       (1 + kBendingRounding);
     if (!knows_normals) return out;
     const auto n = normal_in(surface, on, j(1, 0), j(0, 1));
     if (!n) return out;
@@ -283,140 +272,10 @@ Curvature Bending::seen_along(double apart) const {
     return out;
 }
 
-namespace {
-
-// The largest of (1 - x^2) p + x r for x from 0 to 1.
-double largest_sum(double p, double r) { return r < 2 * p ? p + r * (r / (4 * p)) : r; }
-
-}  // namespace
-
-// What second derivatives seen in a cell are beside those in the middle of the box: `here`, and more away
-// from the middle of the cell, by_u and by_v at its sides.
-struct Bending::Rest {
-    Vec<2> half{};
-    Curvature here, by_u, by_v;
-
-    // Bound of the interpolation error where that of the part with constant second derivatives is e0 / 2 at
-    // most, and (u (1 - r_u^2) + v (1 - r_v^2)) / 2.
-    double error(double e0, double u, double v) const {
-        const double hu = half[0], hv = half[1], more_u = here.uu * hu * hu + here.uv * hu * hv,
-                     more_v = here.vv * hv * hv + here.uv * hu * hv, at_u = by_u.along(hu, hv),
-                     at_v = by_v.along(hu, hv);
-        double best = kInfinity;
-        for (const double part : {0.0, 0.5, 0.75, 1.0})
-            best = std::min(best, part * e0 + largest_sum((1 - part) * u + more_u, at_u) +
-                                      largest_sum((1 - part) * v + more_v, at_v));
-        return best / 2 * (1 + 1e-13);
-    }
-};
-
-namespace {
-
-// Half the sides of the cell, and how far its middle is from that of the box.
-std::array<Vec<2>, 2> place_of(const Box<2>& cell, const Vec<2>& middle) {
-    const std::array<Interval, 2> on{cell.side(0), cell.side(1)};
-    Vec<2> off{};
-    for (int d = 0; d < 2; ++d) {
-        const Interval& x = on[std::size_t(d)];
-        off[d] = std::abs(x.middle() - middle[d]) +
-                 4 * kUnitRoundoff * std::max({std::abs(x.lo), std::abs(x.hi), std::abs(middle[d])});
-    }
-    return {half_sides(on), off};
-}
-
-}  // namespace
-
-Bending::Rest Bending::rest_in(const Box<2>& cell, double turn) const {
-    const auto [h, off] = place_of(cell, middle.at);
-    const auto turned = [&](double du, double dv) {
-        const double u = (across.uu * du + across.uv * dv) / a, v = (across.uv * du + across.vv * dv) / b;
-        return kChord / least * std::sqrt(u * u + v * v);
-    };
-    // alpha + what is seen of second derivatives so far away, and of those beside n by normals that turn.
-    const auto of = [&](double du, double dv, double turns) {
-        return change_by({{du, dv}}, middle.third, {}).plus(turns, beside);
-    };
-    const double still = turned(off[0], off[1]) + kChord / least * kRounding + turn;
-    const Curvature here = of(off[0] + h[0] / 3, off[1] + h[1] / 3, still);
-    return {h, here.plus(1, {middle.off[0], middle.off[1], middle.off[2]}),
-            of(h[0] * (2.0 / 3), 0, turned(h[0], 0)), of(0, h[1] * (2.0 / 3), turned(0, h[1]))};
-}
-
-double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const {
-    const auto [h, off] = place_of(cell, middle.at);
-    const auto& [uu, uv, vv] = middle.whole_second;
-    const std::array size{norm(uu) * h[0] * h[0], norm(uv) * h[0] * h[1], norm(vv) * h[1] * h[1]};
-    std::array<double, 3> s;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
-        s[k] = norm(d[0] * d[0] * uu + 2 * d[0] * d[1] * uv + d[1] * d[1] * vv);
-    }
-    const auto& third = middle.whole_third;
-    const Vec<2> third_of_half = off + (1.0 / 3) * h;
-    const Rest rest{h, change_by(third_of_half, third, {middle.off[0], middle.off[1], middle.off[2]}),
-                    change_by({{h[0] * (2.0 / 3), 0}}, third, {}),
-                    change_by({{0, h[1] * (2.0 / 3)}}, third, {})};
-    const double slip = 128 * kUnitRoundoff * (size[0] + 2 * size[1] + size[2]);
-    return rest.error(2 * largest_of_sides(s, slip), size[0] + size[1], size[2] + size[1]);
-}
-
-double Bending::seen_error(const Box<2>& cell, double turn) const {
-    const Curvature seen = seen_along(tilt + turn);
-    const double usual = seen.error(cell.hi - cell.lo);
-    return knows_middle() ? std::min(usual, steady_error(rest_in(cell, turn), seen)) : usual;
-}
-
-double Bending::steady_error(const Rest& rest, const Curvature& seen) const {
-    const double hu = rest.half[0], hv = rest.half[1], uu = hu * hu, uv = hu * hv, vv = hv * hv;
-    const Quadratic& q = middle.second;
-    const Curvature here = rest.here.plus(1, {std::abs(q.uu), std::abs(q.uv), std::abs(q.vv)});
-    const Curvature &by_u = rest.by_u, &by_v = rest.by_v;
-    double error = largest_sum(here.uu * uu + here.uv * uv, by_u.along(hu, hv)) +
-                   largest_sum(here.vv * vv + here.uv * uv, by_v.along(hu, hv));
-    if (seen.is_saddle()) {
-        const double mixed = seen.uv * seen.uv;
-        const double up = largest_sum((here.uu + mixed / std::abs(seen.sure_vv)) * uu, by_u.uu * uu) +
-                          by_v.uu * uu,
-                     down = largest_sum((here.vv + mixed / std::abs(seen.sure_uu)) * vv, by_v.vv * vv) +
-                            by_u.vv * vv;
-        error = std::min(error, std::max(up, down));
-    }
-    return error / 2 * (1 + 1e-13);
-}
-
-double Bending::halves_error(const Box<2>& cell, double turn) const {
-    const Rest rest = rest_in(cell, turn);
-    const Quadratic& q = middle.second;
-    const bool rising = prefers_rising(cell.hi - cell.lo);
-    const double hu = rest.half[0], hv = rest.half[1], uu = q.uu * hu * hu, vv = q.vv * hv * hv,
-                 uv = (rising ? q.uv : -q.uv) * hu * hv;
-    // Of S - L and of L - S.
-    const double u = std::max({0.0, uu + std::max(uv, 0.0), -uu + std::max(-uv, 0.0)}),
-                 v = std::max({0.0, vv + std::max(uv, 0.0), -vv + std::max(-uv, 0.0)});
-    return rest.error(2 * q.error(half_of(cell, rising)), u, v);
-}
-
-double Bending::cells_error(const Vec<2>& box, const Vec<2>& cell, double turn) const {
-    const Quadratic& q = middle.second;
-    const double hu = box[0] / 2, hv = box[1] / 2, turns = tilt + turn;
-    const auto& t = middle.third;
-    const Curvature rest{hu * t[0] + hv * t[1] + middle.off[0] + turns * beside.uu,
-                         hu * t[1] + hv * t[2] + middle.off[1] + turns * beside.uv,
-                         hu * t[2] + hv * t[3] + middle.off[2] + turns * beside.vv};
-    return (std::max(q.halves_error(cell), q.fan_error(cell)) + rest.along(cell[0], cell[1]) / 8) *
-           (1 + 1e-13);
-}
-
-double Bending::triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const {
-    const Rest rest = rest_in(cell, turn);
-    const Quadratic& q = middle.second;
-    const double hu = rest.half[0], hv = rest.half[1], uv = std::abs(q.uv) * hu * hv;
-    return rest.error(2 * q.error(corner), std::abs(q.uu) * hu * hu + uv, std::abs(q.vv) * hv * hv + uv);
-}
-
 void Bending::include(const Bending& o) {
     full.include(o.full);
     middle = {};
+    fit = {};
     if (least > 0 && o.least > 0) {
         const double apart = norm(n - o.n) * (1 + 1e-14);
         across.include(o.seen_along(apart));

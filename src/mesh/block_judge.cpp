@@ -31,9 +31,9 @@ struct BlockJudge {
         const auto with = [&](int plain) {
             return within(judge.leaf(at, block.box, error, plain, block.node).bound);
         };
-        if (tree.is_all_plain()) return out;
         if (!std::isfinite(out.flat) && at.knows_middle())
             out.flat_halves = within(judge.whole_halves_error(at, block.box));
+        if (tree.is_all_plain()) return out;
         out.usual = out.halves = with(0);
         if (!std::isfinite(out.usual) && at.knows_middle())
             out.halves = within(judge.halves(at, block.box, error, block.node).bound);

@@ -207,15 +207,19 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
 bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, double error,
                           double tolerance) const {
     if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
-    if (!knows_normals_ || kinks || !b.knows_middle()) return false;
+    if (kinks || !b.knows_middle()) return false;
     const double of_halves = b.whole_halves_error(cell);
-    if (of_halves <= tolerance) return true;
+    const auto sides_keep = [&](bool along_normal) {
+        return b.sides_error(cell.hi - cell.lo, along_normal) <= tolerance;
+    };
+    if (of_halves <= tolerance && sides_keep(false)) return true;
+    if (!knows_normals_) return false;
     for (const bool halves : {false, true}) {
         const double whole = halves ? std::min(error, of_halves) : error;
         const Shift shift = shift_of(b, whole, b.full, kBeyond, true);
         if (!shift.exists) continue;
         const double seen = halves ? b.halves_error(cell, shift.turn) : b.seen_error(cell, shift.turn);
-        if (shift.across(seen, whole) <= tolerance) return true;
+        if (shift.across(seen, whole) <= tolerance && (!halves || sides_keep(true))) return true;
     }
     return false;
 }
@@ -234,9 +238,8 @@ bool CurvatureTree::accept(Node& node, const Bending& known, double error, doubl
     node.flat = error <= tolerance;
     if (node.flat) return true;
     const bool kinks = meets_kink(node.box);
-    return node.inside && !node.has_columns()
-               ? keeps(known, node.box, kinks, error, tolerance)
-               : keeps(known, node.box.hi - node.box.lo, kinks, error, tolerance);
+    return !node.has_columns() ? keeps(known, node.box, kinks, error, tolerance)
+                               : keeps(known, node.box.hi - node.box.lo, kinks, error, tolerance);
 }
 
 bool CurvatureTree::meets_kink(const Box<2>& box) const {

@@ -115,10 +115,20 @@ struct Bending {
         Quadratic second{kInfinity, 0, 0};
         std::array<double, 3> off{};
         std::array<double, 4> third{};
-        // The same of S; `off` is of these, too.
+        // The same of S.
         std::array<Vec<3>, 3> whole_second{};
+        std::array<double, 3> whole_off{};
         std::array<double, 4> whole_third{};
     } middle = {};
+    // Of a box with the function that has these second derivatives and is S at its corners, or at those of
+    // the triangle that this is asked of: bounds of the rest, |S - it| and |n . (S - it)|, in all of the box.
+    // Infinite where they are not known.
+    struct Fit {
+        Box<2> box{};
+        double whole = kInfinity, along = kInfinity;
+        bool of_triangle = false;
+        bool exists() const { return whole < kInfinity; }
+    } fit = {};
 
     void include(const Bending& o);
     // Of what is seen along normals that are within `turn` of some here.
@@ -134,8 +144,15 @@ struct Bending {
     double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const;
     // Of all of the interpolation error in the triangle. REQUIRES knows_middle().
     double whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const;
-    double whole_halves_error(const Box<2>& cell) const {
-        return whole_error(cell, half_of(cell, prefers_rising(cell.hi - cell.lo)));
+    double whole_halves_error(const Box<2>& cell) const;
+    // About what triangles beside a cell of this size will be said to be off by, where they are hardly more
+    // than one of its sides: of all of the error or along n. REQUIRES knows_middle().
+    double sides_error(const Vec<2>& cell, bool along_normal) const {
+        const auto& q = middle.whole_second;
+        const double u = along_normal ? std::abs(dot(n, q[0])) : norm(q[0]),
+                     v = along_normal ? std::abs(dot(n, q[2])) : norm(q[2]);
+        const double rest = !fit.exists() ? 0 : along_normal ? fit.along + tilt * fit.whole : fit.whole;
+        return std::max(u * cell[0] * cell[0], v * cell[1] * cell[1]) / 8 + 2 * rest;
     }
     bool prefers_rising(const Vec<2>& cell) const {
         return !knows_middle() || middle.second.prefers_rising(cell);
@@ -147,7 +164,10 @@ struct Bending {
 
 private:
     struct Rest;
+    double turned(double du, double dv) const;
     Rest rest_in(const Box<2>& cell, double turn) const;
+    Rest rest_of_fit(const Box<2>& cell, double turn) const;
+    double of_fit(double quadratic, double times, double turn) const;
     double steady_error(const Rest& rest, const Curvature& seen) const;
 };
 
@@ -165,6 +185,17 @@ struct Variation {
 // Finds `variation`, too, if it is asked for. REQUIRES surface.is_twice_smooth(box) then.
 BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
                       const Jet<2, 2, Vec<3>>& middle, Variation* variation = nullptr);
+// The same of a spline by a quadratic function, which is S at its corners, or at those of a triangle.
+struct TriangleOn {
+    std::array<Vec<2>, 3> uv;
+    std::array<Vec<3>, 3> at;
+};
+// Worth it where the box has few pieces, and is not so small that all would be rounding.
+bool is_fitted(const DerivativeQuery<2, 3>& surface, const Box<2>& box);
+// A box around that is not too small, if the spline goes on there.
+Box<2> room_for_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& box);
+BoxBending bending_by_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
+                          const Jet<2, 2, Vec<3>>& middle, const TriangleOn* triangle = nullptr);
 // The same from what is seen in the middle, by the variation over some box around.
 BoxBending bending_from_middle(const DerivativeQuery<2, 3>& surface, const Box<2>& box, bool knows_normals,
                                const Jet<2, 2, Vec<3>>& middle, const Variation& variation);

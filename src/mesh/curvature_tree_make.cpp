@@ -128,7 +128,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
     const Curvature seen = tree_.seen_in(middle);
     set_lengths(middle, size);
-    const bool may_be_halved = inside && tree_.knows_normals_ && !node.has_columns();
+    const bool may_be_halved = tree_.knows_normals_ && !node.has_columns();
     const double asked = may_be_halved ? least_error(seen, middle, size) : seen.error(size);
     std::optional<Cut> cut;
     if (asked > tolerance && item.depth < kMaxTreeDepth)
@@ -256,6 +256,9 @@ Curvature CurvatureTree::seen_in(const Jet<2, 2, Vec<3>>& middle) const {
 BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
                                      bool knows_normals, const Jet<2, 2, Vec<3>>& middle,
                                      Variation* variation) const {
+    if (!cone_ && !variation && is_fitted(surface, box))
+        if (const auto out = bending_by_fit(surface, box, knows_normals, middle); out.full.is_finite())
+            return out;
     if (!cone_) return bending_of(surface, box, knows_normals, middle, variation);
     const ConeFace::Bends bends = cone_->bends(surface, box);
     BoxBending out;

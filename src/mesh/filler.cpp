@@ -30,6 +30,16 @@ void sort_down(std::array<std::pair<double, int>, 3>& x) {
         if (x[k] < x[k + 1]) std::swap(x[k], x[k + 1]);
 }
 
+bool is_thin(const std::array<Vec<2>, 3>& corner) {
+    constexpr double kThin = 0.1;  // area, over the longest side squared
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
+        longest = std::max(longest, dot(d, d));
+    }
+    return !(std::abs(cross(corner[1] - corner[0], corner[2] - corner[0])) > kThin * longest);
+}
+
 // By what is seen in the middle.
 double least_error(const Jet<2, 2, Vec<3>>& middle, const std::array<Vec<2>, 3>& corner, bool along_normal) {
     const Vec<3> m = cross(middle(1, 0), middle(0, 1));
@@ -37,7 +47,13 @@ double least_error(const Jet<2, 2, Vec<3>>& middle, const std::array<Vec<2>, 3>&
         const Vec<3> n = unit(m);
         return Quadratic{dot(n, middle(2, 0)), dot(n, middle(1, 1)), dot(n, middle(0, 2))}.error(corner);
     }
-    return linear_interpolation_bound(seen_at(middle, false), corner[0], corner[1], corner[2]);
+    std::array<double, 3> sides;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
+        sides[k] =
+            norm(d[0] * d[0] * middle(2, 0) + 2 * d[0] * d[1] * middle(1, 1) + d[1] * d[1] * middle(0, 2));
+    }
+    return largest_of_sides(sides, 0);
 }
 
 }  // namespace
@@ -159,6 +175,22 @@ bool Filler::note_kept(int triangle) {
     return any;
 }
 
+// At a side of a block, and no wider than rounding: no point would make it better.
+bool Filler::note_sliver(int triangle, std::vector<Vec<2>>& at) const {
+    constexpr double kNoWidth = 0x1p-20;  // of the side
+    const auto& v = t_.vertices(triangle);
+    for (std::size_t e = 0; e < 3; ++e) {
+        const int a = v[(e + 1) % 3], b = v[(e + 2) % 3];
+        if (!t_.is_constrained(triangle, int(e)) || std::min(a, b) < first_kept_) continue;
+        const Vec<2> p = t_.points()[std::size_t(a)], side = t_.points()[std::size_t(b)] - p,
+                     beside = t_.points()[std::size_t(v[e])] - p;
+        if (std::abs(cross(side, beside)) > kNoWidth * dot(side, side)) continue;
+        at.push_back(uv(a)), at.push_back(uv(b));
+        return true;
+    }
+    return false;
+}
+
 bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
     if (note_kept(triangle)) return false;
     bool any = false;
@@ -192,15 +224,29 @@ Filler::Known Filler::found(int triangle, int& place) const {
     if (k.bound <= demands_.tolerance) return k;
     const auto judge_by = [&](Bending own) {
         own.full.restrict_to(over.full);
-        if (const Judgement second = judge_(own, box, corner, plain, place, is_deep); second.bound <= k.bound)
+        const Judgement second = judge_(own, box, corner, plain, place, is_deep);
+        if (second.bound < k.bound || (second.bound == k.bound && second.whole <= k.whole))
             static_cast<Judgement&>(k) = second;
     };
     const auto middle = jet<2>(surface_.geometry(), (0.5 * (box.lo + box.hi)).c);
-    const bool hopeless = !tree_.cone() && !(least_error(middle, corner, plain < 3) <= demands_.tolerance);
+    const bool thin = is_thin({scaled(corner[0]), scaled(corner[1]), scaled(corner[2])});
+    const bool hopeless =
+        !tree_.cone() && !thin && !(least_error(middle, corner, plain == 0) <= demands_.tolerance);
     if (const Variation* varies = tree_.variation_in(place))
         judge_by(bending_from_middle(surface_, box, plain < 3, middle, *varies));
-    if (!(k.bound <= demands_.tolerance) && !hopeless)
-        judge_by(tree_.bending_in(surface_, box, plain < 3, middle));
+    if (k.bound <= demands_.tolerance || hopeless) return k;
+    const Box<2> wide = room_for_fit(surface_, box);
+    const bool fits = !tree_.cone() && is_fitted(surface_, wide);
+    if (fits) {
+        TriangleOn on{corner, {}};
+        for (std::size_t i = 0; i < 3; ++i) on.at[i] = jet<0>(surface_.geometry(), corner[i].c).value();
+        const auto seen = wide == box ? middle : jet<2>(surface_.geometry(), (0.5 * (wide.lo + wide.hi)).c);
+        judge_by(bending_by_fit(surface_, wide, plain < 3, seen, &on));
+    }
+    // Edges count on what derivatives alone say of slivers at them (edge_error.cpp).
+    if (k.bound > demands_.tolerance && (!fits || (thin && !is_deep)))
+        judge_by(tree_.cone() ? tree_.bending_in(surface_, box, plain < 3, middle)
+                              : bending_of(surface_, box, plain < 3, middle));
     return k;
 }
 
@@ -284,8 +330,14 @@ bool Filler::refine(std::size_t max_points) {
     std::vector<Entry> queue;
     std::size_t judged = 0;  // of the queue
     std::vector<int> again;
+    std::vector<Vec<2>> slivers;
+    bool is_full = false;
     for (int i = 0; i < t_.size(); ++i)
         if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
+    const auto queue_changed = [&] {
+        for (const int i : t_.changed())
+            if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
+    };
     for (std::size_t head = 0; head < queue.size(); ++head) {
         if (by_threads && head >= judged) {
             judge(std::span(queue).subspan(head));
@@ -300,9 +352,14 @@ bool Filler::refine(std::size_t max_points) {
                 for (const int i : again) queue.push_back({i, t_.stamp(i)});
                 continue;
             }
-            if (is_stuck() && k.whole > kLittleError * demands_.tolerance) {
-                stuck_at_.clear();    // smaller ones may have feet
-            } else if (is_stuck()) {  // where else?
+            // Smaller ones may have feet.
+            if (is_stuck() && k.whole > kLittleError * demands_.tolerance &&
+                t_.points().size() < max_points && improve(entry.triangle)) {
+                stuck_at_.clear();
+                queue_changed();
+                continue;
+            }
+            if (is_stuck()) {  // where else?
                 for (std::size_t i = head + 1; i < queue.size(); ++i)
                     if (const int t = queue[i].triangle; t_.stamp(t) == queue[i].stamp)
                         if (const Known& other = known(t); !(other.bound <= demands_.tolerance) &&
@@ -312,17 +369,21 @@ bool Filler::refine(std::size_t max_points) {
                 return false;
             }
         }
-        if (t_.points().size() >= max_points) return false;
+        if (note_sliver(entry.triangle, slivers)) continue;
+        if (t_.points().size() >= max_points) {
+            is_full = true;
+            break;
+        }
         if (!improve(entry.triangle)) continue;  // its bound stands, and the caller will see it
-        for (int i : t_.changed())
-            if (t_.is_inside(i)) queue.push_back({i, t_.stamp(i)});
+        queue_changed();
         if (head > 4096 && head > queue.size() / 2) {
             queue.erase(queue.begin(), queue.begin() + std::ptrdiff_t(head) + 1);
             judged -= std::min(judged, head + 1);
             head = std::size_t(-1);
         }
     }
-    return true;
+    stuck_at_ = slivers;
+    return slivers.empty() && !is_full;
 }
 
 }  // namespace freiform

@@ -74,6 +74,7 @@ private:
     std::vector<Known> known_;
     bool is_plain(int vertex) const;
     bool note_kept(int triangle);
+    bool note_sliver(int triangle, std::vector<Vec<2>>& at) const;
     // Makes all corners plain; false if they are.
     bool make_plain(int triangle, std::vector<int>& judge_again);
     bool has_kept_foot(int vertex) const {

@@ -65,6 +65,11 @@ struct BlockAnswer {
 // REQUIRES that the block is arranged. May exchange its axes.
 BlockAnswer bounds_of_block(BezierBlock& block, const BlockDemands& demands);
 
+// Bounds as of QuadraticFit for a block of a surface, which is this part ([0, 1] along each axis) of the box
+// of m. REQUIRES that the block is arranged.
+void include_rest(const BezierBlock& block, const std::array<Interval, 2>& part, const Vec<3>& n,
+                  QuadraticFit& fit);
+
 template <std::size_t N>
 DerivativeBounds<N> of_block(const BlockBounds& b) {
     DerivativeBounds<N> out;

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace freiform {
 
@@ -23,8 +24,8 @@ namespace {
 
 constexpr double kSmallestBlock = 0x1p-8;  // of a Bezier piece: blocks are not restricted further
 
-// Calls f(block, widths) for the pieces of a spline that meet the box, each restricted to its part of it and
-// arranged.
+// Calls f(block, part) for the pieces of a spline that meet the box, each restricted to its part of it, or to
+// somewhat more, and arranged.
 template <std::size_t N, class P, class F>
 void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box, F&& f) {
     Index<N> from{}, count{};
@@ -43,26 +44,26 @@ void each_part(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& 
         Index<N> piece{};
         for (std::size_t d = 0; d < N; ++d) piece[d] = from[d] + k[d];
         block.load(pieces.net(piece));
-        std::array<double, N> width{};
+        std::array<Interval, N> part{};
         const auto on = pieces.box(piece);
         for (std::size_t d = N; d-- > 0;) {
-            width[d] = on[d].length();
+            part[d] = on[d];
             double lo = std::clamp(box[d].lo, on[d].lo, on[d].hi),
                    hi = std::clamp(box[d].hi, on[d].lo, on[d].hi);
             // Differences of a very short part are all rounding: a longer part around it gives the better
             // bound.
-            const double lack = kSmallestBlock * width[d] - (hi - lo);
+            const double lack = kSmallestBlock * on[d].length() - (hi - lo);
             if (lack > 0) {
                 lo = std::max(on[d].lo, lo - lack);
                 hi = std::min(on[d].hi, hi + lack);
             }
             if (lo <= on[d].lo && hi >= on[d].hi) continue;
             block.restrict(N == 1 ? 1 : int(d), lo > on[d].lo ? (lo - on[d].lo) / (hi - on[d].lo) : 0,
-                           hi < on[d].hi ? (hi - on[d].lo) / width[d] : 1);
-            width[d] = hi - lo;
+                           hi < on[d].hi ? (hi - on[d].lo) / on[d].length() : 1);
+            part[d] = {lo, hi};
         }
         block.arrange();
-        f(block, width);
+        f(block, part);
     });
 }
 
@@ -76,13 +77,32 @@ template <std::size_t N, class P>
 PartBounds<N> bounds_of(const BezierPieces<N, P>& pieces, const std::array<Interval, N>& box, int order,
                         std::span<const Vec<4>> directions, bool with_all) {
     PartBounds<N> out;
-    each_part(pieces, box, [&](BezierBlock& block, const std::array<double, N>& width) {
-        const BlockAnswer part =
-            bounds_of_block(block, {{width[0], width[N - 1]}, order, 0, with_all, directions});
-        if (with_all) out.all.include(of_block<N>(part.all));
-        for (std::size_t k = 0; k < directions.size(); ++k) out.along[k].include(of_block<N>(part.along[k]));
+    each_part(pieces, box, [&](BezierBlock& block, const std::array<Interval, N>& part) {
+        const BlockAnswer found = bounds_of_block(
+            block, {{part[0].length(), part[N - 1].length()}, order, 0, with_all, directions});
+        if (with_all) out.all.include(of_block<N>(found.all));
+        for (std::size_t k = 0; k < directions.size(); ++k) out.along[k].include(of_block<N>(found.along[k]));
     });
     return out;
+}
+
+// Where M meets the surface; what it misses it by, beside rounding that bounds of its rest have anyway.
+template <class G>
+double set_corners(const G& g, double value_error, const BezierBlock& block,
+                   const std::array<Interval, 2>& part, BoxQuadratic& m) {
+    const bool is_all = part == m.box;
+    const int last[2] = {block.shape().rows - 1, block.shape().columns - 1};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const bool right = k & 1, above = k & 2;
+        if (is_all) {
+            const int i = right ? last[0] : 0, j = above ? last[1] : 0;
+            for (int d = 0; d < 3; ++d) m.corner[k][d] = block.number(d, i, j) / block.weight(i, j);
+        } else {
+            const double u = right ? m.box[0].hi : m.box[0].lo, v = above ? m.box[1].hi : m.box[1].lo;
+            m.corner[k] = g.template jet<0>({u, v}).value();
+        }
+    }
+    return is_all ? 0 : value_error;
 }
 
 template <int D>
@@ -262,6 +282,48 @@ PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>& curve, Interval 
             }
         },
         *curve.geometry_);
+    return out;
+}
+
+template <std::size_t N, int D>
+QuadraticFit DerivativeQuery<N, D>::fit(const BoxQuadratic& m, bool at_corners, const Vec<3>& n,
+                                        const std::array<int, 2>& cuts) const requires(N == 2 && D == 3) {
+    const std::array<Interval, N>& box = m.box;
+    QuadraticFit out{m, {}, {}};
+    out.all.fill(kInfinity), out.along.fill(kInfinity);
+    visit_one(
+        [&](const auto& g) {
+            using G = std::remove_cvref_t<decltype(g)>;
+            if constexpr (requires { g.net(); }) {
+                const auto& pieces = std::get<BezierPieces<N, typename G::Coefficients>>(pieces_);
+                for (std::size_t d = 0; d < N; ++d)
+                    if (const auto& b = pieces.breaks(int(d)); box[d].lo < b.front() || box[d].hi > b.back())
+                        return;
+                out.all.fill(0), out.along.fill(0);
+                double slip = 0;
+                const auto include = [&](const BezierBlock& block, const std::array<Interval, N>& part) {
+                    if (std::exchange(at_corners, false))
+                        slip = set_corners(g, *value_error_, block, part, out.m);
+                    std::array<Interval, 2> at;
+                    for (std::size_t d = 0; d < N; ++d)
+                        at[d] = {(part[d].lo - box[d].lo) / box[d].length(),
+                                 (part[d].hi - box[d].lo) / box[d].length()};
+                    include_rest(block, at, n, out);
+                };
+                each_index(cuts, [&](const Index<N>& k) {
+                    std::array<Interval, N> cut;
+                    for (std::size_t d = 0; d < N; ++d) {
+                        const auto end = [&](int i) {
+                            return i == cuts[d] ? box[d].hi : box[d].lo + box[d].length() * i / cuts[d];
+                        };
+                        cut[d] = {end(k[d]), end(k[d] + 1)};
+                    }
+                    each_part(pieces, cut, include);
+                });
+                out.all[0] += slip, out.along[0] += slip;
+            }
+        },
+        *geometry_);
     return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <gtest/gtest.h>
+#include <numbers>
 
 namespace freiform {
 namespace {
@@ -172,7 +173,8 @@ Found look_at(Random& random, const SurfaceGeometry& s, const Interval& on, int 
         Variation varies;
         const double turn = random.real(0, most_turn);
         for (const Bending& b : {Bending(bending_of(surface, box, true, middle, &varies)),
-                                 Bending(bending_from_middle(surface, box, true, middle, varies))}) {
+                                 Bending(bending_from_middle(surface, box, true, middle, varies)),
+                                 Bending(bending_by_fit(surface, box, true, middle))}) {
             if (!(b.least > 0)) continue;
             EXPECT_TRUE(b.knows_middle());
             const double said = b.seen_error(cell, turn), usual = b.seen(turn).error(cell.hi - cell.lo);
@@ -209,6 +211,55 @@ TEST(Bending, what_cells_show_is_bounded_from_the_middle_of_a_box) {
     }
 }
 
+// Also where three points are nearly on a line: then what is said comes near what is true of the longest
+// side, however wrong the plane through them is beside it.
+TEST(Bending, what_one_triangle_shows_is_bounded_by_a_fit_to_it) {
+    Random random(36);
+    const auto z = [&](int, int) { return random.real(-1, 1); };
+    const auto weight = [&] { return random.real(0.5, 2); };
+    const auto aside = [&] { return random.real(-0.4, 0.4); };
+    const auto basis = *BSplineBasis::clamped_uniform(3, 7);
+    for (const SurfaceGeometry& s :
+         {graph<Vec<3>>(basis, 0.4, z, weight, aside), graph<Hom<3>>(basis, 0.4, z, weight, aside)}) {
+        const DerivativeQuery<2, 3> surface(s);
+        int known = 0, thin = 0;
+        double sharpest = 0, slackest_sliver = 0;
+        for (int k = 0; k < 2000; ++k) {
+            const double size = 4 * std::pow(0.5, random.real(2, 9)),
+                         width = std::pow(0.1, random.real(0, 15));
+            const Vec<2> a{{random.real(size, 4 - size), random.real(size, 4 - size)}};
+            const double angle = k % 3 == 0 ? (k % 2) * std::numbers::pi / 2 : random.real(0, 7);
+            const Vec<2> along{{size * std::cos(angle), size * std::sin(angle)}},
+                across{{-along[1], along[0]}};
+            const std::array t{a, a + along, a + random.real(0.1, 0.9) * along + width * across};
+            Box<2> box;
+            TriangleOn on{t, {}};
+            for (std::size_t i = 0; i < 3; ++i) box.add(t[i]), on.at[i] = jet<0>(s, t[i].c).value();
+            if (!(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1])) continue;
+            const Box<2> wide = room_for_fit(surface, box);
+            EXPECT_TRUE(wide.contains(box.lo) && wide.contains(box.hi));
+            if (!is_fitted(surface, wide)) continue;
+            const auto middle = jet<2>(s, (0.5 * (wide.lo + wide.hi)).c);
+            const Bending b = bending_by_fit(surface, wide, true, middle, &on);
+            const double whole = largest_whole(s, t), said = b.whole_error(box, t);
+            EXPECT_LE(whole, said * (1 + 1e-9) + 1e-14) << width;
+            if (whole > 1e-9) sharpest = std::max(sharpest, whole / said);
+            if (size < 0.1 && width < 1e-6 && whole > 1e-9)
+                slackest_sliver = std::max(slackest_sliver, said / whole), ++thin;
+            if (!(b.least > 0)) continue;
+            ++known;
+            const double turn = random.real(0, 0.1);
+            EXPECT_LE(largest_seen(s, std::span(&t, 1), turn),
+                      b.triangle_error(box, t, turn) * (1 + 1e-9) + 1e-14)
+                << width;
+        }
+        EXPECT_GT(known, 500);
+        EXPECT_GT(thin, 100);
+        EXPECT_GT(sharpest, 0.9);
+        EXPECT_LT(slackest_sliver, 2);
+    }
+}
+
 // Nearly flat, so that normals hardly turn: sums of cubic splines of u and of v with a knot in the middle,
 // whose second derivatives grow to both sides of it, or are anything else.
 TEST(Bending, cubic_splines_are_seen_nearly_as_they_are) {
@@ -226,7 +277,7 @@ TEST(Bending, cubic_splines_are_seen_nearly_as_they_are) {
         }
         const auto z = [&](int i, int j) { return p[std::size_t(i)] + q[std::size_t(j)] + both * i * j; };
         const Found found = look_at(random, graph<Vec<3>>(basis, 1e-5, z, one, none), {0, 2}, 2, {1, 1}, 0);
-        EXPECT_EQ(found.known, 4);
+        EXPECT_EQ(found.known, 6);
         sharpest = std::max(sharpest, found.sharpest);
     }
     EXPECT_GT(sharpest, 0.97);

@@ -33,6 +33,7 @@ struct Box {
         for (int i = 0; i < D; ++i) v[i] = x;
         return v;
     }
+    friend constexpr bool operator==(const Box&, const Box&) = default;
     constexpr bool is_empty() const { return lo[0] > hi[0]; }
     constexpr void add(const Vec<D>& p) {
         for (int i = 0; i < D; ++i) lo[i] = std::min(lo[i], p[i]), hi[i] = std::max(hi[i], p[i]);

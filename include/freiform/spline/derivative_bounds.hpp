@@ -61,6 +61,25 @@ struct GeometryOf<2, 3> {
     using type = SurfaceGeometry;
 };
 
+// A function M that is quadratic along each axis of a box: bilinear in the values at its corners, and
+// s (1 - s) bulge[0] + t (1 - t) bulge[1] more, s and t from 0 to 1.
+struct BoxQuadratic {
+    std::array<Interval, 2> box;
+    std::array<Vec<3>, 4> corner{};  // (lo, lo), (hi, lo), (lo, hi), (hi, hi)
+    std::array<Vec<3>, 2> bulge{};
+
+    Vec<3> operator()(double s, double t) const {
+        return (1 - t) * ((1 - s) * corner[0] + s * corner[1]) + t * ((1 - s) * corner[2] + s * corner[3]) +
+               s * (1 - s) * bulge[0] + t * (1 - t) * bulge[1];
+    }
+};
+// Such a function beside a surface f: bounds over the box of f - M and its derivatives to order 2, and of
+// their coordinate along a vector n; graded order.
+struct QuadraticFit {
+    BoxQuadratic m;
+    std::array<double, jet_size(2, 2)> all, along;
+};
+
 struct PlaneCurveBounds;
 
 // Prepared once for a curve (N = 1) or surface (N = 2), asked for many boxes; const and safe to share between
@@ -85,6 +104,11 @@ public:
         DerivativeBounds<N> all, along;
     };
     Both both(const Vec<D>& n, const std::array<Interval, N>& box, int order = 2) const;
+    // Of a surface that is a spline, by that function, or by one with the same bulges that it meets at the
+    // corners of the box. n has length 1, or 0. Infinite bounds where there is no spline, or it ends within
+    // the box. With more cuts, into equal parts along each axis, bounds are sharper.
+    QuadraticFit fit(const BoxQuadratic& m, bool at_corners, const Vec<3>& n,
+                     const std::array<int, 2>& cuts = {1, 1}) const requires(N == 2 && D == 3);
     // The smallest side along the axis of a polynomial or rational piece; infinite where there is no spline.
     // First derivatives are rounded as if values were divided by no less.
     double thinnest_piece(int axis) const { return thinnest_[std::size_t(axis)]; }

@@ -1,0 +1,135 @@
+// How far a block is from a quadratic function.
+//
+// Idea: M is a polynomial of degree 2 along each axis, so A - w M, with A the numerator and w the weight, is
+// one of two degrees more than A, and (A - w M) / w, which is the rest, lies in the convex hull of the
+// quotients of its coefficients and those of w written with that degree. With b_k, k = 0, 1, 2, the
+// coefficients of M on the part of the box that the block is of (its blossom at the ends, [Farin 2002, 3.4]),
+// the coefficients of the product are means of A_i - w_i b_k, i + k = I, by C(p, i) C(2, k) / C(p + 2, I),
+// along each axis. No derivative is asked for, so nothing is lost where weights vary, and by the two degrees
+// more the hull is tight.
+//
+// Accuracy: coefficients of the block are off as block_bounds.cpp says; those of A - w M are sums of at most
+// nine products, with fewer than 64 roundings, or 16 without weights, of numbers of the size |A_i| + w_i
+// |b_k|. All of that counts twice, as M meets S at corners but for as much.
+#include "block_detail.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace freiform {
+
+namespace {
+
+constexpr double kLarge = 1e140;  // squares are numbers
+constexpr std::size_t kStride = kernel::lanes_of(kMaxDegree + 1);
+
+// C(p, I - k) C(2, k) / C(p + 2, I) for k = 0, 1, 2.
+std::array<double, 3> shares(int p, int I) {
+    const double all = double(p + 2) * (p + 1), left = p + 2 - I;
+    return {left * (left - 1) / all, 2 * I * left / all, I * (I - 1.0) / all};
+}
+
+// M on a part of the box.
+void set_part(const BoxQuadratic& m, const std::array<Interval, 2>& part, kernel::RestTask& out) {
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double s = k & 1 ? part[0].hi : part[0].lo, t = k & 2 ? part[1].hi : part[1].lo;
+        const Vec<3> x = m(s, t);
+        for (int d = 0; d < 3; ++d) out.corner[k][d] = x[d];
+    }
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        for (int d = 0; d < 3; ++d)
+            out.bulge[axis][d] = part[axis].length() * part[axis].length() * m.bulge[axis][d];
+}
+
+}  // namespace
+
+void include_rest(const BezierBlock& block, const std::array<Interval, 2>& part, const Vec<3>& n,
+                  QuadraticFit& fit) {
+    const int rows = block.shape().rows, columns = block.shape().columns;
+    const bool rational = block.shape().rational;
+    double by_row[3 * (kMaxDegree + 3)], by_column[3 * kStride] = {}, linear[kStride] = {},
+                                                       bulges[kStride] = {};
+    for (int I = 0; I < rows + 2; ++I) {
+        const auto share = shares(rows - 1, I);
+        for (std::size_t k = 0; k < 3; ++k) by_row[3 * std::size_t(I) + k] = share[k];
+    }
+    for (int J = 0; J < columns + 2; ++J) {
+        const auto share = shares(columns - 1, J);
+        for (int l = std::max(0, J - columns + 1); l <= std::min(2, J); ++l)
+            by_column[std::size_t(l) * kStride + std::size_t(J - l)] = share[std::size_t(l)];
+    }
+    const double q = columns - 1;
+    for (int j = 0; j < columns; ++j) {
+        linear[j] = j / q;
+        bulges[j] = columns > 2 ? linear[j] * ((q - j) / (q - 1)) : 0;
+    }
+    kernel::RestTask task;
+    task.shape = block.shape();
+    task.numbers = block.numbers();
+    set_part(fit.m, part, task);
+    task.share[0] = by_row, task.share[1] = by_column;
+    task.stride = kStride;
+    task.linear = linear, task.bulges = bulges;
+    double of_m = 0, left_out = 0;  // bulges that no block of degree 1 has
+    for (const auto& corner : task.corner)
+        for (const double x : corner)
+            if (!(std::abs(x) <= of_m)) of_m = std::abs(x);
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        for (int d = 0; d < 3; ++d) {
+            double& x = task.bulge[axis][d];
+            of_m += std::abs(x);
+            if (!rational && (axis == 0 ? rows : columns) == 2) left_out += std::abs(std::exchange(x, 0));
+        }
+    for (int d = 0; d < 3; ++d) task.direction[d] = n[d];
+    kernel::RestFound found;
+    kernel::block_kernels().rest(task, found);
+    if (!(std::max(found.largest, found.most_weight) < kLarge && of_m < kLarge &&
+          found.least_weight > 1 / kLarge)) {
+        fit.all.fill(kInfinity), fit.along.fill(kInfinity);
+        return;
+    }
+
+    const double steps = 8 + 12 * (rows + columns - 2) + (rational ? 64 : 16),
+                 rounding = 2 * steps * kUnitRoundoff,
+                 slip = rounding * (found.largest + found.most_weight * of_m),
+                 divide = (1 + 1e-13) / (found.least_weight * (1 - rounding));
+    // Of the blocks whose differences were looked at.
+    const double degree_u = rational ? rows + 1 : rows - 1, degree_v = rational ? columns + 1 : columns - 1,
+                 by_u = 1 / (part[0].length() * fit.m.box[0].length()),
+                 by_v = 1 / (part[1].length() * fit.m.box[1].length());
+    // As in graded order after the values.
+    const double factor[5] = {degree_u * by_u, degree_v * by_v, degree_u * by_u * (degree_u - 1) * by_u,
+                              degree_u * by_u * degree_v * by_v, degree_v * by_v * (degree_v - 1) * by_v};
+    const double unseen[6] = {left_out / 4,
+                              left_out * by_u,
+                              left_out * by_v,
+                              2 * left_out * by_u * by_u,
+                              0,
+                              2 * left_out * by_v * by_v};
+    const auto include = [&](std::array<double, jet_size(2, 2)>& out, double value, int which, double times) {
+        std::array<double, 6> r{value * (1 + 1e-13) + times * slip / found.least_weight};
+        std::array<double, 6> weight{};
+        for (std::size_t k = 0; k < 5; ++k) {
+            const double twice = k < 2 ? 2 : 4, *const of = found.of[k];
+            weight[k + 1] = factor[k] * (of[2] + twice * rounding * found.most_weight);
+            r[k + 1] = factor[k] * ((which == 0 ? std::sqrt(of[0]) : of[1]) + twice * times * slip);
+        }
+        if (rational) {
+            r[1] += weight[1] * r[0], r[2] += weight[2] * r[0];
+            r[1] *= divide, r[2] *= divide;
+            r[3] += 2 * weight[1] * r[1] + weight[3] * r[0];
+            r[4] += weight[1] * r[2] + weight[2] * r[1] + weight[4] * r[0];
+            r[5] += 2 * weight[2] * r[2] + weight[5] * r[0];
+            for (std::size_t k = 3; k < 6; ++k) r[k] *= divide;
+        }
+        for (std::size_t k = 0; k < 6; ++k)
+            if (const double x = (r[k] + unseen[k]) * (1 + 1e-13); !(x <= out[k])) out[k] = x;
+    };
+    include(fit.all, std::sqrt(found.square), 0, 1);
+    include(fit.along, found.across, 1, 2);
+}
+
+}  // namespace freiform
