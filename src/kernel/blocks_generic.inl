@@ -319,7 +319,7 @@ struct RestOf {
     Most values = {}, of[kRestDifferences] = {};
 
     // Row r of A - M without weights.
-    FF_BODY inline void subtract_m(int r, Row& row) {
+    FF_PART void subtract_m(int r, Row& row) {
         const double p = rows - 1, s = r / p, bulge = rows > 2 ? s * ((p - r) / (p - 1)) : 0;
         V4 at[3], by_y[3], across_y[3];
         each<3>(3, [&](int d) FF_BODY {
@@ -352,7 +352,7 @@ struct RestOf {
     }
 
     // Row at of the product A - w M.
-    FF_BODY inline void multiply(int at, const double (&m)[3][3][3], Row& row) {
+    FF_PART void multiply(int at, const double (&m)[3][3][3], Row& row) {
         for (int J = 0; J < ends + 4; J += 4) {
             for (int d = 0; d < 3; ++d) store4(row.at[d] + J, all4(0));
             store4(row.at[3] + J, (V4)((I4)all4(1) & ~first_of(columns + 2 - J)));
@@ -385,7 +385,7 @@ struct RestOf {
         }
     }
 
-    FF_BODY inline void note(Most& m, const V4* x) const {
+    FF_PART void note(Most& m, const V4* x) const {
         m.square = larger(m.square, x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
         m.across = larger(m.across, size_of(all4(t.direction[0]) * x[0] + all4(t.direction[1]) * x[1] +
                                             all4(t.direction[2]) * x[2]));
@@ -393,7 +393,7 @@ struct RestOf {
     }
     // Differences from column to column, so many times.
     template <int Times>
-    FF_BODY inline void look(Most& m, const Row& row, int count) const {
+    FF_PART void look(Most& m, const Row& row, int count) const {
         for (int J = 0; J < count - Times; J += 4) {
             const I4 mask = first_of(count - Times - J);
             V4 x[kNumbers];
@@ -415,7 +415,7 @@ struct RestOf {
             note(values, x);
         }
     }
-    FF_BODY inline void subtract(const Row& from, Row& row, int count) const {  // row becomes from - row
+    FF_PART void subtract(const Row& from, Row& row, int count) const {  // row becomes from - row
         for (int d = 0; d < kNumbers; ++d)
             for (int J = 0; J < count; J += 4)
                 store4(row.at[d] + J, load4(from.at[d] + J) - load4(row.at[d] + J));

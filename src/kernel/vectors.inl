@@ -12,8 +12,10 @@
 // kB of it with gzip, and 7 % of the time of normals.
 #if defined(__wasm__)
 #define FF_SHARED static __attribute__((noinline))
+#define FF_PART __attribute__((noinline))  // likewise, of members
 #else
 #define FF_SHARED FF_INLINE
+#define FF_PART FF_BODY inline
 #endif
 
 // f(0) .. f(count - 1): written out one after the other where the number is known when compiling (Count >=
