@@ -6,6 +6,9 @@
 // control points are many, they are asked about boxes of some leaves, and leaves by one sample each; and
 // where that is too much for a leaf, of its own box, so that no leaf is halved for want of a better bound.
 //
+// Splines of few numbers are asked about as they are beside a quadratic function (bending.cpp), which says
+// more for as much; not over many pieces, where bounds are far from everything anyway.
+//
 // Threads. A face that threads share has its tree begun breadth first, until there are enough boxes; each
 // of these is then grown by itself. Where it is cut does not depend on the number of threads.
 //
