@@ -35,6 +35,7 @@ constexpr double kLeavesAtOnce = 16;
 constexpr std::size_t kLeavesCounted = 256;  // at once
 constexpr double kNodesOfTriangle = 1.5;     // expected
 constexpr double kMostNodes = 1 << 20;       // expected: 80 MiB
+constexpr double kSmallPart = 0x1p-9;        // of a piece: there bounds of derivatives lose little
 constexpr long long kFewNumbers = 96;        // of a piece: asking them is as cheap as a sample
 
 std::size_t expected_nodes(const FaceDemands& demands) {
@@ -259,7 +260,10 @@ Curvature CurvatureTree::seen_in(const Jet<2, 2, Vec<3>>& middle) const {
 BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
                                      bool knows_normals, const Jet<2, 2, Vec<3>>& middle,
                                      Variation* variation) const {
-    if (!cone_ && !variation && is_fitted(surface, box))
+    const Vec<2> size = box.hi - box.lo;
+    const bool is_small =
+        size[0] * size[1] < kSmallPart * (surface.thinnest_piece(0) * surface.thinnest_piece(1));
+    if (!cone_ && !variation && !is_small && is_fitted(surface, box))
         if (const auto out = bending_by_fit(surface, box, knows_normals, middle); out.full.is_finite())
             return out;
     if (!cone_) return bending_of(surface, box, knows_normals, middle, variation);
