@@ -272,6 +272,34 @@ TEST(Tessellate, weights_that_parameters_cannot_follow_are_refused_at_once) {
     }
 }
 
+// Beside leaves of a rough face there are triangles that are hardly more than a side: where nothing is proven
+// of them, the leaf is given up, not all of them, which takes 4,714 triangles here.
+TEST(Tessellate, leaves_are_given_up_for_slivers_beside_them_one_by_one) {
+    constexpr double kPoints[25][4] = {
+        // and weights
+        {-0.12, 0.27, 4.63, 0.59}, {0.06, 0.77, 4.15, 2.02},  {-0.3, 2.22, 1.89, 0.74},
+        {0.21, 2.89, 1.1, 1.59},   {-0.03, 4.27, 7.09, 2.76}, {1.21, -0.23, 0.88, 1.46},
+        {0.92, 1.16, 2.82, 0.49},  {0.72, 1.9, 8.94, 1.56},   {1.03, 3.15, 9.99, 2.52},
+        {0.97, 3.77, 9.03, 1.71},  {1.87, -0.18, 9.07, 2.34}, {1.72, 1.11, 2.29, 1.39},
+        {1.73, 2.21, 1.44, 1.62},  {1.93, 2.73, 1.37, 1.95},  {2.12, 4.13, 3.44, 2.07},
+        {3.18, 0.07, 1, 2.71},     {2.93, 0.89, 4.01, 1.33},  {3.2, 2.03, 3.4, 1.61},
+        {2.85, 2.9, 2.02, 0.92},   {2.73, 4.09, 2.77, 1.88},  {3.83, 0.17, 5.25, 1.35},
+        {4.13, 1.09, 9.2, 1.59},   {3.9, 2.26, 6.68, 1.75},   {3.77, 3.08, 6.89, 0.7},
+        {4.28, 4.07, 1.84, 0.34}};
+    std::vector<Hom<3>> c;
+    for (const auto& p : kPoints) c.push_back(freiform::weighted(Vec<3>{{p[0], p[1], p[2]}}, p[3]));
+    const auto basis = *BSplineBasis::make(3, {0, 0, 0, 0, 1, 2, 2, 2, 2});
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(*Surface<Hom<3>>::make({basis, basis}, Net<2, Hom<3>>({5, 5}, c))));
+    const auto model = std::move(builder).finish();
+    ASSERT_TRUE(model);
+    const auto t = tessellate(*model, {.tolerance = 0.01});
+    ASSERT_TRUE(t && t->refused.empty());
+    EXPECT_LE(t->error_bound, 0.01);
+    EXPECT_LE(sampled_deviation(*model, *t), t->error_bound);
+    EXPECT_LT(t->mesh.triangles.size(), 4500u);
+}
+
 TEST(Tessellate, knots_a_rounding_apart_end_in_a_mesh_or_a_refusal) {
     std::mt19937 rng(13);
     const double twin = std::nextafter(0.5, 1);
