@@ -244,7 +244,7 @@ Filler::Known Filler::found(int triangle, int& place) const {
         judge_by(bending_by_fit(surface_, wide, plain < 3, seen, &on));
     }
     // Edges count on what derivatives alone say of slivers at them (edge_error.cpp).
-    if (k.bound > demands_.tolerance && (!fits || (thin && !is_deep)))
+    if (!(k.bound <= demands_.tolerance) && (!fits || (thin && !is_deep)))
         judge_by(tree_.cone() ? tree_.bending_in(surface_, box, plain < 3, middle)
                               : bending_of(surface_, box, plain < 3, middle));
     return k;
