@@ -86,13 +86,8 @@ double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& cor
     const auto [h, off] = place_of(cell, middle.at);
     const auto& [uu, uv, vv] = middle.whole_second;
     const std::array size{norm(uu) * h[0] * h[0], norm(uv) * h[0] * h[1], norm(vv) * h[1] * h[1]};
-    std::array<double, 3> s;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
-        s[k] = norm(d[0] * d[0] * uu + 2 * d[0] * d[1] * uv + d[1] * d[1] * vv);
-    }
     const double slip = 128 * kUnitRoundoff * (size[0] + 2 * size[1] + size[2]),
-                 quadratic = largest_of_sides(s, slip);
+                 quadratic = quadratic_error(middle.whole_second, corner, slip);
     double best = kInfinity;
     if (fit.exists()) {
         const bool is_half =

@@ -5,7 +5,6 @@ namespace freiform {
 
 namespace {
 
-constexpr double kThinArea = 0.1;        // area of a triangle, over its longest side squared
 constexpr int kThinCuts = 4;             // of its box: there hulls have to be sharp
 constexpr std::ptrdiff_t kMostEnds = 2;  // of pieces of a spline, inside a box
 constexpr double kLeastPart = 0x1p-16;   // of a piece: what is less is all rounding
@@ -32,14 +31,14 @@ Meeting meet(const DerivativeQuery<2, 3>& surface, const TriangleOn& triangle, c
     if (length(2, 0) > length(a, b)) a = 2, b = 0, c = 1;
     const Vec<2> along = at[b] - at[a], aside = at[c] - at[a];
     const double area = cross(along, aside), longest = dot(along, along);
-    const bool is_thin = !(std::abs(area) > kThinArea * longest);
+    const bool thin = is_thin(at);
     Vec<3> twist = size[0] * size[1] * j(1, 1);
     Meeting out;
-    if (is_thin) {
+    if (thin) {
         out.cuts[std::abs(along[0]) > std::abs(along[1]) ? 0 : 1] = kThinCuts;
         const Vec<2> middle = 0.5 * (triangle.uv[a] + triangle.uv[b]);
-        const Vec<3> bent = 4.0 * ((triangle.at[a] - jet<0>(surface.geometry(), middle.c).value()) +
-                                   (triangle.at[b] - jet<0>(surface.geometry(), middle.c).value())) +
+        const Vec<3> at_middle = jet<0>(surface.geometry(), middle.c).value();
+        const Vec<3> bent = 4.0 * ((triangle.at[a] - at_middle) + (triangle.at[b] - at_middle)) +
                             2 * along[0] * along[0] * m.bulge[0] - 2 * along[0] * along[1] * twist +
                             2 * along[1] * along[1] * m.bulge[1];
         const Vec<3> more = 1 / (longest * longest) * bent;
@@ -54,7 +53,7 @@ Meeting meet(const DerivativeQuery<2, 3>& surface, const TriangleOn& triangle, c
     const Vec<3> d = rest[b] - rest[a], e = rest[c] - rest[a];
     Vec<3> origin = rest[a];
     for (const int k : {0, 1}) {
-        const Vec<3> more = is_thin  ? along[k] / longest * d
+        const Vec<3> more = thin     ? along[k] / longest * d
                             : k == 0 ? 1 / area * (aside[1] * d - along[1] * e)
                                      : 1 / area * (along[0] * e - aside[0] * d);
         slope[std::size_t(k)] = slope[std::size_t(k)] + more, origin = origin - at[a][k] * more;
@@ -71,8 +70,10 @@ Box<2> room_for_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
     Box<2> out = box;
     for (int d = 0; d < 2; ++d) {
         const auto& ends = surface.bends(d);
-        const double least = kShortPart * surface.thinnest_piece(d);
-        if (!(box.hi[d] - box.lo[d] < least) || ends.empty()) continue;
+        if (ends.size() < 2) continue;
+        const auto after = std::upper_bound(ends.begin() + 1, ends.end() - 1, box.side(d).middle());
+        const double least = kShortPart * (*after - *(after - 1));
+        if (!(box.hi[d] - box.lo[d] < least)) continue;
         out.lo[d] = std::min(box.lo[d], std::max(ends.front(), box.side(d).middle() - least / 2));
         out.hi[d] = std::max(box.hi[d], std::min(ends.back(), out.lo[d] + least));
     }

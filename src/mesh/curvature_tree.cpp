@@ -147,6 +147,26 @@ double largest_of_sides(std::array<double, 3> s, double slip) {
     return s[2] / 8 / (1 - std::min(most, found)) + 4 * slip;
 }
 
+double quadratic_error(const std::array<Vec<3>, 3>& second, const std::array<Vec<2>, 3>& corner,
+                       double slip) {
+    std::array<double, 3> s;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
+        s[k] = norm(d[0] * d[0] * second[0] + 2 * d[0] * d[1] * second[1] + d[1] * d[1] * second[2]);
+    }
+    return largest_of_sides(s, slip);
+}
+
+bool is_thin(const std::array<Vec<2>, 3>& corner) {
+    constexpr double kThin = 0.1;  // area, over the longest side squared
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
+        longest = std::max(longest, dot(d, d));
+    }
+    return !(std::abs(cross(corner[1] - corner[0], corner[2] - corner[0])) > kThin * longest);
+}
+
 // The error is sum l_i l_j Q(v_i - v_j) / 2. Of indefinite ones it has no extreme inside, and on a side one
 // of an eighth of what they are along it.
 double Quadratic::error(const std::array<Vec<2>, 3>& corner) const {
@@ -209,6 +229,7 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
     if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
     if (kinks || !b.knows_middle()) return false;
     const double of_halves = b.whole_halves_error(cell);
+    // Slivers beside it have bounds of their own, which may be worse than those of halves with that side.
     const auto sides_keep = [&](bool along_normal) {
         return b.sides_error(cell.hi - cell.lo, along_normal) <= tolerance;
     };

@@ -89,6 +89,11 @@ struct Quadratic {
 // What sum l_i l_j s_ij / 2, for barycentric coordinates l, is at most, for s_ij of the sides. `slip`: what
 // they are off by.
 double largest_of_sides(std::array<double, 3> s, double slip);
+// Of the quadratic function with these second derivatives uu, uv, vv in space: bound of the distance from its
+// linear interpolant on the triangle. `slip`: what squares of sides are off by.
+double quadratic_error(const std::array<Vec<3>, 3>& second, const std::array<Vec<2>, 3>& corner, double slip);
+// Hardly more than its longest side.
+bool is_thin(const std::array<Vec<2>, 3>& corner);
 // A half of the box.
 inline std::array<Vec<2>, 3> half_of(const Box<2>& box, bool rising) {
     const Vec<2> right{{box.hi[0], box.lo[1]}};

@@ -30,16 +30,6 @@ void sort_down(std::array<std::pair<double, int>, 3>& x) {
         if (x[k] < x[k + 1]) std::swap(x[k], x[k + 1]);
 }
 
-bool is_thin(const std::array<Vec<2>, 3>& corner) {
-    constexpr double kThin = 0.1;  // area, over the longest side squared
-    double longest = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
-        longest = std::max(longest, dot(d, d));
-    }
-    return !(std::abs(cross(corner[1] - corner[0], corner[2] - corner[0])) > kThin * longest);
-}
-
 // By what is seen in the middle.
 double least_error(const Jet<2, 2, Vec<3>>& middle, const std::array<Vec<2>, 3>& corner, bool along_normal) {
     const Vec<3> m = cross(middle(1, 0), middle(0, 1));
@@ -47,13 +37,7 @@ double least_error(const Jet<2, 2, Vec<3>>& middle, const std::array<Vec<2>, 3>&
         const Vec<3> n = unit(m);
         return Quadratic{dot(n, middle(2, 0)), dot(n, middle(1, 1)), dot(n, middle(0, 2))}.error(corner);
     }
-    std::array<double, 3> sides;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec<2> d = corner[(k + 1) % 3] - corner[k];
-        sides[k] =
-            norm(d[0] * d[0] * middle(2, 0) + 2 * d[0] * d[1] * middle(1, 1) + d[1] * d[1] * middle(0, 2));
-    }
-    return largest_of_sides(sides, 0);
+    return quadratic_error({middle(2, 0), middle(1, 1), middle(0, 2)}, corner, 0);
 }
 
 }  // namespace

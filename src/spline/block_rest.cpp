@@ -1,16 +1,19 @@
 // How far a block is from a quadratic function.
 //
-// Idea: M is a polynomial of degree 2 along each axis, so A - w M, with A the numerator and w the weight, is
-// one of two degrees more than A, and (A - w M) / w, which is the rest, lies in the convex hull of the
-// quotients of its coefficients and those of w written with that degree. With b_k, k = 0, 1, 2, the
-// coefficients of M on the part of the box that the block is of (its blossom at the ends, [Farin 2002, 3.4]),
-// the coefficients of the product are means of A_i - w_i b_k, i + k = I, by C(p, i) C(2, k) / C(p + 2, I),
-// along each axis. No derivative is asked for, so nothing is lost where weights vary, and by the two degrees
-// more the hull is tight.
+// Notation: S = A / w, A the numerator, w the weight; M quadratic along each axis, R = S - M, D = A - w M.
+// Idea: where there are weights, D and w, written with two degrees more than A, are blocks, and R = D / w
+// lies in the convex hull of the quotients of their coefficients: those of D are means of A_i - w_i b_k, i +
+// k = I, by C(p, i) C(2, k) / C(p + 2, I) along each axis, b_k the coefficients of M on the part of the box
+// that the block is of, where M is again such a function. Without weights R = D is a block of the degree of
+// A. Nothing is lost where weights vary. Derivatives: D and w have derivatives of at most p (p - 1) .. times
+// their differences, and by Leibniz, as in block_bounds.cpp, |R_a| <= (|D_a| + sum_{0 < b <= a} C(a, b) |w_b|
+// |R_{a-b}|) / w_min. As R is small, so are the terms with w_b.
 //
-// Accuracy: coefficients of the block are off as block_bounds.cpp says; those of A - w M are sums of at most
-// nine products, with fewer than 64 roundings, or 16 without weights, of numbers of the size |A_i| + w_i
-// |b_k|. All of that counts twice, as M meets S at corners but for as much.
+// Accuracy: coefficients of the block are off as block_bounds.cpp says; those of D are sums of at most nine
+// products, with fewer than 64 roundings, or 16 without weights, of numbers of the size |A_i| + w_i |b_k|. Of
+// b_k the size is that of the terms that M is the sum of, which are larger than M where the block reaches far
+// beyond the box. All of that counts twice, as M meets S at corners but for as much. Bulges along axes of
+// degree 1 are no part of blocks without weights: what they are at most is added.
 #include "block_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -32,16 +35,23 @@ std::array<double, 3> shares(int p, int I) {
     return {left * (left - 1) / all, 2 * I * left / all, I * (I - 1.0) / all};
 }
 
-// M on a part of the box.
-void set_part(const BoxQuadratic& m, const std::array<Interval, 2>& part, kernel::RestTask& out) {
+// M on a part of the box, or around it. What the terms of its values are together, at most.
+double set_part(const BoxQuadratic& m, const std::array<Interval, 2>& part, kernel::RestTask& out) {
+    double corner = 0, most = 0;
+    for (const Vec<3>& c : m.corner) corner = std::max(corner, max_abs(c));
+    const double bulge[2] = {max_abs(m.bulge[0]), max_abs(m.bulge[1])};
     for (std::size_t k = 0; k < 4; ++k) {
-        const double s = k & 1 ? part[0].hi : part[0].lo, t = k & 2 ? part[1].hi : part[1].lo;
+        const double s = k & 1 ? part[0].hi : part[0].lo, t = k & 2 ? part[1].hi : part[1].lo,
+                     u = std::abs(1 - s) + std::abs(s), v = std::abs(1 - t) + std::abs(t);
         const Vec<3> x = m(s, t);
         for (int d = 0; d < 3; ++d) out.corner[k][d] = x[d];
+        const double terms = u * v * corner + u * u * bulge[0] + v * v * bulge[1];
+        if (!(terms <= most)) most = terms;
     }
     for (std::size_t axis = 0; axis < 2; ++axis)
         for (int d = 0; d < 3; ++d)
             out.bulge[axis][d] = part[axis].length() * part[axis].length() * m.bulge[axis][d];
+    return most;
 }
 
 }  // namespace
@@ -69,14 +79,11 @@ void include_rest(const BezierBlock& block, const std::array<Interval, 2>& part,
     kernel::RestTask task;
     task.shape = block.shape();
     task.numbers = block.numbers();
-    set_part(fit.m, part, task);
+    double of_m = set_part(fit.m, part, task);
     task.share[0] = by_row, task.share[1] = by_column;
     task.stride = kStride;
     task.linear = linear, task.bulges = bulges;
-    double of_m = 0, left_out = 0;  // bulges that no block of degree 1 has
-    for (const auto& corner : task.corner)
-        for (const double x : corner)
-            if (!(std::abs(x) <= of_m)) of_m = std::abs(x);
+    double left_out = 0;  // bulges that no block of degree 1 has
     for (std::size_t axis = 0; axis < 2; ++axis)
         for (int d = 0; d < 3; ++d) {
             double& x = task.bulge[axis][d];
