@@ -2,17 +2,19 @@
 //
 // Idea: most of a face lies inside the box of the edges; only parts that may reach beyond it are cut finer,
 // those first that may reach farthest. A part of a face is within its error of two triangles
-// (face_parts.cpp), so its box is that of its corners, wider by the error; parts outside the boundary are
-// left out, which a box over all parameters between the loops cannot do. Where too many parts are left, the
-// tight box of the whole spline is one as well, and the intersection of both is taken. Cost: at most
-// kMostBoxParts parts for each face, as many pieces of a spline; a plane face, which its boundary encloses,
-// needs none. Accuracy: contains the face; beyond it by kBoxEnough of the diagonal, where the number of parts
-// suffices, or that of the spline where the face is most of it.
+// (face_parts.cpp), so its box is that of its corners, wider by the error, and that of the control points of
+// the pieces there (hull_box), whichever is less on each side; parts outside the boundary are left out, which
+// a box over all parameters between the loops cannot do. Where too many parts are left, the tight box of the
+// whole spline is one as well, and the intersection of both is taken. Cost: at most kMostBoxParts parts for
+// each face, as many pieces of a spline; a plane face, which its boundary encloses, needs none. Accuracy:
+// contains the face; beyond it by kBoxEnough of the diagonal, where the number of parts suffices, or that of
+// the spline where the face is most of it.
 #include "face_box_detail.hpp"
 #include "face_parts_detail.hpp"
 
 #include <freiform/core/visit.hpp>
 #include <freiform/query/bounds.hpp>
+#include <freiform/spline/hull_box.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -25,13 +27,14 @@ constexpr int kMostBoxParts = 400, kBoundarySamples = 8;
 constexpr double kBoxEnough = 1.0 / 128;    // of the diagonal of the box of the edges
 constexpr double kBoxBoundary = 1.0 / 512;  // likewise, how well boundaries are known
 
-Box<3> box_around(const FacePart& part) {
+Box<3> box_around(const FacePart& part, const SurfaceGeometry& surface) {
     Box<3> box;
     for (const Vec<3>& c : part.corner) {
         box.add(c - Box<3>::filled(part.error));
         box.add(c + Box<3>::filled(part.error));
     }
-    return box;
+    const auto hull = hull_box(surface, {part.box.side(0), part.box.side(1)});
+    return hull ? common(box, *hull) : box;
 }
 
 bool is_divisible(const FacePart& p) {
@@ -83,7 +86,7 @@ std::optional<Box<3>> box_of_face(const Face& face, const std::vector<Edge>& edg
     const auto push = [&](FacePart part) {
         if (!part.crossing)
             for (const Vec<3>& c : part.corner) inner.add(c);
-        part.key = beyond(box_around(part), inner);
+        part.key = beyond(box_around(part, face.surface), inner);
         heap.push_back(std::move(part));
         std::ranges::push_heap(heap, {}, &FacePart::key);
     };
@@ -92,19 +95,16 @@ std::optional<Box<3>> box_of_face(const Face& face, const std::vector<Edge>& edg
         std::ranges::pop_heap(heap, {}, &FacePart::key);
         const FacePart part = std::move(heap.back());
         heap.pop_back();
-        if (beyond(box_around(part), inner) <= kBoxEnough * inner.diagonal() || !is_divisible(part)) {
-            out.add(box_around(part));
+        if (beyond(box_around(part, face.surface), inner) <= kBoxEnough * inner.diagonal() ||
+            !is_divisible(part)) {
+            out.add(box_around(part, face.surface));
             continue;
         }
         for (FacePart& half : parts->halves(part)) push(std::move(half));
         seen += 2;
     }
-    for (const FacePart& part : heap) out.add(box_around(part));
-    if (!heap.empty()) {
-        const Box<3> spline = box_of_spline(face.surface, kBoxEnough * inner.diagonal());
-        for (int i = 0; i < 3; ++i)
-            out.lo[i] = std::max(out.lo[i], spline.lo[i]), out.hi[i] = std::min(out.hi[i], spline.hi[i]);
-    }
+    for (const FacePart& part : heap) out.add(box_around(part, face.surface));
+    if (!heap.empty()) out = common(out, box_of_spline(face.surface, kBoxEnough * inner.diagonal()));
     if (!out.is_empty() && !std::isfinite(out.diagonal())) return std::nullopt;
     return out;
 }

@@ -1,12 +1,15 @@
 // Method. |p(t) - chord| <= h^2 / 8 max |p''| on an interval of length h, for u and v by themselves;
-// intervals begin at kinks. Jumps between neighbouring curves become chords of their own, so that the polygon
-// is closed and the odd-even rule has a meaning. A point that no fattened chord holds is inside the polygon
-// exactly if it is inside the curves: moving the curves to their chords along straight lines never meets it.
+// intervals begin at kinks. Curve and chord are both in the box of the control points, too, which says more
+// where knots are crowded and the interval holds many. Jumps between neighbouring curves become chords of
+// their own, so that the polygon is closed and the odd-even rule has a meaning. A point that no fattened
+// chord holds is inside the polygon exactly if it is inside the curves: moving the curves to their chords
+// along straight lines never meets it.
 #include "edge_mesh_detail.hpp"
 #include "face_region_detail.hpp"
 
 #include <freiform/core/sort.hpp>
 #include <freiform/mesh/segment_box.hpp>
+#include <freiform/spline/hull_box.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +42,9 @@ Result<Pieces> pieces_of(const CurveGeometry<2>& curve, Interval on, Vec<2> sag,
         const Interval part = stack.back();
         stack.pop_back();
         const double h2 = part.length() * part.length() / 8, middle = part.middle();
-        const Vec<2> found{{h2 * bounds[0]({part})(2), h2 * bounds[1]({part})(2)}};
+        Vec<2> found{{h2 * bounds[0]({part})(2), h2 * bounds[1]({part})(2)}};
+        if (const auto hull = hull_box(curve, {part}); hull && is_finite(found))
+            for (int i = 0; i < 2; ++i) found[i] = std::min(found[i], hull->side(i).length());
         const bool fine = found[0] <= sag[0] && found[1] <= sag[1];
         if (!fine && out.at.size() + stack.size() < max_chords && part.lo < middle && middle < part.hi) {
             stack.push_back({middle, part.hi});

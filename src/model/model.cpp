@@ -1,8 +1,10 @@
 #include "face_box_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
+#include <freiform/spline/hull_box.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +109,8 @@ Vec<D> slack_of(const DerivativeQuery<N, D>& query, const std::array<Interval, N
 }
 
 // A box that contains the curve or surface over `on`: that of the corners of several cells, wider by their
-// slack. Of curves, cells with much slack are halved.
+// slack, or of their control points where that is the smaller one. Of curves, cells with much slack are
+// halved.
 template <std::size_t N, int D>
 Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<Interval, N>& on) {
     constexpr int kCells = N == 1 ? 16 : 8, kHalvings = N == 1 ? 6 : 0;
@@ -141,14 +144,11 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
         stack.push_back(next);
     });
     const double little = kLittle * points_only.diagonal();
-    bool torn = false;
-    while (!stack.empty() && !torn) {
+    while (!stack.empty()) {
         const Cell cell = stack.back();
         stack.pop_back();
-        const Vec<D> slack = slack_of<N, D>(query, cell.part);
-        torn = !is_finite(slack);
-        if (torn) break;
-        if (max_abs(slack) > little && cell.depth < kHalvings) {
+        Vec<D> slack = slack_of<N, D>(query, cell.part);
+        if (!(max_abs(slack) <= little) && cell.depth < kHalvings) {
             const double middle = cell.part[0].middle();
             for (int half = 0; half < 2; ++half) {
                 Cell next{cell.part, cell.depth + 1};
@@ -157,21 +157,18 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
             }
             continue;
         }
+        if (!is_finite(slack)) slack = Box<D>::filled(kInfinity);  // a spline that jumps
+        Box<D> around;
         each_index(corners, [&](const Index<N>& i) {
             std::array<double, N> at{};
             for (std::size_t d = 0; d < N; ++d) at[d] = i[d] == 0 ? cell.part[d].lo : cell.part[d].hi;
             const Vec<D> p = value(at);
-            box.add(p - slack);
-            box.add(p + slack);
+            around.add(p - slack);
+            around.add(p + slack);
         });
+        if (const auto hull = hull_box(geometry, cell.part)) around = common(around, *hull);
+        box.add(around);
     }
-    if (torn)  // a spline that jumps: its control points contain it as well
-        visit_one(
-            [&](const auto& g) {
-                if constexpr (requires { g.net(); })
-                    for (const auto& p : points(g)) box.add(p);
-            },
-            geometry);
     return box;
 }
 

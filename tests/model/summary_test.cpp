@@ -1,3 +1,4 @@
+#include "model/face_region_detail.hpp"
 #include "support/random.hpp"
 #include "support/solids.hpp"
 
@@ -95,6 +96,69 @@ TEST(Summary, boxes_leave_out_what_the_boundary_cuts_off) {
     check(bowl, round, [](double s, double t) {
         return Vec<2>{{0.5 + 0.1 * s * std::cos(2 * kPi * t), 0.5 + 0.1 * s * std::sin(2 * kPi * t)}};
     });
+}
+
+TEST(Summary, boxes_do_not_care_how_crowded_knots_are) {
+    // Ends of blends come with knots at 2^-k of the domain and control points that waver by little: second
+    // derivatives there are as large as 1e18, of curves that anybody can see are short.
+    Random random(11);
+    std::vector<double> knots(4, 0.0);
+    for (int k = 36; k > 0; --k) knots.push_back(std::ldexp(1.0, -k));
+    knots.insert(knots.end(), 4, 1.0);
+    const auto basis = *BSplineBasis::make(3, knots);
+    const auto line = *BSplineBasis::bezier(1);
+    std::vector<Vec<3>> c, along, turned;
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < basis.size(); ++i) {
+            const double at = std::max(0.0, (i - 36) / double(basis.size() - 37));
+            c.push_back({{double(j), at, 0.01 * random.real(-1, 1)}});
+            if (j == 0) along.push_back(c.back());
+        }
+    for (const Vec<3>& p : along)
+        for (int j = 0; j < 2; ++j) turned.push_back(p + Vec<3>{{double(j), 0, 0}});
+    const auto curve = *Curve<Vec<3>>::make({basis}, Net<1, Vec<3>>({basis.size()}, along));
+    const auto surface = *Surface<Vec<3>>::make({line, basis}, Net<2, Vec<3>>({2, basis.size()}, c));
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(surface));
+    Model face = *std::move(builder).finish();
+    EXPECT_LT(summary(face).box.diagonal(), 1.5);
+    for (Edge& e : face.edges) e.curve.reset();
+    EXPECT_LT(summary(face).box.diagonal(), 1.5);
+    const auto across = *Surface<Vec<3>>::make({basis, line}, Net<2, Vec<3>>({basis.size(), 2}, turned));
+    const Extrusion extrusion{curve, {{1, 0, 0}}};
+    ModelBuilder other;
+    ASSERT_TRUE(other.add(across));
+    face = *std::move(other).finish();
+    for (Edge& e : face.edges) e.curve.reset();
+    for (const SurfaceGeometry& s :
+         {SurfaceGeometry(across), SurfaceGeometry(extrusion),
+          SurfaceGeometry(OffsetSurface{std::make_shared<SurfaceGeometry>(extrusion), 0.125}),
+          SurfaceGeometry(Revolution{curve, {{0, 0, -1}}, {{0, 1, 0}}})}) {
+        face.faces[0].surface = s;
+        EXPECT_LT(summary(face).box.diagonal(), 3) << kind_name(s);
+    }
+    // And one of its parameter curves.
+    Coedge& side = face.faces[0].loops[0].coedges[0];
+    const Interval on = face.edges[std::size_t(side.edge)].range;
+    const Vec<2> a = jet<0>(side.curve, on.lo).value(), b = jet<0>(side.curve, on.hi).value();
+    std::vector<Vec<2>> uv;
+    for (const Vec<3>& p : along)
+        uv.push_back(a + p[1] * (b - a) + p[2] * (1 - p[1]) * Vec<2>{{b[1] - a[1], a[0] - b[0]}});
+    for (double& k : knots) k = on.lo + on.length() * k;
+    side.curve = *Curve<Vec<2>>::make({*BSplineBasis::make(3, knots)}, Net<1, Vec<2>>({basis.size()}, uv));
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    const auto rough = FaceRegion::make(face.faces[0], face.edges, {{kAny, kAny}}, 1);
+    ASSERT_TRUE(rough);
+    EXPECT_LT(rough->box().diagonal(), 3);
+    EXPECT_GE(rough->box().diagonal(), std::sqrt(2.0));
+    // The same curve as an edge of a model.
+    Model edge;
+    edge.vertices.resize(2);
+    edge.vertices[0].point = along.front(), edge.vertices[1].point = along.back();
+    edge.edges.resize(1);
+    edge.edges[0].curve = curve, edge.edges[0].range = {0, 1}, edge.edges[0].end = 1;
+    EXPECT_LT(summary(edge).box.diagonal(), 1.1);
+    EXPECT_GE(summary(edge).box.hi[1], 1);
 }
 
 TEST(Summary, counts_what_the_model_has) {

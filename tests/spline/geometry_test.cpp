@@ -1,6 +1,7 @@
 #include "support/shapes.hpp"
 
 #include <freiform/spline/geometry.hpp>
+#include <freiform/spline/hull_box.hpp>
 
 #include <gtest/gtest.h>
 #include <numbers>
@@ -70,6 +71,56 @@ TEST(Geometry, offsets_keep_their_distance_along_the_normal) {
             EXPECT_NEAR(dot(d, normal(*offset->base, at)), offset->distance, 1e-13) << name;
         }
     }
+}
+
+TEST(Geometry, boxes_of_control_points_contain_what_they_stand_for) {
+    std::mt19937 rng(6);
+    int found = 0;
+    for (const auto& [name, surface, on] : surfaces_of_every_kind(3))
+        for (int k = 0; k < 40; ++k) {
+            std::array<Interval, 2> part;
+            for (int d = 0; d < 2; ++d) {
+                const double a = uniform(rng, on[d].lo, on[d].hi), b = uniform(rng, on[d].lo, on[d].hi);
+                part[d] = {std::min(a, b), std::max(a, b)};
+            }
+            const auto box = hull_box(surface, part);
+            if (!box) continue;
+            ++found;
+            for (int i = 0; i <= 10; ++i)
+                for (int j = 0; j <= 10; ++j) {
+                    const Param<2> at{part[0].lo + part[0].length() * i / 10,
+                                      part[1].lo + part[1].length() * j / 10};
+                    const Vec<3> x = jet<0>(surface, at).value();
+                    const double bound = 2 * value_error_bound(surface, part);
+                    for (int c = 0; c < 3; ++c) {
+                        EXPECT_GE(x[c], box->lo[c] - bound) << name;
+                        EXPECT_LE(x[c], box->hi[c] + bound) << name;
+                    }
+                }
+        }
+    EXPECT_GE(found, 200);
+    // Pieces that are not met do not count; those of a closed curve may be named by any of its periods.
+    const auto open = *Curve<Vec<1>>::make({*BSplineBasis::make(1, {0, 0, 1, 2, 3, 3})},
+                                           Net<1, Vec<1>>({4}, {{{0}}, {{1}}, {{9}}, {{5}}}));
+    const auto near = [](const CurveGeometry<1>& c, Interval part, double lo, double hi) {
+        const auto box = hull_box(c, {part});
+        ASSERT_TRUE(box);
+        EXPECT_NEAR(box->lo[0], lo, 1e-13);
+        EXPECT_NEAR(box->hi[0], hi, 1e-13);
+    };
+    near(open, {0.25, 0.5}, 0, 1);
+    near(open, {0.25, 1.5}, 0, 9);
+    near(open, {2.5, 3}, 5, 9);
+    const auto closed = *Curve<Vec<1>>::make({*BSplineBasis::periodic(1, {0, 1, 2, 3})},
+                                             Net<1, Vec<1>>({3}, {{{0}}, {{1}}, {{9}}}));
+    const double ends[2] = {jet<0>(CurveGeometry<1>(closed), 0.0).value()[0],
+                            jet<0>(CurveGeometry<1>(closed), 1.0).value()[0]};
+    near(closed, {0.25, 0.5}, std::min(ends[0], ends[1]), std::max(ends[0], ends[1]));
+    for (const auto& points :
+         {std::vector<Vec<1>>{{{0}}, {{1}}, {{9}}}, {{{9}}, {{0}}, {{1}}}, {{{1}}, {{9}}, {{0}}}})
+        near(*Curve<Vec<1>>::make(closed.bases(), Net<1, Vec<1>>({3}, points)), {3.25, 3.5}, 0, 9);
+    near(Line<1>{{{1}}, {{-2}}}, {0, 3}, -5, 1);
+    EXPECT_FALSE(hull_box(CurveGeometry<3>(Conic<3>{}), {{{0, 1}}}));
 }
 
 TEST(Geometry, what_has_no_direction_is_refused) {

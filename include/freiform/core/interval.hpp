@@ -47,6 +47,12 @@ struct Box {
             if (!(lo[i] <= p[i] && p[i] <= hi[i])) return false;
         return true;
     }
+    friend constexpr Box common(const Box& a, const Box& b) {
+        Box out;
+        for (int i = 0; i < D; ++i)
+            out.lo[i] = std::max(a.lo[i], b.lo[i]), out.hi[i] = std::min(a.hi[i], b.hi[i]);
+        return out;
+    }
     // Largest absolute coordinate: the scale that rounding errors are measured by.
     constexpr double scale() const { return is_empty() ? 0 : std::max(max_abs(lo), max_abs(hi)); }
     double diagonal() const { return is_empty() ? 0 : norm(hi - lo); }
