@@ -16,18 +16,21 @@ namespace {
 
 // Edges shorter than this, of the tolerance, are none: they run to and fro within the errors of their ends.
 constexpr double kTiny = 1e-3;
+// A spline around one vertex that misses closing by less, of its length, is meant to close.
+constexpr double kNearlyClosed = 0.01;
 // Parameters beyond this have lost digits of an angle.
 constexpr double kFarAround = 100;
 
-bool length_at_most(const CurveGeometry<3>& c, Interval on, double most) {
+// Of chords: not above the length of the curve.
+double chord_length(const CurveGeometry<3>& c, Interval on) {
     constexpr int kChords = 8;
     double length = 0;
     Vec<3> last = jet<0>(c, on.lo).value();
-    for (int i = 1; i <= kChords && length <= most; ++i) {
+    for (int i = 1; i <= kChords; ++i) {
         const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kChords).value();
         length += norm(p - last), last = p;
     }
-    return length <= most;
+    return length;
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::straight_edge(int from, int to) {
 }
 
 bool ShapeReader::is_tiny(const CurveGeometry<3>& c, Interval on) const {
-    return length_at_most(c, on, kTiny * tolerance_);
+    return chord_length(c, on) <= kTiny * tolerance_;
 }
 
 Result<std::span<const ShapeReader::EdgeMade>> ShapeReader::edge(std::uint32_t i) {
@@ -192,6 +195,18 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
             // Where it closes, its ends are one point.
             if (closes && at_end(whole.lo, a) <= tolerance_) lo = whole.lo;
             if (closes && at_end(whole.hi, b) <= tolerance_) hi = whole.hi;
+            if (!closes && end[0] == end[1] && !(lo < hi)) {
+                const double length = chord_length(c->curve, whole);
+                const double off = std::max(at_end(whole.lo, a), at_end(whole.hi, a));
+                if (off <= kNearlyClosed * length)
+                    lo = whole.lo, hi = whole.hi, off_a = off_b = off;
+                else if (length > tolerance_)
+                    return f->refused(
+                        text("begins and ends at one vertex, but its curve is ",
+                             norm(jet<0>(c->curve, whole.lo).value() - jet<0>(c->curve, whole.hi).value()),
+                             " from closing"),
+                        RefusalKind::invalid);
+            }
             if (closes && !(lo < hi)) {
                 // Over the end of the curve: one spline from there on.
                 hi += whole.length();

@@ -33,6 +33,41 @@ TEST(StepLoops, edges_that_are_nearly_nothing_are_left_out_and_told) {
     EXPECT_EQ(times_told(wide, "shorter"), 0);
 }
 
+TEST(StepLoops, edges_around_one_vertex_whose_spline_ends_beside_its_beginning_run_along_all_of_it) {
+    // A square of lines as one spline, whose end is 1e-3 below its beginning; the tolerance is 1e-4.
+    const auto file = [](std::string_view end, std::string_view use = ".T.") {
+        return flat_file(
+            text("#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+                 "#12=ADVANCED_FACE('',(#13),#7,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
+                 "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#14=EDGE_LOOP('',(#15));\n"
+                 "#15=ORIENTED_EDGE('',*,*,#16,",
+                 use, ");\n#16=EDGE_CURVE('',#17,#17,#18,", use,
+                 ");\n"
+                 "#17=VERTEX_POINT('',#20);\n#18=B_SPLINE_CURVE_WITH_KNOTS('',1,(#20,#21,#22,#23,",
+                 end,
+                 "),.UNSPECIFIED.,.F.,.F.,(2,1,1,1,2),(0.,1.,2.,3.,4.),.UNSPECIFIED.);\n"
+                 "#20=CARTESIAN_POINT('',(0.,0.,0.));\n#21=CARTESIAN_POINT('',(2.,0.,0.));\n"
+                 "#22=CARTESIAN_POINT('',(2.,2.,0.));\n#23=CARTESIAN_POINT('',(0.,2.,0.));\n"
+                 "#24=CARTESIAN_POINT('',(0.,0.001,0.));\n#25=CARTESIAN_POINT('',(0.,1.,0.));\n"));
+    };
+    for (const char* use : {".T.", ".F."}) {
+        const Model m = must(read_step(file("#24", use)));
+        ASSERT_TRUE(m.refused.empty()) << m.refused[0].message;
+        ASSERT_EQ(summary(m).edges, 1);
+        EXPECT_EQ(m.edges[0].range, (Interval{0, 4}));
+        EXPECT_EQ(times_told(m, "#16 EDGE_CURVE ends 0.001 from its vertex"), 1);
+        EXPECT_NEAR(m.vertices[0].tolerance, 1e-3, 1e-12);
+        EXPECT_NEAR(area_of(m, 1e-3), 4, 1e-3);
+    }
+    // One that ends half a side away is not closed: nothing of it may get lost in silence.
+    const auto far = read_step(file("#25"));
+    ASSERT_FALSE(far);
+    EXPECT_NE(far.error().message.find(
+                  "#16 EDGE_CURVE: begins and ends at one vertex, but its curve is 1 from closing"),
+              std::string::npos)
+        << far.error().message;
+}
+
 TEST(StepLoops, vertices_that_loops_take_for_one_are_told_with_their_numbers_and_how_far_they_are_apart) {
     const auto apart = [](std::string_view x) {
         std::string s =
