@@ -274,6 +274,7 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
     for (const Chain& c : chains_)
         if (c.winding[0] != 0 && c.winding[1] != 0)
             return refuse(RefusalKind::unsupported, "loop", "winds around the surface in both directions");
+    release_spurs();
     release_seams();
     for (int axis = 0; axis < 2; ++axis)
         if (auto ok = join_winding(axis); !ok) return std::unexpected(ok.error());

@@ -59,6 +59,7 @@ private:
     void join(Chain& a, Chain b, int axis);
     bool crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q) const;
     bool is_free(const Chain& a, const Chain& b, const Vec<2>& p, const Vec<2>& q) const;
+    void release_spurs();
     void release_seams();
     void join_pole(Chain& c, const Pole& pole);
     std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);

@@ -266,6 +266,61 @@ TEST(StepLoops, seams_end_at_the_first_corner_above_where_they_begin) {
         }
 }
 
+// A torus of radii 5 and 1 with a window across its seam, for u from -0.3 to 0.3 and v from 2 to 3. Its loop
+// runs along both seams, four of whose ends are at the vertex (0, 0): `uses` says in which order.
+std::string windowed_torus(std::string_view uses) {
+    const double u[] = {0, 0, -0.3, -0.3, 0, 0.3, 0.3}, v[] = {0, 2, 2, 3, 3, 3, 2};
+    std::string s = text(
+        "#9=TOROIDAL_SURFACE('',#5,5.,1.);\n#8=SHAPE_REPRESENTATION('',(#10),#1);\n"
+        "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+        "#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n"
+        "#20=DIRECTION('',(0.,0.,1.));\n#14=EDGE_LOOP('',(",
+        uses, "));\n");
+    for (int i = 0; i < 7; ++i)
+        s += text("#", 100 + i, "=CARTESIAN_POINT('',(", (5 + std::cos(v[i])) * std::cos(u[i]), ",",
+                  (5 + std::cos(v[i])) * std::sin(u[i]), ",", std::sin(v[i]), "));\n#", 200 + i,
+                  "=VERTEX_POINT('',#", 100 + i, ");\n");
+    // The seams: u = 0 below and above the window, v = 0; then the window, clockwise.
+    const int from[] = {0, 4, 0, 1, 2, 3, 4, 5, 6}, to[] = {1, 0, 0, 2, 3, 4, 5, 6, 1};
+    for (int i = 0; i < 9; ++i) {
+        const double at_u = u[from[i]], at_v = v[from[i]];
+        const bool meridian = i < 2 || i == 4 || i == 7;
+        // Along a meridian v grows with the angle from (cos u, sin u, 0) to z; along a parallel u about z.
+        if (meridian)
+            s += text("#", 600 + i, "=CARTESIAN_POINT('',(", 5 * std::cos(at_u), ",", 5 * std::sin(at_u),
+                      ",0.));\n#", 700 + i, "=DIRECTION('',(", std::sin(at_u), ",", -std::cos(at_u),
+                      ",0.));\n#", 800 + i, "=DIRECTION('',(", std::cos(at_u), ",", std::sin(at_u),
+                      ",0.));\n#", 900 + i, "=AXIS2_PLACEMENT_3D('',#", 600 + i, ",#", 700 + i, ",#", 800 + i,
+                      ");\n#", 300 + i, "=CIRCLE('',#", 900 + i, ",1.);\n");
+        else
+            s += text("#", 600 + i, "=CARTESIAN_POINT('',(0.,0.,", std::sin(at_v), "));\n#", 900 + i,
+                      "=AXIS2_PLACEMENT_3D('',#", 600 + i, ",#20,$);\n#", 300 + i, "=CIRCLE('',#", 900 + i,
+                      ",", 5 + std::cos(at_v), ");\n");
+        const bool back = i == 3 || i == 7 || i == 8;
+        s += text("#", 400 + i, "=EDGE_CURVE('',#", 200 + from[i], ",#", 200 + to[i], ",#", 300 + i,
+                  back ? ",.F.);\n#" : ",.T.);\n#", 500 + i, "=ORIENTED_EDGE('',*,*,#", 400 + i, ",.T.);\n#",
+                  510 + i, "=ORIENTED_EDGE('',*,*,#", 400 + i, ",.F.);\n");
+    }
+    return flat_file(s);
+}
+
+TEST(StepLoops, seams_that_are_left_the_way_they_were_come_back_are_none) {
+    const double window = 0.6 * (5 + std::sin(3) - std::sin(2)),
+                 all = 20 * std::numbers::pi * std::numbers::pi;
+    for (const char* uses : {"#510,#502,#500,#503,#504,#505,#501,#512,#511,#506,#507,#508",
+                             "#510,#502,#512,#500,#503,#504,#505,#501,#511,#506,#507,#508",
+                             "#510,#512,#502,#500,#503,#504,#505,#501,#511,#506,#507,#508",
+                             "#505,#501,#511,#506,#507,#508,#510,#502,#512,#500,#503,#504",
+                             "#512,#500,#503,#504,#505,#501,#511,#506,#507,#508,#510,#502"}) {
+        const Model m = must(read_step(windowed_torus(uses)));
+        ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+        EXPECT_EQ(summary(m).open_edges, 6) << uses;
+        const auto t = must(tessellate(m, {.tolerance = 1e-3}));
+        EXPECT_EQ(topology(t.mesh).misoriented_edges, 0) << uses;
+        EXPECT_NEAR(area_of(m, 1e-3), all - window, 0.1) << uses;
+    }
+}
+
 // A tube of radius 1 from z = 0 to z = 3 with a window between the angles -half and half, and z from 1 to 2,
 // above the vertices of its circles; with a seam through the window, or none.
 std::string windowed_tube(double half, bool seam) {
