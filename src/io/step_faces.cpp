@@ -175,6 +175,7 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
     face.surface = unwound(chart.surface(), chart, box);
     std::optional<DerivativeQuery<2, 3>> query;
     if (prove) query.emplace(face.surface);
+    out_.released.insert(out_.released.end(), loops.released.begin(), loops.released.end());
     if (!loops.note.empty()) report(-1, text(f_.label(i), ": ", loops.note), 0.0, 0);
     for (auto& uses : *made) {
         Loop loop;

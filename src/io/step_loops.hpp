@@ -30,6 +30,7 @@ public:
     // something in the file had to be understood against its letter.
     Result<std::vector<std::vector<Use>>> finish();
     std::string note;
+    std::vector<int> released;  // seams of the file that bound nothing any more
 
     // Where the surface ends, or goes on for ever, and the largest loop is a hole, the loops run the wrong
     // way.

@@ -122,6 +122,8 @@ private:
         for (const Face& f : m.faces)
             for (const Loop& l : f.loops)
                 for (const Coedge& c : l.coedges) used[std::size_t(c.edge)] = 1;
+        std::vector<char> released(m.edges.size(), 0);
+        for (const int e : part.released) released[std::size_t(e)] = 1;
         std::vector<int> to(m.edges.size(), -1), vertex(m.vertices.size(), -1);
         const auto vertex_of = [&](int i) {
             int& k = vertex[std::size_t(i)];
@@ -141,7 +143,7 @@ private:
         };
         for (std::size_t i = 0; i < m.edges.size(); ++i) {
             if (!used[i]) {
-                if (m.edges[i].curve)
+                if (m.edges[i].curve && !released[i])
                     free_.push_back({m.edges[i], m.vertices[std::size_t(m.edges[i].start)],
                                      m.vertices[std::size_t(m.edges[i].end)], at, places_});
                 continue;

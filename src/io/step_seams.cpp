@@ -217,6 +217,7 @@ void LoopBuilder::release_spurs() {
                 ++k;
                 continue;
             }
+            released.push_back(uses[k].coedge.edge);
             uses.erase(uses.begin() + std::ptrdiff_t(std::max(k, next)));
             uses.erase(uses.begin() + std::ptrdiff_t(std::min(k, next)));
             changed = true, k = 0;
@@ -250,6 +251,7 @@ void LoopBuilder::release_seams() {
                     return &c != &chains_[n] && crosses(c, uses[i].start, uses[i].end);
                 });
                 if (!is_across) continue;
+                released.push_back(uses[i].coedge.edge);
                 chains_[n] = std::move(first);
                 chains_.push_back(std::move(second));
                 return release_seams();

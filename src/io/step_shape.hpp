@@ -37,6 +37,7 @@ struct Part {
     std::vector<CurveGeometry<3>> curves;  // that bound no face
     std::size_t bytes = 0;                 // an estimate of the memory that it takes
     std::vector<int> loose;                // faces of no shell
+    std::vector<int> released;             // edges that were seams, and bound nothing any more
     std::size_t tessellated = 0;           // items of triangles, which are not read here
 };
 

@@ -314,6 +314,7 @@ TEST(StepLoops, seams_that_are_left_the_way_they_were_come_back_are_none) {
                              "#512,#500,#503,#504,#505,#501,#511,#506,#507,#508,#510,#502"}) {
         const Model m = must(read_step(windowed_torus(uses)));
         ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+        EXPECT_TRUE(m.refused.empty()) << m.refused[0].message;
         EXPECT_EQ(summary(m).open_edges, 6) << uses;
         const auto t = must(tessellate(m, {.tolerance = 1e-3}));
         EXPECT_EQ(topology(t.mesh).misoriented_edges, 0) << uses;
@@ -356,6 +357,7 @@ TEST(StepLoops, seams_go_around_holes_that_lie_across_all_their_ways) {
             const Model m = must(read_step(windowed_tube(half, seam)));
             ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
             EXPECT_EQ(m.faces[0].loops.size(), 1u);
+            EXPECT_TRUE(m.refused.empty()) << m.refused[0].message;
             EXPECT_NEAR(area_of(m, 1e-3), 6 * std::numbers::pi - 2 * half, 0.02) << half << seam;
             EXPECT_EQ(must(tessellate(m, {.tolerance = 0.05})).topology.non_manifold_edges, 0);
         }
