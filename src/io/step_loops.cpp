@@ -124,6 +124,32 @@ void LoopBuilder::attach(std::vector<Use>& done, Use next) const {
 }
 
 void LoopBuilder::add(std::vector<Use> uses) {
+    const bool closed = is_closed_surface();
+    Chain c = chain(closed ? uses : std::move(uses));
+    // Seams belong a period apart, with the face between them, on the left.
+    const auto is_astray = [&](const Chain& made) {
+        bool seam = false;
+        for (std::size_t k = 0; k < made.uses.size(); ++k)
+            for (std::size_t i = 0; i < k; ++i) {
+                if (is_way_back(made.uses[i], made.uses[k])) return true;
+                seam = seam || made.uses[i].coedge.edge == made.uses[k].coedge.edge;
+            }
+        return seam && made.area < 0;
+    };
+    if (closed && is_astray(c)) {
+        std::vector<Chain> better;
+        const std::size_t edges = model_.edges.size();
+        for (auto& loop : in_order(uses)) better.push_back(chain(std::move(loop)));
+        if (!better.empty() && std::ranges::none_of(better, is_astray)) {
+            for (Chain& b : better) chains_.push_back(std::move(b));
+            return;
+        }
+        model_.edges.resize(edges);
+    }
+    chains_.push_back(std::move(c));
+}
+
+LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     Chain c;
     for (Use& u : uses) {
         if (!c.uses.empty()) {
@@ -169,7 +195,7 @@ void LoopBuilder::add(std::vector<Use> uses) {
         }
     close_joints(c);
     measure(c);
-    chains_.push_back(std::move(c));
+    return c;
 }
 
 void LoopBuilder::measure(Chain& c) const {

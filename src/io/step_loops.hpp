@@ -61,6 +61,10 @@ private:
     bool crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q) const;
     bool is_free(const Chain& a, const Chain& b, const Vec<2>& p, const Vec<2>& q) const;
     void release_spurs();
+    bool is_way_back(const Use& a, const Use& b) const;
+    Vec<2> direction(const Use& u, bool at_end) const;
+    std::vector<std::vector<Use>> in_order(const std::vector<Use>& uses) const;
+    Chain chain(std::vector<Use> uses);
     void release_seams();
     void join_pole(Chain& c, const Pole& pole);
     std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);

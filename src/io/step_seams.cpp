@@ -20,7 +20,6 @@ namespace freiform::step {
 namespace {
 
 constexpr int kMostTries = 4000;  // corners of holes, to lead a seam by way of
-constexpr double kBack = 1e-6;    // of the domain: nearer than this is the same place
 
 }  // namespace
 
@@ -196,24 +195,15 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
     measure(a);
 }
 
-// Where many ends of seams are at one vertex, a file may lead its loop out along a seam and back the same
-// way: the edges follow each other as a loop's should, but in the parameters of a closed surface they enclose
-// nothing.
+// What a loop goes out along and comes back the same way encloses nothing on a closed surface.
 void LoopBuilder::release_spurs() {
     if (!is_closed_surface()) return;
     for (Chain& c : chains_) {
         auto& uses = c.uses;
-        const auto is_spur = [&](const Use& a, const Use& b) {
-            if (a.coedge.edge != b.coedge.edge || a.coedge.reversed == b.coedge.reversed) return false;
-            for (int k = 0; k < 2; ++k)
-                if (std::abs(a.start[k] - b.end[k]) > kBack * chart_.whole()[std::size_t(k)].length())
-                    return false;
-            return true;
-        };
         bool changed = false;
         for (std::size_t k = 0; uses.size() > 1 && k < uses.size();) {
             const std::size_t next = (k + 1) % uses.size();
-            if (!is_spur(uses[k], uses[next])) {
+            if (!is_way_back(uses[k], uses[next])) {
                 ++k;
                 continue;
             }
