@@ -275,6 +275,7 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
             open_slit(out.loops[0], *slit);
     }
     for (Loop& loop : out.loops) {
+        swap_sides(loop, out_.model.edges, period);
         remove_bridges(loop, out_.model.edges, period);
         for (const Coedge& c : loop.coedges)
             add_hull(used, c.curve, out_.model.edges[std::size_t(c.edge)].range);

@@ -64,6 +64,46 @@ std::optional<Slit> slit_of(const Loop& loop, const std::vector<Edge>& edges, co
     return std::nullopt;
 }
 
+void swap_sides(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period) {
+    std::vector<std::size_t> at;
+    std::vector<Vec<2>> turns;
+    Box<2> box;
+    for (std::size_t i = 0; i < loop.coedges.size(); ++i) {
+        const Coedge& c = loop.coedges[i];
+        const Interval on = edges[std::size_t(c.edge)].range;
+        for (int k = 0; k <= 8; ++k) box.add(jet<0>(c.curve, on.lo + on.length() * k / 8).value());
+        if (const auto by = periods_of(c, edges[std::size_t(c.edge)], period))
+            at.push_back(i), turns.push_back(*by);
+    }
+    if (at.size() != 2 || turns[0] + turns[1] != Vec<2>{} || std::abs(turns[0][0] + turns[0][1]) != 1) return;
+    const int along = turns[0][0] != 0 ? 0 : 1, across = 1 - along;
+    const double turn = period[std::size_t(along)], around = period[std::size_t(across)];
+    const auto place = [&](std::size_t i) {
+        const Coedge& c = loop.coedges[at[i]];
+        return jet<0>(c.curve, edges[std::size_t(c.edge)].range.lo).value()[across];
+    };
+    if (!(std::abs(std::abs(place(1) - place(0)) - around) <= kNear * around)) return;
+    if (!(box.side(along).length() > (1 + kNear) * turn)) return;
+    std::rotate(loop.coedges.begin(), loop.coedges.begin() + std::ptrdiff_t(at[0]), loop.coedges.end());
+    const std::size_t second = at[1] - at[0], n = loop.coedges.size();
+    std::vector<Coedge> swapped;
+    const auto append = [&](std::size_t from, std::size_t to, double by) {
+        Vec<2> shift{};
+        shift[along] = by * turn;
+        for (std::size_t i = to; i-- > from;) {
+            Coedge c = loop.coedges[i];
+            c.reversed = !c.reversed;
+            c.curve = translated(c.curve, shift);
+            swapped.push_back(std::move(c));
+        }
+    };
+    swapped.push_back(loop.coedges[0]);
+    append(second + 1, n, turns[0][along]);
+    swapped.push_back(loop.coedges[second]);
+    append(1, second, -turns[0][along]);
+    loop.coedges = std::move(swapped);
+}
+
 void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period) {
     Vec<2> sum{}, crossed{};
     Box<2> box;

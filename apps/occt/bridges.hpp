@@ -16,6 +16,11 @@ namespace freiform::occt {
 // seam, which look the same, span one period. `period`: of both parameters, 0 for none.
 void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period);
 
+// The boundary of all of a torus but for windows across its seam: where both sides of the seam, a period
+// apart, reach out instead of in, the reader has taken one for the other, and a face would cover the windows
+// twice instead of leaving them out. They change their places.
+void swap_sides(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period);
+
 // A surface of two poles whose boundary is its seam and nothing else: the file has the seam twice in one
 // place of the parameters, where it encloses nothing.
 struct Slit {

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <numbers>
 #include <support/solids.hpp>
+#include <support/step_measures.hpp>
 #include <unistd.h>
 
 namespace {
@@ -110,17 +111,24 @@ TEST_F(IgesUnits, no_face_covers_its_surface_more_than_once) {
     ASSERT_EQ(read->faces.size(), 1u);
     ASSERT_EQ(read->faces[0].loops.size(), 1u);
     EXPECT_EQ(read->faces[0].loops[0].coedges.size(), 4u);
-    const auto made = tessellate(*read, {.tolerance = 1e-6});
-    ASSERT_TRUE(made) << made.error().message;
-    EXPECT_TRUE(made->refused.empty());
-    double area = 0;
-    for (std::size_t i = 0; i < made->mesh.triangles.size(); ++i) {
-        const auto p = made->mesh.points_of(i);
-        const auto at = [&](std::size_t k) { return made->mesh.points[std::size_t(p[k])]; };
-        area += norm(cross(at(1) - at(0), at(2) - at(0))) / 2;
-    }
     // A quarter of a cylinder: its radius times pi / 2 times its length.
-    EXPECT_NEAR(area, 0.02923075455 * (std::numbers::pi / 2) * 0.407471797, 1e-6);
+    EXPECT_NEAR(test::area_of(*read, 1e-6), 0.02923075455 * (std::numbers::pi / 2) * 0.407471797, 1e-6);
+}
+
+// The reader takes one side of the seam for the other, so that the parts of the window on both sides reach
+// out.
+TEST_F(IgesUnits, windows_across_the_seam_of_a_torus_are_left_out) {
+    const auto read = read_with_occt((kFolder / "window_across_a_seam.iges").string());
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->faces.size(), 1u);
+    const auto sewn = sew(*read, {.tolerance = largest_tolerance(*read)});
+    ASSERT_TRUE(sewn) << sewn.error().message;
+    EXPECT_EQ(summary(sewn->model).seams, 3);
+    // Of radii 5 and 1, without a window half a radian wide and from z = -0.5 to z = 0.4.
+    const double lo = std::asin(-0.5), hi = std::asin(0.4);
+    EXPECT_NEAR(
+        test::area_of(sewn->model, 1e-3),
+        20 * std::numbers::pi * std::numbers::pi - 0.5 * (5 * (hi - lo) + std::sin(hi) - std::sin(lo)), 0.05);
 }
 
 }  // namespace
