@@ -189,7 +189,13 @@ Result<EdgeMatch> match(const EdgeTrace& stays, const EdgeTrace& other, bool rev
     for (int parts = 1; parts * int(fixed.size() - 1) <= kMostNodes; parts *= 2) {
         auto map = map_with(stays, other, reversed, fixed, parts);
         if (!map) continue;
-        const EdgeGap gap = edge_gap(query, plane_curve_of(*map), *stays.curve, stays.on, how);
+        const auto on_other = plane_curve_of(*map);
+        EdgeGap gap = edge_gap(query, on_other, *stays.curve, stays.on, how);
+        if (gap.bound > tolerance && kTightest * gap.found <= kWithin * tolerance) {
+            // More than was measured, and yet within the tolerance.
+            how.factor = std::clamp(kWithin * tolerance / gap.found, kTightest, how.factor);
+            gap = edge_gap(query, on_other, *stays.curve, stays.on, how);
+        }
         if (!best || gap.bound < best->bound) best = EdgeMatch{*std::move(map), gap.bound};
         if (best->bound <= enough) break;
     }
