@@ -353,9 +353,10 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
     return {};
 }
 
-// The ends of the edge and the kinks of its curves inside, but for those that are rounding.
+// The ends of the edge and the kinks of its curves inside, but for those that are rounding. Kinks of two
+// curves beside each other are one that was rounded: a vertex at each would be two in one place.
 std::vector<double> EdgeMesher::smooth_pieces(int edge, double tolerance) const {
-    constexpr double kLittle = 0x1p-20;
+    constexpr double kLittle = 0x1p-20, kOne = 0x1p-40;
     const EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Interval on = model_.edges[std::size_t(edge)].range;
     std::vector<double> must{on.lo, on.hi};
@@ -372,8 +373,12 @@ std::vector<double> EdgeMesher::smooth_pieces(int edge, double tolerance) const 
         }
     std::erase_if(must, [&](double t) { return !(on.lo <= t && t <= on.hi); });
     sort(must.begin(), must.end());
-    must.erase(std::unique(must.begin(), must.end()), must.end());
-    return must;
+    std::vector<double> out{must.front()};
+    for (const double t : must)
+        if (t - out.back() > kOne * on.length()) out.push_back(t);
+    if (out.size() > 1) out.pop_back();
+    out.push_back(on.hi);
+    return out;
 }
 
 void EdgeMesher::split(int edge, int index, double part) {

@@ -71,6 +71,32 @@ CurveGeometry<2> wave(Random& rng, int size) {
     return Curve<Vec<2>>::trusted({*BSplineBasis::clamped_uniform(3, size)}, Net<1, Vec<2>>({size}, p));
 }
 
+// A curve with a corner, whose edge has it where rounding put it: a few units of the last place beside, or at
+// the end of the edge, or in another place altogether.
+TEST(EdgeMesh, kinks_that_are_one_but_for_rounding_get_one_vertex) {
+    const auto corner = [](double at) {
+        return *Curve<Vec<2>>::make({*BSplineBasis::make(1, {-1, -1, at, 1, 1})},
+                                    Net<1, Vec<2>>({3}, {{{-1, 0}}, {{at, 1 - at}}, {{1, 0}}}));
+    };
+    for (const double beside : {0.0, 4e-16, -4e-16, 1e-13, 1e-6, 0.25})
+        for (const double at : {0.3, 1 - 5e-14}) {
+            if (at + beside >= 1) continue;
+            OneFace face(corner(at), {-1, 1});
+            std::vector<Vec<3>> c;
+            const auto own = corner(at + beside);
+            for (const Vec<2>& p : points(own)) c.push_back({{p[0], p[1], 0}});
+            face.model.edges[0].curve = *Curve<Vec<3>>::make(own.bases(), Net<1, Vec<3>>({3}, c));
+            face.mesher.emplace(face.model, face.surfaces, face.apexes);
+            ASSERT_TRUE(face.mesher->discretise(0, {1e-3}, 1000));
+            const auto& t = face.mesher->mesh(0).parameters;
+            for (std::size_t i = 0; i + 1 < t.size(); ++i)
+                EXPECT_GT(t[i + 1] - t[i], 1e-12) << beside << " " << at;
+            EXPECT_EQ(t.front(), -1);
+            EXPECT_EQ(t.back(), 1);
+            EXPECT_EQ(t.size(), at > 0.5 ? 2u : beside > 1e-9 ? 4u : 3u) << beside << " " << at;
+        }
+}
+
 TEST(EdgeMesh, the_error_is_shared_evenly) {
     for (const auto& [curve, on] :
          {std::pair{ellipse(4, 1), Interval{0.1, 3}}, std::pair{ellipse(1, 20), Interval{0, 6}},
