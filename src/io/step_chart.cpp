@@ -64,15 +64,16 @@ std::vector<double> samples_of(const SurfaceGeometry& s, int axis, const Interva
 
 }  // namespace
 
-Chart::Chart(const SurfaceGeometry& surface, double close) : s_(&surface), close_(close) {
+Chart::Chart(const SurfaceGeometry& surface, double close, double seam)
+    : s_(&surface), close_(close), seam_(std::max(close, seam)) {
     const SurfaceGeometry* s = s_;
     if (const auto* o = std::get_if<OffsetSurface>(s)) s = o->base.get();
     whole_ = domain(*s);
     if (const auto* e = std::get_if<Extrusion>(s)) {
-        profile_traits(e->profile, 0, close);
+        profile_traits(e->profile, 0);
     } else if (const auto* r = std::get_if<Revolution>(s)) {
         period_[0] = kTwoPi;
-        profile_traits(r->profile, 1, close);
+        profile_traits(r->profile, 1);
         poles_of(*r, close);
     } else {
         spline_ = {true, true};

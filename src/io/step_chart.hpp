@@ -1,6 +1,7 @@
 // A surface as the boundaries of faces see it: which parameters are periodic, where it shrinks to a point,
 // and which parameters a point of it has.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/geometry.hpp>
 
 #include <optional>
@@ -26,12 +27,15 @@ struct Foot {
 
 class Chart {
 public:
-    // `close`: points nearer than this are one.
-    Chart(const SurfaceGeometry& surface, double close);
+    // `close`: points nearer than this are one; `seam`: so are opposite sides of a spline.
+    Chart(const SurfaceGeometry& surface, double close, double seam = 0);
 
     const SurfaceGeometry& surface() const { return *s_; }
     // 0: not periodic. Of splines that close, the length of their domain.
     double period(int axis) const { return period_[std::size_t(axis)]; }
+    double seam() const { return seam_; }
+    // How far apart opposite sides of a spline are, where that is little beside its size; else infinite.
+    double apart(int axis) const { return apart_[std::size_t(axis)]; }
     const std::vector<Pole>& poles() const { return poles_; }
     // The parameters that cover the surface once; infinite where it does not end.
     const std::array<Interval, 2>& whole() const { return whole_; }
@@ -53,15 +57,15 @@ public:
     std::optional<CurveGeometry<3>> iso(int axis, double at) const;
 
 private:
-    void profile_traits(const CurveGeometry<3>& profile, int axis, double close);
+    void profile_traits(const CurveGeometry<3>& profile, int axis);
     void poles_of(const Revolution& s, double close);
     void poles_of_sides(double stated);
     std::optional<Vec<2>> closed_form(const Vec<3>& p) const;
     void make_grid() const;
 
     const SurfaceGeometry* s_;
-    double close_;
-    std::array<double, 2> period_{};
+    double close_, seam_;
+    std::array<double, 2> period_{}, apart_{kInfinity, kInfinity};
     std::array<Interval, 2> whole_{};
     std::array<bool, 2> spline_{};
     std::vector<Pole> poles_;

@@ -180,6 +180,8 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
     for (auto& uses : *made) {
         Loop loop;
         for (Use& u : uses) {
+            if (auto ok = check(u.coedge.curve); !ok)
+                return refuse(ok.error().kind, "parameter curve", ok.error().message);
             Edge& e = out_.model.edges[std::size_t(u.coedge.edge)];
             const bool beyond = kMargin * u.gap > e.tolerance;
             if ((u.fitted || u.told || beyond) && e.curve) {
@@ -209,8 +211,8 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
     return face;
 }
 
-// The extent of the edges of a face, from points on them.
-Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen) {
+// The extent of the edges of a face, from points on them. `used`: the edges, as often as they are used.
+Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen, std::vector<int>& used) {
     Box<3> box;
     const auto bounds = f.references(1, "bounds");
     if (!bounds) return std::unexpected(bounds.error());
@@ -239,6 +241,7 @@ Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen) 
             if (!made) return std::unexpected(made.error());
             for (const EdgeMade& part : *made) {
                 if (part.empty) continue;
+                used.push_back(part.edge);
                 const Edge& e = out_.model.edges[std::size_t(part.edge)];
                 const int n = std::holds_alternative<Line<3>>(*e.curve) ? 1 : 6;
                 for (int k = 0; k <= n; ++k)
@@ -291,7 +294,8 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
     if (!s) return std::unexpected(s.error());
     const bool same = of->flag(3);
     std::vector<Vec<3>> on_edges;
-    const auto size = size_of(*f, on_edges);
+    std::vector<int> used;
+    const auto size = size_of(*f, on_edges, used);
     if (!size) return std::unexpected(size.error());
     const std::size_t repairs = out_.model.repairs.size(), told = out_.approximated.size();
     const auto once = [&](const Chart& chart, int loosely, bool* tangled) -> Result<Face> {
@@ -321,7 +325,14 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
                0.0, 0);
         return made;
     };
-    auto made = attempt(*(*s)->chart);
+    const Chart& chart = chart_of(**s, *on, used);
+    auto made = attempt(chart);
+    if (&chart != (*s)->chart.get()) {
+        if (made)
+            tell_seam(i, chart, used);
+        else
+            made = attempt(*(*s)->chart);
+    }
     if (!made) {
         if (const auto turned = other_poles((*s)->surface, on_edges)) {
             if (auto again = attempt(Chart(*turned, tolerance_))) return again;

@@ -56,7 +56,7 @@ AxisCrossing crossing(const Revolution& s, const Conic<3>& c, double close) {
 
 }  // namespace
 
-void Chart::profile_traits(const CurveGeometry<3>& profile, int axis, double close) {
+void Chart::profile_traits(const CurveGeometry<3>& profile, int axis) {
     const auto k = std::size_t(axis);
     if (const auto* c = std::get_if<Conic<3>>(&profile)) {
         period_[k] = c->kind == ConicKind::ellipse ? kTwoPi : 0;
@@ -72,7 +72,8 @@ void Chart::profile_traits(const CurveGeometry<3>& profile, int axis, double clo
                     for (const Vec<3>& x : points(p)) way = std::max(way, norm(x - first));
             },
             profile);
-        if (apart <= std::min(close, kApart * way)) period_[k] = on.length();
+        if (apart <= kApart * way) apart_[k] = apart;
+        if (apart_[k] <= seam_) period_[k] = on.length();
     }
 }
 
@@ -119,10 +120,17 @@ void Chart::poles_of_sides(double stated) {
                     const int axis = int(k);
                     const auto lo = boundary(s, axis, 0), hi = boundary(s, axis, 1);
                     const auto a = points(lo), b = points(hi);
-                    double apart = 0;
-                    for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, norm(a[i] - b[i]));
-                    if (apart <= std::min(close, kApart * way[k]) && weights(lo) == weights(hi))
-                        period_[k] = s.basis(axis).domain().length();
+                    const auto lo_weights = weights(lo), hi_weights = weights(hi);
+                    double apart = 0, uneven = 0, extent = 0;
+                    for (std::size_t i = 0; i < a.size(); ++i) {
+                        apart = std::max(apart, norm(a[i] - b[i]));
+                        extent = std::max(extent, norm(a[i] - a[0]));
+                        uneven = std::max(uneven, std::abs(hi_weights[i] / lo_weights[i] - 1));
+                    }
+                    // Other weights move a point towards control points, by as much as they differ.
+                    apart += 4 * uneven * extent;
+                    if (apart <= kApart * std::min(way[k], box.diagonal())) apart_[k] = apart;
+                    if (apart_[k] <= seam_) period_[k] = s.basis(axis).domain().length();
                     for (const auto* side : {&a, &b}) {
                         double size = 0;
                         for (const Vec<3>& p : *side) size = std::max(size, norm(p - side->front()));

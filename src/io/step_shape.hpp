@@ -81,7 +81,7 @@ private:
     };
     struct SurfaceMade {
         SurfaceGeometry surface;
-        std::unique_ptr<Chart> chart;
+        std::unique_ptr<Chart> chart, seamed;
     };
 
     void solid(std::uint32_t item);
@@ -146,7 +146,9 @@ private:
     void repaired(std::uint32_t i, std::string what, double distance) {
         out_.model.repairs.push_back({f_.label(i), std::move(what), distance});
     }
-    Result<double> size_of(const Fields& f, std::vector<Vec<3>>& seen);
+    Result<double> size_of(const Fields& f, std::vector<Vec<3>>& seen, std::vector<int>& used);
+    const Chart& chart_of(SurfaceMade& made, std::uint32_t surface, const std::vector<int>& used);
+    void tell_seam(std::uint32_t face, const Chart& chart, const std::vector<int>& used);
     double accuracy_for(double size) const;
     static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
                                                       const std::vector<Vec<3>>& on);

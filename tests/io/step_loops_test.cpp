@@ -68,6 +68,64 @@ TEST(StepLoops, edges_around_one_vertex_whose_spline_ends_beside_its_beginning_r
         << far.error().message;
 }
 
+// A square tube of planes, as one spline whose last side ends `open` beside the first; rational, with weights
+// that have lost digits, if `uneven`.
+std::string open_tube(double open, bool uneven) {
+    std::string s = text(
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+        "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n"
+        "#13=FACE_OUTER_BOUND('',#14,.T.);\n#14=EDGE_LOOP('',(#500,#501,#502,#503));\n"
+        "#20=DIRECTION('',(0.,0.,1.));\n#21=VECTOR('',#20,1.);\n");
+    const double x[] = {0, 2, 2, 0, 0}, y[] = {0, 0, 2, 2, open};
+    for (int k = 0; k < 2; ++k)
+        for (int i = 0; i < 5; ++i)
+            s += text("#", 100 + 10 * k + i, "=CARTESIAN_POINT('',(", x[i], ",", y[i], ",", k, ".));\n");
+    const char* around = "(2,1,1,1,2),";
+    std::string points, weights;
+    for (int i = 0; i < 5; ++i) {
+        points += text(i ? "," : "", "(#", 100 + i, ",#", 110 + i, ")");
+        weights += text(i ? "," : "", "(1.,", uneven && i == 4 ? "1.000000001)" : "1.)");
+    }
+    s += uneven ? text("#9=(BOUNDED_SURFACE()B_SPLINE_SURFACE(1,1,(", points,
+                       "),.UNSPECIFIED.,.F.,.F.,.F.)B_SPLINE_SURFACE_WITH_KNOTS(", around,
+                       "(2,2),(0.,1.,2.,3.,4.),(0.,1.),.UNSPECIFIED.)GEOMETRIC_REPRESENTATION_ITEM()"
+                       "RATIONAL_B_SPLINE_SURFACE((",
+                       weights, "))REPRESENTATION_ITEM('')SURFACE());\n")
+                : text("#9=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,(", points, "),.UNSPECIFIED.,.F.,.F.,.F.,",
+                       around, "(2,2),(0.,1.,2.,3.,4.),(0.,1.),.UNSPECIFIED.);\n");
+    for (int k = 0; k < 2; ++k)
+        s += text("#", 200 + k, "=VERTEX_POINT('',#", 100 + 10 * k, ");\n#", 300 + k,
+                  "=B_SPLINE_CURVE_WITH_KNOTS('',1,(#", 100 + 10 * k, ",#", 101 + 10 * k, ",#", 102 + 10 * k,
+                  ",#", 103 + 10 * k, ",#", 104 + 10 * k, "),.UNSPECIFIED.,.F.,.F.,", around,
+                  "(0.,1.,2.,3.,4.),.UNSPECIFIED.);\n#", 400 + k, "=EDGE_CURVE('',#", 200 + k, ",#", 200 + k,
+                  ",#", 300 + k, ",.T.);\n");
+    s += "#302=LINE('',#100,#21);\n#402=EDGE_CURVE('',#200,#201,#302,.T.);\n"
+         "#500=ORIENTED_EDGE('',*,*,#400,.T.);\n#501=ORIENTED_EDGE('',*,*,#402,.T.);\n"
+         "#502=ORIENTED_EDGE('',*,*,#401,.F.);\n#503=ORIENTED_EDGE('',*,*,#402,.F.);\n";
+    return flat_file(s);
+}
+
+TEST(StepLoops, seams_of_splines_that_do_not_quite_close_are_seams) {
+    for (const bool uneven : {false, true})
+        for (const double open : {0.0, 5e-5, 1e-3}) {
+            SCOPED_TRACE(text(open, uneven));
+            const Model m = must(read_step(open_tube(open, uneven)));
+            ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+            EXPECT_TRUE(m.refused.empty()) << m.refused[0].message;
+            EXPECT_EQ(summary(m).seams, 1);
+            EXPECT_NEAR(area_of(m, 1e-3), 8, 2 * open + 1e-9);
+            EXPECT_EQ(
+                times_told(m, "#12 ADVANCED_FACE: its surface does not close at its seam, by up to 0.001"),
+                open > 1e-4);
+            const auto t = must(tessellate(m, {.tolerance = 1e-3}));
+            EXPECT_EQ(t.topology.open_edges, 8);
+            EXPECT_LE(t.boundary_gap, 1.001 * open + 1e-12);
+        }
+    // Sides that are farther apart than that are two sides.
+    const Model wide = must(read_step(open_tube(0.05, false)));
+    EXPECT_EQ(must(tessellate(wide, {.tolerance = 1e-3})).refused.size(), 1u);
+}
+
 TEST(StepLoops, vertices_that_loops_take_for_one_are_told_with_their_numbers_and_how_far_they_are_apart) {
     const auto apart = [](std::string_view x) {
         std::string s =
