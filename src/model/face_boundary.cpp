@@ -54,11 +54,21 @@ Run run_of(const Coedge& coedge, double tolerance, const DerivativeQuery<2, 3>& 
     Run run;
     const auto on = limits(surface.geometry());
     const int n = int(mesh.parameters.size());
+    Vec<2> before{};  // where the last point was, unsettled
     for (int k = 0; k < n; ++k) {
         const int i = coedge.reversed ? n - 1 - k : k;
         if (!mesh.kept.contains(mesh.parameters[std::size_t(i)])) continue;
-        run.uv.push_back(
-            settled(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on, surface, tolerance));
+        const Vec<2> given = clamped(jet<0>(coedge.curve, mesh.parameters[std::size_t(i)]).value(), on);
+        Vec<2> uv = settled(given, on, surface, tolerance);
+        // Two points of an edge do not settle in one place: the one that moves less does.
+        if (!run.uv.empty() && uv == run.uv.back()) {
+            if (max_abs(uv - given) > max_abs(uv - before))
+                uv = given;
+            else
+                run.uv.back() = before;
+        }
+        before = given;
+        run.uv.push_back(uv);
         run.points.push_back(mesh.points[std::size_t(i)]);
         run.sources.push_back({coedge.edge, coedge.reversed ? i - 1 : i});
     }

@@ -1,6 +1,8 @@
 // Boundaries that nearly touch themselves in the parameter plane, or do within the tolerance of the file.
 #include "support/solids.hpp"
 
+#include <freiform/model/assemble.hpp>
+
 #include <gtest/gtest.h>
 
 using namespace freiform;
@@ -186,6 +188,36 @@ Model spiked(double tolerance, double beside, Spiked what) {
             {{0, true, first}, {4, false, side_between(tip, low)}, {5, false, side_between(low, right)}});
     }
     return of_faces(std::move(m), loops);
+}
+
+// A surface with a knot at v = 0, and a side with corners there and `beside`, nearer than the digits of a
+// file: both are on the line of the knot, but not in one place.
+TEST(Boundaries, that_have_two_corners_beside_a_knot_of_the_surface_keep_both) {
+    const auto line = *BSplineBasis::bezier(1);
+    const auto square = *BSplineBasis::make(2, {-1, -1, -1, 0, 1, 1, 1});
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 2; ++i)
+        for (int k = 0; k < 4; ++k) c.push_back({{double(i), k - 1.5, k == 1 || k == 2 ? 0.3 : 0.0}});
+    const auto surface = *Surface<Vec<3>>::make({line, square}, Net<2, Vec<3>>({2, 4}, c));
+    for (const double beside : {5e-9, -5e-9, 1e-9, 1e-12}) {
+        const double lo = std::min(0.0, beside), hi = std::max(0.0, beside);
+        const auto side =
+            *Curve<Vec<2>>::make({*BSplineBasis::make(1, {-1, -1, -hi, -lo, 1, 1})},
+                                 Net<1, Vec<2>>({4}, {{{0, 1}}, {{0.2, hi}}, {{0.2, lo}}, {{0, -1}}}));
+        const Vec<2> corner[] = {{{0, -1}}, {{1, -1}}, {{1, 1}}, {{0, 1}}};
+        std::vector<std::vector<CurveGeometry<2>>> loops(1);
+        for (int k = 0; k < 3; ++k)
+            loops[0].push_back(*Curve<Vec<2>>::make({line}, Net<1, Vec<2>>({2}, {corner[k], corner[k + 1]})));
+        loops[0].push_back(side);
+        ModelBuilder builder;
+        ASSERT_TRUE(builder.add_trimmed(surface, loops));
+        Model m = *std::move(builder).finish();
+        for (Edge& e : m.edges) e.tolerance = 1e-6;
+        const auto t = *tessellate(m, {.tolerance = 0.01});
+        ASSERT_TRUE(t.refused.empty()) << beside << " " << t.refused[0].reason.message;
+        EXPECT_LE(t.error_bound, 0.01);
+        EXPECT_LE(t.boundary_gap, 1e-6);
+    }
 }
 
 TEST(Boundaries, that_run_along_each_other_within_the_tolerance_begin_where_they_part) {
