@@ -172,6 +172,18 @@ Conversion Converter::finish() {
     for (Face& f : m.faces)
         for (Loop& l : f.loops)
             for (Coedge& c : l.coedges) c.edge = place[std::size_t(c.edge)];
+    std::vector<int> to(m.vertices.size(), -1);
+    std::vector<Vertex> vertices;
+    for (Edge& e : m.edges)
+        for (int* v : {&e.start, &e.end}) {
+            int& at = to[std::size_t(*v)];
+            if (at < 0) {
+                at = int(vertices.size());
+                vertices.push_back(m.vertices[std::size_t(*v)]);
+            }
+            *v = at;
+        }
+    m.vertices = std::move(vertices);
     return std::move(out_);
 }
 

@@ -131,4 +131,17 @@ TEST_F(IgesUnits, windows_across_the_seam_of_a_torus_are_left_out) {
         20 * std::numbers::pi * std::numbers::pi - 0.5 * (5 * (hi - lo) + std::sin(hi) - std::sin(lo)), 0.05);
 }
 
+// What a refused face leaves behind would make the box of the model, and its largest tolerance, those of
+// that.
+TEST_F(IgesUnits, nothing_of_a_refused_face_stays) {
+    const auto read = read_with_occt((kFolder / "corner_far_away.iges").string());
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->faces.size(), 1u);
+    EXPECT_EQ(read->refused.size(), 1u);
+    EXPECT_EQ(read->edges.size(), 4u);
+    EXPECT_EQ(read->vertices.size(), 4u);
+    EXPECT_LT(summary(*read).box.diagonal(), 2.5);
+    EXPECT_LT(largest_tolerance(*read), 1e-5);
+}
+
 }  // namespace
