@@ -1,5 +1,6 @@
 // Entities of STEP files, and the geometry among them.
 #pragma once
+#include "step_elementary.hpp"
 #include "step_part21.hpp"
 #include "written_point.hpp"
 
@@ -237,13 +238,22 @@ private:
             const int at = placement(l->origin, cross(l->direction, s.direction), l->direction);
             return e_.add(text("PLANE('',#", at, ")"));
         }
+        if (const auto named = elementary_of(s)) return one(*named);
         const auto profile = curve(s.profile);
         if (!profile) return profile;
         const int v = vector(s.direction);
         return e_.add(text("SURFACE_OF_LINEAR_EXTRUSION('',#", *profile, ",#", v, ")"));
     }
 
+    int one(const Elementary& s) {
+        const int at = placement(s.at, s.axis, s.x);
+        std::string sizes;
+        for (const double x : s.sizes) sizes += text(",", real(x));
+        return e_.add(text(s.name, "('',#", at, sizes, ")"));
+    }
+
     Result<int> one(const Revolution& s) {
+        if (const auto named = elementary_of(s)) return one(*named);
         const auto profile = curve(s.profile);
         if (!profile) return profile;
         const int p = point(s.origin), d = direction(s.axis);

@@ -13,7 +13,8 @@ namespace freiform::detail {
 // What every file says once.
 class Product {
 public:
-    Product(Entities& entities, std::string_view unit) : e_(entities) {
+    // `uncertainty`: what lengths are uncertain by.
+    Product(Entities& entities, std::string_view unit, double uncertainty) : e_(entities) {
         application_ = e_.add("APPLICATION_CONTEXT('managed model based 3d engineering')");
         e_.add(
             text("APPLICATION_PROTOCOL_DEFINITION('international standard',"
@@ -22,8 +23,8 @@ public:
         const int length = length_unit(unit);
         const int angle = e_.add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
         const int solid = e_.add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
-        const int accuracy = e_.add(text("UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-07),#", length,
-                                         ",'distance_accuracy_value','')"));
+        const int accuracy = e_.add(text("UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(", real(uncertainty),
+                                         "),#", length, ",'distance_accuracy_value','')"));
         context_ = e_.add(text("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#",
                                accuracy, "))GLOBAL_UNIT_ASSIGNED_CONTEXT((#", length, ",#", angle, ",#",
                                solid, "))REPRESENTATION_CONTEXT('',''))"));

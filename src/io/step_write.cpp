@@ -272,6 +272,21 @@ private:
 
 }  // namespace
 
+namespace {
+
+// What a file says of all its lengths is what is true of every edge and face; the gaps of single ones are
+// found again by those who read it.
+constexpr double kAccurate = 1e-7;
+double least_tolerance(const Model& m) {
+    double least = kInfinity;
+    for (const Edge& e : m.edges)
+        if (e.curve) least = std::min(least, e.tolerance);
+    for (const Face& f : m.faces) least = std::min(least, f.tolerance);
+    return least;
+}
+
+}  // namespace
+
 Result<std::string> write_step(const Document& given) {
     Document document = given;
     for (std::size_t i = 0; i < document.objects.size(); ++i)
@@ -320,10 +335,12 @@ Result<std::string> write_step(const Document& given) {
         return refuse(RefusalKind::no_answer, "objects", "there is nothing to write");
     std::string unit = document.unit;
     std::vector<int> solids, sheets, wireframes, styled;
+    double uncertainty = kInfinity;
     if (!with_faces.empty()) {
         const auto model = scene_of(document, with_faces);
         if (!model) return std::unexpected(model.error());
         if (unit.empty()) unit = model->unit;
+        uncertainty = std::min(uncertainty, least_tolerance(*model));
         StepModel writer(entities, *model);
         if (auto ok = writer.write(); !ok) return std::unexpected(ok.error());
         if (auto ok = writer.write_wires(""); !ok) return std::unexpected(ok.error());
@@ -338,6 +355,7 @@ Result<std::string> write_step(const Document& given) {
             return refuse(
                 RefusalKind::unsupported, object_label(document, i),
                 text("a model in ", model.unit, " cannot be written to one file with others in ", unit));
+        uncertainty = std::min(uncertainty, least_tolerance(model));
         StepModel writer(entities, model);
         if (auto ok = writer.write_wires(document.objects[i].name); !ok)
             return refuse_within(object_label(document, i), ok.error());
@@ -346,7 +364,8 @@ Result<std::string> write_step(const Document& given) {
         styled.insert(styled.end(), writer.styled.begin(), writer.styled.end());
     }
     const std::string_view name = document.objects[0].name;
-    Product product(entities, unit);
+    if (!std::isfinite(uncertainty)) uncertainty = kAccurate;
+    Product product(entities, unit, std::max(uncertainty, kAccurate));
     product.add("ADVANCED_BREP_SHAPE_REPRESENTATION", name, solids);
     product.add("MANIFOLD_SURFACE_SHAPE_REPRESENTATION", name, sheets);
     product.add("EDGE_BASED_WIREFRAME_SHAPE_REPRESENTATION", name, wireframes);

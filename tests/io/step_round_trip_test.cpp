@@ -5,6 +5,8 @@
 // extrusions and revolutions, and of all edges that are splines in space. Lines, conics and axes are written
 // as the standard has them, with directions of length 1, and are equal up to rounding. Parameter curves are
 // made anew, and so are seams and poles.
+#include "io/step_elementary.hpp"
+
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
 #include <freiform/io/step_read.hpp>
@@ -12,12 +14,15 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <io/step_elementary.hpp>
 #include <io/step_part21.hpp>
 #include <map>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
 #include <support/sanitizer.hpp>
 #include <support/solids.hpp>
+#include <support/step_items.hpp>
+#include <support/step_polygons.hpp>
 #include <support/trimmed_faces.hpp>
 
 namespace freiform::test {
@@ -202,6 +207,77 @@ TEST(StepRoundTrip, random_models_come_back_equal_to_the_last_bit) {
         expect_equal(read, again, true);
         if (HasFailure()) break;
     }
+}
+
+// Turned by any angles, whose directions are not exact.
+TEST(StepRoundTrip, cylinders_cones_spheres_and_tori_stay_what_they_are_called) {
+    Random r(41);
+    const char* kinds[][2] = {{"CYLINDRICAL_SURFACE", "2.5"},  {"CONICAL_SURFACE", "2.5,0.4"},
+                              {"CONICAL_SURFACE", "2.5,-0.4"}, {"CONICAL_SURFACE", "0.,0.4"},
+                              {"SPHERICAL_SURFACE", "2.5"},    {"TOROIDAL_SURFACE", "5.,2.5"}};
+    for (int i = 0; i < 300; ++i) {
+        const auto [name, sizes] = kinds[i % 6];
+        SCOPED_TRACE(text(i, " ", name, " ", sizes));
+        const auto triple = [&](double size) {
+            return text("(", size * r.real(-1, 1), ",", size * r.real(-1, 1), ",", size * r.real(-1, 1), ")");
+        };
+        const Model m = items_model(
+            "#10", text("#10=GEOMETRIC_SET('',(#11));\n#11=RECTANGULAR_TRIMMED_SURFACE('',#12,0.5,2.,0.25,1.,"
+                        ".T.,.T.);\n"
+                        "#12=",
+                        name, "('',#13,", sizes,
+                        ");\n#13=AXIS2_PLACEMENT_3D('',#14,#15,#16);\n#14=CARTESIAN_POINT('',", triple(100),
+                        ");\n#15=DIRECTION('',", triple(1), ");\n#16=DIRECTION('',", triple(1), ");\n"));
+        ASSERT_EQ(m.faces.size(), 1u);
+        const std::string written = must(write_step(Document{"mm", {{"", m, {}}}}));
+        EXPECT_NE(written.find(text("=", name, "(")), std::string::npos);
+        const Model read = must(read_step(written));
+        ASSERT_EQ(read.faces.size(), 1u);
+        const SurfaceGeometry &a = m.faces[0].surface, &b = read.faces[0].surface;
+        EXPECT_EQ(kind_name(a), kind_name(b));
+        for (int k = 0; k < 20; ++k) {
+            const Param<2> at{r.real(0, 7), r.real(-1, 1)};
+            EXPECT_LE(norm(jet<0>(a, at).value() - jet<0>(b, at).value()), 1e-12);
+        }
+    }
+    // What turns the other way, is skew, or is not what it is called is written as what it is.
+    const Conic<3> circle{ConicKind::ellipse, {{4, 0, 0}}, {{1, 0, 0}}, {{0, 0, 1}}};
+    Conic<3> skew = circle, beside = circle;
+    skew.y[0] = 1e-3, beside.centre[1] = 1e-3;
+    const Extrusion tube{
+        Conic<3>{ConicKind::ellipse, {}, {{1, 0, 0}}, {{0, 1, 0}}}, {{0, 0, 1}}, SurfaceKind::cylinder};
+    Extrusion down = tube, long_steps = tube;
+    down.direction[2] = -1, long_steps.direction[2] = 2;
+    EXPECT_TRUE(detail::elementary_of(tube));
+    EXPECT_FALSE(detail::elementary_of(down));
+    EXPECT_FALSE(detail::elementary_of(long_steps));
+    const auto turned = [](const CurveGeometry<3>& profile, SurfaceKind kind) {
+        return detail::elementary_of(Revolution{profile, {}, {{0, 0, 1}}, kind});
+    };
+    EXPECT_TRUE(turned(circle, SurfaceKind::torus));
+    EXPECT_FALSE(turned(circle, SurfaceKind::general));
+    EXPECT_FALSE(turned(circle, SurfaceKind::sphere));
+    EXPECT_FALSE(turned(skew, SurfaceKind::torus));
+    EXPECT_FALSE(turned(beside, SurfaceKind::torus));
+    EXPECT_FALSE(turned(Line<3>{{{1, 0, 0}}, {{1, 1, 1}}}, SurfaceKind::cone));
+    EXPECT_FALSE(turned(Line<3>{{{1, 0, 0}}, {{1, 0, -1}}}, SurfaceKind::cone));
+    EXPECT_TRUE(turned(Line<3>{{{1, 0, 0}}, {{1, 0, 1}}}, SurfaceKind::cone));
+}
+
+TEST(StepRoundTrip, files_say_how_accurate_the_model_is) {
+    const auto written_and_read = [](const Model& m) {
+        return must(read_step(must(write_step(Document{"mm", {{"", m, {}}}}))));
+    };
+    Model m = must(read_step(polygon_file({{0, 0}, {300, 0}, {300, 200}, {0, 200}})));  // within 1e-4
+    for (const double tolerance : {1e-4, 3e-5, 1e-7}) {
+        for (Edge& e : m.edges) e.tolerance = tolerance;
+        for (Face& f : m.faces) f.tolerance = tolerance;
+        m.edges[2].tolerance = 10 * tolerance;  // one that is off by more
+        EXPECT_EQ(written_and_read(m).faces[0].tolerance, tolerance);
+        EXPECT_EQ(written_and_read(m).edges[0].tolerance, tolerance);
+    }
+    m.faces[0].tolerance = 0;  // as made by ourselves
+    EXPECT_EQ(written_and_read(m).faces[0].tolerance, 1e-7);
 }
 
 // Of all planes of Unicode, with what strings of the format treat apart.
