@@ -239,6 +239,8 @@ Vec<D> scaled(Vec<D> p, int exponent) {
     for (double& x : p.c) x = std::scalbn(x, exponent);
     return p;
 }
+constexpr double kRoundTurn = 0x1p-32;  // a turn that is longer by this is one, with the digits of a file
+
 template <int D>
 Result<ConicArc<D>> scaled_back(Result<ConicArc<D>> arc, int exponent) {
     if (!arc || exponent == 0) return arc;
@@ -263,7 +265,7 @@ Result<ConicArc<D>> conic_arc(const FoundConic<D>& conic, Interval on, double wi
     if (conic.conic.kind == ConicKind::hyperbola) return spline_of<D>({hyperbolic_piece(*axes, on)});
     if (conic.conic.kind == ConicKind::parabola) return spline_of<D>({parabolic_piece(*axes, on)});
     if (auto ok = check_widest(widest); !ok) return std::unexpected(ok.error());
-    if (on.length() > kTwoPi)
+    if (on.length() > (1 + kRoundTurn) * kTwoPi)
         return refuse(RefusalKind::invalid, "on", text("is ", on.length(), " long, more than a full turn"));
     const int n = int(std::ceil(on.length() / widest - 0x1p-40));
     if (on.length() == kTwoPi && n <= 4 && 2 * widest < kTwoPi / 1.5) {

@@ -135,6 +135,13 @@ TEST(ConicArc, as_few_pieces_as_the_widest_angle_allows) {
     const auto three = must(conic_arc(unit_circle(), {0, 2 * std::numbers::pi}, 2 * std::numbers::pi / 3));
     EXPECT_LE(off_circle(three, {}, 1), three.bound);
     EXPECT_FALSE(conic_arc(unit_circle(), {0, 7}));
+    EXPECT_FALSE(conic_arc(unit_circle(), {0, 2 * std::numbers::pi * (1 + 1e-9)}));
+    for (const double beyond : {1e-16, 1e-14, 1e-10}) {  // a turn with the digits of a file
+        const double end = 2 * std::numbers::pi * (1 + beyond);
+        const auto arc = must(conic_arc(unit_circle(), {0, end}));
+        EXPECT_LE(arc.bound, 1e-14);
+        EXPECT_NEAR(arc.curve(1.0)[1], std::sin(end), 1e-15);
+    }
     EXPECT_FALSE(conic_arc(unit_circle(), {0, 1}, std::numbers::pi));
     EXPECT_FALSE(conic_arc(unit_circle(), {1, 1}));
     EXPECT_EQ(conic_arc(unit_circle(), {0, std::nan("")}).error().kind, RefusalKind::nonfinite);

@@ -26,10 +26,11 @@ struct FoundConic {
 // Pieces of an ellipse cover at most this angle of its parameter, unless asked otherwise.
 inline constexpr double kWidestPiece = std::numbers::pi / 2;
 
-// The part of a conic over parameters `on` (ellipse: an angle in radians, at most 2 pi long; 2 pi as a double
-// is the whole ellipse). Parabolas and hyperbolas are one quadratic piece, ellipses the fewest of equal angle
-// that is at most `widest`, which is below pi; they join at on.lo + k (on.hi - on.lo) / n, rounded. Refuses
-// axes x and y that are parallel, empty intervals, and numbers that leave the range of double.
+// The part of a conic over parameters `on` (ellipse: an angle in radians, at most 2 pi long but for 2^-32 of
+// it, the digits that files have; 2 pi as a double is the whole ellipse). Parabolas and hyperbolas are one
+// quadratic piece, ellipses the fewest of equal angle that is at most `widest`, which is below pi; they join
+// at on.lo + k (on.hi - on.lo) / n, rounded. Refuses axes x and y that are parallel, empty intervals, and
+// numbers that leave the range of double.
 //   auto arc = conic_arc(Conic<2>{ConicKind::ellipse, {{0, 0}}, {{2, 0}}, {{0, 1}}}, {0, 3});
 template <int D>
 Result<ConicArc<D>> conic_arc(const FoundConic<D>& conic, Interval on, double widest = kWidestPiece);
