@@ -56,8 +56,13 @@ inline std::optional<Elementary> elementary_of(const Revolution& s) {
         const Vec<3> x = radius > 0 ? (1 / radius) * out : (1 / norm(steep)) * steep;
         if (!(up > 0) || !is_finite(x) || !near(norm(steep - dot(steep, x) * x), norm(l->direction)))
             return {};
-        return Elementary{
-            "CONICAL_SURFACE", l->origin - out, s.axis, x, {radius, std::atan2(dot(steep, x), up)}};
+        // The angle is positive: a cone that narrows is one that widens the other way, with the same normals.
+        const double wider = dot(steep, x);
+        return Elementary{"CONICAL_SURFACE",
+                          l->origin - out,
+                          wider < 0 ? -1.0 * s.axis : s.axis,
+                          x,
+                          {radius, std::atan2(std::abs(wider), up)}};
     }
     const auto* c = std::get_if<Conic<3>>(&s.profile);
     if (c == nullptr || !is_circle(*c) || !is_along(c->y, s.axis) || !is_across(c->x, s.axis)) return {};
