@@ -270,6 +270,23 @@ Vec<2> Chart::locate(const Vec<3>& p) const {
     return nearest.at;
 }
 
+namespace {
+
+// The spline with its points moved by `motion`.
+template <class C, class F>
+C with_points(const C& c, F&& motion) {
+    auto net = c.net();
+    for (auto& p : net.flat()) {
+        if constexpr (Space<typename C::Coefficients>::kRational)
+            p = weighted(motion(project(p)), p.weight());
+        else
+            p = motion(p);
+    }
+    return C::trusted(c.bases(), std::move(net));
+}
+
+}  // namespace
+
 std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
     if (const auto* e = std::get_if<Extrusion>(s_)) {
         if (axis == 0) return Line<3>{jet<0>(e->profile, wrapped({{at, 0}})[0]).value(), e->direction};
@@ -282,7 +299,7 @@ std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
                 else if constexpr (std::same_as<C, Conic<3>>)
                     return Conic<3>{c.kind, c.centre + by, c.x, c.y};
                 else
-                    return std::nullopt;
+                    return with_points(c, [&](const Vec<3>& p) { return p + by; });
             },
             e->profile);
     }
@@ -304,7 +321,7 @@ std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
                 else if constexpr (std::same_as<C, Conic<3>>)
                     return Conic<3>{c.kind, r->origin + turn(c.centre - r->origin), turn(c.x), turn(c.y)};
                 else
-                    return std::nullopt;
+                    return with_points(c, [&](const Vec<3>& p) { return r->origin + turn(p - r->origin); });
             },
             r->profile);
     }

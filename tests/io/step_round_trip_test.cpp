@@ -22,6 +22,7 @@
 #include <support/sanitizer.hpp>
 #include <support/solids.hpp>
 #include <support/step_items.hpp>
+#include <support/step_measures.hpp>
 #include <support/step_polygons.hpp>
 #include <support/trimmed_faces.hpp>
 
@@ -266,6 +267,39 @@ TEST(StepRoundTrip, cylinders_cones_spheres_and_tori_stay_what_they_are_called) 
     EXPECT_FALSE(turned(Line<3>{{{1, 0, 0}}, {{1, 1, 1}}}, SurfaceKind::cone));
     EXPECT_FALSE(turned(Line<3>{{{1, 0, 0}}, {{1, 0, -1}}}, SurfaceKind::cone));
     EXPECT_TRUE(turned(Line<3>{{{1, 0, 0}}, {{1, 0, 1}}}, SurfaceKind::cone));
+}
+
+// A drop: a spline turned about the line from its beginning to its end, without a boundary. The seam that it
+// gets has a curve in space, which a file needs.
+TEST(StepRoundTrip, whole_surfaces_of_revolution_have_seams_with_curves) {
+    const Model m = must(read_step(flat_file(
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',("
+        "#12));\n"
+        "#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n#14=VERTEX_LOOP('',#15);\n"
+        "#15=VERTEX_POINT('',#20);\n#9=SURFACE_OF_REVOLUTION('',#16,#17);\n"
+        "#17=AXIS1_PLACEMENT('',#20,#18);\n#18=DIRECTION('',(0.,0.,1.));\n"
+        "#16=B_SPLINE_CURVE_WITH_KNOTS('',3,(#20,#21,#22,#23),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),."
+        "UNSPECIFIED.);\n"
+        "#20=CARTESIAN_POINT('',(1.,2.,0.));\n#21=CARTESIAN_POINT('',(3.,2.,0.));\n"
+        "#22=CARTESIAN_POINT('',(2.,2.,2.));\n#23=CARTESIAN_POINT('',(1.,2.,3.));\n")));
+    ASSERT_EQ(m.faces.size(), 1u);
+    EXPECT_EQ(summary(m).seams, 1);
+    const Model again = must(read_step(must(write_step(Document{"mm", {{"", m, {}}}}))));
+    EXPECT_EQ(summary(again).seams, 1);
+    EXPECT_NEAR(area_of(again, 1e-3), area_of(m, 1e-3), 0.02);
+    for (const Edge& e : m.edges) {
+        if (e.degenerate) continue;
+        ASSERT_TRUE(e.curve);
+        for (const Loop& l : m.faces[0].loops)
+            for (const Coedge& c : l.coedges)
+                if (&m.edges[std::size_t(c.edge)] == &e)
+                    for (int k = 0; k <= 10; ++k) {
+                        const double t = e.range.lo + e.range.length() * k / 10;
+                        EXPECT_LE(norm(jet<0>(*e.curve, t).value() -
+                                       jet<0>(m.faces[0].surface, jet<0>(c.curve, t).value().c).value()),
+                                  1e-14);
+                    }
+    }
 }
 
 TEST(StepRoundTrip, files_say_how_accurate_the_model_is) {
