@@ -51,9 +51,11 @@ inline std::optional<Elementary> elementary_of(const Revolution& s) {
     const auto radial = [&](const Vec<3>& d) { return d - dot(d, s.axis) * s.axis; };
     const auto near = [&](double length, double size) { return std::abs(length) <= kRounding * size; };
     if (const auto* l = std::get_if<Line<3>>(&s.profile); l != nullptr && s.kind == SurfaceKind::cone) {
-        const Vec<3> out = radial(l->origin - s.origin), steep = radial(l->direction);
+        const Vec<3> steep = radial(l->direction), given = radial(l->origin - s.origin);
+        const bool is_apex = near(norm(given), max_abs(l->origin) + max_abs(s.origin));
+        const Vec<3> out = is_apex ? Vec<3>{} : given,
+                     x = is_apex ? (1 / norm(steep)) * steep : (1 / norm(out)) * out;
         const double up = dot(l->direction, s.axis), radius = norm(out);
-        const Vec<3> x = radius > 0 ? (1 / radius) * out : (1 / norm(steep)) * steep;
         if (!(up > 0) || !is_finite(x) || !near(norm(steep - dot(steep, x) * x), norm(l->direction)))
             return {};
         // The angle is positive: a cone that narrows is one that widens the other way, with the same normals.

@@ -15,14 +15,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace freiform::step {
 
 namespace {
 
-constexpr double kSame = 1e-6;      // of the domain: nearer than this is the same place
-constexpr double kBeside = 1e-3;    // of an edge: where its direction at a vertex is seen
-constexpr double kParallel = 1e-6;  // radians
+constexpr double kSame = 1e-6;          // of the domain: nearer than this is the same place
+constexpr double kBesideVertex = 1e-3;  // of an edge: where its direction at a vertex is seen
+constexpr double kParallel = 1e-6;      // radians
+
+constexpr std::size_t kMostWays = 64;  // out of one vertex
 
 }  // namespace
 
@@ -37,13 +40,19 @@ bool LoopBuilder::is_way_back(const Use& a, const Use& b) const {
 Vec<2> LoopBuilder::direction(const Use& u, bool at_end) const {
     const Interval on = model_.edges[std::size_t(u.coedge.edge)].range;
     const bool at_hi = at_end != u.coedge.reversed;
-    const double t = at_hi ? on.hi - kBeside * on.length() : on.lo + kBeside * on.length();
+    const double t = at_hi ? on.hi - kBesideVertex * on.length() : on.lo + kBesideVertex * on.length();
     return jet<0>(u.coedge.curve, t).value() - jet<0>(u.coedge.curve, at_hi ? on.hi : on.lo).value();
 }
 
 // The loops that the same uses make when the boundary turns left at every vertex; empty where they make none.
 std::vector<std::vector<Use>> LoopBuilder::in_order(const std::vector<Use>& uses) const {
     const std::size_t n = uses.size();
+    std::unordered_map<int, std::vector<std::size_t>> leaving;
+    for (std::size_t k = 0; k < n; ++k) {
+        auto& ways = leaving[uses[k].from];
+        ways.push_back(k);
+        if (ways.size() > kMostWays) return {};
+    }
     std::vector<std::size_t> next(n, n);
     std::vector<char> taken(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -52,8 +61,7 @@ std::vector<std::vector<Use>> LoopBuilder::in_order(const std::vector<Use>& uses
         if (pole_at(uses[i].end, uses[i].end) == nullptr) {
             const Vec<2> back = direction(uses[i], true);
             double least = kInfinity;
-            for (std::size_t k = 0; k < n; ++k) {
-                if (uses[k].from != uses[i].to) continue;
+            for (const std::size_t k : leaving[uses[i].to]) {
                 const Vec<2> on = direction(uses[k], false);
                 double turn = std::atan2(cross(on, back), dot(on, back));  // clockwise from `back`
                 if (turn < kParallel) turn += kTwoPi;

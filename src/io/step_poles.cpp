@@ -13,20 +13,20 @@ namespace freiform::step {
 
 namespace {
 
-constexpr double kSingular = 1e-10;
+constexpr double kSingularCrossing = 1e-10;
 
 // Ends this part of the way between them apart, or further, are not meant to meet: what is as small as the
 // tolerance of the file closes nowhere.
-constexpr double kApart = 1e-3;
+constexpr double kSidesApart = 1e-3;
 // Nor is a side a point that is not much shorter than the surface is wide elsewhere.
 constexpr double kShrunk = 0.1;
 
 // Those of a t^2 + b t + c, where they touch one between; `scale`: what a is small against. What there is not
 // is not finite.
 std::array<double, 2> roots(double a, double b, double c, double scale) {
-    if (!(std::abs(a) > kSingular * scale)) return {-c / b, kInfinity};
+    if (!(std::abs(a) > kSingularCrossing * scale)) return {-c / b, kInfinity};
     const double square = b * b - 4 * a * c;
-    if (!(square > kSingular * b * b)) return {-b / (2 * a), kInfinity};
+    if (!(square > kSingularCrossing * b * b)) return {-b / (2 * a), kInfinity};
     const double q = -0.5 * (b + std::copysign(std::sqrt(square), b));
     return {q / a, c / q};
 }
@@ -72,7 +72,7 @@ void Chart::profile_traits(const CurveGeometry<3>& profile, int axis) {
                     for (const Vec<3>& x : points(p)) way = std::max(way, norm(x - first));
             },
             profile);
-        if (apart <= kApart * way) apart_[k] = apart;
+        if (apart <= kSidesApart * way) apart_[k] = apart;
         if (apart_[k] <= seam_) period_[k] = on.length();
     }
 }
@@ -110,7 +110,7 @@ void Chart::poles_of_sides(double stated) {
                 const auto row = std::size_t(s.net().extent()[1]);
                 Box<3> box;
                 for (const Vec<3>& p : all) box.add(p);
-                const double close = std::min(stated, kApart * box.diagonal());
+                const double close = std::min(stated, kSidesApart * box.diagonal());
                 std::array<double, 2> way{};
                 for (std::size_t i = 0; i < all.size(); ++i) {
                     way[0] = std::max(way[0], norm(all[i] - all[i % row]));
@@ -129,7 +129,7 @@ void Chart::poles_of_sides(double stated) {
                     }
                     // Other weights move a point towards control points, by as much as they differ.
                     apart += 4 * uneven * extent;
-                    if (apart <= kApart * std::min(way[k], box.diagonal())) apart_[k] = apart;
+                    if (apart <= kSidesApart * std::min(way[k], box.diagonal())) apart_[k] = apart;
                     if (apart_[k] <= seam_) period_[k] = s.basis(axis).domain().length();
                     for (const auto* side : {&a, &b}) {
                         double size = 0;

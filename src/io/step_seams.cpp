@@ -199,19 +199,23 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
 void LoopBuilder::release_spurs() {
     if (!is_closed_surface()) return;
     for (Chain& c : chains_) {
-        auto& uses = c.uses;
-        bool changed = false;
-        for (std::size_t k = 0; uses.size() > 1 && k < uses.size();) {
-            const std::size_t next = (k + 1) % uses.size();
-            if (!is_way_back(uses[k], uses[next])) {
-                ++k;
+        std::vector<Use> kept;
+        for (Use& u : c.uses) {
+            if (kept.empty() || !is_way_back(kept.back(), u)) {
+                kept.push_back(std::move(u));
                 continue;
             }
-            released.push_back(uses[k].coedge.edge);
-            uses.erase(uses.begin() + std::ptrdiff_t(std::max(k, next)));
-            uses.erase(uses.begin() + std::ptrdiff_t(std::min(k, next)));
-            changed = true, k = 0;
+            released.push_back(u.coedge.edge);
+            kept.pop_back();
         }
+        std::size_t first = 0;  // the last and the first, as well
+        for (; kept.size() - first > 1 && is_way_back(kept.back(), kept[first]); ++first) {
+            released.push_back(kept[first].coedge.edge);
+            kept.pop_back();
+        }
+        kept.erase(kept.begin(), kept.begin() + std::ptrdiff_t(first));
+        const bool changed = kept.size() < c.uses.size();
+        c.uses = std::move(kept);
         if (changed) measure(c);
     }
     std::erase_if(chains_, [](const Chain& c) { return c.uses.empty(); });
