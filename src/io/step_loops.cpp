@@ -23,8 +23,9 @@ namespace freiform::step {
 
 namespace {
 
-constexpr double kNearPole = 1e-6;  // of a parameter, of its period or domain
-constexpr int kOutline = 12;        // points of an edge
+constexpr double kNearPole = 1e-6;          // of a parameter, of its period or domain
+constexpr int kOutline = 12;                // points of an edge
+constexpr std::size_t kMostInOrder = 2000;  // edges: pairs of them are looked at
 
 double scale_of(const Chart& chart, int axis) {
     if (chart.period(axis) > 0) return chart.period(axis);
@@ -128,15 +129,13 @@ void LoopBuilder::add(std::vector<Use> uses) {
     Chain c = chain(closed ? uses : std::move(uses));
     // Seams belong a period apart, with the face between them, on the left.
     const auto is_astray = [&](const Chain& made) {
-        std::vector<std::pair<int, std::size_t>> by_edge;
-        for (std::size_t i = 0; i < made.uses.size(); ++i) by_edge.push_back({made.uses[i].coedge.edge, i});
-        std::ranges::sort(by_edge);
         bool seam = false;
-        for (std::size_t i = 1; i < by_edge.size(); ++i) {
-            if (by_edge[i].first != by_edge[i - 1].first) continue;
-            if (is_way_back(made.uses[by_edge[i - 1].second], made.uses[by_edge[i].second])) return true;
-            seam = true;
-        }
+        for (std::size_t k = 0; k < made.uses.size() && made.uses.size() <= kMostInOrder; ++k)
+            for (std::size_t i = 0; i < k; ++i) {
+                if (made.uses[i].coedge.edge != made.uses[k].coedge.edge) continue;
+                if (is_way_back(made.uses[i], made.uses[k])) return true;
+                seam = true;
+            }
         return seam && made.area < 0;
     };
     if (closed && is_astray(c)) {

@@ -8,6 +8,7 @@
 #include "step_shape.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/sort.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ constexpr double kAlong = 2;  // times what the sides are apart: a seam is that 
 
 // The edges that are used twice.
 std::vector<int> twice(std::vector<int> used) {
-    std::ranges::sort(used);
+    sort(used);
     std::vector<int> out;
     for (std::size_t i = 0; i + 1 < used.size(); ++i)
         if (used[i] == used[i + 1] && (out.empty() || out.back() != used[i])) out.push_back(used[i]);

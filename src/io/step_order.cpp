@@ -15,7 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <utility>
 
 namespace freiform::step {
 
@@ -47,12 +47,6 @@ Vec<2> LoopBuilder::direction(const Use& u, bool at_end) const {
 // The loops that the same uses make when the boundary turns left at every vertex; empty where they make none.
 std::vector<std::vector<Use>> LoopBuilder::in_order(const std::vector<Use>& uses) const {
     const std::size_t n = uses.size();
-    std::unordered_map<int, std::vector<std::size_t>> leaving;
-    for (std::size_t k = 0; k < n; ++k) {
-        auto& ways = leaving[uses[k].from];
-        ways.push_back(k);
-        if (ways.size() > kMostWays) return {};
-    }
     std::vector<std::size_t> next(n, n);
     std::vector<char> taken(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -61,7 +55,9 @@ std::vector<std::vector<Use>> LoopBuilder::in_order(const std::vector<Use>& uses
         if (pole_at(uses[i].end, uses[i].end) == nullptr) {
             const Vec<2> back = direction(uses[i], true);
             double least = kInfinity;
-            for (const std::size_t k : leaving[uses[i].to]) {
+            for (std::size_t k = 0, ways = 0; k < n; ++k) {
+                if (uses[k].from != uses[i].to) continue;
+                if (++ways > kMostWays) return {};
                 const Vec<2> on = direction(uses[k], false);
                 double turn = std::atan2(cross(on, back), dot(on, back));  // clockwise from `back`
                 if (turn < kParallel) turn += kTwoPi;
