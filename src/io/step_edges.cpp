@@ -21,12 +21,12 @@ constexpr double kNearlyClosed = 0.01;
 // Parameters beyond this have lost digits of an angle.
 constexpr double kFarAround = 100;
 
-// Of chords: not above the length of the curve.
-double chord_length(const CurveGeometry<3>& c, Interval on) {
+// Of chords: not above the length of the curve. Once it is above `most`, how long it is no longer matters.
+double chord_length(const CurveGeometry<3>& c, Interval on, double most = kInfinity) {
     constexpr int kChords = 8;
     double length = 0;
     Vec<3> last = jet<0>(c, on.lo).value();
-    for (int i = 1; i <= kChords; ++i) {
+    for (int i = 1; i <= kChords && length <= most; ++i) {
         const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kChords).value();
         length += norm(p - last), last = p;
     }
@@ -85,7 +85,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::straight_edge(int from, int to) {
 }
 
 bool ShapeReader::is_tiny(const CurveGeometry<3>& c, Interval on) const {
-    return chord_length(c, on) <= kTiny * tolerance_;
+    return chord_length(c, on, kTiny * tolerance_) <= kTiny * tolerance_;
 }
 
 Result<std::span<const ShapeReader::EdgeMade>> ShapeReader::edge(std::uint32_t i) {

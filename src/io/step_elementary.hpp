@@ -51,13 +51,14 @@ inline std::optional<Elementary> elementary_of(const Revolution& s) {
     const auto radial = [&](const Vec<3>& d) { return d - dot(d, s.axis) * s.axis; };
     const auto near = [&](double length, double size) { return std::abs(length) <= kRounding * size; };
     if (const auto* l = std::get_if<Line<3>>(&s.profile); l != nullptr && s.kind == SurfaceKind::cone) {
-        const Vec<3> steep = radial(l->direction), given = radial(l->origin - s.origin);
-        const bool is_apex = near(norm(given), max_abs(l->origin) + max_abs(s.origin));
-        const Vec<3> out = is_apex ? Vec<3>{} : given,
-                     x = is_apex ? (1 / norm(steep)) * steep : (1 / norm(out)) * out;
-        const double up = dot(l->direction, s.axis), radius = norm(out);
-        if (!(up > 0) || !is_finite(x) || !near(norm(steep - dot(steep, x) * x), norm(l->direction)))
-            return {};
+        const Vec<3> out = radial(l->origin - s.origin), steep = radial(l->direction);
+        const double up = dot(l->direction, s.axis), scale = max_abs(l->origin) + max_abs(s.origin);
+        Vec<3> x = (1 / norm(steep)) * steep;
+        if (!(up > 0) || !is_finite(x)) return {};
+        double radius = dot(out, x);
+        if (near(radius, scale)) radius = 0;
+        if (radius < 0) x = -1.0 * x, radius = -radius;
+        if (!near(norm(out - radius * x), scale + radius)) return {};
         // The angle is positive: a cone that narrows is one that widens the other way, with the same normals.
         const double wider = dot(steep, x);
         return Elementary{"CONICAL_SURFACE",

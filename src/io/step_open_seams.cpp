@@ -61,7 +61,9 @@ const Chart& ShapeReader::chart_of(SurfaceMade& made, std::uint32_t surface, con
 
 // Of a face on such a chart.
 void ShapeReader::tell_seam(std::uint32_t face, const Chart& chart, const std::vector<int>& used) {
-    const double open = chart.seam() * (1 + 8 * kUnitRoundoff);
+    // Distances of control points bound that of the sides; what computing them is off by is added.
+    const double open =
+        chart.seam() * (1 + 8 * kUnitRoundoff) + 4 * value_error_bound(chart.surface(), chart.whole());
     report(-1,
            text(f_.label(face), ": its surface does not close at its seam, by up to ", chart.seam(),
                 "; the file says at most ", tolerance_),

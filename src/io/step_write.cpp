@@ -270,10 +270,6 @@ private:
     std::array<std::map<std::array<double, 3>, int>, 2> styles_;  // of surfaces, of curves
 };
 
-}  // namespace
-
-namespace {
-
 // What a file says of all its lengths is what is true of every edge and face; the gaps of single ones are
 // found again by those who read it.
 constexpr double kAccurate = 1e-7;

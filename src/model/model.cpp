@@ -157,6 +157,7 @@ Box<D> box_of(const typename GeometryOf<N, D>::type& geometry, const std::array<
             }
             continue;
         }
+        slack += Box<D>::filled(value_error_bound(geometry, cell.part));
         if (!is_finite(slack)) slack = Box<D>::filled(kInfinity);  // a spline that jumps
         Box<D> around;
         each_index(corners, [&](const Index<N>& i) {

@@ -47,6 +47,7 @@ struct Box {
             if (!(lo[i] <= p[i] && p[i] <= hi[i])) return false;
         return true;
     }
+    // What is in both.
     friend constexpr Box common(const Box& a, const Box& b) {
         Box out;
         for (int i = 0; i < D; ++i)
