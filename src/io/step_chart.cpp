@@ -270,60 +270,23 @@ Vec<2> Chart::locate(const Vec<3>& p) const {
     return nearest.at;
 }
 
-namespace {
-
-// The spline with its points moved by `motion`.
-template <class C, class F>
-C with_points(const C& c, F&& motion) {
-    auto net = c.net();
-    for (auto& p : net.flat()) {
-        if constexpr (Space<typename C::Coefficients>::kRational)
-            p = weighted(motion(project(p)), p.weight());
-        else
-            p = motion(p);
-    }
-    return C::trusted(c.bases(), std::move(net));
-}
-
-}  // namespace
-
 std::optional<CurveGeometry<3>> Chart::iso(int axis, double at) const {
     if (const auto* e = std::get_if<Extrusion>(s_)) {
         if (axis == 0) return Line<3>{jet<0>(e->profile, wrapped({{at, 0}})[0]).value(), e->direction};
-        return visit_one(
-            [&](const auto& c) -> std::optional<CurveGeometry<3>> {
-                using C = std::remove_cvref_t<decltype(c)>;
-                const Vec<3> by = at * e->direction;
-                if constexpr (std::same_as<C, Line<3>>)
-                    return Line<3>{c.origin + by, c.direction};
-                else if constexpr (std::same_as<C, Conic<3>>)
-                    return Conic<3>{c.kind, c.centre + by, c.x, c.y};
-                else
-                    return with_points(c, [&](const Vec<3>& p) { return p + by; });
-            },
-            e->profile);
+        return moved(e->profile, {{at * e->direction}});
     }
     if (const auto* r = std::get_if<Revolution>(s_)) {
-        const auto turn = [&](const Vec<3>& d) {
-            const Vec<3> along = dot(d, r->axis) * r->axis, out = d - along;
-            return along + std::cos(at) * out + std::sin(at) * cross(r->axis, out);
-        };
         if (axis == 1) {
             const Vec<3> p = jet<0>(r->profile, wrapped({{0, at}})[1]).value(), d = p - r->origin;
             const Vec<3> along = dot(d, r->axis) * r->axis;
             return Conic<3>{ConicKind::ellipse, r->origin + along, d - along, cross(r->axis, d - along)};
         }
-        return visit_one(
-            [&](const auto& c) -> std::optional<CurveGeometry<3>> {
-                using C = std::remove_cvref_t<decltype(c)>;
-                if constexpr (std::same_as<C, Line<3>>)
-                    return Line<3>{r->origin + turn(c.origin - r->origin), turn(c.direction)};
-                else if constexpr (std::same_as<C, Conic<3>>)
-                    return Conic<3>{c.kind, r->origin + turn(c.centre - r->origin), turn(c.x), turn(c.y)};
-                else
-                    return with_points(c, [&](const Vec<3>& p) { return r->origin + turn(p - r->origin); });
-            },
-            r->profile);
+        const auto turned = [&](const Vec<3>& d) {
+            const Vec<3> along = dot(d, r->axis) * r->axis, out = d - along;
+            return along + std::cos(at) * out + std::sin(at) * cross(r->axis, out);
+        };
+        return moved(r->profile, {{r->origin - turned(r->origin), turned({{1, 0, 0}}), turned({{0, 1, 0}}),
+                                   turned({{0, 0, 1}})}});
     }
     return visit_one(
         [&](const auto& s) -> std::optional<CurveGeometry<3>> {

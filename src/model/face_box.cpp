@@ -82,28 +82,32 @@ std::optional<Box<3>> box_of_face(const Face& face, const std::vector<Edge>& edg
     if (!parts) return std::nullopt;
     const auto whole = parts->whole();
     if (!whole) return Box<3>{};
-    std::vector<FacePart> heap;
+    struct Boxed {
+        FacePart part;
+        Box<3> box;
+        double beyond;
+    };
+    std::vector<Boxed> heap;
     const auto push = [&](FacePart part) {
         if (!part.crossing)
             for (const Vec<3>& c : part.corner) inner.add(c);
-        part.key = beyond(box_around(part, face.surface), inner);
-        heap.push_back(std::move(part));
-        std::ranges::push_heap(heap, {}, &FacePart::key);
+        const Box<3> box = box_around(part, face.surface);
+        heap.push_back({std::move(part), box, beyond(box, inner)});
+        std::ranges::push_heap(heap, {}, &Boxed::beyond);
     };
     push(*whole);
     for (int seen = 1; seen < kMostBoxParts && !heap.empty();) {
-        std::ranges::pop_heap(heap, {}, &FacePart::key);
-        const FacePart part = std::move(heap.back());
+        std::ranges::pop_heap(heap, {}, &Boxed::beyond);
+        const Boxed top = std::move(heap.back());
         heap.pop_back();
-        if (beyond(box_around(part, face.surface), inner) <= kBoxEnough * inner.diagonal() ||
-            !is_divisible(part)) {
-            out.add(box_around(part, face.surface));
+        if (beyond(top.box, inner) <= kBoxEnough * inner.diagonal() || !is_divisible(top.part)) {
+            out.add(top.box);
             continue;
         }
-        for (FacePart& half : parts->halves(part)) push(std::move(half));
+        for (FacePart& half : parts->halves(top.part)) push(std::move(half));
         seen += 2;
     }
-    for (const FacePart& part : heap) out.add(box_around(part, face.surface));
+    for (const Boxed& left : heap) out.add(left.box);
     if (!heap.empty()) out = common(out, box_of_spline(face.surface, kBoxEnough * inner.diagonal()));
     if (!out.is_empty() && !std::isfinite(out.diagonal())) return std::nullopt;
     return out;
