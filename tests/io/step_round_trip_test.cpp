@@ -219,6 +219,7 @@ TEST(StepRoundTrip, cylinders_cones_spheres_and_tori_stay_what_they_are_called) 
     for (int i = 0; i < 300; ++i) {
         const auto [name, sizes] = kinds[i % 6];
         const bool narrows = i % 6 == 2;
+        const double far = i < 150 ? 100 : 1e4;
         SCOPED_TRACE(text(i, " ", name, " ", sizes));
         const auto triple = [&](double size) {
             return text("(", size * r.real(-1, 1), ",", size * r.real(-1, 1), ",", size * r.real(-1, 1), ")");
@@ -228,7 +229,7 @@ TEST(StepRoundTrip, cylinders_cones_spheres_and_tori_stay_what_they_are_called) 
                         ".T.,.T.);\n"
                         "#12=",
                         name, "('',#13,", sizes,
-                        ");\n#13=AXIS2_PLACEMENT_3D('',#14,#15,#16);\n#14=CARTESIAN_POINT('',", triple(100),
+                        ");\n#13=AXIS2_PLACEMENT_3D('',#14,#15,#16);\n#14=CARTESIAN_POINT('',", triple(far),
                         ");\n#15=DIRECTION('',", triple(1), ");\n#16=DIRECTION('',", triple(1), ");\n"));
         ASSERT_EQ(m.faces.size(), 1u);
         const std::string written = must(write_step(Document{"mm", {{"", m, {}}}}));
@@ -241,7 +242,7 @@ TEST(StepRoundTrip, cylinders_cones_spheres_and_tori_stay_what_they_are_called) 
             // One that narrows is turned around, as the standard asks for.
             const Param<2> at{r.real(0, 7), r.real(-1, 1)},
                 there{narrows ? -at[0] : at[0], narrows ? -at[1] : at[1]};
-            EXPECT_LE(norm(jet<0>(a, at).value() - jet<0>(b, there).value()), 1e-12);
+            EXPECT_LE(norm(jet<0>(a, at).value() - jet<0>(b, there).value()), 1e-14 * far);
             EXPECT_LE(norm(normal(a, at) - normal(b, there)), 1e-12);
         }
     }
