@@ -30,8 +30,7 @@ namespace freiform {
 
 namespace {
 
-constexpr int kPartsOfPiece = 8;
-constexpr std::size_t kFewBreaks = 12;
+constexpr std::size_t kParts = 8;            // of a curve at least, each with a bound of its own
 constexpr double kSteepest = 0.55;           // speed across the chord beside that along it (edge_error.cpp)
 constexpr double kFrameSlack = 1 + 0x1p-40;  // more than the roundings of directions and sums below
 
@@ -77,7 +76,8 @@ ChordCurve::ChordCurve(const CurveGeometry<3>& curve) : query_(curve) {
                 second_rounding_ = 0x1p-42 * ratio * ratio * size * (4.0 * p * p / (width * width));
                 if (c.basis().is_closed()) return;  // parameters may go around
                 const auto breaks = c.basis().breaks();
-                const int parts = breaks.size() > kFewBreaks ? 2 : kPartsOfPiece;
+                const std::size_t pieces = breaks.size() - 1;
+                const int parts = int((kParts + pieces - 1) / pieces);
                 begin_ = breaks[0];
                 for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
                     for (int k = 1; k <= parts; ++k) {

@@ -3,13 +3,14 @@
 // Method: every smooth piece of an edge is cut at the kinks of its curves and begun with as many equal parts
 // as samples of its curvature ask for. The bound of a part (edge_error.cpp) says how many parts it needs;
 // errors fall with the square of the length, so the square root of error / tolerance is the number of chords
-// that the part asks for. All parts are moved so that each gets an equal share of the sum, rounded up: once
-// or twice, as a rule, and an edge that is alike all along, as a circle, gets equal parts. Where some parts
-// still exceed, or fewer seem to do, a last pass goes from part to part and makes up for each one's surprise
-// in those behind it. Parts that exceed even so are cut. Where much of what was shared out is not needed in
-// the end, neighbours that keep the demands together are joined.
+// that the part asks for. Of these first parts a few are asked. An edge that is alike all along, as a circle,
+// gets equal parts. Where what they ask for is near to what they may, a last pass goes from part to part and
+// makes up for each one's surprise in those behind it. Elsewhere, and where there are few parts, all are
+// moved before so that each gets an equal share of the sum, rounded up, and the last pass follows where some
+// still exceed, or fewer seem to do. Parts that exceed even so are cut. Where much of what was shared out is
+// not needed in the end, neighbours that keep the demands together are joined.
 //
-// Cost: two bounds for each part of a circle's sort less those that pilots stand for, three of others.
+// Cost: little more than one bound for each part, as a rule; two or three of edges that bend unevenly.
 //
 // Why not more passes: bounds jump where parts reach over knots, so demands of moved parts differ by some
 // hundredths each time, and twelve passes found hardly fewer parts.
@@ -40,6 +41,12 @@ double first_part(double parts) {
     constexpr double kMost = 1e6;
     const double k = std::max(2.0, std::ceil(parts * (1 + 1e-9)));
     return k < kMost ? std::floor(k / 2) / k : 0.5;
+}
+
+// Whether parts ask for the same.
+bool is_near(double a, double b) {
+    constexpr double kAlike = 0x1p-9;
+    return std::abs(a - b) <= kAlike * std::max(a, b);
 }
 
 // Of both coordinates, over the polynomial or rational pieces of a spline some of which are short. Nothing of
@@ -182,21 +189,28 @@ std::vector<double> EdgeMesher::shared_out(std::span<const Part> parts, int coun
 
 // The last pass: parts one after the other, each as long as those of the passes before make believe and cut
 // short where it exceeds. What is left is shared out anew each time, so what one is short of is made up by
-// all. Nothing where more than `most` would be needed; some parts may exceed the demands.
-std::vector<EdgeMesher::Part> EdgeMesher::advanced(int edge, std::span<const Part> known, int least,
-                                                   const EdgeDemands& demands, std::size_t most) const {
+// all. Where those before are a guess, what the last parts asked for beside it is believed of the next, too.
+// Nothing where more than `most` would be needed; some parts may exceed the demands.
+std::vector<EdgeMesher::Part> EdgeMesher::advanced(int edge, std::span<const Part> known, bool guessed,
+                                                   int least, const EdgeDemands& demands,
+                                                   std::size_t most) const {
     constexpr int kTries = 4;
+    constexpr double kShorter = 0.3;     // shorter parts ask for less than their length says: by this power
+    constexpr double kLatest = 2.0 / 3;  // how much the last part says of the ratio
+    constexpr double kFarOff = 4;        // the most that the ratio is
     std::vector<double> left(known.size() + 1, 0.0);  // what the parts from here on ask for
     for (std::size_t i = known.size(); i-- > 0;)
         left[i] = left[i + 1] + std::max(std::min(known[i].needs, kPartsAtOnce), 0x1p-10);
     const double end = known.back().b;
+    double ratio = guessed ? std::min(1.0, std::pow(left.front() / double(known.size()), -kShorter)) : 1;
     std::vector<Part> out;
     std::size_t i = 0;
     for (double a = known.front().a; a < end;) {
         while (i + 1 < known.size() && known[i].b <= a) ++i;
         const double rest =
             left[i + 1] + (left[i] - left[i + 1]) * (known[i].b - a) / (known[i].b - known[i].a);
-        const double count = std::max({std::ceil(rest / kFull), double(least) - double(out.size()), 1.0});
+        const double count =
+            std::max({std::ceil(ratio * rest / kFull), double(least) - double(out.size()), 1.0});
         if (double(out.size()) + count > double(most)) return {};
         const double after = rest - rest / count;
         std::size_t k = i;
@@ -206,6 +220,8 @@ std::vector<EdgeMesher::Part> EdgeMesher::advanced(int edge, std::span<const Par
         for (int tries = 0;; ++tries) {
             if (!(a < b)) return {};
             const Part p = part(edge, a, b, demands);
+            if (guessed && tries == 0)
+                ratio = std::clamp(ratio + kLatest * (p.needs * count / rest - ratio), 1 / kFarOff, kFarOff);
             if (p.needs <= 1 || tries == kTries) {
                 out.push_back(p);
                 break;
@@ -217,42 +233,122 @@ std::vector<EdgeMesher::Part> EdgeMesher::advanced(int edge, std::span<const Par
     return out;
 }
 
+// The parts between the ends. Of many some are asked, and those between ask for what is between theirs; where
+// the first two ask for the same, all do. Bounds of parts that are not asked are not known.
+std::vector<EdgeMesher::Part> EdgeMesher::pilots(int edge, std::span<const double> ends,
+                                                 const EdgeDemands& demands) const {
+    constexpr std::size_t kPilots = 3;
+    const std::size_t last = ends.size() - 2, count = last + 1 < 2 * kPilots ? last + 1 : kPilots;
+    const auto ask = [&](std::size_t i) { return part(edge, ends[i], ends[i + 1], demands); };
+    std::vector<Part> out{ask(0)};
+    if (last == 0) return out;
+    const std::size_t halfway = count / 2;
+    const Part middle = ask(halfway * last / (count - 1));
+    const bool alike = last > 1 && is_near(out.front().needs, middle.needs);
+    const auto guess = [&](std::size_t i, double needs) {
+        return Part{ends[i], ends[i + 1], needs, kInfinity};
+    };
+    for (std::size_t k = 1; k < count; ++k) {
+        const std::size_t at = k * last / (count - 1), before = out.size() - 1;
+        const Part next = k == halfway ? middle : alike ? guess(at, middle.needs) : ask(at);
+        const double from = std::min(out.back().needs, kPartsAtOnce),
+                     step = (std::min(next.needs, kPartsAtOnce) - from) / double(at - before);
+        for (std::size_t i = before + 1; i < at; ++i)
+            out.push_back(guess(i, from + step * double(i - before)));
+        out.push_back(next);
+    }
+    return out;
+}
+
+// As many equal parts as keep the demands, of a piece all parts of which ask for the same. Nothing where they
+// turn out not to, or to be too many.
+std::vector<EdgeMesher::Part> EdgeMesher::all_equal(int edge, std::span<const Part> known, double count,
+                                                    const EdgeDemands& demands, std::size_t most) const {
+    constexpr int kTries = 3;
+    for (int tries = 0; tries < kTries && count <= double(most); ++tries) {
+        const bool same = count == double(known.size());
+        const std::vector<double> ends = shared_out(known, int(count));
+        std::vector<Part> out;
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            if (!(ends[i] < ends[i + 1])) return {};
+            out.push_back(same && known[i].bound < kInfinity ? known[i]
+                                                             : part(edge, ends[i], ends[i + 1], demands));
+            if (!(out.back().needs <= 1)) break;
+        }
+        if (out.back().needs <= 1) return out;
+        if (out.size() > 1) return {};
+        count = std::max(std::ceil(count * std::min(out.back().needs, kPartsAtOnce)), count + 1);
+    }
+    return {};
+}
+
+EdgeMesher::Shares EdgeMesher::shares_of(std::span<const Part> parts) {
+    Shares out;
+    for (const Part& p : parts) {
+        out.sum += std::min(p.needs, kPartsAtOnce);
+        out.most = std::max(out.most, p.needs);
+        out.least = std::min(out.least, p.needs);
+        out.known = out.known && p.bound < kInfinity;
+    }
+    return out;
+}
+
 // Parts of a smooth piece that share the work, close to as few as will do; some may exceed the demands.
 std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int least,
                                                       const EdgeDemands& demands,
                                                       std::size_t max_segments) const {
     constexpr int kPasses = 4;
-    constexpr std::size_t kPilots = 4;
-    constexpr double kNear = 1.25;  // so little more than it may: what parts ask for is believed
+    constexpr double kNear = 1.25;    // so little more than it may: what parts ask for is believed
+    constexpr double kGuess = 2;      // and so little, what pilots ask for
+    constexpr double kMany = 9;       // parts: of fewer one too many costs more than another pass
+    constexpr double kUsed = 0.88;    // of what parts may ask for: those made after pilots are kept
+    constexpr double kLonger = 1.15;  // what bounds ask for beside curvature, as a rule; where there are
+    constexpr double kSome = 8;       // more than this
+    const double curved = estimate(edge, on, demands.tolerance),
+                 estimated = curved > kSome ? kLonger * curved : curved;
+    const int begin = std::max(least, int(std::ceil(std::min(estimated, double(max_segments)))));
     std::vector<double> ends;
-    const int begin = std::max(
-        least, int(std::ceil(std::min(estimate(edge, on, demands.tolerance), double(max_segments)))));
     for (int k = 0; k <= begin; ++k) ends.push_back(k == begin ? on.hi : on.lo + on.length() * k / begin);
-    std::vector<Part> now, best;
-    for (int pass = 0; pass < kPasses; ++pass) {
-        std::vector<Part> before = std::move(now);
-        now.clear();
-        double sum = 0, worst = 0;
-        // Where to cut is a guess to begin with: some of many parts stand for those behind them.
-        const std::size_t each = pass == 0 ? std::max((ends.size() - 1) / kPilots, std::size_t(1)) : 1;
-        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-            if (!(ends[i] < ends[i + 1])) return best.empty() ? before : best;
-            now.push_back(i % each == 0 ? part(edge, ends[i], ends[i + 1], demands)
-                                        : Part{ends[i], ends[i + 1], now.back().needs, kInfinity});
-            sum += std::min(now.back().needs, kPartsAtOnce);
-            worst = std::max(worst, now.back().needs);
+    const auto increasing = [&] {
+        return std::adjacent_find(ends.begin(), ends.end(), std::greater_equal{}) == ends.end();
+    };
+    if (!increasing()) ends = {on.lo, on.hi};
+    std::vector<Part> now = pilots(edge, ends, demands), best;
+    bool guessed = true;
+    for (int pass = 1;; ++pass) {
+        Shares s = shares_of(now);
+        if (guessed && s.most <= kGuess && now.size() > 1 && is_near(s.least, s.most)) {
+            auto equal = all_equal(edge, now, std::max(std::ceil(s.sum * (1 - 1e-9)), double(least)), demands,
+                                   max_segments);
+            if (!equal.empty()) return equal;
         }
-        if (worst <= 1 && each == 1) best = now;
-        const double count = std::max(std::ceil(sum * (1 - 1e-9)), double(least));
-        if (!best.empty() && (count >= double(best.size()) || sum >= kFull * double(best.size())))
+        if (guessed && s.most <= kGuess && s.sum >= kMany) {
+            auto first = advanced(edge, now, true, least, demands, max_segments);
+            if (!first.empty()) {
+                now = std::move(first);
+                s = shares_of(now);
+                if (s.sum >= kUsed * double(now.size())) return now;
+            }
+        }
+        if (s.most <= 1 && s.known) best = now;
+        const double count = std::max(std::ceil(s.sum * (1 - 1e-9)), double(least));
+        if (!best.empty() && (count >= double(best.size()) || s.sum >= kFull * double(best.size())))
             return best;
-        if (count > double(max_segments)) break;
-        if (pass > 0 && worst <= kNear) break;
+        if (count > double(max_segments) || (!guessed && s.most <= kNear) || pass == kPasses) break;
         ends = shared_out(now, int(count));
+        if (!increasing()) break;
+        guessed = false;
+        now.clear();
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+            now.push_back(part(edge, ends[i], ends[i + 1], demands));
     }
     std::vector<Part> last =
-        advanced(edge, now, least, demands, best.empty() ? max_segments : best.size() - 1);
-    return !last.empty() ? last : !best.empty() ? best : now;
+        advanced(edge, now, false, least, demands, best.empty() ? max_segments : best.size() - 1);
+    if (!last.empty()) return last;
+    if (!best.empty()) return best;
+    for (Part& p : now)
+        if (p.bound == kInfinity) p = part(edge, p.a, p.b, demands);
+    return now;
 }
 
 // Neighbours that keep the demands together become one. Equal parts are asked for with the worst of the

@@ -87,9 +87,18 @@ public:
 
 private:
     double estimate(int edge, Interval on, double tolerance) const;
+    // What parts ask for, and whether the bounds of all are known.
+    struct Shares {
+        double sum = 0, most = 0, least = kInfinity;
+        bool known = true;
+    };
+    static Shares shares_of(std::span<const Part> parts);
     static std::vector<double> shared_out(std::span<const Part> parts, int count);
-    std::vector<Part> advanced(int edge, std::span<const Part> known, int least, const EdgeDemands& demands,
-                               std::size_t most) const;
+    std::vector<Part> advanced(int edge, std::span<const Part> known, bool guessed, int least,
+                               const EdgeDemands& demands, std::size_t most) const;
+    std::vector<Part> pilots(int edge, std::span<const double> ends, const EdgeDemands& demands) const;
+    std::vector<Part> all_equal(int edge, std::span<const Part> known, double count,
+                                const EdgeDemands& demands, std::size_t most) const;
     std::vector<Part> equal_parts(int edge, Interval on, int least, const EdgeDemands& demands,
                                   std::size_t max_segments) const;
     std::vector<Part> joined(int edge, std::vector<Part> parts, double longest,
