@@ -51,10 +51,13 @@ Filler::Filler(Triangulation& t, const CurvatureTree& tree, const Judge& judge,
 }
 
 Vec<3> Filler::position(int vertex) {
-    while (positions_.size() <= std::size_t(vertex))
-        positions_.push_back(jet<0>(surface_.geometry(), uv(int(positions_.size())).c).value());
-    return positions_[std::size_t(vertex)];
+    const std::size_t v = std::size_t(vertex);
+    if (positions_.size() <= v) positions_.resize(std::max(t_.points().size(), v + 1));
+    if (!positions_[v]) positions_[v] = looked_up(vertex);
+    return *positions_[v];
 }
+
+Vec<3> Filler::looked_up(int vertex) const { return jet<0>(surface_.geometry(), uv(vertex).c).value(); }
 
 std::pair<double, int> Filler::longest_side(int triangle) {
     std::pair<double, int> longest{0, -1};
@@ -195,7 +198,7 @@ bool Filler::make_plain(int triangle, std::vector<int>& judge_again) {
 
 // What the tree says of the leaves that the triangle meets; where that is not enough, what can be said of its
 // own box, which may be much smaller than a leaf.
-Filler::Known Filler::found(int triangle, int& place) const {
+Filler::Known Filler::found(int triangle, int& place, const Positions& position_of) const {
     const auto& v = t_.vertices(triangle);
     const std::array<Vec<2>, 3> corner{uv(v[0]), uv(v[1]), uv(v[2])};
     Box<2> box;
@@ -223,7 +226,7 @@ Filler::Known Filler::found(int triangle, int& place) const {
     const bool fits = !tree_.cone() && is_fitted(surface_, wide);
     if (fits) {
         TriangleOn on{corner, {}};
-        for (std::size_t i = 0; i < 3; ++i) on.at[i] = jet<0>(surface_.geometry(), corner[i].c).value();
+        for (std::size_t i = 0; i < 3; ++i) on.at[i] = position_of(v[i]);
         const auto seen = wide == box ? middle : jet<2>(surface_.geometry(), (0.5 * (wide.lo + wide.hi)).c);
         judge_by(bending_by_fit(surface_, wide, plain < 3, seen, &on));
     }
@@ -237,7 +240,7 @@ Filler::Known Filler::found(int triangle, int& place) const {
 const Filler::Known& Filler::known(int triangle) {
     const std::size_t i = std::size_t(triangle);
     if (known_.size() <= i) known_.resize(std::max(std::size_t(t_.size()), i + 1));
-    if (!is_known(triangle)) known_[i] = found(triangle, place_);
+    if (!is_known(triangle)) known_[i] = found(triangle, place_, [&](int v) { return position(v); });
     return known_[i];
 }
 
@@ -305,7 +308,7 @@ void Filler::judge(std::span<const Entry> entries) {
         int place = 0;
         const std::size_t end = std::min(unknown.size(), (part + 1) * kTrianglesAtOnce);
         for (std::size_t i = part * kTrianglesAtOnce; i < end; ++i)
-            known_[std::size_t(unknown[i])] = found(unknown[i], place);
+            known_[std::size_t(unknown[i])] = found(unknown[i], place, [&](int v) { return looked_up(v); });
     });
 }
 

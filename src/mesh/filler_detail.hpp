@@ -5,7 +5,9 @@
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/mesh/triangulate.hpp>
 
+#include <functional>
 #include <limits>
+#include <optional>
 
 namespace freiform {
 
@@ -41,7 +43,8 @@ private:
     std::vector<std::array<int, 2>> flat_sides(std::span<const int> place,
                                                std::span<const int> corners_at) const;
     bool is_fine(int triangle);
-    Vec<3> position(int vertex);
+    Vec<3> position(int vertex);  // is kept
+    Vec<3> looked_up(int vertex) const;
     struct LongestSide {
         double longest = 0;
         int edge = -1;  // the longest one; -1 if it is part of the boundary
@@ -68,7 +71,9 @@ private:
     }
     void judge(std::span<const Entry> entries);
     const Known& known(int triangle);
-    Known found(int triangle, int& place) const;  // `place`: in the tree, where to begin, and where it is
+    using Positions = std::function<Vec<3>(int vertex)>;
+    // `place`: in the tree, where to begin, and where it is.
+    Known found(int triangle, int& place, const Positions& position_of) const;
 
     Triangulation& t_;
     std::vector<Known> known_;
@@ -91,8 +96,8 @@ private:
     int first_kept_ = std::numeric_limits<int>::max();
     std::vector<char> kept_;
     std::vector<Vec<2>> stuck_at_;
-    std::vector<char> plain_;        // of vertices, as far as one is
-    std::vector<Vec<3>> positions_;  // of vertices, as far as they have been asked for
+    std::vector<char> plain_;                       // of vertices, as far as one is
+    std::vector<std::optional<Vec<3>>> positions_;  // of vertices, as far as they have been asked for
 };
 
 }  // namespace freiform
