@@ -237,26 +237,30 @@ std::vector<EdgeMesher::Part> EdgeMesher::advanced(int edge, std::span<const Par
 // the first two ask for the same, all do. Bounds of parts that are not asked are not known.
 std::vector<EdgeMesher::Part> EdgeMesher::pilots(int edge, std::span<const double> ends,
                                                  const EdgeDemands& demands) const {
-    constexpr std::size_t kPilots = 3;
-    const std::size_t last = ends.size() - 2, count = last + 1 < 2 * kPilots ? last + 1 : kPilots;
+    constexpr std::size_t kFew = 5;
+    constexpr double kSecond = 0.4;  // where no symmetry of closed curves repeats the first
+    const std::size_t last = ends.size() - 2;
     const auto ask = [&](std::size_t i) { return part(edge, ends[i], ends[i + 1], demands); };
     std::vector<Part> out{ask(0)};
-    if (last == 0) return out;
-    const std::size_t halfway = count / 2;
-    const Part middle = ask(halfway * last / (count - 1));
-    const bool alike = last > 1 && is_near(out.front().needs, middle.needs);
-    const auto guess = [&](std::size_t i, double needs) {
-        return Part{ends[i], ends[i + 1], needs, kInfinity};
-    };
-    for (std::size_t k = 1; k < count; ++k) {
-        const std::size_t at = k * last / (count - 1), before = out.size() - 1;
-        const Part next = k == halfway ? middle : alike ? guess(at, middle.needs) : ask(at);
-        const double from = std::min(out.back().needs, kPartsAtOnce),
-                     step = (std::min(next.needs, kPartsAtOnce) - from) / double(at - before);
-        for (std::size_t i = before + 1; i < at; ++i)
-            out.push_back(guess(i, from + step * double(i - before)));
-        out.push_back(next);
+    if (last < kFew) {
+        for (std::size_t i = 1; i <= last; ++i) out.push_back(ask(i));
+        return out;
     }
+    const auto guess_up_to = [&](std::size_t at, double needs) {
+        const std::size_t before = out.size() - 1;
+        const double from = std::min(out.back().needs, kPartsAtOnce),
+                     step = (std::min(needs, kPartsAtOnce) - from) / double(at - before);
+        for (std::size_t i = before + 1; i < at; ++i)
+            out.push_back({ends[i], ends[i + 1], from + step * double(i - before), kInfinity});
+    };
+    const std::size_t second = std::size_t(kSecond * double(last));
+    const Part middle = ask(second);
+    const bool alike = is_near(out.front().needs, middle.needs);
+    guess_up_to(second, middle.needs);
+    out.push_back(middle);
+    const Part end = alike ? Part{ends[last], ends[last + 1], middle.needs, kInfinity} : ask(last);
+    guess_up_to(last, end.needs);
+    out.push_back(end);
     return out;
 }
 
@@ -265,9 +269,12 @@ std::vector<EdgeMesher::Part> EdgeMesher::pilots(int edge, std::span<const doubl
 std::vector<EdgeMesher::Part> EdgeMesher::all_equal(int edge, std::span<const Part> known, double count,
                                                     const EdgeDemands& demands, std::size_t most) const {
     constexpr int kTries = 3;
+    constexpr double kAlike = 0.9;  // of what one asks for, all do
     for (int tries = 0; tries < kTries && count <= double(most); ++tries) {
         const bool same = count == double(known.size());
-        const std::vector<double> ends = shared_out(known, int(count));
+        std::vector<double> ends = shared_out(known, int(count));
+        if (same)
+            for (std::size_t i = 0; i < known.size(); ++i) ends[i] = known[i].a;
         std::vector<Part> out;
         for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
             if (!(ends[i] < ends[i + 1])) return {};
@@ -275,9 +282,10 @@ std::vector<EdgeMesher::Part> EdgeMesher::all_equal(int edge, std::span<const Pa
                                                              : part(edge, ends[i], ends[i + 1], demands));
             if (!(out.back().needs <= 1)) break;
         }
-        if (out.back().needs <= 1) return out;
+        const Shares s = shares_of(out);
+        if (s.most <= 1) return s.least >= kAlike * s.most ? out : std::vector<Part>{};
         if (out.size() > 1) return {};
-        count = std::max(std::ceil(count * std::min(out.back().needs, kPartsAtOnce)), count + 1);
+        count = std::max(std::ceil(count * std::min(s.most, kPartsAtOnce)), count + 1);
     }
     return {};
 }
@@ -328,6 +336,7 @@ std::vector<EdgeMesher::Part> EdgeMesher::equal_parts(int edge, Interval on, int
                 now = std::move(first);
                 s = shares_of(now);
                 if (s.sum >= kUsed * double(now.size())) return now;
+                s.sum /= kFull;  // fewer are tried, but not too few
             }
         }
         if (s.most <= 1 && s.known) best = now;

@@ -109,6 +109,14 @@ TEST(EdgeMesh, the_error_is_shared_evenly) {
         }
 }
 
+// Of a closed curve that repeats itself the first part, and the one half a turn from it, are not all parts.
+TEST(EdgeMesh, what_two_parts_ask_for_is_not_what_all_do) {
+    for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
+        const auto needs = OneFace(ellipse(4, 1), {0, 2 * kPi}).needs(tolerance);
+        EXPECT_LE(double(needs.size()), sum_of(needs) / 0.9) << tolerance;
+    }
+}
+
 TEST(EdgeMesh, hardly_more_chords_are_made_than_the_shares_ask_for) {
     Random rng(4);
     double asked = 0, made = 0;
