@@ -1,6 +1,8 @@
 // What is known of a spline beside a quadratic function: essay in bending.cpp.
 #include "bending_detail.hpp"
 
+#include <freiform/core/visit.hpp>
+
 namespace freiform {
 
 namespace {
@@ -64,6 +66,22 @@ Meeting meet(const DerivativeQuery<2, 3>& surface, const TriangleOn& triangle, c
     return out;
 }
 
+// Of a spline: the length of the polynomial or rational piece there. Not that between bends, which smooth
+// splines have none of.
+double piece_length(const SurfaceGeometry& surface, int axis, double at) {
+    return visit_one(
+        [&](const auto& s) {
+            if constexpr (requires { s.net(); }) {
+                const auto& basis = s.basis(axis);
+                const int span = basis.span(at);
+                return basis.knot(span + 1) - basis.knot(span);
+            } else {
+                return 0.0;
+            }
+        },
+        surface);
+}
+
 }  // namespace
 
 Box<2> room_for_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
@@ -71,8 +89,7 @@ Box<2> room_for_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& box) {
     for (int d = 0; d < 2; ++d) {
         const auto& ends = surface.bends(d);
         if (ends.size() < 2) continue;
-        const auto after = std::upper_bound(ends.begin() + 1, ends.end() - 1, box.side(d).middle());
-        const double least = kShortPart * (*after - *(after - 1));
+        const double least = kShortPart * piece_length(surface.geometry(), d, box.side(d).middle());
         if (!(box.hi[d] - box.lo[d] < least)) continue;
         out.lo[d] = std::min(box.lo[d], std::max(ends.front(), box.side(d).middle() - least / 2));
         out.hi[d] = std::max(box.hi[d], std::min(ends.back(), out.lo[d] + least));

@@ -283,6 +283,30 @@ TEST(Bending, cubic_splines_are_seen_nearly_as_they_are) {
     EXPECT_GT(sharpest, 0.97);
 }
 
+// A smooth spline has many pieces, some short: what is too small beside one is not beside another, nor beside
+// all of them.
+TEST(Bending, small_boxes_get_the_room_of_their_piece) {
+    std::vector<double> knots{0, 0, 0, 0, 1e-6};
+    for (int k = 1; k <= 40; ++k) knots.push_back(k);
+    knots.insert(knots.end(), 3, 40);
+    const auto basis = *BSplineBasis::make(3, knots);
+    const SurfaceGeometry surface = graph<Vec<3>>(
+        basis, 1, [](int i, int j) { return i * j; }, one, none);
+    const DerivativeQuery<2, 3> query(surface);
+    const auto length_about = [&](double at, double length) {
+        const Vec<2> lo{{at, at}}, hi{{at + length, at + length}};
+        const Box<2> room = room_for_fit(query, {lo, hi});
+        EXPECT_LE(room.lo[0], lo[0]);
+        EXPECT_GE(room.hi[1], hi[1]);
+        EXPECT_NEAR(room.side(0).length(), room.side(1).length(), 1e-12 * length);
+        return room.side(0).length();
+    };
+    EXPECT_DOUBLE_EQ(length_about(20.25, 0.125), 0.125);
+    EXPECT_NEAR(length_about(20.25, 0x1p-12), 0x1p-8, 1e-9);
+    EXPECT_NEAR(length_about(2e-7, 1e-8), 1e-8, 1e-12);
+    EXPECT_NEAR(length_about(2e-7, 1e-10), 0x1p-8 * 1e-6, 1e-12);
+}
+
 // Third derivatives are 0, but where the curve is slow, its normals turn faster than in the middle: away from
 // it in small cells, and within large ones.
 TEST(Bending, normals_that_turn_are_counted) {
