@@ -10,7 +10,7 @@
 // curve is an affine map; so a tie says "the same" or "turned round". Where both
 // follow of one edge (a Möbius band) one is taken, and lines that are not symmetric end between points there:
 // such cells become triangles. Segments of every edge of a
-// class and cells of every face ask for a number of parts (edge_mesh.cpp, grid.cpp), and parts are moved and
+// class and cells of every face ask for a number of parts (edge_parts.cpp, grid.cpp), and parts are moved and
 // halved until all are content; kinks stay where they are. If after that an edge is not, it keeps the points
 // that it had, and its faces have grids of their own inside.
 //

@@ -1,4 +1,4 @@
-// The passes that place the ends of chords, each by its law (edge_mesh.cpp, edge_error.cpp).
+// The passes that place the ends of chords, each by its law (edge_parts.cpp, edge_error.cpp).
 #include "model/edge_mesh_detail.hpp"
 #include "support/random.hpp"
 #include "support/shapes.hpp"
