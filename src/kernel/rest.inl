@@ -1,13 +1,17 @@
 // What is left of a block beside a quadratic function, and its differences: RestTask in blocks.hpp, whose
 // proof is in spline/block_rest.cpp. Included by blocks_generic.inl.
 
-inline constexpr int kMostRow = lanes_of(kMaxDegree + 3) + 4;
-
-template <bool kRational>
+// `kNarrow`: of at most four columns, all of whose rows are one vector, or two as products. What is beside a
+// number is then found by moving lanes: numbers that were just stored one by one are not there yet when they
+// are loaded as parts of other vectors, which costs more than all the rest.
+template <bool kRational, bool kNarrow>
 struct RestOf {
-    static constexpr int kNumbers = kRational ? 4 : 3, kMore = kRational ? 2 : 0;  // degrees
-    struct Row {  // of A - w M, and of w; then of differences of such rows
-        double at[kNumbers][kMostRow];
+    // Of a coefficient of D = A - w M: coordinates, direction . D, and the weight.
+    static constexpr int kAcross = 3, kWeight = 4, kNumbers = kRational ? 5 : 4, kMore = kRational ? 2 : 0;
+    static constexpr int kMostVectors = kNarrow ? kRational ? 2 : 1 : lanes_of(kMaxDegree + 3) / 4 + 1,
+                         kVectors = kNarrow ? kMostVectors : -1;
+    struct Row {  // then of differences of such rows
+        V4 at[kNumbers][kMostVectors];
     };
     struct Most {
         V4 square = all4(0), across = all4(0), weight = all4(0);
@@ -15,11 +19,28 @@ struct RestOf {
 
     const RestTask& t;
     RestFound& out;
-    const int rows = t.shape.rows, columns = t.shape.columns, lanes = t.shape.lanes(),
-              ends = lanes_of(columns + 2);
+    const int rows = t.shape.rows, columns = t.shape.columns, lanes = kNarrow ? 4 : t.shape.lanes(),
+              count = columns + kMore, vectors = kNarrow ? kMostVectors : lanes_of(count) / 4;
     const std::size_t plane = t.shape.plane();
     V4 largest = all4(0), least = all4(1e308), most = all4(kRational ? 0 : 1);
     Most values = {}, of[kRestDifferences] = {};
+
+    // The numbers that are so many columns further on than those of vector v.
+    template <int Columns>
+    FF_BODY inline V4 further(const V4* x, int v) const {
+        if constexpr (Columns == 0)
+            return x[v];
+        else if constexpr (!kNarrow)
+            return load4(reinterpret_cast<const double*>(x + v) + Columns);
+        else {
+            const V4 next = v + 1 < kMostVectors ? x[v + 1] : all4(0);
+            return __builtin_shufflevector(x[v], next, Columns, Columns + 1, Columns + 2, Columns + 3);
+        }
+    }
+    FF_BODY inline void find_across(Row& row, int v) const {
+        row.at[kAcross][v] = all4(t.direction[0]) * row.at[0][v] + all4(t.direction[1]) * row.at[1][v] +
+                             all4(t.direction[2]) * row.at[2][v];
+    }
 
     // Row r of A - M without weights.
     FF_PART void subtract_m(int r, Row& row) {
@@ -30,17 +51,20 @@ struct RestOf {
                          above = (1 - s) * t.corner[2][d] + s * t.corner[3][d];
             at[d] = all4(below + bulge * t.bulge[0][d]), by_y[d] = all4(above - below);
             across_y[d] = all4(t.bulge[1][d]);
-            store4(row.at[d] + lanes, all4(0));
+            if constexpr (!kNarrow) row.at[d][vectors] = all4(0);
         });
-        for (int k = 0; k < lanes; k += 4) {
+        each<kVectors>(vectors, [&](int v) FF_BODY {
+            const int k = 4 * v;
             const I4 mask = first_of(columns - k);
             const V4 y = load4(t.linear + k), bulge_y = load4(t.bulges + k);
             each<3>(3, [&](int d) FF_BODY {
                 const V4 x = load4(t.numbers + std::size_t(d) * plane + std::size_t(r * lanes + k));
                 largest = larger(largest, size_of(x));
-                store4(row.at[d] + k, kept(x - ((at[d] + y * by_y[d]) + bulge_y * across_y[d]), mask));
+                row.at[d][v] = kept(x - ((at[d] + y * by_y[d]) + bulge_y * across_y[d]), mask);
             });
-        }
+            find_across(row, v);
+        });
+        if constexpr (!kNarrow) row.at[kAcross][vectors] = all4(0);
     }
     // Coefficients k, l of degree 2 of M.
     FF_BODY inline void set_m(double (&m)[3][3][3]) const {
@@ -56,12 +80,13 @@ struct RestOf {
 
     // Row at of the product A - w M.
     FF_PART void multiply(int at, const double (&m)[3][3][3], Row& row) {
-        for (int J = 0; J < ends + 4; J += 4) {
-            for (int d = 0; d < 3; ++d) store4(row.at[d] + J, all4(0));
-            store4(row.at[3] + J, (V4)((I4)all4(1) & ~first_of(columns + 2 - J)));
+        for (int v = 0; v < vectors + int(!kNarrow); ++v) {
+            for (int d = 0; d < 3; ++d) row.at[d][v] = all4(0);
+            row.at[kWeight][v] = (V4)((I4)all4(1) & ~first_of(count - 4 * v));
         }
         const int first = at < rows ? 0 : at - rows + 1, last = at < 2 ? at : 2;
-        for (int k = 0; k < lanes; k += 4) {
+        each<kNarrow ? 1 : -1>(lanes / 4, [&](int v) FF_BODY {
+            const int k = 4 * v;
             const I4 mask = first_of(columns - k);
             V4 mean[4] = {}, of_m[3][3] = {};
             for (int i = first; i <= last; ++i) {
@@ -81,71 +106,85 @@ struct RestOf {
             }
             each<3>(3, [&](int l) FF_BODY {
                 const V4 by = load4(t.share[1] + l * t.stride + k);
-                const auto add = [&](double* p, V4 x) FF_BODY { store4(p, load4(p) + by * x); };
-                each<3>(3, [&](int d) FF_BODY { add(row.at[d] + k + l, mean[d] - of_m[l][d]); });
-                add(row.at[3] + k + l, mean[3]);
+                each<3>(3, [&](int d) FF_BODY { add(row.at[d] + v, l, by * (mean[d] - of_m[l][d])); });
+                add(row.at[kWeight] + v, l, by * mean[3]);
             });
+        });
+        each<kVectors>(vectors + int(!kNarrow), [&](int v) FF_BODY { find_across(row, v); });
+    }
+    // To the numbers from column l of this vector on.
+    FF_BODY inline void add(V4* to, int l, V4 x) const {
+        if constexpr (kNarrow) {
+            const V4 none = all4(0);
+            to[0] += l == 0   ? x
+                     : l == 1 ? __builtin_shufflevector(none, x, 0, 4, 5, 6)
+                              : __builtin_shufflevector(none, x, 0, 1, 4, 5);
+            if (l == 1) to[1] += __builtin_shufflevector(x, none, 3, 4, 5, 6);
+            if (l == 2) to[1] += __builtin_shufflevector(x, none, 2, 3, 4, 5);
+        } else {
+            double* const p = reinterpret_cast<double*>(to) + l;
+            store4(p, load4(p) + x);
         }
     }
 
     FF_PART void note(Most& m, const V4* x) const {
         m.square = larger(m.square, x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-        m.across = larger(m.across, size_of(all4(t.direction[0]) * x[0] + all4(t.direction[1]) * x[1] +
-                                            all4(t.direction[2]) * x[2]));
-        if constexpr (kRational) m.weight = larger(m.weight, size_of(x[3]));
+        m.across = larger(m.across, size_of(x[kAcross]));
+        if constexpr (kRational) m.weight = larger(m.weight, size_of(x[kWeight]));
     }
-    // Differences from column to column, so many times.
+    // Differences from column to column, so many times. Those of rows are 0 after the columns.
     template <int Times>
-    FF_PART void look(Most& m, const Row& row, int count) const {
-        for (int J = 0; J < count - Times; J += 4) {
-            const I4 mask = first_of(count - Times - J);
+    FF_PART void look(Most& m, const Row& row) const {
+        each<kVectors>(vectors, [&](int v) FF_BODY {
+            if (kNarrow ? v > 0 && Times == 2 : 4 * v >= count - Times) return;
             V4 x[kNumbers];
             each<kNumbers>(kNumbers, [&](int d) FF_BODY {
-                const double* const p = row.at[d] + J;
-                x[d] = load4(p);
-                if (Times == 1) x[d] = load4(p + 1) - x[d];
-                if (Times == 2) x[d] = (load4(p + 2) - load4(p + 1)) - (load4(p + 1) - x[d]);
-                x[d] = kept(x[d], mask);
+                const V4 *const p = row.at[d], here = p[v];
+                x[d] = here;
+                if constexpr (Times == 1) x[d] = further<1>(p, v) - here;
+                if constexpr (Times == 2) {
+                    const V4 next = further<1>(p, v);
+                    x[d] = (further<2>(p, v) - next) - (next - here);
+                }
+                if constexpr (Times > 0) x[d] = kept(x[d], first_of(count - Times - 4 * v));
             });
             note(m, x);
-        }
+        });
     }
     FF_BODY inline void look_at_quotients(const Row& row) {
-        for (int J = 0; J < ends; J += 4) {
-            const V4 divide = all4(1) / load4(row.at[3] + J);
-            V4 x[4] = {};
-            each<3>(3, [&](int d) FF_BODY { x[d] = load4(row.at[d] + J) * divide; });
+        each<kVectors>(vectors, [&](int v) FF_BODY {
+            const V4 divide = all4(1) / row.at[kWeight][v];
+            V4 x[kNumbers] = {};
+            each<4>(4, [&](int d) FF_BODY { x[d] = row.at[d][v] * divide; });
             note(values, x);
-        }
+        });
     }
-    FF_PART void subtract(const Row& from, Row& row, int count) const {  // row becomes from - row
+    FF_PART void subtract(const Row& from, Row& row) const {  // row becomes from - row
         for (int d = 0; d < kNumbers; ++d)
-            for (int J = 0; J < count; J += 4)
-                store4(row.at[d] + J, load4(from.at[d] + J) - load4(row.at[d] + J));
+            each<kVectors>(vectors, [&](int v) FF_BODY { row.at[d][v] = from.at[d][v] - row.at[d][v]; });
     }
 
     void run() {
         Row room[3], *now = room, *before = room + 1, *change = room + 2;
         [[maybe_unused]] double m[3][3][3];
         if constexpr (kRational) set_m(m);
-        const int count = columns + kMore;
         for (int at = 0; at < rows + kMore; ++at) {
             if constexpr (kRational) {
                 multiply(at, m, *now);
                 look_at_quotients(*now);
             } else {
                 subtract_m(at, *now);
-                look<0>(values, *now, count);
+                look<0>(values, *now);
             }
-            look<1>(of[1], *now, count);
-            look<2>(of[4], *now, count);
+            look<1>(of[1], *now);
+            look<2>(of[4], *now);
             if (at > 0) {
-                subtract(*now, *before, count);
-                look<0>(of[0], *before, count);
-                look<1>(of[3], *before, count);
+                subtract(*now, *before);
+                look<0>(of[0], *before);
+                look<1>(of[3], *before);
                 if (at > 1) {
-                    subtract(*before, *change, count);
-                    look<0>(of[2], *change, count);
+                    subtract(*before, *change);
+                    look<0>(of[2], *change);
                 }
             }
             Row* const free = change;
@@ -163,5 +202,11 @@ struct RestOf {
 };
 
 void rest(const RestTask& t, RestFound& out) {
-    t.shape.rational ? RestOf<true>{t, out}.run() : RestOf<false>{t, out}.run();
+#if defined(__wasm__)
+    const bool is_narrow = false;  // for size
+#else
+    const bool is_narrow = t.shape.columns <= 4;
+    if (is_narrow) t.shape.rational ? RestOf<true, true>{t, out}.run() : RestOf<false, true>{t, out}.run();
+#endif
+    if (!is_narrow) t.shape.rational ? RestOf<true, false>{t, out}.run() : RestOf<false, false>{t, out}.run();
 }

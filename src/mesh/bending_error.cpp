@@ -77,9 +77,20 @@ Bending::Rest Bending::rest_of_fit(const Box<2>& cell, double turn) const {
             times(turned(h[0], 0)), times(turned(0, h[1]))};
 }
 
-// With what the rest adds: at the corners of triangles too, if it is not zero there.
-double Bending::of_fit(double quadratic, double times, double turn) const {
-    return (quadratic + times * (fit.along + (tilt + turn) * fit.whole)) * (1 + 1e-13);
+// Of the part with constant second derivatives Rest::error says what `most`, u and v are. The rest adds
+// `times` its bound: at the corners of triangles too, if it is not zero there.
+double Bending::of_part(const Box<2>& cell, double turn, double most, double u, double v,
+                        double times) const {
+    double best = kInfinity;
+    if (fit.exists()) {
+        const double more = times * (fit.along + (tilt + turn) * fit.whole);
+        best = (rest_of_fit(cell, turn).error(most, u, v) + more) * (1 + 1e-13);
+        const auto& off = middle.off;
+        const Vec<2> half = half_sides({cell.side(0), cell.side(1)});
+        // What follows has that more, too, and normals turn for it as much or more.
+        if (more <= Curvature{off[0], off[1], off[2]}.along(half[0], half[1]) / 2) return best;
+    }
+    return std::min(best, rest_in(cell, turn).error(most, u, v));
 }
 
 double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const {
@@ -89,6 +100,7 @@ double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& cor
     const double slip = 128 * kUnitRoundoff * (size[0] + 2 * size[1] + size[2]),
                  quadratic = quadratic_error(middle.whole_second, corner, slip);
     double best = kInfinity;
+    const Curvature slips{middle.whole_off[0], middle.whole_off[1], middle.whole_off[2]};
     if (fit.exists()) {
         const bool is_half =
             fit.of_triangle ||
@@ -96,11 +108,12 @@ double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& cor
                  return (c[0] == cell.lo[0] || c[0] == cell.hi[0]) &&
                         (c[1] == cell.lo[1] || c[1] == cell.hi[1]);
              }));
-        best = (quadratic + (is_half ? 1 : 2) * fit.whole) * (1 + 1e-13);
+        const double more = (is_half ? 1 : 2) * fit.whole;
+        best = (quadratic + more) * (1 + 1e-13);
+        if (more <= slips.along(h[0], h[1]) / 2) return best;  // what follows has that more, too
     }
     const auto& third = middle.whole_third;
     const Vec<2> third_of_half = off + (1.0 / 3) * h;
-    const Curvature slips{middle.whole_off[0], middle.whole_off[1], middle.whole_off[2]};
     const Rest rest{h, change_by(third_of_half, third, slips), change_by({{h[0] * (2.0 / 3), 0}}, third, {}),
                     change_by({{0, h[1] * (2.0 / 3)}}, third, {})};
     return std::min(best, rest.error(2 * quadratic, size[0] + size[1], size[2] + size[1]));
@@ -114,14 +127,6 @@ double Bending::seen_error(const Box<2>& cell, double turn) const {
     const Curvature seen = seen_along(tilt + turn);
     double error = seen.error(cell.hi - cell.lo);
     if (knows_middle()) error = std::min(error, steady_error(rest_in(cell, turn), seen));
-    if (fit.exists() && !fit.of_triangle) {
-        const Rest rest = rest_of_fit(cell, turn);
-        const Quadratic& q = middle.second;
-        const double hu = rest.half[0], hv = rest.half[1], uv = std::abs(q.uv) * hu * hv;
-        error = std::min(
-            error, of_fit(rest.error(kInfinity, std::abs(q.uu) * hu * hu + uv, std::abs(q.vv) * hv * hv + uv),
-                          2, turn));
-    }
     return error;
 }
 
@@ -144,17 +149,16 @@ double Bending::steady_error(const Rest& rest, const Curvature& seen) const {
 }
 
 double Bending::halves_error(const Box<2>& cell, double turn) const {
-    const Rest rest = rest_in(cell, turn);
+    const Vec<2> half = half_sides({cell.side(0), cell.side(1)});
     const Quadratic& q = middle.second;
     const bool rising = prefers_rising(cell.hi - cell.lo);
-    const double hu = rest.half[0], hv = rest.half[1], uu = q.uu * hu * hu, vv = q.vv * hv * hv,
+    const double hu = half[0], hv = half[1], uu = q.uu * hu * hu, vv = q.vv * hv * hv,
                  uv = (rising ? q.uv : -q.uv) * hu * hv;
     // Of S - L and of L - S.
     const double u = std::max({0.0, uu + std::max(uv, 0.0), -uu + std::max(-uv, 0.0)}),
                  v = std::max({0.0, vv + std::max(uv, 0.0), -vv + std::max(-uv, 0.0)}),
-                 most = 2 * q.error(half_of(cell, rising)), error = rest.error(most, u, v);
-    if (!fit.exists()) return error;
-    return std::min(error, of_fit(rest_of_fit(cell, turn).error(most, u, v), cell == fit.box ? 1 : 2, turn));
+                 most = 2 * q.error(half_of(cell, rising));
+    return of_part(cell, turn, most, u, v, cell == fit.box ? 1 : 2);
 }
 
 double Bending::cells_error(const Vec<2>& box, const Vec<2>& cell, double turn) const {
@@ -169,13 +173,11 @@ double Bending::cells_error(const Vec<2>& box, const Vec<2>& cell, double turn) 
 }
 
 double Bending::triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const {
-    const Rest rest = rest_in(cell, turn);
+    const Vec<2> half = half_sides({cell.side(0), cell.side(1)});
     const Quadratic& q = middle.second;
-    const double hu = rest.half[0], hv = rest.half[1], uv = std::abs(q.uv) * hu * hv,
-                 u = std::abs(q.uu) * hu * hu + uv, v = std::abs(q.vv) * hv * hv + uv,
-                 most = 2 * q.error(corner), error = rest.error(most, u, v);
-    if (!fit.exists()) return error;
-    return std::min(error, of_fit(rest_of_fit(cell, turn).error(most, u, v), fit.of_triangle ? 1 : 2, turn));
+    const double hu = half[0], hv = half[1], uv = std::abs(q.uv) * hu * hv, u = std::abs(q.uu) * hu * hu + uv,
+                 v = std::abs(q.vv) * hv * hv + uv, most = 2 * q.error(corner);
+    return of_part(cell, turn, most, u, v, fit.of_triangle ? 1 : 2);
 }
 
 }  // namespace freiform

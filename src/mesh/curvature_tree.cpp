@@ -30,12 +30,12 @@
 #include "parameter_table_detail.hpp"
 
 #include <freiform/core/constants.hpp>
-#include <freiform/core/sort.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace freiform {
 
@@ -50,7 +50,8 @@ double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b,
         return A * d[0] * d[0] + B * d[1] * d[1];
     };
     double s[3] = {length2(a, b), length2(b, c), length2(c, a)};
-    sort(s, s + 3);
+    for (const int k : {0, 1})  // the longest is the last
+        if (s[k] > s[2]) std::swap(s[k], s[2]);
     const double longest = s[2] / 8;
     if (s[0] + s[1] <= s[2]) return longest;
     const double twice_area = std::abs(cross(b - a, c - a));  // squared circumradius: s0 s1 s2 / (16 area^2)
@@ -140,7 +141,8 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 // opposite the longest has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <=
 // s2. Where that would be negative, sides or none, the largest is at the middle of the longest.
 double largest_of_sides(std::array<double, 3> s, double slip) {
-    sort(s.data(), s.data() + 3);
+    for (const std::size_t k : {0, 1, 0})
+        if (s[k] > s[k + 1]) std::swap(s[k], s[k + 1]);
     const double beyond = s[0] + s[1] - s[2] + slip;
     if (beyond <= 0 || !(s[1] > slip)) return s[2] / 8 + slip;
     const double most = (s[0] + slip) / (4 * s[1]), found = beyond * beyond / (4 * s[0] * s[1]);

@@ -172,7 +172,7 @@ private:
     double turned(double du, double dv) const;
     Rest rest_in(const Box<2>& cell, double turn) const;
     Rest rest_of_fit(const Box<2>& cell, double turn) const;
-    double of_fit(double quadratic, double times, double turn) const;
+    double of_part(const Box<2>& cell, double turn, double most, double u, double v, double times) const;
     double steady_error(const Rest& rest, const Curvature& seen) const;
 };
 

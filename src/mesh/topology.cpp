@@ -8,8 +8,14 @@
 #include <freiform/core/parallel.hpp>
 #include <freiform/poly/predicates.hpp>
 
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 namespace freiform {
 namespace {
+
+constexpr std::size_t kPointsAtOnce = 4096;
 
 bool is_degenerate(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) {
     for (int x = 0; x < 3; ++x) {
@@ -23,6 +29,7 @@ bool is_degenerate(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) {
 
 MeshTopology topology(const TriangleMesh& mesh) {
     MeshTopology out;
+    std::optional<SortedEdges> edges;
     const auto count_triangles = [&] {
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             const auto [a, b, c] = mesh.points_of(t);
@@ -30,15 +37,27 @@ MeshTopology topology(const TriangleMesh& mesh) {
                 mesh.points[std::size_t(a)], mesh.points[std::size_t(b)], mesh.points[std::size_t(c)]);
         }
     };
-    const auto count_edges = [&] {
-        each_edge(mesh, [&](const MeshEdge& edge) {
+    parallel_for(2, 1,
+                 [&](std::size_t which) { which == 0 ? count_triangles() : void(edges.emplace(mesh)); });
+
+    const std::size_t points = mesh.points.size();
+    std::vector<MeshTopology> counts((points + kPointsAtOnce - 1) / kPointsAtOnce);
+    parallel_for(counts.size(), 1, [&](std::size_t part) {
+        MeshTopology count;
+        const std::size_t first = part * kPointsAtOnce;
+        edges->each(first, std::min(points, first + kPointsAtOnce), [&](const MeshEdge& edge) {
             const int uses = edge.forward + edge.backward;
-            out.open_edges += uses == 1;
-            out.non_manifold_edges += uses > 2;
-            out.misoriented_edges += uses == 2 && edge.forward != 1;
+            count.open_edges += uses == 1;
+            count.non_manifold_edges += uses > 2;
+            count.misoriented_edges += uses == 2 && edge.forward != 1;
         });
-    };
-    parallel_for(2, 1, [&](std::size_t which) { which == 0 ? count_triangles() : count_edges(); });
+        counts[part] = count;
+    });
+    for (const MeshTopology& count : counts) {
+        out.open_edges += count.open_edges;
+        out.non_manifold_edges += count.non_manifold_edges;
+        out.misoriented_edges += count.misoriented_edges;
+    }
     return out;
 }
 

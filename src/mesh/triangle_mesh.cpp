@@ -3,7 +3,6 @@
 #include <freiform/core/sort.hpp>
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 namespace freiform {
@@ -111,11 +110,7 @@ std::vector<double> smallest_angles(const TriangleMesh& mesh) {
     return angles;
 }
 
-// Method. A counting sort of the directed edges by their lower point, then a small sort at every point; an
-// entry packs the other point, the triangle and the direction into 64 bits.
-void each_edge(const TriangleMesh& mesh, const std::function<void(const MeshEdge&)>& visit) {
-    const std::size_t n = mesh.points.size();
-    std::vector<std::size_t> begin(n + 2, 0);
+SortedEdges::SortedEdges(const TriangleMesh& mesh) : begin_(mesh.points.size() + 2, 0) {
     const auto each = [&](auto&& f) {
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             const std::array<int, 3> p = mesh.points_of(t);
@@ -123,33 +118,26 @@ void each_edge(const TriangleMesh& mesh, const std::function<void(const MeshEdge
             for (std::size_t i = 0; i < 3; ++i) f(p[i], p[(i + 1) % 3], t);
         }
     };
-    each([&](int a, int b, std::size_t) { ++begin[std::size_t(std::min(a, b)) + 2]; });
-    for (std::size_t i = 2; i < begin.size(); ++i) begin[i] += begin[i - 1];
-    std::vector<std::uint64_t> entries(begin.back());
+    each([&](int a, int b, std::size_t) { ++begin_[std::size_t(std::min(a, b)) + 2]; });
+    for (std::size_t i = 2; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    entries_.resize(begin_.back());
     each([&](int a, int b, std::size_t t) {
         const auto other = std::uint64_t(std::max(a, b)), backward = std::uint64_t(a > b);
-        entries[begin[std::size_t(std::min(a, b)) + 1]++] = other << 32 | std::uint64_t(t) << 1 | backward;
+        entries_[begin_[std::size_t(std::min(a, b)) + 1]++] = other << 32 | std::uint64_t(t) << 1 | backward;
     });
-    for (std::size_t a = 0; a < n; ++a) {
-        const auto first = entries.begin() + std::ptrdiff_t(begin[a]);
-        const auto last = entries.begin() + std::ptrdiff_t(begin[a + 1]);
-        sort(first, last);
-        for (auto it = first; it != last;) {
-            MeshEdge edge{int(a), int(*it >> 32), 0, 0, {-1, -1}};
-            for (; it != last && int(*it >> 32) == edge.b; ++it) {
-                const int uses = edge.forward + edge.backward;
-                if (uses < 2) edge.triangles[std::size_t(uses)] = int((*it & 0xffffffffu) >> 1);
-                ++(*it & 1 ? edge.backward : edge.forward);
-            }
-            visit(edge);
-        }
-    }
+}
+
+std::pair<std::uint64_t*, std::uint64_t*> SortedEdges::sorted_at(std::size_t point) {
+    auto* const first = entries_.data() + begin_[point];
+    auto* const last = entries_.data() + begin_[point + 1];
+    sort(first, last);
+    return {first, last};
 }
 
 std::vector<MeshEdge> edges(const TriangleMesh& mesh) {
     std::vector<MeshEdge> out;
     out.reserve(3 * mesh.triangles.size() / 2);  // of closed meshes
-    each_edge(mesh, [&](const MeshEdge& edge) { out.push_back(edge); });
+    SortedEdges(mesh).each(0, mesh.points.size(), [&](const MeshEdge& edge) { out.push_back(edge); });
     return out;
 }
 

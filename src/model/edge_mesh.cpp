@@ -9,6 +9,7 @@
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace freiform {
@@ -46,6 +47,12 @@ std::array<PiecewiseBound, 2> second_by_pieces(const DerivativeQuery<1, 2>& curv
         },
         curve.geometry());
     return out;
+}
+
+std::unexpected<Refusal> too_many(int edge, const EdgeDemands& demands, std::size_t max_segments) {
+    return refuse(
+        RefusalKind::limit, "max_triangles",
+        text("edge ", edge, " needs more than ", max_segments, " segments within ", demands.tolerance));
 }
 
 }  // namespace
@@ -144,6 +151,34 @@ std::optional<double> EdgeMesher::torn_place(int edge, Interval on, const EdgeDe
     return std::nullopt;
 }
 
+// The parts of a smooth piece, as few as will do about, all of which keep the demands.
+Result<std::vector<EdgeMesher::Part>> EdgeMesher::piece(int edge, Interval on, int least,
+                                                        const EdgeDemands& demands,
+                                                        std::size_t max_segments) const {
+    const auto too_steep = [&](double at) {
+        return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
+                      text("cannot be brought within ", demands.tolerance, " near parameter ", at));
+    };
+    if (const auto torn = torn_place(edge, on, demands)) return too_steep(*torn);
+    auto stack = equal_parts(edge, on, least, demands, max_segments);
+    std::reverse(stack.begin(), stack.end());
+    std::vector<Part> done;
+    while (!stack.empty()) {
+        const Part p = stack.back();
+        stack.pop_back();
+        if (p.needs <= 1) {
+            done.push_back(p);
+            continue;
+        }
+        const double middle = p.a + (p.b - p.a) * first_part(p.needs);
+        if (!(p.a < middle && middle < p.b)) return too_steep(p.a);
+        if (done.size() + stack.size() >= max_segments) return too_many(edge, demands, max_segments);
+        stack.push_back(part(edge, middle, p.b, demands));
+        stack.push_back(part(edge, p.a, middle, demands));
+    }
+    return joined(edge, std::move(done), on.length() / least, demands);
+}
+
 Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::size_t max_segments) {
     EdgeMesh& mesh = edges_[std::size_t(edge)];
     const Edge& e = model_.edges[std::size_t(edge)];
@@ -158,35 +193,22 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
     const std::vector<double> must = smooth_pieces(edge, tolerance);
     mesh.parameters = {e.range.lo};
     mesh.bound = 0;
-    const int pieces = int(must.size()) - 1;
-    const auto too_steep = [&](double at) {
-        return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
-                      text("cannot be brought within ", tolerance, " near parameter ", at));
-    };
-    const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / pieces, 1) : 1;
-    for (int i = 0; i < pieces; ++i) {
-        const Interval on{must[std::size_t(i)], must[std::size_t(i) + 1]};
-        if (const auto torn = torn_place(edge, on, demands)) return too_steep(*torn);
-        auto stack = equal_parts(edge, on, least, demands, max_segments);
-        std::reverse(stack.begin(), stack.end());
-        std::vector<Part> done;
-        while (!stack.empty()) {
-            const Part p = stack.back();
-            stack.pop_back();
-            if (p.needs <= 1) {
-                done.push_back(p);
-                continue;
-            }
-            const double middle = p.a + (p.b - p.a) * first_part(p.needs);
-            if (!(p.a < middle && middle < p.b)) return too_steep(p.a);
-            if (mesh.parameters.size() + done.size() + stack.size() > max_segments)
-                return refuse(
-                    RefusalKind::limit, "max_triangles",
-                    text("edge ", edge, " needs more than ", max_segments, " segments within ", tolerance));
-            stack.push_back(part(edge, middle, p.b, demands));
-            stack.push_back(part(edge, p.a, middle, demands));
+    const std::size_t pieces = must.size() - 1;
+    const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / int(pieces), 1) : 1;
+    std::vector<Result<std::vector<Part>>> found(pieces);
+    std::atomic<std::size_t> first_refused = pieces;  // what comes after it is not asked for
+    parallel_for(pieces, 1, [&](std::size_t i) {
+        std::size_t first = first_refused;
+        if (first < i) return;
+        found[i] = piece(edge, {must[i], must[i + 1]}, least, demands, max_segments);
+        while (!found[i] && i < first && !first_refused.compare_exchange_weak(first, i)) {
         }
-        for (const Part& p : joined(edge, std::move(done), on.length() / least, demands)) {
+    });
+    for (auto& parts : found) {
+        if (!parts) return std::unexpected(parts.error());
+        if (mesh.parameters.size() + parts->size() > max_segments + 1)
+            return too_many(edge, demands, max_segments);
+        for (const Part& p : *parts) {
             mesh.parameters.push_back(p.b);
             mesh.bound = std::max(mesh.bound, p.bound);
         }

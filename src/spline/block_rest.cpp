@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace freiform {
@@ -27,13 +28,56 @@ namespace freiform {
 namespace {
 
 constexpr double kLarge = 1e140;  // squares are numbers
-constexpr std::size_t kStride = kernel::lanes_of(kMaxDegree + 1);
 
 // C(p, I - k) C(2, k) / C(p + 2, I) for k = 0, 1, 2.
-std::array<double, 3> shares(int p, int I) {
+constexpr std::array<double, 3> shares(int p, int I) {
     const double all = double(p + 2) * (p + 1), left = p + 2 - I;
     return {left * (left - 1) / all, 2 * I * left / all, I * (I - 1.0) / all};
 }
+
+// RestTask's numbers that depend on degrees alone: along one axis of at most `kMost` coefficients.
+template <int kMost>
+struct OfDegree {
+    static constexpr std::ptrdiff_t kStride = kernel::lanes_of(kMost);
+    double by_row[3 * (kMost + 2)] = {};
+    double by_column[3 * kStride] = {}, linear[kStride] = {}, bulges[kStride] = {};
+
+    constexpr void set_rows(int rows) {
+        for (int I = 0; I < rows + 2; ++I) {
+            const auto share = shares(rows - 1, I);
+            for (int k = 0; k < 3; ++k) by_row[3 * I + k] = share[std::size_t(k)];
+        }
+    }
+    constexpr void set_columns(int columns) {
+        for (int J = 0; J < columns + 2; ++J) {
+            const auto share = shares(columns - 1, J);
+            for (int l = std::max(0, J - columns + 1); l <= std::min(2, J); ++l)
+                by_column[l * kStride + J - l] = share[std::size_t(l)];
+        }
+        const double q = columns - 1;
+        for (int j = 0; j < columns; ++j) {
+            linear[j] = j / q;
+            bulges[j] = columns > 2 ? linear[j] * ((q - j) / (q - 1)) : 0;
+        }
+    }
+    void put_rows(kernel::RestTask& task) const { task.share[0] = by_row; }
+    void put_columns(kernel::RestTask& task) const {
+        task.share[1] = by_column, task.stride = kStride;
+        task.linear = linear, task.bulges = bulges;
+    }
+};
+
+// Of degrees 1 to 3, which most surfaces have.
+constexpr int kFew = 4;
+constexpr auto kOfFew = [] {
+    std::array<OfDegree<kFew>, kFew - 1> out;
+    for (int k = 0; k < kFew - 1; ++k) {
+        out[std::size_t(k)].set_rows(k + 2);
+        out[std::size_t(k)].set_columns(k + 2);
+    }
+    return out;
+}();
+bool is_few(int count) { return 2 <= count && count <= kFew; }
 
 // M on a part of the box, or around it. What the terms of its values are together, at most.
 double set_part(const BoxQuadratic& m, const std::array<Interval, 2>& part, kernel::RestTask& out) {
@@ -60,29 +104,20 @@ void include_rest(const BezierBlock& block, const std::array<Interval, 2>& part,
                   QuadraticFit& fit) {
     const int rows = block.shape().rows, columns = block.shape().columns;
     const bool rational = block.shape().rational;
-    double by_row[3 * (kMaxDegree + 3)], by_column[3 * kStride] = {}, linear[kStride] = {},
-                                                       bulges[kStride] = {};
-    for (int I = 0; I < rows + 2; ++I) {
-        const auto share = shares(rows - 1, I);
-        for (std::size_t k = 0; k < 3; ++k) by_row[3 * std::size_t(I) + k] = share[k];
-    }
-    for (int J = 0; J < columns + 2; ++J) {
-        const auto share = shares(columns - 1, J);
-        for (int l = std::max(0, J - columns + 1); l <= std::min(2, J); ++l)
-            by_column[std::size_t(l) * kStride + std::size_t(J - l)] = share[std::size_t(l)];
-    }
-    const double q = columns - 1;
-    for (int j = 0; j < columns; ++j) {
-        linear[j] = j / q;
-        bulges[j] = columns > 2 ? linear[j] * ((q - j) / (q - 1)) : 0;
-    }
     kernel::RestTask task;
     task.shape = block.shape();
     task.numbers = block.numbers();
     double of_m = set_part(fit.m, part, task);
-    task.share[0] = by_row, task.share[1] = by_column;
-    task.stride = kStride;
-    task.linear = linear, task.bulges = bulges;
+    std::optional<OfDegree<kMaxDegree + 1>> other;
+    if (!is_few(rows) || !is_few(columns)) other.emplace();
+    if (is_few(rows))
+        kOfFew[std::size_t(rows - 2)].put_rows(task);
+    else
+        other->set_rows(rows), other->put_rows(task);
+    if (is_few(columns))
+        kOfFew[std::size_t(columns - 2)].put_columns(task);
+    else
+        other->set_columns(columns), other->put_columns(task);
     double left_out = 0;  // bulges that no block of degree 1 has
     for (std::size_t axis = 0; axis < 2; ++axis)
         for (int d = 0; d < 3; ++d) {

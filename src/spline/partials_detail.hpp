@@ -14,23 +14,65 @@ namespace freiform::detail {
 // Derivatives of low orders are asked for one place at a time, over and over: they are found with what they
 // share done once, bit for bit as weights_in_span, `contract` and project_jet say.
 
+// The knots that matter in a span, of a basis whose degree is known when compiling.
+template <int P>
+struct KnotsAround {
+    static constexpr int kSpan = P - 1;  // here
+    double at[2 * P];
+
+    template <Basis B>
+    KnotsAround(const B& basis, int span) {
+        for (int i = 0; i < 2 * P; ++i) at[i] = basis.knot(span - kSpan + i);
+    }
+    constexpr int degree() const { return P; }
+    double knot(int i) const { return at[i]; }
+};
+
+// f(0) .. f(count - 1), one after the other where the number is known when compiling (Count >= 0).
+template <int Count, class F>
+inline __attribute__((always_inline)) void each_of(int count, F f) {
+    if constexpr (Count >= 0) [&]<int... I>(std::integer_sequence<int, I...>) __attribute__((always_inline)) {
+            (f(I), ...);
+        }
+    (std::make_integer_sequence<int, Count>{});
+    else for (int i = 0; i < count; ++i) f(i);
+}
+
+// P: the degree; -1: of any.
+template <int P, class B>
+inline void weights_with(const B& basis, int span, double u, int order, std::ptrdiff_t stride, double* w) {
+    constexpr int kMost = P < 0 ? kMaxDegree : P;
+    const int p = P < 0 ? basis.degree() : P;
+    double b[kMost + 1];
+    b[0] = 1;
+    for (int r = p + 1; r <= order; ++r) std::fill_n(w + r * stride, p + 1, 0.0);
+    each_of < P<0 ? -1 : P + 1>(
+                  p + 1,
+                  [&](int k) __attribute__((always_inline)) {
+                      if (k > 0) blossom_step(basis, span, k, u, b);
+                      if (p - k > order) return;
+                      double* const row = w + (p - k) * stride;
+                      for (int i = 0; i <= k; ++i) row[i] = b[i];
+                      each_of<P>(
+                          p, [&](int below) __attribute__((always_inline)) {
+                              const int m = below + 1;
+                              if (m <= k) return;
+                              derivative_step(basis, span, m, row);
+                              for (int i = 0; i <= m; ++i) row[i] *= m;
+                          });
+                  });
+}
+
 // The weights of all orders up to `order`, those of order r at w + r * stride.
 template <Basis B>
 void weights_up_to(const B& basis, int span, double u, int order, std::ptrdiff_t stride, double* w) {
-    const int p = basis.degree();
-    double b[kMaxDegree + 1];
-    b[0] = 1;
-    for (int r = p + 1; r <= order; ++r) std::fill_n(w + r * stride, p + 1, 0.0);
-    for (int k = 0; k <= p; ++k) {
-        if (k > 0) blossom_step(basis, span, k, u, b);
-        if (p - k > order) continue;
-        double* const row = w + (p - k) * stride;
-        std::copy_n(b, k + 1, row);
-        for (int m = k + 1; m <= p; ++m) {
-            derivative_step(basis, span, m, row);
-            for (int i = 0; i <= m; ++i) row[i] *= m;
-        }
+#if !defined(__wasm__)  // for size
+    if (basis.degree() == 3) {
+        using Around = KnotsAround<3>;
+        return weights_with<3>(Around(basis, span), Around::kSpan, u, order, stride, w);
     }
+#endif
+    weights_with<-1>(basis, span, u, order, stride, w);
 }
 
 // All sums up to total order `order`, in graded order. Those along the last axis serve all orders along the

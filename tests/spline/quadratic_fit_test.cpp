@@ -113,6 +113,47 @@ TEST(QuadraticFit, bounds_hold_at_every_point_of_random_boxes) {
             }
 }
 
+// Few columns, of which rows are one vector, and many are looked at in different ways.
+template <class P>
+void expect_the_same_with_axes_exchanged(std::mt19937& rng, int p, int q, double spread) {
+    const SurfaceGeometry surface = bumpy<P>(rng, p, q, 1, spread);
+    const auto& patch = std::get<Surface<P>>(surface);
+    std::vector<P> c;
+    for (int k = 0; k <= q; ++k)
+        for (int i = 0; i <= p; ++i) c.push_back(patch.net().flat()[std::size_t(i * (q + 1) + k)]);
+    const SurfaceGeometry exchanged =
+        must(Surface<P>::make({patch.basis(1), patch.basis(0)}, Net<2, P>({q + 1, p + 1}, c)));
+    const DerivativeQuery<2, 3> one(surface), other(exchanged);
+    for (int round = 0; round < 20; ++round) {
+        BoxQuadratic m;
+        for (auto& side : m.box) {
+            side.lo = uniform(rng, 0, 0.7);
+            side.hi = round % 4 == 0 ? 1 : side.lo + 0.3;
+        }
+        for (auto* of : {&m.corner[0], &m.corner[1], &m.corner[2], &m.corner[3], &m.bulge[0], &m.bulge[1]})
+            *of = {{uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)}};
+        const BoxQuadratic turned{{m.box[1], m.box[0]},
+                                  {m.corner[0], m.corner[2], m.corner[1], m.corner[3]},
+                                  {m.bulge[1], m.bulge[0]}};
+        const bool at_corners = round % 2 == 0;
+        const Vec<3> n = unit(Vec<3>{{1, -2, 0.5}});
+        const QuadraticFit here = one.fit(m, at_corners, n), there = other.fit(turned, at_corners, n);
+        for (const auto& [k, l] : {std::pair{0, 0}, {1, 2}, {2, 1}, {3, 5}, {4, 4}, {5, 3}}) {
+            const auto at = std::size_t(k), with = std::size_t(l);
+            EXPECT_NEAR(here.all[at] / there.all[with], 1, 1e-9) << p << " x " << q << ", " << k;
+            EXPECT_NEAR(here.along[at] / there.along[with], 1, 1e-9) << p << " x " << q << ", " << k;
+        }
+    }
+}
+TEST(QuadraticFit, is_the_same_with_axes_exchanged) {
+    std::mt19937 rng(35);
+    for (const int q : {1, 2, 3})
+        for (const int p : {2, 3, 4, 5, 8}) {
+            if (q > 1) expect_the_same_with_axes_exchanged<Vec<3>>(rng, p, q, 0);
+            expect_the_same_with_axes_exchanged<Hom<3>>(rng, p, q, 0.7);
+        }
+}
+
 TEST(QuadraticFit, is_exact_where_the_surface_is_quadratic_itself) {
     std::mt19937 rng(32);
     for (int round = 0; round < 20; ++round) {

@@ -83,17 +83,27 @@ constexpr double max_abs(const P& a) {
     return m;
 }
 
-// Euclidean length. Neither overflows nor underflows on the way, and scales exactly with powers of two.
+namespace detail {
+// Whether roots of squared lengths are as exact as they are of numbers near 1.
+constexpr bool is_plain_square(double s) { return s > 1e-280 && s < 1e280; }
+
+// The length of a vector whose square is too large or too small for numbers.
 template <Coefficient P>
-double norm(const P& a) {
-    const double s = dot(a, a);
-    if (s > 1e-280 && s < 1e280) return std::sqrt(s);
+[[gnu::noinline]] double scaled_norm(const P& a) {
     const double m = max_abs(a);
     if (m == 0 || !std::isfinite(m)) return m;
     const int e = std::ilogb(m);
     P b = a;
     for (int i = 0; i < P::kCoords; ++i) b[i] = std::scalbn(b[i], -e);
     return std::scalbn(std::sqrt(dot(b, b)), e);
+}
+}  // namespace detail
+
+// Euclidean length. Neither overflows nor underflows on the way, and scales exactly with powers of two.
+template <Coefficient P>
+double norm(const P& a) {
+    const double s = dot(a, a);
+    return detail::is_plain_square(s) ? std::sqrt(s) : detail::scaled_norm(a);
 }
 
 template <Coefficient P>
@@ -111,6 +121,8 @@ constexpr double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - 
 // The vector of length 1 with the direction of `a`; zero if `a` is zero.
 template <int D>
 Vec<D> unit(const Vec<D>& a) {
+    const double s = dot(a, a);
+    if (detail::is_plain_square(s)) return (1 / std::sqrt(s)) * a;
     const double m = max_abs(a);
     if (m == 0) return a;
     const int e = std::ilogb(m);
