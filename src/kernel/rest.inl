@@ -10,6 +10,11 @@ struct RestOf {
     static constexpr int kAcross = 3, kWeight = 4, kNumbers = kRational ? 5 : 4, kMore = kRational ? 2 : 0;
     static constexpr int kMostVectors = kNarrow ? kRational ? 2 : 1 : lanes_of(kMaxDegree + 3) / 4 + 1,
                          kVectors = kNarrow ? kMostVectors : -1;
+#if defined(__wasm__)
+    static constexpr int kWritten = -1;  // of numbers: one after the other is too large
+#else
+    static constexpr int kWritten = kNumbers;
+#endif
     struct Row {  // then of differences of such rows
         V4 at[kNumbers][kMostVectors];
     };
@@ -37,7 +42,7 @@ struct RestOf {
             return __builtin_shufflevector(x[v], next, Columns, Columns + 1, Columns + 2, Columns + 3);
         }
     }
-    FF_BODY inline void find_across(Row& row, int v) const {
+    FF_PART void find_across(Row& row, int v) const {
         row.at[kAcross][v] = all4(t.direction[0]) * row.at[0][v] + all4(t.direction[1]) * row.at[1][v] +
                              all4(t.direction[2]) * row.at[2][v];
     }
@@ -138,7 +143,7 @@ struct RestOf {
         each<kVectors>(vectors, [&](int v) FF_BODY {
             if (kNarrow ? v > 0 && Times == 2 : 4 * v >= count - Times) return;
             V4 x[kNumbers];
-            each<kNumbers>(kNumbers, [&](int d) FF_BODY {
+            each<kWritten>(kNumbers, [&](int d) FF_BODY {
                 const V4 *const p = row.at[d], here = p[v];
                 x[d] = here;
                 if constexpr (Times == 1) x[d] = further<1>(p, v) - here;

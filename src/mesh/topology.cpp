@@ -9,8 +9,8 @@
 #include <freiform/poly/predicates.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
-#include <vector>
 
 namespace freiform {
 namespace {
@@ -41,23 +41,19 @@ MeshTopology topology(const TriangleMesh& mesh) {
                  [&](std::size_t which) { which == 0 ? count_triangles() : void(edges.emplace(mesh)); });
 
     const std::size_t points = mesh.points.size();
-    std::vector<MeshTopology> counts((points + kPointsAtOnce - 1) / kPointsAtOnce);
-    parallel_for(counts.size(), 1, [&](std::size_t part) {
-        MeshTopology count;
+    std::atomic<int> open = 0, non_manifold = 0, misoriented = 0;
+    parallel_for((points + kPointsAtOnce - 1) / kPointsAtOnce, 1, [&](std::size_t part) {
         const std::size_t first = part * kPointsAtOnce;
+        int of_one = 0, of_many = 0, of_two = 0;
         edges->each(first, std::min(points, first + kPointsAtOnce), [&](const MeshEdge& edge) {
             const int uses = edge.forward + edge.backward;
-            count.open_edges += uses == 1;
-            count.non_manifold_edges += uses > 2;
-            count.misoriented_edges += uses == 2 && edge.forward != 1;
+            of_one += uses == 1;
+            of_many += uses > 2;
+            of_two += uses == 2 && edge.forward != 1;
         });
-        counts[part] = count;
+        open += of_one, non_manifold += of_many, misoriented += of_two;
     });
-    for (const MeshTopology& count : counts) {
-        out.open_edges += count.open_edges;
-        out.non_manifold_edges += count.non_manifold_edges;
-        out.misoriented_edges += count.misoriented_edges;
-    }
+    out.open_edges = open, out.non_manifold_edges = non_manifold, out.misoriented_edges = misoriented;
     return out;
 }
 

@@ -127,11 +127,22 @@ SortedEdges::SortedEdges(const TriangleMesh& mesh) : begin_(mesh.points.size() +
     });
 }
 
-std::pair<std::uint64_t*, std::uint64_t*> SortedEdges::sorted_at(std::size_t point) {
-    auto* const first = entries_.data() + begin_[point];
-    auto* const last = entries_.data() + begin_[point + 1];
-    sort(first, last);
-    return {first, last};
+void SortedEdges::each(std::size_t first, std::size_t end,
+                       const std::function<void(const MeshEdge&)>& visit) {
+    for (std::size_t a = first; a < end; ++a) {
+        const auto* it = entries_.data() + begin_[a];
+        const auto* const last = entries_.data() + begin_[a + 1];
+        sort(entries_.data() + begin_[a], entries_.data() + begin_[a + 1]);
+        while (it != last) {
+            MeshEdge edge{int(a), int(*it >> 32), 0, 0, {-1, -1}};
+            for (; it != last && int(*it >> 32) == edge.b; ++it) {
+                const int uses = edge.forward + edge.backward;
+                if (uses < 2) edge.triangles[std::size_t(uses)] = int((*it & 0xffffffffu) >> 1);
+                ++(*it & 1 ? edge.backward : edge.forward);
+            }
+            visit(edge);
+        }
+    }
 }
 
 std::vector<MeshEdge> edges(const TriangleMesh& mesh) {

@@ -49,10 +49,9 @@ std::array<PiecewiseBound, 2> second_by_pieces(const DerivativeQuery<1, 2>& curv
     return out;
 }
 
-std::unexpected<Refusal> too_many(int edge, const EdgeDemands& demands, std::size_t max_segments) {
-    return refuse(
-        RefusalKind::limit, "max_triangles",
-        text("edge ", edge, " needs more than ", max_segments, " segments within ", demands.tolerance));
+Refusal too_many(int edge, const EdgeDemands& demands, std::size_t max_segments) {
+    return {RefusalKind::limit, "max_triangles",
+            text("edge ", edge, " needs more than ", max_segments, " segments within ", demands.tolerance)};
 }
 
 }  // namespace
@@ -152,12 +151,11 @@ std::optional<double> EdgeMesher::torn_place(int edge, Interval on, const EdgeDe
 }
 
 // The parts of a smooth piece, as few as will do about, all of which keep the demands.
-Result<std::vector<EdgeMesher::Part>> EdgeMesher::piece(int edge, Interval on, int least,
-                                                        const EdgeDemands& demands,
-                                                        std::size_t max_segments) const {
+std::optional<Refusal> EdgeMesher::find_parts(int edge, Interval on, int least, const EdgeDemands& demands,
+                                              std::size_t max_segments, std::vector<Part>& out) const {
     const auto too_steep = [&](double at) {
-        return refuse(RefusalKind::ill_conditioned, text("edges[", edge, "]"),
-                      text("cannot be brought within ", demands.tolerance, " near parameter ", at));
+        return Refusal{RefusalKind::ill_conditioned, text("edges[", edge, "]"),
+                       text("cannot be brought within ", demands.tolerance, " near parameter ", at)};
     };
     if (const auto torn = torn_place(edge, on, demands)) return too_steep(*torn);
     auto stack = equal_parts(edge, on, least, demands, max_segments);
@@ -176,7 +174,8 @@ Result<std::vector<EdgeMesher::Part>> EdgeMesher::piece(int edge, Interval on, i
         stack.push_back(part(edge, middle, p.b, demands));
         stack.push_back(part(edge, p.a, middle, demands));
     }
-    return joined(edge, std::move(done), on.length() / least, demands);
+    out = joined(edge, std::move(done), on.length() / least, demands);
+    return std::nullopt;
 }
 
 Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::size_t max_segments) {
@@ -195,20 +194,21 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
     mesh.bound = 0;
     const std::size_t pieces = must.size() - 1;
     const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / int(pieces), 1) : 1;
-    std::vector<Result<std::vector<Part>>> found(pieces);
+    std::vector<std::vector<Part>> found(pieces);
+    std::vector<std::optional<Refusal>> refused(pieces);
     std::atomic<std::size_t> first_refused = pieces;  // what comes after it is not asked for
     parallel_for(pieces, 1, [&](std::size_t i) {
         std::size_t first = first_refused;
         if (first < i) return;
-        found[i] = piece(edge, {must[i], must[i + 1]}, least, demands, max_segments);
-        while (!found[i] && i < first && !first_refused.compare_exchange_weak(first, i)) {
+        refused[i] = find_parts(edge, {must[i], must[i + 1]}, least, demands, max_segments, found[i]);
+        while (refused[i] && i < first && !first_refused.compare_exchange_weak(first, i)) {
         }
     });
-    for (auto& parts : found) {
-        if (!parts) return std::unexpected(parts.error());
-        if (mesh.parameters.size() + parts->size() > max_segments + 1)
-            return too_many(edge, demands, max_segments);
-        for (const Part& p : *parts) {
+    if (first_refused < pieces) return std::unexpected(*refused[first_refused]);
+    for (const auto& parts : found) {
+        if (mesh.parameters.size() + parts.size() > max_segments + 1)
+            return std::unexpected(too_many(edge, demands, max_segments));
+        for (const Part& p : parts) {
             mesh.parameters.push_back(p.b);
             mesh.bound = std::max(mesh.bound, p.bound);
         }

@@ -104,8 +104,8 @@ private:
     std::vector<Part> joined(int edge, std::vector<Part> parts, double longest,
                              const EdgeDemands& demands) const;
     std::optional<double> torn_place(int edge, Interval on, const EdgeDemands& demands) const;
-    Result<std::vector<Part>> piece(int edge, Interval on, int least, const EdgeDemands& demands,
-                                    std::size_t max_segments) const;
+    std::optional<Refusal> find_parts(int edge, Interval on, int least, const EdgeDemands& demands,
+                                      std::size_t max_segments, std::vector<Part>& out) const;
 
     const Model& model_;
     std::span<const std::unique_ptr<DerivativeQuery<2, 3>>> faces_;

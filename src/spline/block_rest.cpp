@@ -77,7 +77,11 @@ constexpr auto kOfFew = [] {
     }
     return out;
 }();
-bool is_few(int count) { return 2 <= count && count <= kFew; }
+#if defined(__wasm__)
+constexpr bool is_few(int) { return false; }  // for size
+#else
+constexpr bool is_few(int count) { return 2 <= count && count <= kFew; }
+#endif
 
 // M on a part of the box, or around it. What the terms of its values are together, at most.
 double set_part(const BoxQuadratic& m, const std::array<Interval, 2>& part, kernel::RestTask& out) {
