@@ -67,7 +67,7 @@
 // |R - L R| <= max |R| in halves of the box, at whose corners R is 0, and twice that in other triangles in
 // it. M - L M is known with all signs; along N(x), which turns by t from n, it is that along n, and the part
 // beside n times what N turns by over |y - m| and from y to x (`rest_of_fit`), and n . R becomes |n . R| + t
-// |R| at most (`of_fit`). For one triangle M is S at its corners. Where it is hardly more than a side, such
+// |R| at most (`of_part`). For one triangle M is S at its corners. Where it is hardly more than a side, such
 // an M may be far from S beside it; then it is S at the ends and in the middle of that side, and what R is at
 // the third corner is added. So what is said of slivers tends to what is true of their sides.
 //
