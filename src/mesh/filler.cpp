@@ -18,6 +18,7 @@ namespace {
 constexpr double kPole = 1.0 / 64;
 constexpr double kLittleError = 1.0 / 64;     // of the tolerance: triangles without feet had better be large
 constexpr std::size_t kTrianglesAtOnce = 32;  // that a thread judges
+constexpr std::size_t kJudgedAtOnce = 1024;   // by all threads
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
@@ -296,7 +297,8 @@ bool Filler::improve(int triangle) {
 }
 
 // By all threads. Most triangles that there are at first are the last ones, and others mostly stay until it
-// is their turn: it is hardly more than what is asked for later, and the same.
+// is their turn: of some at a time it is a third more than what is asked for later where little is fine, and
+// the same. What became plain meanwhile is judged with those that are queued again, by any number of threads.
 void Filler::judge(std::span<const Entry> entries) {
     known_.resize(std::size_t(t_.size()));
     std::vector<int> unknown;
@@ -304,11 +306,24 @@ void Filler::judge(std::span<const Entry> entries) {
         if (t_.stamp(triangle) == stamp && !is_known(triangle)) unknown.push_back(triangle);
     sort(unknown.begin(), unknown.end());  // entries may repeat each other
     unknown.erase(std::unique(unknown.begin(), unknown.end()), unknown.end());
-    parallel_for((unknown.size() + kTrianglesAtOnce - 1) / kTrianglesAtOnce, 1, [&](std::size_t part) {
+    const auto in_parts = [](std::size_t all, auto&& of_part) {
+        parallel_for((all + kTrianglesAtOnce - 1) / kTrianglesAtOnce, 1, [&](std::size_t part) {
+            of_part(part * kTrianglesAtOnce, std::min(all, (part + 1) * kTrianglesAtOnce));
+        });
+    };
+    std::vector<int> corners;  // that nobody has asked for
+    positions_.resize(std::max(positions_.size(), t_.points().size()));
+    for (const int i : unknown)
+        for (const int v : t_.vertices(i))
+            if (auto& p = positions_[std::size_t(v)]; !p) p.emplace(), corners.push_back(v);
+    in_parts(corners.size(), [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) positions_[std::size_t(corners[i])] = looked_up(corners[i]);
+    });
+    in_parts(unknown.size(), [&](std::size_t first, std::size_t end) {
         int place = 0;
-        const std::size_t end = std::min(unknown.size(), (part + 1) * kTrianglesAtOnce);
-        for (std::size_t i = part * kTrianglesAtOnce; i < end; ++i)
-            known_[std::size_t(unknown[i])] = found(unknown[i], place, [&](int v) { return looked_up(v); });
+        for (std::size_t i = first; i < end; ++i)
+            known_[std::size_t(unknown[i])] =
+                found(unknown[i], place, [&](int v) { return *positions_[std::size_t(v)]; });
     });
 }
 
@@ -317,6 +332,8 @@ bool Filler::refine(std::size_t max_points) {
     std::vector<Entry> queue;
     std::size_t judged = 0;  // of the queue
     std::vector<int> again;
+    std::vector<std::size_t> latest;  // of triangles that are queued again: the entry that counts
+    std::size_t gone = 0;             // entries before those in the queue
     std::vector<Vec<2>> slivers;
     bool is_full = false;
     for (int i = 0; i < t_.size(); ++i)
@@ -327,16 +344,23 @@ bool Filler::refine(std::size_t max_points) {
     };
     for (std::size_t head = 0; head < queue.size(); ++head) {
         if (by_threads && head >= judged) {
-            judge(std::span(queue).subspan(head));
-            judged = queue.size();
+            judged = std::min(queue.size(), head + kJudgedAtOnce);
+            judge(std::span(queue).subspan(head, judged - head));
         }
         const Entry entry = queue[head];
-        if (t_.stamp(entry.triangle) != entry.stamp || is_fine(entry.triangle)) continue;
+        if (t_.stamp(entry.triangle) != entry.stamp) continue;
+        if (const auto i = std::size_t(entry.triangle); i < latest.size() && gone + head < latest[i])
+            continue;
+        if (is_fine(entry.triangle)) continue;
         // Where points have no foot, at poles and kinks, and need none.
         if (const Known& k = known(entry.triangle); !k.shifted && k.whole <= demands_.tolerance) {
             again.clear();
             if (make_plain(entry.triangle, again)) {
-                for (const int i : again) queue.push_back({i, t_.stamp(i)});
+                latest.resize(std::size_t(t_.size()));
+                for (const int i : again) {
+                    latest[std::size_t(i)] = gone + queue.size();
+                    queue.push_back({i, t_.stamp(i)});
+                }
                 continue;
             }
             // Smaller ones may have feet.
@@ -366,6 +390,7 @@ bool Filler::refine(std::size_t max_points) {
         if (head > 4096 && head > queue.size() / 2) {
             queue.erase(queue.begin(), queue.begin() + std::ptrdiff_t(head) + 1);
             judged -= std::min(judged, head + 1);
+            gone += head + 1;
             head = std::size_t(-1);
         }
     }
