@@ -25,8 +25,8 @@ import { gzipSync } from 'node:zlib';
 
 const kRun = 6, kCommon = 200;
 // Windows in bytes, and powers.
-const kTries = [24000, 25000, 25500, 26000, 26500, 27000, 28000].flatMap((window) =>
-  [0.75, 0.76, 0.77, 0.785, 0.8].map((power) => [window, power]));
+const kTries = [25500, 26000, 26250, 26500, 26750, 27000, 27500, 28500].flatMap((window) =>
+  [0.76, 0.77, 0.78, 0.79, 0.8].map((power) => [window, power]));
 
 class Bytes {
   constructor(bytes) { this.bytes = bytes; this.at = 0; }

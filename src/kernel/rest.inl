@@ -11,10 +11,14 @@ struct RestOf {
     static constexpr int kMostVectors = kNarrow ? kRational ? 2 : 1 : lanes_of(kMaxDegree + 3) / 4 + 1,
                          kVectors = kNarrow ? kMostVectors : -1;
 #if defined(__wasm__)
-    static constexpr int kWritten = -1;  // of numbers: one after the other is too large
+    static constexpr bool kWritten = false;  // one after the other in the code: too large for modules
 #else
-    static constexpr int kWritten = kNumbers;
+    static constexpr bool kWritten = true;
 #endif
+    template <int Count, class F>
+    static FF_BODY inline void each_of(F f) {
+        each<kWritten ? Count : -1>(Count, f);
+    }
     struct Row {  // then of differences of such rows
         V4 at[kNumbers][kMostVectors];
     };
@@ -51,7 +55,7 @@ struct RestOf {
     FF_PART void subtract_m(int r, Row& row) {
         const double p = rows - 1, s = r / p, bulge = rows > 2 ? s * ((p - r) / (p - 1)) : 0;
         V4 at[3], by_y[3], across_y[3];
-        each<3>(3, [&](int d) FF_BODY {
+        each_of<3>([&](int d) FF_BODY {
             const double below = (1 - s) * t.corner[0][d] + s * t.corner[1][d],
                          above = (1 - s) * t.corner[2][d] + s * t.corner[3][d];
             at[d] = all4(below + bulge * t.bulge[0][d]), by_y[d] = all4(above - below);
@@ -62,7 +66,7 @@ struct RestOf {
             const int k = 4 * v;
             const I4 mask = first_of(columns - k);
             const V4 y = load4(t.linear + k), bulge_y = load4(t.bulges + k);
-            each<3>(3, [&](int d) FF_BODY {
+            each_of<3>([&](int d) FF_BODY {
                 const V4 x = load4(t.numbers + std::size_t(d) * plane + std::size_t(r * lanes + k));
                 largest = larger(largest, size_of(x));
                 row.at[d][v] = kept(x - ((at[d] + y * by_y[d]) + bulge_y * across_y[d]), mask);
@@ -99,7 +103,7 @@ struct RestOf {
                 const V4 share = all4(t.share[0][3 * at + i]), w = load4(from + 3 * plane), part = share * w;
                 mean[3] += part;
                 each<3>(3, [&](int d) FF_BODY { mean[d] += share * load4(from + std::size_t(d) * plane); });
-                each<3>(3, [&](int l) FF_BODY {
+                each_of<3>([&](int l) FF_BODY {
                     each<3>(3, [&](int d) FF_BODY { of_m[l][d] += part * all4(m[i][l][d]); });
                 });
                 if (i > first) continue;
@@ -109,7 +113,7 @@ struct RestOf {
                     largest = larger(largest, size_of(load4(from + std::size_t(d) * plane)));
                 });
             }
-            each<3>(3, [&](int l) FF_BODY {
+            each_of<3>([&](int l) FF_BODY {
                 const V4 by = load4(t.share[1] + l * t.stride + k);
                 each<3>(3, [&](int d) FF_BODY { add(row.at[d] + v, l, by * (mean[d] - of_m[l][d])); });
                 add(row.at[kWeight] + v, l, by * mean[3]);
@@ -143,7 +147,7 @@ struct RestOf {
         each<kVectors>(vectors, [&](int v) FF_BODY {
             if (kNarrow ? v > 0 && Times == 2 : 4 * v >= count - Times) return;
             V4 x[kNumbers];
-            each<kWritten>(kNumbers, [&](int d) FF_BODY {
+            each_of<kNumbers>([&](int d) FF_BODY {
                 const V4 *const p = row.at[d], here = p[v];
                 x[d] = here;
                 if constexpr (Times == 1) x[d] = further<1>(p, v) - here;
@@ -160,7 +164,7 @@ struct RestOf {
         each<kVectors>(vectors, [&](int v) FF_BODY {
             const V4 divide = all4(1) / row.at[kWeight][v];
             V4 x[kNumbers] = {};
-            each<4>(4, [&](int d) FF_BODY { x[d] = row.at[d][v] * divide; });
+            each_of<4>([&](int d) FF_BODY { x[d] = row.at[d][v] * divide; });
             note(values, x);
         });
     }
