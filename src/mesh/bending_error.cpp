@@ -87,7 +87,7 @@ double Bending::of_part(const Box<2>& cell, double turn, double most, double u, 
         best = (rest_of_fit(cell, turn).error(most, u, v) + more) * (1 + 1e-13);
         const auto& off = middle.off;
         const Vec<2> half = half_sides({cell.side(0), cell.side(1)});
-        // What follows has that more, too, and normals turn for it as much or more.
+        // What follows has about that more, and normals turn for it as much or more.
         if (more <= Curvature{off[0], off[1], off[2]}.along(half[0], half[1]) / 2) return best;
     }
     return std::min(best, rest_in(cell, turn).error(most, u, v));
@@ -110,7 +110,7 @@ double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& cor
              }));
         const double more = (is_half ? 1 : 2) * fit.whole;
         best = (quadratic + more) * (1 + 1e-13);
-        if (more <= slips.along(h[0], h[1]) / 2) return best;  // what follows has that more, too
+        if (more <= slips.along(h[0], h[1]) / 2) return best;  // what follows has about that more
     }
     const auto& third = middle.whole_third;
     const Vec<2> third_of_half = off + (1.0 / 3) * h;

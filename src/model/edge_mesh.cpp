@@ -9,13 +9,13 @@
 #include <freiform/mesh/face_mesh.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace freiform {
 
 namespace {
 
+constexpr std::size_t kPiecesAtOnce = 16;
 constexpr int kClosedParts = 4;   // a closed edge must not collapse to a slit
 constexpr double kShort = 0.125;  // of the mean length: pieces that may bend much without mattering much
 
@@ -194,23 +194,23 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
     mesh.bound = 0;
     const std::size_t pieces = must.size() - 1;
     const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / int(pieces), 1) : 1;
-    std::vector<std::vector<Part>> found(pieces);
-    std::vector<std::optional<Refusal>> refused(pieces);
-    std::atomic<std::size_t> first_refused = pieces;  // what comes after it is not asked for
-    parallel_for(pieces, 1, [&](std::size_t i) {
-        std::size_t first = first_refused;
-        if (first < i) return;
-        refused[i] = find_parts(edge, {must[i], must[i + 1]}, least, demands, max_segments, found[i]);
-        while (refused[i] && i < first && !first_refused.compare_exchange_weak(first, i)) {
-        }
-    });
-    if (first_refused < pieces) return std::unexpected(*refused[first_refused]);
-    for (const auto& parts : found) {
-        if (mesh.parameters.size() + parts.size() > max_segments + 1)
-            return std::unexpected(too_many(edge, demands, max_segments));
-        for (const Part& p : parts) {
-            mesh.parameters.push_back(p.b);
-            mesh.bound = std::max(mesh.bound, p.bound);
+    // By threads, some pieces at a time: what is too much is seen before all of it is there.
+    for (std::size_t first = 0; first < pieces; first += kPiecesAtOnce) {
+        const std::size_t count = std::min(kPiecesAtOnce, pieces - first);
+        std::vector<std::vector<Part>> found(count);
+        std::vector<std::optional<Refusal>> refused(count);
+        parallel_for(count, 1, [&](std::size_t i) {
+            const Interval on{must[first + i], must[first + i + 1]};
+            refused[i] = find_parts(edge, on, least, demands, max_segments, found[i]);
+        });
+        for (std::size_t i = 0; i < count; ++i) {
+            if (refused[i]) return std::unexpected(*refused[i]);
+            if (mesh.parameters.size() + found[i].size() > max_segments + 1)
+                return std::unexpected(too_many(edge, demands, max_segments));
+            for (const Part& p : found[i]) {
+                mesh.parameters.push_back(p.b);
+                mesh.bound = std::max(mesh.bound, p.bound);
+            }
         }
     }
     return {};

@@ -12,8 +12,10 @@
 // Accuracy: coefficients of the block are off as block_bounds.cpp says; those of D are sums of at most nine
 // products, with fewer than 64 roundings, or 16 without weights, of numbers of the size |A_i| + w_i |b_k|. Of
 // b_k the size is that of the terms that M is the sum of, which are larger than M where the block reaches far
-// beyond the box. All of that counts twice, as M meets S at corners but for as much. Bulges along axes of
-// degree 1 are no part of blocks without weights: what they are at most is added.
+// beyond the box. All of that counts twice, as M meets S at corners but for as much. n . D is found once for
+// each coefficient, and differences are of that: n . D is off by less than sqrt(3) times what coordinates
+// are, and by five roundings more, together less than the twice of them, of which bounds along n have two.
+// Bulges along axes of degree 1 are no part of blocks without weights: what they are at most is added.
 #include "block_detail.hpp"
 
 #include <freiform/core/constants.hpp>
