@@ -1,3 +1,4 @@
+#include <freiform/io/bezierview.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/exchange.hpp>
@@ -20,13 +21,13 @@ namespace freiform {
 namespace {
 
 constexpr std::string_view kKnown =
-    ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
+    ".json, .bpt, .bv, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
 
 }  // namespace
 
 std::string_view name_of(FileFormat format) {
     static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep",
-                                                  "bsp",  "map", "svg",  "obj"};
+                                                  "bsp",  "map", "svg",  "obj",  "bv"};
     return kNames[int(format)];
 }
 
@@ -45,6 +46,7 @@ std::optional<FileFormat> format_of_name(std::string_view name) {
     if (ending == "map") return FileFormat::quake3_map;
     if (ending == "svg") return FileFormat::svg;
     if (ending == "obj") return FileFormat::obj;
+    if (ending == "bv") return FileFormat::bezierview;
     return std::nullopt;
 }
 
@@ -164,6 +166,7 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                          : *format == FileFormat::step       ? read_step_document(*bytes, options)
                          : *format == FileFormat::svg        ? read_svg_document(*bytes)
                          : *format == FileFormat::obj        ? read_obj_freeform(*bytes)
+                         : *format == FileFormat::bezierview ? read_bezierview(*bytes)
                                                              : read_bpt(*bytes));
 }
 

@@ -160,6 +160,7 @@ TEST(ReadAny, chooses_by_name_and_by_content) {
     EXPECT_EQ(format_of_name("/a.b/c.JSON"), FileFormat::json);
     EXPECT_EQ(format_of_name("x.stp"), FileFormat::step);
     EXPECT_EQ(format_of_name("x.IGS"), FileFormat::iges);
+    EXPECT_EQ(format_of_name("x.bv"), FileFormat::bezierview);
     EXPECT_EQ(format_of_name("/a.json/x"), std::nullopt);
     EXPECT_EQ(format_of_content("\n {"), FileFormat::json);
     EXPECT_EQ(format_of_content("ISO-10303-21;\nHEADER;"), FileFormat::step);
