@@ -6,6 +6,7 @@
 #include <freiform/io/obj_freeform.hpp>
 #include <freiform/io/quake3.hpp>
 #include <freiform/io/read.hpp>
+#include <freiform/io/rhino_read.hpp>
 #include <freiform/io/step_read.hpp>
 #include <freiform/io/svg.hpp>
 
@@ -21,13 +22,13 @@ namespace freiform {
 namespace {
 
 constexpr std::string_view kKnown =
-    ".json, .bpt, .bv, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
+    ".json, .bpt, .bv, .3dm, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
 
 }  // namespace
 
 std::string_view name_of(FileFormat format) {
-    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep",
-                                                  "bsp",  "map", "svg",  "obj",  "bv"};
+    static constexpr std::string_view kNames[] = {"json", "bpt", "step", "iges", "brep", "bsp",
+                                                  "map",  "svg", "obj",  "bv",   "3dm"};
     return kNames[int(format)];
 }
 
@@ -46,6 +47,7 @@ std::optional<FileFormat> format_of_name(std::string_view name) {
     if (ending == "map") return FileFormat::quake3_map;
     if (ending == "svg") return FileFormat::svg;
     if (ending == "obj") return FileFormat::obj;
+    if (ending == "3dm") return FileFormat::rhino;
     if (ending == "bv") return FileFormat::bezierview;
     return std::nullopt;
 }
@@ -57,6 +59,7 @@ std::optional<FileFormat> format_of_content(std::string_view bytes) {
     const std::string_view s = bytes.substr(first);
     if (s.starts_with("<svg") || (s.starts_with("<?xml") && s.substr(0, 4096).find("<svg") != s.npos))
         return FileFormat::svg;
+    if (s.starts_with("3D Geometry File Format ")) return FileFormat::rhino;
     if (s.starts_with("IBSP")) return FileFormat::quake3_bsp;
     if (s[0] == '{' || s[0] == '[') return FileFormat::json;
     if (s.starts_with("ISO-10303-21")) return FileFormat::step;
@@ -81,11 +84,12 @@ Document document_with(Model model) {
     return document;
 }
 
-Result<Document> read_step_document(std::string_view bytes, const ReadOptions& options) {
+// STEP, and what is read as such.
+Result<Document> read_model(std::string_view bytes, FileFormat format, const ReadOptions& options) {
     StepReadOptions limits;
     if (options.max_memory > 0) limits.memory_bytes = options.max_memory;
     limits.repair = options.repair, limits.repair_limit = options.repair_limit;
-    auto model = read_step(bytes, limits);
+    auto model = format == FileFormat::step ? read_step(bytes, limits) : read_3dm(bytes, limits);
     if (!model) return std::unexpected(model.error());
     return document_with(std::move(*model));
 }
@@ -163,7 +167,8 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
     return within(label, *format == FileFormat::json         ? read_document(*bytes)
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
-                         : *format == FileFormat::step       ? read_step_document(*bytes, options)
+                         : *format == FileFormat::step       ? read_model(*bytes, *format, options)
+                         : *format == FileFormat::rhino      ? read_model(*bytes, *format, options)
                          : *format == FileFormat::svg        ? read_svg_document(*bytes)
                          : *format == FileFormat::obj        ? read_obj_freeform(*bytes)
                          : *format == FileFormat::bezierview ? read_bezierview(*bytes)

@@ -46,6 +46,8 @@ public:
         e_.add(text("SHAPE_DEFINITION_REPRESENTATION(#", of_shape, ",#", shape, ")"));
     }
 
+    int context() const { return context_; }
+
     void style(const std::vector<int>& items) {
         if (!items.empty())
             e_.add(text("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',", Entities::refs(items),

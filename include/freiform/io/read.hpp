@@ -9,7 +9,7 @@
 
 namespace freiform {
 
-enum class FileFormat { json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj, bezierview };
+enum class FileFormat { json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj, bezierview, rhino };
 std::string_view name_of(FileFormat format);
 
 // By the ending of a file name; case does not matter.

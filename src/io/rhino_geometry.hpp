@@ -1,0 +1,121 @@
+// Curves, surfaces and polysurfaces of 3DM files, as they are there: a curve is a row of pieces, each of its
+// own kind, with a parameter that is linear in that of the piece.
+#pragma once
+#include "rhino_bytes.hpp"
+
+#include <freiform/spline/geometry.hpp>
+
+#include <array>
+#include <variant>
+#include <vector>
+
+namespace freiform::rhino {
+
+struct Piece {
+    CurveGeometry<3> shape;
+    Interval on;  // the part of `shape`
+    Interval of;  // the parameters of the whole curve
+    Vec<3> end(bool last) const { return jet<0>(shape, last ? on.hi : on.lo).value(); }
+};
+
+struct CurveInSpace {
+    std::vector<Piece> pieces;  // not empty, one after the other
+    Interval domain() const { return {pieces.front().of.lo, pieces.back().of.hi}; }
+    Vec<3> end(bool last) const { return last ? pieces.back().end(true) : pieces.front().end(false); }
+};
+
+// S(u, v) = origin + x x + y y, where (x, y) is (u, v) moved from `domain` to `extent`.
+struct PlaneInSpace {
+    Vec<3> origin{}, x{}, y{};
+    std::array<Interval, 2> extent{};
+};
+// The profile, turned about the axis by the angles `angle`; v runs along it.
+struct Revolved {
+    CurveInSpace profile;
+    Vec<3> origin{}, axis{};  // of length 1
+    Interval angle;
+    bool transposed = false;  // u runs along the profile
+};
+// first(u) + second(v); a straight line if `second` is one.
+struct Summed {
+    CurveInSpace first, second;
+};
+using SurfaceInSpace = std::variant<Surface<Vec<3>>, Surface<Hom<3>>, PlaneInSpace, Revolved, Summed>;
+
+// A curve, and how something runs along it.
+struct Along {
+    int curve = -1;
+    std::optional<Interval> part;  // of the parameters of the curve; none: all
+    bool backward = false;         // against it
+};
+struct TrimOf {
+    int edge = -1;
+    bool reversed = false;
+    // In the parameters of the surface, in the direction of the loop; none if it is not said.
+    Along image = {};
+};
+struct EdgeOf {
+    Along along;
+    std::array<int, 2> vertex{-1, -1};
+};
+struct LoopOf {
+    std::vector<TrimOf> trims;
+    int vertex = -1;  // of a loop without edges
+};
+struct FaceOf {
+    int surface = -1;
+    bool reversed = false;
+    std::vector<LoopOf> loops;
+};
+struct BrepOf {
+    std::vector<CurveInSpace> curves;
+    std::vector<std::optional<CurveInSpace>> images;      // curves in parameters; none: could not be read
+    std::vector<std::optional<SurfaceInSpace>> surfaces;  // none: could not be read
+    std::vector<Vec<3>> vertices;
+    std::vector<EdgeOf> edges;
+    std::vector<FaceOf> faces;
+    std::vector<std::pair<int, Refusal>> refused;  // faces that are not there, by their number in the file
+    std::vector<int> numbers;                      // of `faces` in the file; empty: one after the other
+    bool is_solid() const;                         // every edge is used twice
+};
+
+Result<CurveInSpace> read_curve(StoredObject o, int depth = 0);
+// The same, of the data of the class.
+Result<CurveInSpace> read_nurbs_curve(Bytes& b);
+Result<CurveInSpace> read_poly_curve(Bytes& b, int depth);
+Result<SurfaceInSpace> read_surface(StoredObject o);
+Result<SurfaceInSpace> read_nurbs_surface(Bytes& b);
+Result<BrepOf> read_brep(StoredObject o);
+Result<BrepOf> read_extrusion(StoredObject o);
+// A face of all of the surface, with the edges around it.
+Result<BrepOf> whole_face(SurfaceInSpace surface);
+
+// Numbers as they are in files: knots without the first and the last, homogeneous points.
+struct SplineNumbers {
+    int dim = 3;
+    bool rational = false;
+    std::array<int, 2> order{}, size{1, 1};
+    std::array<std::vector<double>, 2> knots;
+    std::vector<double> points;
+};
+Result<CurveInSpace> spline_curve(const SplineNumbers& n);
+Result<SurfaceInSpace> spline_surface(const SplineNumbers& n);
+
+// Of edges whose file has no vertices: ends that a loop goes through one after the other are one.
+void find_vertices(BrepOf& b);
+
+// Of the curve with this number; in its own direction.
+Result<CurveInSpace> part_of(const CurveInSpace& c, const Along& along);
+// The part of a curve over a part of its parameters, each piece cut; what is off an end by rounding is there.
+Result<CurveInSpace> part_of(const CurveInSpace& c, Interval part);
+// x -> origin + x0 axes[0] + x1 axes[1] + x2 axes[2]: the same curve elsewhere, but for rounding.
+CurveInSpace mapped(const CurveInSpace& c, const Vec<3>& origin, const std::array<Vec<3>, 3>& axes);
+inline CurveInSpace moved(const CurveInSpace& c, const Vec<3>& by) {
+    return mapped(c, by, {Vec<3>{{1, 0, 0}}, Vec<3>{{0, 1, 0}}, Vec<3>{{0, 0, 1}}});
+}
+// One piece after the other, from the last end to the first; parameters count from 0.
+CurveInSpace backwards(const CurveInSpace& c);
+bool is_straight(const CurveInSpace& c);
+CurveInSpace segment(const Vec<3>& a, const Vec<3>& b);
+
+}  // namespace freiform::rhino

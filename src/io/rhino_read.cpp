@@ -1,0 +1,204 @@
+#include "rhino_file.hpp"
+#include "rhino_step.hpp"
+
+#include <freiform/io/rhino_read.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace freiform {
+
+namespace {
+
+using namespace rhino;
+
+constexpr int kMostNested = 32;            // blocks in each other
+constexpr double kUnsaidTolerance = 1e-6;  // where a file says none
+
+class Reader3dm {
+public:
+    Reader3dm(File3dm file, const StepReadOptions& options)
+        : f_(std::move(file)), options_(options), step_(f_.tolerance > 0 ? f_.tolerance : kUnsaidTolerance) {
+        for (std::size_t i = 0; i < f_.objects.size(); ++i)
+            if (!f_.objects[i].uuid.empty()) by_uuid_.emplace(f_.objects[i].uuid, i);
+    }
+
+    Result<Model> read() {
+        std::vector<int> shapes, wires;
+        for (std::size_t i = 0; i < f_.objects.size(); ++i) {
+            if (f_.objects[i].is_part_of_block) continue;
+            if (auto ok = add(i, 0, shapes, wires); !ok) return std::unexpected(ok.error());
+        }
+        tell_left_out(shapes.empty() ? 0 : wires.size());
+        const std::vector<int>& items = shapes.empty() ? wires : shapes;
+        if (items.empty()) {
+            if (refused_.empty() && step_.refused.empty())
+                return refuse(
+                    RefusalKind::no_answer, "file",
+                    text("the file has ", f_.objects.size(), " objects, but no surfaces and no curves"));
+            const Refusal& r = refused_.empty() ? step_.refused.front() : refused_.front();
+            return refuse(r.kind, r.where, text("nothing of the file could be taken over: ", r.message));
+        }
+        auto model = read_step(step_.take(items), options_);
+        if (!model) return std::unexpected(step_.told(model.error()));
+        return told(std::move(*model));
+    }
+
+private:
+    std::string label(std::size_t i) const {
+        const std::string& name = f_.objects[i].name;
+        return name.empty() ? text("object ", i) : text("object ", i, " \"", name, "\"");
+    }
+
+    Result<void> add(std::size_t i, int depth, std::vector<int>& shapes, std::vector<int>& wires) {
+        FileObject& o = f_.objects[i];
+        if (step_.bytes() > options_.memory_bytes)
+            return refuse(
+                RefusalKind::limit, label(i),
+                text("the model takes more than the ", options_.memory_bytes, " bytes that it may"));
+        step_.begin(label(i));
+        if (o.why) return refused_.push_back(within(i, *o.why)), Result<void>{};
+        const Kind kind = o.object.of.kind;
+        const auto style = [&](int item) {
+            if (!o.layer.empty()) step_.put_on_layer(o.layer, item);
+            if (o.colour) step_.colour(*o.colour, item);
+        };
+        if (kind == Kind::instance) return add_instance(i, depth, shapes, wires);
+        if (kind == Kind::passed_over) return {};
+        if (kind == Kind::left_out) return ++left_out_[o.object.of.name], Result<void>{};
+        if (o.curve || is_curve(kind)) {
+            const auto c = o.curve ? Result<CurveInSpace>(*o.curve) : read_curve(o.object);
+            const auto id = c ? step_.curve(*c, o.name) : Result<int>(std::unexpected(c.error()));
+            if (!id) return refused_.push_back(within(i, id.error())), Result<void>{};
+            style(*id);
+            wires.push_back(*id);
+            return {};
+        }
+        const auto b = o.brep ? Result<BrepOf>(*o.brep) : brep_of(o.object);
+        const auto ids = b ? step_.brep(*b, o.name) : Result<std::vector<int>>(std::unexpected(b.error()));
+        if (!ids) return refused_.push_back(within(i, ids.error())), Result<void>{};
+        for (const int id : *ids) style(id), shapes.push_back(id);
+        return {};
+    }
+
+    static bool is_curve(Kind k) {
+        return k == Kind::nurbs_curve || k == Kind::line_curve || k == Kind::arc_curve ||
+               k == Kind::polyline_curve || k == Kind::poly_curve;
+    }
+
+    static Result<BrepOf> brep_of(const StoredObject& o) {
+        if (o.of.kind == Kind::brep) return read_brep(o);
+        if (o.of.kind == Kind::extrusion) return read_extrusion(o);
+        auto s = read_surface(o);
+        if (!s) return std::unexpected(s.error());
+        return whole_face(std::move(*s));
+    }
+
+    Result<void> add_instance(std::size_t i, int depth, std::vector<int>& shapes, std::vector<int>& wires) {
+        Bytes b = f_.objects[i].object.data;
+        int minor = 0;
+        b.version(minor);
+        const std::string of = b.uuid();
+        std::array<double, 16> map{};
+        for (double& x : map) x = b.f64();
+        const auto refused = [&](RefusalKind kind, std::string why) {
+            refused_.push_back({kind, label(i), std::move(why)});
+            return Result<void>{};
+        };
+        if (b.failed()) return refused(RefusalKind::unreadable, "an instance ends too early");
+        const auto block = block_of(of, depth + 1);
+        if (!block) {
+            if (block.error().kind == RefusalKind::limit) return std::unexpected(block.error());
+            return refused(block.error().kind, block.error().message);
+        }
+        step_.begin(label(i));
+        const std::string& name = f_.objects[i].name;
+        for (std::size_t k = 0; k < 2; ++k) {
+            if ((*block)[k] == 0) continue;
+            const auto id = step_.instance((*block)[k], name.empty() ? f_.blocks.at(of).name : name, map);
+            if (!id)
+                return refused(
+                    RefusalKind::unsupported,
+                    "an instance of a block that is stretched, sheared or projected; moved, turned, "
+                    "mirrored and scaled ones are read");
+            if (!f_.objects[i].layer.empty()) step_.put_on_layer(f_.objects[i].layer, *id);
+            (k == 0 ? shapes : wires).push_back(*id);
+        }
+        return {};
+    }
+
+    // Its faces and its curves, each as a representation; 0 where it has none.
+    Result<std::array<int, 2>> block_of(const std::string& uuid, int depth) {
+        if (const auto known = made_.find(uuid); known != made_.end()) return known->second;
+        const auto at = f_.blocks.find(uuid);
+        if (at == f_.blocks.end())
+            return refuse(RefusalKind::invalid, "", "an instance of a block that the file does not have");
+        if (!open_.insert(uuid).second)
+            return refuse(RefusalKind::invalid, "",
+                          text("the block \"", at->second.name, "\" contains itself"));
+        if (depth > kMostNested) return refuse(RefusalKind::limit, "", "blocks are nested too deep");
+        std::vector<int> shapes, wires;
+        for (const std::string& member : at->second.members) {
+            const auto object = by_uuid_.find(member);
+            if (object == by_uuid_.end()) continue;
+            if (auto ok = add(object->second, depth, shapes, wires); !ok) return std::unexpected(ok.error());
+        }
+        open_.erase(uuid);
+        if (shapes.empty() && wires.empty() && at->second.members.empty())
+            return refuse(RefusalKind::unsupported, "",
+                          text("an instance of the block \"", at->second.name,
+                               "\", which is empty or in another file"));
+        const std::array<int, 2> made{shapes.empty() ? 0 : step_.block(at->second.name, shapes),
+                                      wires.empty() ? 0 : step_.block(at->second.name, wires)};
+        made_.emplace(uuid, made);
+        return made;
+    }
+
+    Refusal within(std::size_t i, Refusal r) const {
+        r.where = r.where.empty() ? label(i) : text(label(i), ", ", r.where);
+        return r;
+    }
+
+    void tell_left_out(std::size_t curves) {
+        const auto tell = [&](std::size_t n, std::string_view what) {
+            refused_.push_back({RefusalKind::unsupported, "file",
+                                text(n, " ", what, n == 1 ? " is left out" : "s are left out")});
+        };
+        if (curves > 0)
+            refused_.push_back({RefusalKind::unsupported, "file",
+                                text(curves, curves == 1 ? " curve that bounds no face is left out"
+                                                         : " curves that bound no face are left out")});
+        for (const auto& [what, n] : left_out_) tell(n, what);
+    }
+
+    Model told(Model m) {
+        m.unit = f_.unit;
+        for (Refusal& r : m.refused) r = step_.told(std::move(r));
+        for (Approximation& a : m.approximations)
+            a.where = step_.told(a.where, true), a.what = step_.told(a.what, true);
+        for (Repair& r : m.repairs) r.where = step_.told(r.where, true), r.what = step_.told(r.what, false);
+        for (auto* more : {&step_.refused, &refused_})
+            m.refused.insert(m.refused.end(), more->begin(), more->end());
+        return m;
+    }
+
+    File3dm f_;
+    StepReadOptions options_;
+    StepText step_;
+    std::map<std::string, std::size_t> by_uuid_;
+    std::map<std::string, std::array<int, 2>> made_;
+    std::set<std::string> open_;
+    std::map<std::string_view, std::size_t> left_out_;
+    std::vector<Refusal> refused_;
+};
+
+}  // namespace
+
+Result<Model> read_3dm(std::string_view bytes, const StepReadOptions& options) {
+    auto file = parse_3dm(bytes);
+    if (!file) return std::unexpected(file.error());
+    return Reader3dm(std::move(*file), options).read();
+}
+
+}  // namespace freiform

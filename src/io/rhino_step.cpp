@@ -1,0 +1,364 @@
+#include "rhino_step.hpp"
+
+#include "step_trace.hpp"
+
+#include <freiform/core/visit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace freiform::rhino {
+
+namespace {
+
+using detail::Entities;
+using detail::quoted;
+using detail::real;
+
+std::string triple(const Vec<3>& p) { return detail::listed_as(p.c, real); }
+
+constexpr double kSimilar = 1e-9;  // of a map: what it is a similarity up to
+
+Refusal within(const std::string& part, Refusal r) {
+    r.where = r.where.empty() ? part : text(part, ", ", r.where);
+    return r;
+}
+
+}  // namespace
+
+namespace {
+
+// None of arcs.
+std::optional<CurveGeometry<3>> bounded_spline(const Piece& p) {
+    if (std::holds_alternative<Conic<3>>(p.shape)) return std::nullopt;
+    if (!std::holds_alternative<Line<3>>(p.shape)) return p.shape;
+    Net<1, Vec<3>> net({2}, {p.end(false), p.end(true)});
+    return CurveGeometry<3>(Curve<Vec<3>>::trusted({*BSplineBasis::bezier(1)}, std::move(net)));
+}
+
+}  // namespace
+
+// A curve that ends where the piece does.
+Result<int> StepText::bounded(const Piece& p) {
+    return visit_one(
+        [&](const auto& g) -> Result<int> {
+            using G = std::remove_cvref_t<decltype(g)>;
+            if constexpr (std::same_as<G, Line<3>>) {
+                return geometry_.curve(*bounded_spline(p));
+            } else if constexpr (std::same_as<G, Conic<3>>) {
+                const auto whole = geometry_.curve(p.shape);
+                if (!whole || p.on.length() >= 2 * std::numbers::pi * (1 - 0x1p-30)) return whole;
+                const int a = geometry_.point(p.end(false)), b = geometry_.point(p.end(true));
+                return entities_.add(
+                    text("TRIMMED_CURVE('',#", *whole, ",(#", a, "),(#", b, "),.T.,.CARTESIAN.)"));
+            } else {
+                return geometry_.one(g);
+            }
+        },
+        p.shape);
+}
+
+Result<int> StepText::row(const CurveInSpace& c) {
+    std::vector<int> segments;
+    for (const Piece& p : c.pieces) {
+        const auto id = bounded(p);
+        if (!id) return id;
+        segments.push_back(entities_.add(text("COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#", *id, ")")));
+    }
+    return entities_.add(text("COMPOSITE_CURVE('',", Entities::refs(segments), ",.U.)"));
+}
+
+Result<int> StepText::curve_of(const CurveInSpace& c) {
+    return c.pieces.size() == 1 ? geometry_.curve(c.pieces[0].shape) : row(c);
+}
+
+int StepText::edge_on(int curve, int from, int to, std::string_view name) {
+    return entities_.add(text("EDGE_CURVE(", quoted(name), ",#", from, ",#", to, ",#", curve, ",.T.)"));
+}
+
+Result<int> StepText::surface(const SurfaceInSpace& s, bool& turned) {
+    turned = false;
+    return visit_one(
+        [&](const auto& x) -> Result<int> {
+            using S = std::remove_cvref_t<decltype(x)>;
+            if constexpr (std::same_as<S, PlaneInSpace>) {
+                return geometry_.surface(Extrusion{Line<3>{x.origin, x.x}, x.y, SurfaceKind::plane});
+            } else if constexpr (std::same_as<S, Revolved>) {
+                turned = x.transposed;
+                const auto id = curve_of(x.profile);
+                if (!id) return id;
+                const int at = geometry_.point(x.origin);
+                const int axis = entities_.add(text("DIRECTION('',", triple(x.axis), ")"));
+                const int placed = entities_.add(text("AXIS1_PLACEMENT('',#", at, ",#", axis, ")"));
+                return entities_.add(text("SURFACE_OF_REVOLUTION('',#", *id, ",#", placed, ")"));
+            } else if constexpr (std::same_as<S, Summed>) {
+                turned = !is_straight(x.second);
+                const CurveInSpace &line = turned ? x.first : x.second, &other = turned ? x.second : x.first;
+                const Vec<3> a = line.end(false), d = line.end(true) - a;
+                const CurveInSpace swept = a == Vec<3>{} ? other : moved(other, a);
+                if (is_straight(swept))
+                    return geometry_.surface(Extrusion{swept.pieces[0].shape, d, SurfaceKind::plane});
+                const auto id = curve_of(swept);
+                if (!id) return id;
+                const int direction = entities_.add(text("DIRECTION('',", triple(d), ")"));
+                const int v = entities_.add(text("VECTOR('',#", direction, ",", real(norm(d)), ")"));
+                return entities_.add(text("SURFACE_OF_LINEAR_EXTRUSION('',#", *id, ",#", v, ")"));
+            } else {
+                return geometry_.surface(x);
+            }
+        },
+        s);
+}
+
+void StepText::refuse_face(const std::string& label, Refusal r) {
+    refused.push_back(within(marks_.back().object, within(label, std::move(r))));
+}
+
+struct StepText::Work {
+    const BrepOf& b;
+    std::vector<int> vertices, edges, surfaces;  // entities; 0: not yet
+    std::vector<char> turned;                    // surfaces whose entity has the other normal
+    // Of each edge: a spline and the edge's curve in its parameters, in the edge's direction.
+    std::vector<std::vector<std::pair<int, CurveInSpace>>> images;
+};
+
+void StepText::find_images(Work& w) {
+    for (const FaceOf& f : w.b.faces) {
+        const auto& surface = *w.b.surfaces[std::size_t(f.surface)];
+        if (!std::holds_alternative<Surface<Vec<3>>>(surface) &&
+            !std::holds_alternative<Surface<Hom<3>>>(surface))
+            continue;
+        for (const LoopOf& l : f.loops)
+            for (const TrimOf& t : l.trims) {
+                const auto n = std::size_t(t.image.curve);
+                if (t.image.curve < 0 || n >= w.b.images.size() || !w.b.images[n]) continue;
+                auto c = part_of(*w.b.images[n], t.image);
+                if (!c || c->pieces.size() != 1) continue;
+                if (t.image.backward != t.reversed) c = backwards(*c);
+                w.images[std::size_t(t.edge)].emplace_back(f.surface, std::move(*c));
+            }
+    }
+}
+
+// The curve in space with those in parameters, all in one direction.
+Result<int> StepText::edge_of(Work& w, std::size_t edge) {
+    const EdgeOf& e = w.b.edges[edge];
+    auto c = part_of(w.b.curves[std::size_t(e.along.curve)], e.along);
+    if (!c) return std::unexpected(c.error());
+    if (e.along.backward) c = backwards(*c);
+    const auto space = curve_of(*c);
+    if (!space) return space;
+    std::vector<int> pcurves;
+    for (const auto& [surface, image] : w.images[edge]) {
+        const auto spline = bounded_spline(image.pieces[0]);
+        const auto flat = spline ? step::without_last_coordinate(*spline) : std::nullopt;
+        const auto id = flat ? geometry_.pcurve(*flat, w.surfaces[std::size_t(surface)]) : Result<int>(0);
+        if (id && *id > 0) pcurves.push_back(*id);
+    }
+    const int shape = pcurves.empty() ? *space : geometry_.surface_curve(*space, pcurves);
+    return edge_on(shape, w.vertices[std::size_t(e.vertex[0])], w.vertices[std::size_t(e.vertex[1])], "");
+}
+
+// 0 of a loop that bounds nothing.
+Result<int> StepText::loop_of(Work& w, const LoopOf& l, const std::string& face) {
+    std::vector<int> around;
+    for (const TrimOf& t : l.trims) {
+        int& e = w.edges[std::size_t(t.edge)];
+        if (e == 0) {
+            const std::string label = text("edge ", t.edge);
+            mark_part(label);
+            const auto id = edge_of(w, std::size_t(t.edge));
+            mark_part(face);
+            if (!id) return std::unexpected(within(label, id.error()));
+            e = *id;
+        }
+        around.push_back(entities_.add(text("ORIENTED_EDGE('',*,*,#", e, t.reversed ? ",.F.)" : ",.T.)")));
+    }
+    if (!around.empty()) return entities_.add(text("EDGE_LOOP('',", Entities::refs(around), ")"));
+    return l.vertex < 0 ? 0 : entities_.add(text("VERTEX_LOOP('',#", w.vertices[std::size_t(l.vertex)], ")"));
+}
+
+Result<int> StepText::face_of(Work& w, const FaceOf& face, const std::string& label) {
+    const auto n = std::size_t(face.surface);
+    if (face.loops.empty()) return w.surfaces[n];
+    const bool reversed = face.reversed != (w.turned[n] != 0);
+    std::vector<int> bounds;
+    for (const LoopOf& l : face.loops) {
+        const auto loop = loop_of(w, l, label);
+        if (!loop) return loop;
+        // Loops run about the surface's own normal here, about the face's there.
+        if (*loop > 0)
+            bounds.push_back(entities_.add(text("FACE_BOUND('',#", *loop, reversed ? ",.F.)" : ",.T.)")));
+    }
+    return entities_.add(
+        text("ADVANCED_FACE('',", Entities::refs(bounds), ",#", w.surfaces[n], reversed ? ",.F.)" : ",.T.)"));
+}
+
+Result<std::vector<int>> StepText::brep(const BrepOf& b, std::string_view name) {
+    Work w{b,
+           {},
+           std::vector<int>(b.edges.size(), 0),
+           std::vector<int>(b.surfaces.size(), 0),
+           std::vector<char>(b.surfaces.size(), 0),
+           {}};
+    w.images.resize(b.edges.size());
+    for (const Vec<3>& p : b.vertices) {
+        if (!is_finite(p))
+            return refuse(RefusalKind::invalid, "", "a vertex has coordinates that are no numbers");
+        const int at = geometry_.point(p);
+        w.vertices.push_back(entities_.add(text("VERTEX_POINT('',#", at, ")")));
+    }
+    find_images(w);
+    std::vector<std::string> labels;
+    std::vector<std::optional<Refusal>> why(b.surfaces.size());
+    for (std::size_t f = 0; f < b.faces.size(); ++f) {
+        labels.push_back(text("face ", b.numbers.empty() ? int(f) : b.numbers[f]));
+        const auto n = std::size_t(b.faces[f].surface);
+        if (w.surfaces[n] != 0 || why[n]) continue;
+        mark_part(labels.back());
+        bool turned = false;
+        const auto id = surface(*b.surfaces[n], turned);
+        if (!id) why[n] = id.error();
+        w.surfaces[n] = id ? *id : 0, w.turned[n] = turned;
+    }
+    std::vector<int> faces;
+    for (std::size_t f = 0; f < b.faces.size(); ++f) {
+        const auto& no_surface = why[std::size_t(b.faces[f].surface)];
+        mark_part(labels[f]);
+        const auto id =
+            no_surface ? Result<int>(std::unexpected(*no_surface)) : face_of(w, b.faces[f], labels[f]);
+        if (id)
+            faces.push_back(*id);
+        else
+            refuse_face(labels[f], id.error());
+    }
+    for (const auto& [number, r] : b.refused) refuse_face(text("face ", number), r);
+    if (faces.empty()) return std::vector<int>{};
+    mark_part("");
+    const bool solid = b.is_solid() && faces.size() == b.faces.size();
+    const int shell =
+        entities_.add(text(solid ? "CLOSED_SHELL(''," : "OPEN_SHELL('',", Entities::refs(faces), ")"));
+    return std::vector{
+        entities_.add(solid ? text("MANIFOLD_SOLID_BREP(", quoted(name), ",#", shell, ")")
+                            : text("SHELL_BASED_SURFACE_MODEL(", quoted(name), ",(#", shell, "))"))};
+}
+
+Result<int> StepText::curve(const CurveInSpace& c, std::string_view name) {
+    const auto vertex = [&](bool last) {
+        return entities_.add(text("VERTEX_POINT('',#", geometry_.point(c.end(last)), ")"));
+    };
+    const int from = vertex(false);
+    double size = 0;
+    for (const Piece& p : c.pieces)
+        for (const double t : {p.on.middle(), p.on.hi})
+            size = std::max(size, max_abs(jet<0>(p.shape, t).value() - c.end(false)));
+    const bool closed = max_abs(c.end(true) - c.end(false)) <= 0x1p-36 * size;
+    const auto shape = curve_of(c);
+    if (!shape) return shape;
+    const int id = edge_on(*shape, from, closed ? from : vertex(true), name);
+    const int set = entities_.add(text("CONNECTED_EDGE_SET('',(#", id, "))"));
+    return entities_.add(text("EDGE_BASED_WIREFRAME_MODEL(", quoted(name), ",(#", set, "))"));
+}
+
+int StepText::block(std::string_view name, const std::vector<int>& items) {
+    if (frame_ == 0) {
+        const int at = geometry_.point({});
+        frame_ = entities_.add(text("AXIS2_PLACEMENT_3D('',#", at, ",$,$)"));
+    }
+    const int shapes = entities_.add(text("SHAPE_REPRESENTATION(", quoted(name), ",", Entities::refs(items),
+                                          ",#", product_.context(), ")"));
+    return entities_.add(text("REPRESENTATION_MAP(#", frame_, ",#", shapes, ")"));
+}
+
+std::optional<int> StepText::instance(int block, std::string_view name, const std::array<double, 16>& m) {
+    std::array<Vec<3>, 3> axis;
+    for (std::size_t i = 0; i < 3; ++i) axis[i] = {{m[i], m[i + 4], m[i + 8]}};
+    const double scale = norm(axis[0]);
+    if (!(scale > 0) || !std::isfinite(scale)) return std::nullopt;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!(std::abs(norm(axis[i]) - scale) <= kSimilar * scale)) return std::nullopt;
+        if (!(std::abs(dot(axis[i], axis[(i + 1) % 3])) <= kSimilar * scale * scale)) return std::nullopt;
+    }
+    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return std::nullopt;
+    const Vec<3> to{{m[3], m[7], m[11]}};
+    if (!is_finite(to)) return std::nullopt;
+    std::array<int, 3> ids{};
+    for (std::size_t i = 0; i < 3; ++i)
+        ids[i] = entities_.add(text("DIRECTION('',", triple((1 / scale) * axis[i]), ")"));
+    const int at = geometry_.point(to);
+    const int by = entities_.add(text("CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',#", ids[0], ",#", ids[1],
+                                      ",#", at, ",", real(scale), ",#", ids[2], ")"));
+    return entities_.add(text("MAPPED_ITEM(", quoted(name), ",#", block, ",#", by, ")"));
+}
+
+void StepText::colour(const Colour& c, int item) {
+    int& style = colours_[{c.r, c.g, c.b}];
+    if (style == 0) {
+        int id = entities_.add(text("COLOUR_RGB('',", real(c.r), ",", real(c.g), ",", real(c.b), ")"));
+        id = entities_.add(text("FILL_AREA_STYLE_COLOUR('',#", id, ")"));
+        id = entities_.add(text("FILL_AREA_STYLE('',(#", id, "))"));
+        id = entities_.add(text("SURFACE_STYLE_FILL_AREA(#", id, ")"));
+        id = entities_.add(text("SURFACE_SIDE_STYLE('',(#", id, "))"));
+        id = entities_.add(text("SURFACE_STYLE_USAGE(.BOTH.,#", id, ")"));
+        style = entities_.add(text("PRESENTATION_STYLE_ASSIGNMENT((#", id, "))"));
+    }
+    styled_.push_back(entities_.add(text("STYLED_ITEM('',(#", style, "),#", item, ")")));
+}
+
+std::string StepText::take(const std::vector<int>& items) {
+    mark("", "");
+    for (const auto& [name, on] : layers_)
+        entities_.add(text("PRESENTATION_LAYER_ASSIGNMENT(", quoted(name), ",'',", Entities::refs(on), ")"));
+    product_.add("SHAPE_REPRESENTATION", "", items);
+    product_.style(styled_);
+    std::string out = text(
+        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
+        "FILE_SCHEMA(('AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF'));\nENDSEC;\nDATA;\n");
+    out += entities_.out;
+    entities_.out = {};
+    return out + "ENDSEC;\nEND-ISO-10303-21;\n";
+}
+
+// "#17 EDGE_LOOP" is what of the file the entity 17 was made for.
+std::string StepText::told(const std::string& s, bool with_object) const {
+    std::string out;
+    for (std::size_t i = 0; i < s.size();) {
+        std::size_t j = i + 1;
+        int id = 0;
+        while (s[i] == '#' && j < s.size() && s[j] >= '0' && s[j] <= '9' && j < i + 9)
+            id = 10 * id + (s[j++] - '0');
+        if (s[i] != '#' || j == i + 1) {
+            out += s[i++];
+            continue;
+        }
+        std::size_t name = j;
+        if (name < s.size() && s[name] == ' ') {
+            ++name;
+            while (name < s.size() &&
+                   ((s[name] >= 'A' && s[name] <= 'Z') || (s[name] >= '0' && s[name] <= '9') ||
+                    s[name] == '_' || s[name] == '&'))
+                ++name;
+            if (name > j + 1) j = name;
+        }
+        const auto after =
+            std::partition_point(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.after < id; });
+        const Mark* m = after == marks_.begin() ? nullptr : &*(after - 1);
+        const bool object = m != nullptr && with_object && !m->object.empty();
+        if (object) out += m->object;
+        if (m != nullptr && !m->part.empty())
+            out += (object ? ", " : "") + m->part;
+        else if (!object)
+            out += "a part of it";
+        i = j;
+    }
+    return out;
+}
+
+Refusal StepText::told(Refusal r) const {
+    r.where = told(r.where, true);
+    r.message = told(r.message, false);
+    return r;
+}
+
+}  // namespace freiform::rhino
