@@ -21,8 +21,13 @@ namespace freiform {
 
 namespace {
 
+#if defined(__wasm__)
+constexpr std::string_view kKnown =
+    ".json, .bpt, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
+#else
 constexpr std::string_view kKnown =
     ".json, .bpt, .bv, .3dm, .step (.stp), .iges (.igs), .brep (.brp), .svg, .obj, .bsp, .map";
+#endif
 
 }  // namespace
 
@@ -47,8 +52,10 @@ std::optional<FileFormat> format_of_name(std::string_view name) {
     if (ending == "map") return FileFormat::quake3_map;
     if (ending == "svg") return FileFormat::svg;
     if (ending == "obj") return FileFormat::obj;
+#if !defined(__wasm__)  // the module, which is loaded over a network, does without them
     if (ending == "3dm") return FileFormat::rhino;
     if (ending == "bv") return FileFormat::bezierview;
+#endif
     return std::nullopt;
 }
 
@@ -59,7 +66,9 @@ std::optional<FileFormat> format_of_content(std::string_view bytes) {
     const std::string_view s = bytes.substr(first);
     if (s.starts_with("<svg") || (s.starts_with("<?xml") && s.substr(0, 4096).find("<svg") != s.npos))
         return FileFormat::svg;
+#if !defined(__wasm__)
     if (s.starts_with("3D Geometry File Format ")) return FileFormat::rhino;
+#endif
     if (s.starts_with("IBSP")) return FileFormat::quake3_bsp;
     if (s[0] == '{' || s[0] == '[') return FileFormat::json;
     if (s.starts_with("ISO-10303-21")) return FileFormat::step;
@@ -85,11 +94,16 @@ Document document_with(Model model) {
 }
 
 // STEP, and what is read as such.
-Result<Document> read_model(std::string_view bytes, FileFormat format, const ReadOptions& options) {
+Result<Document> read_model(std::string_view bytes, [[maybe_unused]] FileFormat format,
+                            const ReadOptions& options) {
     StepReadOptions limits;
     if (options.max_memory > 0) limits.memory_bytes = options.max_memory;
     limits.repair = options.repair, limits.repair_limit = options.repair_limit;
+#if defined(__wasm__)
+    auto model = read_step(bytes, limits);
+#else
     auto model = format == FileFormat::step ? read_step(bytes, limits) : read_3dm(bytes, limits);
+#endif
     if (!model) return std::unexpected(model.error());
     return document_with(std::move(*model));
 }
@@ -164,14 +178,16 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
                           : text("neither its name nor its content says a format that is known: ", kKnown));
     if (is_exchange(*format, options))
         return within(label, path == "-" ? import_bytes(*bytes, options) : import(path, options));
+#if !defined(__wasm__)
+    if (*format == FileFormat::rhino) return within(label, read_model(*bytes, *format, options));
+    if (*format == FileFormat::bezierview) return within(label, read_bezierview(*bytes));
+#endif
     return within(label, *format == FileFormat::json         ? read_document(*bytes)
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
                          : *format == FileFormat::step       ? read_model(*bytes, *format, options)
-                         : *format == FileFormat::rhino      ? read_model(*bytes, *format, options)
                          : *format == FileFormat::svg        ? read_svg_document(*bytes)
                          : *format == FileFormat::obj        ? read_obj_freeform(*bytes)
-                         : *format == FileFormat::bezierview ? read_bezierview(*bytes)
                                                              : read_bpt(*bytes));
 }
 

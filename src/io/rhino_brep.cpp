@@ -11,10 +11,6 @@ namespace freiform::rhino {
 
 namespace {
 
-std::unexpected<Refusal> invalid(const Bytes& b, std::string message) {
-    return refuse(RefusalKind::invalid, text("byte ", b.at()), std::move(message));
-}
-
 // Arrays that may have no object in a place.
 template <class T, class Read>
 Result<std::vector<std::optional<T>>> objects(Bytes& b, std::string_view what, Read&& read) {
@@ -249,7 +245,7 @@ Result<BrepOf> read_version2(Bytes& bytes) {
         auto c = read_poly_curve(bytes, 0);
         if (!c) return std::unexpected(c.error());
         b.curves.push_back(std::move(*c));
-        b.edges.push_back({{i}, {-1, -1}});
+        b.edges.push_back({{i, {}, false}, {-1, -1}});
     }
     for (int i = 0; i < faces; ++i) {
         auto s = read_nurbs_surface(bytes);

@@ -121,8 +121,9 @@ struct Chunk {
     bool is_short() const { return (type & tag::kShort) != 0; }
 };
 
-// What is said of chunks that end too early.
+// What is said of chunks that end too early, and of numbers that contradict each other.
 std::unexpected<Refusal> ends_early(const Bytes& b, std::string_view what);
+std::unexpected<Refusal> invalid(const Bytes& b, std::string message);
 
 // Classes whose geometry is read, and what others are called.
 enum class Kind {

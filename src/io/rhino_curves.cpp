@@ -9,12 +9,8 @@ namespace freiform::rhino {
 
 namespace {
 
-constexpr int kMostNested = 16;     // polycurves in each other
+constexpr int kMostCurvesInCurves = 16;  // polycurves in each other
 constexpr double kAtEnd = 0x1p-30;  // of a piece: what is left over after a cut this near its end is nothing
-
-std::unexpected<Refusal> invalid(const Bytes& b, std::string message) {
-    return refuse(RefusalKind::invalid, text("byte ", b.at()), std::move(message));
-}
 
 Piece line_piece(const Vec<3>& a, const Vec<3>& b, Interval of) { return {Line<3>{a, b - a}, {0, 1}, of}; }
 
@@ -98,7 +94,7 @@ Result<CurveInSpace> read_nurbs_curve(Bytes& b) {
 }
 
 Result<CurveInSpace> read_poly_curve(Bytes& b, int depth) {
-    if (depth > kMostNested)
+    if (depth > kMostCurvesInCurves)
         return refuse(RefusalKind::limit, text("byte ", b.at()), "curves are nested too deep");
     int minor = 0;
     b.version(minor);
@@ -256,30 +252,73 @@ Result<CurveInSpace> part_of(const CurveInSpace& c, const Along& along) {
     return along.part ? part_of(c, *along.part) : Result<CurveInSpace>(c);
 }
 
-CurveInSpace mapped(const CurveInSpace& c, const Vec<3>& origin, const std::array<Vec<3>, 3>& axes) {
-    const auto vector = [&](const Vec<3>& d) { return d[0] * axes[0] + d[1] * axes[1] + d[2] * axes[2]; };
-    const auto point = [&](const Vec<3>& p) { return origin + vector(p); };
+AffineMap operator*(const AffineMap& a, const AffineMap& b) {
+    return {a.point(b.origin), {a.vector(b.axes[0]), a.vector(b.axes[1]), a.vector(b.axes[2])}};
+}
+
+namespace {
+
+template <class S>
+S mapped_patch(const S& s, const AffineMap& map) {
+    auto net = s.net();
+    for (auto& x : net.flat()) {
+        if constexpr (Space<typename S::Coefficients>::kRational)
+            x = weighted(map.point(project(x)), x.weight());
+        else
+            x = map.point(x);
+    }
+    return S::trusted(s.bases(), std::move(net));
+}
+
+Result<SurfaceInSpace> mapped_surface(const SurfaceInSpace& s, const AffineMap& map) {
+    return visit_one(
+        [&](const auto& x) -> Result<SurfaceInSpace> {
+            using S = std::remove_cvref_t<decltype(x)>;
+            if constexpr (std::same_as<S, PlaneInSpace>)
+                return PlaneInSpace{map.point(x.origin), map.vector(x.x), map.vector(x.y), x.extent};
+            else if constexpr (std::same_as<S, Revolved>)
+                return refuse(RefusalKind::unsupported, "",
+                              "a surface of revolution in a block that is stretched, sheared or projected");
+            else if constexpr (std::same_as<S, Summed>)
+                return Summed{mapped(x.first, map), mapped(x.second, {{}, map.axes})};
+            else
+                return mapped_patch(x, map);
+        },
+        s);
+}
+
+}  // namespace
+
+CurveInSpace mapped(const CurveInSpace& c, const AffineMap& map) {
     CurveInSpace out = c;
     for (Piece& p : out.pieces)
         visit_one(
             [&](auto& g) {
                 using G = std::remove_cvref_t<decltype(g)>;
-                if constexpr (std::same_as<G, Line<3>>) {
-                    g = {point(g.origin), vector(g.direction)};
-                } else if constexpr (std::same_as<G, Conic<3>>) {
-                    g = {g.kind, point(g.centre), vector(g.x), vector(g.y)};
-                } else {
-                    auto net = g.net();
-                    for (auto& x : net.flat()) {
-                        if constexpr (Space<typename G::Coefficients>::kRational)
-                            x = weighted(point(project(x)), x.weight());
-                        else
-                            x = point(x);
-                    }
-                    g = G::trusted(g.bases(), std::move(net));
-                }
+                if constexpr (std::same_as<G, Line<3>>)
+                    g = {map.point(g.origin), map.vector(g.direction)};
+                else if constexpr (std::same_as<G, Conic<3>>)
+                    g = {g.kind, map.point(g.centre), map.vector(g.x), map.vector(g.y)};
+                else
+                    g = mapped_patch(g, map);
             },
             p.shape);
+    return out;
+}
+
+Result<BrepOf> mapped(const BrepOf& b, const AffineMap& map) {
+    BrepOf out = b;
+    for (CurveInSpace& c : out.curves) c = mapped(c, map);
+    for (Vec<3>& p : out.vertices) p = map.point(p);
+    for (auto& s : out.surfaces) {
+        if (!s) continue;
+        auto image = mapped_surface(*s, map);
+        if (!image) return std::unexpected(image.error());
+        s = std::move(*image);
+    }
+    // In a mirror normals that pointed out point in.
+    if (dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0)
+        for (FaceOf& f : out.faces) f.reversed = !f.reversed;
     return out;
 }
 

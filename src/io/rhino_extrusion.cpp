@@ -82,14 +82,14 @@ public:
         const auto at = [&](int i, int end) { return vertex + 2 * (i % corners) + end; };
         const auto add_edge = [&](CurveInSpace c, int from, int to) {
             b.curves.push_back(std::move(c));
-            b.edges.push_back({{int(b.curves.size()) - 1}, {from, to}});
+            b.edges.push_back({{int(b.curves.size()) - 1, {}, false}, {from, to}});
         };
         // Of piece i: below at 2 i, above at 2 i + 1; then the edges along the path.
         std::vector<CurveInSpace> below;
         for (int i = 0; i < n; ++i)
             for (int end = 0; end < 2; ++end) {
                 const End& e = ends_[std::size_t(end)];
-                CurveInSpace c = mapped({{pieces->pieces[std::size_t(i)]}}, e.at, e.axes);
+                CurveInSpace c = mapped(CurveInSpace{{pieces->pieces[std::size_t(i)]}}, {e.at, e.axes});
                 if (end == 0) below.push_back(c);
                 add_edge(std::move(c), at(i, end), at(i + 1, end));
             }

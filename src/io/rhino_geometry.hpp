@@ -108,11 +108,19 @@ void find_vertices(BrepOf& b);
 Result<CurveInSpace> part_of(const CurveInSpace& c, const Along& along);
 // The part of a curve over a part of its parameters, each piece cut; what is off an end by rounding is there.
 Result<CurveInSpace> part_of(const CurveInSpace& c, Interval part);
-// x -> origin + x0 axes[0] + x1 axes[1] + x2 axes[2]: the same curve elsewhere, but for rounding.
-CurveInSpace mapped(const CurveInSpace& c, const Vec<3>& origin, const std::array<Vec<3>, 3>& axes);
-inline CurveInSpace moved(const CurveInSpace& c, const Vec<3>& by) {
-    return mapped(c, by, {Vec<3>{{1, 0, 0}}, Vec<3>{{0, 1, 0}}, Vec<3>{{0, 0, 1}}});
-}
+// x -> origin + x0 axes[0] + x1 axes[1] + x2 axes[2].
+struct AffineMap {
+    Vec<3> origin{};
+    std::array<Vec<3>, 3> axes{Vec<3>{{1, 0, 0}}, Vec<3>{{0, 1, 0}}, Vec<3>{{0, 0, 1}}};
+    Vec<3> vector(const Vec<3>& d) const { return d[0] * axes[0] + d[1] * axes[1] + d[2] * axes[2]; }
+    Vec<3> point(const Vec<3>& p) const { return origin + vector(p); }
+};
+AffineMap operator*(const AffineMap& a, const AffineMap& b);  // first b, then a
+// The image but for rounding.
+CurveInSpace mapped(const CurveInSpace& c, const AffineMap& map);
+inline CurveInSpace moved(const CurveInSpace& c, const Vec<3>& by) { return mapped(c, {by}); }
+// Unsupported: surfaces of revolution, whose image is none in general.
+Result<BrepOf> mapped(const BrepOf& b, const AffineMap& map);
 // One piece after the other, from the last end to the first; parameters count from 0.
 CurveInSpace backwards(const CurveInSpace& c);
 bool is_straight(const CurveInSpace& c);

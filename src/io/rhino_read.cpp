@@ -13,7 +13,9 @@ namespace {
 
 using namespace rhino;
 
-constexpr int kMostNested = 32;            // blocks in each other
+constexpr int kMostBlocksInBlocks = 32;  // blocks in each other
+// That a model takes, of each byte of the text that it is made of.
+constexpr std::uint64_t kMemoryPerByte = 16;
 constexpr double kUnsaidTolerance = 1e-6;  // where a file says none
 
 class Reader3dm {
@@ -28,7 +30,7 @@ public:
         std::vector<int> shapes, wires;
         for (std::size_t i = 0; i < f_.objects.size(); ++i) {
             if (f_.objects[i].is_part_of_block) continue;
-            if (auto ok = add(i, 0, shapes, wires); !ok) return std::unexpected(ok.error());
+            if (auto ok = add(i, 0, nullptr, shapes, wires); !ok) return std::unexpected(ok.error());
         }
         tell_left_out(shapes.empty() ? 0 : wires.size());
         const std::vector<int>& items = shapes.empty() ? wires : shapes;
@@ -51,9 +53,11 @@ private:
         return name.empty() ? text("object ", i) : text("object ", i, " \"", name, "\"");
     }
 
-    Result<void> add(std::size_t i, int depth, std::vector<int>& shapes, std::vector<int>& wires) {
+    // `map`: where it is an image of what the file has, because no block can be it.
+    Result<void> add(std::size_t i, int depth, const AffineMap* map, std::vector<int>& shapes,
+                     std::vector<int>& wires) {
         FileObject& o = f_.objects[i];
-        if (step_.bytes() > options_.memory_bytes)
+        if (step_.bytes() > options_.memory_bytes / kMemoryPerByte)
             return refuse(
                 RefusalKind::limit, label(i),
                 text("the model takes more than the ", options_.memory_bytes, " bytes that it may"));
@@ -64,18 +68,20 @@ private:
             if (!o.layer.empty()) step_.put_on_layer(o.layer, item);
             if (o.colour) step_.colour(*o.colour, item);
         };
-        if (kind == Kind::instance) return add_instance(i, depth, shapes, wires);
+        if (kind == Kind::instance) return add_instance(i, depth, map, shapes, wires);
         if (kind == Kind::passed_over) return {};
         if (kind == Kind::left_out) return ++left_out_[o.object.of.name], Result<void>{};
         if (o.curve || is_curve(kind)) {
-            const auto c = o.curve ? Result<CurveInSpace>(*o.curve) : read_curve(o.object);
+            auto c = o.curve ? Result<CurveInSpace>(*o.curve) : read_curve(o.object);
+            if (c && map != nullptr) c = mapped(*c, *map);
             const auto id = c ? step_.curve(*c, o.name) : Result<int>(std::unexpected(c.error()));
             if (!id) return refused_.push_back(within(i, id.error())), Result<void>{};
             style(*id);
             wires.push_back(*id);
             return {};
         }
-        const auto b = o.brep ? Result<BrepOf>(*o.brep) : brep_of(o.object);
+        auto b = o.brep ? Result<BrepOf>(*o.brep) : brep_of(o.object);
+        if (b && map != nullptr) b = mapped(*b, *map);
         const auto ids = b ? step_.brep(*b, o.name) : Result<std::vector<int>>(std::unexpected(b.error()));
         if (!ids) return refused_.push_back(within(i, ids.error())), Result<void>{};
         for (const int id : *ids) style(id), shapes.push_back(id);
@@ -95,18 +101,24 @@ private:
         return whole_face(std::move(*s));
     }
 
-    Result<void> add_instance(std::size_t i, int depth, std::vector<int>& shapes, std::vector<int>& wires) {
+    Result<void> add_instance(std::size_t i, int depth, const AffineMap* outer, std::vector<int>& shapes,
+                              std::vector<int>& wires) {
         Bytes b = f_.objects[i].object.data;
         int minor = 0;
         b.version(minor);
         const std::string of = b.uuid();
-        std::array<double, 16> map{};
-        for (double& x : map) x = b.f64();
+        std::array<double, 16> m{};
+        for (double& x : m) x = b.f64();
         const auto refused = [&](RefusalKind kind, std::string why) {
             refused_.push_back({kind, label(i), std::move(why)});
             return Result<void>{};
         };
         if (b.failed()) return refused(RefusalKind::unreadable, "an instance ends too early");
+        if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+            return refused(RefusalKind::unsupported, "an instance of a block that is projected");
+        AffineMap map{{{m[3], m[7], m[11]}}, {}};
+        for (std::size_t k = 0; k < 3; ++k) map.axes[k] = {{m[k], m[k + 4], m[k + 8]}};
+        if (outer != nullptr) map = *outer * map;
         const auto block = block_of(of, depth + 1);
         if (!block) {
             if (block.error().kind == RefusalKind::limit) return std::unexpected(block.error());
@@ -117,14 +129,19 @@ private:
         for (std::size_t k = 0; k < 2; ++k) {
             if ((*block)[k] == 0) continue;
             const auto id = step_.instance((*block)[k], name.empty() ? f_.blocks.at(of).name : name, map);
-            if (!id)
-                return refused(
-                    RefusalKind::unsupported,
-                    "an instance of a block that is stretched, sheared or projected; moved, turned, "
-                    "mirrored and scaled ones are read");
+            if (!id) return add_members(of, depth + 1, map, shapes, wires);
             if (!f_.objects[i].layer.empty()) step_.put_on_layer(f_.objects[i].layer, *id);
             (k == 0 ? shapes : wires).push_back(*id);
         }
+        return {};
+    }
+
+    // Of a block whose image is no similar one: each by itself.
+    Result<void> add_members(const std::string& block, int depth, const AffineMap& map,
+                             std::vector<int>& shapes, std::vector<int>& wires) {
+        for (const std::string& member : f_.blocks.at(block).members)
+            if (const auto object = by_uuid_.find(member); object != by_uuid_.end())
+                if (auto ok = add(object->second, depth, &map, shapes, wires); !ok) return ok;
         return {};
     }
 
@@ -137,12 +154,13 @@ private:
         if (!open_.insert(uuid).second)
             return refuse(RefusalKind::invalid, "",
                           text("the block \"", at->second.name, "\" contains itself"));
-        if (depth > kMostNested) return refuse(RefusalKind::limit, "", "blocks are nested too deep");
+        if (depth > kMostBlocksInBlocks) return refuse(RefusalKind::limit, "", "blocks are nested too deep");
         std::vector<int> shapes, wires;
         for (const std::string& member : at->second.members) {
             const auto object = by_uuid_.find(member);
             if (object == by_uuid_.end()) continue;
-            if (auto ok = add(object->second, depth, shapes, wires); !ok) return std::unexpected(ok.error());
+            if (auto ok = add(object->second, depth, nullptr, shapes, wires); !ok)
+                return std::unexpected(ok.error());
         }
         open_.erase(uuid);
         if (shapes.empty() && wires.empty() && at->second.members.empty())
@@ -161,15 +179,14 @@ private:
     }
 
     void tell_left_out(std::size_t curves) {
-        const auto tell = [&](std::size_t n, std::string_view what) {
-            refused_.push_back({RefusalKind::unsupported, "file",
-                                text(n, " ", what, n == 1 ? " is left out" : "s are left out")});
+        const auto tell = [&](std::string message) {
+            refused_.push_back({RefusalKind::unsupported, "file", std::move(message)});
         };
         if (curves > 0)
-            refused_.push_back({RefusalKind::unsupported, "file",
-                                text(curves, curves == 1 ? " curve that bounds no face is left out"
-                                                         : " curves that bound no face are left out")});
-        for (const auto& [what, n] : left_out_) tell(n, what);
+            tell(text(curves, curves == 1 ? " curve that bounds no face is left out"
+                                          : " curves that bound no face are left out"));
+        for (const auto& [what, n] : left_out_)
+            tell(text(what, ": ", n, n == 1 ? " object is left out" : " objects are left out"));
     }
 
     Model told(Model m) {

@@ -141,6 +141,25 @@ void StepText::find_images(Work& w) {
     }
 }
 
+// 0 if it has no entity.
+int StepText::pcurve(const CurveGeometry<2>& c, int surface) {
+    const auto flat = visit_one(
+        [&](const auto& g) -> Result<int> {
+            if constexpr (requires { g.net(); })
+                return geometry_.one(g);
+            else
+                return 0;
+        },
+        c);
+    if (!flat || *flat == 0) return 0;
+    if (parameters_ == 0)
+        parameters_ = entities_.add(
+            "(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()"
+            "REPRESENTATION_CONTEXT('2D SPACE',''))");
+    const int held = entities_.add(text("DEFINITIONAL_REPRESENTATION('',(#", *flat, "),#", parameters_, ")"));
+    return entities_.add(text("PCURVE('',#", surface, ",#", held, ")"));
+}
+
 // The curve in space with those in parameters, all in one direction.
 Result<int> StepText::edge_of(Work& w, std::size_t edge) {
     const EdgeOf& e = w.b.edges[edge];
@@ -153,10 +172,13 @@ Result<int> StepText::edge_of(Work& w, std::size_t edge) {
     for (const auto& [surface, image] : w.images[edge]) {
         const auto spline = bounded_spline(image.pieces[0]);
         const auto flat = spline ? step::without_last_coordinate(*spline) : std::nullopt;
-        const auto id = flat ? geometry_.pcurve(*flat, w.surfaces[std::size_t(surface)]) : Result<int>(0);
-        if (id && *id > 0) pcurves.push_back(*id);
+        if (flat) pcurves.push_back(pcurve(*flat, w.surfaces[std::size_t(surface)]));
     }
-    const int shape = pcurves.empty() ? *space : geometry_.surface_curve(*space, pcurves);
+    std::erase(pcurves, 0);
+    const int shape =
+        pcurves.empty()
+            ? *space
+            : entities_.add(text("SURFACE_CURVE('',#", *space, ",", Entities::refs(pcurves), ",.CURVE_3D.)"));
     return edge_on(shape, w.vertices[std::size_t(e.vertex[0])], w.vertices[std::size_t(e.vertex[1])], "");
 }
 
@@ -271,22 +293,18 @@ int StepText::block(std::string_view name, const std::vector<int>& items) {
     return entities_.add(text("REPRESENTATION_MAP(#", frame_, ",#", shapes, ")"));
 }
 
-std::optional<int> StepText::instance(int block, std::string_view name, const std::array<double, 16>& m) {
-    std::array<Vec<3>, 3> axis;
-    for (std::size_t i = 0; i < 3; ++i) axis[i] = {{m[i], m[i + 4], m[i + 8]}};
+std::optional<int> StepText::instance(int block, std::string_view name, const AffineMap& map) {
+    const auto& axis = map.axes;
     const double scale = norm(axis[0]);
-    if (!(scale > 0) || !std::isfinite(scale)) return std::nullopt;
+    if (!(scale > 0) || !std::isfinite(scale) || !is_finite(map.origin)) return std::nullopt;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!(std::abs(norm(axis[i]) - scale) <= kSimilar * scale)) return std::nullopt;
         if (!(std::abs(dot(axis[i], axis[(i + 1) % 3])) <= kSimilar * scale * scale)) return std::nullopt;
     }
-    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return std::nullopt;
-    const Vec<3> to{{m[3], m[7], m[11]}};
-    if (!is_finite(to)) return std::nullopt;
     std::array<int, 3> ids{};
     for (std::size_t i = 0; i < 3; ++i)
         ids[i] = entities_.add(text("DIRECTION('',", triple((1 / scale) * axis[i]), ")"));
-    const int at = geometry_.point(to);
+    const int at = geometry_.point(map.origin);
     const int by = entities_.add(text("CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',#", ids[0], ",#", ids[1],
                                       ",#", at, ",", real(scale), ",#", ids[2], ")"));
     return entities_.add(text("MAPPED_ITEM(", quoted(name), ",#", block, ",#", by, ")"));

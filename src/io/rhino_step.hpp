@@ -29,7 +29,7 @@ public:
     // A representation that others can have somewhere: the image of each.
     int block(std::string_view name, const std::vector<int>& items);
     // Nothing if the map is no similarity.
-    std::optional<int> instance(int block, std::string_view name, const std::array<double, 16>& map);
+    std::optional<int> instance(int block, std::string_view name, const AffineMap& map);
 
     void put_on_layer(const std::string& layer, int item) { layers_[layer].push_back(item); }
     void colour(const Colour& c, int item);
@@ -62,6 +62,7 @@ private:
     int edge_on(int curve, int from, int to, std::string_view name);
     struct Work;
     static void find_images(Work& w);
+    int pcurve(const CurveGeometry<2>& c, int surface);
     Result<int> edge_of(Work& w, std::size_t edge);
     Result<int> loop_of(Work& w, const LoopOf& l, const std::string& face);
     Result<int> face_of(Work& w, const FaceOf& face, const std::string& label);
@@ -74,7 +75,7 @@ private:
     std::map<std::string, std::vector<int>> layers_;
     std::map<std::array<double, 3>, int> colours_;
     std::vector<int> styled_;
-    int frame_ = 0;
+    int frame_ = 0, parameters_ = 0;  // entities that are there once
 };
 
 }  // namespace freiform::rhino

@@ -18,10 +18,6 @@ constexpr double kSameAngle = 0x1p-30;
 // Of the size of what they bound: ends of curves nearer to each other, or to an axis, are there.
 constexpr double kClose = 0x1p-36;
 
-std::unexpected<Refusal> invalid(const Bytes& b, std::string message) {
-    return refuse(RefusalKind::invalid, text("byte ", b.at()), std::move(message));
-}
-
 Result<SurfaceInSpace> read_plane(Bytes& b) {
     int minor = 0;
     b.version(minor);
@@ -123,7 +119,8 @@ Result<SurfaceInSpace> sum_of(const CurveInSpace& a, const CurveInSpace& b) {
                     constexpr bool kRational = Space<typename F::Coefficients>::kRational ||
                                                Space<typename S::Coefficients>::kRational;
                     using P = std::conditional_t<kRational, Hom<3>, Vec<3>>;
-                    const auto p = f.net().flat(), q = s.net().flat();
+                    const auto p = f.net().flat();
+                    const auto q = s.net().flat();
                     Net<2, P> net({int(p.size()), int(q.size())});
                     for (std::size_t i = 0; i < p.size(); ++i)
                         for (std::size_t j = 0; j < q.size(); ++j) {
@@ -237,7 +234,7 @@ BrepOf face_within(SurfaceInSpace surface, Sides s) {
     const auto add = [&](std::optional<CurveInSpace>& side, int from, int to) {
         if (!side) return -1;
         b.curves.push_back(std::move(*side));
-        b.edges.push_back({{int(b.curves.size()) - 1}, {from, to}});
+        b.edges.push_back({{int(b.curves.size()) - 1, {}, false}, {from, to}});
         return int(b.edges.size()) - 1;
     };
     const int below = add(s.below, at[0], at[1]), right = add(s.right, at[1], at[2]);
@@ -266,7 +263,7 @@ CurveInSpace turned(const CurveInSpace& c, const Revolved& r, double angle) {
         axes[std::size_t(i)] = turned(e, r.axis, angle);
     }
     const Vec<3> back = r.origin[0] * axes[0] + r.origin[1] * axes[1] + r.origin[2] * axes[2];
-    return mapped(c, r.origin - back, axes);
+    return mapped(c, {r.origin - back, axes});
 }
 
 double extent_of(const CurveInSpace& c) {

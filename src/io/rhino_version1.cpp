@@ -19,10 +19,6 @@ constexpr std::uint32_t kForeignCurve = 0x00020008, kForeignSurface = 0x00020009
 constexpr std::uint32_t kName = 0x02000001, kOnLayer = 0xA0000001;
 }  // namespace v1
 
-std::unexpected<Refusal> invalid(const Bytes& b, std::string message) {
-    return refuse(RefusalKind::invalid, text("byte ", b.at()), std::move(message));
-}
-
 // The numbers of an object of this type, which come after all that is said of it.
 Result<Bytes> numbers_in(Bytes b, std::uint32_t type, std::string_view what) {
     while (b.left() > 0) {
@@ -254,7 +250,7 @@ private:
             auto c = read_row(*space);
             if (!c) return std::unexpected(c.error());
             t.use.edge = int(b_.edges.size());
-            b_.edges.push_back({{int(b_.curves.size())}, {-1, -1}});
+            b_.edges.push_back({{int(b_.curves.size()), {}, false}, {-1, -1}});
             b_.curves.push_back(std::move(*c));
         }
         trims_.push_back(std::move(t));

@@ -103,8 +103,10 @@ public:
         return visit_one([&](const auto& x) { return one(x); }, c);
     }
 
-    // A curve in the parameters of a surface.
-    Result<int> pcurve(const CurveGeometry<2>& c, int of_surface) {
+    // A curve in space that is the image of a parameter curve of a surface, and says so.
+    Result<int> surface_curve(const CurveGeometry<3>& in_space, const CurveGeometry<2>& c, int of_surface) {
+        const auto space = curve(in_space);
+        if (!space) return space;
         const auto flat = visit_one(
             [&](const auto& x) -> Result<int> {
                 if constexpr (requires { x.net(); })
@@ -120,19 +122,8 @@ public:
                 "CONTEXT("
                 "'2D SPACE',''))");
         const int held = e_.add(text("DEFINITIONAL_REPRESENTATION('',(#", *flat, "),#", parameters_, ")"));
-        return e_.add(text("PCURVE('',#", of_surface, ",#", held, ")"));
-    }
-
-    // A curve in space that is the image of parameter curves, and says so.
-    int surface_curve(int in_space, const std::vector<int>& pcurves) {
-        return e_.add(text("SURFACE_CURVE('',#", in_space, ",", Entities::refs(pcurves), ",.CURVE_3D.)"));
-    }
-    Result<int> surface_curve(const CurveGeometry<3>& in_space, const CurveGeometry<2>& c, int of_surface) {
-        const auto space = curve(in_space);
-        if (!space) return space;
-        const auto image = pcurve(c, of_surface);
-        if (!image) return image;
-        return surface_curve(*space, {*image});
+        const int pcurve = e_.add(text("PCURVE('',#", of_surface, ",#", held, ")"));
+        return e_.add(text("SURFACE_CURVE('',#", *space, ",(#", pcurve, "),.CURVE_3D.)"));
     }
 
     Result<int> surface(const SurfaceGeometry& s) {

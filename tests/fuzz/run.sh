@@ -14,16 +14,23 @@ case $name in
     triangulate)
         sources=(src/mesh/triangulate*.cpp src/mesh/insertion_order.cpp src/poly/predicates*.cpp src/poly/integer.cpp
             src/core/text.cpp src/core/result.cpp) ;;
-    step)  # The layers below from the preset asan: what is mixed here has to come from one compiler.
+    step | rhino)  # The layers below from the preset asan: what is mixed here has to come from one compiler.
         cmake --preset asan >build-fuzz/configure.log
         cmake --build --preset asan --target freiform_core
         for file in src/io/step_*.cpp src/io/mesh_builder.cpp; do
             case $file in *step_write.cpp) ;; *) printf '#include "%s"\n' "$PWD/$file" ;; esac
         done >build-fuzz/unity/step.cpp
         sources=(build-fuzz/unity/step.cpp)
+        if [ "$name" = rhino ]; then
+            flags+=(-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)  # checksums: hardly any mutant has the right one
+            printf '#include "%s"\n' "$PWD"/src/io/rhino_*.cpp >build-fuzz/unity/rhino.cpp
+            sources+=(build-fuzz/unity/rhino.cpp)
+        fi
         libraries=(build-asan/lib/libfreiform_core.a -ltbb)
         longest=16384 rss=1024
-        cp -n tests/data/step/*.stp ../shared/data/step_micro/*.stp "$corpus" 2>>build-fuzz/configure.log || true ;;
+        seeds=(tests/data/step/*.stp ../shared/data/step_micro/*.stp)
+        if [ "$name" = rhino ]; then seeds=(tests/data/3dm/*.3dm) longest=32768; fi
+        cp -n "${seeds[@]}" "$corpus" 2>>build-fuzz/configure.log || true ;;
     *)  # One unit for each layer up to that of the fuzzed one.
         sources=(src/kernel/*.cpp)
         case $name in svg | font) own=path ;; gltf) own= ;; region) own="make path query intersect region" ;; intersect) own="make intersect" ;; *) own=$name ;; esac

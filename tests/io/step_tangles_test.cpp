@@ -12,6 +12,7 @@
 #include <support/corpus.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
+#include <support/solids.hpp>
 
 namespace freiform::test {
 namespace {

@@ -2,6 +2,7 @@
 sentence that says what is needed. Answers about many objects; results into memory that is there."""
 import decimal
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -139,6 +140,13 @@ def test_a_question_about_many_objects():
     assert ff.evaluate_grids(curves, [0, 0.5, 1]).shape == (6, 3, 2)
 
 
+def test_3dm_files_are_models():
+    path = pathlib.Path(__file__).parents[1] / "data" / "3dm" / "solids_8.3dm"
+    for document in (ff.read(path), ff.read(path, format="rhino"), ff.parse(path.read_bytes()), ff.parse(path.read_bytes(), "3dm")):
+        (model,) = document
+        assert isinstance(model, ff.Model) and model.unit == "cm" and len(model.faces) == 30
+
+
 def test_files_are_read_from_memory():
     document = ff.Document([BALL], "mm")
     for format in ("json", "step", "obj"):
@@ -146,6 +154,8 @@ def test_files_are_read_from_memory():
         for back in (ff.parse(data, format), ff.parse(data.decode(), format)):
             assert len(back) == 1
         assert format == "obj" or len(ff.parse(data)) == 1
+    (triangle,) = ff.parse(b"3 1\n0 0 0 1 0 0 0 1 0", "bezierview")
+    assert isinstance(triangle, ff.Triangle)
     (model,) = ff.parse(document.to_bytes("step"), "step")
     assert isinstance(model, ff.Model) and model.unit == "mm"
     assert abs(model.nearest([[3, 0, 0]])[0].distance - 2) < 1e-9

@@ -130,16 +130,17 @@ class Document(Sequence[Shape]):
 def read(path: str | os.PathLike[str], *, format: str | None = None, timeout: float = 0.0, max_bytes: int = 0,
          max_memory: int = 0, reader: str | None = None, repair: bool = False,
          repair_limit: float = 0.0) -> Document:
-    """Any file that freiform can read: json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj. STEP files by
+    """Any file that freiform can read: json, bpt, step, iges, brep, quake3_bsp, quake3_map, svg, obj, bezierview (.bv),
+    rhino (.3dm). STEP files by
     ``reader`` "freiform" (the library itself, the default) or "occt" (Open CASCADE in a process of its own).
-    ``repair``: what is wrong in a STEP file beyond its tolerance is made right (`Model.repairs`), gaps up to ``repair_limit``."""
+    ``repair``: what is wrong in a STEP file beyond its tolerance is made right (`Model.repairs`; of 3DM files, too), gaps up to ``repair_limit``."""
     return Document._of(_core.read(os.fspath(path), format, timeout, max_bytes, max_memory, reader, repair, repair_limit))
 
 
-@from_header("io/step_read:read_step")
+@from_header("io/step_read:read_step", "io/rhino_read:read_3dm")
 def parse(data: str | bytes, format: str | None = None) -> Document:
-    """From memory: json, bpt, step, obj, svg, quake3_bsp or quake3_map; without a name as the
-    content begins, which obj files do not say."""
+    """From memory: json, bpt, bezierview, step, rhino, obj, svg, quake3_bsp or quake3_map; without a name as the
+    content begins, which obj and bezierview files do not say."""
     return Document._of(_core.parse(data, format))
 
 

@@ -6,6 +6,7 @@
 #include "records/path/style.hpp"
 
 #include <freiform/core/text.hpp>
+#include <freiform/io/bezierview.hpp>
 #include <freiform/io/bpt.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/file.hpp>
@@ -14,6 +15,7 @@
 #include <freiform/io/points.hpp>
 #include <freiform/io/quake3.hpp>
 #include <freiform/io/read.hpp>
+#include <freiform/io/rhino_read.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
 #include <freiform/io/step_read.hpp>
@@ -54,8 +56,8 @@ Result<std::string> bytes_as(const Document& d, std::string_view format, double 
         text("\"", format, "\" is not json, bpt, step, iges, obj or svg; meshes are written by Mesh"));
 }
 Result<Document> parsed(std::string_view bytes, std::string_view format) {
-    if (format == "step" || format == "stp") {
-        auto model = read_step(bytes);
+    if (format == "step" || format == "stp" || format == "rhino" || format == "3dm") {
+        auto model = format == "rhino" || format == "3dm" ? read_3dm(bytes) : read_step(bytes);
         if (!model) return std::unexpected(model.error());
         Document d;
         d.unit = model->unit;
@@ -64,6 +66,7 @@ Result<Document> parsed(std::string_view bytes, std::string_view format) {
     }
     if (format == "json") return read_document(bytes);
     if (format == "bpt") return read_bpt(bytes);
+    if (format == "bezierview" || format == "bv") return read_bezierview(bytes);
     if (format == "obj") return read_obj_freeform(bytes);
     if (format == "quake3_bsp" || format == "bsp") return read_quake3_bsp(bytes);
     if (format == "quake3_map" || format == "map") return read_quake3_map(bytes);
@@ -74,7 +77,8 @@ Result<Document> parsed(std::string_view bytes, std::string_view format) {
     }
     return refuse(RefusalKind::unsupported, "format",
                   text("\"", format,
-                       "\" is not json, bpt, step, obj, svg, quake3_bsp or quake3_map; IGES and BREP are "
+                       "\" is not json, bpt, bezierview, step, rhino, obj, svg, quake3_bsp or quake3_map; "
+                       "IGES and BREP are "
                        "read from files"));
 }
 
