@@ -129,7 +129,8 @@ std::unexpected<Refusal> invalid(const Bytes& b, std::string message);
 enum class Kind {
     unknown,
     passed_over,  // views, texts, lights: no geometry of the model
-    left_out,     // geometry of another kind: meshes, points
+    left_out,     // faces of another kind: meshes, subdivision surfaces
+    bare,         // geometry without faces: points
     nurbs_curve,
     line_curve,
     arc_curve,

@@ -70,7 +70,11 @@ private:
         };
         if (kind == Kind::instance) return add_instance(i, depth, map, shapes, wires);
         if (kind == Kind::passed_over) return {};
-        if (kind == Kind::left_out) return ++left_out_[o.object.of.name], Result<void>{};
+        if (kind == Kind::left_out || kind == Kind::bare) {
+            auto& [number, where] = left_out_[o.object.of.name];
+            if (number++ == 0) where = kind == Kind::bare ? "file" : label(i);
+            return {};
+        }
         if (o.curve || is_curve(kind)) {
             auto c = o.curve ? Result<CurveInSpace>(*o.curve) : read_curve(o.object);
             if (c && map != nullptr) c = mapped(*c, *map);
@@ -179,14 +183,15 @@ private:
     }
 
     void tell_left_out(std::size_t curves) {
-        const auto tell = [&](std::string message) {
-            refused_.push_back({RefusalKind::unsupported, "file", std::move(message)});
+        const auto tell = [&](std::string where, std::string message) {
+            refused_.push_back({RefusalKind::unsupported, std::move(where), std::move(message)});
         };
         if (curves > 0)
-            tell(text(curves, curves == 1 ? " curve that bounds no face is left out"
-                                          : " curves that bound no face are left out"));
-        for (const auto& [what, n] : left_out_)
-            tell(text(what, ": ", n, n == 1 ? " object is left out" : " objects are left out"));
+            tell("file", text(curves, curves == 1 ? " curve that bounds no face is left out"
+                                                  : " curves that bound no face are left out"));
+        for (const auto& [what, of] : left_out_)
+            tell(of.second,
+                 text(what, ": ", of.first, of.first == 1 ? " object is left out" : " objects are left out"));
     }
 
     Model told(Model m) {
@@ -206,7 +211,7 @@ private:
     std::map<std::string, std::size_t> by_uuid_;
     std::map<std::string, std::array<int, 2>> made_;
     std::set<std::string> open_;
-    std::map<std::string_view, std::size_t> left_out_;
+    std::map<std::string_view, std::pair<std::size_t, std::string>> left_out_;  // where: of the first
     std::vector<Refusal> refused_;
 };
 

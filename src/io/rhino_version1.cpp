@@ -319,8 +319,8 @@ Result<File3dm> parse_version1(Bytes b) {
             read_attributes(c.body, c.type | v1::kNumbers, layers, o);
             out.objects.push_back(std::move(o));
         };
-        const auto leave_out = [&](std::string_view what) {
-            o.object.of = {Kind::left_out, what};
+        const auto leave_out = [&](Kind kind, std::string_view what) {
+            o.object.of = {kind, what};
             out.objects.push_back(std::move(o));
         };
         switch (c.type) {
@@ -339,19 +339,19 @@ Result<File3dm> parse_version1(Bytes b) {
                 keep(BrepReader().shell(c.body), o.brep);
                 break;
             case v1::kPoint:
-                leave_out("point");
+                leave_out(Kind::bare, "point");
                 break;
             case v1::kMesh:
-                leave_out("mesh");
+                leave_out(Kind::left_out, "mesh");
                 break;
             case v1::kForeignCurve:
-                leave_out("curve of another program");
+                leave_out(Kind::bare, "curve of another program");
                 break;
             case v1::kForeignSurface:
-                leave_out("surface of another program");
+                leave_out(Kind::left_out, "surface of another program");
                 break;
             case v1::kForeignBrep:
-                leave_out("polysurface of another program");
+                leave_out(Kind::left_out, "polysurface of another program");
                 break;
             default:
                 break;

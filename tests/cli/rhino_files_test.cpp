@@ -35,7 +35,6 @@ TEST_F(CliRhino, what_is_left_out_is_told) {
     const Ran r =
         run({"tessellate", data_file("sheets_8"), "--tolerance", "0.1", "-o", path("x.stl"), "--json"});
     EXPECT_EQ(r.code, 0) << r.err;  // no face is missing
-    EXPECT_NE(r.err.find("point: 1 object is left out"), std::string::npos) << r.err;
     const Json refused = Json::parse(r.out)["refused"];
     ASSERT_EQ(refused.size(), 2u);
     EXPECT_EQ(refused[1]["message"], "point: 1 object is left out");

@@ -360,6 +360,7 @@ TEST(Rhino, what_cannot_be_read_is_told_by_its_object) {
     EXPECT_EQ(m.refused[1].message, "loop 0: trim 9 of 4");
     EXPECT_TRUE(m.refused[1].where.starts_with("object 5, byte "));
     EXPECT_EQ(m.refused[2].message, "mesh: 2 objects are left out");
+    EXPECT_EQ(m.refused[2].where, "object 1");
     // Of what STEP's reader says nothing is left of its own numbers.
     Written far = object(kSum, Written().u8(0x10).nothing(24 + 48).raw(bump()).raw(
                                    row({bump(), line({{3, 0, 0}}, {{4, 0, 0}})})));

@@ -155,7 +155,7 @@ def test_files_are_read_from_memory():
             assert len(back) == 1
         assert format == "obj" or len(ff.parse(data)) == 1
     (triangle,) = ff.parse(b"3 1\n0 0 0 1 0 0 0 1 0", "bezierview")
-    assert isinstance(triangle, ff.Triangle)
+    assert isinstance(triangle, ff.TriangularPatch)
     (model,) = ff.parse(document.to_bytes("step"), "step")
     assert isinstance(model, ff.Model) and model.unit == "mm"
     assert abs(model.nearest([[3, 0, 0]])[0].distance - 2) < 1e-9
