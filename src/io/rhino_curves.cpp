@@ -148,7 +148,7 @@ Result<CurveInSpace> read_curve(StoredObject o, int depth) {
 
 namespace {
 
-// With what the file leaves out, and without knots of which a point in the domain depends on nothing.
+// With the knots that the file leaves out.
 Result<BSplineBasis> basis_of(const SplineNumbers& n, std::size_t axis) {
     const auto& k = n.knots[axis];
     if (n.order[axis] < 2 || n.order[axis] - 1 > kMaxDegree)
@@ -185,15 +185,7 @@ Result<Patch<N, P>> patch_of(const SplineNumbers& n) {
         else
             return {*u};
     }();
-    auto patch = Patch<N, P>::make(bases, std::move(net));
-    // Ends of the knots beyond the domain are cut off.
-    for (int a = 0; a < int(N) && patch; ++a) {
-        const BSplineBasis& basis = patch->basis(a);
-        const Interval on = basis.domain();
-        if (basis.multiplicity(on.lo) < basis.degree() || basis.multiplicity(on.hi) < basis.degree())
-            patch = restrict_to(*patch, a, on);
-    }
-    return patch;
+    return Patch<N, P>::make(bases, std::move(net));
 }
 
 }  // namespace

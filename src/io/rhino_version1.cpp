@@ -173,9 +173,8 @@ private:
         if (trims.size() != pairs.size()) return;
         for (std::size_t i = 0; i < trims.size(); ++i) {
             if (pairs[i] < 0 || std::size_t(pairs[i]) >= trims.size()) continue;
-            int &a = trims_[trims[i]].use.edge, &b = trims_[trims[std::size_t(pairs[i])]].use.edge;
-            if (a < 0) a = b;
-            if (b < 0) b = a;
+            int& edge = trims_[trims[i]].use.edge;
+            if (edge < 0) edge = trims_[trims[std::size_t(pairs[i])]].use.edge;
         }
     }
 

@@ -7,6 +7,7 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <numbers>
+#include <optional>
 #include <support/corpus.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
@@ -162,11 +163,11 @@ TEST(Rhino, blocks_are_where_they_are_inserted_also_stretched) {
     for (const std::string_view name : {"blocks_4", "blocks_8"}) {
         const Model m = model_of(name);
         EXPECT_TRUE(m.refused.empty()) << name;
-        ASSERT_EQ(m.bodies.size(), 4u) << name;
+        ASSERT_EQ(m.bodies.size(), 5u) << name;
         for (const Body& b : m.bodies) EXPECT_EQ(b.name, "part");
-        EXPECT_NEAR(volume_of(m), 6 + 6 + 48 + 12, 1e-9) << name;
+        EXPECT_NEAR(volume_of(m), 6 + 6 + 48 + 12 + 12, 1e-9) << name;
         const Box<3> box = summary(m).box;
-        const Vec<3> lo{{-4, 0, -20}}, hi{{11, 22, 33}};
+        const Vec<3> lo{{-4, 0, -20}}, hi{{21, 22, 33}};
         for (int i = 0; i < 3; ++i) {
             EXPECT_NEAR(box.lo[i], lo[i], 1e-9);
             EXPECT_NEAR(box.hi[i], hi[i], 1e-9);
@@ -277,7 +278,7 @@ TEST(Rhino, extrusions_are_capped_as_they_say) {
     EXPECT_EQ(summary(open).open_edges, 4);
 }
 
-TEST(Rhino, splines_lose_what_their_knots_have_beyond_the_domain) {
+TEST(Rhino, splines_end_where_their_domain_ends) {
     // A closed cubic with uniform knots: its ends are no control points.
     std::vector<std::vector<double>> points;
     for (int i = 0; i < 9; ++i) points.push_back({std::cos(i * kPi / 3), std::sin(i * kPi / 3), 0});
@@ -296,7 +297,9 @@ TEST(Rhino, splines_lose_what_their_knots_have_beyond_the_domain) {
 }
 
 // A square in the plane z = 0 as a polysurface, whose last edge is part of a longer line, backwards.
-Written square_brep(bool damaged = false) {
+// `surface`: another one than the plane, whose normal is down, so that the loop runs the other way.
+Written square_brep(bool damaged = false, const std::optional<Written>& surface = {}) {
+    const bool down = surface.has_value();
     const auto list = [](const Written& w) { return Written().chunk(0x40008000, w); };
     Written none, curves, surfaces, vertices, edges, trims, loops, faces, all;
     none.u8(0x10).i32(0);
@@ -304,11 +307,13 @@ Written square_brep(bool damaged = false) {
     curves.u8(0x10).i32(4);
     for (std::size_t i = 0; i < 4; ++i)
         curves.i32(1).raw(i < 3 ? line(p[i], p[i + 1]) : line({{0, -2, 0}}, {{0, 6, 0}}));
-    surfaces.u8(0x10).i32(1).i32(1).raw(object(kPlane, Written()
-                                                           .u8(0x11)
-                                                           .f64s({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1})
-                                                           .nothing(32)
-                                                           .f64s({0, 1, 0, 1, 0, 2, 0, 2})));
+    surfaces.u8(0x10).i32(1).i32(1).raw(surface
+                                            ? *surface
+                                            : object(kPlane, Written()
+                                                                 .u8(0x11)
+                                                                 .f64s({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1})
+                                                                 .nothing(32)
+                                                                 .f64s({0, 1, 0, 1, 0, 2, 0, 2})));
     vertices.u8(0x10).i32(4);
     for (int i = 0; i < 4; ++i)
         vertices.i32(i).f64s({p[std::size_t(i)][0], p[std::size_t(i)][1], 0}).i32(1).i32(0).f64(0);
@@ -326,13 +331,15 @@ Written square_brep(bool damaged = false) {
             .i32(i)
             .i32(i)
             .i32((i + 1) % 4)
-            .i32(0)
+            .i32(down)
             .i32(1)
             .i32(0)
             .i32(0)
             .f64s({0, 0})
             .nothing(48 + 16);
-    loops.u8(0x10).i32(1).i32(0).i32(4).i32(0).i32(1).i32(damaged ? 9 : 2).i32(3).i32(1).i32(0);
+    loops.u8(0x10).i32(1).i32(0).i32(4);
+    for (int i = 0; i < 4; ++i) loops.i32(damaged && i == 2 ? 9 : down ? 3 - i : i);
+    loops.i32(1).i32(0);
     faces.u8(0x10).i32(1).i32(0).i32(1).i32(0).i32(0).i32(1).i32(0);
     all.u8(0x30).raw(list(none)).raw(list(curves)).raw(list(surfaces)).raw(list(vertices)).raw(list(edges));
     all.raw(list(trims)).raw(list(loops)).raw(list(faces)).nothing(48);
@@ -347,6 +354,25 @@ TEST(Rhino, edges_are_parts_of_their_curves_in_any_direction) {
     EXPECT_EQ(m.vertices.size(), 4u);
     EXPECT_NEAR(area_of(m), 4, 1e-12);
     for (const Approximation& a : m.approximations) ADD_FAILURE() << a.what;
+}
+
+// The face is turned against its surface, whatever the entity of that has for a normal.
+TEST(Rhino, normals_are_those_of_the_file_where_surfaces_are_made_another_way) {
+    Written bent, sum;
+    bent.u8(0x10).i32(3).f64s({0, 0, 0, 1, 0, 0, 2, 0, 0}).i32(3).f64s({0, 1, 2}).i32(3);
+    sum.u8(0x10).nothing(24 + 48).raw(line({{0, 0, 0}}, {{0, 2, 0}})).raw(object(kPolyline, bent));
+    for (const bool down : {false, true}) {
+        const Model m =
+            read_hand_made({square_brep(false, down ? std::optional(object(kSum, sum)) : std::nullopt)});
+        EXPECT_TRUE(m.refused.empty());
+        const auto t = must(tessellate(m, {.tolerance = 1e-3}));
+        EXPECT_NEAR(area_of(t.mesh), 4, 1e-12);
+        for (std::size_t i = 0; i < t.mesh.triangles.size(); ++i) {
+            const auto p = t.mesh.points_of(i);
+            const auto at = [&](std::size_t k) { return t.mesh.points[std::size_t(p[k])]; };
+            EXPECT_EQ(cross(at(1) - at(0), at(2) - at(0))[2] > 0, down);
+        }
+    }
 }
 
 TEST(Rhino, what_cannot_be_read_is_told_by_its_object) {

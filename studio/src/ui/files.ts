@@ -7,7 +7,7 @@ import { refuse } from "./toast";
 export interface Opened { readonly name: string; readonly source: string | Uint8Array }
 
 const kText = /\.(json|svg|obj|map|bpt|txt|csv)$/i;
-const kProgram = /\.(iges|igs|brep)$/i;
+const kProgram = /\.(iges|igs|brep|brp|3dm|bv)$/i;
 const kModel = /\.(step|stp)$/i;
 const kMostBytes = 256 * 2 ** 20;
 

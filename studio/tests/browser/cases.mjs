@@ -372,6 +372,9 @@ export const cases = [
         await file(page, write("part.iges", "ISO-10303-21;"));
         await settle(page);
         assert.match(await page.locator(".toast.refused").last().innerText(), /freiform view part\.iges/);
+        await file(page, write("part.3dm", "3D Geometry File Format        8"));
+        await settle(page);
+        assert.match(await page.locator(".toast.refused").last().innerText(), /freiform view part\.3dm/);
         assert.equal(JSON.stringify(await page.locator(".handle").count()), before);
     }],
     ["edit and explore: by finger", async ({ page, url, context, picture }) => {
@@ -555,6 +558,14 @@ export const cases = [
         assert.equal(ended?.code, 3);
         assert.match(ended.complained, /bad\.json/);
     }, { view: () => example("bracket.step") }],
+    ["freiform view: a 3DM file, read by the program, with its faces", async ({ page, url, picture }) => {
+        await page.goto(url);
+        await until(page, () => document.querySelectorAll(".tools .list li").length === 30);
+        assert.equal(await refused(page), "");
+        assert.equal(await page.locator(".list li.bad").count(), 0);
+        await settle(page);
+        await picture("view-3dm");
+    }, { view: () => fileURLToPath(new URL("../../../tests/data/3dm/solids_8.3dm", import.meta.url)) }],
     ["freiform view: faces that were refused are marked, once each", async ({ page, url, picture }) => {
         await page.goto(url);
         await page.waitForSelector(".list li.bad", { timeout: 60000 });
