@@ -163,12 +163,11 @@ LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     Use first = c.uses.front();
     const Use last = c.uses.back();
     const auto winding_of = [&] {
-        for (int k = 0; k < 2; ++k)
-            c.winding[std::size_t(k)] =
-                chart_.period(k) > 0
-                    ? int(std::clamp(std::round((c.uses.back().end[k] - first.start[k]) / chart_.period(k)),
-                                     -9.0, 9.0))
-                    : 0;
+        for (int k = 0; k < 2; ++k) {
+            const double turn = chart_.period(k);
+            const double turns = turn > 0 ? std::round((c.uses.back().end[k] - first.start[k]) / turn) : 0;
+            c.winding[std::size_t(k)] = turns < 9 ? int(std::max(turns, -9.0)) : 9;  // what is no number, too
+        }
     };
     pole_between(c.uses, last, first, true);
     winding_of();

@@ -24,7 +24,7 @@ case $name in
         if [ "$name" = rhino ]; then
             flags+=(-DFUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)  # checksums: hardly any mutant has the right one
             printf '#include "%s"\n' "$PWD"/src/io/rhino_*.cpp >build-fuzz/unity/rhino.cpp
-            sources+=(build-fuzz/unity/rhino.cpp)
+            sources+=(build-fuzz/unity/rhino.cpp src/io/{mesh_write,glb_write,glb_chunks,stl_write,obj_write,ply_write,json,json_write,file,file_memory}.cpp)  # units
         fi
         libraries=(build-asan/lib/libfreiform_core.a -ltbb)
         longest=16384 rss=1024

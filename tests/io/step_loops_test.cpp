@@ -33,6 +33,27 @@ TEST(StepLoops, edges_that_are_nearly_nothing_are_left_out_and_told) {
     EXPECT_EQ(times_told(wide, "shorter"), 0);
 }
 
+// Lengths whose squares are beyond all numbers: parameters of the boundary are none.
+TEST(StepLoops, boundaries_whose_parameters_are_no_numbers_are_refused) {
+    const Model m = must(read_step(flat_file(
+        "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12,#50));\n"
+        "#12=ADVANCED_FACE('',(#13),#20,.T.);\n#13=FACE_BOUND('',#14,.T.);\n#14=EDGE_LOOP('',(#15,#16));\n"
+        "#15=ORIENTED_EDGE('',*,*,#17,.T.);\n#16=ORIENTED_EDGE('',*,*,#17,.F.);\n"
+        "#17=EDGE_CURVE('',#18,#19,#30,.T.);\n#18=VERTEX_POINT('',#31);\n#19=VERTEX_POINT('',#32);\n"
+        "#20=SURFACE_OF_REVOLUTION('',#21,#25);\n#21=ELLIPSE('',#22,5.8E135,4.);\n"
+        "#22=AXIS2_PLACEMENT_3D('',#33,#23,#24);\n#23=DIRECTION('',(0.,-16.,-2.3E136));\n"
+        "#24=DIRECTION('',(0.,5.8E135,-4.));\n#25=AXIS1_PLACEMENT('',#33,#26);\n#26=DIRECTION('',(0.,0.,1.));"
+        "\n"
+        "#27=DIRECTION('',(0.,-1.,0.));\n#28=DIRECTION('',(0.,0.,-1.));\n"
+        "#29=AXIS2_PLACEMENT_3D('',#33,#27,#28);\n#30=CIRCLE('',#29,4.);\n"
+        "#31=CARTESIAN_POINT('',(1.,2.,-1.));\n#32=CARTESIAN_POINT('',(1.,2.,7.));\n"
+        "#33=CARTESIAN_POINT('',(1.,2.,3.));\n#50=PLANE('',#29);\n#60=SHAPE_REPRESENTATION('',(#10),#1);"
+        "\n")));
+    ASSERT_EQ(m.refused.size(), 2u);
+    EXPECT_EQ(m.refused[0].where, "#12 ADVANCED_FACE");
+    EXPECT_NE(m.refused[0].message.find("winds around"), std::string::npos) << m.refused[0].message;
+}
+
 TEST(StepLoops, edges_around_one_vertex_whose_spline_ends_beside_its_beginning_run_along_all_of_it) {
     // A square of lines as one spline, whose end is 1e-3 below its beginning; the tolerance is 1e-4.
     const auto file = [](std::string_view end, std::string_view use = ".T.") {
