@@ -151,6 +151,11 @@ void LoopBuilder::add(std::vector<Use> uses) {
     chains_.push_back(std::move(c));
 }
 
+int LoopBuilder::turns(const Vec<2>& by, int k) const {
+    const double turn = chart_.period(k), n = turn > 0 ? std::round(by[k] / turn) : 0;
+    return std::abs(n) < 9 ? int(n) : 9;
+}
+
 LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     Chain c;
     for (Use& u : uses) {
@@ -163,11 +168,7 @@ LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     Use first = c.uses.front();
     const Use last = c.uses.back();
     const auto winding_of = [&] {
-        for (int k = 0; k < 2; ++k) {
-            const double turn = chart_.period(k);
-            const double turns = turn > 0 ? std::round((c.uses.back().end[k] - first.start[k]) / turn) : 0;
-            c.winding[std::size_t(k)] = turns < 9 ? int(std::max(turns, -9.0)) : 9;  // what is no number, too
-        }
+        for (int k = 0; k < 2; ++k) c.winding[std::size_t(k)] = turns(c.uses.back().end - first.start, k);
     };
     pole_between(c.uses, last, first, true);
     winding_of();

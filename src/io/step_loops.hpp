@@ -57,6 +57,8 @@ private:
     void turn_to(Chain& c, std::size_t first) const;
     void turn_around(Chain& c) const;
     Result<void> join_winding(int axis);
+    // Whole periods of parameter k; more than 8, and what is no number, are 9.
+    int turns(const Vec<2>& by, int k) const;
     void join(Chain& a, Chain b, int axis);
     bool crosses(const Chain& c, const Vec<2>& p, const Vec<2>& q) const;
     bool is_free(const Chain& a, const Chain& b, const Vec<2>& p, const Vec<2>& q) const;

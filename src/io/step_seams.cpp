@@ -227,9 +227,7 @@ void LoopBuilder::release_seams() {
         Chain c;
         for (; from != to; from = (from + 1) % uses.size()) c.uses.push_back(uses[from]);
         for (int k = 0; k < 2 && !c.uses.empty(); ++k)
-            if (const double turn = chart_.period(k); turn > 0)
-                c.winding[std::size_t(k)] =
-                    int(std::round((c.uses.back().end[k] - c.uses.front().start[k]) / turn));
+            c.winding[std::size_t(k)] = turns(c.uses.back().end - c.uses.front().start, k);
         measure(c);
         return c;
     };
