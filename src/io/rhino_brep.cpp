@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace freiform::rhino {
 
@@ -185,6 +186,7 @@ Result<BrepOf> read_version3(Bytes& bytes) {
     struct LoopHere {
         std::vector<int> trims;
         int type = 0;
+        bool used = false;
     };
     std::vector<LoopHere> rows;
     for (int i = 0; i < loops->count; ++i) {
@@ -209,7 +211,9 @@ Result<BrepOf> read_version3(Bytes& bytes) {
         for (const int l : of) {
             if (l < 0 || std::size_t(l) >= rows.size())
                 return invalid(faces->b, text("face ", i, ": loop ", l, " of ", rows.size()));
-            const LoopHere& row = rows[std::size_t(l)];
+            LoopHere& row = rows[std::size_t(l)];
+            if (std::exchange(row.used, true))
+                return invalid(faces->b, text("face ", i, ": loop ", l, " has been used before"));
             constexpr int kCurveOnSurface = 4, kPointOnSurface = 5;
             if (row.type == kCurveOnSurface || row.type == kPointOnSurface) continue;
             LoopOf loop;

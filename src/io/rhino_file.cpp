@@ -7,16 +7,18 @@ namespace freiform::rhino {
 
 namespace {
 
-struct LayerOf {
-    std::string name;
+// Layers by the numbers that objects have them by, and by their names.
+struct Layers {
+    std::map<int, int> by_number;
+    std::map<std::string, int> by_name;
 };
 
 // What objects are called, where they are, and whether they are only parts of blocks.
-void read_attributes(Bytes b, FileObject& o, const std::map<int, LayerOf>& layers) {
+void read_attributes(Bytes b, FileObject& o, const Layers& layers) {
     int minor = 0;
     const int major = b.version(minor);
     o.uuid = b.uuid();
-    if (const auto at = layers.find(b.i32()); at != layers.end()) o.layer = at->second.name;
+    if (const auto at = layers.by_number.find(b.i32()); at != layers.by_number.end()) o.layer = at->second;
     int mode = 0, colour_from = 0;
     std::uint32_t colour = 0;
     constexpr int kOfObject = 1, kPartOfBlock = 3;
@@ -70,15 +72,18 @@ void read_attributes(Bytes b, FileObject& o, const std::map<int, LayerOf>& layer
     }
 }
 
-void read_layer(StoredObject o, std::map<int, LayerOf>& layers) {
+void read_layer(StoredObject o, Layers& layers, File3dm& out) {
     Bytes& b = o.data;
     int minor = 0;
     b.version(minor);
     b.i32();
     const int index = b.i32();
     b.skip(3 * 4 + 4 + 2 + 2 + 8 + 8);
-    LayerOf layer{b.wide_string()};
-    if (!b.failed()) layers.emplace(index, std::move(layer));
+    const std::string name = b.wide_string();
+    if (b.failed() || name.empty()) return;
+    const auto [at, fresh] = layers.by_name.emplace(name, int(out.layers.size()));
+    if (fresh) out.layers.push_back(name);
+    layers.by_number.emplace(index, at->second);
 }
 
 void read_units(Bytes b, File3dm& out) {
@@ -127,7 +132,7 @@ Result<void> read_block(StoredObject o, File3dm& out) {
     return {};
 }
 
-Result<void> read_object(Bytes b, File3dm& out, const std::map<int, LayerOf>& layers) {
+Result<void> read_object(Bytes b, File3dm& out, const Layers& layers) {
     FileObject o;
     bool is_there = false;
     while (b.left() > 0) {
@@ -185,7 +190,7 @@ Result<File3dm> parse_3dm(std::string_view bytes) {
         file = Bytes(bytes.substr(kHeader), kHeader, false, true);
     }
     File3dm out;
-    std::map<int, LayerOf> layers;
+    Layers layers;
     const auto each = [](Bytes table, std::uint32_t type, auto&& f) -> Result<void> {
         while (table.left() > 0) {
             Chunk c = table.chunk();
@@ -209,7 +214,7 @@ Result<File3dm> parse_3dm(std::string_view bytes) {
                       [&](Bytes b) -> Result<void> { return read_units(b, out), Result<void>{}; });
         else if (c.type == tag::kLayers)
             ok = each(c.body, tag::kLayer, [&](Bytes b) -> Result<void> {
-                if (auto o = object_in(b)) read_layer(std::move(*o), layers);
+                if (auto o = object_in(b)) read_layer(std::move(*o), layers, out);
                 return {};
             });
         else if (c.type == tag::kDefinitions)

@@ -16,7 +16,8 @@ struct FileObject {
     std::optional<BrepOf> brep;  // of version 1: what has been read already
     std::optional<CurveInSpace> curve;
     std::optional<Refusal> why;  // or why it has not
-    std::string name, uuid, layer;
+    std::string name, uuid;
+    int layer = -1;
     std::optional<Colour> colour;
     bool is_part_of_block = false;
 };
@@ -28,7 +29,8 @@ struct BlockOf {
 
 struct File3dm {
     std::string unit;
-    double tolerance = 0;  // 0: not said
+    double tolerance = 0;             // 0: not said
+    std::vector<std::string> layers;  // no name twice
     std::vector<FileObject> objects;
     std::map<std::string, BlockOf> blocks;  // by their uuid
 };

@@ -13,7 +13,8 @@ namespace {
 
 using namespace rhino;
 
-constexpr int kMostBlocksInBlocks = 32;  // blocks in each other
+constexpr std::size_t kMostImages = 1'000'000;  // of objects, in stretched blocks
+constexpr int kMostBlocksInBlocks = 32;         // blocks in each other
 // That a model takes, of each byte of the text that it is made of.
 constexpr std::uint64_t kMemoryPerByte = 16;
 constexpr double kUnsaidTolerance = 1e-6;  // where a file says none
@@ -21,7 +22,10 @@ constexpr double kUnsaidTolerance = 1e-6;  // where a file says none
 class Reader3dm {
 public:
     Reader3dm(File3dm file, const StepReadOptions& options)
-        : f_(std::move(file)), options_(options), step_(f_.tolerance > 0 ? f_.tolerance : kUnsaidTolerance) {
+        : f_(std::move(file)),
+          options_(options),
+          step_(f_.tolerance > 0 ? f_.tolerance : kUnsaidTolerance,
+                std::size_t(options.memory_bytes / kMemoryPerByte)) {
         for (std::size_t i = 0; i < f_.objects.size(); ++i)
             if (!f_.objects[i].uuid.empty()) by_uuid_.emplace(f_.objects[i].uuid, i);
     }
@@ -42,30 +46,33 @@ public:
             const Refusal& r = refused_.empty() ? step_.refused.front() : refused_.front();
             return refuse(r.kind, r.where, text("nothing of the file could be taken over: ", r.message));
         }
-        auto model = read_step(step_.take(items), options_);
+        auto model = read_step(step_.take(items, f_.layers), options_);
         if (!model) return std::unexpected(step_.told(model.error()));
         return told(std::move(*model));
     }
 
 private:
+    // With what of the name is short.
     std::string label(std::size_t i) const {
+        constexpr std::size_t kLongest = 60;
         const std::string& name = f_.objects[i].name;
-        return name.empty() ? text("object ", i) : text("object ", i, " \"", name, "\"");
+        if (name.empty()) return text("object ", i);
+        std::size_t n = std::min(name.size(), kLongest);
+        while (n < name.size() && n > 0 && (name[n] & 0xC0) == 0x80) --n;  // whole characters
+        return text("object ", i, " \"", name.substr(0, n), n < name.size() ? "...\"" : "\"");
     }
 
     // `map`: where it is an image of what the file has, because no block can be it.
     Result<void> add(std::size_t i, int depth, const AffineMap* map, std::vector<int>& shapes,
                      std::vector<int>& wires) {
         FileObject& o = f_.objects[i];
-        if (step_.bytes() > options_.memory_bytes / kMemoryPerByte)
-            return refuse(
-                RefusalKind::limit, label(i),
-                text("the model takes more than the ", options_.memory_bytes, " bytes that it may"));
+        ++visits_;
+        if (auto ok = check_length(i); !ok) return ok;
         step_.begin(label(i));
         if (o.why) return refused_.push_back(within(i, *o.why)), Result<void>{};
         const Kind kind = o.object.of.kind;
         const auto style = [&](int item) {
-            if (!o.layer.empty()) step_.put_on_layer(o.layer, item);
+            if (o.layer >= 0) step_.put_on_layer(o.layer, item);
             if (o.colour) step_.colour(*o.colour, item);
         };
         if (kind == Kind::instance) return add_instance(i, depth, map, shapes, wires);
@@ -89,7 +96,16 @@ private:
         const auto ids = b ? step_.brep(*b, o.name) : Result<std::vector<int>>(std::unexpected(b.error()));
         if (!ids) return refused_.push_back(within(i, ids.error())), Result<void>{};
         for (const int id : *ids) style(id), shapes.push_back(id);
-        return {};
+        return check_length(i);
+    }
+
+    Result<void> check_length(std::size_t i) const {
+        if (visits_ > f_.objects.size() + kMostImages)
+            return refuse(RefusalKind::limit, label(i),
+                          text("stretched blocks have more than ", kMostImages, " objects in all"));
+        if (!step_.is_too_long()) return {};
+        return refuse(RefusalKind::limit, label(i),
+                      text("the model takes more than the ", options_.memory_bytes, " bytes that it may"));
     }
 
     static bool is_curve(Kind k) {
@@ -134,7 +150,7 @@ private:
             if ((*block)[k] == 0) continue;
             const auto id = step_.instance((*block)[k], name.empty() ? f_.blocks.at(of).name : name, map);
             if (!id) return add_members(of, depth + 1, map, shapes, wires);
-            if (!f_.objects[i].layer.empty()) step_.put_on_layer(f_.objects[i].layer, *id);
+            if (f_.objects[i].layer >= 0) step_.put_on_layer(f_.objects[i].layer, *id);
             (k == 0 ? shapes : wires).push_back(*id);
         }
         return {};
@@ -211,6 +227,7 @@ private:
     std::map<std::string, std::size_t> by_uuid_;
     std::map<std::string, std::array<int, 2>> made_;
     std::set<std::string> open_;
+    std::size_t visits_ = 0;  // of objects, also as parts of stretched blocks
     std::map<std::string_view, std::pair<std::size_t, std::string>> left_out_;  // where: of the first
     std::vector<Refusal> refused_;
 };

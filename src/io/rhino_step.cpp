@@ -21,7 +21,7 @@ std::string triple(const Vec<3>& p) { return detail::listed_as(p.c, real); }
 constexpr double kSimilar = 1e-9;  // of a map: what it is a similarity up to
 
 Refusal within(const std::string& part, Refusal r) {
-    r.where = r.where.empty() ? part : text(part, ", ", r.where);
+    r.where = r.where.empty() ? part : part.empty() ? r.where : text(part, ", ", r.where);
     return r;
 }
 
@@ -112,7 +112,7 @@ Result<int> StepText::surface(const SurfaceInSpace& s, bool& turned) {
 }
 
 void StepText::refuse_face(const std::string& label, Refusal r) {
-    refused.push_back(within(marks_.back().object, within(label, std::move(r))));
+    refused.push_back(within(objects_.back(), within(label, std::move(r))));
 }
 
 struct StepText::Work {
@@ -122,6 +122,23 @@ struct StepText::Work {
     // Of each edge: a spline and the edge's curve in its parameters, in the edge's direction.
     std::vector<std::vector<std::pair<int, CurveInSpace>>> images;
 };
+
+// However often a file names a curve of many points: all together no more than so many.
+Result<CurveInSpace> StepText::shared_part(const CurveInSpace& c, const Along& along) {
+    std::size_t work = c.pieces.size();
+    for (std::size_t i = 0; i < c.pieces.size() && work <= work_left_; ++i)
+        visit_one(
+            [&](const auto& g) {
+                if constexpr (requires { g.net(); }) work += g.net().flat().size();
+            },
+            c.pieces[i].shape);
+    if (work > work_left_ || is_too_long()) {
+        work_left_ = 0;
+        return refuse(RefusalKind::limit, "", "its curve has too many points for the edges that share it");
+    }
+    work_left_ -= work;
+    return part_of(c, along);
+}
 
 void StepText::find_images(Work& w) {
     for (const FaceOf& f : w.b.faces) {
@@ -133,7 +150,7 @@ void StepText::find_images(Work& w) {
             for (const TrimOf& t : l.trims) {
                 const auto n = std::size_t(t.image.curve);
                 if (t.image.curve < 0 || n >= w.b.images.size() || !w.b.images[n]) continue;
-                auto c = part_of(*w.b.images[n], t.image);
+                auto c = shared_part(*w.b.images[n], t.image);
                 if (!c || c->pieces.size() != 1) continue;
                 if (t.image.backward != t.reversed) c = backwards(*c);
                 w.images[std::size_t(t.edge)].emplace_back(f.surface, std::move(*c));
@@ -163,7 +180,7 @@ int StepText::pcurve(const CurveGeometry<2>& c, int surface) {
 // The curve in space with those in parameters, all in one direction.
 Result<int> StepText::edge_of(Work& w, std::size_t edge) {
     const EdgeOf& e = w.b.edges[edge];
-    auto c = part_of(w.b.curves[std::size_t(e.along.curve)], e.along);
+    auto c = shared_part(w.b.curves[std::size_t(e.along.curve)], e.along);
     if (!c) return std::unexpected(c.error());
     if (e.along.backward) c = backwards(*c);
     const auto space = curve_of(*c);
@@ -324,10 +341,11 @@ void StepText::colour(const Colour& c, int item) {
     styled_.push_back(entities_.add(text("STYLED_ITEM('',(#", style, "),#", item, ")")));
 }
 
-std::string StepText::take(const std::vector<int>& items) {
-    mark("", "");
-    for (const auto& [name, on] : layers_)
-        entities_.add(text("PRESENTATION_LAYER_ASSIGNMENT(", quoted(name), ",'',", Entities::refs(on), ")"));
+std::string StepText::take(const std::vector<int>& items, const std::vector<std::string>& layers) {
+    begin("");
+    for (const auto& [layer, on] : layers_)
+        entities_.add(text("PRESENTATION_LAYER_ASSIGNMENT(", quoted(layers[std::size_t(layer)]), ",'',",
+                           Entities::refs(on), ")"));
     product_.add("SHAPE_REPRESENTATION", "", items);
     product_.style(styled_);
     std::string out = text(
@@ -362,8 +380,8 @@ std::string StepText::told(const std::string& s, bool with_object) const {
         const auto after =
             std::partition_point(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.after < id; });
         const Mark* m = after == marks_.begin() ? nullptr : &*(after - 1);
-        const bool object = m != nullptr && with_object && !m->object.empty();
-        if (object) out += m->object;
+        const bool object = m != nullptr && with_object && !objects_[m->object].empty();
+        if (object) out += objects_[m->object];
         if (m != nullptr && !m->part.empty())
             out += (object ? ", " : "") + m->part;
         else if (!object)

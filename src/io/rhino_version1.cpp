@@ -273,17 +273,17 @@ private:
     std::vector<std::vector<std::vector<std::size_t>>> rows_;  // trims, of loops, of faces
 };
 
-// Layers are counted as they come.
-void read_layer(Bytes b, std::vector<std::string>& layers) {
-    layers.emplace_back();
+std::string layer_name(Bytes b) {
+    std::string name;
     while (b.left() > 0) {
         Chunk c = b.chunk();
-        if (b.failed()) return;
-        if (c.type == v1::kLayerName) layers.back() = c.body.narrow_string();
+        if (b.failed()) break;
+        if (c.type == v1::kLayerName) name = c.body.narrow_string();
     }
+    return name;
 }
 
-void read_attributes(Bytes b, std::uint32_t numbers, const std::vector<std::string>& layers, FileObject& o) {
+void read_attributes(Bytes b, std::uint32_t numbers, const std::vector<int>& layers, FileObject& o) {
     while (b.left() > 0) {
         Chunk c = b.chunk();
         if (b.failed() || c.type == numbers) return;
@@ -297,11 +297,17 @@ void read_attributes(Bytes b, std::uint32_t numbers, const std::vector<std::stri
 
 Result<File3dm> parse_version1(Bytes b) {
     File3dm out;
-    std::vector<std::string> layers;
+    // They are counted as they come.
+    std::vector<int> layers;
+    std::map<std::string, int> by_name;
     for (Bytes at = b; at.left() > 0;) {
         Chunk c = at.chunk();
         if (at.failed()) break;
-        if (c.type == v1::kLayer) read_layer(c.body, layers);
+        if (c.type != v1::kLayer) continue;
+        const std::string name = layer_name(c.body);
+        const auto [known, fresh] = by_name.emplace(name, int(out.layers.size()));
+        if (fresh) out.layers.push_back(name);
+        layers.push_back(name.empty() ? -1 : known->second);
     }
     while (b.left() > 0) {
         const std::size_t at = b.at();

@@ -34,8 +34,8 @@ public:
         if (items.empty()) return;
         const int shape = e_.add(text(representation, "('',", Entities::refs(items), ",#", context_, ")"));
         const int of_product = e_.add(text("PRODUCT_CONTEXT('',#", application_, ",'mechanical')"));
-        const int product =
-            e_.add(text("PRODUCT(", quoted(name), ",", quoted(name), ",'',(#", of_product, "))"));
+        const int product = e_.add(
+            text("PRODUCT(", detail::quoted(name), ",", detail::quoted(name), ",'',(#", of_product, "))"));
         e_.add(text("PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#", product, "))"));
         const int of_definition =
             e_.add(text("PRODUCT_DEFINITION_CONTEXT('part definition',#", application_, ",'design')"));
@@ -65,8 +65,8 @@ private:
         const int exponents = e_.add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");
         std::string name(unit);
         for (char& c : name) c = c >= 'a' && c <= 'z' ? char(c - 32) : c;
-        return e_.add(text("(CONVERSION_BASED_UNIT(", quoted(name), ",#", of, ")LENGTH_UNIT()NAMED_UNIT(#",
-                           exponents, "))"));
+        return e_.add(text("(CONVERSION_BASED_UNIT(", detail::quoted(name), ",#", of,
+                           ")LENGTH_UNIT()NAMED_UNIT(#", exponents, "))"));
     }
 
     Entities& e_;

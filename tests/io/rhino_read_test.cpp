@@ -6,6 +6,7 @@
 #include <freiform/model/deviation.hpp>
 #include <freiform/model/tessellate.hpp>
 
+#include <io/rhino_step.hpp>
 #include <numbers>
 #include <optional>
 #include <support/corpus.hpp>
@@ -91,6 +92,8 @@ TEST(Rhino, solids_of_openNURBS_have_their_volumes) {
         for (const Body& b : m.bodies) {
             ASSERT_EQ(b.layers.size(), 1u);
             EXPECT_EQ(m.layers[std::size_t(b.layers[0])].name, b.name == "box" ? "Körper" : "Default");
+            EXPECT_EQ(b.colour.has_value(), b.name == "box") << name;
+            if (b.colour) EXPECT_EQ(*b.colour, (Colour{1, 0.4, 0, 1})) << name;
         }
     }
 }
@@ -298,7 +301,8 @@ TEST(Rhino, splines_end_where_their_domain_ends) {
 
 // A square in the plane z = 0 as a polysurface, whose last edge is part of a longer line, backwards.
 // `surface`: another one than the plane, whose normal is down, so that the loop runs the other way.
-Written square_brep(bool damaged = false, const std::optional<Written>& surface = {}) {
+enum class Damage { none, trim, loop_twice };
+Written square_brep(Damage damage = Damage::none, const std::optional<Written>& surface = {}) {
     const bool down = surface.has_value();
     const auto list = [](const Written& w) { return Written().chunk(0x40008000, w); };
     Written none, curves, surfaces, vertices, edges, trims, loops, faces, all;
@@ -338,9 +342,14 @@ Written square_brep(bool damaged = false, const std::optional<Written>& surface 
             .f64s({0, 0})
             .nothing(48 + 16);
     loops.u8(0x10).i32(1).i32(0).i32(4);
-    for (int i = 0; i < 4; ++i) loops.i32(damaged && i == 2 ? 9 : down ? 3 - i : i);
+    for (int i = 0; i < 4; ++i) loops.i32(damage == Damage::trim && i == 2 ? 9 : down ? 3 - i : i);
     loops.i32(1).i32(0);
-    faces.u8(0x10).i32(1).i32(0).i32(1).i32(0).i32(0).i32(1).i32(0);
+    faces.u8(0x10).i32(1).i32(0);
+    if (damage == Damage::loop_twice)
+        faces.i32(2).i32(0).i32(0);
+    else
+        faces.i32(1).i32(0);
+    faces.i32(0).i32(1).i32(0);
     all.u8(0x30).raw(list(none)).raw(list(curves)).raw(list(surfaces)).raw(list(vertices)).raw(list(edges));
     all.raw(list(trims)).raw(list(loops)).raw(list(faces)).nothing(48);
     return object(kBrep, all);
@@ -362,8 +371,8 @@ TEST(Rhino, normals_are_those_of_the_file_where_surfaces_are_made_another_way) {
     bent.u8(0x10).i32(3).f64s({0, 0, 0, 1, 0, 0, 2, 0, 0}).i32(3).f64s({0, 1, 2}).i32(3);
     sum.u8(0x10).nothing(24 + 48).raw(line({{0, 0, 0}}, {{0, 2, 0}})).raw(object(kPolyline, bent));
     for (const bool down : {false, true}) {
-        const Model m =
-            read_hand_made({square_brep(false, down ? std::optional(object(kSum, sum)) : std::nullopt)});
+        const Model m = read_hand_made(
+            {square_brep(Damage::none, down ? std::optional(object(kSum, sum)) : std::nullopt)});
         EXPECT_TRUE(m.refused.empty());
         const auto t = must(tessellate(m, {.tolerance = 1e-3}));
         EXPECT_NEAR(area_of(t.mesh), 4, 1e-12);
@@ -378,7 +387,7 @@ TEST(Rhino, normals_are_those_of_the_file_where_surfaces_are_made_another_way) {
 TEST(Rhino, what_cannot_be_read_is_told_by_its_object) {
     const auto mesh = object(kMesh, Written().nothing(8)), note = object(kText, Written().nothing(8));
     const auto strange = object("01234567-89AB-CDEF-0123-456789ABCDEF", Written().nothing(8));
-    const Model m = read_hand_made({square_brep(), mesh, mesh, note, strange, square_brep(true)});
+    const Model m = read_hand_made({square_brep(), mesh, mesh, note, strange, square_brep(Damage::trim)});
     EXPECT_EQ(m.faces.size(), 1u);
     ASSERT_EQ(m.refused.size(), 3u);
     EXPECT_NE(m.refused[0].message.find("01234567-89AB-CDEF-0123-456789ABCDEF"), std::string::npos);
@@ -395,6 +404,87 @@ TEST(Rhino, what_cannot_be_read_is_told_by_its_object) {
     EXPECT_EQ(none.error().kind, RefusalKind::unsupported);
     EXPECT_TRUE(none.error().where.starts_with("object 0, byte ")) << none.error().where;
     EXPECT_NE(none.error().message.find("sum of curves of several pieces"), std::string::npos);
+}
+
+// A loop that many faces name, and a curve of many points that many edges name, would grow like a square.
+TEST(Rhino, what_is_named_many_times_takes_no_more_than_is_there) {
+    using namespace freiform::rhino;
+    BrepOf b;
+    CurveInSpace curve;
+    for (int i = 0; i < 100; ++i)
+        curve.pieces.push_back({Line<3>{{{0.01 * i, 0, 0}}, {{0.01, 0, 0}}}, {0, 1}, {double(i), i + 1.0}});
+    b.curves = {curve};
+    b.vertices = {{{0, 0, 0}}, {{1, 0, 0}}};
+    b.surfaces = {PlaneInSpace{{}, {{1, 0, 0}}, {{0, 1, 0}}, {}}};
+    LoopOf loop;
+    for (int i = 0; i < 10; ++i) {
+        b.edges.push_back({{0, {}, i % 2 == 1}, {i % 2, 1 - i % 2}});
+        loop.trims.push_back({i, false});
+    }
+    b.faces = {{0, false, {loop}}};
+    StepText enough(1e-6), tight(1e-6, 1 << 20, 950);
+    EXPECT_FALSE(must(enough.brep(b, "")).empty());
+    EXPECT_TRUE(enough.refused.empty());
+    EXPECT_TRUE(must(tight.brep(b, "")).empty());
+    ASSERT_EQ(tight.refused.size(), 1u);
+    EXPECT_EQ(tight.refused[0].kind, RefusalKind::limit);
+    EXPECT_EQ(tight.refused[0].where, "face 0, edge 9");
+
+    StepText short_text(1e-6, 3000);
+    EXPECT_TRUE(must(short_text.brep(b, "")).empty());
+    EXPECT_EQ(short_text.refused[0].kind, RefusalKind::limit);
+    const auto twice = read_3dm(file({square_brep(Damage::loop_twice)}));
+    ASSERT_FALSE(twice);
+    EXPECT_EQ(twice.error().kind, RefusalKind::invalid);
+    EXPECT_NE(twice.error().message.find("face 0: loop 0 has been used before"), std::string::npos);
+}
+
+// Twelve stretched images of twelve of twelve ...: more than any file has objects.
+TEST(Rhino, blocks_in_blocks_end_somewhere) {
+    const auto id = [](int kind, int level, int i) {
+        return text("0000000", kind, "-0000-0000-00", level, "0-0000000000", i < 10 ? "0" : "", i);
+    };
+    Written definitions, table;
+    const auto add = [&](const Written& o, const std::string& uuid) {
+        Written record, attributes;
+        attributes.u8(0x10)
+            .uuid(uuid)
+            .i32(0)
+            .i32(0)
+            .nothing(4 + 2 + 2 + 8 + 8 + 4)
+            .u8(3)
+            .nothing(3)
+            .wide(u"")
+            .wide(u"");
+        record.short_chunk(0x82000071, 0).raw(o).chunk(0x02008072, attributes).short_chunk(0x8200007F, 0);
+        table.chunk(0x20008070, record);
+    };
+    const auto instance = [&](int of) {
+        Written w;
+        w.u8(0x10).uuid(id(2, of, 0)).f64s({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1}).nothing(48);
+        return object("F9CFB638-B9D4-4340-87E3-C56E7865D96A", w);
+    };
+    constexpr int kLevels = 8, kEach = 12;
+    for (int level = 0; level < kLevels; ++level) {
+        Written d;
+        d.u8(0x10).uuid(id(2, level, 0)).i32(kEach);
+        for (int i = 0; i < kEach; ++i) {
+            d.uuid(id(1, level, i));
+            add(level + 1 == kLevels ? line({{0, 0, 0}}, {{1, 1, 1}}) : instance(level + 1), id(1, level, i));
+        }
+        d.wide(u"block");
+        definitions.chunk(0x20008076, object("26F8BFF6-2618-417F-A158-153D64A94989", d));
+    }
+    Written record;
+    record.short_chunk(0x82000071, 0).raw(instance(0));
+    table.chunk(0x20008070, record).short_chunk(0xFFFFFFFF, 0);
+    Written all;
+    all.raw("3D Geometry File Format        4").chunk(0x10000021, definitions).chunk(0x10000013, table);
+    StepReadOptions options;
+    options.memory_bytes = 16 << 20;
+    const auto m = read_3dm(all.bytes, options);
+    ASSERT_FALSE(m);
+    EXPECT_EQ(m.error().kind, RefusalKind::limit) << m.error().message;
 }
 
 TEST(Rhino, refuses_what_is_no_file_and_what_ends_early) {

@@ -64,7 +64,12 @@ const shapes = {
 for (const [name, make] of Object.entries(shapes)) {
   const g = make();
   if (!g) throw name;
-  solids.objects().add(g, attributes(name, name === 'box' ? 1 : 0));
+  const a = attributes(name, name === 'box' ? 1 : 0);
+  if (name === 'box') {
+    a.objectColor = {r: 255, g: 102, b: 0, a: 255};
+    a.colorSource = r.ObjectColorSource.ColorFromObject;
+  }
+  solids.objects().add(g, a);
 }
 write(solids, 'solids', [2, 4, 8]);
 
