@@ -1,6 +1,7 @@
 // Boundaries that run into themselves where edges lie beside the surface, holes that touch what is around
 // them, parameter curves whose pieces have bounded derivatives, and every file that was once a finding.
 #include "io/step_geometry.hpp"
+#include "io/step_trace.hpp"
 
 #include <freiform/io/file.hpp>
 #include <freiform/io/step_read.hpp>
@@ -317,6 +318,39 @@ TEST(StepFindings, every_file_that_was_one_is_read_or_refused_and_meshed) {
         if (!t) EXPECT_FALSE(t.error().message.empty());
     }
     EXPECT_GE(files, 1);
+}
+
+// A ribbon along a narrow V with a round tip, and an edge that cuts the tip inside: the nearest point jumps
+// from one leg to the other, where steps from the one before stay on the first. A curve in parameters, at
+// another speed, says where it goes on.
+TEST(StepTangles, what_a_file_says_of_an_edge_in_parameters_helps_where_nearest_points_jump) {
+    using namespace step;
+    const auto along = [](double tip) {
+        return std::vector<Vec<3>>{
+            {{0, 0, 0}}, {{0.95, 1.9, 0}}, {{1, tip, 0}}, {{1.05, 1.9, 0}}, {{2, 0, 0}}};
+    };
+    const BSplineBasis legs = *BSplineBasis::make(3, {0, 0, 0, 0, 0.5, 1, 1, 1, 1});
+    Net<2, Vec<3>> net({2, 5});
+    for (std::size_t i = 0; i < 5; ++i)
+        for (std::size_t side = 0; side < 2; ++side)
+            net.flat()[5 * side + i] = along(2)[i] + Vec<3>{{0, 0, double(side)}};
+    const SurfaceGeometry ribbon = must(Surface<Vec<3>>::make({*BSplineBasis::bezier(1), legs}, net));
+    const Chart chart(ribbon, 1e-9);
+    const CurveGeometry<3> edge = must(Curve<Vec<3>>::make({legs}, Net<1, Vec<3>>({5}, along(1.8))));
+    const CurveGeometry<3> image = must(Curve<Vec<3>>::make(
+        {*BSplineBasis::bezier(2)}, Net<1, Vec<3>>({3}, {{{0, 0, 0}}, {{0, 0.4, 0}}, {{0, 1, 0}}})));
+    const auto farthest = [&](const CurveGeometry<2>& c) {
+        double most = 0;
+        for (int i = 0; i <= 200; ++i)
+            most = std::max(
+                most, norm(chart.point(jet<0>(c, i / 200.0).value()) - jet<0>(edge, i / 200.0).value()));
+        return most;
+    };
+    const auto t = must(trace(chart, edge, {0, 1}, 1e-6, 1e-3, {&image, 1}));
+    EXPECT_LT(farthest(t.curve), 0.15);
+    EXPECT_LT(t.gap, 0.15);
+    const Vec<2> end = jet<0>(t.curve, 1).value();
+    EXPECT_NEAR(end[1], 1, 1e-6);
 }
 
 }  // namespace
