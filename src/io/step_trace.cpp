@@ -352,14 +352,12 @@ private:
             if (good && (!found || at.gap < out.gap)) out = at, found = true;
             if (found && out.gap <= kNear * accuracy_ + kFarther * from.gap) return true;
         }
-        // Where the surface bends sharply beside the edge, what the file says of its place helps.
-        if (!images_.empty()) {
-            const auto j = jet<1>(c_, t);
-            const Foot f = foot_by_images(chart_, j.d[0], j.d[1], t, on_, accuracy_, images_);
-            if (f.regular && near(f.at, from.at) && !(found && out.gap <= f.distance)) {
-                out.t = t, found = true;
-                place(f, out);
-            }
+        // Where the surface bends sharply beside the edge, the nearest point is elsewhere.
+        const auto j = jet<1>(c_, t);
+        const Foot f = foot_by_images(chart_, j.d[0], j.d[1], t, on_, accuracy_, images_);
+        if (f.regular && near(f.at, from.at) && !(found && out.gap <= f.distance)) {
+            out.t = t, found = true;
+            place(f, out);
         }
         return found;
     }
