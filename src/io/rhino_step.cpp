@@ -18,7 +18,7 @@ using detail::real;
 
 std::string triple(const Vec<3>& p) { return detail::listed_as(p.c, real); }
 
-constexpr double kSimilar = 1e-9;  // of a map: what it is a similarity up to
+constexpr double kSimilar = 0x1p-36;  // of the scale of a map: what it is a similarity up to
 
 Refusal within(const std::string& part, Refusal r) {
     r.where = r.where.empty() ? part : part.empty() ? r.where : text(part, ", ", r.where);

@@ -10,9 +10,10 @@ namespace freiform {
 // colours that objects have of their own.
 //
 // Curves and surfaces are what the file says: NURBS, lines, arcs, planes, surfaces of revolution (by angle);
-// sums and extrusions up to rounding. Parameter curves of edges are made new from edge and surface, as of
-// STEP files (docs/step.md), and so are their bounds; what is mended or repaired is told likewise, by the
-// object and the number of its face or edge in the file.
+// sums, extrusions and what is in stretched blocks up to rounding; maps of blocks that are similarities but
+// for 2^-36 of their scale are taken for such. Parameter curves of edges are made new from edge and surface,
+// as of STEP files (docs/step.md), and so are their bounds; what is mended or repaired is told likewise, by
+// the object and the number of its face or edge in the file.
 //
 // What is not in the model stands in Model::refused: objects of kinds that are not read (unsupported: meshes,
 // subdivision surfaces, points; texts, dimensions, lights and views are passed over), instances of blocks
