@@ -19,6 +19,7 @@ Result<std::vector<std::optional<T>>> objects(Bytes& b, std::string_view what, R
     int minor = 0;
     list.version(minor);
     const int n = list.count(4);
+    if (b.failed() || list.failed()) return ends_early(list, what);
     std::vector<std::optional<T>> all;
     for (int i = 0; i < n; ++i) {
         const bool is_there = list.i32() == 1;
@@ -33,7 +34,7 @@ Result<std::vector<std::optional<T>>> objects(Bytes& b, std::string_view what, R
         if (!one) return std::unexpected(one.error());
         all.push_back(std::move(*one));
     }
-    if (b.failed()) return ends_early(b, what);
+    if (auto ok = list.check_sum(); !ok) return std::unexpected(ok.error());
     return all;
 }
 

@@ -46,8 +46,6 @@ constexpr std::array kKnown = std::to_array<Known>({
     {"0705FDEF-3E2A-11D4-800E-0010830122F0", {Kind::brep, "a trimmed surface"}},
     {"2D4CFEDB-3E2A-11D4-800E-0010830122F0", {Kind::brep, "a polysurface"}},
     {"F9CFB638-B9D4-4340-87E3-C56E7865D96A", {Kind::instance, "an instance of a block"}},
-    {"26F8BFF6-2618-417F-A158-153D64A94989", {Kind::definition, "a block"}},
-    {"95809813-E985-11D3-BFE5-0010830122F0", {Kind::layer, "a layer"}},
     {"4ED7D4E4-E947-11D3-BFE5-0010830122F0", {Kind::left_out, "mesh"}},
     {"F09BA4D9-455B-42C3-BA3B-E6CCACEF853B", {Kind::left_out, "subdivision surface"}},
     {"C3101A1D-F157-11D3-BFE7-0010830122F0", {Kind::bare, "point"}},
@@ -143,9 +141,11 @@ std::uint32_t Bytes::peek_type() const { return Bytes(*this).get<std::uint32_t>(
 
 Chunk Bytes::chunk() {
     Chunk c;
+    const std::size_t begin = at_;
     c.type = get<std::uint32_t>();
     c.value = wide_ ? get<std::int64_t>() : get<std::int32_t>();
-    if (c.is_short() || failed_) return c;
+    if (failed_) return c;
+    if (c.is_short()) return inside_.emplace_back(begin, at_), c;
     if (c.value < 0 || std::uint64_t(c.value) > left()) return fail(), c;
     const auto length = std::size_t(c.value);
     const std::size_t sum = checked_ && (c.type & tag::kChecked) != 0 ? 4 : 0;
@@ -153,6 +153,7 @@ Chunk Bytes::chunk() {
     c.body = Bytes(s_.substr(at_, length - sum), start_ + at_, wide_, checked_);
     at_ += length - sum;
     if (sum > 0) c.body.sum_ = get<std::uint32_t>();
+    inside_.emplace_back(begin, at_);
     return c;
 }
 
@@ -171,7 +172,13 @@ Result<void> Bytes::check_sum() const {
 #endif
     if (!sum_) return {};
     std::uint32_t x = 0xFFFFFFFF;
-    for (const char c : s_) x = x >> 8 ^ kTable[(x ^ static_cast<unsigned char>(c)) & 0xFF];
+    const auto add = [&](std::size_t from, std::size_t to) {
+        for (const char c : s_.substr(from, to - from))
+            x = x >> 8 ^ kTable[(x ^ static_cast<unsigned char>(c)) & 0xFF];
+    };
+    std::size_t from = 0;
+    for (const auto& [begin, end] : inside_) add(from, begin), from = end;
+    add(from, s_.size());
     if (~x == *sum_) return {};
     return refuse(RefusalKind::unreadable, text("byte ", start_), "is damaged: its checksum is another");
 }

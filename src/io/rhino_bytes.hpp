@@ -44,7 +44,6 @@ public:
     std::size_t at() const { return start_ + at_; }  // counted from the beginning of the file
     bool failed() const { return failed_; }
     void fail() { failed_ = true, at_ = s_.size(); }
-    bool is_wide() const { return wide_; }
 
     // Little-endian.
     template <class T>
@@ -96,7 +95,8 @@ public:
 
     Chunk chunk();
     std::uint32_t peek_type() const;
-    // Of a chunk that has a checksum and no others inside, which do not count (unreadable).
+    // Refuses (unreadable) other bytes than the checksum says, if the chunk has one. Chunks inside of it do
+    // not count: those that have been read until now.
     Result<void> check_sum() const;
 
     // The first digit of a version in one byte, the second one in `minor`.
@@ -107,11 +107,11 @@ public:
     }
 
 private:
-    friend struct Chunk;
     std::string_view s_;
     std::size_t at_ = 0, start_ = 0;
     bool wide_ = false, checked_ = false, failed_ = false;
     std::optional<std::uint32_t> sum_ = {};
+    std::vector<std::pair<std::size_t, std::size_t>> inside_ = {};  // chunks: where they begin and end
 };
 
 struct Chunk {
@@ -142,9 +142,7 @@ enum class Kind {
     sum_surface,
     extrusion,
     brep,
-    instance,
-    definition,
-    layer
+    instance
 };
 struct ClassName {
     Kind kind = Kind::unknown;

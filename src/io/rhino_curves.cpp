@@ -136,8 +136,12 @@ Result<CurveInSpace> read_curve(StoredObject o, int depth) {
             return read_arc(b);
         case Kind::polyline_curve:
             return read_polyline(b);
-        case Kind::poly_curve:
-            return read_poly_curve(b, depth);
+        case Kind::poly_curve: {
+            auto c = read_poly_curve(b, depth);
+            if (c)
+                if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
+            return c;
+        }
         default:
             break;
     }

@@ -134,6 +134,7 @@ private:
             return Result<void>{};
         };
         if (b.failed()) return refused(RefusalKind::unreadable, "an instance ends too early");
+        if (auto ok = b.check_sum(); !ok) return refused(ok.error().kind, ok.error().message);
         if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
             return refused(RefusalKind::unsupported, "an instance of a block that is projected");
         AffineMap map{{{m[3], m[7], m[11]}}, {}};

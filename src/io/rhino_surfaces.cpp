@@ -58,6 +58,7 @@ Result<SurfaceInSpace> read_revolved(Bytes& b) {
     if (!o) return std::unexpected(o.error());
     auto profile = read_curve(*o);
     if (!profile) return std::unexpected(profile.error());
+    if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
     r.profile = std::move(*profile);
     return SurfaceInSpace(std::move(r));
 }
@@ -76,6 +77,7 @@ Result<SurfaceInSpace> read_summed(Bytes& b) {
         if (!curve) return std::unexpected(curve.error());
         *c = std::move(*curve);
     }
+    if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
     if (!is_finite(base)) return invalid(b, "a sum of two curves without a base point");
     s.first = moved(s.first, base);
     return SurfaceInSpace(std::move(s));

@@ -508,6 +508,36 @@ TEST(Rhino, refuses_what_is_no_file_and_what_ends_early) {
     EXPECT_NE(r.error().message.find("checksum"), std::string::npos) << r.error().message;
 }
 
+// One bit of a number that no chunk inside has: of a path, an axis, a base point, a parameter.
+TEST(Rhino, damage_between_the_parts_of_an_object_is_seen_too) {
+    Written axis, sum;
+    axis.u8(0x20).f64s({0, 0, 0, 0, 0, 77, 0.5, 2.5, 0, 1}).nothing(48).i32(0).u8(1);
+    axis.raw(line({{2, 0, 0}}, {{1, 0, 3}}));
+    sum.u8(0x10).f64s({0, 0, 77}).nothing(48).raw(bump()).raw(line({{0, 0, 0}}, {{0, 0, 2}}));
+    Written list;
+    list.u8(0x10).i32(1).nothing(8 + 48).i32(2).f64s({0, 77}).raw(bump());
+    for (const Written& o : {object(kRevolved, axis), object(kSum, sum), object(kRow, list),
+                             extrusion(square(2), false, 3, 0, 77)}) {
+        std::string bytes = file({o});
+        ASSERT_TRUE(read_3dm(bytes));
+        const std::size_t at = bytes.find(Written().f64(77).bytes);
+        ASSERT_NE(at, std::string::npos);
+        bytes[at + 5] ^= 1;
+        const auto r = read_3dm(bytes);
+        ASSERT_FALSE(r);
+        EXPECT_NE(r.error().message.find("checksum"), std::string::npos) << r.error().message;
+    }
+    // Of an instance: where it is.
+    std::string blocks = bytes_of("blocks_8");
+    const std::size_t at = blocks.find(Written().f64(30).bytes);
+    ASSERT_NE(at, std::string::npos);
+    blocks[at + 5] ^= 1;
+    const Model m = must(read_3dm(blocks));
+    EXPECT_EQ(m.bodies.size(), 4u);
+    ASSERT_EQ(m.refused.size(), 1u);
+    EXPECT_NE(m.refused[0].message.find("checksum"), std::string::npos);
+}
+
 // Version 1: two squares at a right angle, one edge of which the first has and the second shares.
 Written v1_curve(int dim, const std::vector<double>& a, const std::vector<double>& b) {
     Written spline, row;

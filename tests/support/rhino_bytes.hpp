@@ -40,7 +40,11 @@ public:
         bytes += s;
         return *this;
     }
-    Written& raw(const Written& w) { return raw(w.bytes); }
+    Written& raw(const Written& w) {
+        for (const auto& [begin, end] : w.inside_)
+            inside_.emplace_back(bytes.size() + begin, bytes.size() + end);
+        return raw(w.bytes);
+    }
     // "4ED7D4DB-E947-11D3-BFE5-0010830122F0"
     Written& uuid(std::string_view s) {
         std::string hex;
@@ -57,27 +61,38 @@ public:
         return u16(0);
     }
     // Lengths of four bytes, as before version 50.
-    Written& chunk(std::uint32_t type, std::string_view body) {
+    Written& chunk(std::uint32_t type, const Written& body) {
+        const std::size_t begin = bytes.size();
         number(type);
-        i32(int(body.size()) + ((type & 0x8000) != 0 ? 4 : 0));
-        raw(body);
-        return (type & 0x8000) != 0 ? number(sum_of(body)) : *this;
+        i32(int(body.bytes.size()) + ((type & 0x8000) != 0 ? 4 : 0));
+        raw(std::string_view(body.bytes));
+        if ((type & 0x8000) != 0) number(body.sum());
+        inside_.emplace_back(begin, bytes.size());
+        return *this;
     }
-    Written& chunk(std::uint32_t type, const Written& body) { return chunk(type, body.bytes); }
-    Written& short_chunk(std::uint32_t type, std::int32_t value) { return number(type).i32(value); }
+    Written& chunk(std::uint32_t type, std::string_view body) { return chunk(type, Written().raw(body)); }
+    Written& short_chunk(std::uint32_t type, std::int32_t value) {
+        inside_.emplace_back(bytes.size(), bytes.size() + 8);
+        return number(type).i32(value);
+    }
 
     std::string bytes;
 
 private:
-    // Bit by bit.
-    static std::uint32_t sum_of(std::string_view s) {
+    // Bit by bit, without the chunks inside.
+    std::uint32_t sum() const {
         std::uint32_t x = ~0u;
-        for (const char c : s) {
-            x ^= static_cast<unsigned char>(c);
+        for (std::size_t at = 0; at < bytes.size(); ++at) {
+            bool is_inside = false;
+            for (const auto& [begin, end] : inside_) is_inside = is_inside || (begin <= at && at < end);
+            if (is_inside) continue;
+            x ^= static_cast<unsigned char>(bytes[at]);
             for (int i = 0; i < 8; ++i) x = (x & 1) != 0 ? x >> 1 ^ 0xEDB88320u : x >> 1;
         }
         return ~x;
     }
+
+    std::vector<std::pair<std::size_t, std::size_t>> inside_;  // chunks: where they begin and end
 };
 
 inline constexpr std::string_view kLine = "4ED7D4DB-E947-11D3-BFE5-0010830122F0",
