@@ -13,27 +13,22 @@ namespace freiform::rhino {
 namespace {
 
 // Arrays that may have no object in a place.
-template <class T, class Read>
-Result<std::vector<std::optional<T>>> objects(Bytes& b, std::string_view what, Read&& read) {
+Result<std::vector<std::optional<StoredObject>>> objects(Bytes& b, std::string_view what) {
     Bytes list = b.chunk().body;
     int minor = 0;
     list.version(minor);
     const int n = list.count(4);
-    if (b.failed() || list.failed()) return ends_early(list, what);
-    std::vector<std::optional<T>> all;
+    std::vector<std::optional<StoredObject>> all;
     for (int i = 0; i < n; ++i) {
-        const bool is_there = list.i32() == 1;
-        if (list.failed()) return ends_early(list, what);
-        if (!is_there) {
-            all.emplace_back();
-            continue;
-        }
+        all.emplace_back();
+        if (list.i32() != 1) continue;
         Chunk c = list.chunk();
-        if (list.failed()) return ends_early(list, what);
-        auto one = read(std::move(c));
-        if (!one) return std::unexpected(one.error());
-        all.push_back(std::move(*one));
+        if (list.failed()) break;
+        auto o = object_in(std::move(c));
+        if (!o) return std::unexpected(o.error());
+        all.back() = std::move(*o);
     }
+    if (b.failed() || list.failed()) return ends_early(list, what);
     if (auto ok = list.check_sum(); !ok) return std::unexpected(ok.error());
     return all;
 }
@@ -58,7 +53,7 @@ struct Trim {
     int type = 0;
 };
 
-// The faces that have all that they need.
+// With every number inside of what it counts.
 Result<BrepOf> finished(BrepOf b, const Bytes& bytes) {
     const auto outside = [](int i, std::size_t n) { return i < 0 || std::size_t(i) >= n; };
     for (std::size_t e = 0; e < b.edges.size(); ++e) {
@@ -69,68 +64,42 @@ Result<BrepOf> finished(BrepOf b, const Bytes& bytes) {
             if (outside(v, b.vertices.size()))
                 return invalid(bytes, text("edge ", e, ": vertex ", v, " of ", b.vertices.size()));
     }
-    std::vector<FaceOf> kept;
     for (std::size_t f = 0; f < b.faces.size(); ++f) {
-        FaceOf& face = b.faces[f];
+        const FaceOf& face = b.faces[f];
         if (outside(face.surface, b.surfaces.size()))
             return invalid(bytes, text("face ", f, ": surface ", face.surface, " of ", b.surfaces.size()));
         for (const LoopOf& l : face.loops)
             for (const TrimOf& t : l.trims)
                 if (outside(t.edge, b.edges.size()))
                     return invalid(bytes, text("face ", f, ": edge ", t.edge, " of ", b.edges.size()));
-        if (!b.surfaces[std::size_t(face.surface)]) continue;  // has been refused
-        kept.push_back(std::move(face));
-        b.numbers.push_back(int(f));
     }
-    b.faces = std::move(kept);
     return b;
 }
 
 Result<BrepOf> read_version3(Bytes& bytes) {
     BrepOf b;
     // Curves in parameters say where to look for the edge, and no more: those that cannot be read are none.
-    auto images = objects<std::optional<CurveInSpace>>(
-        bytes, "the list of curves in parameters", [](Chunk c) -> Result<std::optional<CurveInSpace>> {
-            auto o = object_in(std::move(c));
-            if (!o) return std::unexpected(o.error());
-            auto curve = read_curve(std::move(*o));
-            return curve ? std::optional(std::move(*curve)) : std::nullopt;
-        });
+    const auto images = objects(bytes, "the list of curves in parameters");
     if (!images) return std::unexpected(images.error());
-    for (auto& c : *images) b.images.push_back(c ? std::move(*c) : std::nullopt);
-    const auto curves =
-        objects<CurveInSpace>(bytes, "the list of curves", [](Chunk c) -> Result<CurveInSpace> {
-            auto o = object_in(std::move(c));
-            if (!o) return std::unexpected(o.error());
-            return read_curve(*o);
-        });
+    for (const auto& o : *images) {
+        auto c = o ? read_curve(*o) : Result<CurveInSpace>(std::unexpected(Refusal{}));
+        b.images.push_back(c ? std::optional(std::move(*c)) : std::nullopt);
+    }
+    const auto curves = objects(bytes, "the list of curves");
     if (!curves) return std::unexpected(curves.error());
     // An edge knows its curve by its number, also where there is none.
     std::vector<int> number;
-    for (const auto& c : *curves) {
-        number.push_back(c ? int(b.curves.size()) : -1);
-        if (c) b.curves.push_back(*c);
+    for (const auto& o : *curves) {
+        number.push_back(o ? int(b.curves.size()) : -1);
+        if (!o) continue;
+        auto c = read_curve(*o);
+        if (!c) return std::unexpected(c.error());
+        b.curves.push_back(std::move(*c));
     }
-    std::vector<std::optional<Refusal>> why;
-    auto surfaces = objects<std::optional<SurfaceInSpace>>(
-        bytes, "the list of surfaces", [&](Chunk c) -> Result<std::optional<SurfaceInSpace>> {
-            auto o = object_in(std::move(c));
-            if (!o) return std::unexpected(o.error());
-            auto s = read_surface(*o);
-            why.emplace_back();
-            if (s) return std::optional(std::move(*s));
-            why.back() = s.error();
-            return std::optional<SurfaceInSpace>();
-        });
+    const auto surfaces = objects(bytes, "the list of surfaces");
     if (!surfaces) return std::unexpected(surfaces.error());
-    std::size_t at = 0;
-    std::vector<Refusal> none;  // by surface
-    for (auto& s : *surfaces) {
-        none.push_back(s && why[at] ? *why[at] : Refusal{RefusalKind::invalid, "", "has no surface"});
-        at += s ? 1 : 0;
-        b.surfaces.push_back(s ? std::move(*s) : std::nullopt);
-    }
-
+    for (const auto& o : *surfaces)
+        b.surfaces.push_back(o ? read_surface(*o) : refuse(RefusalKind::invalid, "", "has no surface"));
     auto vertices = list_of(bytes, 4 + 24 + 4 + 8, "the list of vertices");
     if (!vertices) return std::unexpected(vertices.error());
     for (int i = 0; i < vertices->count; ++i) {
@@ -227,9 +196,6 @@ Result<BrepOf> read_version3(Bytes& bytes) {
             }
             f.loops.push_back(std::move(loop));
         }
-        if (f.surface >= 0 && std::size_t(f.surface) < b.surfaces.size() &&
-            !b.surfaces[std::size_t(f.surface)])
-            b.refused.emplace_back(i, none[std::size_t(f.surface)]);
         b.faces.push_back(std::move(f));
     }
     if (faces->b.failed()) return ends_early(faces->b, "the list of faces");
@@ -346,8 +312,7 @@ bool BrepOf::is_solid() const {
         for (const LoopOf& l : f.loops)
             for (const TrimOf& t : l.trims) ++uses[std::size_t(t.edge)];
     }
-    return refused.empty() && !faces.empty() &&
-           std::all_of(uses.begin(), uses.end(), [](int n) { return n == 2 || n == 0; });
+    return !faces.empty() && std::all_of(uses.begin(), uses.end(), [](int n) { return n == 2 || n == 0; });
 }
 
 Result<BrepOf> read_brep(StoredObject o) {

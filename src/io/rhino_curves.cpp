@@ -275,8 +275,8 @@ Result<SurfaceInSpace> mapped_surface(const SurfaceInSpace& s, const AffineMap& 
             else if constexpr (std::same_as<S, Revolved>)
                 return refuse(RefusalKind::unsupported, "",
                               "a surface of revolution in a block that is stretched, sheared or projected");
-            else if constexpr (std::same_as<S, Summed>)
-                return Summed{mapped(x.first, map), mapped(x.second, {{}, map.axes})};
+            else if constexpr (std::same_as<S, Swept>)
+                return Swept{mapped(x.profile, map), map.vector(x.along), x.transposed};
             else
                 return mapped_patch(x, map);
         },
@@ -302,16 +302,12 @@ CurveInSpace mapped(const CurveInSpace& c, const AffineMap& map) {
     return out;
 }
 
-Result<BrepOf> mapped(const BrepOf& b, const AffineMap& map) {
+BrepOf mapped(const BrepOf& b, const AffineMap& map) {
     BrepOf out = b;
     for (CurveInSpace& c : out.curves) c = mapped(c, map);
     for (Vec<3>& p : out.vertices) p = map.point(p);
-    for (auto& s : out.surfaces) {
-        if (!s) continue;
-        auto image = mapped_surface(*s, map);
-        if (!image) return std::unexpected(image.error());
-        s = std::move(*image);
-    }
+    for (auto& s : out.surfaces)
+        if (s) s = mapped_surface(*s, map);
     // In a mirror normals that pointed out point in.
     if (dot(cross(map.axes[0], map.axes[1]), map.axes[2]) < 0)
         for (FaceOf& f : out.faces) f.reversed = !f.reversed;
@@ -349,6 +345,16 @@ CurveInSpace backwards(const CurveInSpace& c) {
 bool is_straight(const CurveInSpace& c) {
     return c.pieces.size() == 1 && std::holds_alternative<Line<3>>(c.pieces[0].shape);
 }
+
+double extent_of(const CurveInSpace& c) {
+    double size = 0;
+    for (const Piece& p : c.pieces)
+        for (const double x : {p.on.lo, p.on.middle(), p.on.hi})
+            size = std::max(size, norm(jet<0>(p.shape, x).value() - c.end(false)));
+    return size;
+}
+
+bool closes(const CurveInSpace& c) { return norm(c.end(true) - c.end(false)) <= kClose * extent_of(c); }
 
 CurveInSpace segment(const Vec<3>& a, const Vec<3>& b) { return {{line_piece(a, b, {0, 1})}}; }
 

@@ -99,10 +99,10 @@ public:
         std::array<LoopOf, 2> around;
         for (int i = 0; i < n; ++i) {
             const int low = edge + 2 * i, right = edge + 2 * n + (i + 1) % corners, left = edge + 2 * n + i;
-            b.surfaces.emplace_back(Summed{below[std::size_t(i)], segment({}, along_)});
+            b.surfaces.emplace_back(Swept{below[std::size_t(i)], along_, false});
             b.faces.push_back({int(b.surfaces.size()) - 1,
                                false,
-                               {{{{low, false}, {right, false}, {low + 1, true}, {left, true}}, -1}}});
+                               {{{{low, false}, {right, false}, {low + 1, true}, {left, true}}}}});
             for (int end = 0; end < 2; ++end) around[std::size_t(end)].trims.push_back({low + end, false});
         }
         for (std::size_t end = 0; end < 2; ++end) rims[end].push_back(std::move(around[end]));
@@ -195,15 +195,11 @@ Result<BrepOf> read_extrusion(StoredObject o) {
     bool closed = true;
     for (std::size_t i = 0; i < profiles.size(); ++i) {
         CurveInSpace& p = profiles[i];
-        double size = 0;
-        for (const Piece& piece : p.pieces)
-            for (const double at : {piece.on.middle(), piece.on.hi})
-                size = std::max(size, max_abs(jet<0>(piece.shape, at).value() - p.end(false)));
-        const bool closes = max_abs(p.end(true) - p.end(false)) <= 0x1p-36 * size;
         // The outer one runs counter-clockwise, holes run clockwise.
-        if (closes && (area_of(p) < 0) == (i == 0)) p = backwards(p);
-        closed = closed && closes;
-        if (auto ok = maker.add(p, closes); !ok) return std::unexpected(ok.error());
+        const bool is_closed = closes(p);
+        if (is_closed && (area_of(p) < 0) == (i == 0)) p = backwards(p);
+        closed = closed && is_closed;
+        if (auto ok = maker.add(p, is_closed); !ok) return std::unexpected(ok.error());
     }
     if (closed)
         for (std::size_t end = 0; end < 2; ++end)

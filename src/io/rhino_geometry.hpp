@@ -24,7 +24,7 @@ struct CurveInSpace {
     Vec<3> end(bool last) const { return last ? pieces.back().end(true) : pieces.front().end(false); }
 };
 
-// S(u, v) = origin + x x + y y, where (x, y) is (u, v) moved from `domain` to `extent`.
+// origin + x x + y y, with (x, y) in `extent`.
 struct PlaneInSpace {
     Vec<3> origin{}, x{}, y{};
     std::array<Interval, 2> extent{};
@@ -36,11 +36,13 @@ struct Revolved {
     Interval angle;
     bool transposed = false;  // u runs along the profile
 };
-// first(u) + second(v); a straight line if `second` is one.
-struct Summed {
-    CurveInSpace first, second;
+// profile(u) + v along, v in [0, 1].
+struct Swept {
+    CurveInSpace profile;
+    Vec<3> along{};
+    bool transposed = false;  // v runs along the profile
 };
-using SurfaceInSpace = std::variant<Surface<Vec<3>>, Surface<Hom<3>>, PlaneInSpace, Revolved, Summed>;
+using SurfaceInSpace = std::variant<Surface<Vec<3>>, Surface<Hom<3>>, PlaneInSpace, Revolved, Swept>;
 
 // A curve, and how something runs along it.
 struct Along {
@@ -60,7 +62,6 @@ struct EdgeOf {
 };
 struct LoopOf {
     std::vector<TrimOf> trims;
-    int vertex = -1;  // of a loop without edges
 };
 struct FaceOf {
     int surface = -1;
@@ -69,14 +70,12 @@ struct FaceOf {
 };
 struct BrepOf {
     std::vector<CurveInSpace> curves;
-    std::vector<std::optional<CurveInSpace>> images;      // curves in parameters; none: could not be read
-    std::vector<std::optional<SurfaceInSpace>> surfaces;  // none: could not be read
+    std::vector<std::optional<CurveInSpace>> images;  // curves in parameters; none: could not be read
+    std::vector<Result<SurfaceInSpace>> surfaces;     // or why there is none
     std::vector<Vec<3>> vertices;
     std::vector<EdgeOf> edges;
     std::vector<FaceOf> faces;
-    std::vector<std::pair<int, Refusal>> refused;  // faces that are not there, by their number in the file
-    std::vector<int> numbers;                      // of `faces` in the file; empty: one after the other
-    bool is_solid() const;                         // every edge is used twice
+    bool is_solid() const;  // every edge is used twice
 };
 
 Result<CurveInSpace> read_curve(StoredObject o, int depth = 0);
@@ -88,7 +87,7 @@ Result<SurfaceInSpace> read_nurbs_surface(Bytes& b);
 Result<BrepOf> read_brep(StoredObject o);
 Result<BrepOf> read_extrusion(StoredObject o);
 // A face of all of the surface, with the edges around it.
-Result<BrepOf> whole_face(SurfaceInSpace surface);
+BrepOf whole_face(SurfaceInSpace surface);
 
 // Numbers as they are in files: knots without the first and the last, homogeneous points.
 struct SplineNumbers {
@@ -104,7 +103,7 @@ Result<SurfaceInSpace> spline_surface(const SplineNumbers& n);
 // Of edges whose file has no vertices: ends that a loop goes through one after the other are one.
 void find_vertices(BrepOf& b);
 
-// Of the curve with this number; in its own direction.
+// What is meant of the curve, in its own direction.
 Result<CurveInSpace> part_of(const CurveInSpace& c, const Along& along);
 // The part of a curve over a part of its parameters, each piece cut; what is off an end by rounding is there.
 Result<CurveInSpace> part_of(const CurveInSpace& c, Interval part);
@@ -119,11 +118,15 @@ AffineMap operator*(const AffineMap& a, const AffineMap& b);  // first b, then a
 // The image but for rounding.
 CurveInSpace mapped(const CurveInSpace& c, const AffineMap& map);
 inline CurveInSpace moved(const CurveInSpace& c, const Vec<3>& by) { return mapped(c, {by}); }
-// Unsupported: surfaces of revolution, whose image is none in general.
-Result<BrepOf> mapped(const BrepOf& b, const AffineMap& map);
+// Without surfaces of revolution, whose image is none in general (unsupported).
+BrepOf mapped(const BrepOf& b, const AffineMap& map);
 // One piece after the other, from the last end to the first; parameters count from 0.
 CurveInSpace backwards(const CurveInSpace& c);
 bool is_straight(const CurveInSpace& c);
+// Nearer ends, of the size of what they bound, are one.
+inline constexpr double kClose = 0x1p-36;
+double extent_of(const CurveInSpace& c);
+bool closes(const CurveInSpace& c);
 CurveInSpace segment(const Vec<3>& a, const Vec<3>& b);
 
 }  // namespace freiform::rhino

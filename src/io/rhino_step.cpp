@@ -92,17 +92,15 @@ Result<int> StepText::surface(const SurfaceInSpace& s, bool& turned) {
                 const int axis = entities_.add(text("DIRECTION('',", triple(x.axis), ")"));
                 const int placed = entities_.add(text("AXIS1_PLACEMENT('',#", at, ",#", axis, ")"));
                 return entities_.add(text("SURFACE_OF_REVOLUTION('',#", *id, ",#", placed, ")"));
-            } else if constexpr (std::same_as<S, Summed>) {
-                turned = !is_straight(x.second);
-                const CurveInSpace &line = turned ? x.first : x.second, &other = turned ? x.second : x.first;
-                const Vec<3> a = line.end(false), d = line.end(true) - a;
-                const CurveInSpace swept = a == Vec<3>{} ? other : moved(other, a);
-                if (is_straight(swept))
-                    return geometry_.surface(Extrusion{swept.pieces[0].shape, d, SurfaceKind::plane});
-                const auto id = curve_of(swept);
+            } else if constexpr (std::same_as<S, Swept>) {
+                turned = x.transposed;
+                if (is_straight(x.profile))
+                    return geometry_.surface(
+                        Extrusion{x.profile.pieces[0].shape, x.along, SurfaceKind::plane});
+                const auto id = curve_of(x.profile);
                 if (!id) return id;
-                const int direction = entities_.add(text("DIRECTION('',", triple(d), ")"));
-                const int v = entities_.add(text("VECTOR('',#", direction, ",", real(norm(d)), ")"));
+                const int direction = entities_.add(text("DIRECTION('',", triple(x.along), ")"));
+                const int v = entities_.add(text("VECTOR('',#", direction, ",", real(norm(x.along)), ")"));
                 return entities_.add(text("SURFACE_OF_LINEAR_EXTRUSION('',#", *id, ",#", v, ")"));
             } else {
                 return geometry_.surface(x);
@@ -142,9 +140,9 @@ Result<CurveInSpace> StepText::shared_part(const CurveInSpace& c, const Along& a
 
 void StepText::find_images(Work& w) {
     for (const FaceOf& f : w.b.faces) {
-        const auto& surface = *w.b.surfaces[std::size_t(f.surface)];
-        if (!std::holds_alternative<Surface<Vec<3>>>(surface) &&
-            !std::holds_alternative<Surface<Hom<3>>>(surface))
+        const auto& surface = w.b.surfaces[std::size_t(f.surface)];
+        if (!surface || (!std::holds_alternative<Surface<Vec<3>>>(*surface) &&
+                         !std::holds_alternative<Surface<Hom<3>>>(*surface)))
             continue;
         for (const LoopOf& l : f.loops)
             for (const TrimOf& t : l.trims) {
@@ -214,8 +212,7 @@ Result<int> StepText::loop_of(Work& w, const LoopOf& l, const std::string& face)
         }
         around.push_back(entities_.add(text("ORIENTED_EDGE('',*,*,#", e, t.reversed ? ",.F.)" : ",.T.)")));
     }
-    if (!around.empty()) return entities_.add(text("EDGE_LOOP('',", Entities::refs(around), ")"));
-    return l.vertex < 0 ? 0 : entities_.add(text("VERTEX_LOOP('',#", w.vertices[std::size_t(l.vertex)], ")"));
+    return around.empty() ? 0 : entities_.add(text("EDGE_LOOP('',", Entities::refs(around), ")"));
 }
 
 Result<int> StepText::face_of(Work& w, const FaceOf& face, const std::string& label) {
@@ -230,6 +227,7 @@ Result<int> StepText::face_of(Work& w, const FaceOf& face, const std::string& la
         if (*loop > 0)
             bounds.push_back(entities_.add(text("FACE_BOUND('',#", *loop, reversed ? ",.F.)" : ",.T.)")));
     }
+    if (bounds.empty()) return refuse(RefusalKind::invalid, "", "none of its loops has an edge");
     return entities_.add(
         text("ADVANCED_FACE('',", Entities::refs(bounds), ",#", w.surfaces[n], reversed ? ",.F.)" : ",.T.)"));
 }
@@ -249,30 +247,29 @@ Result<std::vector<int>> StepText::brep(const BrepOf& b, std::string_view name) 
         w.vertices.push_back(entities_.add(text("VERTEX_POINT('',#", at, ")")));
     }
     find_images(w);
-    std::vector<std::string> labels;
+    const auto label = [](std::size_t face) { return text("face ", face); };
     std::vector<std::optional<Refusal>> why(b.surfaces.size());
     for (std::size_t f = 0; f < b.faces.size(); ++f) {
-        labels.push_back(text("face ", b.numbers.empty() ? int(f) : b.numbers[f]));
         const auto n = std::size_t(b.faces[f].surface);
         if (w.surfaces[n] != 0 || why[n]) continue;
-        mark_part(labels.back());
+        mark_part(label(f));
         bool turned = false;
-        const auto id = surface(*b.surfaces[n], turned);
+        const auto id = b.surfaces[n] ? surface(*b.surfaces[n], turned)
+                                      : Result<int>(std::unexpected(b.surfaces[n].error()));
         if (!id) why[n] = id.error();
         w.surfaces[n] = id ? *id : 0, w.turned[n] = turned;
     }
     std::vector<int> faces;
     for (std::size_t f = 0; f < b.faces.size(); ++f) {
         const auto& no_surface = why[std::size_t(b.faces[f].surface)];
-        mark_part(labels[f]);
+        mark_part(label(f));
         const auto id =
-            no_surface ? Result<int>(std::unexpected(*no_surface)) : face_of(w, b.faces[f], labels[f]);
+            no_surface ? Result<int>(std::unexpected(*no_surface)) : face_of(w, b.faces[f], label(f));
         if (id)
             faces.push_back(*id);
         else
-            refuse_face(labels[f], id.error());
+            refuse_face(label(f), id.error());
     }
-    for (const auto& [number, r] : b.refused) refuse_face(text("face ", number), r);
     if (faces.empty()) return std::vector<int>{};
     mark_part("");
     const bool solid = b.is_solid() && faces.size() == b.faces.size();
@@ -288,14 +285,9 @@ Result<int> StepText::curve(const CurveInSpace& c, std::string_view name) {
         return entities_.add(text("VERTEX_POINT('',#", geometry_.point(c.end(last)), ")"));
     };
     const int from = vertex(false);
-    double size = 0;
-    for (const Piece& p : c.pieces)
-        for (const double t : {p.on.middle(), p.on.hi})
-            size = std::max(size, max_abs(jet<0>(p.shape, t).value() - c.end(false)));
-    const bool closed = max_abs(c.end(true) - c.end(false)) <= 0x1p-36 * size;
     const auto shape = curve_of(c);
     if (!shape) return shape;
-    const int id = edge_on(*shape, from, closed ? from : vertex(true), name);
+    const int id = edge_on(*shape, from, closes(c) ? from : vertex(true), name);
     const int set = entities_.add(text("CONNECTED_EDGE_SET('',(#", id, "))"));
     return entities_.add(text("EDGE_BASED_WIREFRAME_MODEL(", quoted(name), ",(#", set, "))"));
 }

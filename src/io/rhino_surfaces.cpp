@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kWhole = 2 * std::numbers::pi;
 constexpr double kSameAngle = 0x1p-30;
-// Of the size of what they bound: ends of curves nearer to each other, or to an axis, are there.
-constexpr double kClose = 0x1p-36;
 
 Result<SurfaceInSpace> read_plane(Bytes& b) {
     int minor = 0;
@@ -61,26 +59,6 @@ Result<SurfaceInSpace> read_revolved(Bytes& b) {
     if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
     r.profile = std::move(*profile);
     return SurfaceInSpace(std::move(r));
-}
-
-Result<SurfaceInSpace> read_summed(Bytes& b) {
-    int minor = 0;
-    b.version(minor);
-    const Vec<3> base = b.point();
-    b.skip(6 * 8);
-    if (b.failed()) return ends_early(b, "a sum of two curves");
-    Summed s;
-    for (CurveInSpace* c : {&s.first, &s.second}) {
-        auto o = object_in(b);
-        if (!o) return std::unexpected(o.error());
-        auto curve = read_curve(*o);
-        if (!curve) return std::unexpected(curve.error());
-        *c = std::move(*curve);
-    }
-    if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
-    if (!is_finite(base)) return invalid(b, "a sum of two curves without a base point");
-    s.first = moved(s.first, base);
-    return SurfaceInSpace(std::move(s));
 }
 
 // As one spline; of several pieces not.
@@ -143,6 +121,34 @@ Result<SurfaceInSpace> sum_of(const CurveInSpace& a, const CurveInSpace& b) {
         *first);
 }
 
+// Swept, if one of the two is a straight line; else a spline.
+Result<SurfaceInSpace> read_summed(Bytes& b) {
+    int minor = 0;
+    b.version(minor);
+    const Vec<3> base = b.point();
+    b.skip(6 * 8);
+    if (b.failed()) return ends_early(b, "a sum of two curves");
+    std::array<CurveInSpace, 2> curves;
+    for (CurveInSpace& c : curves) {
+        auto o = object_in(b);
+        if (!o) return std::unexpected(o.error());
+        auto curve = read_curve(*o);
+        if (!curve) return std::unexpected(curve.error());
+        c = std::move(*curve);
+    }
+    if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
+    if (!is_finite(base)) return invalid(b, "a sum of two curves without a base point");
+    for (const bool transposed : {false, true}) {
+        const CurveInSpace &profile = curves[transposed], &line = curves[!transposed];
+        if (!is_straight(line)) continue;
+        const Vec<3> from = line.end(false);
+        return SurfaceInSpace(Swept{moved(profile, base + from), line.end(true) - from, transposed});
+    }
+    auto spline = sum_of(moved(curves[0], base), curves[1]);
+    if (!spline) return refuse_within(text("byte ", b.at()), spline.error());
+    return spline;
+}
+
 }  // namespace
 
 Result<SurfaceInSpace> read_nurbs_surface(Bytes& b) {
@@ -185,15 +191,8 @@ Result<SurfaceInSpace> read_surface(StoredObject o) {
             return read_plane(b);
         case Kind::rev_surface:
             return read_revolved(b);
-        case Kind::sum_surface: {
-            auto s = read_summed(b);
-            if (!s) return s;
-            const auto& sum = std::get<Summed>(*s);
-            if (is_straight(sum.first) || is_straight(sum.second)) return s;
-            auto spline = sum_of(sum.first, sum.second);
-            if (!spline) return refuse_within(text("byte ", b.at()), spline.error());
-            return spline;
-        }
+        case Kind::sum_surface:
+            return read_summed(b);
         default:
             break;
     }
@@ -204,10 +203,11 @@ Result<SurfaceInSpace> read_surface(StoredObject o) {
 
 namespace {
 
-// The boundary of a rectangle of parameters: along u below and above, along v on the left and on the right.
-// None: that side is a point.
+// The boundary of a rectangle of parameters: along u below and above (none: that side is a point), along v on
+// the left and on the right.
 struct Sides {
-    std::optional<CurveInSpace> below, above, left, right;
+    std::optional<CurveInSpace> below, above;
+    CurveInSpace left, right;
     std::array<Vec<3>, 4> corners;  // lower left, lower right, upper right, upper left
     bool closed_u = false, closed_v = false;
 };
@@ -218,11 +218,8 @@ BrepOf face_within(SurfaceInSpace surface, Sides s) {
     std::array<int, 4> at{0, 1, 2, 3};
     if (s.closed_u) at[1] = at[0], at[2] = at[3];
     if (s.closed_v) at[3] = at[0], at[2] = at[1];
-    if (s.closed_u && s.closed_v) at = {0, 0, 0, 0};
     if (!s.below) at[1] = at[0];
     if (!s.above) at[2] = at[3];
-    if (!s.left) at[3] = at[0], at[2] = s.above ? at[2] : at[3];
-    if (!s.right) at[2] = at[1], at[3] = s.above ? at[3] : at[2];
     std::array<int, 4> vertex{-1, -1, -1, -1};
     for (int& v : at) {
         int& k = vertex[std::size_t(v)];
@@ -233,7 +230,7 @@ BrepOf face_within(SurfaceInSpace surface, Sides s) {
         v = k;
     }
     LoopOf loop;
-    const auto add = [&](std::optional<CurveInSpace>& side, int from, int to) {
+    const auto add = [&](std::optional<CurveInSpace> side, int from, int to) {
         if (!side) return -1;
         b.curves.push_back(std::move(*side));
         b.edges.push_back({{int(b.curves.size()) - 1, {}, false}, {from, to}});
@@ -245,7 +242,6 @@ BrepOf face_within(SurfaceInSpace surface, Sides s) {
     for (const auto& [edge, reversed] :
          {std::pair{below, false}, {right, false}, {above, true}, {left, true}})
         if (edge >= 0) loop.trims.push_back({edge, reversed});
-    if (loop.trims.empty()) loop.vertex = at[0];
     b.faces.push_back({0, false, {std::move(loop)}});
     return b;
 }
@@ -268,14 +264,6 @@ CurveInSpace turned(const CurveInSpace& c, const Revolved& r, double angle) {
     return mapped(c, {r.origin - back, axes});
 }
 
-double extent_of(const CurveInSpace& c) {
-    double size = 0;
-    for (const Piece& p : c.pieces)
-        for (const double x : {p.on.lo, p.on.middle(), p.on.hi})
-            size = std::max(size, norm(jet<0>(p.shape, x).value() - c.end(false)));
-    return size;
-}
-
 BrepOf whole_revolved(Revolved r) {
     const CurveInSpace& p = r.profile;
     double size = extent_of(p);
@@ -295,34 +283,30 @@ BrepOf whole_revolved(Revolved r) {
     s.below = circle(false), s.above = circle(true);
     s.left = turned(p, r, r.angle.lo), s.right = turned(p, r, r.angle.hi);
     if (s.closed_u) s.right = s.left;
-    s.corners = {s.left->end(false), s.right->end(false), s.right->end(true), s.left->end(true)};
+    s.corners = {s.left.end(false), s.right.end(false), s.right.end(true), s.left.end(true)};
     const bool transposed = std::exchange(r.transposed, false);
     BrepOf b = face_within(std::move(r), std::move(s));
     b.faces[0].reversed = transposed;
     return b;
 }
 
-// One of the two is a straight line.
-BrepOf whole_summed(Summed sum) {
-    const bool turn = !is_straight(sum.second);
-    if (turn) std::swap(sum.first, sum.second);
-    const Vec<3> a = sum.second.end(false), d = sum.second.end(true) - a;
+BrepOf whole_swept(Swept swept) {
     Sides s;
-    s.below = moved(sum.first, a), s.above = moved(sum.first, a + d);
-    const auto ends = std::array{s.below->end(false), s.below->end(true)};
-    s.closed_u = norm(ends[0] - ends[1]) <= kClose * extent_of(sum.first);
-    s.corners = {ends[0], ends[1], s.above->end(true), s.above->end(false)};
+    s.below = swept.profile, s.above = moved(swept.profile, swept.along);
+    s.closed_u = closes(swept.profile);
+    s.corners = {s.below->end(false), s.below->end(true), s.above->end(true), s.above->end(false)};
     s.left = segment(s.corners[0], s.corners[3]), s.right = segment(s.corners[1], s.corners[2]);
-    BrepOf b = face_within(std::move(sum), std::move(s));
-    b.faces[0].reversed = turn;
+    const bool transposed = std::exchange(swept.transposed, false);
+    BrepOf b = face_within(std::move(swept), std::move(s));
+    b.faces[0].reversed = transposed;
     return b;
 }
 
 }  // namespace
 
-Result<BrepOf> whole_face(SurfaceInSpace surface) {
+BrepOf whole_face(SurfaceInSpace surface) {
     if (auto* r = std::get_if<Revolved>(&surface)) return whole_revolved(std::move(*r));
-    if (auto* s = std::get_if<Summed>(&surface)) return whole_summed(std::move(*s));
+    if (auto* s = std::get_if<Swept>(&surface)) return whole_swept(std::move(*s));
     if (const auto* p = std::get_if<PlaneInSpace>(&surface)) {
         const auto at = [&](double x, double y) { return p->origin + x * p->x + y * p->y; };
         const auto& e = p->extent;

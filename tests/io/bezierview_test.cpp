@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <support/corpus.hpp>
+#include <support/damaged_text.hpp>
 
 namespace freiform {
 namespace {
@@ -120,13 +121,7 @@ TEST(BezierView, survives_damaged_files) {
     std::mt19937 random(9);
     int accepted = 0;
     for (int i = 0; i < 5000; ++i) {
-        std::string text = good;
-        for (unsigned k = random() % 3 + 1; k > 0; --k)
-            if (random() % 2)
-                text[random() % text.size()] = "0123456789.-e \n#\xFF"[random() % 17];
-            else
-                text.erase(random() % text.size(), 1 + random() % 5);
-        const auto d = read_bezierview(text);
+        const auto d = read_bezierview(test::damaged(good, random));
         accepted += d.has_value();
         if (!d) EXPECT_TRUE(d.error().where.starts_with("line ")) << d.error().where;
     }

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 #include <support/corpus.hpp>
+#include <support/damaged_text.hpp>
 
 namespace freiform {
 namespace {
@@ -139,13 +140,7 @@ TEST(Bpt, survives_damaged_files) {
     std::mt19937 random(9);
     int accepted = 0;
     for (int i = 0; i < 5000; ++i) {
-        std::string text = good;
-        for (unsigned k = random() % 3 + 1; k > 0; --k)
-            if (random() % 2)
-                text[random() % text.size()] = "0123456789.-e \n#\xFF"[random() % 17];
-            else
-                text.erase(random() % text.size(), 1 + random() % 5);
-        const auto d = read_bpt(text);
+        const auto d = read_bpt(test::damaged(good, random));
         if (d) {
             ++accepted;
             EXPECT_TRUE(write_bpt(*d));

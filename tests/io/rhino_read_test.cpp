@@ -301,7 +301,7 @@ TEST(Rhino, splines_end_where_their_domain_ends) {
 
 // A square in the plane z = 0 as a polysurface, whose last edge is part of a longer line, backwards.
 // `surface`: another one than the plane, whose normal is down, so that the loop runs the other way.
-enum class Damage { none, trim, loop_twice };
+enum class Damage { none, trim, loop_twice, no_edges };
 Written square_brep(Damage damage = Damage::none, const std::optional<Written>& surface = {}) {
     const bool down = surface.has_value();
     const auto list = [](const Written& w) { return Written().chunk(0x40008000, w); };
@@ -328,15 +328,16 @@ Written square_brep(Damage damage = Damage::none, const std::optional<Written>& 
         edges.i32(1).i32(i).f64(0).f64s({0, 1});
     }
     trims.u8(0x10).i32(4);
+    const bool singular = damage == Damage::no_edges;
     for (int i = 0; i < 4; ++i)
         trims.i32(i)
             .i32(-1)
             .f64s({0, 1})
-            .i32(i)
+            .i32(singular ? -1 : i)
             .i32(i)
             .i32((i + 1) % 4)
             .i32(down)
-            .i32(1)
+            .i32(singular ? 4 : 1)
             .i32(0)
             .i32(0)
             .f64s({0, 0})
@@ -437,6 +438,8 @@ TEST(Rhino, what_is_named_many_times_takes_no_more_than_is_there) {
     ASSERT_FALSE(twice);
     EXPECT_EQ(twice.error().kind, RefusalKind::invalid);
     EXPECT_NE(twice.error().message.find("face 0: loop 0 has been used before"), std::string::npos);
+    expect_refusal(read_3dm(file({square_brep(Damage::no_edges)})), RefusalKind::invalid, "object 0, face 0",
+                   "none of its loops has an edge");
 }
 
 // Twelve stretched images of twelve of twelve ...: more than any file has objects.
