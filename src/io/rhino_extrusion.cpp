@@ -148,9 +148,9 @@ Result<BrepOf> read_extrusion(StoredObject o) {
     std::array<bool, 2> capped{true, true};
     if (minor >= 2) capped = {b.u8() != 0, b.u8() != 0};
     if (b.failed() || outer.failed()) return ends_early(b, "an extrusion");
-    constexpr int kKnown = 3;        // what newer programs write behind may have chunks
-    if (minor == kKnown) b.chunk();  // triangles
-    if (minor <= kKnown)
+    constexpr int kKnownMinor = 3;        // what newer programs write behind may have chunks
+    if (minor == kKnownMinor) b.chunk();  // triangles
+    if (minor <= kKnownMinor)
         if (auto ok = b.check_sum(); !ok) return std::unexpected(ok.error());
     if (count > 1) {
         if (object->of.kind != Kind::poly_curve)
