@@ -1,8 +1,8 @@
 #!/usr/bin/env node
 // The commands of freiform where its program is not built: files that arguments name are read into memory, what the
 // module makes is written. FREIFORM_WASM names another folder with the module.
-import { readFileSync, statSync, writeFileSync, writeSync } from 'node:fs';
-import { join } from 'node:path';
+import { readFileSync, readdirSync, statSync, writeFileSync, writeSync } from 'node:fs';
+import { basename, dirname, join } from 'node:path';
 import { load } from './freiform.js';
 
 function put(fd, bytes) {
@@ -18,10 +18,34 @@ function put(fd, bytes) {
 
 const args = process.argv.slice(2);
 const files = {};
+
+const isFile = (name) => statSync(name, { throwIfNoEntry: false })?.isFile();
+
+// What has the name but for capital letters.
+function alike(name) {
+  const folder = dirname(name), last = basename(name).toLowerCase();
+  const found = isFile(folder) === false && readdirSync(folder).find((other) => other.toLowerCase() === last);
+  return found && join(folder, found);
+}
+
+// The file, and those beside it that a STEP file says parts are in.
+function take(name, file = name) {
+  if (Object.hasOwn(files, name) || !file || !isFile(file)) return;
+  files[name] = readFileSync(file);
+  if (!/\.(stp|step|p21)$/i.test(name)) return;
+  const folder = name.slice(0, name.lastIndexOf('/') + 1);
+  const text = files[name].toString('latin1');
+  for (const [, other] of text.matchAll(/(?:DOCUMENT_FILE|EXTERNAL_IDENTIFICATION_ASSIGNMENT)\s*\(\s*'([^']+)'/g)) {
+    const path = other.replace(/\\+/g, '/').replace(/^(\.\/)+/, '');
+    const beside = folder + (/^\/|:|\.\./.test(path) ? basename(path) : path);
+    take(beside, isFile(beside) ? beside : alike(beside));
+  }
+}
+
 for (const word of args) {
   const name = word.startsWith('@') ? word.slice(1) : word.startsWith('--') ? word.slice(word.indexOf('=') + 1) : word;
   if (name === '-') files['-'] = readFileSync(0);
-  else if (statSync(name, { throwIfNoEntry: false })?.isFile()) files[name] = readFileSync(name);
+  else take(name);
 }
 const folder = process.env.FREIFORM_WASM;
 const ff = await load(folder ? readFileSync(join(folder, 'freiform.wasm')) : undefined);

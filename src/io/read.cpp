@@ -13,6 +13,8 @@
 #include <algorithm>
 #if !defined(__wasm__)
 #include <cerrno>
+#include <filesystem>
+#include <strings.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #endif
@@ -93,10 +95,31 @@ Document document_with(Model model) {
     return document;
 }
 
-// STEP, and what is read as such.
-Result<Document> read_model(std::string_view bytes, [[maybe_unused]] FileFormat format,
-                            const ReadOptions& options) {
+// The file at a path from the folder of another one. Programs that do not tell capital letters from small
+// ones write names so, too: where there is none, one that differs in them alone.
+Result<std::string> read_beside(const std::string& file, const std::string& path, std::uint64_t max_bytes) {
+    const std::string whole = file.substr(0, file.rfind('/') + 1) + path;
+    auto bytes = read_file(whole, max_bytes);
+#if !defined(__wasm__)
+    if (!bytes && ::access(whole.c_str(), F_OK) != 0) {
+        const std::size_t name = whole.rfind('/') + 1;
+        std::error_code error;
+        const std::string folder = name > 0 ? whole.substr(0, name) : "./";
+        for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
+             at.increment(error))
+            if (::strcasecmp(at->path().filename().c_str(), whole.c_str() + name) == 0)
+                return read_file(at->path().string(), max_bytes);
+    }
+#endif
+    return bytes;
+}
+
+// STEP, and what is read as such; `path`: of the file, whose parts may be in others beside it.
+Result<Document> read_model(std::string_view bytes, const std::string& path,
+                            [[maybe_unused]] FileFormat format, const ReadOptions& options) {
     StepReadOptions limits;
+    if (path != "-")
+        limits.open = [&](const std::string& other) { return read_beside(path, other, options.max_bytes); };
     if (options.max_memory > 0) limits.memory_bytes = options.max_memory;
     limits.repair = options.repair, limits.repair_limit = options.repair_limit;
 #if defined(__wasm__)
@@ -179,13 +202,13 @@ Result<Document> read_any(const std::string& path, const ReadOptions& options) {
     if (is_exchange(*format, options))
         return within(label, path == "-" ? import_bytes(*bytes, options) : import(path, options));
 #if !defined(__wasm__)
-    if (*format == FileFormat::rhino) return within(label, read_model(*bytes, *format, options));
+    if (*format == FileFormat::rhino) return within(label, read_model(*bytes, path, *format, options));
     if (*format == FileFormat::bezierview) return within(label, read_bezierview(*bytes));
 #endif
     return within(label, *format == FileFormat::json         ? read_document(*bytes)
                          : *format == FileFormat::quake3_bsp ? read_quake3_bsp(*bytes)
                          : *format == FileFormat::quake3_map ? read_quake3_map(*bytes)
-                         : *format == FileFormat::step       ? read_model(*bytes, *format, options)
+                         : *format == FileFormat::step       ? read_model(*bytes, path, *format, options)
                          : *format == FileFormat::svg        ? read_svg_document(*bytes)
                          : *format == FileFormat::obj        ? read_obj_freeform(*bytes)
                                                              : read_bpt(*bytes));

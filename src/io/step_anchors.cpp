@@ -3,7 +3,8 @@
 //
 // References: ISO 10303-21:2016, 9 (anchor section), 10 (reference section).
 //
-// Why not references to other files? The reader is given bytes, and opens nothing.
+// Why not references to other files? What is referred to, with all that it needs, would have to stand in one
+// table with the instances of this file.
 #include "step_anchors.hpp"
 
 namespace freiform::step {

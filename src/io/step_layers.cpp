@@ -30,6 +30,7 @@ std::vector<int> Styles::joined_layers(const std::vector<int>& a, const std::vec
 void read_layers(const File& f, Structure& out) {
     Styles& styles = out.styles;
     std::unordered_map<std::string, int> known;
+    for (const Layer& l : styles.layers) known.emplace(l.name, int(known.size()));
     for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
         if (f.type(i) != Type::PRESENTATION_LAYER_ASSIGNMENT) continue;
         const Fields g(f, i, f.part(i, Type::PRESENTATION_LAYER_ASSIGNMENT));

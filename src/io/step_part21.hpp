@@ -19,6 +19,8 @@ namespace freiform::step {
 #define FF_STEP_TYPES(X)                               \
     X(ADVANCED_BREP_SHAPE_REPRESENTATION)              \
     X(ADVANCED_FACE)                                   \
+    X(APPLIED_DOCUMENT_REFERENCE)                      \
+    X(APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT)      \
     X(AXIS1_PLACEMENT)                                 \
     X(AXIS2_PLACEMENT_2D)                              \
     X(AXIS2_PLACEMENT_3D)                              \
@@ -53,6 +55,7 @@ namespace freiform::step {
     X(DEFINITIONAL_REPRESENTATION)                     \
     X(DEGENERATE_TOROIDAL_SURFACE)                     \
     X(DIRECTION)                                       \
+    X(DOCUMENT_FILE)                                   \
     X(DRAUGHTING_PRE_DEFINED_COLOUR)                   \
     X(EDGE_BASED_WIREFRAME_MODEL)                      \
     X(EDGE_CURVE)                                      \
@@ -95,6 +98,9 @@ namespace freiform::step {
     X(PRODUCT)                                         \
     X(PRODUCT_DEFINITION)                              \
     X(PRODUCT_DEFINITION_SHAPE)                        \
+    X(PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS)    \
+    X(PROPERTY_DEFINITION)                             \
+    X(PROPERTY_DEFINITION_REPRESENTATION)              \
     X(QUASI_UNIFORM_CURVE)                             \
     X(QUASI_UNIFORM_SURFACE)                           \
     X(RATIONAL_B_SPLINE_CURVE)                         \

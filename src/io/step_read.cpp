@@ -1,5 +1,5 @@
 // Idea. Text, structure, shapes, places: each representation is converted once, and then put where the
-// assembly has it, as often as it does (step_walk.hpp).
+// assembly has it, as often as it does (step_walk.hpp). So is what an assembly has in other files.
 #include "step_walk.hpp"
 
 #include <freiform/io/step_read.hpp>
@@ -15,18 +15,45 @@ namespace step {
 
 namespace {
 
+constexpr int kDeepestFile = 32;  // of files in each other
+constexpr std::size_t kMostFiles = 10'000;
+
+// What another file holds, or why it does not.
+struct Other {
+    std::string path;  // from the folder of the first file
+    bool read = false;
+    Part part = {};
+    double length = 1;  // millimetres in its unit
+    Refusal why{RefusalKind::invalid, "", "contains itself"};
+};
+
+// The other files of an assembly, each read once.
+struct Others {
+    std::vector<std::unique_ptr<Other>> all;
+    std::vector<std::string_view> open;  // those that contain what is being read
+    std::vector<Layer> layers;           // of all files, numbered together
+    std::uint64_t bytes = 0;             // that all of it takes, also where addresses have 32 bits
+};
+
 class Placer {
 public:
-    Placer(const File& file, const StepReadOptions& options) : f_(file), options_(options) {}
+    // `folder`: of the file, seen from the first one; `depth`: how many contain it.
+    Placer(const File& file, const StepReadOptions& options, Others& others, std::string_view folder = {},
+           int depth = 0)
+        : f_(file), options_(options), others_(others), folder_(folder), depth_(depth) {}
 
-    Result<Model> run() {
-        structure_ = structure_of(f_);
+    double length() const { return length_; }
+    Part& part() { return out_; }
+
+    Result<void> run() {
+        structure_ = structure_of(f_, others_.layers);
+        others_.layers = structure_.styles.layers;
         parts_.resize(structure_.nodes.size());
         largest_ = largest_uncertainty(f_);
         model_.refused = f_.refused;
         append(model_.refused, structure_.refused);
-        model_.layers = structure_.styles.layers;
         model_.approximations = structure_.approximations;
+        out_.approximated.resize(model_.approximations.size(), -1);
         if (const Context* c = context_of_model(structure_)) model_.unit = c->unit, length_ = c->length;
         if (auto ok = each_place(structure_, length_, options_.memory_bytes / 256,
                                  [this](const Place& p) { return visit(p); });
@@ -36,7 +63,9 @@ public:
         take_curves();
         tell_layers();
         if (model_.faces.empty() && model_.edges.empty()) return nothing();
-        return make_model(std::move(model_));
+        model_.layers = others_.layers;
+        out_.approximated.resize(model_.approximations.size(), -1);
+        return {};
     }
 
 private:
@@ -67,7 +96,7 @@ private:
                   " left out, beside shapes that are exact")});
     }
 
-    Result<Model> nothing() const {
+    Result<void> nothing() const {
         if (tessellated_ > 0 && model_.refused.empty())
             return refuse(RefusalKind::no_answer, "file",
                           text("the file has triangles (", tessellated_,
@@ -95,8 +124,95 @@ private:
         return part;
     }
 
+    // Of the file that a shape is in; none, which is told once, if there is nothing to be had of it.
+    const Other* other(std::uint32_t document) {
+        const Document& d = structure_.documents[document];
+        const Other* last = nullptr;
+        for (const std::string& name : d.names) {
+            last = other_at(path_beside(folder_, name));
+            if (last->read) return last;
+        }
+        if (told_.insert(d.instance).second)
+            append(model_.refused, {{last->why.kind, f_.label(d.instance),
+                                     text("its shape is in the file '", d.names.front(),
+                                          "': ", last->why.where, last->why.message)}});
+        return nullptr;
+    }
+
+    const Other* other_at(std::string path) {
+        for (const auto& o : others_.all)
+            if (o->path == path) return o.get();
+        Other& out = *others_.all.emplace_back(std::make_unique<Other>());
+        out.path = std::move(path);
+        if (auto ok = read_other(out); !ok) {
+            out.why = ok.error();
+            if (!out.why.where.empty()) out.why.where += ": ";
+        }
+        return &out;
+    }
+
+    Result<void> read_other(Other& out) {
+        if (!options_.open) return refuse(RefusalKind::unsupported, "", "no other file is at hand");
+        if (depth_ == kDeepestFile || others_.all.size() > kMostFiles)
+            return refuse(RefusalKind::limit, "", "files are nested too deep, or too many");
+        const auto bytes = options_.open(out.path);
+        if (!bytes) return refuse(bytes.error().kind, "", bytes.error().message);
+        if (std::ranges::find(others_.open, *bytes) != others_.open.end()) return std::unexpected(out.why);
+        others_.bytes += bytes->size();
+        if (auto ok = within_memory(); !ok) return ok;
+        const auto file = parse(*bytes);
+        if (!file) return std::unexpected(file.error());
+        Placer inner(*file, options_, others_, out.path.substr(0, out.path.rfind('/') + 1), depth_ + 1);
+        others_.open.push_back(*bytes);
+        const auto ok = inner.run();
+        others_.open.pop_back();
+        if (!ok) return ok;
+        out.length = inner.length();
+        out.part = std::move(inner.part());
+        out.read = true;
+        take_over(out);
+        return {};
+    }
+
+    // What is told of another file is told of this one.
+    void take_over(Other& other) {
+        Model& m = other.part.model;
+        const std::string name = other.path + ": ";
+        for (Refusal& r : m.refused) {
+            std::string& first = r.where == "file" ? r.message : r.where;  // "file" is what is no face
+            first = name + first;
+        }
+        append(model_.refused, std::exchange(m.refused, {}));
+        for (Repair& r : m.repairs) {
+            r.where = name + r.where;
+            r.distance *= other.length / length_;
+            model_.repairs.push_back(std::move(r));
+        }
+        for (std::size_t i = 0; i < m.approximations.size(); ++i) {
+            Approximation& a = m.approximations[i];
+            if (other.part.approximated[i] >= 0)
+                a.what = name + a.what;
+            else
+                a.where = name + a.where;
+        }
+    }
+
+    Result<void> within_memory() const {
+        if (others_.bytes <= options_.memory_bytes) return {};
+        return refuse(RefusalKind::limit, "file",
+                      text("the model takes more than the ", options_.memory_bytes, " bytes that it may; ",
+                           others_.bytes, " so far"));
+    }
+
     Result<void> visit(const Place& p) {
         const Node& node = structure_.nodes[p.node];
+        if (node.document != kMissing) {
+            const Other* o = other(node.document);
+            if (!o) return {};
+            Motion scale;
+            scale.scale = o->length / node.context.length;
+            return place(o->part, p.at * scale, p);
+        }
         if (!node.items.empty()) {
             if (!parts_[p.node]) parts_[p.node] = read_items(node, node.items);
             if (auto ok = place(*parts_[p.node], p.at, p); !ok) return ok;
@@ -107,11 +223,8 @@ private:
     }
 
     Result<void> place(const Part& part, const Motion& at, const Place& v) {
-        bytes_ += part.bytes;
-        if (bytes_ > options_.memory_bytes)
-            return refuse(RefusalKind::limit, "file",
-                          text("the model takes more than the ", options_.memory_bytes,
-                               " bytes that it may; ", bytes_, " so far"));
+        out_.bytes += part.bytes, others_.bytes += part.bytes;
+        if (auto ok = within_memory(); !ok) return ok;
         ++places_;
         const bool same = at.is_identity();
         const Model& m = part.model;
@@ -168,7 +281,8 @@ private:
         for (const Body& b : m.bodies) {
             Body x = b;
             for (int& s : x.shells) s += shells;
-            if (!v.name.empty()) x.name = v.name;
+            const bool own = structure_.nodes[v.node].document != kMissing && !x.name.empty();
+            if (!v.name.empty() && !own) x.name = v.name;
             if (!x.colour) x.colour = v.colour;
             x.layers = structure_.styles.joined_layers(x.layers, v.layers);
             out.bodies.push_back(std::move(x));
@@ -177,7 +291,11 @@ private:
             const int e = part.approximated[i];
             Approximation a = m.approximations[i];
             if (e >= 0 && to[std::size_t(e)] < 0) continue;
-            a.where = e < 0 ? std::string("file") : text("edges[", to[std::size_t(e)], "]");
+            if (e >= 0)
+                a.where = text("edges[", to[std::size_t(e)], "]");
+            else if (a.where.empty())
+                a.where = "file";
+            out_.approximated.push_back(e < 0 ? -1 : to[std::size_t(e)]);
             if (a.bound) a.bound = at.scale * *a.bound;
             a.estimate *= at.scale;
             out.approximations.push_back(std::move(a));
@@ -219,16 +337,20 @@ private:
     };
 
     const File& f_;
-    StepReadOptions options_;
+    const StepReadOptions& options_;
+    Others& others_;
+    std::string folder_;
+    int depth_;
     Structure structure_;
     std::vector<std::optional<Part>> parts_;
     std::vector<Free> free_;
     int places_ = 0;
-    Model model_;
+    Part out_;
+    Model& model_ = out_.model;
     double length_ = 1, largest_ = 0;
-    std::uint64_t bytes_ = 0;  // also where addresses have 32 bits
     std::size_t tessellated_ = 0;
-    std::unordered_set<std::uint32_t> told_;  // the first items of what has been read, also as a replica
+    // The first items of what has been read, also as a replica, and documents that could not be.
+    std::unordered_set<std::uint32_t> told_;
 };
 
 }  // namespace
@@ -238,7 +360,11 @@ private:
 Result<Model> read_step(std::string_view bytes, const StepReadOptions& options) {
     const auto file = step::parse(bytes);
     if (!file) return std::unexpected(file.error());
-    return step::Placer(*file, options).run();
+    step::Others others;
+    others.open.push_back(bytes);
+    step::Placer placer(*file, options, others);
+    if (auto ok = placer.run(); !ok) return std::unexpected(ok.error());
+    return make_model(std::move(placer.part().model));
 }
 
 }  // namespace freiform

@@ -21,14 +21,16 @@ class Structurer {
 public:
     explicit Structurer(const File& f) : f_(f), node_(f.instances.size(), kMissing) {}
 
-    Structure run() {
+    Structure run(std::vector<Layer> layers) {
         out_.styles = styles_of(f_);
+        out_.styles.layers = std::move(layers);
         read_layers(f_, out_);
         find_representations();
         join_equals();
         make_nodes();
         name_products();
         link_assemblies();
+        read_documents(f_, node_, of_definition_, out_);
         return std::move(out_);
     }
 
@@ -313,6 +315,8 @@ private:
 
 }  // namespace
 
-Structure structure_of(const File& file) { return Structurer(file).run(); }
+Structure structure_of(const File& file, std::vector<Layer> layers) {
+    return Structurer(file).run(std::move(layers));
+}
 
 }  // namespace freiform::step

@@ -26,6 +26,13 @@ struct Node {
     std::vector<Child> children;
     std::vector<std::pair<std::uint32_t, Motion>> replicas;  // items in another place
     bool has_parent = false;
+    std::uint32_t document = kMissing;  // of Structure::documents: the shape is in another file
+};
+
+// Another file that a shape is in.
+struct Document {
+    std::uint32_t instance = kMissing;
+    std::vector<std::string> names;  // that it may have, the likeliest first
 };
 
 struct Structure {
@@ -33,8 +40,10 @@ struct Structure {
     Styles styles;
     std::vector<Refusal> refused;
     std::vector<Approximation> approximations;
+    std::vector<Document> documents;
 };
-Structure structure_of(const File& file);
+// `layers`: that have numbers already; those of the file follow.
+Structure structure_of(const File& file, std::vector<Layer> layers = {});
 
 // The largest distance that can pass for an uncertainty: a part of the extent of all vertices.
 double largest_uncertainty(const File& file);
@@ -44,5 +53,12 @@ Context context_of(const File& file, std::uint32_t context);
 Styles styles_of(const File& file);
 // Into the styles of the file: the layers, and what lies on them.
 void read_layers(const File& file, Structure& out);
+// Which nodes, of those that have nothing themselves, are in other files. `node`: of each instance that is a
+// representation; `of_definition`: of each that is a product definition; else kMissing.
+void read_documents(const File& file, std::span<const std::uint32_t> node,
+                    std::span<const std::uint32_t> of_definition, Structure& out);
+// What a file calls another one, as a path from the folder of the first file; `folder`: of the file that
+// says it, empty or with a slash at its end. What lies elsewhere is looked for in that folder.
+std::string path_beside(std::string_view folder, std::string name);
 
 }  // namespace freiform::step

@@ -14,7 +14,9 @@ struct Place {
     std::vector<int> layers;
 };
 
-inline bool has_items(const Node& n) { return !n.items.empty() || !n.replicas.empty(); }
+inline bool has_items(const Node& n) {
+    return !n.items.empty() || !n.replicas.empty() || n.document != kMissing;
+}
 
 // The context whose unit the model has: of the first node with items; nullptr if there is none.
 const Context* context_of_model(const Structure& structure);

@@ -4,7 +4,7 @@
 #include <freiform/io/step.hpp>
 
 #include <nlohmann/json.hpp>
-#include <support/step_polygons.hpp>
+#include <support/step_assembly.hpp>
 
 namespace freiform::test {
 namespace {
@@ -137,6 +137,37 @@ TEST_F(CliStep, info_says_what_lies_on_each_layer) {
     EXPECT_NE(
         run({"info", layered}).out.find("layer    walls (outside): bodies 1, faces by themselves 1, edges 1"),
         std::string::npos);
+}
+
+TEST_F(CliStep, parts_of_an_assembly_are_read_from_the_files_beside_it) {
+    const std::string whole =
+        file("whole.stp", assembly({{.file = "PART.STP", .place = "0.,0.,0."},
+                                    {.file = "parts\\\\Plate.stp", .place = "0.,0.,5."}}));
+    std::filesystem::create_directory(path("parts"));
+    file("part.stp", polygon_file({{0, 0}, {4, 0}, {0, 3}}));  // other letters than the assembly has
+    file("parts/Plate.stp", polygon_file({{0, 0}, {2, 0}, {2, 1}, {0, 1}}));
+    for (const std::string& name : {whole, std::string("whole.stp")}) {
+        const Ran r = run({"info", name, "--json"});
+        ASSERT_EQ(r.code, 0) << r.err;
+        const Json model = Json::parse(r.out)["objects"][0];
+        EXPECT_EQ(model["faces"], 2);
+        EXPECT_EQ(model["refused"].size(), 0u) << model["refused"].dump();
+    }
+    const Ran mesh = run({"tessellate", whole, "--tolerance", "0.1", "-o", path("whole.stl"), "--json"});
+    ASSERT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_EQ(Json::parse(mesh.out)["triangles"], 3);
+
+    // One part is not there: the rest is, and the exit code says so.
+    std::filesystem::remove(path("part.stp"));
+    const Ran without = run({"tessellate", whole, "--tolerance", "0.1", "-o", path("whole.stl"), "--json"});
+    EXPECT_EQ(without.code, 1);
+    EXPECT_EQ(Json::parse(without.out)["triangles"], 2);
+    EXPECT_NE(without.err.find("its shape is in the file 'PART.STP'"), std::string::npos) << without.err;
+
+    // Standard input has no folder.
+    const Ran piped = run({"info", "-", "--json"}, content(whole));
+    EXPECT_EQ(piped.code, 3);
+    EXPECT_NE(piped.out.find("'PART.STP': no other file is at hand"), std::string::npos) << piped.out;
 }
 
 }  // namespace

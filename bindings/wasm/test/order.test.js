@@ -45,6 +45,20 @@ test('the largest function comes first, then the one that shares its text', () =
   assert(0 < largest && largest < sharing && sharing < at(now, [27, 0, 0x10]), `${largest}, ${sharing}`);
 });
 
+test('a small function that is called often has a number of one byte', () => {
+  const leb = (n) => n < 128 ? [n] : [n & 127 | 128, ...leb(n >> 7)];
+  const long = (id, bytes) => [id, ...leb(bytes.length), ...bytes];
+  const whole = (...code) => [...leb(code.length + 2), 0, ...code, 0x0b];
+  const others = Array.from({ length: 200 }, (_, i) => whole(...Array(30).fill(0x01), 0x41, i % 60, 0x41, i % 7, 0x6a));
+  const many = whole(0x41, 0, ...Array(300).fill([0x10, ...leb(201), 0x6a]).flat());
+  const given = Uint8Array.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, ...section(1, 1, 0x60, 0, 1, 0x7f),
+    ...long(3, [...leb(202), ...Array(202).fill(0)]), ...section(7, 1, ...name('all'), 0, 0),
+    ...long(10, [...leb(202), ...many, ...others.flat(), ...whole(0x41, 5)])]);
+  const now = ordered(given);
+  assert.strictEqual(new WebAssembly.Instance(new WebAssembly.Module(now)).exports.all(), 1500);
+  assert.strictEqual(now.length, given.length - 300);
+});
+
 test('alignments are no reason for code to differ', () => {
   const loads = (hint) => Uint8Array.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0,
     ...section(1, 1, 0x60, 0, 1, 0x7f), ...section(3, 1, 0), ...section(5, 1, 0, 1), ...section(7, 1, ...name('all'), 0, 0),

@@ -4,6 +4,8 @@
 #include <freiform/model/model.hpp>
 
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace freiform {
@@ -18,11 +20,15 @@ struct StepReadOptions {
     bool repair = false;
     // The longest gap of a loop that is closed, in the unit of the file; 0: a hundredth of the face.
     double repair_limit = 0;
+    // The bytes of another file that parts of an assembly are in. `path`: as the file says it, with slashes,
+    // from its own folder on. Without it such parts are in Model::refused.
+    std::function<Result<std::string>(const std::string& path)> open = {};
 };
 
 // The model in the file; coordinates in the unit of the file, which Model::unit names: that of the first
 // representation with shapes, to which those in other units are scaled. Elementary curves and surfaces stay
-// such. Assemblies are flattened, one body for each solid or shell in each place.
+// such. Assemblies are flattened, one body for each solid or shell in each place, also where parts are in
+// other files.
 //
 // Every parameter curve is made here, from the edge and the surface: in closed form on planes and along
 // isoparametric lines, else as a spline that follows the edge, which Model::approximations lists with the
