@@ -22,6 +22,7 @@ constexpr std::size_t kJudgedAtOnce = 1024;   // by all threads
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
+constexpr double kLeastWidth = 0x1p-60;         // likewise: only near 0 do doubles go on from there
 constexpr double kNearBoundary =
     0.3;  // leaf corners nearer to the boundary than this part of a leaf make slivers
 
@@ -247,10 +248,21 @@ const Filler::Known& Filler::known(int triangle) {
 
 double Filler::bound(int triangle) { return known(triangle).bound; }
 
+// Whether points beside it would differ by nothing that a surface can tell. Beside a given side whose error
+// is too large this is where halving others ends.
+bool Filler::has_no_width(const Vec<2> (&corner)[3]) const {
+    const auto in_box = [&](const Vec<2>& d) {
+        return Vec<2>{{kLeastLength * d[0] / least_[0], kLeastLength * d[1] / least_[1]}};
+    };
+    const Vec<2> a = in_box(corner[1] - corner[0]), b = in_box(corner[2] - corner[0]);
+    return std::abs(cross(a, b)) <= kLeastWidth * std::max({norm(a), norm(b), norm(b - a)});
+}
+
 // Inserts a point that makes the triangle better; false if there is none.
 bool Filler::improve(int triangle) {
     const auto v = t_.vertices(triangle);
     const Vec<2> corner[3] = {uv(v[0]), uv(v[1]), uv(v[2])};
+    if (has_no_width(corner)) return false;
     Box<2> box;
     for (const Vec<2>& p : corner) box.add(p);
     const Curvature c = known(triangle).curvature;

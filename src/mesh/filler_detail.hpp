@@ -39,6 +39,7 @@ private:
     Vec<2> scaled(const Vec<2>& x) const { return {{x[0] * scale_[0], x[1] * scale_[1]}}; }
     bool is_near_boundary(int triangle, const Vec<2>& x, const Vec<2>& leaf) const;
     bool improve(int triangle);
+    bool has_no_width(const Vec<2> (&corner)[3]) const;
     bool halve(int v, int w);
     std::vector<std::array<int, 2>> flat_sides(std::span<const int> place,
                                                std::span<const int> corners_at) const;

@@ -294,8 +294,11 @@ Result<Tessellation> Tessellator::run() {
         for (int axis = 0; axis < 2; ++axis)
             for (const Kink& k : queries_[f]->kinks(axis))
                 if (!std::isfinite(k.jump) && !refusals_[f])
-                    refusals_[f] = Refusal{RefusalKind::unsupported, text(axis == 0 ? "u = " : "v = ", k.at),
-                                           "the surface is torn here (a knot of multiplicity degree + 1)"};
+                    refusals_[f] =
+                        Refusal{RefusalKind::unsupported, text(axis == 0 ? "u = " : "v = ", k.at),
+                                std::holds_alternative<OffsetSurface>(model_.faces[f].surface)
+                                    ? "the offset is torn here: its base has a kink, or may have no normal"
+                                    : "the surface is torn here (a knot of multiplicity degree + 1)"};
     }
     edges_->forget();
     if (auto ok = discretise_edges(); !ok) return std::unexpected(ok.error());

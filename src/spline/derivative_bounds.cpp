@@ -8,6 +8,7 @@
 #include "bends_detail.hpp"
 #include "block_detail.hpp"
 #include "kinks_detail.hpp"
+#include "offset_kinks_detail.hpp"
 #include "swept_bounds_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -133,6 +134,7 @@ double spread_of_weights(const BezierPieces<N, P>& pieces) {
 using detail::bounds_along;
 using detail::bounds_of;
 using detail::bounds_of_both;
+using detail::offset_kinks;
 
 }  // namespace
 
@@ -167,8 +169,13 @@ DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&ge
                 weight_spread_ = base_->weight_spread();
                 for (std::size_t d = 0; d < N; ++d) {
                     thinnest_[d] = base_->thinnest_piece(int(d));
-                    for (Kink k : base_->kinks(int(d)))  // where the base has a kink, its offset is torn
-                        kinks_[d].push_back({k.at, kInfinity});
+                    const auto* profile = base_->profile_.get();
+                    const bool along = !profile || d == std::holds_alternative<Revolution>(*g.base);
+                    if (along)
+                        kinks_[d] = offset_kinks(g, *base_, int(d),
+                                                 profile ? profile->bends(0) : base_->bends(int(d)),
+                                                 profile ? profile->second_rounding(0, 0)
+                                                         : base_->second_rounding(int(d), int(d)));
                 }
             }
         },

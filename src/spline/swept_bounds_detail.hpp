@@ -160,6 +160,7 @@ struct NormalBounds {
     DerivativeBounds<2> all;
     Vec<3> middle{};
     double slip = kInfinity;  // the rounding of `middle`, and more
+    double least = 0;         // of |S_u x S_v|
     double half[2], first[2] = {kInfinity, kInfinity}, second[3] = {kInfinity, kInfinity, kInfinity};
 };
 
@@ -177,7 +178,7 @@ inline NormalBounds::NormalBounds(const DerivativeQuery<2, 3>& surface, const st
     const double value = 64 * surface.value_error(box);
     const double rounding = value / surface.thinnest_piece(0) * S[2] +
                             value / surface.thinnest_piece(1) * S[1] + 64 * kUnitRoundoff * S[1] * S[2];
-    const double least = norm(across) - rounding - m[0] * half[0] - m[1] * half[1];
+    least = norm(across) - rounding - m[0] * half[0] - m[1] * half[1];
     if (!regular || !(least > 0)) return;
     slip = 2 * rounding / least + 64 * kUnitRoundoff;
     for (int a = 0; a < 2; ++a) first[a] = m[a] / least;

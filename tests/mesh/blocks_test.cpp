@@ -7,6 +7,7 @@
 #include <freiform/core/parallel.hpp>
 #include <freiform/mesh/face_mesh.hpp>
 
+#include <ctime>
 #include <gtest/gtest.h>
 #include <map>
 #include <numbers>
@@ -353,6 +354,26 @@ TEST(Blocks, that_count_on_feet_stop_triangles_beside_them_from_doing_without) {
         EXPECT_EQ(filler.refine(100'000), !count_on_feet);
         EXPECT_EQ(filler.is_stuck(), count_on_feet);
     }
+}
+
+// Sides of the boundary are given. Beside one that is too long others were halved as long as doubles allow,
+// near 0 a thousand times, with predicates in hundreds of digits.
+TEST(Blocks, sides_that_are_too_long_are_told_soon) {
+    const SurfaceGeometry arch = must(Surface<Vec<3>>::make(
+        {BSplineBasis::bezier(1).value(), BSplineBasis::bezier(2).value()},
+        Net<2, Vec<3>>({2, 3},
+                       {{{0, 0, 0}}, {{0, 1, 2}}, {{0, 2, 0}}, {{3, 0, 0}}, {{3, 1, 2}}, {{3, 2, 0}}})));
+    const DerivativeQuery<2, 3> surface(arch);
+    FaceBoundary boundary;
+    boundary.uv = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
+    boundary.point = {0, 1, 2, 3};
+    boundary.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+    const std::clock_t start = std::clock();
+    const auto mesh = mesh_face(surface, boundary, {.tolerance = 0.01}, 1'000'000);
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 2);
+    ASSERT_FALSE(mesh);
+    EXPECT_EQ(mesh.error().kind, RefusalKind::not_converged);
+    EXPECT_NE(mesh.error().message.find("keeps the bound"), std::string::npos) << mesh.error().message;
 }
 
 }  // namespace

@@ -228,11 +228,9 @@ TEST(Tessellate, refuses_tolerances_that_ask_for_too_much_at_once) {
     EXPECT_EQ(tessellate(model, {.tolerance = NAN}).error().kind, RefusalKind::nonfinite);
 }
 
-// All of a surface, its sides as edges without curves.
-Model all_of(const SurfaceGeometry& surface) {
-    const auto on = domain(surface);
-    const Vec<2> at[] = {
-        {{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].lo}}, {{on[0].hi, on[1].hi}}, {{on[0].lo, on[1].hi}}};
+// A part of a surface, its sides as edges without curves.
+Model all_of(const SurfaceGeometry& surface, const Box<2>& on) {
+    const Vec<2> at[] = {on.lo, {{on.hi[0], on.lo[1]}}, on.hi, {{on.lo[0], on.hi[1]}}};
     Model m;
     Face f;
     f.surface = surface;
@@ -248,6 +246,10 @@ Model all_of(const SurfaceGeometry& surface) {
     m.bodies = {{{0}, false, "", {}}};
     return *make_model(std::move(m));
 }
+Model all_of(const SurfaceGeometry& surface) {
+    const auto on = domain(surface);
+    return all_of(surface, {{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].hi}}});
+}
 
 // They were refused after many points had been tried: where nothing is known of an edge, its error was
 // nothing.
@@ -262,6 +264,38 @@ TEST(Tessellate, offsets_of_splines_of_several_pieces_are_meshed) {
             EXPECT_LE(t.error_bound, tolerance);
             EXPECT_LE(sampled_deviation(m, t), t.error_bound + t.boundary_gap) << height << " " << distance;
         }
+}
+
+// First derivatives of such an offset jump where second derivatives of its base do: up to seven times the
+// bound were measured.
+TEST(Tessellate, offsets_of_surfaces_whose_curvature_jumps_keep_the_bound) {
+    const auto basis = *BSplineBasis::make(2, {0, 0, 0, 1, 2, 3, 3, 3});
+    std::mt19937 rng(7);
+    for (int i = 0; i < 3; ++i) {
+        std::vector<Vec<3>> net, row;
+        for (int k = 0; k < 25; ++k) net.push_back({{double(k / 5), double(k % 5), uniform(rng, -0.6, 0.6)}});
+        for (double turn = 0; row.size() < 5; turn += uniform(rng, -1.2, 1.2))
+            row.push_back((row.empty() ? Vec<3>{} : row.back()) +
+                          Vec<3>{{std::cos(turn), 0, std::sin(turn)}});
+        const Curve<Vec<3>> profile = *Curve<Vec<3>>::make({basis}, Net<1, Vec<3>>({5}, row));
+        const SurfaceGeometry both = *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({5, 5}, net)),
+                              moved = Extrusion{profile, {{0, 1, 0}}},
+                              turned = Revolution{profile, {{0, 0, -8}}, {{1, 0, 0}}};
+        for (const auto* base : {&both, &moved, &turned})
+            for (const double distance : {1.0, -1.0}) {
+                const SurfaceGeometry s =
+                    OffsetSurface{std::make_shared<const SurfaceGeometry>(*base), distance};
+                Box<2> part;
+                part.add(Vec<2>{{0, 0}}), part.add(base == &both    ? Vec<2>{{3, 3}}
+                                                   : base == &moved ? Vec<2>{{3, 1}}
+                                                                    : Vec<2>{{1, 3}});
+                const Model m = all_of(s, part);
+                const auto t = *tessellate(m, {.tolerance = 0.002});
+                ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+                EXPECT_LE(t.error_bound, 0.002);
+                EXPECT_LE(sampled_deviation(m, t), t.error_bound + t.boundary_gap) << i << " " << distance;
+            }
+    }
 }
 
 // A face that ends at a knot of its surface, which bends far more beyond it; the parameter curve of the end

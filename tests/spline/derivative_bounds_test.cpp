@@ -367,4 +367,49 @@ TEST(DerivativeBounds, the_thinnest_piece_is_the_shortest_knot_span) {
     }
 }
 
+// The bound is at least what one sees, and nearly it where the surface is the same all along the line.
+TEST(DerivativeBounds, offsets_have_kinks_where_second_derivatives_of_their_base_jump) {
+    std::mt19937 rng(3);
+    const auto knots = *BSplineBasis::make(2, {0, 0, 0, 1, 3, 3.5, 3.5, 3.5});
+    const auto cubic = *BSplineBasis::make(3, {0, 0, 0, 0, 1, 1, 2, 2, 2, 2});
+    for (int i = 0; i < 10; ++i) {
+        std::vector<Vec<3>> row, net;
+        for (int k = 0; k < 5; ++k) row.push_back({{double(k), 0, uniform(rng, -1, 1)}});
+        for (int k = 0; k < 30; ++k) net.push_back({{double(k / 6), double(k % 6), uniform(rng, -0.5, 0.5)}});
+        const Curve<Vec<3>> profile = *Curve<Vec<3>>::make({knots}, Net<1, Vec<3>>({5}, row));
+        const SurfaceGeometry moved = Extrusion{profile, {{0, 1, 0}}},
+                              turned = Revolution{profile, {{0, 0, -5}}, {{1, 0, 0}}},
+                              both = *Surface<Vec<3>>::make({knots, cubic}, Net<2, Vec<3>>({5, 6}, net));
+        const struct {
+            const SurfaceGeometry* base;
+            int axis;
+            std::vector<double> at;
+        } cases[] = {{&moved, 0, {1, 3}}, {&turned, 1, {1, 3}}, {&both, 0, {1, 3}}, {&both, 1, {1}}};
+        for (const auto& c : cases) {
+            const SurfaceGeometry offset =
+                OffsetSurface{std::make_shared<const SurfaceGeometry>(*c.base), -0.7};
+            const DerivativeQuery<2, 3> query(offset);
+            const auto kinks = query.kinks(c.axis);
+            ASSERT_EQ(kinks.size(), c.at.size());
+            const Interval line = c.base == &both ? domain(*c.base)[std::size_t(1 - c.axis)] : Interval{0, 1};
+            for (std::size_t k = 0; k < kinks.size(); ++k) {
+                EXPECT_EQ(kinks[k].at, c.at[k]);
+                double most = 0;
+                for (int s = 0; s <= 100; ++s) {
+                    std::array<double, 2> before, after;
+                    before[std::size_t(1 - c.axis)] = after[std::size_t(1 - c.axis)] =
+                        line.lo + s / 100.0 * line.length();
+                    before[std::size_t(c.axis)] = c.at[k] - 1e-9, after[std::size_t(c.axis)] = c.at[k] + 1e-9;
+                    const std::size_t slot = c.axis == 0 ? 1 : 2;
+                    most =
+                        std::max(most, norm(jet<1>(offset, after).d[slot] - jet<1>(offset, before).d[slot]));
+                }
+                EXPECT_GE(kinks[k].jump, most * (1 - 1e-6));
+                EXPECT_LE(kinks[k].jump, (c.base == &both ? 1.3 : 1.001) * most + 1e-3);
+            }
+            EXPECT_TRUE(query.kinks(1 - c.axis).empty() || c.base == &both);
+        }
+    }
+}
+
 }  // namespace
