@@ -169,7 +169,7 @@ DerivativeQuery<N, D>::DerivativeQuery(const Geometry& geometry) : geometry_(&ge
                 weight_spread_ = base_->weight_spread();
                 for (std::size_t d = 0; d < N; ++d) {
                     thinnest_[d] = base_->thinnest_piece(int(d));
-                    const auto* profile = base_->profile_.get();
+                    const auto* profile = base_->profile();
                     const bool along = !profile || d == std::holds_alternative<Revolution>(*g.base);
                     if (along)
                         kinks_[d] = offset_kinks(g, *base_, int(d),

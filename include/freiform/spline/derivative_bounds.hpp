@@ -134,6 +134,9 @@ public:
         return second_rounding_ / (thinnest_[std::size_t(axis)] * thinnest_[std::size_t(other)]);
     }
 
+    // Of an extrusion or revolution; else none.
+    const DerivativeQuery<1, 3>* profile() const { return profile_.get(); }
+
 private:
     friend PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>&, Interval);
     const Geometry* geometry_;
