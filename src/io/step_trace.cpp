@@ -56,6 +56,8 @@ public:
         if (auto flat = trace_on_plane(chart_.surface(), c_, on_)) return *flat;
         auto t = on_curved();
         if (t && crosses_pole(t->curve)) t = through_pole();
+        if (!(t && t->gap <= kNear * accuracy_))
+            if (auto told = nearest_image(t ? t->gap : rough_)) return *told;
         if (!t)
             if (auto feet = polygon_of_feet(chart_, c_, on_, rough_)) return *feet;
         return t;
@@ -127,6 +129,39 @@ private:
             if (holds_everywhere(out, std::max(spans_of(c_), spans_of(c)))) return out;
         }
         return std::nullopt;
+    }
+
+    // The image that is nearest to the edge at the places where others are tested, if it is nearer than that:
+    // beside bends that are sharp another point than the one that belongs there may be as near.
+    std::optional<Trace> nearest_image(double limit) const {
+        std::optional<Trace> best;
+        if (!chart_.is_spline(0) || !chart_.is_spline(1)) return best;
+        for (const CurveGeometry<3>& given : images_) {
+            const auto c = over_edge(given);
+            const auto flat = c ? without_last_coordinate(*c) : std::nullopt;
+            if (!flat || crosses_pole(*flat)) continue;
+            Trace out{*flat, 0, false, true};
+            const int more = std::max(spans_of(c_), spans_of(*c));
+            const auto look = [&](double t) {
+                out.gap = std::max(out.gap, gap_at(jet<0>(*flat, t).value(), t));
+            };
+            for (const double x : kPlacesOfLine) look(x == 1 ? on_.hi : on_.lo + x * on_.length());
+            for (int i = 0; i < more; ++i) look(on_.lo + on_.length() * (i + 0.5) / more);
+            if (out.gap < limit) limit = out.gap, best = std::move(out);
+        }
+        return best;
+    }
+    // As long as the edge, if it has the parameter of the edge.
+    std::optional<CurveGeometry<3>> over_edge(const CurveGeometry<3>& image) const {
+        if (begins_and_ends_with_edge(image)) return image;
+        return visit_one(
+            [&](const auto& g) -> std::optional<CurveGeometry<3>> {
+                if constexpr (requires { g.net(); })
+                    if (g.domain()[0].contains(on_.lo) && g.domain()[0].contains(on_.hi))
+                        if (auto part = restrict_to(g, 0, on_)) return *part;
+                return std::nullopt;
+            },
+            image);
     }
 
     std::optional<Trace> along_side() const {

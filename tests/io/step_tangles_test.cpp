@@ -356,5 +356,39 @@ TEST(StepTangles, edges_go_on_where_nearest_points_jump) {
     }
 }
 
+// An edge across a crease where the surface has no tangent plane, (u, (2 v - 1)^3, (2 v - 1)^2): what is
+// followed there is off, and what the file says, though it is no better than its tolerance, is nearer. Only a
+// part of it belongs to the edge.
+TEST(StepTangles, what_the_file_says_is_taken_where_it_is_nearer_than_what_is_found) {
+    using namespace step;
+    Net<2, Vec<3>> net({2, 4});
+    for (std::size_t i = 0; i < 4; ++i) {
+        constexpr double kCube[] = {-1, 1, -1, 1}, kSquare[] = {1, -1.0 / 3, -1.0 / 3, 1};
+        for (std::size_t side = 0; side < 2; ++side)
+            net.flat()[4 * side + i] = {{double(side), kCube[i], kSquare[i]}};
+    }
+    const SurfaceGeometry crease =
+        must(Surface<Vec<3>>::make({*BSplineBasis::bezier(1), *BSplineBasis::bezier(3)}, net));
+    const Chart chart(crease, 1e-9);
+    const CurveGeometry<3> edge = must(Curve<Vec<3>>::make(
+        {*BSplineBasis::bezier(3)},
+        Net<1, Vec<3>>({4}, {{{0, -1, 1}}, {{0, 1, -1.0 / 3}}, {{1.0 / 3, -1, -1.0 / 3}}, {{1, 1, 1}}})));
+    const auto image = [](double beyond) -> CurveGeometry<3> {
+        return must(Curve<Vec<3>>::make({*BSplineBasis::make(2, {-beyond, -beyond, -beyond, 1, 1, 1})},
+                                        Net<1, Vec<3>>({3}, {{{beyond * beyond, -beyond, 0}},
+                                                             {{-beyond + 1e-5, (1 - beyond) / 2, 0}},
+                                                             {{1, 1, 0}}})));
+    };
+    const auto found = trace(chart, edge, {0, 1}, 1e-8, 1e-2);
+    EXPECT_TRUE(!found || found->gap > 3e-5);
+    for (const double beyond : {0.0, 0.25}) {
+        const CurveGeometry<3> said = image(beyond);
+        const auto t = must(trace(chart, edge, {0, 1}, 1e-8, 1e-2, std::span(&said, 1)));
+        EXPECT_TRUE(t.told) << beyond;
+        EXPECT_LE(t.gap, 1e-5) << beyond;
+        EXPECT_EQ(domain(t.curve)[0], (Interval{0, 1})) << beyond;
+    }
+}
+
 }  // namespace
 }  // namespace freiform::test
