@@ -116,8 +116,6 @@ public:
         std::array<Interval, 2> box;
         std::array<bool, 2> held{};
         std::array<double, 2> jump{};  // of S_u, S_v: a knot where the surface is only nearly C^1
-        std::array<double, 2>
-            turn{};  // by which the normal jumps with it; that of an offset is that of its base
         for (std::size_t k = 0; k < 2; ++k) {
             const double reach = h / 2 * p[k](1) + off;
             box[k] = {middle[int(k)] - reach, middle[int(k)] + reach};
@@ -129,10 +127,7 @@ public:
             box[k] = {clamped(box[k].lo, ends), clamped(box[k].hi, ends)};
             for (const SurfaceSeam& s : face_->seams[k]) held[k] = held[k] || box[k].contains(s.at);
             for (const Kink& kink : face_->query.kinks(int(k)))
-                if (box[k].contains(kink.at)) {
-                    held[k] = true, jump[k] += kink.jump;
-                    if (has_bounds() || !std::isfinite(kink.jump)) turn[k] += kink.jump;
-                }
+                if (box[k].contains(kink.at)) held[k] = true, jump[k] += kink.jump;
         }
         const auto s = face_->query(box, 3);
         const double twist_u = zero_times(s(2, 0), s(0, 1)) + zero_times(s(1, 0), s(1, 1));
@@ -145,15 +140,12 @@ public:
                 64 * kUnitRoundoff * (k == 0 ? s(1, 0) : s(0, 1)) +
                 8 * face_->degree[k] * face_->query.value_error(box) / face_->query.thinnest_piece(int(k));
         const double slip = rounding[0] * s(0, 1) + s(1, 0) * rounding[1];
-        const auto across_line = [&](const std::array<double, 2>& by) {
-            return zero_times(by[0], s(0, 1)) + zero_times(by[1], s(1, 0));
-        };
-        const double leap = across_line(jump);
+        const double leap = zero_times(jump[0], s(0, 1)) + zero_times(jump[1], s(1, 0));
         const double m = norm(cross(j(1, 0), j(0, 1))) / kNormalSlack - across - slip - leap;
         if (!(m > 0)) return {kInfinity, kInfinity, kInfinity, leap == 0};
         NormalBounds out;
         out.rounding = (2 * slip + off * (twist_u + twist_v)) / m + 16 * kUnitRoundoff;
-        out.held = 2 * across_line(turn) / m;
+        out.held = 2 * leap / m;
         if (held[0]) out.held += h / 2 * zero_times(twist_u, p[0](1)) / m, p[0] = {};
         if (held[1]) out.held += h / 2 * zero_times(twist_v, p[1](1)) / m, p[1] = {};
         const double u = p[0](1), v = p[1](1), uu = p[0](2), vv = p[1](2);
