@@ -95,23 +95,27 @@ Document document_with(Model model) {
     return document;
 }
 
-// The file at a path from the folder of another one. Programs that do not tell capital letters from small
-// ones write names so, too: where there is none, one that differs in them alone.
+// The file at a path from the folder of another one, which names it: no pipe or device. Programs that do not
+// tell capital letters from small ones write names so, too: where there is none, one that differs in them
+// alone.
 Result<std::string> read_beside(const std::string& file, const std::string& path, std::uint64_t max_bytes) {
-    const std::string whole = file.substr(0, file.rfind('/') + 1) + path;
-    auto bytes = read_file(whole, max_bytes);
+    std::string whole = file.substr(0, file.rfind('/') + 1) + path;
 #if !defined(__wasm__)
-    if (!bytes && ::access(whole.c_str(), F_OK) != 0) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (!fs::exists(whole, error)) {
         const std::size_t name = whole.rfind('/') + 1;
-        std::error_code error;
         const std::string folder = name > 0 ? whole.substr(0, name) : "./";
-        for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end;
-             at.increment(error))
-            if (::strcasecmp(at->path().filename().c_str(), whole.c_str() + name) == 0)
-                return read_file(at->path().string(), max_bytes);
+        for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+            if (::strcasecmp(at->path().filename().c_str(), whole.c_str() + name) == 0) {
+                whole = at->path().string();
+                break;
+            }
     }
+    if (fs::exists(whole, error) && !fs::is_regular_file(whole, error))
+        return refuse(RefusalKind::io, whole, "cannot be read: it is no file with bytes of its own");
 #endif
-    return bytes;
+    return read_file(whole, max_bytes);
 }
 
 // STEP, and what is read as such; `path`: of the file, whose parts may be in others beside it.

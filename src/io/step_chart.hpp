@@ -37,6 +37,8 @@ public:
     // How far apart opposite sides of a spline are, where that is little beside its size; else infinite.
     double apart(int axis) const { return apart_[std::size_t(axis)]; }
     const std::vector<Pole>& poles() const { return poles_; }
+    // Whether a parameter curve goes on beyond a pole, where the same points have other parameters.
+    bool has_pole_across(const CurveGeometry<2>& curve, Interval on) const;
     // The parameters that cover the surface once; infinite where it does not end.
     const std::array<Interval, 2>& whole() const { return whole_; }
     // Whether parameter `axis` is that of a spline, which has to be unwound where a face crosses its ends.

@@ -66,6 +66,32 @@ std::optional<CurveGeometry<2>> without_last_coordinate(const CurveGeometry<3>& 
         c);
 }
 
+bool begins_and_ends_with(const CurveGeometry<3>& image, Interval on) {
+    return visit_one(
+        [&](const auto& g) {
+            if constexpr (requires { g.net(); }) {
+                const BSplineBasis& b = g.basis();
+                return b.domain() == on && b.multiplicity(on.lo) >= b.degree() &&
+                       b.multiplicity(on.hi) >= b.degree();
+            } else {
+                return requires { g.direction; };
+            }
+        },
+        image);
+}
+
+std::optional<CurveGeometry<3>> image_over(const CurveGeometry<3>& image, Interval on) {
+    if (begins_and_ends_with(image, on)) return image;
+    return visit_one(
+        [&](const auto& g) -> std::optional<CurveGeometry<3>> {
+            if constexpr (requires { g.net(); })
+                if (g.domain()[0].contains(on.lo) && g.domain()[0].contains(on.hi))
+                    if (auto part = restrict_to(g, 0, on)) return *part;
+            return std::nullopt;
+        },
+        image);
+}
+
 Foot foot_by_images(const Chart& chart, const Vec<3>& p, const Vec<3>& motion, double t, Interval on,
                     double accuracy, std::span<const CurveGeometry<3>> images) {
     const Foot start = chart.foot(p, motion, chart.locate(p));

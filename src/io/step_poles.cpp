@@ -144,4 +144,20 @@ void Chart::poles_of_sides(double stated) {
         std::holds_alternative<OffsetSurface>(*s_) ? *std::get<OffsetSurface>(*s_).base : *s_);
 }
 
+bool Chart::has_pole_across(const CurveGeometry<2>& curve, Interval on) const {
+    for (const Pole& p : poles_) {
+        const double turn = period(p.axis);
+        double least = 0, most = 0;
+        for (int i = 0; i <= 8; ++i) {
+            double off = jet<0>(curve, on.lo + on.length() * i / 8).value()[p.axis] - p.at;
+            if (turn > 0) off -= std::round(off / turn) * turn;
+            if (std::abs(off) > 0.4 * turn && turn > 0) continue;
+            least = std::min(least, off), most = std::max(most, off);
+        }
+        const double small = 1e-5 * (most - least);
+        if (least < -small && most > small) return true;
+    }
+    return false;
+}
+
 }  // namespace freiform::step

@@ -124,18 +124,20 @@ private:
         return part;
     }
 
-    // Of the file that a shape is in; none, which is told once, if there is nothing to be had of it.
+    // Of the file that a shape is in; none, which is told once, if there is nothing to be had of it: of the
+    // first name, or of one that there is a file of.
     const Other* other(std::uint32_t document) {
         const Document& d = structure_.documents[document];
-        const Other* last = nullptr;
+        const Other* told = nullptr;
         for (const std::string& name : d.names) {
-            last = other_at(path_beside(folder_, name));
-            if (last->read) return last;
+            const Other* o = other_at(path_beside(folder_, name));
+            if (o->read) return o;
+            if (!told || (told->why.kind == RefusalKind::io && o->why.kind != RefusalKind::io)) told = o;
         }
         if (told_.insert(d.instance).second)
-            append(model_.refused, {{last->why.kind, f_.label(d.instance),
-                                     text("its shape is in the file '", d.names.front(),
-                                          "': ", last->why.where, last->why.message)}});
+            append(model_.refused, {{told->why.kind, f_.label(d.instance),
+                                     text("its shape is in the file '", told->path, "': ", told->why.where,
+                                          told->why.message)}});
         return nullptr;
     }
 

@@ -55,7 +55,7 @@ public:
     Result<Trace> run() {
         if (auto flat = trace_on_plane(chart_.surface(), c_, on_)) return *flat;
         auto t = on_curved();
-        if (t && crosses_pole(t->curve)) t = through_pole();
+        if (t && chart_.has_pole_across(t->curve, on_)) t = through_pole();
         if (!(t && t->gap <= kNear * accuracy_))
             if (auto told = nearest_image(t ? t->gap : rough_)) return *told;
         if (!t)
@@ -68,23 +68,6 @@ private:
         return refuse(RefusalKind::ill_conditioned, "parameter curve",
                       "runs through a pole or a fold of the surface");
     }
-    // Beyond a pole the same points have other parameters, where the next edge begins.
-    bool crosses_pole(const CurveGeometry<2>& c) const {
-        for (const Pole& p : chart_.poles()) {
-            const double turn = chart_.period(p.axis);
-            double least = 0, most = 0;
-            for (int i = 0; i <= 8; ++i) {
-                double off = jet<0>(c, on_.lo + on_.length() * i / 8).value()[p.axis] - p.at;
-                if (turn > 0) off -= std::round(off / turn) * turn;
-                if (std::abs(off) > 0.4 * turn && turn > 0) continue;
-                least = std::min(least, off), most = std::max(most, off);
-            }
-            const double small = 1e-5 * (most - least);
-            if (least < -small && most > small) return true;
-        }
-        return false;
-    }
-
     Result<Trace> on_curved() {
         if (auto told = image()) return *told;
         if (auto side = along_side()) return *side;
@@ -103,26 +86,12 @@ private:
         return spline(start, middle);
     }
 
-    // Straight, or with its first and last control point there: joints are closed by moving those.
-    bool begins_and_ends_with_edge(const CurveGeometry<3>& image) const {
-        return visit_one(
-            [&](const auto& g) {
-                if constexpr (requires { g.net(); }) {
-                    const BSplineBasis& b = g.basis();
-                    return b.domain() == on_ && b.multiplicity(on_.lo) >= b.degree() &&
-                           b.multiplicity(on_.hi) >= b.degree();
-                } else {
-                    return requires { g.direction; };
-                }
-            },
-            image);
-    }
     // An image that has the parameter of the edge is the answer, if it is as near to the edge everywhere as
     // others have to be; one with another parameter says where to begin.
     std::optional<Trace> image() {
         if (!chart_.is_spline(0) || !chart_.is_spline(1)) return std::nullopt;
         for (const CurveGeometry<3>& c : images_) {
-            if (!begins_and_ends_with_edge(c)) continue;
+            if (!begins_and_ends_with(c, on_)) continue;
             const auto flat = without_last_coordinate(c);
             if (!flat) continue;
             Trace out{*flat, 0, false, true};
@@ -137,31 +106,18 @@ private:
         std::optional<Trace> best;
         if (!chart_.is_spline(0) || !chart_.is_spline(1)) return best;
         for (const CurveGeometry<3>& given : images_) {
-            const auto c = over_edge(given);
+            const auto c = image_over(given, on_);
             const auto flat = c ? without_last_coordinate(*c) : std::nullopt;
-            if (!flat || crosses_pole(*flat)) continue;
+            if (!flat || chart_.has_pole_across(*flat, on_)) continue;
             Trace out{*flat, 0, false, true};
-            const int more = std::max(spans_of(c_), spans_of(*c));
-            const auto look = [&](double t) {
+            const auto is_nearer = [&](double t) {
                 out.gap = std::max(out.gap, gap_at(jet<0>(*flat, t).value(), t));
+                return out.gap < 0 * limit;
             };
-            for (const double x : kPlacesOfLine) look(x == 1 ? on_.hi : on_.lo + x * on_.length());
-            for (int i = 0; i < more; ++i) look(on_.lo + on_.length() * (i + 0.5) / more);
-            if (out.gap < limit) limit = out.gap, best = std::move(out);
+            if (at_all_places(std::max(spans_of(c_), spans_of(*c)), is_nearer))
+                limit = out.gap, best = std::move(out);
         }
         return best;
-    }
-    // As long as the edge, if it has the parameter of the edge.
-    std::optional<CurveGeometry<3>> over_edge(const CurveGeometry<3>& image) const {
-        if (begins_and_ends_with_edge(image)) return image;
-        return visit_one(
-            [&](const auto& g) -> std::optional<CurveGeometry<3>> {
-                if constexpr (requires { g.net(); })
-                    if (g.domain()[0].contains(on_.lo) && g.domain()[0].contains(on_.hi))
-                        if (auto part = restrict_to(g, 0, on_)) return *part;
-                return std::nullopt;
-            },
-            image);
     }
 
     std::optional<Trace> along_side() const {
@@ -209,13 +165,16 @@ private:
         return out;
     }
     // At `more` places besides those that lines have: splines need them.
-    bool holds_everywhere(Trace& out, int more) const {
-        const auto at = [&](double t) { return holds(jet<0>(out.curve, t).value(), t, out.gap); };
+    template <class Is>
+    bool at_all_places(int more, const Is& is) const {
         for (const double x : kPlacesOfLine)
-            if (!at(x == 1 ? on_.hi : on_.lo + x * on_.length())) return false;
+            if (!is(x == 1 ? on_.hi : on_.lo + x * on_.length())) return false;
         for (int i = 0; i < more; ++i)
-            if (!at(on_.lo + on_.length() * (i + 0.5) / more)) return false;
+            if (!is(on_.lo + on_.length() * (i + 0.5) / more)) return false;
         return true;
+    }
+    bool holds_everywhere(Trace& out, int more) const {
+        return at_all_places(more, [&](double t) { return holds(jet<0>(out.curve, t).value(), t, out.gap); });
     }
     // Along the end of a spline exactly so.
     void snap(Vec<2>& a, Vec<2>& b) const {

@@ -71,6 +71,12 @@ std::optional<Trace> coarse_polygon(const Chart& chart, const CurveGeometry<3>& 
 Foot foot_by_images(const Chart& chart, const Vec<3>& p, const Vec<3>& motion, double t, Interval on,
                     double accuracy, std::span<const CurveGeometry<3>> images);
 
+// Whether an image has the parameter of an edge over `on`: straight, or with its first and last control point
+// at the ends, since joints are closed by moving those.
+bool begins_and_ends_with(const CurveGeometry<3>& image, Interval on);
+// The image, or its part over `on`, if that is so; else none.
+std::optional<CurveGeometry<3>> image_over(const CurveGeometry<3>& image, Interval on);
+
 // None of conics.
 std::optional<CurveGeometry<2>> without_last_coordinate(const CurveGeometry<3>& c);
 

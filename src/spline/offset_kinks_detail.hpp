@@ -7,7 +7,8 @@
 //
 // Accuracy. The jump is taken between two places beside the line, which adds what S_aa changes by from there
 // to the line, and at the middle of a part of the line, which adds what n and S_aa change by along the part:
-// bounds of third derivatives on both sides.
+// bounds of third derivatives on both sides. Where parameters are too large beside the pieces for two places
+// that are distinct and within them, nothing is known.
 #pragma once
 #include "swept_bounds_detail.hpp"
 
@@ -23,6 +24,7 @@
 namespace freiform::detail {
 
 constexpr double kBesideLine = 0x1p-20;  // of the thinnest piece
+constexpr double kDistinct = 0x1p-50;    // of a parameter: others are this far from it at least
 constexpr int kMostParts = 64;           // of a line
 constexpr double kEnough = 1.25;         // times what is seen
 
@@ -38,9 +40,12 @@ struct NormalJump {
 inline NormalJump jump_of_normal(const DerivativeQuery<2, 3>& base, int axis, double at, Interval part,
                                  double rounding) {
     const std::size_t a = std::size_t(axis), b = 1 - a;
-    const double beside = kBesideLine * base.thinnest_piece(axis);
+    const double thinnest = base.thinnest_piece(axis),
+                 step = std::max(kBesideLine * thinnest, kDistinct * std::abs(at));
     std::array<Interval, 2> box;
-    box[a] = {at - beside, at + beside}, box[b] = part;
+    box[a] = {at - step, at + step}, box[b] = part;
+    const double beside = std::max(at - box[a].lo, box[a].hi - at);  // exact
+    if (!(beside < thinnest / 2)) return {kInfinity, 0, part};
     const NormalBounds n(base, box);
     if (!(n.least > 0)) return {kInfinity, 0, part};
     const auto& S = n.all.d;

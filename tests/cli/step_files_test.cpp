@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <support/step_assembly.hpp>
+#include <sys/stat.h>
 
 namespace freiform::test {
 namespace {
@@ -163,6 +164,12 @@ TEST_F(CliStep, parts_of_an_assembly_are_read_from_the_files_beside_it) {
     EXPECT_EQ(without.code, 1);
     EXPECT_EQ(Json::parse(without.out)["triangles"], 2);
     EXPECT_NE(without.err.find("its shape is in the file 'PART.STP'"), std::string::npos) << without.err;
+
+    // A pipe that nobody writes to is not waited for.
+    ASSERT_EQ(::mkfifo(path("part.stp").c_str(), 0600), 0);
+    const Ran pipe = run({"info", whole, "--json"});
+    EXPECT_EQ(pipe.code, 0);
+    EXPECT_NE(pipe.out.find("it is no file with bytes of its own"), std::string::npos) << pipe.out;
 
     // Standard input has no folder.
     const Ran piped = run({"info", "-", "--json"}, content(whole));

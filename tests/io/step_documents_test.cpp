@@ -144,6 +144,17 @@ TEST(StepDocuments, NameOfTheDocumentWhereTheFileHasNone) {
     const Model m = must(f.read("whole.stp"));
     expect_no_refusals(m);
     EXPECT_EQ(m.faces.size(), 1u);
+    // Told is what is wrong with the one that is there.
+    f.files["part.stp"] = "ISO-10303-21;\nHEADER;";
+    for (const bool first : {true, false}) {
+        f.files["whole.stp"] = assembly({{.file = first ? "part.stp" : "part 7",
+                                          .place = "0.,0.,0.",
+                                          .document = first ? "DOC-0815" : "part.stp"}});
+        const auto broken = f.read("whole.stp");
+        ASSERT_FALSE(broken);
+        EXPECT_EQ(broken.error().kind, RefusalKind::unreadable);
+        EXPECT_NE(broken.error().message.find("'part.stp': "), std::string::npos) << broken.error().message;
+    }
 }
 
 TEST(StepDocuments, WhatIsNotThereIsTold) {
@@ -207,6 +218,42 @@ TEST(StepDocuments, WhatIsToldInAFileNamesIt) {
     EXPECT_EQ(m.layers[0].name, "inner");
     EXPECT_EQ(m.layers[0].description, "of the part");
     EXPECT_EQ(m.faces[0].layers, (std::vector{0, 1}));
+}
+
+// What was mended, approximated and repaired in a part, in the unit of the assembly; its colours stay.
+TEST(StepDocuments, WhatWasDoneToAFileNamesIt) {
+    const std::string colour =
+        "#830=STYLED_ITEM('',(#831),#12);\n#831=PRESENTATION_STYLE_ASSIGNMENT((#832));\n"
+        "#832=SURFACE_STYLE_USAGE(.BOTH.,#833);\n#833=SURFACE_SIDE_STYLE('',(#834));\n"
+        "#834=SURFACE_STYLE_FILL_AREA(#835);\n#835=FILL_AREA_STYLE('',(#836));\n"
+        "#836=FILL_AREA_STYLE_COLOUR('',#837);\n#837=COLOUR_RGB('',1.,0.,0.);\n";
+    std::string gaping = polygon_file({{0, 0}, {3, 0}, {3, 2}, {2.99, 2}, {0, 2}}, colour + kInches);
+    gaping.erase(gaping.find("#502,"), 5);
+    Folder f{{{"gaping.stp", replaced(gaping, "CONTEXT((#2))", "CONTEXT((#900))")},
+              {"turned.stp", replaced(polygon_file(kTriangle), "#401,.T.", "#401,.F.")},
+              {"short.stp", replaced(polygon_file(kTriangle), "#101=CARTESIAN_POINT('',(4,0,0.))",
+                                     "#101=CARTESIAN_POINT('',(4.,0.0002,0.))")},
+              {"inner.stp", assembly({{.file = "gaping.stp", .place = "0.,0.,0."}})},
+              {"whole.stp", assembly({{.file = "inner.stp", .place = "0.,0.,0."},
+                                      {.file = "turned.stp", .place = "0.,0.,1."},
+                                      {.file = "short.stp", .place = "0.,0.,2."}})}}};
+    StepReadOptions options = f.options();
+    options.repair = true;
+    const Model m = must(read_step(f.files.at("whole.stp"), options));
+    expect_no_refusals(m);
+    ASSERT_EQ(m.repairs.size(), 1u);
+    EXPECT_EQ(m.repairs[0].where, "inner.stp: gaping.stp: #14 EDGE_LOOP");
+    EXPECT_NEAR(m.repairs[0].distance, 0.01 * 25.4, 1e-9);
+    ASSERT_EQ(m.faces.size(), 3u);
+    EXPECT_EQ(m.faces[0].colour.has_value(), true);
+    EXPECT_EQ(m.faces[1].colour.has_value(), false);
+    int of_turned = 0, of_short = 0;
+    for (const Approximation& a : m.approximations) {
+        of_turned += a.where.starts_with("turned.stp: ") || a.what.starts_with("turned.stp: ");
+        of_short += a.where.starts_with("edges[") && a.what.starts_with("short.stp: #40");
+    }
+    EXPECT_GE(of_turned, 1);
+    EXPECT_EQ(of_short, 2);  // that end beside their vertex
 }
 
 TEST(StepDocuments, LayersOfTheSameNameAreOne) {

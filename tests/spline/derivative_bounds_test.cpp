@@ -412,4 +412,26 @@ TEST(DerivativeBounds, offsets_have_kinks_where_second_derivatives_of_their_base
     }
 }
 
+// Where doubles are far apart the places beside a knot must be so, too.
+TEST(DerivativeBounds, kinks_of_offsets_do_not_depend_on_where_parameters_begin) {
+    const std::vector<Vec<3>> row{{{0, 0, 0}}, {{1, 0, 0}}, {{2, 0, 2}}, {{3, 0, 0}}};
+    const auto jump = [&](double begin, double span) {
+        const auto basis = *BSplineBasis::make(
+            2, {begin, begin, begin, begin + span, begin + 2 * span, begin + 2 * span, begin + 2 * span});
+        const Curve<Vec<3>> profile = *Curve<Vec<3>>::make({basis}, Net<1, Vec<3>>({4}, row));
+        const SurfaceGeometry offset =
+            OffsetSurface{std::make_shared<const SurfaceGeometry>(Extrusion{profile, {{0, 1, 0}}}), 1};
+        const DerivativeQuery<2, 3> query(offset);
+        const auto kinks = query.kinks(0);
+        return kinks.size() == 1 ? kinks[0].jump : -1;
+    };
+    const double here = jump(0, 1);
+    EXPECT_GT(here, 0.1);
+    for (const double begin : {0x1p20, 0x1p30, 0x1p36, 0x1p40, 0x1p44}) {
+        EXPECT_GE(jump(begin, 1), here * (1 - 1e-6)) << begin;
+        EXPECT_LE(jump(begin, 1), 2 * here) << begin;
+    }
+    EXPECT_GE(jump(0x1p52, 1), here);  // nothing is known: infinite
+}
+
 }  // namespace

@@ -20,8 +20,8 @@ struct StepReadOptions {
     bool repair = false;
     // The longest gap of a loop that is closed, in the unit of the file; 0: a hundredth of the face.
     double repair_limit = 0;
-    // The bytes of another file that parts of an assembly are in. `path`: as the file says it, with slashes,
-    // from its own folder on. Without it such parts are in Model::refused.
+    // The bytes of another file that parts of an assembly are in. `path`: from the folder of the first file
+    // on, with slashes, never above it. Without it such parts are in Model::refused.
     std::function<Result<std::string>(const std::string& path)> open = {};
 };
 
@@ -37,7 +37,8 @@ struct StepReadOptions {
 // Model::refused, with the number of the instance.
 //
 // Refuses: unreadable (with the byte) what is no such file or ends too early, no_answer where nothing in it
-// has a shape, limit. Whatever the bytes are, the answer comes, in time proportional to their number.
+// has a shape, limit. Whatever the bytes are, the answer comes, in time proportional to their number (and
+// that of the bytes of other files).
 Result<Model> read_step(std::string_view bytes, const StepReadOptions& options = {});
 
 // The tessellated items of a file (AP242) as a mesh, in its unit, each where the assembly has it:

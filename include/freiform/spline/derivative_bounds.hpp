@@ -34,9 +34,8 @@ template <std::size_t N, class P>
 DerivativeBounds<N> derivative_bounds(const NetView<N, const P>& net, const std::array<double, N>& width,
                                       int order = 2, double size = 0);
 
-// A place where the first derivative along `axis` jumps: a knot of multiplicity >= degree, of the base of an
-// offset
-// >= degree - 1.
+// A place where the first derivative along `axis` jumps: a knot of multiplicity >= degree; for an offset one
+// of its base of multiplicity >= degree - 1.
 struct Kink {
     double at = 0;  // parameter
     double jump =
