@@ -508,6 +508,13 @@ export const cases = [
         await drop(page, ".stage", "half.step", bracket().slice(0, 60000));
         assert.match(await toast(page), /unreadable/);
         assert.equal(await entries(), kept, "a file that cannot be read leaves what is shown");
+        // Parts that are in other files, which a page cannot open.
+        const assembly = readFileSync(fileURLToPath(new URL("../../../tests/fuzz/seeds/step/documents.stp", import.meta.url)), "utf8");
+        await drop(page, ".stage", "assembly.stp", assembly);
+        await until(page, () => document.querySelectorAll(".list li.bad").length === 2 && document.querySelectorAll(".tools .list li:not(.bad)").length === 1);
+        assert.match(await page.locator(".list li.bad").nth(0).innerText(), /'a\.stp': cannot be read/);
+        assert.match(await page.locator(".list li.bad").nth(1).innerText(), /'sub\/b\.stp': cannot be read/);
+        await picture("assembly-alone");
     }],
     ["inspect: of many triangles few are drawn while the eye moves, all when it rests", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
