@@ -8,9 +8,9 @@
 // it calls, which change with the order; no run that is in one function alone or in more than kCommon. From the
 // largest function on, the next one is that with the most runs in the last bytes, relative to the number of its
 // own to some power: by the number itself large functions come too early, by the share short ones. Before them stand
-// those that are called most: a call of a number below 128 has one byte less. Of the windows and powers of kTries that order is taken with which gzip makes the module smallest. Equal ones in their old
-// order, so that the same module always becomes the same. Then all numbers of functions are replaced: in calls,
-// exports, tables and the start.
+// those that are called most: a call of a number below 128 has one byte less. Of the windows and powers of kTries
+// that order is taken with which gzip makes the module smallest. Equal ones in their old order, so that the same
+// module always becomes the same. Then all numbers of functions are replaced: in calls, exports, tables and the start.
 //
 // How far an access to memory is said to be aligned is a hint that changes no result and that engines do not need; yet
 // copies of objects differ in it from instance to instance. It becomes 0 everywhere.

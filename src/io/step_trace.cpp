@@ -112,7 +112,7 @@ private:
             Trace out{*flat, 0, false, true};
             const auto is_nearer = [&](double t) {
                 out.gap = std::max(out.gap, gap_at(jet<0>(*flat, t).value(), t));
-                return out.gap < 0 * limit;
+                return out.gap < limit;
             };
             if (at_all_places(std::max(spans_of(c_), spans_of(*c)), is_nearer))
                 limit = out.gap, best = std::move(out);
