@@ -3,7 +3,7 @@
 // module makes is written. FREIFORM_WASM names another folder with the module.
 import { readFileSync, readdirSync, statSync, writeFileSync, writeSync } from 'node:fs';
 import { basename, dirname, join } from 'node:path';
-import { load } from './freiform.js';
+import { filesNamedIn, load } from './freiform.js';
 
 function put(fd, bytes) {
   for (let done = 0; done < bytes.length;) {
@@ -34,12 +34,7 @@ function take(name, file = name) {
   files[name] = readFileSync(file);
   if (!/\.(stp|step|p21)$/i.test(name)) return;
   const folder = name.slice(0, name.lastIndexOf('/') + 1);
-  const text = files[name].toString('latin1');
-  for (const [, other] of text.matchAll(/(?:DOCUMENT_FILE|EXTERNAL_IDENTIFICATION_ASSIGNMENT)\s*\(\s*'([^']+)'/g)) {
-    const path = other.replace(/\\+/g, '/').replace(/^(\.\/)+/, '');
-    const beside = folder + (/^\/|:|\.\./.test(path) ? basename(path) : path);
-    take(beside, isFile(beside) ? beside : alike(beside));
-  }
+  for (const path of filesNamedIn(files[name])) take(folder + path, isFile(folder + path) ? folder + path : alike(folder + path));
 }
 
 for (const word of args) {

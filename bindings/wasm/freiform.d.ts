@@ -49,8 +49,9 @@ export type ObjectJson = CurveJson | SurfaceJson | VolumeJson | TriangleJson | H
 export interface DocumentJson { freiform: 1; unit?: string; objects: ObjectJson[] }
 
 // Whatever can be read: an object, a document, or the text or bytes of a file (.json, .bpt, .svg, .obj, .bsp, .map).
-// Where neither the content nor a `.json` says what it is (.obj, .map): with its name.
-export interface NamedFile { file: string; content: string | Uint8Array }
+// Where neither the content nor a `.json` says what it is (.obj, .map): with its name. `beside`: the files that it says
+// parts of it are in, by their paths from its folder (STEP).
+export interface NamedFile { file: string; content: string | Uint8Array; beside?: Record<string, string | Uint8Array> }
 export type Source = DocumentJson | ObjectJson | Shape | NamedFile | string | Uint8Array;
 
 // Shapes ------------------------------------------------------------------------------------------------------------
@@ -217,6 +218,9 @@ export interface Freiform {
   // Bytes of memory that the module holds.
   readonly memory: number;
 }
+
+// Where a STEP file says that parts of it may be: paths from its folder, those that it names and the same without folders.
+export function filesNamedIn(content: string | Uint8Array): string[];
 
 // Without a source: freiform.wasm beside this file. Modules can be posted to workers: `load(ff.module)`.
 export function load(source?: string | URL | BufferSource | WebAssembly.Module | Response | Promise<Response>):

@@ -135,6 +135,12 @@ class Instance {
     }
   }
 
+  // A file for what is called next.
+  put(name, bytes) {
+    const named = utf8.encode(name);
+    this.with([named, bytes], (at, from) => this.call('put_file', at, named.length, from, bytes.length));
+  }
+
   // `out`, or a new array, with the numbers at an address.
   fill(out, at, count) {
     if (!out) return this.copy(Float64Array, at, count);
@@ -327,10 +333,13 @@ const isWord = (x) => typeof x === 'string' && x.length <= 200 && !/[\n{[<]/.tes
 const asBytes = (x) => (isBytes(x) ? x : utf8.encode(x));
 const kebab = (name) => '--' + name.replace(/[A-Z]/g, (c) => '-' + c.toLowerCase());
 
-// The name and bytes of a source that is no word.
+// The name and bytes of a source that is no word, and those of files beside it.
 function fileOf(source, number) {
   if (source instanceof Shape) return fileOf(source.json(), number);
-  if (isNamedFile(source)) return [source.file, asBytes(source.content)];
+  if (isNamedFile(source)) {
+    const folder = source.file.slice(0, source.file.lastIndexOf('/') + 1);
+    return [source.file, asBytes(source.content), Object.entries(source.beside ?? {}).map(([path, content]) => [folder + path, asBytes(content)])];
+  }
   if (isBytes(source) || typeof source === 'string') return [`input${number}`, asBytes(source)];
   return [`input${number}.json`, utf8.encode(JSON.stringify(source))];
 }
@@ -338,6 +347,17 @@ function fileOf(source, number) {
 // Whether the arguments ask for this file to be written, although it was there before.
 const wasWritten = (args, name) =>
   args.some((a, i) => (a === '-o' || a === '--output') ? args[i + 1] === name : a === `--output=${name}`);
+
+export function filesNamedIn(content) {
+  const written = typeof content === 'string' ? content : new TextDecoder('latin1').decode(content);
+  const paths = new Set();
+  for (const [, name] of written.matchAll(/(?:DOCUMENT_FILE|EXTERNAL_IDENTIFICATION_ASSIGNMENT)\s*\(\s*'([^']+)'/g)) {
+    const path = name.replace(/\\+/g, '/').replace(/^(\.\/)+/, '');
+    if (!/^\/|:|\.\./.test(path)) paths.add(path);
+    paths.add(path.slice(path.lastIndexOf('/') + 1));
+  }
+  return [...paths].filter((path) => path !== '');
+}
 
 class Freiform {
   #commandInstance; #described;
@@ -356,13 +376,18 @@ class Freiform {
   }
 
   document(source) {
-    const [name, bytes] = fileOf(source, 0);
+    const [name, bytes, beside = []] = fileOf(source, 0);
     const named = utf8.encode(name);
-    return this.instance.with([bytes, named], (at, nameAt) => {
-      this.instance.call('document', at, bytes.length, nameAt, named.length);
-      const { unit, shapes, left_out: leftOut } = JSON.parse(this.instance.reply());
-      return { unit, shapes: shapes.map((handle) => new Shape(this, handle)), leftOut };
-    });
+    try {
+      for (const file of beside) this.instance.put(...file);
+      return this.instance.with([bytes, named], (at, nameAt) => {
+        this.instance.call('document', at, bytes.length, nameAt, named.length);
+        const { unit, shapes, left_out: leftOut } = JSON.parse(this.instance.reply());
+        return { unit, shapes: shapes.map((handle) => new Shape(this, handle)), leftOut };
+      });
+    } finally {
+      if (beside.length > 0 && !this.instance.dead) this.instance.call('clear_files');
+    }
   }
 
   shape(source) {
@@ -398,10 +423,7 @@ class Freiform {
     if (this.#commandInstance.dead) this.#replace();
     const instance = this.#commandInstance;
     instance.call('clear_files');
-    for (const [name, content] of Object.entries(files)) {
-      const bytes = asBytes(content), named = utf8.encode(name);
-      instance.with([named, bytes], (n, b) => instance.call('put_file', n, named.length, b, bytes.length));
-    }
+    for (const [name, content] of Object.entries(files)) instance.put(name, asBytes(content));
     const line = utf8.encode(args.map((a) => a + '\0').join(''));
     let code = 0, stderr = '', stdout;
     try {
@@ -429,7 +451,8 @@ class Freiform {
   run(command, inputs = [], options = {}) {
     const files = {};
     const keep = (source) => {
-      const [name, bytes] = fileOf(source, Object.keys(files).length);
+      const [name, bytes, beside = []] = fileOf(source, Object.keys(files).length);
+      for (const [path, content] of beside) files[path] ??= content;
       files[name] = bytes;
       return name;
     };

@@ -11,10 +11,10 @@
 #include <freiform/io/svg.hpp>
 
 #include <algorithm>
+#include <strings.h>
 #if !defined(__wasm__)
 #include <cerrno>
 #include <filesystem>
-#include <strings.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #endif
@@ -114,6 +114,13 @@ Result<std::string> read_beside(const std::string& file, const std::string& path
     }
     if (fs::exists(whole, error) && !fs::is_regular_file(whole, error))
         return refuse(RefusalKind::io, whole, "cannot be read: it is no file with bytes of its own");
+#else
+    if (!files_in_memory().contains(whole))
+        for (const auto& [other, bytes] : files_in_memory())
+            if (::strcasecmp(other.c_str(), whole.c_str()) == 0) {
+                whole = other;
+                break;
+            }
 #endif
     return read_file(whole, max_bytes);
 }

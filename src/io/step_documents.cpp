@@ -90,12 +90,15 @@ void read_documents(const File& file, std::span<const std::uint32_t> node,
     DocumentReader(file, node, of_definition, out).run();
 }
 
-std::string path_beside(std::string_view folder, std::string name) {
+std::vector<std::string> paths_beside(std::string_view folder, std::string name) {
     std::ranges::replace(name, '\\', '/');
-    if (name.starts_with('/') || name.find(':') != name.npos || name.find("..") != name.npos)
-        name.erase(0, name.rfind('/') + 1);
     while (name.starts_with("./")) name.erase(0, 2);
-    return std::string(folder) + name;
+    const std::string last = name.substr(name.rfind('/') + 1);
+    std::vector<std::string> out;
+    if (name != last && !name.starts_with('/') && name.find(':') == name.npos && name.find("..") == name.npos)
+        out.push_back(std::string(folder) + name);
+    out.push_back(std::string(folder) + last);
+    return out;
 }
 
 }  // namespace freiform::step

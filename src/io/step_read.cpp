@@ -129,11 +129,12 @@ private:
     const Other* other(std::uint32_t document) {
         const Document& d = structure_.documents[document];
         const Other* told = nullptr;
-        for (const std::string& name : d.names) {
-            const Other* o = other_at(path_beside(folder_, name));
-            if (o->read) return o;
-            if (!told || (told->why.kind == RefusalKind::io && o->why.kind != RefusalKind::io)) told = o;
-        }
+        for (const std::string& name : d.names)
+            for (std::string& path : paths_beside(folder_, name)) {
+                const Other* o = other_at(std::move(path));
+                if (o->read) return o;
+                if (!told || (told->why.kind == RefusalKind::io && o->why.kind != RefusalKind::io)) told = o;
+            }
         if (told_.insert(d.instance).second)
             append(model_.refused, {{told->why.kind, f_.label(d.instance),
                                      text("its shape is in the file '", told->path, "': ", told->why.where,

@@ -57,8 +57,9 @@ void read_layers(const File& file, Structure& out);
 // representation; `of_definition`: of each that is a product definition; else kMissing.
 void read_documents(const File& file, std::span<const std::uint32_t> node,
                     std::span<const std::uint32_t> of_definition, Structure& out);
-// What a file calls another one, as a path from the folder of the first file; `folder`: of the file that
-// says it, empty or with a slash at its end. What lies elsewhere is looked for in that folder.
-std::string path_beside(std::string_view folder, std::string name);
+// Where what a file calls another one may be, as paths from the folder of the first file: below `folder`,
+// that of the file that says it, empty or with a slash at its end; else, and if it lies elsewhere, in that
+// folder.
+std::vector<std::string> paths_beside(std::string_view folder, std::string name);
 
 }  // namespace freiform::step

@@ -133,6 +133,24 @@ TEST(StepDocuments, OnlyFilesBesideAndBelowAreAskedFor) {
     }
 }
 
+TEST(StepDocuments, FilesOfFoldersThatAreNotThereLieBesideTheOneThatNamesThem) {
+    Folder f{{{"a/part.stp", polygon_file(kTriangle)},
+              {"a/inner.stp", assembly({{.file = "parts\\\\part.stp", .place = "0.,0.,1."}})},
+              {"whole.stp", assembly({{.file = "a/inner.stp", .place = "0.,0.,0."}})}}};
+    const Model m = must(f.read("whole.stp"));
+    expect_no_refusals(m);
+    EXPECT_EQ(m.faces.size(), 1u);
+    EXPECT_EQ(f.asked.count("a/parts/part.stp"), 1u);  // rather there
+    EXPECT_EQ(f.asked.count("part.stp"), 0u);
+    f.files["a/parts/part.stp"] = "ISO-10303-21;\nHEADER;";
+    EXPECT_EQ(must(f.read("whole.stp")).faces.size(), 1u);
+    f.files.erase("a/part.stp");
+    const auto broken = f.read("whole.stp");
+    ASSERT_FALSE(broken);
+    EXPECT_NE(broken.error().message.find("'a/parts/part.stp': "), std::string::npos)
+        << broken.error().message;
+}
+
 TEST(StepDocuments, NameOfTheDocumentWhereTheFileHasNone) {
     // The name that is assigned comes first.
     Folder f{{{"part.stp", polygon_file(kTriangle)},

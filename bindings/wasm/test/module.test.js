@@ -8,7 +8,7 @@ import { basename, join } from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
-import { load } from '../freiform.js';
+import { filesNamedIn, load } from '../freiform.js';
 import { difference, questions, tests } from './cases.js';
 
 const root = new URL('../../../', import.meta.url).pathname;
@@ -93,6 +93,26 @@ test('a STEP model is read, meshed and measured without a program', () => {
   assert.equal(report.refused.length, 1);
   assert(remarks.some((line) => line.includes('without one face that was refused')), remarks.join());
   assert.throws(() => ff.document({ file: 'half.step', content: bracket.slice(0, 60000) }), { kind: 'unreadable' });
+});
+
+test('parts of a STEP assembly may be in files that come with it', () => {
+  const content = readFileSync(new URL('../../../tests/fuzz/seeds/step/documents.stp', import.meta.url));
+  assert.deepEqual(filesNamedIn(content), ['a.stp', 'sub/b.stp', 'b.stp']);
+  assert.deepEqual(filesNamedIn("#1=DOCUMENT_FILE ('C:\\\\x\\\\p.stp','');"), ['p.stp']);
+  const beside = { 'a.stp': bracket, 'B.STP': bracket };
+  for (const folder of ['', 'some/']) {
+    const { shapes: [whole], leftOut } = ff.document({ file: `${folder}all.stp`, content, beside });
+    assert.deepEqual(leftOut, []);
+    const { parts, refused } = whole.mesh({ tolerance: 1 });
+    assert.equal(parts.length, 2 * 24 + 1);
+    assert.deepEqual(refused, []);
+    whole.free();
+    // Nothing of them stays.
+    const { shapes: [alone] } = ff.document({ file: `${folder}all.stp`, content });
+    assert.equal(alone.json().refused.length, 2);
+    alone.free();
+    assert.equal(ff.run('info', { file: `${folder}all.stp`, content, beside }).json.objects[0].faces, 2 * 24 + 1);
+  }
 });
 
 test('answers about STEP files are those of the program', { skip: !existsSync(program) && `${program} is not built` }, () => {

@@ -100,9 +100,9 @@ class Inspector implements Shown {
     }
 
     /** Reads a file beside the page, which goes on showing what it had until all is understood. */
-    private open({ name, source }: Opened): void {
+    private open({ name, source, beside }: Opened): void {
         this.reading?.cancel();
-        const reading = read(file(name, source));
+        const reading = read(file(name, source, beside));
         this.reading = reading;
         this.busy(true);
         reading.done.then(({ document, leftOut }) => {

@@ -38,8 +38,8 @@ export function arena<T>(f: (make: Make, keep: (shape: Shape) => Shape) => T): T
     }
 }
 
-/** A source whose name says what it is. */
-export const file = (name: string, content: string | Uint8Array): Source => ({ file: name, content });
+/** A source whose name says what it is; `beside`: the files that it may name. */
+export const file = (name: string, content: string | Uint8Array, beside: Record<string, Uint8Array> = {}): Source => ({ file: name, content, beside });
 
 /** The levels of de Casteljau or de Boor at a parameter. */
 export function construct(shape: Shape, at: readonly number[]): Construction["levels"] {

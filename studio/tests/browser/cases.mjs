@@ -1,6 +1,7 @@
 // What is tested in the browser: name, what is done, and with which browser.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -47,13 +48,21 @@ const toast = async (page) => { await page.waitForSelector(".toast.refused", { t
 const file = async (page, path) => { await page.locator('input[type="file"]').first().setInputFiles(path); await settle(page); };
 
 /** What a file dragged from elsewhere and let go there does. */
-async function drop(page, onto, name, content) {
-    const data = await page.evaluateHandle(([name, content]) => {
+async function drop(page, onto, name, content, others = {}) {
+    const data = await page.evaluateHandle((files) => {
         const transfer = new DataTransfer();
-        transfer.items.add(new File([content], name));
+        for (const [name, content] of Object.entries(files)) transfer.items.add(new File([content], name));
         return transfer;
-    }, [name, content]);
+    }, { ...others, [name]: content });
     await page.locator(onto).first().dispatchEvent("drop", { dataTransfer: data });
+}
+
+/** Files and folders of the disk, from outside of the page. */
+async function dropFromDisk(page, x, y, files) {
+    const session = await page.context().newCDPSession(page);
+    for (const type of ["dragEnter", "dragOver", "drop"])
+        await session.send("Input.dispatchDragEvent", { type, x, y, data: { items: [], files, dragOperationsMask: 1 } });
+    await session.detach();
 }
 
 async function axe(page) {
@@ -508,13 +517,42 @@ export const cases = [
         await drop(page, ".stage", "half.step", bracket().slice(0, 60000));
         assert.match(await toast(page), /unreadable/);
         assert.equal(await entries(), kept, "a file that cannot be read leaves what is shown");
-        // Parts that are in other files, which a page cannot open.
+    }],
+    ["inspect: parts of an assembly may be in files that come with it, also as a folder; those that are missing are named", async ({ page, url, picture }) => {
         const assembly = readFileSync(fileURLToPath(new URL("../../../tests/fuzz/seeds/step/documents.stp", import.meta.url)), "utf8");
+        const listed = (bad, good) => until(page, ([bad, good]) => document.querySelectorAll(".list li.bad").length === bad && document.querySelectorAll(".tools .list li:not(.bad)").length === good, [bad, good]);
+        await go(page, url, "#/inspect", ".view.space");
         await drop(page, ".stage", "assembly.stp", assembly);
-        await until(page, () => document.querySelectorAll(".list li.bad").length === 2 && document.querySelectorAll(".tools .list li:not(.bad)").length === 1);
+        await listed(2, 1);
         assert.match(await page.locator(".list li.bad").nth(0).innerText(), /'a\.stp': cannot be read/);
         assert.match(await page.locator(".list li.bad").nth(1).innerText(), /'sub\/b\.stp': cannot be read/);
         await picture("assembly-alone");
+        // Whatever comes first, and whatever capital letters the names have.
+        await drop(page, ".stage", "assembly.stp", assembly, { "B.STP": bracket(), "a.stp": bracket() });
+        await listed(0, 49);
+        await page.waitForSelector("text=assembly.stp");
+        assert.equal(await refused(page), "");
+        await picture("assembly");
+        await drop(page, ".stage", "x.stp", bracket(), { "y.stp": bracket() });
+        assert.match(await toast(page), /y\.stp, x\.stp[^]*do not belong together/);
+        await listed(0, 49);
+        const folder = mkdtempSync(join(tmpdir(), "freiform-studio-"));
+        try {
+            mkdirSync(join(folder, "all", "sub"), { recursive: true });
+            writeFileSync(join(folder, "all", "whole.stp"), assembly);
+            writeFileSync(join(folder, "all", "notes.txt"), "nothing");
+            writeFileSync(join(folder, "all", "sub", "b.stp"), bracket());
+            const box = await page.locator("canvas").boundingBox();
+            await dropFromDisk(page, box.x + box.width / 2, box.y + box.height / 2, [join(folder, "all")]);
+            await listed(1, 25);
+            assert.match(await page.locator(".list li.bad").innerText(), /'a\.stp': cannot be read/);
+            await page.waitForSelector("text=whole.stp");
+            const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.locator("[data-open]").click()]);
+            await chooser.setFiles([join(folder, "all", "sub", "b.stp"), join(folder, "all", "whole.stp")]);
+            await listed(1, 25);
+        } finally {
+            rmSync(folder, { recursive: true });
+        }
     }],
     ["inspect: of many triangles few are drawn while the eye moves, all when it rests", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
