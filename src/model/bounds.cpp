@@ -62,7 +62,7 @@ private:
         double most = -kInfinity;
         for (const Vec<3>& x : p.corner) most = std::max(most, along(x));
         if (!p.crossing) least_ = std::max(least_, most - p.rounding);
-        push({most + p.hull_error, face, index, false}, bound);
+        push({most + p.beside_corners(), face, index, false}, bound);
     }
     void push_rim(int index, double bound) {
         const FaceRim& r = opened_.rim(index);

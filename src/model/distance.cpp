@@ -2,8 +2,8 @@
 // tree of boxes of each model comes first, then its prepared parts (near_parts.cpp), then their halves: a
 // part is within its error of the hull of its corners, a part of a boundary within its error of its chord.
 // Every pair that is opened offers the points in the middle of its parts, where these are certainly on the
-// faces; a pair that is nearer than the best is followed to a place where each point is the nearest of its
-// model to the other one (nearest.cpp, in turn).
+// faces; a pair that is nearer than the best takes its place, and is followed to one where each point is the
+// nearest of its model to the other one (nearest.cpp, in turn), unless that was done often for little.
 //
 // Accuracy. Errors of parts hold rounding; boxes and scalar products: 64 u of the coordinates.
 //
@@ -24,6 +24,10 @@ namespace freiform {
 namespace {
 
 using detail::PairPart;
+
+constexpr int kPartsToFollow = 2000;  // most are done with a tenth
+constexpr int kMostFollowed = 64;
+constexpr double kWorth = 0.99;
 
 // The parts of a model as query/pair_search.hpp wants them.
 class ModelSide {
@@ -53,17 +57,30 @@ public:
         return true;
     }
     // A point of the part that is certainly on its face.
-    std::optional<Vec<3>> point_of(int i) const {
+    std::optional<ModelNearest> point_of(int i) const {
         const Place& p = places_[std::size_t(i)];
+        ModelNearest out;
+        out.face = p.face;
         if (p.part >= 0) {
             const FacePart& part = face_parts_[std::size_t(p.part)];
-            const FaceParts& face = all_.faces[std::size_t(p.face)];
-            const Vec<2> middle = 0.5 * (part.box.lo + part.box.hi);
-            if (face.holds(part, middle)) return face.value(middle);
+            out.uv = 0.5 * (part.box.lo + part.box.hi);
+            if (!all_.faces[std::size_t(p.face)].holds(part, out.uv)) return {};
         } else if (p.rim >= 0) {
-            return rims_[std::size_t(p.rim)].end[0];
+            const FaceRim& rim = rims_[std::size_t(p.rim)];
+            out.uv = rim.uv[0];
+            if (rim.coedge) {
+                const Edge& edge = all_.model.edges[std::size_t(rim.coedge->edge)];
+                out.edge = rim.coedge->edge, out.t = rim.on.lo;
+                if (out.t <= edge.range.lo || edge.degenerate) out.vertex = edge.start;
+            }
+        } else {
+            return {};
         }
-        return {};
+        const SurfaceGeometry& surface = all_.model.faces[std::size_t(p.face)].surface;
+        const Interval u{out.uv[0], out.uv[0]}, v{out.uv[1], out.uv[1]};
+        out.point = all_.faces[std::size_t(p.face)].value(out.uv);
+        out.point_error = 2 * value_error_bound(surface, {u, v}) + 64 * kUnitRoundoff * max_abs(out.point);
+        return out;
     }
 
 private:
@@ -91,7 +108,7 @@ private:
         p.face = face;
         p.part = int(face_parts_.size());
         face_parts_.push_back(std::move(part));
-        add(p, face_parts_.back().corner, face_parts_.back().hull_error);
+        add(p, face_parts_.back().corner, face_parts_.back().beside_corners());
     }
     void add_rim(const FaceRim& rim) {
         Place p;
@@ -126,11 +143,9 @@ private:
         if (!can) return false;
         // By turns where it is longer, which brings boxes apart, and where it bends more: near a pole only
         // that makes the error fall with the square of the size.
-        const bool by_bend = int(part.key) % 2 == 0;
-        for (FacePart& half : all_.faces[std::size_t(p.face)].halves(part, by_bend)) {
-            half.key = part.key + 1;
+        const bool by_bend = part.halvings % 2 == 0;
+        for (FacePart& half : all_.faces[std::size_t(p.face)].halves(part, by_bend))
             add_part(p.face, std::move(half));
-        }
         return true;
     }
     bool split_rim(const Place& p) {
@@ -167,13 +182,14 @@ struct PairOfModels {
     double accuracy;
     std::array<ModelNearest, 2> best{};
     double least = kInfinity;
+    int followed = 0;  // of those that were hardly nearer
 
     // From x on: the nearest point of b, then that of a to it, and so on while it gets nearer.
     void follow(Vec<3> x) {
         for (int turn = 0; turn < 32; ++turn) {
-            const auto y = b.nearest(x, {.accuracy = accuracy / 4});
+            const auto y = b.nearest(x, {.accuracy = accuracy / 4, .max_parts = kPartsToFollow});
             if (!y) return;
-            const auto z = a.nearest(y->point, {.accuracy = accuracy / 4});
+            const auto z = a.nearest(y->point, {.accuracy = accuracy / 4, .max_parts = kPartsToFollow});
             if (!z) return;
             const double before = least;
             if (z->distance < least) {
@@ -186,8 +202,15 @@ struct PairOfModels {
     }
     Vec<3> look(int i, int k) {
         const auto x = side_a.point_of(i), y = side_b.point_of(k);
-        if (x && y && norm(*x - *y) < least) follow(*x);
-        return x && y ? *x - *y : Vec<3>{};
+        if (!x || !y) return {};
+        const Vec<3> apart = x->point - y->point;
+        if (const double d = norm(apart); d < least) {
+            const bool is_worth_it = d < kWorth * least || followed++ < kMostFollowed;
+            least = d;
+            best = {*x, *y};
+            if (is_worth_it) follow(x->point);
+        }
+        return apart;
     }
 };
 

@@ -16,6 +16,19 @@ namespace {
 
 constexpr std::size_t kMaxChords = 4096;  // of one parameter curve
 
+// Where to halve: the kink that adds most, else the middle. On both sides the error falls with the square of
+// the size then. `anywhere`: not only in the middle half. Where the surface is torn only one side has its
+// corners on the line.
+double cut(std::span<const Kink> kinks, Interval on, bool anywhere) {
+    double at = on.middle(), most = 0;
+    const double least = anywhere ? 0 : on.length() / 4;
+    for (const Kink& k : kinks)
+        if (const double adds = kink_bound_of(std::span(&k, 1), on);
+            adds > most && std::isfinite(k.jump) && std::min(k.at - on.lo, on.hi - k.at) >= least)
+            most = adds, at = k.at;
+    return at;
+}
+
 }  // namespace
 
 Result<FaceParts> FaceParts::make(const Face& face, const std::vector<Edge>& edges, double accuracy) {
@@ -52,7 +65,17 @@ std::optional<FacePart> FaceParts::part_over(const Box<2>& box, const std::vecto
                       kink_bound_of(surface_->kinks(1), box.side(1)) + part.rounding;
     part.error = part.hull_error + d(1, 1) * size[0] * size[1] / 4;
     part.error *= 1 + 1e-14, part.hull_error *= 1 + 1e-14;
+    // Half of each side from a corner. Offsets are no farther from their base than they say, whatever is
+    // known of its normals.
     part.size = std::max(d(1, 0) * size[0], d(0, 1) * size[1]);
+    if (surface_->base() != nullptr) {
+        const double beside = 2 * std::abs(std::get<OffsetSurface>(face_->surface).distance);
+        if (!(part.size <= beside)) {
+            const auto b = (*surface_->base())({box.side(0), box.side(1)}, 1);
+            const double by_base = std::max(b(1, 0) * size[0], b(0, 1) * size[1]) + beside;
+            if (!(part.size <= by_base)) part.size = by_base;
+        }
+    }
     for (double* e : {&part.error, &part.hull_error})
         if (std::isnan(*e)) *e = kInfinity;
     for (int k = 0; k < 4; ++k)
@@ -81,20 +104,25 @@ std::optional<FacePart> FaceParts::whole() const {
 std::vector<FacePart> FaceParts::halves(const FacePart& part, bool by_bend) const {
     const Vec<2> size = part.box.hi - part.box.lo;
     const auto d = (*surface_)({part.box.side(0), part.box.side(1)}, by_bend ? 2 : 1);
-    double along[2] = {d(1, 0) * size[0], d(0, 1) * size[1]};
-    if (const double bend[2] = {d(2, 0) * size[0] * size[0], d(0, 2) * size[1] * size[1]};
+    double along[2] = {d(1, 0) * size[0], d(0, 1) * size[1]}, kinks[2];
+    for (int k = 0; k < 2; ++k) kinks[k] = 8 * kink_bound_of(surface_->kinks(k), part.box.side(k));
+    if (const double bend[2] = {d(2, 0) * size[0] * size[0] + kinks[0],
+                                d(0, 2) * size[1] * size[1] + kinks[1]};
         by_bend && bend[0] != bend[1])
         along[0] = bend[0], along[1] = bend[1];
     int axis = along[0] >= along[1] ? 0 : 1;
     if (!std::isfinite(along[0]) || !std::isfinite(along[1])) axis = size[0] >= size[1] ? 0 : 1;
     std::vector<FacePart> out;
     for (const int a : {axis, 1 - axis}) {
-        const double at = part.box.side(a).middle();
+        const double at = cut(surface_->kinks(a), part.box.side(a), by_bend && 2 * kinks[a] > along[a]);
         if (!(part.box.lo[a] < at && at < part.box.hi[a])) continue;
         for (int half = 0; half < 2; ++half) {
             Box<2> box = part.box;
             (half == 0 ? box.hi : box.lo)[a] = at;
-            if (auto p = part_over(box, part.near, !part.crossing)) out.push_back(std::move(*p));
+            if (auto p = part_over(box, part.near, !part.crossing)) {
+                p->halvings = part.halvings + 1;
+                out.push_back(std::move(*p));
+            }
         }
         break;
     }

@@ -4,6 +4,8 @@
 
 #include <freiform/mesh/triangle_tree.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace freiform {
@@ -20,10 +22,17 @@ struct FacePart {
     double error = 0;       // bound, rounding included; may be infinite
     double hull_error = 0;  // likewise, of how far it leaves the hull of the corners
     double rounding = 0;    // bound: of the corners
-    double size = 0;        // the longest side of the box, in space: a bound
+    double size = 0;        // bound: of the longest side in space, and how far a place is from some corner
     bool crossing = false;  // the boundary may run through it; else it is wholly inside the face
     std::vector<int> near;  // chords of the region that meet it
+    int halvings = 0;       // that made it of the whole
     double key = 0;         // for the caller
+
+    // Bound: of how far it leaves the hull of the corners.
+    double beside_corners() const { return std::min(hull_error, size + rounding); }
+    // Whether it had better be cut where it bends than where it is long. Of what the boundary runs through,
+    // by turns: however flat, it may have its nearest place outside of the face until it is short.
+    bool may_be_long() const { return !crossing || halvings % 2 == 0; }
 
     std::array<Triangle3, 2> triangles() const {
         return {{{corner[0], corner[1], corner[3]}, {corner[0], corner[3], corner[2]}}};

@@ -42,6 +42,16 @@ void FaceRim::bound(const Face& face, const DerivativeQuery<2, 3>& surface) {
     const double length = times(d(1, 0), side[0]) + times(d(0, 1), side[1]);
     error = (flat < length / 2 ? flat : length / 2) + times(d(1, 0), bend[0]) + times(d(0, 1), bend[1]) +
             2 * value_error_bound(face.surface, box);
+    if (surface.base() != nullptr) {  // an offset is no farther from its base than it says
+        const double beside = 2 * std::abs(std::get<OffsetSurface>(face.surface).distance);
+        if (!(error <= beside)) {
+            const auto b = (*surface.base())(box, 1);
+            const double by_base = (times(b(1, 0), side[0]) + times(b(0, 1), side[1])) / 2 +
+                                   times(b(1, 0), bend[0]) + times(b(0, 1), bend[1]) + beside +
+                                   2 * value_error_bound(face.surface, box);
+            if (!(error <= by_base)) error = by_base;
+        }
+    }
     error *= 1 + 1e-12;
     if (std::isnan(error)) error = std::numeric_limits<double>::infinity();
 }

@@ -66,7 +66,7 @@ private:
         for (const Vec<3>& x : p.corner) most = std::max(most, norm(x - q_));
         const Vec<2> middle = 0.5 * (p.box.lo + p.box.hi);
         if (all_.faces[std::size_t(face)].holds(p, middle)) take(face, -1, middle);
-        push(face, index, false, most + p.hull_error, bound);
+        push(face, index, false, most + p.beside_corners(), bound);
     }
     void push_rim(int index, double bound) {
         const FaceRim& r = opened_.rim(index);

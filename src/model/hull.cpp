@@ -37,6 +37,11 @@ namespace {
 constexpr double kOfTolerance = 1.0 / 8;  // that parts may leave their points by, at first
 constexpr int kMostShares = 8;            // halvings of that, where H is thin and grows by more
 
+// How far places may be apart whose parameters are, with bounds of first derivatives, which may be infinite.
+double moved(const DerivativeBounds<2>& d, const Vec<2>& by) {
+    return (by[0] > 0 ? d(1, 0) * by[0] : 0) + (by[1] > 0 ? d(0, 1) * by[1] : 0);
+}
+
 // The segment within the box, as its ends; nothing where it is outside.
 std::optional<std::array<Vec<2>, 2>> clipped(const std::array<Vec<2>, 2>& s, const Box<2>& box) {
     double lo = 0, hi = 1;
@@ -98,8 +103,18 @@ private:
             const Vec<2> size = part.box.hi - part.box.lo;
             Vec<2> sag{};
             own.corners.clear();
-            for (const Vec<2>& uv : corners_of(f, part, sag)) own.corners.push_back(f.value(uv));
-            off += bent(1, 0) * sag[0] + bent(0, 1) * sag[1];
+            const auto corners = corners_of(f, part, sag);
+            for (const Vec<2>& uv : corners) own.corners.push_back(f.value(uv));
+            double beside = moved(bent, sag);
+            if (f.surface().base() != nullptr) {  // there it may be much less than over all of the part
+                beside = 0;
+                for (const Vec<2>& uv : corners)
+                    beside = std::max(beside, moved(f.surface()({Interval{uv[0] - sag[0], uv[0] + sag[0]},
+                                                                 Interval{uv[1] - sag[1], uv[1] + sag[1]}},
+                                                                1),
+                                                    sag));
+            }
+            off += beside <= 2 * part.size ? beside : 2 * part.size;
             own.leaves_by = (bent(2, 0) * size[0] * size[0] + 2 * bent(1, 1) * size[0] * size[1] +
                              bent(0, 2) * size[1] * size[1]) /
                                 8 +

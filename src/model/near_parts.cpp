@@ -12,6 +12,7 @@ namespace {
 constexpr double kBoxRoundings = 64 * 0x1p-53;
 constexpr double kFlatEnough = 0.02;        // of the size of the model: how coarse prepared parts may be
 constexpr std::size_t kPreparedParts = 48;  // of a face
+constexpr std::size_t kPartsToKnow = 4096;  // likewise, where nothing is known of the coarser ones
 constexpr double kRegionSag = 1e-5;  // of the size of the model: how well boundaries of regions are known
 
 Box<3> fattened(std::span<const Vec<3>> points, double by) {
@@ -27,9 +28,10 @@ void detail::ModelParts::add_parts(int face) {
     const FaceParts& f = faces[std::size_t(face)];
     std::vector<FacePart> own;
     if (auto whole = f.whole()) own.push_back(std::move(*whole));
-    while (!own.empty() && own.size() < kPreparedParts) {
+    while (!own.empty()) {
         const auto worst = std::ranges::max_element(own, {}, &FacePart::error);
         if (!(worst->error > kFlatEnough * size)) break;
+        if (own.size() >= (std::isfinite(worst->beside_corners()) ? kPreparedParts : kPartsToKnow)) break;
         const FacePart part = std::move(*worst);
         *worst = std::move(own.back());
         own.pop_back();
@@ -37,7 +39,7 @@ void detail::ModelParts::add_parts(int face) {
         for (FacePart& half : halves) own.push_back(std::move(half));
     }
     for (FacePart& p : own) {
-        leaves.push_back({face, int(parts.size()), -1, fattened(p.corner, p.error)});
+        leaves.push_back({face, int(parts.size()), -1, fattened(p.corner, p.beside_corners())});
         parts.push_back(std::move(p));
     }
 }

@@ -64,7 +64,8 @@ public:
             can = can || (box.lo[k] < m && m < box.hi[k]);
         }
         if (!can) return false;
-        for (FacePart& half : all_.faces[std::size_t(face)].halves(FacePart(part(index)), true)) {
+        const FacePart whole = part(index);
+        for (FacePart& half : all_.faces[std::size_t(face)].halves(whole, whole.may_be_long())) {
             parts_.push_back(std::move(half));
             f(int(parts_.size()) - 1);
         }

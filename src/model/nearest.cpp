@@ -180,25 +180,36 @@ private:
         return true;
     }
 
+    // A step of Gauss and Newton's from the middle of the box. Where it leaves the box along one parameter,
+    // the other one is that of the nearest place on that side.
+    Vec<2> stepped(const SurfaceGeometry& surface, const Box<2>& box) const {
+        const Vec<2> middle = 0.5 * (box.lo + box.hi);
+        const auto j = jet<1>(surface, middle.c);
+        const Vec<3> r = q_ - j.value(), along[2] = {j(1, 0), j(0, 1)};
+        const double a = dot(along[0], along[0]), b = dot(along[0], along[1]), c = dot(along[1], along[1]),
+                     det = a * c - b * b, x = dot(r, along[0]), y = dot(r, along[1]);
+        Vec<2> uv = middle;
+        if (det > 0) uv = middle + Vec<2>{{(c * x - b * y) / det, (a * y - b * x) / det}};
+        const auto into_box = [&](int k) {
+            return std::isfinite(uv[k]) ? std::clamp(uv[k], box.lo[k], box.hi[k]) : middle[k];
+        };
+        for (int k = 0; k < 2; ++k) {
+            const double held = into_box(k), square = k == 0 ? c : a;
+            if (held != uv[k] && square > 0)
+                uv[1 - k] = middle[1 - k] + dot(r - (held - middle[k]) * along[k], along[1 - k]) / square;
+            uv[k] = held;
+        }
+        return {{into_box(0), into_box(1)}};
+    }
+
     void open_part(const detail::ModelParts& all, const Item& item) {
         const FacePart part = std::move(parts_[std::size_t(item.index)]);
         const FaceParts& parts = all.faces[std::size_t(item.face)];
         --parts_left_;
         if (!all.model.faces[std::size_t(item.face)].loops.empty() && !parts.may_have_foot(part, q_)) return;
-        {  // a step of Gauss and Newton's from the middle, which stays in the box
-            const Vec<2> middle = 0.5 * (part.box.lo + part.box.hi);
-            const auto j = jet<1>(all.model.faces[std::size_t(item.face)].surface, middle.c);
-            const Vec<3> r = q_ - j.value(), du = j(1, 0), dv = j(0, 1);
-            const double a = dot(du, du), b = dot(du, dv), c = dot(dv, dv), det = a * c - b * b;
-            Vec<2> uv = middle;
-            if (det > 0) {
-                const double x = dot(r, du), y = dot(r, dv);
-                uv = middle + Vec<2>{{(c * x - b * y) / det, (a * y - b * x) / det}};
-            }
-            for (int k = 0; k < 2; ++k)
-                uv[k] = std::isfinite(uv[k]) ? std::clamp(uv[k], part.box.lo[k], part.box.hi[k]) : middle[k];
-            if (parts.holds(part, uv)) take(all, item.face, uv);
-        }
+        if (const Vec<2> uv = stepped(all.model.faces[std::size_t(item.face)].surface, part.box);
+            parts.holds(part, uv))
+            take(all, item.face, uv);
         bool can = false;
         for (int k = 0; k < 2; ++k) {
             const double m = part.box.side(k).middle();
@@ -208,7 +219,7 @@ private:
             proven_ = std::min(proven_, item.lower);
             return;
         }
-        for (FacePart& half : parts.halves(part, part.error > accuracy_ / 8))
+        for (FacePart& half : parts.halves(part, part.hull_error > accuracy_ / 8 && part.may_be_long()))
             push_part(item.face, std::move(half), item.lower);
     }
 

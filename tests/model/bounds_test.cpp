@@ -5,6 +5,7 @@
 #include <freiform/model/rescale.hpp>
 
 #include <gtest/gtest.h>
+#include <support/polygon_face.hpp>
 #include <support/refusal.hpp>
 #include <support/solids.hpp>
 
@@ -44,6 +45,28 @@ TEST(ModelBounds, end_where_faces_are_trimmed) {
     EXPECT_GE(b.box.hi[2], std::sin(top) - 1e-14);
     EXPECT_NEAR(b.box.lo[2], -1, 1e-6);
     EXPECT_NEAR(b.box.hi[0], 1, 1e-6);
+}
+
+// A ridge that is highest all around, and one whose highest places the boundary leaves on both sides.
+TEST(ModelBounds, of_ridges_are_found) {
+    const Curve<Vec<3>> profile = must(Curve<Vec<3>>::make(
+        {*BSplineBasis::make(1, {0, 0, 0.7, 1.9, 2.5, 2.5})},
+        Net<1, Vec<3>>({4}, {{{1, 0.2, 0}}, {{2, -0.1, 1}}, {{2.6, 0, 0.9}}, {{3, 0, 0}}})));
+    const SurfaceGeometry turned = Revolution{profile, {}, {{0, 0, 1}}},
+                          tilted = Revolution{profile, {}, unit(Vec<3>{{0.3, -0.2, 1}})};
+    for (const SurfaceGeometry* s : {&turned, &tilted}) {
+        const std::vector<Vec<2>> corners{{{0.3, 0}}, {{2, 0.4}}, {{5, 0}}, {{4.6, 2.5}}, {{0.9, 2.1}}};
+        const auto b = must(tight_box(polygon_face(*s, corners), 1e-6));
+        EXPECT_LE(b.slack, 1e-6);
+        Box<3> seen;
+        for (const Vec<3>& x : places_on(*s, corners, 300)) seen.add(x);
+        for (int k = 0; k < 3; ++k) {
+            EXPECT_LE(b.box.lo[k], seen.lo[k]);
+            EXPECT_GE(b.box.hi[k], seen.hi[k]);
+            EXPECT_NEAR(b.box.lo[k], seen.lo[k], 2e-2);
+            EXPECT_NEAR(b.box.hi[k], seen.hi[k], 2e-2);
+        }
+    }
 }
 
 TEST(ModelBounds, a_spent_budget_is_said_and_nonsense_is_refused) {

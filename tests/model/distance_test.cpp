@@ -1,9 +1,12 @@
 // The least distance of two solids: what is known of spheres, tori and cones, and many points.
+#include <freiform/model/bounds.hpp>
 #include <freiform/model/distance.hpp>
 
 #include <gtest/gtest.h>
+#include <support/polygon_face.hpp>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
+#include <support/shapes.hpp>
 #include <support/solids.hpp>
 
 namespace freiform::test {
@@ -55,6 +58,28 @@ TEST(ModelDistance, of_facing_poles_is_known_as_well_as_elsewhere) {
     EXPECT_NEAR(d.distance, 2, 1e-3);
     EXPECT_LE(d.lower_bound, 2);
     EXPECT_GE(d.lower_bound, 2 - 5e-4);
+}
+
+// Nothing is known of the normals of an offset over large parts of it: it had no box then, and no distance.
+TEST(ModelDistance, of_offsets_is_found_where_their_normals_vary) {
+    std::mt19937 random(5);
+    for (const double height : {0.5, 2.0}) {
+        const auto base = std::make_shared<const SurfaceGeometry>(landscape(random, 3, 6, height));
+        const SurfaceGeometry offset = OffsetSurface{base, 0.02};
+        const std::vector<Vec<2>> corners{{{0, 0}}, {{3, 0}}, {{3, 3}}, {{0, 3}}};
+        const auto face = solid_query(polygon_face(offset, corners));
+        const Vec<3> centre{{3, 2, 6}};
+        double least = kInfinity;
+        for (const Vec<3>& x : places_on(offset, corners, 200)) least = std::min(least, norm(x - centre) - 1);
+        const auto d = must(least_distance(face, solid_query(sphere(centre, 1)), {.accuracy = 1e-4}));
+        EXPECT_LE(d.distance, least + 1e-4) << height;
+        EXPECT_LE(d.lower_bound, least) << height;
+        EXPECT_GE(d.lower_bound, d.distance - 2e-4) << height;
+        EXPECT_NEAR(norm(d.at[0].point - d.at[1].point), d.distance, 1e-12);
+        EXPECT_NEAR(norm(jet<0>(offset, d.at[0].uv.c).value() - d.at[0].point), 0, 1e-12);
+        const auto box = must(tight_box(face.model(), 1e-3));
+        EXPECT_LE(box.slack, 1e-3) << height;
+    }
 }
 
 TEST(ModelDistance, a_spent_budget_leaves_a_bound_that_holds_and_nonsense_is_refused) {

@@ -2,6 +2,7 @@
 #include <freiform/model/nearest.hpp>
 
 #include <gtest/gtest.h>
+#include <support/polygon_face.hpp>
 #include <support/random.hpp>
 #include <support/sanitizer.hpp>
 #include <support/solids.hpp>
@@ -173,6 +174,50 @@ TEST(ModelNearest, follows_a_round_boundary) {
         const auto n = must(query.nearest(q));
         expect_proven(n, std::hypot(off, q[2]), 2e-8);
         EXPECT_EQ(n.edge >= 0, off > 0);
+    }
+}
+
+// Parts that the boundary runs through were cut where they bend, never where they are long; a step of
+// Newton's that left a narrow part took the other parameter along; kinks were halved towards, and took two
+// million parts.
+TEST(ModelNearest, is_found_on_ruled_and_folded_surfaces) {
+    const auto polygon = [](const std::vector<Vec<3>>& p) -> CurveGeometry<3> {
+        std::vector<double> knots{0};
+        for (std::size_t i = 0; i < p.size(); ++i) knots.push_back(double(i));
+        knots.push_back(double(p.size() - 1));
+        const int n = int(p.size());
+        return must(Curve<Vec<3>>::make({*BSplineBasis::make(1, knots)}, Net<1, Vec<3>>({n}, p)));
+    };
+    const Vec<3> z{{0, 0, 1}};
+    struct Case {
+        SurfaceGeometry surface;
+        std::vector<Vec<2>> corners;
+        Vec<3> q;
+    };
+    const Case cases[] = {
+        // Rulings, and the foot of the whole surface outside of the face.
+        {Revolution{Line<3>{{{0.326, -0.546, 0}}, {{0.385, 0, 0.702}}}, {}, z},
+         {{{3.632, 1.139}}, {{3.624, 1.578}}, {{3.379, 1.317}}, {{3.469, 0.682}}, {{3.745, 0.822}}},
+         {{-0.956, -0.1045, 1.001}}},
+        {Extrusion{Conic<3>{ConicKind::ellipse, {}, {{1, 0, 0}}, {{0, 0, 1}}}, {{0.1, 1, 0.1}}},
+         {{{-1, 0}}, {{0.5, 0.6}}, {{2, 0}}, {{1.6, 1.5}}, {{0.2, 1}}},
+         {{0.9, 0.2, 0.9}}},
+        // Rulings askew to the lines across them.
+        {Revolution{Line<3>{{{1.209, -0.481, 0}}, {{-0.37, 0, 0.802}}}, {}, z},
+         {{{1.058, 0}}, {{2.946, 0}}, {{2.946, 3.515}}, {{1.058, 3.515}}},
+         {{-0.6, 0.2, 1.9}}},
+        // A ridge.
+        {Revolution{polygon({{{0.88, 0.26, 0.71}}, {{1.57, 0.1, 1.04}}, {{2.3, -0.09, 1.72}}}), {}, z},
+         {{{1.6, 0}}, {{6, 0}}, {{6, 2}}, {{1.6, 2}}},
+         {{-1.8, -0.7, 0.6}}}};
+    for (const Case& c : cases) {
+        const auto query = query_of(polygon_face(c.surface, c.corners));
+        double least = kInfinity;
+        for (const Vec<3>& x : places_on(c.surface, c.corners, 100)) least = std::min(least, norm(x - c.q));
+        const auto n = must(query.nearest(c.q, {.max_parts = 2000}));
+        EXPECT_LE(n.distance, least);
+        EXPECT_GE(n.lower_bound, n.distance - 1e-8);
+        EXPECT_GE(n.distance, least - 1e-2);
     }
 }
 

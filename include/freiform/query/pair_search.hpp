@@ -32,6 +32,11 @@ double box_gap(const PairPart<D>& a, const PairPart<D>& b) {
     }
     return std::sqrt(s) * (1 - 8 * kUnitRoundoff);
 }
+// How far apart places of the part may be: what nothing is known of is the largest.
+template <int D>
+double extent(const PairPart<D>& a) {
+    return a.box.diagonal() + a.slack;
+}
 // `A`, `B`: parts(), hull(i), split(i): makes the children, false where there can be none.
 // `look`(a, b): the points x, y of the two parts that are thought to be nearest, after they were compared
 // with the best; returns their difference. `best`: the least distance so far.
@@ -74,8 +79,7 @@ double least_of_pairs(A& a, B& b, double accuracy, double rounding, int max_pair
         heap.pop_back();
         if (item.lower >= best - accuracy || max_pairs-- <= 0) return item.lower;
         const Vec<D> direction = look(item.a, item.b);
-        const bool larger =
-            a.parts()[std::size_t(item.a)].box.diagonal() >= b.parts()[std::size_t(item.b)].box.diagonal();
+        const bool larger = extent(a.parts()[std::size_t(item.a)]) >= extent(b.parts()[std::size_t(item.b)]);
         const bool first = larger ? a.split(item.a) : !b.split(item.b) && a.split(item.a);
         if (!first && !b.split(item.b)) return item.lower;
         const PairPart<D> opened = first ? a.parts()[std::size_t(item.a)] : b.parts()[std::size_t(item.b)];

@@ -135,6 +135,8 @@ public:
 
     // Of an extrusion or revolution; else none.
     const DerivativeQuery<1, 3>* profile() const { return profile_.get(); }
+    // Of an offset: of what it is an offset of. Else none.
+    const DerivativeQuery<2, 3>* base() const { return base_.get(); }
 
 private:
     friend PlaneCurveBounds coordinate_bounds(const DerivativeQuery<1, 2>&, Interval);
