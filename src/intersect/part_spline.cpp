@@ -26,13 +26,14 @@ double ParameterArcs::at(double s) const {
     if (s <= 0) return on_.lo;
     if (s >= 1) return on_.hi;
     const auto [arc, v] = place(s);
-    return clamped(on_.lo + on_.length() * ((arc + 0.5) / arcs_) + 2 * std::atan(k_ * v), on_);
+    const double beside = 2 * (hyperbolic_ ? std::atanh(k_ * v) : std::atan(k_ * v));
+    return clamped(on_.lo + on_.length() * ((arc + 0.5) / arcs_) + beside, on_);
 }
 
 double ParameterArcs::slope(double s) const {
     if (is_identity()) return 1;
     const double v = place(s).v;
-    return 4 * k_ * arcs_ / (1 + k_ * k_ * v * v);
+    return 4 * k_ * arcs_ / (1 + (hyperbolic_ ? -1 : 1) * k_ * k_ * v * v);
 }
 
 Interval ParameterArcs::over(const Interval& s) const {
@@ -65,6 +66,30 @@ Result<Curve<Hom<3>>> restricted(Curve<Hom<3>> c, Interval on) {
     return restrict_to(c, 0, on);
 }
 
+// Pieces of equal length, none longer than 2: their weights are equal, and so are they where two meet.
+Result<PartProfile> hyperbola(const Conic<3>& conic, Interval on) {
+    const int n = std::max(1, int(std::ceil(std::min(on.length() / 2, 1e3))));
+    std::vector<Hom<3>> net;
+    std::vector<double> knots{0, 0, 0};
+    double bound = 0;
+    for (int i = 0; i < n; ++i) {
+        const auto arc = conic_arc(conic, {i == 0 ? on.lo : on.lo + on.length() * i / n,
+                                           i + 1 == n ? on.hi : on.lo + on.length() * (i + 1) / n});
+        if (!arc) return std::unexpected(arc.error());
+        bound = std::max(bound, arc->bound);
+        for (std::size_t k = i == 0 ? 0 : 1; k < 3; ++k) net.push_back(arc->curve.net().flat()[k]);
+        for (int k = 0; k < (i + 1 == n ? 3 : 2); ++k) knots.push_back(double(i + 1) / n);
+    }
+    const auto basis = BSplineBasis::make(2, std::move(knots));
+    if (!basis) return std::unexpected(basis.error());
+    auto curve = Curve<Hom<3>>::make({*basis}, Net<1, Hom<3>>({2 * n + 1}, std::move(net)));
+    if (!curve) return std::unexpected(curve.error());
+    // Ends of pieces are rounded, and angles by what the parameters are.
+    const double off = 64 * kUnitRoundoff * (size_of_net(*curve) + norm(conic.centre)) *
+                       (1 + std::max(std::abs(on.lo), std::abs(on.hi)));
+    return PartProfile{std::move(*curve), ParameterArcs(on, n, true), bound + off};
+}
+
 Result<PartProfile> part_profile(const CurveGeometry<3>& profile, Interval on) {
     if (const auto* line = std::get_if<Line<3>>(&profile)) {
         const auto basis = BSplineBasis::bezier(1, on);
@@ -78,10 +103,16 @@ Result<PartProfile> part_profile(const CurveGeometry<3>& profile, Interval on) {
         return PartProfile{std::move(*curve), {}, 6 * kUnitRoundoff * size};
     }
     if (const auto* conic = std::get_if<Conic<3>>(&profile)) {
-        if (conic->kind != ConicKind::ellipse)
-            return refuse(RefusalKind::unsupported, "surface",
-                          "is made from a parabola or hyperbola: no spline with its parameter is known here");
+        if (conic->kind == ConicKind::hyperbola) return hyperbola(*conic, on);
         Conic<3> from = *conic;
+        if (conic->kind == ConicKind::parabola) {
+            auto arc = conic_arc(from, on);
+            const auto basis = BSplineBasis::bezier(2, on);
+            if (!arc || !basis) return std::unexpected(arc ? basis.error() : arc.error());
+            auto curve = Curve<Hom<3>>::make({*basis}, arc->curve.net());
+            if (!curve) return std::unexpected(curve.error());
+            return PartProfile{std::move(*curve), {}, arc->bound + 16 * kUnitRoundoff * size_of_net(*curve)};
+        }
         const bool turn = is_full_turn(on);
         if (turn && on.lo != 0) {
             from.x = std::cos(on.lo) * conic->x + std::sin(on.lo) * conic->y;

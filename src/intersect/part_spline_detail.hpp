@@ -1,9 +1,10 @@
 // The surfaces of models, over a box of their parameters, as rational splines of the same shape.
 //
 // Notation. x: a parameter of the surface; s: the one of the spline, on [0, 1] where they differ. Circles and
-// ellipses become quadratic arcs of equal angle with weights 1, cos, 1; over each of them
+// ellipses become quadratic arcs of equal angle with weights 1, cos h, 1; over each of them
 //     x = m + 2 atan(K (2 tau - 1)),   K = tan(h / 2),
-// m the middle angle, h half the angle, tau in [0, 1] the place between its knots.
+// m the middle angle, h half the angle, tau in [0, 1] the place between its knots. Hyperbolas likewise, with
+// cosh, atanh and tanh. Parabolas are quadratic in x.
 #pragma once
 #include <freiform/core/result.hpp>
 #include <freiform/spline/geometry.hpp>
@@ -13,7 +14,11 @@ namespace freiform::detail {
 class ParameterArcs {
 public:
     ParameterArcs() = default;  // x = s
-    ParameterArcs(Interval on, int arcs) : on_(on), arcs_(arcs), k_(std::tan(on.length() / arcs / 4)) {}
+    ParameterArcs(Interval on, int arcs, bool hyperbolic = false)
+        : on_(on), arcs_(arcs), hyperbolic_(hyperbolic) {
+        const double quarter = on.length() / arcs / 4;
+        k_ = hyperbolic ? std::tanh(quarter) : std::tan(quarter);
+    }
 
     bool is_identity() const { return arcs_ == 0; }
     double at(double s) const;
@@ -29,6 +34,7 @@ private:
     Place place(double s) const;
     Interval on_{};
     int arcs_ = 0;
+    bool hyperbolic_ = false;
     double k_ = 0;
 };
 
@@ -38,7 +44,7 @@ struct PartSpline {
     double bound = 0;  // distance of every point from the surface at the same place
 };
 
-// Refuses (unsupported) offsets, and extrusions and revolutions of hyperbolas; boxes that are not bounded.
+// Refuses (unsupported) offsets; boxes that are not bounded.
 Result<PartSpline> part_spline(const SurfaceGeometry& surface, const std::array<Interval, 2>& on);
 
 }  // namespace freiform::detail

@@ -21,9 +21,9 @@ constexpr double kTurnSlack = 0x1p-10;
 enum class AxisKind { straight, angle, latitude, given };
 
 AxisKind kind_of_profile(const CurveGeometry<3>& c) {
-    return std::holds_alternative<Line<3>>(c)    ? AxisKind::straight
-           : std::holds_alternative<Conic<3>>(c) ? AxisKind::angle
-                                                 : AxisKind::given;
+    if (const auto* conic = std::get_if<Conic<3>>(&c))
+        return conic->kind == ConicKind::ellipse ? AxisKind::angle : AxisKind::straight;
+    return std::holds_alternative<Line<3>>(c) ? AxisKind::straight : AxisKind::given;
 }
 std::array<AxisKind, 2> axes_of(const SurfaceGeometry& s) {
     if (const auto* e = std::get_if<Extrusion>(&s)) return {kind_of_profile(e->profile), AxisKind::straight};

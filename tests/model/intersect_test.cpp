@@ -1,4 +1,5 @@
 
+#include "polygon_face.hpp"
 #include "random.hpp"
 #include "refusal.hpp"
 #include "solids.hpp"
@@ -7,6 +8,7 @@
 #include <freiform/model/rescale.hpp>
 #include <freiform/region/boolean.hpp>
 
+#include <functional>
 #include <gtest/gtest.h>
 
 namespace freiform::test {
@@ -28,7 +30,8 @@ double arc_length(const ModelIntersection& m) {
 // Every branch is near both surfaces at its parameters, as its bounds say.
 ModelIntersection faces_met(const Model& a, const Model& b, double tolerance) {
     const auto found = must(intersect(a, b, SurfaceIntersectOptions{.tolerance = tolerance}));
-    EXPECT_TRUE(found.open.empty());
+    EXPECT_TRUE(found.open.empty())
+        << (found.open.empty() || !found.open[0].reason ? "" : found.open[0].reason->message);
     EXPECT_LT(found.search_bound, 1e-2 * tolerance);
     for (const FaceBranch& f : found.branches) {
         EXPECT_LE(f.bound(), tolerance);
@@ -201,6 +204,56 @@ TEST(ModelIntersect, refuses_tolerances_that_are_no_lengths_and_leaves_offsets_o
     ASSERT_EQ(found.open.size(), 1u);
     EXPECT_EQ(found.open[0].reason->kind, RefusalKind::unsupported);
     EXPECT_EQ(found.open[0].faces, (std::array{-1, 0}));
+}
+
+// Of hyperbolas and parabolas, over several of their pieces.
+TEST(ModelIntersect, faces_of_open_conics_meet_planes_where_equations_say) {
+    const Conic<3> branch{ConicKind::hyperbola, {{0.5, 0, 0}}, {{1, 0, 0}}, {{0, 0, 0.5}}},
+        bow{ConicKind::parabola, {{0, 0, -1}}, {{0, 0, 0.5}}, {{1, 0, 0}}};
+    const Vec<3> n = unit(Vec<3>{{0.2, 0.1, 1}});
+    const double at = 0.3;
+    const auto plane = [&](double beside) {
+        const Vec<3> u = unit(cross(n, Vec<3>{{0, 1, 0}}));
+        const SurfaceGeometry s = Extrusion{Line<3>{at * n, u}, cross(n, u), SurfaceKind::plane};
+        return polygon_face(s, Box<2>{{{-beside, -beside}}, {{beside, beside}}});
+    };
+    struct Case {
+        SurfaceGeometry surface;
+        Box<2> on;
+        std::function<double(const Vec<3>&)> off;
+        std::size_t branches;
+    };
+    const auto about = [](const Vec<3>& x) { return std::hypot(x[0], x[1]); };
+    const Case cases[] = {{Revolution{branch, {}, {{0, 0, 1}}},
+                           {{{0.2, -3}}, {{6, 2.5}}},
+                           [&](const Vec<3>& x) { return about(x) - 0.5 - std::sqrt(1 + 4 * x[2] * x[2]); },
+                           1},
+                          {Revolution{bow, {}, {{0, 0, 1}}},
+                           {{{0.1, 0.2}}, {{6.1, 3}}},
+                           [&](const Vec<3>& x) { return x[2] + 1 - about(x) * about(x) / 2; },
+                           1},
+                          {Extrusion{bow, {{0, 1, 0}}},
+                           {{{-3, -1}}, {{3, 1}}},
+                           [](const Vec<3>& x) { return x[2] + 1 - x[0] * x[0] / 2; },
+                           2},
+                          {Extrusion{branch, {{0, 1, 0}}},
+                           {{{-4, -1}}, {{3.5, 1}}},
+                           [](const Vec<3>& x) { return x[0] - 0.5 - std::sqrt(1 + 4 * x[2] * x[2]); },
+                           1}};
+    for (const Case& c : cases) {
+        const auto found = faces_met(polygon_face(c.surface, c.on), plane(20), 1e-6);
+        EXPECT_TRUE(found.nodes.empty());
+        ASSERT_EQ(found.branches.size(), c.branches);
+        for (const FaceBranch& b : found.branches) {
+            const Interval on = b.curve.domain()[0];
+            for (int i = 0; i <= 100; ++i) {
+                const double t = i == 100 ? on.hi : on.lo + on.length() * i / 100;
+                const Vec<3> x = jet<0>(CurveGeometry<3>(b.curve), t).value();
+                EXPECT_NEAR(c.off(x), 0, 2e-5);
+                EXPECT_NEAR(dot(n, x) - at, 0, 1e-6);
+            }
+        }
+    }
 }
 
 }  // namespace

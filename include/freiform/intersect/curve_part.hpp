@@ -8,7 +8,7 @@ namespace freiform {
 // Const and safe to share between threads.
 class IntersectPart {
 public:
-    // Refuses (unsupported) offsets and what is made from hyperbolas and parabolas; boxes without bounds.
+    // Refuses (unsupported) offsets; boxes without bounds.
     static Result<IntersectPart> make(const SurfacePart& part);
 
     // As for splines (curve_surface.hpp); contacts are ordered by t. What is proven is so for a rational

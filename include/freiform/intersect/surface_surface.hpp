@@ -110,8 +110,8 @@ struct PartIntersection : SurfaceIntersection {
 };
 
 // The same for surfaces of models, in their own parameters; bounds of branches are those of the surfaces
-// themselves. Refuses (unsupported) offsets and what is made from hyperbolas and parabolas; (invalid) boxes
-// that are not bounded, and tolerances that are not positive.
+// themselves. Refuses (unsupported) offsets; (invalid) boxes that are not bounded, and tolerances that are
+// not positive.
 Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
                                    const SurfaceIntersectOptions& options);
 
