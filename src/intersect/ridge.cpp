@@ -9,6 +9,7 @@ namespace freiform::detail {
 
 namespace {
 
+constexpr double kShortestPiece = 0x1p-40;                  // of the longest
 constexpr int kMostRidgeSteps = 2000, kShortestRidge = 30;  // halvings of the first step
 constexpr double kRidgeNoise = 0x1p-42;                     // of a domain
 constexpr double kValley = 64;  // it bends across by so many times what it does along
@@ -172,6 +173,8 @@ std::optional<RidgeTracer::Valley> RidgeTracer::ahead(const Valley& from, double
 std::optional<std::array<double, 2>> RidgeTracer::prove(const Valley& from, const Valley& to,
                                                         Piece& out) const {
     out.length = arc_interval(from.point, to.point, from.tangent, to.tangent, 0, tolerance_);
+    // Where a valley ends its bottom may stay where it is; and knots of a branch must be told apart.
+    if (!(out.length > kShortestPiece * longest_)) return std::nullopt;
     const double h = out.length / 3;
     out.space = {from.point, from.point + h * from.tangent, to.point - h * to.tangent, to.point};
     std::array<double, 2> bound{};

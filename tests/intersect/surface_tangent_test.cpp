@@ -122,5 +122,36 @@ TEST(SurfaceTangents, reversed_parameters_and_powers_of_two_change_nothing_else)
     }
 }
 
+// Where a fan touches a plane the bottom of the valley stayed at the same place for two thousand steps, and a
+// curve with all of them as knots is none: the program ended.
+TEST(SurfaceTangents, valleys_that_end_inside_have_no_pieces_without_length) {
+    const auto p = *BSplineBasis::bezier(6), one = *BSplineBasis::bezier(4),
+               q = *BSplineBasis::make(
+                   6, {0, 0, 0, 0, 0, 0, 0, .05, .05, .05, .05, .05, .05, 1, 1, 1, 1, 1, 1, 1}),
+               two = *BSplineBasis::make(4, {0, 0, 0, 0, 0, .85, 1, 1, 1, 1, 1});
+    std::vector<Hom<3>> plane, fan;
+    for (int i = 0; i < 7; ++i)
+        for (int k = 0; k < 13; ++k) plane.push_back({{double(i), double(k), 0, 1}});
+    constexpr double kAside[5][5][3] = {{{1, -1, -1}, {-1, 1, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 0, -2}},
+                                        {{0, 0, 2}, {-1, -1, 1}, {-1, 0, -2}, {-1, 0, -2}, {-1, 1, 1}},
+                                        {{0, 0, -1}, {0, 0, 0}, {-1, -1, 0}, {0, 0, 0}, {0, 1, 1}},
+                                        {{-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {-1, 0, 1}, {0, 0, 0}},
+                                        {{1, 0, -1}, {0, 1, -1}, {-1, 0, 1}, {0, 0, 1}, {0, 1, 1}}};
+    for (int i = 0; i < 5; ++i) {
+        fan.push_back({{0, 0, 0, 1}});
+        for (int k = 0; k < 5; ++k) {
+            const double* d = kAside[i][k];
+            fan.push_back({{i + 0.01 * d[0], k + 1 + 0.01 * d[1], 0.01 * d[2], 1}});
+        }
+    }
+    const auto a = *Surface<Hom<3>>::make({p, q}, Net<2, Hom<3>>({7, 13}, plane)),
+               b = *Surface<Hom<3>>::make({one, two}, Net<2, Hom<3>>({5, 6}, fan));
+    for (const double tolerance : {1e-4, 3e-5, 1.3e-5}) {
+        const auto found = must(intersect(a, b, SurfaceIntersectOptions{.tolerance = tolerance}));
+        EXPECT_FALSE(found.branches.empty());
+        for (const SurfaceBranch& s : found.branches) EXPECT_LE(s.bound(), tolerance);
+    }
+}
+
 }  // namespace
 }  // namespace freiform::test

@@ -30,8 +30,9 @@ double arc_length(const ModelIntersection& m) {
 // Every branch is near both surfaces at its parameters, as its bounds say.
 ModelIntersection faces_met(const Model& a, const Model& b, double tolerance) {
     const auto found = must(intersect(a, b, SurfaceIntersectOptions{.tolerance = tolerance}));
-    EXPECT_TRUE(found.open.empty())
-        << (found.open.empty() || !found.open[0].reason ? "" : found.open[0].reason->message);
+    EXPECT_TRUE(found.open.empty()) << (found.open.empty() || !found.open[0].reason
+                                            ? ""
+                                            : found.open[0].reason->message);
     EXPECT_LT(found.search_bound, 1e-2 * tolerance);
     for (const FaceBranch& f : found.branches) {
         EXPECT_LE(f.bound(), tolerance);
