@@ -66,28 +66,31 @@ Result<Curve<Hom<3>>> restricted(Curve<Hom<3>> c, Interval on) {
     return restrict_to(c, 0, on);
 }
 
-// Pieces of equal length, none longer than 2: their weights are equal, and so are they where two meet.
-Result<PartProfile> hyperbola(const Conic<3>& conic, Interval on) {
-    const int n = std::max(1, int(std::ceil(std::min(on.length() / 2, 1e3))));
+// Of hyperbolas pieces of equal length, none longer than 2: their weights are equal, and so are they where
+// two meet.
+Result<PartProfile> open_conic(const Conic<3>& conic, Interval on) {
+    const bool split = conic.kind == ConicKind::hyperbola;
+    const int n = split ? std::max(1, int(std::ceil(std::min(on.length() / 2, 1e3)))) : 1;
+    const auto at = [&](int i) { return i == n ? on.hi : on.lo + on.length() * i / n; };
     std::vector<Hom<3>> net;
-    std::vector<double> knots{0, 0, 0};
+    std::vector<double> knots(3, split ? 0 : on.lo);
     double bound = 0;
     for (int i = 0; i < n; ++i) {
-        const auto arc = conic_arc(conic, {i == 0 ? on.lo : on.lo + on.length() * i / n,
-                                           i + 1 == n ? on.hi : on.lo + on.length() * (i + 1) / n});
+        const auto arc = conic_arc(conic, {at(i), at(i + 1)});
         if (!arc) return std::unexpected(arc.error());
         bound = std::max(bound, arc->bound);
-        for (std::size_t k = i == 0 ? 0 : 1; k < 3; ++k) net.push_back(arc->curve.net().flat()[k]);
-        for (int k = 0; k < (i + 1 == n ? 3 : 2); ++k) knots.push_back(double(i + 1) / n);
+        const auto& piece = arc->curve.net().flat();
+        net.insert(net.end(), piece.begin() + (i > 0), piece.end());
+        knots.insert(knots.end(), i + 1 == n ? 3 : 2, split ? double(i + 1) / n : on.hi);
     }
     const auto basis = BSplineBasis::make(2, std::move(knots));
     if (!basis) return std::unexpected(basis.error());
     auto curve = Curve<Hom<3>>::make({*basis}, Net<1, Hom<3>>({2 * n + 1}, std::move(net)));
     if (!curve) return std::unexpected(curve.error());
-    // Ends of pieces are rounded, and angles by what the parameters are.
-    const double off = 64 * kUnitRoundoff * (size_of_net(*curve) + norm(conic.centre)) *
-                       (1 + std::max(std::abs(on.lo), std::abs(on.hi)));
-    return PartProfile{std::move(*curve), ParameterArcs(on, n, true), bound + off};
+    // Ends of pieces are rounded, and places by what the parameters are.
+    bound += 64 * kUnitRoundoff * (size_of_net(*curve) + norm(conic.centre)) *
+             (1 + std::max(std::abs(on.lo), std::abs(on.hi)));
+    return PartProfile{std::move(*curve), split ? ParameterArcs(on, n, true) : ParameterArcs(), bound};
 }
 
 Result<PartProfile> part_profile(const CurveGeometry<3>& profile, Interval on) {
@@ -103,16 +106,8 @@ Result<PartProfile> part_profile(const CurveGeometry<3>& profile, Interval on) {
         return PartProfile{std::move(*curve), {}, 6 * kUnitRoundoff * size};
     }
     if (const auto* conic = std::get_if<Conic<3>>(&profile)) {
-        if (conic->kind == ConicKind::hyperbola) return hyperbola(*conic, on);
+        if (conic->kind != ConicKind::ellipse) return open_conic(*conic, on);
         Conic<3> from = *conic;
-        if (conic->kind == ConicKind::parabola) {
-            auto arc = conic_arc(from, on);
-            const auto basis = BSplineBasis::bezier(2, on);
-            if (!arc || !basis) return std::unexpected(arc ? basis.error() : arc.error());
-            auto curve = Curve<Hom<3>>::make({*basis}, arc->curve.net());
-            if (!curve) return std::unexpected(curve.error());
-            return PartProfile{std::move(*curve), {}, arc->bound + 16 * kUnitRoundoff * size_of_net(*curve)};
-        }
         const bool turn = is_full_turn(on);
         if (turn && on.lo != 0) {
             from.x = std::cos(on.lo) * conic->x + std::sin(on.lo) * conic->y;

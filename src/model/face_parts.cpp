@@ -4,6 +4,7 @@
 // dv^2 / 8 remains, which near a pole falls with the square of the size, as the other does not. Computed
 // corners are off by at most sqrt(3) value_error_bound, which is added.
 #include "face_parts_detail.hpp"
+#include "face_rim_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -65,17 +66,8 @@ std::optional<FacePart> FaceParts::part_over(const Box<2>& box, const std::vecto
                       kink_bound_of(surface_->kinks(1), box.side(1)) + part.rounding;
     part.error = part.hull_error + d(1, 1) * size[0] * size[1] / 4;
     part.error *= 1 + 1e-14, part.hull_error *= 1 + 1e-14;
-    // Half of each side from a corner. Offsets are no farther from their base than they say, whatever is
-    // known of its normals.
-    part.size = std::max(d(1, 0) * size[0], d(0, 1) * size[1]);
-    if (surface_->base() != nullptr) {
-        const double beside = 2 * std::abs(std::get<OffsetSurface>(face_->surface).distance);
-        if (!(part.size <= beside)) {
-            const auto b = (*surface_->base())({box.side(0), box.side(1)}, 1);
-            const double by_base = std::max(b(1, 0) * size[0], b(0, 1) * size[1]) + beside;
-            if (!(part.size <= by_base)) part.size = by_base;
-        }
-    }
+    part.size = moved_at_most(std::max(d(1, 0) * size[0], d(0, 1) * size[1]), face_->surface, *surface_,
+                              {box.side(0), box.side(1)}, size);
     for (double* e : {&part.error, &part.hull_error})
         if (std::isnan(*e)) *e = kInfinity;
     for (int k = 0; k < 4; ++k)

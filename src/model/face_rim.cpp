@@ -14,6 +14,18 @@
 
 namespace freiform {
 
+double moved(const DerivativeBounds<2>& d, const Vec<2>& by) {
+    return (by[0] == 0 ? 0 : d(1, 0) * by[0]) + (by[1] == 0 ? 0 : d(0, 1) * by[1]);
+}
+
+double moved_at_most(double known, const SurfaceGeometry& surface, const DerivativeQuery<2, 3>& query,
+                     const std::array<Interval, 2>& box, const Vec<2>& by) {
+    if (query.base() == nullptr) return known;
+    const double found =
+        moved((*query.base())(box, 1), by) + 2 * std::abs(std::get<OffsetSurface>(surface).distance);
+    return known <= found ? known : found;
+}
+
 void FaceRim::bound(const Face& face, const DerivativeQuery<2, 3>& surface) {
     Vec<2> bend{};
     if (curve) {
@@ -39,19 +51,10 @@ void FaceRim::bound(const Face& face, const DerivativeQuery<2, 3>& surface) {
                             8 +
                         kink_bound_of(surface.kinks(0), box[0]) + kink_bound_of(surface.kinks(1), box[1]);
     // Without bounds of second derivatives: every point of l is within half of its length of one of its ends.
-    const double length = times(d(1, 0), side[0]) + times(d(0, 1), side[1]);
-    error = (flat < length / 2 ? flat : length / 2) + times(d(1, 0), bend[0]) + times(d(0, 1), bend[1]) +
+    const double length = moved(d, side);
+    error = (flat < length / 2 ? flat : length / 2) + moved(d, bend);
+    error = moved_at_most(error, face.surface, surface, box, 0.5 * side + bend) +
             2 * value_error_bound(face.surface, box);
-    if (surface.base() != nullptr) {  // an offset is no farther from its base than it says
-        const double beside = 2 * std::abs(std::get<OffsetSurface>(face.surface).distance);
-        if (!(error <= beside)) {
-            const auto b = (*surface.base())(box, 1);
-            const double by_base = (times(b(1, 0), side[0]) + times(b(0, 1), side[1])) / 2 +
-                                   times(b(1, 0), bend[0]) + times(b(0, 1), bend[1]) + beside +
-                                   2 * value_error_bound(face.surface, box);
-            if (!(error <= by_base)) error = by_base;
-        }
-    }
     error *= 1 + 1e-12;
     if (std::isnan(error)) error = std::numeric_limits<double>::infinity();
 }

@@ -7,6 +7,13 @@
 
 namespace freiform {
 
+// How far places may be apart whose parameters are, with bounds of first derivatives, which may be infinite.
+double moved(const DerivativeBounds<2>& d, const Vec<2>& by);
+// A bound of that over a box, where `known` is one; offsets are no farther from their base than they say,
+// whatever is known of their normals.
+double moved_at_most(double known, const SurfaceGeometry& surface, const DerivativeQuery<2, 3>& query,
+                     const std::array<Interval, 2>& box, const Vec<2>& by);
+
 struct FaceRim {
     int owner = -1;                  // for the caller
     const Coedge* coedge = nullptr;  // none: a jump between two

@@ -37,11 +37,6 @@ namespace {
 constexpr double kOfTolerance = 1.0 / 8;  // that parts may leave their points by, at first
 constexpr int kMostShares = 8;            // halvings of that, where H is thin and grows by more
 
-// How far places may be apart whose parameters are, with bounds of first derivatives, which may be infinite.
-double moved(const DerivativeBounds<2>& d, const Vec<2>& by) {
-    return (by[0] > 0 ? d(1, 0) * by[0] : 0) + (by[1] > 0 ? d(0, 1) * by[1] : 0);
-}
-
 // The segment within the box, as its ends; nothing where it is outside.
 std::optional<std::array<Vec<2>, 2>> clipped(const std::array<Vec<2>, 2>& s, const Box<2>& box) {
     double lo = 0, hi = 1;
