@@ -5,7 +5,6 @@
 #include <freiform/mesh/triangle_tree.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 namespace freiform {

@@ -5,7 +5,8 @@
 //     e = (d20 du^2 + 2 d11 du dv + d02 dv^2) / 8 + d10 b_u + d01 b_v,   b = |p''| h^2 / 8 + what the ends
 //     moved
 // of the chord. Kinks of surface and curve add what kink_bound_of says; the bounds of derivatives are taken
-// over the box of l made larger by b.
+// over the box of l made larger by b. An offset by D is nowhere farther than D from its base, so two of its
+// places are no farther apart than those of the base and 2 D, whatever is known of normals.
 #include "face_rim_detail.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+#include "support/polygon_face.hpp"
 #include "support/shapes.hpp"
 #include "support/solids.hpp"
 
@@ -228,27 +229,9 @@ TEST(Tessellate, refuses_tolerances_that_ask_for_too_much_at_once) {
     EXPECT_EQ(tessellate(model, {.tolerance = NAN}).error().kind, RefusalKind::nonfinite);
 }
 
-// A part of a surface, its sides as edges without curves.
-Model all_of(const SurfaceGeometry& surface, const Box<2>& on) {
-    const Vec<2> at[] = {on.lo, {{on.hi[0], on.lo[1]}}, on.hi, {{on.lo[0], on.hi[1]}}};
-    Model m;
-    Face f;
-    f.surface = surface;
-    f.loops.emplace_back();
-    for (int i = 0; i < 4; ++i) {
-        const Vec<2> from = at[i], to = at[(i + 1) % 4];
-        m.vertices.push_back({jet<0>(surface, from.c).value(), 1e-9});
-        m.edges.push_back({{}, false, {0, 1}, i, (i + 1) % 4, 1e-9, ""});
-        f.loops[0].coedges.push_back({i, false, Line<2>{from, to - from}});
-    }
-    m.faces = {f};
-    m.shells = {{{{0, false}}, false}};
-    m.bodies = {{{0}, false, "", {}}};
-    return *make_model(std::move(m));
-}
 Model all_of(const SurfaceGeometry& surface) {
     const auto on = domain(surface);
-    return all_of(surface, {{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].hi}}});
+    return polygon_face(surface, Box<2>{{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].hi}}});
 }
 
 // They were refused after many points had been tried: where nothing is known of an edge, its error was
@@ -289,7 +272,7 @@ TEST(Tessellate, offsets_of_surfaces_whose_curvature_jumps_keep_the_bound) {
                 part.add(Vec<2>{{0, 0}}), part.add(base == &both    ? Vec<2>{{3, 3}}
                                                    : base == &moved ? Vec<2>{{3, 1}}
                                                                     : Vec<2>{{1, 3}});
-                const Model m = all_of(s, part);
+                const Model m = polygon_face(s, part);
                 const auto t = *tessellate(m, {.tolerance = 0.002});
                 ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
                 EXPECT_LE(t.error_bound, 0.002);
