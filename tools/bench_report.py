@@ -9,6 +9,7 @@ BUILD/bench-deflections.json. bench_report_text.py writes the words.
 """
 import argparse
 import datetime
+import functools
 import gzip
 import json
 import math
@@ -25,6 +26,7 @@ from bench_report_text import TOLERANCES, good, report, table_row
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LIMIT = 60  # seconds for one process
 BISECTIONS = 6
+COPIES_AT = 1e-4  # of the diagonal: the tolerance at which two copies of the program are timed
 SEARCH_LIMIT = 120  # seconds of search for one row, after which the run in progress is the last one
 OCCT_DATA = "/usr/share/opencascade/data"
 GMSH_DATA = "/usr/share/doc/gmsh-doc/doc/gmsh/demos/boolean"
@@ -71,10 +73,10 @@ def unpacked(path, folder):
     return plain
 
 
-def confine():
-    """The next program gets two processors."""
+def confine(first=0, end=2):
+    """The next program gets two processors, or these of the ones there are."""
     if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:2])
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[first:end])
 
 
 def run(command):
@@ -180,6 +182,30 @@ def measure_at_same_error(row, path, programs, rounds, cache, reached_more):
     return row
 
 
+def measure_copies(program, rounds):
+    """What a second processor is worth to the meshing of the large faces: for each, the times of one thread alone, of two
+    copies of the program at the same time, each with one thread on a processor of its own, and of two threads, in turns.
+    None where there are not two processors."""
+    if not hasattr(os, "sched_getaffinity") or len(os.sched_getaffinity(0)) < 2:
+        return None
+
+    def times(face, clock, processors):
+        command = [str(program), face, "--relative", repr(COPIES_AT), "--times-only"]
+        running = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=functools.partial(confine, *p))
+                   for p in processors]
+        return [t for copy in running for t in json.loads(copy.communicate()[0])[clock]["wall_ms"]]
+
+    out = []
+    for face in FACES:
+        found = {"model": face, "relative": COPIES_AT, "alone_ms": [], "together_ms": [], "two_threads_ms": []}
+        for _ in range(max(rounds, 3)):
+            found["alone_ms"] += times(face, "one_thread", [(0, 1)])
+            found["together_ms"] += times(face, "one_thread", [(0, 1), (1, 2)])
+            found["two_threads_ms"] += times(face, "two_threads", [(0, 2)])
+        out.append(found)
+    return out
+
+
 def machine():
     names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")] \
         if os.path.exists("/proc/cpuinfo") else []
@@ -247,6 +273,7 @@ def main():
             print(table_row(rows[-1]), file=sys.stderr, flush=True)
     data = {"name": f"{datetime.date.today().isoformat()}-{commit()}", "commit": commit(), "rounds": args.rounds,
             "machine": before, "build": json.loads((folder / "bin/bench.json").read_text()), "skipped": skipped, "rows": rows,
+            "copies": None if args.only else measure_copies(programs["ours"], args.rounds),
             "interpolation": None if args.only else measure_interpolation(folder, args.rounds)}
     if args.only:
         print(report(data))

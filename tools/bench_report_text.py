@@ -188,6 +188,14 @@ def summary(rows):
     return lines
 
 
+def of_copies(copies):
+    """Two threads beside two copies, which show what a second processor of the machine is worth to this work."""
+    alone, together, threads = (statistics.median(copies[k]) for k in ("alone_ms", "together_ms", "two_threads_ms"))
+    return (f"The same of {copies['model']} at {copies['relative']:g}, once more: {threads / alone:.2f}. In the same minute two copies "
+            "of the program at the same time, each with one thread on a processor of its own, which wait for nothing, took "
+            f"{together / alone / 2:.2f} for each mesh.")
+
+
 def interpolation(data):
     both = data.get("interpolation")
     if not both or "refusal" in both["freiform"]:
@@ -267,7 +275,7 @@ Other comparisons: [evaluation of many points](EVALUATION.md), with plots agains
 ## Summary
 
 {listing(summary(rows))}
-
+{listing(summary(rows) + [of_copies(c) for c in data.get("copies") or []])}
 Shape of the triangles, smallest angle: {'; '.join(angles) or 'not measured'}.
 
 ## Table
