@@ -113,6 +113,15 @@ Result<std::string> written(const Document& document, std::string_view format,
     return write_svg(picture->picture);
 }
 
+// What a reader could not make, which documents name and other formats cannot.
+std::vector<Refusal> missing_in(const Document& document) {
+    std::vector<Refusal> all;
+    for (const Object& o : document.objects)
+        if (const auto* model = std::get_if<Model>(&o.shape))
+            all.insert(all.end(), model->refused.begin(), model->refused.end());
+    return all;
+}
+
 // A file of triangles, as another one.
 Result<void> convert_mesh(const Context& context, const ConvertArguments& options, MeshFormat format) {
     if (options.changes() || options.orient_loops || !options.object.empty())
@@ -129,7 +138,7 @@ Result<void> convert_mesh(const Context& context, const ConvertArguments& option
     return emit({}, w.take() + "\n");
 }
 
-Result<void> run_convert(const Context& context, const ConvertArguments& options) {
+Result<void> run_convert(Context& context, const ConvertArguments& options) {
     if (options.reduce && !(*options.reduce >= 0))
         wrong_usage("--reduce needs a distance that is not negative");
     const std::string format = output_format(context);
@@ -163,6 +172,9 @@ Result<void> run_convert(const Context& context, const ConvertArguments& options
         return std::unexpected(std::move(r));
     }
     if (auto ok = emit(context, *bytes); !ok) return ok;
+    const std::vector<Refusal> missing = missing_in(*out);
+    for (const Refusal& r : missing) remark(text(r.where, " is left out: ", r.message));
+    context.in_part = format != "json" && std::ranges::any_of(missing, is_face);
     if (options.reduce && !context.json)
         remark(text(report.removed, " knots removed, no point moved by more than ", report.bound));
     if (report.drawn > 0 && !context.json)
@@ -181,6 +193,7 @@ Result<void> run_convert(const Context& context, const ConvertArguments& options
         for (const std::string& loop : report.turned) w.value(loop);
         w.end_array();
     }
+    if (!missing.empty()) write_refusals(w, "refused", missing);
     w.end_object();
     return emit({}, w.take() + "\n");
 }

@@ -113,17 +113,6 @@ Counts edge_kinds(const Model& m) {
     return kinds;
 }
 
-void write_refusals(json::Writer& w, std::string_view name, const std::vector<Refusal>& list) {
-    w.key(name).begin_array();
-    for (const Refusal& r : list)
-        w.begin_object()
-            .field("kind", name_of(r.kind))
-            .field("where", r.where)
-            .field("message", r.message)
-            .end_object();
-    w.end_array();
-}
-
 void write_approximations(json::Writer& w, const std::vector<Approximation>& list) {
     w.key("approximations").begin_array();
     for (const Approximation& a : list) write_approximation(w, a);

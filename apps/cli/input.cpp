@@ -26,6 +26,17 @@ bool is_mesh_name(const std::string& file) {
 
 }  // namespace
 
+void write_refusals(json::Writer& w, std::string_view name, const std::vector<Refusal>& list) {
+    w.key(name).begin_array();
+    for (const Refusal& r : list)
+        w.begin_object()
+            .field("kind", name_of(r.kind))
+            .field("where", r.where)
+            .field("message", r.message)
+            .end_object();
+    w.end_array();
+}
+
 bool is_mesh_file(const Context& context, const std::string& file) {
     if (format_of_name(file) == FileFormat::step) {
         const auto bytes = read_file(file, context.read_options().max_bytes);

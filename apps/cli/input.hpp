@@ -23,6 +23,12 @@ Result<Input> read_input(const Context& context, const std::string& file, const 
 // shapes are all tessellated.
 bool is_mesh_file(const Context& context, const std::string& file);
 
+// Curves that bound no face, and triangles beside exact shapes, are left out of a whole file.
+inline bool is_face(const Refusal& refused) {
+    return refused.kind != RefusalKind::unsupported || refused.where != "file";
+}
+void write_refusals(json::Writer& w, std::string_view name, const std::vector<Refusal>& list);
+
 // Says on standard error what reading had to change in these objects, and by how much.
 void remark_changes(const Document& document, std::span<const std::size_t> objects);
 

@@ -2,6 +2,7 @@
 
 #include "input.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
 
@@ -28,6 +29,14 @@ std::vector<CurveGeometry<2>> cut_at_corners(const Curve<P>& c) {
     return parts;
 }
 
+// Ends with one control point are one, whatever dividing by their weights makes of it.
+template <class P>
+bool is_closed(const Curve<P>& c) {
+    const Interval on = c.basis().domain();
+    const Vec<2> a = c(on.lo), b = c(on.hi);
+    return c.basis().is_closed() || norm(b - a) <= 8 * kUnitRoundoff * norm(a);
+}
+
 }  // namespace
 
 Result<PlaneRegion> read_region(const Context& context, const std::string& file, const std::string& object) {
@@ -40,8 +49,7 @@ Result<PlaneRegion> read_region(const Context& context, const std::string& file,
             [&](const auto& s) {
                 using S = std::remove_cvref_t<decltype(s)>;
                 if constexpr (std::same_as<S, Curve<Vec<2>>> || std::same_as<S, Curve<Hom<2>>>) {
-                    const Interval on = s.basis().domain();
-                    if (!s.basis().is_closed() && s(on.lo) != s(on.hi)) return false;
+                    if (!is_closed(s)) return false;
                     region.loops.push_back(cut_at_corners(s));
                     return true;
                 }

@@ -23,6 +23,14 @@ struct RevolveArguments {
     Seam seam() const { return closed ? Seam::closed : Seam::open; }
 };
 
+Axis axis_of(const RevolveArguments& options) {
+    const auto& a = options.axis;
+    return {{{a[0], a[1], a[2]}}, {{a[3], a[4], a[5]}}};
+}
+double angle_of(const RevolveArguments& options) {  // in this order, 360 gives 2 pi
+    return options.angle.value_or(360) / 180 * std::numbers::pi;
+}
+
 struct RevolveAnswer {
     Document document;
     double bound = 0;
@@ -31,11 +39,8 @@ struct RevolveAnswer {
 
 class Revolving {
 public:
-    Revolving(const RevolveArguments& options, RevolveAnswer& answer) : options_(options), answer_(answer) {
-        std::copy_n(options.axis.begin(), 3, axis_.origin.c.begin());
-        std::copy_n(options.axis.begin() + 3, 3, axis_.direction.c.begin());
-        angle_ = options.angle.value_or(360) / 180 * std::numbers::pi;  // in this order, 360 gives 2 pi
-    }
+    Revolving(const RevolveArguments& options, RevolveAnswer& answer)
+        : options_(options), answer_(answer), axis_(axis_of(options)), angle_(angle_of(options)) {}
 
     template <class P>
     requires(Space<P>::kDim == 2 || Space<P>::kDim == 3) Result<void> curve(const Curve<P>& c,
@@ -64,7 +69,7 @@ private:
     const RevolveArguments& options_;
     RevolveAnswer& answer_;
     Axis axis_;
-    double angle_ = 0;
+    double angle_;
 };
 
 std::string revolve_json(const RevolveAnswer& a) {
@@ -84,14 +89,18 @@ std::string revolve_text(const RevolveAnswer& a) {
 Result<void> run_revolve(const Context& context, const RevolveArguments& options) {
     if (options.axis.size() != 6)
         wrong_usage("--axis needs six numbers: a point and a direction, px,py,pz,dx,dy,dz");
+    if (const double a = std::abs(options.angle.value_or(360)); !(a > 0 && a <= 360))
+        return refuse(RefusalKind::invalid, "--angle",
+                      text("degrees up to 360, or down to -360, and not 0 were expected, not ", *options.angle));
     if (options.solid) {
         const SolidOutput output = solid_output(context, "revolve --solid", options.tolerance);
         const auto region = read_region(context, options.file, options.object);
         if (!region) return std::unexpected(region.error());
-        const auto& a = options.axis;
+        Axis axis = axis_of(options);
+        const double angle = angle_of(options);
+        if (angle < 0) axis.direction = -1 * axis.direction;
         return emit_swept(context, output, options.file, region->unit,
-                          solid_of_revolution(region->loops, {{{a[0], a[1], a[2]}}, {{a[3], a[4], a[5]}}},
-                                              options.angle.value_or(360) / 180 * std::numbers::pi));
+                          solid_of_revolution(region->loops, axis, std::abs(angle)));
     }
     const std::string format = spline_format(context, "revolve");
     const auto document = read_any(options.file, context.read_options());

@@ -60,14 +60,13 @@ Result<void> is_of_use(const Result<Tessellation>& t, double timeout) {
                   text("no face could be meshed: ", first.reason.message));
 }
 
-// What is missing in the mesh, in one sentence; empty where nothing is. Curves that bound no face, and
-// triangles beside exact shapes, which a reader leaves out of a whole file, are not.
+// What is missing in the mesh, in one sentence; empty where nothing is.
 std::string missing(const Tessellation& t, const Model& model) {
     std::size_t n = t.refused.size();
     std::string first;
     if (n > 0) first = text("face ", t.refused[0].face, ": ", t.refused[0].reason.message);
     for (const Refusal& r : model.refused)
-        if (!(r.kind == RefusalKind::unsupported && r.where == "file") && n++ == 0)
+        if (is_face(r) && n++ == 0)
             first = text(r.where, ": ", r.message);
     if (n == 0) return {};
     return text("the mesh is without ",

@@ -102,6 +102,19 @@ private:
             curve);
     }
 
+    // As the loop runs, which is not always as the edge does.
+    static CurveGeometry<2> along_loop(const CurveGeometry<2>& curve, bool reversed) {
+        if (!reversed) return curve;
+        return visit_one(
+            [&](const auto& c) -> CurveGeometry<2> {
+                if constexpr (requires { c.net(); })
+                    return reverse(c, 0);
+                else
+                    return c;
+            },
+            curve);
+    }
+
     // The lists of vertices and of edges; returns the first.
     int lists() {
         std::vector<std::string> points = {text(m_.vertices.size())};
@@ -137,7 +150,7 @@ private:
             }
             const auto flat = parameter_spline(c.curve, e.range);
             if (!flat) return std::unexpected(flat.error());
-            const auto id = spline<2>(*flat, IgesUse::parameters);
+            const auto id = spline<2>(along_loop(*flat, c.reversed), IgesUse::parameters);
             if (!id) return id;
             for (const int x : {1, 0, *id}) values.push_back(text(x));
         }

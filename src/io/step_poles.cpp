@@ -125,9 +125,11 @@ void Chart::poles_of_sides(double stated) {
                     for (std::size_t i = 0; i < a.size(); ++i) {
                         apart = std::max(apart, norm(a[i] - b[i]));
                         extent = std::max(extent, norm(a[i] - a[0]));
-                        uneven = std::max(uneven, std::abs(hi_weights[i] / lo_weights[i] - 1));
+                        const double both = hi_weights[0] / lo_weights[0];
+                        uneven = std::max(uneven, std::abs(hi_weights[i] / (both * lo_weights[i]) - 1));
                     }
-                    // Other weights move a point towards control points, by as much as they differ.
+                    // Other weights move a point towards control points, by as much as they differ, but for a
+                    // factor of all.
                     apart += 4 * uneven * extent;
                     if (apart <= kSidesApart * std::min(way[k], box.diagonal())) apart_[k] = apart;
                     if (apart_[k] <= seam_) period_[k] = s.basis(axis).domain().length();

@@ -93,11 +93,7 @@ public:
         for (const Body& b : m_.bodies) {
             std::vector<int> shells;
             for (const int s : b.shells) {
-                const Shell& shell = m_.shells[std::size_t(s)];
-                std::vector<int> used;
-                for (const FaceUse& u : shell.faces) used.push_back(faces[std::size_t(u.face)]);
-                shells.push_back(
-                    e_.add(text(b.solid ? "CLOSED_SHELL(''," : "OPEN_SHELL('',", Entities::refs(used), ")")));
+                shells.push_back(add_shell(m_.shells[std::size_t(s)], b.solid, faces, !shells.empty()));
             }
             const int id = add_body(b, shells);
             if (id > 0) put_on_layers(b.layers, id);
@@ -160,6 +156,22 @@ private:
         for (const int l : layers) on_layers_[std::size_t(l)].push_back(id);
     }
 
+    // A void, and what is used from behind as a whole, is a shell that another one turns; where only some faces
+    // are, each of them is turned.
+    int add_shell(const Shell& shell, bool solid, const std::vector<int>& faces, bool is_void) {
+        const auto turned = std::ranges::count_if(shell.faces, &FaceUse::reversed);
+        const bool all = turned > 0 && turned == std::ssize(shell.faces);
+        std::vector<int> used;
+        for (const FaceUse& u : shell.faces) {
+            const int face = faces[std::size_t(u.face)];
+            used.push_back(u.reversed && !all ? e_.add(text("ORIENTED_FACE('',*,#", face, ",.F.)")) : face);
+        }
+        const std::string_view kind = solid ? "CLOSED_SHELL(''," : "OPEN_SHELL('',";
+        const int id = e_.add(text(kind, Entities::refs(used), ")"));
+        if (!all && !(is_void && solid)) return id;
+        return e_.add(text("ORIENTED_", kind, "*,#", id, all ? ",.F.)" : ",.T.)"));
+    }
+
     // Its entity; 0 if it has no shells.
     int add_body(const Body& b, const std::vector<int>& shells) {
         if (shells.empty()) return 0;
@@ -171,11 +183,8 @@ private:
         if (shells.size() == 1) {
             solids.push_back(e_.add(text("MANIFOLD_SOLID_BREP(", quoted(b.name), ",#", shells[0], ")")));
         } else {
-            std::vector<int> voids;
-            for (std::size_t i = 1; i < shells.size(); ++i)
-                voids.push_back(e_.add(text("ORIENTED_CLOSED_SHELL('',*,#", shells[i], ",.T.)")));
-            solids.push_back(e_.add(
-                text("BREP_WITH_VOIDS(", quoted(b.name), ",#", shells[0], ",", Entities::refs(voids), ")")));
+            solids.push_back(e_.add(text("BREP_WITH_VOIDS(", quoted(b.name), ",#", shells[0], ",",
+                                         Entities::refs({shells.begin() + 1, shells.end()}), ")")));
         }
         return solids.back();
     }

@@ -79,6 +79,14 @@ TEST_F(CliStep, a_mesh_without_the_faces_that_were_refused_ends_with_1_and_says_
     EXPECT_TRUE(piped.out.starts_with("ply\n"));
     EXPECT_NE(piped.err.find("refused"), std::string::npos) << piped.err;
     EXPECT_EQ(run({"tessellate", whole, "--tolerance", "0.1"}).code, 0);
+    // So do other files, which have no room for what was refused; documents have.
+    for (const bool has_room : {false, true}) {
+        const Ran other = run({"convert", part, "-o", path(has_room ? "part.json" : "part.iges"), "--json"});
+        EXPECT_EQ(other.code, has_room ? 0 : 1);
+        EXPECT_EQ(Json::parse(other.out)["refused"][0]["message"], j["refused"][0]["message"]) << other.out;
+        EXPECT_NE(other.err.find("#20 ADVANCED_FACE is left out: "), std::string::npos) << other.err;
+    }
+    EXPECT_EQ(run({"convert", whole, "-o", path("whole.iges")}).code, 0);
     // Curves that bound no face are left out, and nothing is missing in the mesh.
     std::string lines = polygon_file({{0, 0}, {3, 0}, {3, 2}},
                                      "#30=GEOMETRIC_CURVE_SET('',(#31));\n#31=POLYLINE('',(#100,#101));\n");

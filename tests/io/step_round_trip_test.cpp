@@ -68,6 +68,11 @@ struct Bits {
         for (std::size_t i = 0; i < m.vertices.size(); ++i)
             if (const Vec<3>& p = m.vertices[i].point; corner[i]) vertices.push_back({p[0], p[1], p[2]});
         counts["shells"] = int(m.shells.size());
+        for (const Shell& shell : m.shells) {
+            int turned = 0;
+            for (const FaceUse& u : shell.faces) turned += u.reversed;
+            counts["shells with " + std::to_string(turned) + " turned faces"]++;
+        }
         counts["bodies"] = int(m.bodies.size());
         counts["solids"] = int(std::ranges::count_if(m.bodies, [](const Body& b) { return b.solid; }));
         for (auto* list : {&vertices, &surfaces, &curves}) std::ranges::sort(*list);
@@ -207,6 +212,21 @@ TEST(StepRoundTrip, random_models_come_back_equal_to_the_last_bit) {
         const Model again = must(read_step(must(write_step(Document{"mm", {{"", read, {}}}}))));
         expect_equal(read, again, true);
         if (HasFailure()) break;
+    }
+}
+
+// Hollows are bounded by faces that are used from behind; in other shells some may be.
+TEST(StepRoundTrip, faces_stay_turned_as_their_shells_use_them) {
+    Random r(1300);
+    TrimmedFaces trimmed(78);
+    for (int i = 0; i < 24; ++i) {
+        SCOPED_TRACE(i);
+        Model m = must(scene_of(Document{"mm", {{"", random_shape(r, trimmed, i % 7), {}}}}));
+        const bool some = r.chance(0.5);
+        for (Shell& shell : m.shells)
+            for (FaceUse& u : shell.faces) u.reversed = !some || r.chance(0.5);
+        const Model read = must(read_step(must(write_step(Document{"mm", {{"", m, {}}}}))));
+        expect_equal(m, read, true);
     }
 }
 
