@@ -122,6 +122,16 @@ std::vector<Refusal> missing_in(const Document& document) {
     return all;
 }
 
+// Whether a model has what files of surfaces alone have no room for.
+bool has_looks(const Document& document) {
+    return std::ranges::any_of(document.objects, [](const Object& o) {
+        const auto* m = std::get_if<Model>(&o.shape);
+        const auto named = [](const auto& x) { return !x.name.empty() || x.colour; };
+        return m && (!m->layers.empty() || std::ranges::any_of(m->bodies, named) ||
+                     std::ranges::any_of(m->faces, named));
+    });
+}
+
 // A file of triangles, as another one.
 Result<void> convert_mesh(const Context& context, const ConvertArguments& options, MeshFormat format) {
     if (options.changes() || options.orient_loops || !options.object.empty())
@@ -174,6 +184,8 @@ Result<void> run_convert(Context& context, const ConvertArguments& options) {
     if (auto ok = emit(context, *bytes); !ok) return ok;
     const std::vector<Refusal> missing = missing_in(*out);
     for (const Refusal& r : missing) remark(text(r.where, " is left out: ", r.message));
+    if ((format == "iges" || format == "igs") && has_looks(*out))
+        remark("names, colours and layers of models are not written to IGES files");
     context.in_part = format != "json" && std::ranges::any_of(missing, is_face);
     if (options.reduce && !context.json)
         remark(text(report.removed, " knots removed, no point moved by more than ", report.bound));

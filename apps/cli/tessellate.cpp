@@ -66,8 +66,7 @@ std::string missing(const Tessellation& t, const Model& model) {
     std::string first;
     if (n > 0) first = text("face ", t.refused[0].face, ": ", t.refused[0].reason.message);
     for (const Refusal& r : model.refused)
-        if (is_face(r) && n++ == 0)
-            first = text(r.where, ": ", r.message);
+        if (is_face(r) && n++ == 0) first = text(r.where, ": ", r.message);
     if (n == 0) return {};
     return text("the mesh is without ",
                 n == 1 ? "one face that was refused: " : text(n, " faces that were refused; the first: "),

@@ -94,6 +94,7 @@ void write_report(json::Writer& w, const TessellateReport& r) {
     for (const Approximation& a : model.approximations) write_approximation(w, a);
     w.end_array();
     if (!model.repairs.empty()) write_repairs(w, model.repairs);
+    if (!t.turned_shells.empty()) w.key("turned_shells").array(t.turned_shells);
     w.end_object();
 }
 
@@ -122,6 +123,8 @@ std::string report_text(const TessellateReport& r) {
     for (const RefusedFace& f : t.refused)
         s += text("refused face ", f.face, f.name.empty() ? "" : text(" '", f.name, "'"), ": ",
                   f.reason.where, ": ", f.reason.message, "\n");
+    for (const int shell : t.turned_shells)
+        s += text("turned outwards shell ", shell, " of a solid, whose faces look the wrong way\n");
     for (const Refusal& x : model.refused) s += text("refused ", x.where, ": ", x.message, "\n");
     for (const Repair& x : model.repairs) s += text("repaired ", repair_text(x), "\n");
     for (const Approximation& a : model.approximations)

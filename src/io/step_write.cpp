@@ -156,8 +156,8 @@ private:
         for (const int l : layers) on_layers_[std::size_t(l)].push_back(id);
     }
 
-    // A void, and what is used from behind as a whole, is a shell that another one turns; where only some faces
-    // are, each of them is turned.
+    // A void, and what is used from behind as a whole, is a shell that another one turns; where only some
+    // faces are, each of them is turned.
     int add_shell(const Shell& shell, bool solid, const std::vector<int>& faces, bool is_void) {
         const auto turned = std::ranges::count_if(shell.faces, &FaceUse::reversed);
         const bool all = turned > 0 && turned == std::ssize(shell.faces);

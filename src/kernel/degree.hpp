@@ -19,8 +19,10 @@ __attribute__((always_inline)) inline void with_degree(int p, F&& f) {
             return f(Degree<2>{});
         case 3:
             return f(Degree<3>{});
+#if !defined(__wasm__)  // modules are to be small
         case 5:
             return f(Degree<5>{});
+#endif
         default:
             return f(Degree<-1>{});
     }

@@ -207,7 +207,7 @@ Result<SolidAlong> solid_along(const RegionLoops& region, const Curve<R>& rail,
     const Interval on = rail.basis().domain();
     if (rail.basis().is_closed() || rail(on.lo) == rail(on.hi))
         return refuse(RefusalKind::unsupported, "rail",
-                      "it ends where it begins, and the frame comes back at another angle");
+                      "it ends where it begins: solids along closed rails are not made, surfaces are");
     return solid_in_frame(region, rail, Space<R>::kRational, options,
                           [&](const Curve<Vec<2>>& polyline, double tolerance) -> Rows {
                               auto rows = sweep(polyline, rail, {tolerance, options.x_at_start});

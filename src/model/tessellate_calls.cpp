@@ -138,6 +138,8 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
             all.back()->seconds.total =
                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
+    for (auto& t : all)
+        if (t) turn_outwards(model, *t);
     return all;
 }
 

@@ -24,6 +24,8 @@ struct SharedWork {
 
 // For each face the colour of its body; null where there is none.
 std::vector<const Colour*> body_colours(const Model& model);
+// Turns shells of solids whose triangles look the wrong way (outward_mesh.cpp).
+void turn_outwards(const Model& model, Tessellation& t);
 
 class Tessellator {
 public:

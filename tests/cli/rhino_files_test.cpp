@@ -42,7 +42,8 @@ TEST_F(CliRhino, what_is_left_out_is_told) {
     const Ran other = run({"convert", data_file("sheets_8"), "-o", path("x.step"), "--json"});
     EXPECT_EQ(other.code, 0) << other.err;
     EXPECT_EQ(Json::parse(other.out)["refused"][1]["message"], refused[1]["message"]) << other.out;
-    EXPECT_NE(other.err.find("file is left out: point: 1 object is left out"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("file is left out: point: 1 object is left out"), std::string::npos)
+        << other.err;
     const Ran damaged = run({"info", file("x.3dm", content(data_file("solids_8")).substr(0, 9000))});
     EXPECT_EQ(damaged.code, 3);
     EXPECT_NE(damaged.err.find("x.3dm: byte "), std::string::npos) << damaged.err;

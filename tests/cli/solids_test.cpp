@@ -49,13 +49,12 @@ TEST_F(SolidProgram, of_closed_curves_are_extruded_and_revolved) {
 double volume_of_stl(const std::string& bytes);
 
 TEST_F(SolidProgram, of_revolution_turn_clockwise_by_negative_angles) {
-    const std::string square =
-        file("square.json", R"({"type":"curve","degree":1,"knots":[0,0,1,2,3,4,4],)"
-                            R"("points":[[1,0],[2,0],[2,1],[1,1],[1,0]]})");
+    const std::string square = file("square.json", R"({"type":"curve","degree":1,"knots":[0,0,1,2,3,4,4],)"
+                                                   R"("points":[[1,0],[2,0],[2,1],[1,1],[1,0]]})");
     for (const char* angle : {"90", "-90"}) {
         SCOPED_TRACE(angle);
-        const Ran r = run({"revolve", square, "--axis", "0,0,0,0,1,0", "--angle", angle, "--solid", "-o",
-                           "q.json"});
+        const Ran r =
+            run({"revolve", square, "--axis", "0,0,0,0,1,0", "--angle", angle, "--solid", "-o", "q.json"});
         ASSERT_EQ(r.code, 0) << r.err;
         ASSERT_EQ(run({"tessellate", "q.json", "--tolerance", "1e-3", "-o", "q.stl"}).code, 0);
         EXPECT_NEAR(volume_of_stl(content(path("q.stl"))), 3 * std::numbers::pi / 4, 5e-3);
@@ -71,16 +70,17 @@ TEST_F(SolidProgram, of_revolution_turn_clockwise_by_negative_angles) {
 // First and last are the same point, and dividing by their weights does not find quite the same numbers; as
 // walls in a file, their sides are one seam.
 TEST_F(SolidProgram, of_curves_whose_ends_have_different_weights_are_closed) {
-    const std::string uneven = file(
-        "uneven.json", R"({"type":"curve","degree":2,"points":[[0.1,0.3],[1,0],[0.6,1.1],[0.1,0.3]],)"
-                       R"("knots":[0,0,0,1,2,2,2],"weights":[0.7,1,1,0.3]})");
+    const std::string uneven =
+        file("uneven.json", R"({"type":"curve","degree":2,"points":[[0.1,0.3],[1,0],[0.6,1.1],[0.1,0.3]],)"
+                            R"("knots":[0,0,0,1,2,2,2],"weights":[0.7,1,1,0.3]})");
     const Ran prism = run({"extrude", uneven, "--by", "0,0,1", "--solid", "-o", "n.json"});
     EXPECT_EQ(prism.code, 0) << prism.err;
     const std::string rail = file("rail.json", R"({"type":"curve","degree":1,"points":[[0,0,0],[0,0,1]]})");
     const std::string profile =
         file("profile.json", R"({"type":"curve","degree":2,"knots":[0,0,0,1,2,2,2],)"
                              R"("points":[[2,0],[-1,2],[-1,-2],[2,0]],"weights":[1,1,1,2]})");
-    const Ran made = run({"sweep", profile, "--rail", rail, "--solid", "--tolerance", "1e-3", "-o", "z.step"});
+    const Ran made =
+        run({"sweep", profile, "--rail", rail, "--solid", "--tolerance", "1e-3", "-o", "z.step"});
     ASSERT_EQ(made.code, 0) << made.err;
     const auto info = SolidJson::parse(run({"info", "z.step", "--json"}).out)["objects"][0];
     EXPECT_EQ(info["faces"], 3) << info;
@@ -168,6 +168,12 @@ TEST_F(SolidProgram, are_written_to_every_format_that_holds_models) {
     for (const char* name : {"a.iges", "a.igs", "a.step", "a.json"})
         ASSERT_EQ(run({"extrude", both, "--by", "0,0,2", "--solid", "-o", name}).code, 0) << name;
     EXPECT_NE(content(path("a.igs")).find("     186 "), std::string::npos) << "a solid, not its faces";
+    auto looks = SolidJson::parse(content(path("a.json")));
+    for (auto& body : looks["objects"][0]["bodies"]) body["name"] = "plate";
+    const std::string named = file("named.json", looks.dump());
+    EXPECT_NE(run({"convert", named, "-o", "named.igs"}).err.find("are not written to IGES"),
+              std::string::npos);
+    EXPECT_EQ(run({"convert", named, "-o", "named.step"}).err, "");
     for (const char* name : {"b.igs", "b.obj", "b.step"})
         ASSERT_EQ(run({"convert", "a.json", "-o", name}).code, 0) << name;
     EXPECT_EQ(content(path("a.igs")), content(path("b.igs")));

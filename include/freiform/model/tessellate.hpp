@@ -60,6 +60,8 @@ struct Tessellation {
     int angle_exceeded = 0;
     std::vector<FaceReport> faces;
     std::vector<RefusedFace> refused;
+    // Of solids whose faces look the wrong way, all of a shell: its triangles and their normals are turned.
+    std::vector<int> turned_shells;
     struct {
         double edges = 0, faces = 0, total = 0;
     } seconds;
