@@ -138,8 +138,12 @@ Result<Fitted<D>> approximate(std::span<const Vec<D>> points, const ApproximateO
     if (!curve) return std::unexpected(curve.error());
     std::vector<Datum<D>> values;
     for (const auto& k : kept) values.push_back({best->at[std::size_t(k.point)], k.order, k.value});
-    return detail::reported<D>(std::move(*curve), points, std::move(best->at), values,
-                               solves + search.solves());
+    auto fitted =
+        detail::reported<D>(std::move(*curve), points, std::move(best->at), values, solves + search.solves());
+    if (fitted && !(fitted->report.bound <= options.tolerance))
+        return refuse(RefusalKind::no_answer, "tolerance",
+                      text("rounding leaves the curve at a distance of up to ", fitted->report.bound));
+    return fitted;
 }
 
 #define FF_APPROXIMATE(D)                                                                      \

@@ -324,7 +324,14 @@ Result<std::vector<PlaceAtLength>> ArcLength<P>::equal_parts(int n, Interval on)
     if (n > kMostPlaces) return refuse(RefusalKind::limit, "parts", text(n, " are more than ", kMostPlaces));
     const auto all = total(on);
     if (!all) return std::unexpected(all.error());
-    return places(*this, on, n, [&](int i) { return i == n ? all->value : all->value * (double(i) / n); });
+    auto out =
+        places(*this, on, n, [&](int i) { return i == n ? all->value : all->value * (double(i) / n); });
+    // Parts are of the whole length as it is, not as it was found.
+    for (int i = 1; out && i < n; ++i) {
+        double& bound = (*out)[std::size_t(i)].bound;
+        bound = (bound + all->bound * (double(i) / n)) * (1 + 8 * kUnitRoundoff);
+    }
+    return out;
 }
 template <class P>
 Result<std::vector<PlaceAtLength>> ArcLength<P>::equal_parts(int n) const {

@@ -282,10 +282,11 @@ struct NearestFeetSearch : NearestBlocks<D> {
                 bend += (j.value[k] - here.local[k]) * j.second[d][d][k];
             }
             bend += speed;
-            const double level_slope = std::sqrt(speed) * (kLevel * away + noise);
+            // Derivatives are known but for their rounding, which is all there is of some at doubled ends.
+            const double level_slope = std::sqrt(speed) * (kLevel * away + noise) + noise * away;
             if ((at[d] < 1 && slope < -level_slope) || (at[d] > 0 && slope > level_slope)) return false;
             // Level, and it bends down: a foot there would be shallower than squares of distances are known.
-            if (std::abs(slope) <= level_slope && bend < -kLevel * speed) return false;
+            if (std::abs(slope) <= level_slope && bend < -(kLevel * speed + noise * away)) return false;
         }
         return true;
     }

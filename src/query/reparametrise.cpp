@@ -234,7 +234,7 @@ public:
         chain_.cut_left(x0, x1, b);
         off += slip_;
         const double slip = chain_.error(6 * chain_.degree());
-        Piece out = chord(start, end, d, off + slip);
+        Piece out = chord(start, end, d, off, slip);
         if (out.bound <= tolerance_) return out;
         if (auto curved = quintic(std::span<const P>(b, std::size_t(chain_.degree()) + 1),
                                   speed_.part(x0, x1), start, end, d, off, slip))
@@ -243,12 +243,13 @@ public:
     }
 
 private:
-    Piece chord(const Point& start, const Point& end, double d, double off) const {
+    Piece chord(const Point& start, const Point& end, double d, double off, double slip) const {
         Piece out;
         for (int i = 0; i <= 5; ++i) out.r[std::size_t(i)] = (1 - i / 5.0) * start + (i / 5.0) * end;
         out.r[5] = end;
-        out.bound = (d + 4 * off) * (1 + 8 * kUnitRoundoff);
-        out.speed = std::max(1.0, norm(end - start) / d);
+        out.bound = (d + 4 * (off + slip)) * (1 + 8 * kUnitRoundoff);
+        out.speed =
+            std::max(1.0, (norm(end - start) + 10 * slip) / d);  // 5 between points, which are rounded
         out.good = out.bound <= tolerance_;
         return out;
     }

@@ -167,6 +167,23 @@ TEST(Approximate, repeated_points_are_points) {
     EXPECT_LE(f.report.bound, 0.01);
 }
 
+TEST(Approximate, bounds_are_within_the_tolerance_or_it_is_refused) {
+    const std::vector<Vec<2>> points{{{100, 100}}, {{101, 100}}, {{102, 100}}, {{102, 101}}};
+    int fitted = 0, refused = 0;
+    for (int degree = 3; degree <= 9; ++degree)
+        for (int e = 10; e <= 15; ++e) {
+            const double tolerance = std::pow(10.0, -e);
+            const auto f = approximate<2>(points, {.tolerance = tolerance, .degree = degree}, {});
+            f ? ++fitted : ++refused;
+            if (f)
+                EXPECT_LE(f->report.bound, tolerance);
+            else
+                EXPECT_EQ(f.error().kind, RefusalKind::no_answer);
+        }
+    EXPECT_GT(fitted, 0);
+    EXPECT_GT(refused, 0);
+}
+
 TEST(Approximate, refuses_what_has_no_answer) {
     const auto expect = [](const auto& r, RefusalKind kind, const std::string& where,
                            const std::string& message) {

@@ -102,6 +102,22 @@ TEST(R20, points_at_equal_distance) {
     EXPECT_NEAR(must(s.at(spaced[2].parameter)).value, 3, 1e-13);
 }
 
+// Bounds are of parts of the whole length as it is, which is known as well as was asked for.
+TEST(R20, bounds_of_equal_parts_count_what_the_whole_is_off_by) {
+    Random r(3);
+    for (int k = 0; k < 40; ++k) {
+        const auto curve = random_patch<1, Hom<3>>(r, 2 + k % 4, {Ends::clamped, 3});
+        const ArcLength rough(curve, 0.05), sharp(curve, 1e-11);
+        const auto places = must(rough.equal_parts(7));
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto at = must(sharp.at(places[i].parameter));
+            EXPECT_LE(std::abs(at.value - sharp.total().value * (double(i) / 7)),
+                      places[i].bound + at.bound + sharp.total().bound)
+                << "curve " << k << ", place " << i;
+        }
+    }
+}
+
 TEST(R20, places_on_a_part_are_those_of_the_curve_cut_out) {
     const auto random = [](std::uint64_t seed) {
         Random r(seed);

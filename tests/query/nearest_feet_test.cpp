@@ -123,6 +123,19 @@ TEST(NearestFeet, knots_and_seams_are_no_feet_but_ends_and_corners_are) {
     EXPECT_TRUE(centre.feet[0].stretch);
 }
 
+// At a doubled end, exact but for rounding, the direction of the curve is nothing but rounding.
+TEST(NearestFeet, ends_with_doubled_control_points_are_feet) {
+    for (const double off : {0.0, 0x1p-53, -0x1p-53}) {
+        const auto curve = must(Curve<Vec<2>>::make(
+            {must(BSplineBasis::bezier(3))},
+            Net<1, Vec<2>>({4}, {Vec<2>{{0, 0}}, Vec<2>{{0, 1}}, Vec<2>{{1, 1}}, Vec<2>{{1, 1 + off}}})));
+        const auto all = must(feet_query(curve).feet<2>(Vec<2>{{2, 2}}, 3));
+        ASSERT_EQ(all.feet.size(), 1u) << off;
+        EXPECT_NEAR(all.feet[0].foot.distance, std::sqrt(2), 1e-12);
+        EXPECT_EQ(all.feet[0].foot.at[0], 1);
+    }
+}
+
 TEST(NearestFeet, a_spent_budget_is_said_and_leaves_a_bound_that_holds) {
     std::mt19937 rng(31);
     const Vec<2> q{{0.3, 0.2}};

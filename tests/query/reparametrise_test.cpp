@@ -40,6 +40,28 @@ TEST(R20, reparametrisation_by_arc_length_runs_at_unit_speed) {
     }
 }
 
+// What two points are apart that are one but for rounding is rounding, too.
+TEST(Reparametrise, bounds_of_the_speed_hold_on_pieces_of_rounding_length) {
+    const double big = 1e11, ulp = std::ldexp(1.0, -16);
+    for (int k = 1; k < 8; ++k) {
+        const auto curve =
+            must(Curve<Vec<3>>::make({must(BSplineBasis::make(1, {0, 0, 1, 2, 2}))},
+                                     Net<1, Vec<3>>({3}, {Vec<3>{{big, big / 3, big / 7}},
+                                                          Vec<3>{{big, big / 3 + k * ulp, big / 7 - ulp}},
+                                                          Vec<3>{{big - 1e9, 0, 0}}})));
+        const auto even = by_arc_length(curve, 1e-3);
+        if (!even) continue;
+        for (const Interval& on : {Interval{0, even->length.value}}) {
+            const auto breaks = even->curve.basis().breaks();
+            for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+                for (const double part : {0.0, 0.5, 0.999}) {
+                    const double at = std::min(on.hi, breaks[i] + part * (breaks[i + 1] - breaks[i]));
+                    EXPECT_LE(std::abs(norm(even->curve.jet<1>(at)(1)) - 1), even->speed_bound + 1e-13) << k;
+                }
+        }
+    }
+}
+
 TEST(Reparametrise, stays_within_its_bounds_and_the_bounds_are_of_use) {
     Random random(301);
     const auto check = [&](const auto& curve, double tolerance, double useful) {
