@@ -38,6 +38,12 @@ inline Interval global(const Interval& on, const Interval& t, const Interval& wi
     return {clamped(g.lo, within), clamped(g.hi, within)};
 }
 
+// What rounding of the object's parameter is in that of the piece: it moves points by so much of a
+// derivative.
+inline double parameter_rounding(const Interval& on) {
+    return 3 * kUnitRoundoff * std::max(std::abs(on.lo), std::abs(on.hi)) / on.length();
+}
+
 // Where the pieces of a pair are in the parameters of their objects.
 template <std::size_t N>
 struct Where {
@@ -63,7 +69,7 @@ void move_to_objects(Raw<D, N>& r, const Where<N>& where) {
         const Interval whole = where.domain[k];
         r.c.at[k] = global(where.piece[k], r.c.at[k]);
         r.c.box[k] = hull(r.c.box[k], {r.c.at[k], r.c.at[k]});
-        if (!where.closed[k] || r.c.box[k].hi < whole.hi) continue;
+        if (!where.closed[k] || r.c.box[k].hi < whole.hi || r.c.box[k].lo <= whole.lo) continue;
         r.from[2] |= 1 << k;
         r.c.at[k] = std::max(r.c.at[k] - whole.length(), whole.lo);
         r.c.box[k] = {r.c.box[k].lo - whole.length(), whole.lo};

@@ -258,12 +258,15 @@ private:
     void finish(int i, int j, Raw<D, 2> r, bool exact = false) {
         for (std::size_t k = 0; k < 2; ++k) r.c.at[k] = std::clamp(r.c.at[k], 0.0, 1.0);
         Vec<D> x, y, u, v;
+        const Where<2> on = where(i, j);
         const double e = a_.at(i, &r.c.at[0], x, &u) + b_.at(j, &r.c.at[1], y, &v);
-        set_point(r, x, y, e, exponent_);
+        set_point(r, x, y,
+                  e + parameter_rounding(on.piece[0]) * norm(u) + parameter_rounding(on.piece[1]) * norm(v),
+                  exponent_);
         if constexpr (D == 2)
             if (exact && r.c.multiplicity == 1) r.sign = cross(u, v) < 0 ? 1 : -1;
         r.from = {i, j, 0};
-        move_to_objects(r, where(i, j));
+        move_to_objects(r, on);
         raw_.push_back(r);
     }
 

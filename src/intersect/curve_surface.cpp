@@ -121,11 +121,13 @@ private:
 
     void finish(int i, int j, Raw<3, 3> r) {
         for (double& t : r.c.at) t = std::clamp(t, 0.0, 1.0);
-        Vec<3> x, y, d[2];
-        const double e = curve_.at(i, &r.c.at[0], x, d) + surface_.at(j, &r.c.at[1], y, d);
+        const Where<3> on = where(i, j);
+        Vec<3> x, y, d[3];
+        double e = curve_.at(i, &r.c.at[0], x, d) + surface_.at(j, &r.c.at[1], y, d + 1);
+        for (std::size_t k = 0; k < 3; ++k) e += parameter_rounding(on.piece[k]) * norm(d[k]);
         set_point(r, x, y, e, exponent_);
         r.from = {i, j, 0};
-        move_to_objects(r, where(i, j));
+        move_to_objects(r, on);
         raw_.push_back(r);
     }
 

@@ -104,10 +104,18 @@ double step_through(const Chain<P>& chain, int i, int n, bool forward, Polyline<
     return chain.error(3 * chain.degree() + 4);
 }
 
-// The start of a piece is the end of the one before it, which may be this far from its own.
+// The start of a piece is the end of the one before it, which may be so far from its own; and parameters are
+// rounded, which moves places along the curve where the domain is far from zero.
 template <class P>
 double joint_slip(const Chain<P>& chain) {
-    return 2 * chain.error(0);
+    double most = 0;
+    for (int i = 0; i < chain.pieces(); ++i) {
+        const auto b = chain.piece(i);
+        const double at = std::max(std::abs(chain.at(i)), std::abs(chain.at(i + 1))),
+                     speed = derivative_bounds<1, P>({b.data(), {int(b.size())}, {1}}, {1.0})(1);
+        most = std::max(most, 3 * kUnitRoundoff * at / (chain.at(i + 1) - chain.at(i)) * speed);
+    }
+    return 2 * chain.error(0) + most;
 }
 
 template <class P>

@@ -238,5 +238,30 @@ TEST(IntersectCurves, the_corner_of_a_polygon_that_touches_is_one_contact) {
     EXPECT_TRUE(cross.contacts[0].is_proven());
 }
 
+// Where the domain is far from zero, rounding of the parameter moves points more than that of coordinates.
+TEST(IntersectCurves, gaps_are_of_the_parameters_that_are_given) {
+    for (const double from : {0.0, 1e3, 1e6}) {
+        const Plane far = must(Plane::make({must(BSplineBasis::bezier(1, {from, from + 1}))},
+                                           Net<1, Vec<2>>({2}, {Vec<2>{{0, 0}}, Vec<2>{{3e6, 0}}})));
+        const Plane across = plane_bezier({{{1234567, -1000}}, {{1234567, 1000}}});
+        const PlaneAnswer a = meet(far, across);
+        ASSERT_NO_FATAL_FAILURE(expect_nothing_else(a, 1, 0));
+        // Exactly: 3e6 (t - from).
+        const double apart = std::abs(3e6 * (a.contacts[0].at[0] - from) - 1234567);
+        EXPECT_LE(apart, a.contacts[0].gap) << from;
+        EXPECT_LE(a.contacts[0].gap, 1e-8 + 2e-9 * from) << "of use";
+    }
+}
+
+// A closed curve of one control point has all of its domain as its box.
+TEST(IntersectCurves, points_have_their_whole_domain_as_box) {
+    const Plane point =
+        must(Plane::make({must(BSplineBasis::periodic(3, {1, 2}))}, Net<1, Vec<2>>({1}, {Vec<2>{{5, 5}}})));
+    const PlaneAnswer a = meet(point, point);
+    ASSERT_EQ(a.contacts.size() + a.overlaps.size(), 1u);
+    for (const auto& c : a.contacts)
+        for (const Interval& box : c.box) EXPECT_EQ(box, (Interval{1, 2}));
+}
+
 }  // namespace
 }  // namespace freiform::test

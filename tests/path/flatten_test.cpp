@@ -453,5 +453,20 @@ TEST(FlattenOn, refuses_what_it_cannot_follow) {
     EXPECT_EQ(flatten_on(plane, circle, {0, 6}, 1e-17, 1000).error().kind, RefusalKind::ill_conditioned);
 }
 
+// Points are those of the curve at the parameters that are given, which are rounded.
+TEST(Flatten, bounds_count_the_rounding_of_parameters) {
+    for (const double from : {0.0, 1e3, 1e6})
+        for (const FlattenMethod method :
+             {FlattenMethod::uniform, FlattenMethod::forward, FlattenMethod::halving}) {
+            const auto line =
+                must(Curve<Vec<2>>::make({must(BSplineBasis::bezier(1, {from, from + 1}))},
+                                         Net<1, Vec<2>>({2}, {Vec<2>{{0, 0}}, Vec<2>{{3e6, 0}}})));
+            const auto f = must(flatten(line, {.method = method, .segments = 7}));
+            for (std::size_t i = 0; i < f.points.size(); ++i)
+                EXPECT_LE(std::abs(3e6 * (f.parameters[i] - from) - f.points[i][0]), f.bound) << from;
+            EXPECT_LE(f.bound, 1e-7 + 3e-9 * from) << "of use";
+        }
+}
+
 }  // namespace
 }  // namespace freiform::test
