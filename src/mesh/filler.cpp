@@ -84,9 +84,14 @@ Filler::LongestSide Filler::longest_of_all(int triangle) {
 }
 
 // A corner where a first derivative is tiny beside what it is inside: no box with it has bounded normals.
-bool Filler::touches_pole(const std::array<Vec<2>, 3>& corner) const {
+// Or too narrow, along the surface: beside a side of the boundary, which stays, halving the others brings
+// points nearer to it each time, and the nearer they are, the more triangles lean towards its arc.
+bool Filler::is_narrow_or_at_pole(const std::array<Vec<2>, 3>& corner, double longest) const {
     const Vec<2> middle = (1.0 / 3) * (corner[0] + corner[1] + corner[2]);
     const auto inside = jet<1>(surface_.geometry(), middle.c);
+    const double twice_area =
+        norm(cross(inside.d[1], inside.d[2])) * std::abs(cross(corner[1] - corner[0], corner[2] - corner[0]));
+    if (!(twice_area > kAngleWidth * demands_.tolerance * longest)) return true;
     for (const Vec<2>& c : corner) {
         const auto j = jet<1>(surface_.geometry(), c.c);
         for (std::size_t d = 1; d < 3; ++d)
@@ -103,7 +108,7 @@ int Filler::turning_side(int triangle) {
     if (s.edge < 0 || !(s.longest > kAngleFloor * demands_.tolerance)) return -1;
     if (t_.points().size() > most_for_angles_) return -1;
     const auto& v = t_.vertices(triangle);
-    if (touches_pole({uv(v[0]), uv(v[1]), uv(v[2])})) return -1;
+    if (is_narrow_or_at_pole({uv(v[0]), uv(v[1]), uv(v[2])}, s.longest)) return -1;
     const double angle = normal_angle_bound(surface_, {uv(v[0]), uv(v[1]), uv(v[2])},
                                             {position(v[0]), position(v[1]), position(v[2])});
     return angle <= demands_.max_angle ? -1 : s.edge;

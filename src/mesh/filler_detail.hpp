@@ -51,7 +51,7 @@ private:
         int edge = -1;  // the longest one; -1 if it is part of the boundary
     };
     LongestSide longest_of_all(int triangle);
-    bool touches_pole(const std::array<Vec<2>, 3>& corner) const;
+    bool is_narrow_or_at_pole(const std::array<Vec<2>, 3>& corner, double longest) const;
     // The side to cut where normals turn too much.
     int turning_side(int triangle);
     // The longest side that is not part of the boundary, in space; its edge is -1 if there is none.

@@ -77,6 +77,20 @@ TEST(TessellateShapes, what_has_no_normal_is_reported) {
     }
 }
 
+TEST(TessellateShapes, sides_that_stay_draw_no_points_towards_them) {
+    for (const Model& m : {test::sphere({}, 1), frustum(2, 0, 3)}) {
+        const double tolerance = 0.01;
+        const auto t = tessellate(m, {.tolerance = tolerance, .max_angle = 2 * kDegree});
+        ASSERT_TRUE(t);
+        double shortest = tolerance;
+        for (const MeshEdge& e : edges(t->mesh))
+            shortest =
+                std::min(shortest, norm(t->mesh.points[std::size_t(e.a)] - t->mesh.points[std::size_t(e.b)]));
+        EXPECT_GT(shortest, tolerance / 100);
+        EXPECT_EQ(t->topology.non_manifold_edges + t->topology.degenerate_triangles, 0);
+    }
+}
+
 TEST(TessellateShapes, cones_of_normals_hold_all_of_them) {
     Random rng(8);
     for (int i = 0; i < cases(40); ++i) {

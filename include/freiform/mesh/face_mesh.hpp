@@ -41,6 +41,8 @@ struct FaceMesh {
 
 // Of the tolerance: where normals cannot be bounded, triangles as small as this are left as they are.
 inline constexpr double kAngleFloor = 1;
+// Likewise, as narrow as this along the surface.
+inline constexpr double kAngleWidth = 1.0 / 64;
 
 // Quotient of two weights of a piece, above which places are looked for where no triangles and chords are
 // small enough because parameters are doubles.
@@ -55,8 +57,9 @@ struct FaceDemands {
     // No side of a triangle inside the face is longer (sides on the boundary are given).
     double max_edge = std::numeric_limits<double>::infinity();
     // normal_angle_bound of every triangle (radians), except where a triangle's longest side lies on the
-    // boundary or is no longer than kAngleFloor times the tolerance, at poles, and beyond many times the
-    // points that the tolerance needs: those are left as they are.
+    // boundary or is no longer than kAngleFloor times the tolerance, where a triangle is no wider than
+    // kAngleWidth times the tolerance, at poles, and beyond many times the points that the tolerance needs:
+    // those are left as they are.
     double max_angle = std::numeric_limits<double>::infinity();
     // An aim: no box of points that the face is begun with is longer than this times its width in space.
     double max_aspect = std::numeric_limits<double>::infinity();
