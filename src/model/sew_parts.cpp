@@ -51,8 +51,10 @@ void Sewer::measure_extents() {
 }
 
 // Where ends of others lie along the edge, clear of its own ends; ends that belong together count once.
+// Within the tolerance of its own ends only those of edges that may lie between: others may become one vertex
+// with them, and the part between would be a loop.
 std::vector<double> Sewer::cuts_along(const EdgeTrace& trace, const PointTree& tree,
-                                      std::span<const Vec<3>> at) const {
+                                      std::span<const int> ends) const {
     std::vector<int> near;
     for (std::size_t k = 0; k + 1 < trace.at.size(); ++k) {
         Box<3> box;
@@ -66,10 +68,14 @@ std::vector<double> Sewer::cuts_along(const EdgeTrace& trace, const PointTree& t
     sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
     std::vector<EdgeFoot> feet;
-    for (const int v : near) {
-        const EdgeFoot foot = foot_on(trace, at[std::size_t(v)]);
+    for (const int i : near) {
+        const int v = ends[std::size_t(i)];
+        const EdgeFoot foot = foot_on(trace, m_.vertices[std::size_t(v)].point);
         const double room = std::min(norm(foot.point - trace.end(false)), norm(foot.point - trace.end(true)));
-        if (foot.distance <= tolerance_ && room > std::max(kExtents * foot.distance, 0x1p-40 * trace.extent))
+        const auto may_lie_between = [&](int e) { return extent_[std::size_t(e)] <= kShortest * room; };
+        if (foot.distance <= tolerance_ &&
+            room > std::max(kExtents * foot.distance, 0x1p-40 * trace.extent) &&
+            (room > tolerance_ || std::ranges::any_of(edges_at_.at(v), may_lie_between)))
             feet.push_back(foot);
     }
     sort(feet.begin(), feet.end(), [](const EdgeFoot& x, const EdgeFoot& y) { return x.t < y.t; });
@@ -101,12 +107,13 @@ std::vector<Part> Sewer::parts(bool cut) const {
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     std::vector<Vec<3>> at;
     for (const int v : ends) at.push_back(m_.vertices[std::size_t(v)].point);
-    const PointTree tree(at);
+    const PointTree tree(std::move(at));
     std::vector<std::vector<Part>> cuts(whole.size());
     parallel_for(whole.size(), 4, [&](std::size_t i) {
         const Part& p = whole[i];
         const EdgeTrace& trace = p.trace;
-        const std::vector<double> t = is_group(p.edge) ? std::vector<double>{} : cuts_along(trace, tree, at);
+        const std::vector<double> t =
+            is_group(p.edge) ? std::vector<double>{} : cuts_along(trace, tree, ends);
         for (std::size_t k = 0; k <= t.size(); ++k)
             cuts[i].push_back({p.edge,
                                trace_of(*trace.curve, {k == 0 ? trace.on.lo : t[k - 1],

@@ -57,7 +57,7 @@ private:
     }
     bool is_group(int e) const { return members_.contains(e); }
     std::vector<double> cuts_along(const EdgeTrace& trace, const PointTree& tree,
-                                   std::span<const Vec<3>> at) const;
+                                   std::span<const int> ends) const;
     std::vector<Part> parts(bool cut) const;
     std::vector<Pair> candidates(const std::vector<Part>& parts) const;
     bool is_seam(const Part& a, const Part& b, const Pair& p) const;

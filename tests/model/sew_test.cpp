@@ -224,6 +224,38 @@ TEST(Sew, one_long_edge_against_two_short_ones_is_cut) {
     EXPECT_EQ(t->topology.open_edges, 7);
 }
 
+TEST(Sew, corners_a_little_beside_each_other_make_no_loop) {
+    // The second face reaches over the first, so each has a corner on a side of the other.
+    for (const double over : {1e-8, 5e-6}) {
+        Patchwork p;
+        p.add({corner(0), corner(1), corner(2), corner(3)}, {{{}, {}, {}, {0.5}}});
+        p.add({Vec<3>{{-1, 0, 0}}, Vec<3>{{over, 0, 0}}, Vec<3>{{-1, 1, 0}}, Vec<3>{{over, 1, 0}}});
+        const Model loose = p.model();
+        const auto s = sew(loose, {.tolerance = 1e-5});
+        ASSERT_TRUE(s);
+        expect_sound(*s, loose);
+        EXPECT_EQ(s->joined.size(), 2u);
+        EXPECT_EQ(s->split, 1);
+        EXPECT_EQ(s->remaining.size(), 6u);
+        for (const Edge& e : s->model.edges) EXPECT_NE(e.start, e.end);
+        const auto t = tessellate(s->model, {.tolerance = 0.01});
+        EXPECT_TRUE(t->refused.empty());
+        EXPECT_EQ(t->topology.misoriented_edges + t->topology.non_manifold_edges, 0);
+    }
+}
+
+TEST(Sew, a_short_edge_at_the_end_of_a_long_one_is_joined) {
+    Patchwork p;
+    p.add({corner(0), corner(1), corner(2), corner(3)}, {{{}, {0.005}, {}, {}}});
+    p.add({corner(1), corner(1) + corner(1), corner(3), corner(3) + corner(1)});
+    const Model loose = p.model();
+    const auto s = sew(loose, {.tolerance = 0.02});
+    ASSERT_TRUE(s);
+    expect_sound(*s, loose);
+    EXPECT_EQ(s->joined.size(), 2u);
+    EXPECT_EQ(s->remaining.size(), 6u);
+}
+
 TEST(Sew, three_faces_on_one_edge_are_kept_and_named) {
     Patchwork p;
     p.add({corner(0), corner(1), corner(2), corner(3)});
