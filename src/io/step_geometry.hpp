@@ -124,4 +124,8 @@ Motion motion_from(const Placement& frame);
 CurveGeometry<3> moved(const CurveGeometry<3>& curve, const Motion& by);
 SurfaceGeometry moved(const SurfaceGeometry& surface, const Motion& by);
 
+// A surface along a spline that goes on with its first turn again gets that turn alone; whether it is one.
+// `close`: ends nearer than this are one.
+bool rewind(SurfaceGeometry& surface, double close);
+
 }  // namespace freiform::step

@@ -20,6 +20,7 @@
 // process of its own.
 #include "step_detail.hpp"
 #include "step_product.hpp"
+#include "step_written.hpp"
 
 #include <freiform/core/visit.hpp>
 #include <freiform/io/bpt.hpp>
@@ -39,36 +40,6 @@ using detail::Product;
 using detail::quoted;
 using detail::real;
 using detail::StepGeometry;
-
-// The parameter curve on a flat surface with linear parameters, as a curve in space.
-std::optional<CurveGeometry<3>> lifted(const CurveGeometry<2>& curve, const SurfaceGeometry& s) {
-    const auto* plane = std::get_if<Extrusion>(&s);
-    const auto* spline = std::get_if<Surface<Vec<3>>>(&s);
-    bool linear = plane && std::holds_alternative<Line<3>>(plane->profile);
-    if (spline && spline->net().flat().size() == 4 && spline->basis(0).degree() == 1 &&
-        spline->basis(1).degree() == 1) {
-        const auto p = spline->net().flat();
-        linear = p[3] - p[1] == p[2] - p[0];
-    }
-    if (!linear) return std::nullopt;
-    return visit_one(
-        [&](const auto& c) -> std::optional<CurveGeometry<3>> {
-            if constexpr (requires { c.net(); }) {
-                const auto at = [&](const Vec<2>& uv) { return jet<0>(s, uv.c).value(); };
-                auto net = in_space(c).net();
-                for (std::size_t i = 0; i < c.net().flat().size(); ++i) {
-                    const auto& q = c.net().flat()[i];
-                    if constexpr (requires { q.weight(); })
-                        net.flat()[i] = weighted(at(project(q)), q.weight());
-                    else
-                        net.flat()[i] = at(q);
-                }
-                return decltype(in_space(c))::trusted(c.bases(), std::move(net));
-            }
-            return std::nullopt;
-        },
-        curve);
-}
 
 class StepModel {
 public:
@@ -119,7 +90,7 @@ public:
             if (!e.curve)
                 return refuse(RefusalKind::unsupported, text("edges[", i, "]"),
                               "has neither a curve nor a face");
-            const auto curve = geometry_.curve(*e.curve);
+            const auto curve = geometry_.curve(detail::part_of(e));
             if (!curve) return refuse_within(text("edges[", i, "]"), curve.error());
             wires.push_back(edge_curve(e, *curve));
         }
@@ -212,18 +183,20 @@ private:
         return n > 0 && n <= visit_one(points, edge) && visit_one(points, surface) > 0;
     }
 
-    // The curve in space, or the image of the parameter curve with that beside it.
+    // The curve in space, or the image of the parameter curve; that is beside it, but without `of_surface`.
     Result<int> curve_of(const Edge& e, const Coedge& c, const SurfaceGeometry& surface, int of_surface) {
-        if (e.curve && is_worth_writing(c.curve, *e.curve, surface))
-            return geometry_.surface_curve(*e.curve, c.curve, of_surface);
-        if (const auto shape = e.curve ? e.curve : lifted(c.curve, surface)) return geometry_.curve(*shape);
         const auto parameters = parameter_spline(c.curve, e.range);
+        if (e.curve && parameters && of_surface > 0 && is_worth_writing(c.curve, *e.curve, surface))
+            return geometry_.surface_curve(detail::part_of(e), *parameters, of_surface);
+        if (e.curve) return geometry_.curve(detail::part_of(e));
         if (!parameters) return std::unexpected(parameters.error());
+        if (const auto shape = detail::lifted(*parameters, surface)) return geometry_.curve(*shape);
         const auto image = image_curve(surface, *parameters);
         if (!image)
             return refuse(RefusalKind::unsupported, "",
                           "has no curve in space, and " + image.error().message);
-        return geometry_.surface_curve(*image, *parameters, of_surface);
+        return of_surface > 0 ? geometry_.surface_curve(*image, *parameters, of_surface)
+                              : geometry_.curve(*image);
     }
 
     Result<int> edge(const Coedge& c, const SurfaceGeometry& surface, int of_surface) {
@@ -246,7 +219,8 @@ private:
 
     Result<int> face(const Face& f) {
         if (f.loops.empty()) return refuse(RefusalKind::unsupported, "loops", "a face without boundary");
-        const auto surface = geometry_.surface(f.surface);
+        const auto once = detail::one_turn(m_, f);
+        const auto surface = geometry_.surface(once.value_or(f.surface));
         if (!surface) return surface;
         std::vector<int> bounds;
         for (const Loop& l : f.loops) {
@@ -258,7 +232,7 @@ private:
                     pole = e.start;
                     continue;
                 }
-                const auto id = edge(c, f.surface, *surface);
+                const auto id = edge(c, f.surface, once ? 0 : *surface);
                 if (!id) return id;
                 around.push_back(e_.add(text("ORIENTED_EDGE('',*,*,#", *id, c.reversed ? ",.F.)" : ",.T.)")));
             }

@@ -1,0 +1,110 @@
+// Models read from STEP files, written and read once more: what a file says of parts of closed curves and
+// surfaces.
+#include <freiform/io/step.hpp>
+#include <freiform/io/step_read.hpp>
+#include <freiform/model/tessellate.hpp>
+
+#include <support/refusal.hpp>
+#include <support/step_measures.hpp>
+#include <support/step_polygons.hpp>
+
+namespace freiform::test {
+namespace {
+
+Model read_again(const Model& m) {
+    const Model again = must(read_step(must(write_step(Document{"mm", {{"", m, {}}}}))));
+    EXPECT_TRUE(again.refused.empty()) << again.refused[0].where << ": " << again.refused[0].message;
+    EXPECT_EQ(again.faces.size(), m.faces.size());
+    return again;
+}
+
+// A plane face inside of one edge, on a polyline through the points with the parameters 0, 1, .. .
+Model face_in(const std::vector<Corner>& points, Corner vertex) {
+    std::string s =
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+        "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#7,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
+        "#14=EDGE_LOOP('',(#15));\n#15=ORIENTED_EDGE('',*,*,#16,.T.);\n#16=EDGE_CURVE('',#17,#17,#18,.T.);\n";
+    std::string refs, counts, knots;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const char* comma = i > 0 ? "," : "";
+        s += text("#", 100 + i, "=CARTESIAN_POINT('',(", points[i].x, ",", points[i].y, ",0.));\n");
+        refs += text(comma, "#", 100 + i), knots += text(comma, i, ".");
+        counts += text(comma, i == 0 || i + 1 == points.size() ? 2 : 1);
+    }
+    s += text("#17=VERTEX_POINT('',#19);\n#19=CARTESIAN_POINT('',(", vertex.x, ",", vertex.y,
+              ",0.));\n#18=B_SPLINE_CURVE_WITH_KNOTS('',1,(", refs, "),.UNSPECIFIED.,.F.,.F.,(", counts,
+              "),(", knots, "),.UNSPECIFIED.);\n");
+    return must(read_step(flat_file(s)));
+}
+
+TEST(StepAgain, edges_are_the_parts_of_their_curves_that_they_were) {
+    // Round twice, from the middle on.
+    Model m = face_in({{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}, {10, 10});
+    ASSERT_EQ(m.edges.size(), 1u);
+    EXPECT_EQ(m.edges[0].range.lo, 2);
+    EXPECT_EQ(m.edges[0].range.hi, 6);
+    EXPECT_NEAR(area_of(read_again(m)), 100, 1e-9);
+    // Open, crosses itself at its vertex.
+    auto& edge = m.edges[0];
+    const auto basis = must(BSplineBasis::clamped_uniform(1, 6));
+    edge.curve = must(Curve<Vec<3>>::make(
+        {basis},
+        Net<1, Vec<3>>(
+            {6}, {{{10, -5, 0}}, {{10, 10, 0}}, {{0, 10, 0}}, {{0, 0, 0}}, {{10, 0, 0}}, {{15, 0, 0}}})));
+    const Interval on = basis.domain();
+    edge.range = {on.lo + on.length() / 15, on.lo + on.length() * 4 / 5};
+    edge.start = edge.end = 0;
+    m.vertices[0].point = {{10, 0, 0}};
+    m.faces[0].loops[0].coedges[0].curve = must(Curve<Vec<2>>::make(
+        {basis}, Net<1, Vec<2>>({6}, {{{10, -5}}, {{10, 10}}, {{0, 10}}, {{0, 0}}, {{10, 0}}, {{15, 0}}})));
+    EXPECT_NEAR(area_of(m), 100, 1e-9);
+    EXPECT_NEAR(area_of(read_again(m)), 100, 1e-9);
+}
+
+// The sides beyond two corners of a square tube, over the place where its surface begins.
+TEST(StepAgain, surfaces_are_written_with_one_turn) {
+    std::string s =
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+        "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
+        "#14=EDGE_LOOP('',(#31,#32,#33,#34));\n#31=ORIENTED_EDGE('',*,*,#41,.T.);\n"
+        "#32=ORIENTED_EDGE('',*,*,#42,.T.);\n#33=ORIENTED_EDGE('',*,*,#43,.F.);\n"
+        "#34=ORIENTED_EDGE('',*,*,#44,.F.);\n#41=EDGE_CURVE('',#51,#52,#61,.T.);\n"
+        "#42=EDGE_CURVE('',#52,#54,#62,.T.);\n#43=EDGE_CURVE('',#53,#54,#63,.T.);\n"
+        "#44=EDGE_CURVE('',#51,#53,#64,.T.);\n#65=DIRECTION('',(0.,0.,1.));\n#66=VECTOR('',#65,1.);\n"
+        "#51=VERTEX_POINT('',#106);\n#52=VERTEX_POINT('',#102);\n#53=VERTEX_POINT('',#107);\n"
+        "#54=VERTEX_POINT('',#103);\n#62=LINE('',#102,#66);\n#64=LINE('',#106,#66);\n";
+    constexpr double kSquare[][2] = {{10, 0}, {0, 10}, {-10, 0}, {0, -10}, {10, 0}};
+    for (int i = 0; i < 10; ++i)
+        s += text("#", 100 + i, "=CARTESIAN_POINT('',(", kSquare[i / 2][0], ",", kSquare[i / 2][1], ",",
+                  i % 2, "));\n");
+    for (int k = 0; k < 2; ++k)
+        s += text("#", 61 + 2 * k, "=B_SPLINE_CURVE_WITH_KNOTS('',1,(#", 106 + k, ",#", 100 + k, ",#",
+                  102 + k, "),.UNSPECIFIED.,.F.,.F.,(2,1,2),(0.,1.,2.),.UNSPECIFIED.);\n");
+    s +=
+        "#9=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,((#100,#101),(#102,#103),(#104,#105),(#106,#107),(#108,#109)),"
+        ".UNSPECIFIED.,.T.,.F.,.F.,(2,1,1,1,2),(2,2),(0.,1.,2.,3.,4.),(0.,1.),.UNSPECIFIED.);\n";
+    Model m = must(read_step(flat_file(s)));
+    ASSERT_EQ(m.faces.size(), 1u);
+    const double area = 20 * std::sqrt(2.0);
+    auto& surface = std::get<Surface<Vec<3>>>(m.faces[0].surface);
+    EXPECT_EQ(surface.domain()[0], (Interval{0, 8})) << "unwound";
+    const auto expect_again = [&] {
+        EXPECT_NEAR(area_of(m), area, 1e-9);
+        const Model again = must(read_step(must(write_step(Document{"mm", {{"", m, {}}}}))));
+        ASSERT_EQ(again.faces.size(), 1u);
+        EXPECT_NEAR(area_of(again), area, 1e-9);
+        EXPECT_EQ(surface.net().flat()[3], std::get<Surface<Vec<3>>>(again.faces[0].surface).net().flat()[3]);
+    };
+    expect_again();
+    // Not clamped, and a quarter longer than one turn.
+    std::vector<Vec<3>> net;
+    for (int i = 0; i < 12; ++i)
+        net.push_back({{kSquare[i / 2 % 4][0], kSquare[i / 2 % 4][1], double(i % 2)}});
+    surface = must(Surface<Vec<3>>::make(
+        {must(BSplineBasis::make(1, {-1, 0, 1, 2, 3, 4, 5, 5.5})), must(BSplineBasis::make(1, {0, 0, 1, 1}))},
+        Net<2, Vec<3>>({6, 2}, net)));
+    expect_again();
+}
+
+}  // namespace
+}  // namespace freiform::test
