@@ -222,8 +222,13 @@ private:
         const auto once = detail::one_turn(m_, f);
         const auto surface = geometry_.surface(once.value_or(f.surface));
         if (!surface) return surface;
-        std::vector<int> bounds;
-        for (const Loop& l : f.loops) {
+        std::vector<int> bounds, seams;
+        const std::vector<Loop> loops = detail::without_seams(m_, f, seams);
+        for (const int i : seams) edges_[std::size_t(i)] = -1;
+        if (loops.empty())
+            return refuse(RefusalKind::unsupported, "loops",
+                          "are seams alone, which have no curves in space");
+        for (const Loop& l : loops) {
             std::vector<int> around;
             int pole = -1;
             for (const Coedge& c : l.coedges) {
@@ -238,7 +243,7 @@ private:
             }
             const int loop = around.empty() ? e_.add(text("VERTEX_LOOP('',#", vertex(pole), ")"))
                                             : e_.add(text("EDGE_LOOP('',", Entities::refs(around), ")"));
-            bounds.push_back(e_.add(text(f.loops.size() == 1 ? "FACE_OUTER_BOUND('',#" : "FACE_BOUND('',#",
+            bounds.push_back(e_.add(text(loops.size() == 1 ? "FACE_OUTER_BOUND('',#" : "FACE_BOUND('',#",
                                          loop, f.reversed ? ",.F.)" : ",.T.)")));
         }
         return e_.add(text("ADVANCED_FACE(", quoted(f.name), ",", Entities::refs(bounds), ",#", *surface,

@@ -6,6 +6,12 @@
 // A file gets one turn again, as it had, and those who read it will do the same; parameter curves, which run
 // beyond that turn, are left out.
 //
+// Seams. Where a face winds around its surface, readers join its loops along an edge that is no parameter line if
+// their vertices are not opposite each other (step_seams.cpp): nothing says what its curve in space is. Without
+// it there are two loops again, as in the file that was read, and whoever reads them will join them. From the
+// use of an edge on, such a loop goes on behind its other use: that is a permutation of the coedges, each cycle
+// of which is a loop.
+//
 // Why not the part of the surface that the face covers? Where the face goes around it, its seam need not be a
 // parameter line, and the part would be more than a turn again.
 #include "step_written.hpp"
@@ -66,6 +72,35 @@ std::optional<SurfaceGeometry> one_turn(const Model& m, const Face& f) {
     SurfaceGeometry once = f.surface;
     if (!step::rewind(once, close)) return std::nullopt;
     return once;
+}
+
+std::vector<Loop> without_seams(const Model& m, const Face& f, std::vector<int>& left_out) {
+    std::vector<Loop> out, poles;
+    for (const Loop& l : f.loops) {
+        const std::size_t n = l.coedges.size();
+        std::vector<std::size_t> other(n, n);  // the other use of a seam; n: no seam
+        for (std::size_t i = 0; i < n; ++i) {
+            const Coedge& c = l.coedges[i];
+            const Edge& e = m.edges[std::size_t(c.edge)];
+            for (std::size_t j = 0; j < n && !e.curve && !e.degenerate; ++j)
+                if (l.coedges[j].edge == c.edge && l.coedges[j].reversed != c.reversed) other[i] = j;
+            if (other[i] < n) left_out.push_back(c.edge);
+        }
+        std::vector<char> done(n, 0);
+        for (std::size_t i = 0; i < n; ++i) {
+            Loop part;
+            bool is_pole = true;
+            for (std::size_t k = i; !done[k]; k = ((other[k] < n ? other[k] : k) + 1) % n) {
+                done[k] = 1;
+                if (other[k] < n) continue;
+                part.coedges.push_back(l.coedges[k]);
+                is_pole = is_pole && m.edges[std::size_t(l.coedges[k].edge)].degenerate;
+            }
+            if (!part.coedges.empty()) (is_pole ? poles : out).push_back(std::move(part));
+        }
+    }
+    if (out.empty()) out.swap(poles);
+    return out;
 }
 
 }  // namespace freiform::detail

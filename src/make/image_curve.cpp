@@ -253,7 +253,8 @@ Result<CurveGeometry<3>> image_curve(const SurfaceGeometry& surface, const Curve
                           })
                 return ImageMaker(s, c).run();
             else
-                return refuse(RefusalKind::unsupported, "", "images of splines on spline surfaces are known");
+                return refuse(RefusalKind::unsupported, "",
+                              "its parameter curve can be put into space on spline surfaces alone");
         },
         surface, curve);
 }

@@ -5,6 +5,7 @@
 #include <freiform/model/tessellate.hpp>
 
 #include <support/refusal.hpp>
+#include <support/solids.hpp>
 #include <support/step_measures.hpp>
 #include <support/step_polygons.hpp>
 
@@ -104,6 +105,46 @@ TEST(StepAgain, surfaces_are_written_with_one_turn) {
         {must(BSplineBasis::make(1, {-1, 0, 1, 2, 3, 4, 5, 5.5})), must(BSplineBasis::make(1, {0, 0, 1, 1}))},
         Net<2, Vec<3>>({6, 2}, net)));
     expect_again();
+}
+
+// A cylinder, the vertices of whose rims are not opposite each other: the seam between them is a screw line,
+// which has no curve in space.
+TEST(StepAgain, seams_between_rims_are_left_to_those_who_read) {
+    const Model m = must(read_step(flat_file(
+        "#8=ADVANCED_BREP_SHAPE_REPRESENTATION('',(#10),#1);\n#10=MANIFOLD_SOLID_BREP('',#11);\n"
+        "#11=CLOSED_SHELL('',(#12,#13,#14));\n#12=ADVANCED_FACE('',(#15,#16),#9,.T.);\n"
+        "#13=ADVANCED_FACE('',(#17),#7,.F.);\n#14=ADVANCED_FACE('',(#18),#19,.T.);\n"
+        "#9=CYLINDRICAL_SURFACE('',#5,1.);\n#19=PLANE('',#22);\n#20=CARTESIAN_POINT('',(0.,0.,2.));\n"
+        "#22=AXIS2_PLACEMENT_3D('',#20,$,$);\n#23=CIRCLE('',#5,1.);\n#24=CIRCLE('',#22,1.);\n"
+        "#25=CARTESIAN_POINT('',(1.,0.,0.));\n#26=CARTESIAN_POINT('',(0.6,0.8,2.));\n"
+        "#27=VERTEX_POINT('',#25);\n#28=VERTEX_POINT('',#26);\n#29=EDGE_CURVE('',#27,#27,#23,.T.);\n"
+        "#30=EDGE_CURVE('',#28,#28,#24,.T.);\n#31=ORIENTED_EDGE('',*,*,#29,.T.);\n"
+        "#32=ORIENTED_EDGE('',*,*,#29,.F.);\n#33=ORIENTED_EDGE('',*,*,#30,.T.);\n"
+        "#34=ORIENTED_EDGE('',*,*,#30,.F.);\n#35=EDGE_LOOP('',(#31));\n#36=EDGE_LOOP('',(#32));\n"
+        "#37=EDGE_LOOP('',(#33));\n#38=EDGE_LOOP('',(#34));\n#15=FACE_BOUND('',#35,.T.);\n"
+        "#16=FACE_BOUND('',#38,.T.);\n#17=FACE_OUTER_BOUND('',#36,.T.);\n"
+        "#18=FACE_OUTER_BOUND('',#37,.T.);\n")));
+    ASSERT_EQ(m.faces.size(), 3u);
+    EXPECT_EQ(m.faces[0].loops.size(), 1u);
+    const auto volume = [](const Model& solid) {
+        EXPECT_TRUE(solid.bodies.at(0).solid);
+        const auto t = must(tessellate(solid, {.tolerance = 1e-3}));
+        EXPECT_EQ(summary(solid).open_edges, 0);
+        return signed_volume(t.mesh);
+    };
+    EXPECT_NEAR(volume(m), 2 * kPi, 0.01);
+    EXPECT_NEAR(volume(read_again(m)), volume(m), 1e-12);
+    // Two screw lines that no edge has in common cannot be left out.
+    Model slit = m;
+    for (Coedge& c : slit.faces[0].loops[0].coedges)
+        if (const Edge e = slit.edges[std::size_t(c.edge)]; c.reversed && !e.curve) {
+            c.edge = int(slit.edges.size());
+            slit.edges.push_back(e);
+        }
+    const auto refused = write_step(Document{"mm", {{"", slit, {}}}});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("on spline surfaces alone"), std::string::npos)
+        << refused.error().message;
 }
 
 }  // namespace
