@@ -30,9 +30,15 @@ public:
                                solid, "))REPRESENTATION_CONTEXT('',''))"));
     }
 
+    // Of one product, or those who read the file make what two of them have in common twice.
     void add(std::string_view representation, std::string_view name, const std::vector<int>& items) {
         if (items.empty()) return;
         const int shape = e_.add(text(representation, "('',", Entities::refs(items), ",#", context_, ")"));
+        if (first_ != 0) {
+            e_.add(text("SHAPE_REPRESENTATION_RELATIONSHIP('','',#", first_, ",#", shape, ")"));
+            return;
+        }
+        first_ = shape;
         const int of_product = e_.add(text("PRODUCT_CONTEXT('',#", application_, ",'mechanical')"));
         const int product = e_.add(
             text("PRODUCT(", detail::quoted(name), ",", detail::quoted(name), ",'',(#", of_product, "))"));
@@ -70,7 +76,7 @@ private:
     }
 
     Entities& e_;
-    int application_ = 0, context_ = 0;
+    int application_ = 0, context_ = 0, first_ = 0;
 };
 
 }  // namespace freiform::detail

@@ -10,7 +10,8 @@
 // no entity.
 //
 // Parametrisation. Extrusions and revolutions have the parameters that the standard gives them, up to scale;
-// edges are trimmed by their vertices. So conics may be turned to their principal axes.
+// edges are trimmed by their vertices. So conics may be turned to their principal axes. Of splines that go on
+// beyond an edge only its part is written, of surfaces with several turns only one (step_written.cpp).
 //
 // Trimmed surfaces. Loops are turned as above first. Their edges have parameter curves alone: what these are
 // in space is found exactly but for rounding (make/image_curve.hpp), and both are written.

@@ -147,5 +147,19 @@ TEST(StepAgain, seams_between_rims_are_left_to_those_who_read) {
         << refused.error().message;
 }
 
+// A face in a solid and in a sheet.
+TEST(StepAgain, bodies_share_faces) {
+    Model m = sphere({}, 1);
+    m.bodies.push_back(m.bodies.at(0));
+    m.bodies[1].solid = false;
+    m.bodies[1].shells = {int(m.shells.size())};
+    m.shells.push_back(m.shells.at(0));
+    const ModelSummary all = summary(m), again = summary(read_again(m));
+    EXPECT_EQ(again.bodies, 2);
+    EXPECT_EQ(again.solids, 1);
+    EXPECT_EQ(again.shells, 2);
+    EXPECT_EQ(again.vertices, all.vertices);
+}
+
 }  // namespace
 }  // namespace freiform::test
