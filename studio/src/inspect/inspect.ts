@@ -124,7 +124,7 @@ class Inspector implements Shown {
         last = { name, source, refused };
         this.source = source;
         this.refused = [...refused, ...leftOut.map((x) => ({ kind: "left out", ...x }))];
-        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], deviations: undefined, continuity: undefined };
+        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], edges: [], deviations: undefined, continuity: undefined };
         this.name.textContent = name;
         const bounds = ff().run("bounds", source, { }).json as { box?: { min: number[]; max: number[] } | null };
         this.box = { lower: [...(bounds.box?.min ?? [-1, -1, -1]), 0].slice(0, 3), upper: [...(bounds.box?.max ?? [1, 1, 1]), 0].slice(0, 3) };
@@ -158,12 +158,13 @@ class Inspector implements Shown {
         if (model.solid.length === 0) { this.draw(); this.tell(0); return; }
         const options: MeshOptions = { tolerance: this.accuracy(), maxTriangles: 4_000_000 };
         const began = performance.now();
-        const meshing = mesh(this.source, options, this.showing.colouring === "deviation", (part) => { this.progress.value = part; });
+        const meshing = mesh(this.source, options, { deviations: this.showing.colouring === "deviation", edges: this.size }, (part) => { this.progress.value = part; });
         this.meshing = meshing;
         this.progress.hidden = this.stop.hidden = false;
-        meshing.done.then(({ meshes, deviations }) => {
+        meshing.done.then(({ meshes, edges, deviations }) => {
             if (this.gone || this.model !== model) return;
             model.meshes = meshes;
+            model.edges = edges ?? [];
             model.coarse = undefined;
             model.deviations = deviations;
             this.draw();
@@ -176,7 +177,7 @@ class Inspector implements Shown {
 
     /** Another level of detail: what cannot be meshed so coarsely is always shown as it is. */
     private coarsen(model: Model, options: MeshOptions): void {
-        const meshing = mesh(this.source, { ...options, tolerance: kCoarser * options.tolerance }, false, () => undefined);
+        const meshing = mesh(this.source, { ...options, tolerance: kCoarser * options.tolerance }, {}, () => undefined);
         this.coarsening?.cancel();
         this.coarsening = meshing;
         meshing.done.then(({ meshes }) => {

@@ -5,6 +5,7 @@ import type { Mesh as Object3 } from "three";
 import { comb, curve, dots, isoline, lattice, net, polygon, steps } from "../explore/draw";
 import { ff, type DocumentJson, type ObjectJson } from "../kernel/module";
 import type { Look, Space } from "../views/space";
+import type { Style } from "../views/view";
 import { painted, range, type Scale } from "./colours";
 
 export type Colouring = "plain" | "faces" | "gauss" | "mean" | "bound" | "deviation";
@@ -25,7 +26,7 @@ export interface Showing {
     chosen: { shape: number; face: number } | undefined;
 }
 
-export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
+export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; /** Of each of `solid` what edges it has. */ edges: readonly (readonly Float64Array[])[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
 
 type Edge = `${"u" | "v"} ${"start" | "end"}`;
 /** What the module says about joints of surfaces, and edges and knots inside of objects. */
@@ -118,7 +119,8 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
         if (fine) space.stands(space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, colours, origin: mesh.origin }, { look: showing.look }), fine);
     });
     for (const shape of model.shapes) lines(space, shape, showing);
-    if (showing.joints && model.continuity) joints(space, model.shapes, model.continuity);
+    model.solid.forEach((_, i) => { if (showing.knots || showing.isolines > 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
+    if (showing.joints && model.continuity) joints(space, model, model.continuity);
     if (showing.plane) section(space, model.document, showing.plane);
     return { objects, scale };
 }
@@ -141,30 +143,33 @@ function lines(space: Space, shape: Shape, showing: Showing): void {
             if (showing.isolines > 0) for (const k of steps(lo, hi, showing.isolines + 1)) isoline(space, shape, axis, k, { colour: "ink", width: 1 });
         }
         if (showing.normals) normals(space, shape);
-    } else if (shape.type === "model" && (showing.knots || showing.isolines > 0)) {
-        for (const edge of shape.polylines(1e-3 * extent(net0(shape)))) space.line({ at: edge.points, dimension: 3 }, { colour: "ink", width: 1.4 });
     }
 }
 
+/** Many lines as one object: a model has thousands. */
+function edges(space: Space, all: readonly Float64Array[], style: Style): void {
+    const ends: number[] = [];
+    for (const line of all) for (let k = 3; k < line.length; k += 3) ends.push(...line.subarray(k - 3, k + 3));
+    space.segments(ends, style);
+}
+
 /** Lines where faces meet, in the colour of the order that they reach. */
-function joints(space: Space, shapes: readonly Shape[], found: Continuity): void {
-    const style = (order: number): { colour: string; width: number } => ({ colour: order < 1 ? "hot" : order < 2 ? "gold" : "aux", width: 3.5 });
+function joints(space: Space, { shapes, solid, edges: all }: Model, found: Continuity): void {
+    const style = (order: number): Style => ({ colour: order < 1 ? "hot" : order < 2 ? "gold" : "aux", width: 3.5 });
     for (const { first, first_edge: edge, g_order: order } of found.joints) {
         const shape = shapes[first];
         if (shape?.type !== "surface" || !edge) continue;
         const axis = edge.startsWith("u") ? 0 : 1;
         isoline(space, shape, axis, shape.domain[axis]?.[edge.endsWith("start") ? 0 : 1] ?? 0, style(order));
     }
-    found.objects.forEach(({ edges = [], axes = [] }, i) => {
+    found.objects.forEach(({ edges: meeting = [], axes = [] }, i) => {
         const shape = shapes[i];
         if (!shape) return;
-        const lines = edges.length > 0 ? shape.polylines(1e-3 * extent(net0(shape))) : [];
-        for (const { edge, g_order: order } of edges) { const line = lines[edge]; if (line) space.line({ at: line.points, dimension: 3 }, style(order)); }
+        const own = all[solid.indexOf(shape)] ?? [];
+        for (const order of new Set(meeting.map((x) => x.g_order))) edges(space, meeting.flatMap((x) => (x.g_order === order ? own[x.edge] ?? [] : [])), style(order));
         if (shape.type === "surface") axes.forEach((knots, axis) => { for (const { at, c_order: order } of knots) isoline(space, shape, axis === 0 ? 0 : 1, at, style(order)); });
     });
 }
-
-const net0 = (shape: Shape): number[][] => { try { return net(shape); } catch { return [[0, 0, 0], [1, 1, 1]]; } };
 
 function normals(space: Space, shape: Shape): void {
     if (shape.dimension !== 3) return;

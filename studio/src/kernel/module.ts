@@ -49,12 +49,16 @@ export function construct(shape: Shape, at: readonly number[]): Construction["le
 
 /** What a worker is asked, and what it says. */
 export type Task =
-    | { readonly kind: "mesh"; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly deviations: boolean }
+    | { readonly kind: "mesh"; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly also: Also }
     | { readonly kind: "read"; readonly source: Source }
     | { readonly kind: "run"; readonly command: CommandName; readonly source: Source; readonly options: Options };
 export interface Order { readonly module: WebAssembly.Module; readonly task: Task }
+/** What is found with the triangles: distances from them, edges of models (with the size of the whole document). */
+export interface Also { readonly deviations?: boolean; readonly edges?: number }
 export interface Meshed {
     readonly meshes: readonly Mesh[];
+    /** If asked for: of each model all of its edges, as points after each other; of other shapes none. */
+    readonly edges: readonly (readonly Float64Array[])[] | undefined;
     /** If asked for: the distance from the middle of each triangle to its shape, as the nearest point there was found. */
     readonly deviations: readonly Float64Array[] | undefined;
 }
@@ -91,8 +95,8 @@ function beside<T>(task: Task, progress: (part: number) => void): Beside<T> {
 }
 
 /** Triangles of everything in a document that has a surface, computed beside the page. */
-export const mesh = (source: Source, options: Omit<MeshOptions, "progress">, deviations: boolean, progress: (part: number) => void): Beside<Meshed> =>
-    beside({ kind: "mesh", source, options, deviations }, progress);
+export const mesh = (source: Source, options: Omit<MeshOptions, "progress">, also: Also, progress: (part: number) => void): Beside<Meshed> =>
+    beside({ kind: "mesh", source, options, also }, progress);
 
 /** What a file holds, read beside the page. */
 export const read = (source: Source): Beside<Understood> => beside({ kind: "read", source }, () => undefined);

@@ -1,6 +1,7 @@
 // Tessellation beside the page: large models leave it fluid, and cancelling is the end of the worker.
 
 import { load, type Mesh, type Shape } from "freiform";
+import { edges } from "./edges";
 import type { Meshed, News, Order, Understood } from "./module";
 
 const tell = (news: News, transfer: Transferable[] = []): void => { postMessage(news, { transfer }); };
@@ -33,19 +34,20 @@ async function work({ module, task }: Order): Promise<void> {
         tell({ kind: "done", result });
         return;
     }
-    const { source, options, deviations } = task;
+    const { source, options, also: { deviations, edges: size } } = task;
     const shapes = ff.document(source).shapes.filter((shape) => kMeshed.has(shape.type));
-    const meshes: Mesh[] = [], distances: Float64Array[] = [];
+    const meshes: Mesh[] = [], distances: Float64Array[] = [], lines: Float64Array[][] = [];
     const share = deviations ? 0.3 : 1;
     for (const [i, shape] of shapes.entries()) {
         const at = (part: number): void => { tell({ kind: "progress", part: (i + part) / shapes.length }); };
         const mesh = shape.mesh({ ...options, progress: (part) => { at(share * part); } });
         meshes.push(mesh);
+        if (size !== undefined) lines.push(edges(shape, mesh, size));
         if (deviations) distances.push(asked(shape, mesh, (part) => { at(share + (1 - share) * part); }));
     }
     const buffers = new Set<ArrayBufferLike>();
     for (const m of meshes) for (const a of [m.positions, m.normals, m.uvs, m.indices]) buffers.add(a.buffer);
-    const result: Meshed = { meshes, deviations: deviations ? distances : undefined };
+    const result: Meshed = { meshes, edges: size === undefined ? undefined : lines, deviations: deviations ? distances : undefined };
     tell({ kind: "done", result }, [...buffers] as ArrayBuffer[]);
 }
 

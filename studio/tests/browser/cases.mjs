@@ -65,6 +65,37 @@ async function dropFromDisk(page, x, y, files) {
     await session.detach();
 }
 
+/** Which pixels of the picture in space are drawn: "1" or "0" for each. */
+const ink = (page) => page.evaluate(() => {
+    const from = document.querySelector(".view.space canvas"), to = document.createElement("canvas");
+    to.width = from.width;
+    to.height = from.height;
+    const pen = to.getContext("2d");
+    pen.drawImage(from, 0, 0);
+    const { data } = pen.getImageData(0, 0, to.width, to.height);
+    let all = "";
+    for (let i = 3; i < data.length; i += 4) all += data[i] > 64 ? "1" : "0";
+    return all;
+});
+/** How many pixels two pictures differ in, and how many are drawn. */
+const differing = (a, b) => { let n = Math.abs(a.length - b.length); for (let i = 0; i < a.length; ++i) n += a[i] === b[i] ? 0 : 1; return n; };
+const drawn = (a) => a.replaceAll("0", "").length;
+
+/** A STEP file of one circle and no faces. */
+const ring = (radius) => `ISO-10303-21;
+HEADER; FILE_DESCRIPTION((''),'2;1'); FILE_NAME('A','',(''),(''),'','',''); FILE_SCHEMA(('AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }')); ENDSEC;
+DATA;
+#1=CARTESIAN_POINT('',(0.,0.,0.)); #2=DIRECTION('',(0.,0.,1.)); #3=DIRECTION('',(1.,0.,0.)); #4=AXIS2_PLACEMENT_3D('',#1,#2,#3); #5=CIRCLE('',#4,${radius});
+#6=APPLICATION_CONTEXT('managed model based 3d engineering'); #8=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.)); #9=(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.));
+#10=(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT()); #11=UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-09),#8,'distance_accuracy_value','');
+#12=(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#11))GLOBAL_UNIT_ASSIGNED_CONTEXT((#8,#9,#10))REPRESENTATION_CONTEXT('',''));
+#13=GEOMETRIC_CURVE_SET('',(#5)); #14=GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION('',(#13),#12);
+#15=PRODUCT_CONTEXT('',#6,'mechanical'); #16=PRODUCT('A','A','',(#15)); #18=PRODUCT_DEFINITION_CONTEXT('part definition',#6,'design');
+#19=PRODUCT_DEFINITION_FORMATION('','',#16); #20=PRODUCT_DEFINITION('design','',#19,#18); #21=PRODUCT_DEFINITION_SHAPE('','',#20); #22=SHAPE_DEFINITION_REPRESENTATION(#21,#14);
+ENDSEC;
+END-ISO-10303-21;
+`;
+
 async function axe(page) {
     await page.evaluate(readFileSync(fileURLToPath(new URL("../../node_modules/axe-core/axe.min.js", import.meta.url)), "utf8"));
     const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
@@ -576,6 +607,21 @@ export const cases = [
         await settle(page);
         await picture("level-fine");
         assert.equal(await page.evaluate(() => document.querySelector(".view.space").dataset.triangles), many, "the count is of what is looked at");
+    }],
+    ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await page.getByLabel("Knots", { exact: true }).check();
+        const pictures = [];
+        for (const radius of ["1.", "0.0009765625", "1048576."]) {
+            await drop(page, ".stage", `ring${radius}.step`, ring(radius));
+            await page.waitForSelector(`text=ring${radius}.step`);
+            await until(page, () => document.querySelector("progress").hidden && document.querySelector(".view.space").dataset.triangles === "0");
+            await settle(page);
+            await picture(`ring-${radius}`);
+            pictures.push(await ink(page));
+        }
+        assert.ok(drawn(pictures[0]) > 500, "a circle is seen");
+        for (const other of pictures.slice(1)) assert.ok(differing(pictures[0], other) < 20, `${differing(pictures[0], other)} pixels differ of ${drawn(pictures[0])}`);
     }],
     ["freiform view: a STEP file, read by the program, with its faces and what the slider does", async ({ page, url, view, scratch, picture }) => {
         await page.goto(url);
