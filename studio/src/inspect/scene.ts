@@ -119,7 +119,8 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
         if (fine) space.stands(space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, colours, origin: mesh.origin }, { look: showing.look }), fine);
     });
     for (const shape of model.shapes) lines(space, shape, showing);
-    model.solid.forEach((_, i) => { if (showing.knots || showing.isolines > 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
+    // Of what has no triangles the edges are all that there is to see.
+    model.meshes.forEach((mesh, i) => { if (showing.knots || showing.isolines > 0 || mesh.indices.length === 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
     if (showing.joints && model.continuity) joints(space, model, model.continuity);
     if (showing.plane) section(space, model.document, showing.plane);
     return { objects, scale };

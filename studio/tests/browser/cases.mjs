@@ -608,6 +608,15 @@ export const cases = [
         await picture("level-fine");
         assert.equal(await page.evaluate(() => document.querySelector(".view.space").dataset.triangles), many, "the count is of what is looked at");
     }],
+    ["inspect: a model without faces is drawn as its edges", async ({ page, url, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await drop(page, ".stage", "ring.step", ring("2."));
+        await page.waitForSelector("text=ring.step");
+        await until(page, () => document.querySelector("progress").hidden && document.querySelector(".view.space").dataset.triangles === "0");
+        await settle(page);
+        await picture("wireframe");
+        assert.ok(drawn(await ink(page)) > 500, "a circle is seen");
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
