@@ -2,7 +2,7 @@
 
 import type { MeshOptions } from "freiform";
 import teapot from "../../../examples/teapot.bpt?url";
-import { answer, ff, file, mesh, read, type Beside, type Meshed, type Source, type Understood } from "../kernel/module";
+import { answer, ff, file, mesh, read, type Beside, type Meshed, type Source } from "../kernel/module";
 import type { Shown } from "../explore/explore";
 import { download, h, shown } from "../ui/dom";
 import { droppable, opener, type Opened } from "../ui/files";
@@ -10,6 +10,7 @@ import { say, t, type Text } from "../ui/language";
 import { refuse } from "../ui/toast";
 import { Space, type Look } from "../views/space";
 import { legend } from "./colours";
+import { Jobs } from "./jobs";
 import { draw, extent, type Colouring, type Continuity, type Drawn, type Model, type Showing } from "./scene";
 
 interface Refused { readonly where: string; readonly kind: string; readonly message: string }
@@ -54,19 +55,22 @@ class Inspector implements Shown {
     private readonly space = new Space(say(t("Modell: Pfeiltasten drehen, + und − zoomen, 1, 3, 7 Ansichten, F alles", "Model: arrow keys turn, + and − zoom, 1, 3, 7 views, F all")));
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
     private readonly facts = h("div", { class: "readout" });
-    private readonly progress = h("progress", { max: 1, value: 0, hidden: true, "aria-label": say(t("Fortschritt", "Progress")) });
-    private readonly stop = h("button", { hidden: true, onclick: () => { this.reading?.cancel(); this.meshing?.cancel(); } }, say(t("Abbrechen", "Cancel")));
+    private readonly jobs = new Jobs();
     private readonly list = h("ul", { class: "list", "aria-label": say(t("Flächen", "Faces")) });
     private readonly tolerance = h("input", { type: "range", min: 1, max: 5.5, step: 0.1, value: 3, "aria-label": say(t("Toleranz", "Tolerance")), onchange: () => { this.tessellate(); },
         oninput: () => { this.said.textContent = shown(this.accuracy(), 3); } });
+    /** Where the slider was for the triangles that are shown. */
+    private reached = this.tolerance.value;
+    private readonly colours = h("select", { "aria-label": say(t("Farben", "Colours")), onchange: () => {
+        this.colour(this.colours.value as Colouring);
+        if (this.showing.colouring === "deviation" && !this.model?.deviations) this.tessellate();
+    } }, ...(Object.keys(kColourings) as Colouring[]).map((key) => h("option", { value: key }, say(kColourings[key]))));
     private readonly said = h("output", {});
     private readonly name = h("strong", {});
     private readonly showing: Showing = { look: "shaded", colouring: "plain", edges: false, net: false, knots: false, isolines: 0, comb: false, normals: false, plane: undefined, chosen: undefined, joints: false };
     private model: Model | undefined;
     private drawn: Drawn | undefined;
-    private meshing: Beside<Meshed> | undefined;
     private coarsening: Beside<Meshed> | undefined;
-    private reading: Beside<Understood> | undefined;
     private key: HTMLElement | undefined;
     private size = 1;
     private cut = { axis: 2, at: 0.5, on: false };
@@ -93,29 +97,16 @@ class Inspector implements Shown {
     dispose(): void {
         this.gone = true;
         this.coarsening?.cancel();
-        this.reading?.cancel();
-        this.meshing?.cancel();
+        this.jobs.endAll();
         this.model?.shapes.forEach((shape) => { shape.free(); });
         this.space.dispose();
     }
 
     /** Reads a file beside the page, which goes on showing what it had until all is understood. */
     private open({ name, source, beside }: Opened): void {
-        this.reading?.cancel();
-        const reading = read(file(name, source, beside));
-        this.reading = reading;
-        this.busy(true);
-        reading.done.then(({ document, leftOut }) => {
-            if (this.reading !== reading) return;
-            this.busy(false);
-            if (!this.gone) this.show(name, document, leftOut.map((x) => ({ kind: "left out", ...x })));
-        }).catch((error: unknown) => { if (this.reading === reading) this.busy(false); if (!(error instanceof DOMException)) refuse(error); });
-    }
-
-    /** A bar that only says that something is under way. */
-    private busy(on: boolean): void {
-        this.progress.removeAttribute("value");
-        this.progress.hidden = this.stop.hidden = !on;
+        this.jobs.begin("read", () => read(file(name, source, beside)), (found) => {
+            if (found) this.show(name, found.document, found.leftOut.map((x) => ({ kind: "left out", ...x })));
+        });
     }
 
     private show(name: string, source: Source, refused: Refused[]): void {
@@ -131,6 +122,12 @@ class Inspector implements Shown {
         this.size = extent([this.box.lower, this.box.upper]);
         this.space.fit([this.box.lower, this.box.upper]);
         this.showing.chosen = undefined;
+        // Until there are answers for this one, those of the one before must not stand under its name.
+        this.facts.replaceChildren();
+        this.list.replaceChildren();
+        this.status.textContent = "";
+        this.draw();
+        this.jobs.end("continuity");
         if (this.showing.joints) this.ask();
         this.tessellate();
     }
@@ -139,40 +136,49 @@ class Inspector implements Shown {
     private ask(): void {
         const { model } = this;
         if (!model || model.continuity) return;
-        this.progress.removeAttribute("value");
-        this.progress.hidden = false;
-        answer("continuity", this.source, {}).done.then((found) => {
+        this.jobs.begin("continuity", () => answer("continuity", this.source, {}), (found) => {
+            if (!found) return;
             model.continuity = found as Continuity;
-            if (this.model === model) this.draw();
-        }).catch(refuse).finally(() => { this.progress.hidden = true; });
+            this.draw();
+        });
     }
 
     private accuracy(): number { return this.size * 10 ** -this.tolerance.valueAsNumber; }
 
     private tessellate(): void {
-        this.meshing?.cancel();
         this.coarsening?.cancel();
         const { model } = this;
         if (!model) return;
         this.said.textContent = shown(this.accuracy(), 3);
-        if (model.solid.length === 0) { this.draw(); this.tell(0); return; }
+        if (model.solid.length === 0) { this.jobs.end("mesh"); this.draw(); this.tell(0); return; }
         const options: MeshOptions = { tolerance: this.accuracy(), maxTriangles: 4_000_000 };
         const began = performance.now();
-        const meshing = mesh(this.source, options, { deviations: this.showing.colouring === "deviation", edges: this.size }, (part) => { this.progress.value = part; });
-        this.meshing = meshing;
-        this.progress.hidden = this.stop.hidden = false;
-        meshing.done.then(({ meshes, edges, deviations }) => {
-            if (this.gone || this.model !== model) return;
+        const tolerance = this.tolerance.value, also = { deviations: this.showing.colouring === "deviation", edges: this.size };
+        this.jobs.begin("mesh", (progress) => mesh(this.source, options, also, progress), (found) => {
+            if (!found) { this.stay(model); return; }
+            const { meshes, edges, deviations } = found;
             model.meshes = meshes;
             model.edges = edges ?? [];
             model.coarse = undefined;
             model.deviations = deviations;
+            this.reached = tolerance;
             this.draw();
             if (meshes.reduce((n, m) => n + m.indices.length / 3, 0) > kMany) this.coarsen(model, options);
             this.tell(performance.now() - began);
-        }).catch((error: unknown) => { if (!(error instanceof DOMException)) refuse(error); }).finally(() => {
-            if (this.meshing === meshing) this.progress.hidden = this.stop.hidden = true;
         });
+    }
+
+    /** There are no triangles of what was asked for: what is said is about those that are shown. */
+    private stay(model: Model): void {
+        if (this.showing.colouring === "deviation" && !model.deviations) this.colour("plain");
+        if (model.meshes.length === 0) { this.facts.textContent = say(t("Nicht vernetzt. Eine andere Toleranz beginnt von Neuem.", "Not meshed. Another tolerance begins anew.")); return; }
+        this.tolerance.value = this.reached;
+        this.said.textContent = shown(this.accuracy(), 3);
+    }
+
+    private colour(by: Colouring): void {
+        this.showing.colouring = this.colours.value = by;
+        this.draw();
     }
 
     /** Another level of detail: what cannot be meshed so coarsely is always shown as it is. */
@@ -280,8 +286,8 @@ class Inspector implements Shown {
             ...["x", "y", "z"].map((name, i) => h("option", { value: i, selected: i === 2 }, name)));
         const s = this.showing;
         return h("div", { class: "tools" },
-            h("section", {}, h("h2", {}, say(t("Netz", "Mesh"))), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.progress, this.stop, this.facts),
-            h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), pick(t("Farben", "Colours"), kColourings, (key) => { s.colouring = key; if (key === "deviation" && !this.model?.deviations) this.tessellate(); }),
+            h("section", {}, h("h2", {}, say(t("Netz", "Mesh"))), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.jobs.progress, this.jobs.stop, this.facts),
+            h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), h("label", { class: "knob" }, h("span", {}, say(t("Farben", "Colours"))), this.colours),
                 check(t("Dreiecke", "Triangles"), (on) => { s.edges = on; }), check(t("Kontrollnetz", "Control net"), (on) => { s.net = on; }), check(t("Knotenlinien", "Knots"), (on) => { s.knots = on; }),
                 check(t("Anschlüsse: G⁰ rot, G¹ gelb, G² grün", "Joints: G⁰ red, G¹ yellow, G² green"), (on) => { s.joints = on; if (on) this.ask(); }),
                 check(t("Krümmungskamm (Kurven)", "Curvature comb (curves)"), (on) => { s.comb = on; }), check(t("Normalen", "Normals"), (on) => { s.normals = on; }),

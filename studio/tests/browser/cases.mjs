@@ -617,6 +617,44 @@ export const cases = [
         await picture("wireframe");
         assert.ok(drawn(await ink(page)) > 500, "a circle is seen");
     }],
+    ["inspect: after Cancel nothing of another file or tolerance stands under the name", async ({ page, url, picture }) => {
+        // A worker that never begins takes as long as one has to press Cancel.
+        await page.addInitScript(() => {
+            const post = Worker.prototype.postMessage;
+            Worker.prototype.postMessage = function (order, ...more) { if (order.task?.kind !== window.stalled) post.call(this, order, ...more); };
+        });
+        const facts = () => page.locator(".tools .readout").innerText(), names = (n) => until(page, (n) => document.querySelectorAll(".tools .list li").length === n, n);
+        const cancel = async () => { await page.getByRole("button", { name: "Cancel" }).click(); await page.waitForSelector("text=Cancelled"); };
+        const stall = (kind) => page.evaluate((kind) => { window.stalled = kind; }, kind);
+        await go(page, url, "#/inspect", ".view.space");
+        await names(32);
+        await stall("mesh");
+        await drop(page, ".stage", "bracket.step", bracket());
+        await page.waitForSelector("text=bracket.step");
+        assert.equal(await facts(), "");
+        await names(0);
+        await settle(page);
+        assert.equal(drawn(await ink(page)), 0, "the picture is not of the teapot");
+        await cancel();
+        assert.match(await facts(), /Not meshed/);
+        await picture("cancelled");
+        await stall();
+        const slider = page.getByLabel("Tolerance", { exact: true }), said = page.locator(".tools output").first();
+        await slider.press("ArrowRight");
+        await names(24);
+        const [before, at] = [await facts(), await said.innerText()];
+        await stall("mesh");
+        await slider.press("ArrowRight");
+        assert.notEqual(await said.innerText(), at);
+        await cancel();
+        assert.deepEqual([await facts(), await said.innerText()], [before, at], "what is said is about what is shown");
+        await stall("read");
+        await drop(page, ".stage", "other.step", bracket());
+        await cancel();
+        assert.equal(await page.locator(".bar strong").innerText(), "bracket.step");
+        assert.equal(await refused(page), "");
+        assert.ok(await page.locator("progress").isHidden());
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
