@@ -246,7 +246,7 @@ class Inspector implements Shown {
         const first = hits.filter((a) => a.hit).sort((a, b) => far(a.hit?.point, eye) - far(b.hit?.point, eye))[0];
         const shape = first && this.model?.solid[first.i];
         if (!first?.hit || !shape) { this.status.textContent = ""; return; }
-        const near = shape.nearest(first.hit.point);
+        const near = shape.nearest(first.hit.point.slice(0, shape.dimension));
         const words = (a: ArrayLike<number>): string => Array.from(a, (c) => shown(c, 5)).join(", ");
         this.status.textContent = `${shape.name || shape.type}${near.faces ? ` · ${say(t("Fläche", "face"))} ${near.faces[0] ?? ""}` : ""} · u, v = ${words(near.parameters)} · ` +
             `${say(t("nächster Punkt", "nearest point"))} (${words(near.points)}) · ${say(t("Abstand des Netzes hier", "distance of the mesh here"))} ${shown(near.distances[0] ?? 0, 3)} ≥ ${shown(near.lowerBounds[0] ?? 0, 3)}`;

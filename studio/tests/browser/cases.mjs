@@ -655,6 +655,16 @@ export const cases = [
         assert.equal(await refused(page), "");
         assert.ok(await page.locator("progress").isHidden());
     }],
+    ["inspect: of a surface in the plane the nearest point is found, too", async ({ page, url, write, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await file(page, write("plane.json", JSON.stringify({ freiform: 1, objects: [{ type: "surface", name: "flat", points: [[[0, 0], [0, 1]], [[1, 0], [1, 1]]] }] })));
+        await page.waitForSelector("text=plane.json");
+        await until(page, () => document.querySelector(".view.space").dataset.triangles === "2");
+        const box = await page.locator("canvas").boundingBox();
+        await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+        await until(page, () => /^flat · u, v = .*nearest point/.test(document.querySelector(".status").textContent));
+        await picture("plane-surface");
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
