@@ -4,7 +4,7 @@ import type { Construction, Shape } from "freiform";
 import type { Make } from "../kernel/module";
 import type { Space, SurfaceStyle, Triangles } from "../views/space";
 import type { Point, Run, Style, View } from "../views/view";
-import { run } from "../views/view";
+import { local, run } from "../views/view";
 
 export const kPalette = ["curve", "control", "aux", "violet", "hot", "gold"] as const;
 export const shade = (i: number): string => kPalette[i % kPalette.length] ?? "curve";
@@ -98,7 +98,7 @@ export function construction(view: View, scheme: Construction["levels"]): void {
 
 /** A rectangular grid of points as triangles. */
 export function sheet(points: ArrayLike<number>, dimension: number, rows: number, columns: number, normals?: ArrayLike<number>): Triangles {
-    const place = new Float32Array(3 * rows * columns);
+    const place = new Float64Array(3 * rows * columns);
     for (let i = 0; i < rows * columns; ++i)
         for (let k = 0; k < Math.min(3, dimension); ++k) place[3 * i + k] = points[i * dimension + k] ?? 0;
     const indices: number[] = [];
@@ -107,7 +107,8 @@ export function sheet(points: ArrayLike<number>, dimension: number, rows: number
             const a = i * columns + j, b = a + columns;
             indices.push(a, b, b + 1, a, b + 1, a + 1);
         }
-    return { points: place, indices: Uint32Array.from(indices), normals: normals ? Float32Array.from(normals) : undefined };
+    const { origin, places } = local(place);
+    return { points: places, origin, indices: Uint32Array.from(indices), normals: normals ? Float32Array.from(normals) : undefined };
 }
 
 /** A surface, n steps in each direction. */

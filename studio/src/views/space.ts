@@ -10,7 +10,7 @@ import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeome
 import { calm, coalesced, h, s } from "../ui/dom";
 import { colour, onTheme } from "../ui/theme";
 import { Handles } from "./handles";
-import { box, type Point, type Run, type Style, type View } from "./view";
+import { box, local, type Point, type Run, type Style, type View } from "./view";
 
 export interface Triangles {
     readonly points: Float32Array;
@@ -176,12 +176,13 @@ export class Space implements View {
     /** Segments between pairs of points, three numbers each. */
     segments(ends: ArrayLike<number>, style: Style): THREE.Object3D | undefined {
         if (ends.length === 0) return undefined;
-        const geometry = new LineSegmentsGeometry().setPositions(Float32Array.from(ends));
+        const { origin, places } = local(ends), geometry = new LineSegmentsGeometry().setPositions(places);
         const look = new LineMaterial({ color: paint(style.colour), linewidth: style.width ?? 2, transparent: style.opacity !== undefined,
             opacity: style.opacity ?? 1, dashed: style.dashed ?? false, dashSize: 0.06, gapSize: 0.05 });
         look.resolution.set(this.element.clientWidth || 600, this.element.clientHeight || 400);
         this.lines.add(look);
         const object = new LineSegments2(geometry, look);
+        object.position.set(...origin);
         if (style.dashed) object.computeLineDistances();
         this.add(object);
         return object;
@@ -189,11 +190,14 @@ export class Space implements View {
 
     dots(run: Run, style: Style): void {
         const n = Math.floor(run.at.length / run.dimension);
-        const places = new Float32Array(3 * n);
-        for (let i = 0; i < n; ++i) places.set(this.corner(run, i), 3 * i);
+        const all = new Float64Array(3 * n);
+        for (let i = 0; i < n; ++i) all.set(this.corner(run, i), 3 * i);
+        const { origin, places } = local(all);
         const geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(places, 3));
-        this.add(new THREE.Points(geometry, new THREE.PointsMaterial({ color: paint(style.colour), size: style.width ?? 7,
-            sizeAttenuation: false, map: disc(), alphaTest: 0.5, transparent: true })));
+        const object = new THREE.Points(geometry, new THREE.PointsMaterial({ color: paint(style.colour), size: style.width ?? 7,
+            sizeAttenuation: false, map: disc(), alphaTest: 0.5, transparent: true }));
+        object.position.set(...origin);
+        this.add(object);
     }
 
     surface(triangles: Triangles, style: SurfaceStyle = {}): THREE.Mesh {

@@ -37,6 +37,16 @@ export interface View {
     dispose(): void;
 }
 
+/** Points of space, three numbers each, from the first finite one: what single precision would lose far from zero stays. */
+export function local(at: ArrayLike<number>): { readonly origin: [number, number, number]; readonly places: Float32Array } {
+    let first = 0;
+    while (first + 3 < at.length && ![0, 1, 2].every((k) => Number.isFinite(at[first + k]))) first += 3;
+    const from = (k: number): number => { const x = at[first + k] ?? 0; return Number.isFinite(x) ? x : 0; };
+    const origin: [number, number, number] = [from(0), from(1), from(2)], places = new Float32Array(at.length);
+    for (let i = 0; i < at.length; ++i) places[i] = (at[i] ?? 0) - (origin[i % 3] ?? 0);
+    return { origin, places };
+}
+
 /** The smallest box around finite points: lower and upper corner. */
 export function box(points: readonly Point[]): { lower: number[]; upper: number[] } {
     const n = Math.max(2, ...points.map((p) => p.length));

@@ -665,6 +665,31 @@ export const cases = [
         await until(page, () => /^flat · u, v = .*nearest point/.test(document.querySelector(".status").textContent));
         await picture("plane-surface");
     }],
+    ["in space what is far from zero looks as what is near", async ({ page, url, write, picture }) => {
+        const at = (x, y) => ({ freiform: 1, objects: [{ type: "surface", points: [0, 1, 2].map((i) => [0, 1, 2].map((j) => [x + i, y + j, i === 1 && j === 1 ? 2 : 0])) },
+            { type: "curve", points: [[x, y, 2], [x + 1, y + 2, 2], [x + 2, y, 2]] }] });
+        const look = async (part, text, then) => {
+            await go(page, url, part, ".view.space, svg.plane");
+            await file(page, write("far.json", JSON.stringify(text)));
+            await page.waitForSelector(".view.space canvas");
+            await then?.();
+            await settle(page);
+            await picture(`far-${part.slice(2)}-${text.objects[1].points[0][0]}`);
+            return ink(page);
+        };
+        const inspected = async () => {
+            await page.waitForSelector("text=far.json");
+            await until(page, () => Number(document.querySelector(".view.space").dataset.triangles) > 100 && document.querySelector("progress").hidden);
+            for (const name of ["Control net", "Normals", "Knots"]) await page.getByLabel(name, { exact: true }).check();
+        };
+        for (const [part, then] of [["#/edit", undefined], ["#/inspect", inspected]]) {
+            const near = await look(part, at(0, 0), then);
+            await page.goto("about:blank");
+            const far = await look(part, at(524288, 5767168), then);
+            await page.goto("about:blank");
+            assert.ok(drawn(near) > 2000 && differing(near, far) < 0.01 * drawn(near), `${part}: ${differing(near, far)} pixels differ of ${drawn(near)}`);
+        }
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
