@@ -20,8 +20,8 @@ export function tint(x: number, scale: Scale): Rgb {
 }
 
 /** From the 5th to the 95th of a hundred, so that few extremes do not take all colours. */
-export function range(values: readonly number[], both: boolean): Scale {
-    const sorted = values.filter(Number.isFinite).sort((a, b) => a - b);
+export function range(values: ArrayLike<number>, both: boolean): Scale {
+    const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
     const at = (share: number): number => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? 0;
     if (!both) return { low: sorted[0] ?? 0, high: sorted[sorted.length - 1] ?? 1, both };
     const most = Math.max(Math.abs(at(0.05)), Math.abs(at(0.95))) || 1;
@@ -29,7 +29,7 @@ export function range(values: readonly number[], both: boolean): Scale {
 }
 
 /** Numbers as vertex colours; three.js wants them linear. */
-export function painted(values: readonly number[], scale: Scale): Float32Array {
+export function painted(values: Float64Array, scale: Scale): Float32Array {
     const out = new Float32Array(3 * values.length);
     values.forEach((x, i) => { tint(x, scale).forEach((c, k) => { out[3 * i + k] = c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; }); });
     return out;

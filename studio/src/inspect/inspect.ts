@@ -2,16 +2,16 @@
 
 import type { MeshOptions } from "freiform";
 import teapot from "../../../examples/teapot.bpt?url";
-import { answer, ff, file, mesh, read, type Beside, type Meshed, type Source } from "../kernel/module";
+import { answer, curvatures, ff, file, mesh, read, section, type Mesh, type Beside, type Meshed, type Source } from "../kernel/module";
 import type { Shown } from "../explore/explore";
-import { download, h, shown } from "../ui/dom";
+import { coalesced, download, h, shown } from "../ui/dom";
 import { droppable, opener, type Opened } from "../ui/files";
 import { say, t, type Text } from "../ui/language";
 import { refuse } from "../ui/toast";
 import { Space, type Look } from "../views/space";
 import { legend } from "./colours";
 import { Jobs } from "./jobs";
-import { draw, extent, type Colouring, type Continuity, type Drawn, type Model, type Showing } from "./scene";
+import { draw, extent, section as cutLines, type Colouring, type Continuity, type Drawn, type Model, type Showing } from "./scene";
 
 interface Refused { readonly where: string; readonly kind: string; readonly message: string }
 
@@ -23,6 +23,9 @@ const kColourings: Record<Colouring, Text> = { plain: t("ohne", "none"), faces: 
 const kMany = 150_000;
 /** How much wider the tolerance is of what is shown while the eye moves. */
 const kCoarser = 30;
+
+/** Milliseconds after which a section is not waited for if the plane is elsewhere. */
+const kLong = 600;
 
 /** What the reader looks at stays when the language changes. */
 let last: { name: string; source: Source; refused: Refused[] } | undefined;
@@ -63,17 +66,21 @@ class Inspector implements Shown {
     private reached = this.tolerance.value;
     private readonly colours = h("select", { "aria-label": say(t("Farben", "Colours")), onchange: () => {
         this.colour(this.colours.value as Colouring);
+        this.curve();
         if (this.showing.colouring === "deviation" && !this.model?.deviations) this.tessellate();
     } }, ...(Object.keys(kColourings) as Colouring[]).map((key) => h("option", { value: key }, say(kColourings[key]))));
     private readonly said = h("output", {});
     private readonly name = h("strong", {});
-    private readonly showing: Showing = { look: "shaded", colouring: "plain", edges: false, net: false, knots: false, isolines: 0, comb: false, normals: false, plane: undefined, chosen: undefined, joints: false };
+    private readonly showing: Showing = { look: "shaded", colouring: "plain", edges: false, net: false, knots: false, isolines: 0, comb: false, normals: false, section: false, chosen: undefined, joints: false };
     private model: Model | undefined;
     private drawn: Drawn | undefined;
     private coarsening: Beside<Meshed> | undefined;
     private key: HTMLElement | undefined;
     private size = 1;
-    private cut = { axis: 2, at: 0.5, on: false };
+    private readonly cut = { axis: 2, at: 0.5, on: false, again: false, since: 0 };
+    private readonly cutting = h("input", { type: "checkbox", onchange: () => { this.cut.on = this.cutting.checked; this.section(); } });
+    /** The meshes whose curvatures are on their way. */
+    private curved: readonly Mesh[] | undefined;
     private box = { lower: [-1, -1, -1], upper: [1, 1, 1] };
     private source: Source = "";
     private refused: Refused[] = [];
@@ -115,7 +122,7 @@ class Inspector implements Shown {
         last = { name, source, refused };
         this.source = source;
         this.refused = [...refused, ...leftOut.map((x) => ({ kind: "left out", ...x }))];
-        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], edges: [], deviations: undefined, continuity: undefined };
+        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], edges: [], deviations: undefined, curvatures: undefined, section: undefined, continuity: undefined };
         this.name.textContent = name;
         const bounds = ff().run("bounds", source, { }).json as { box?: { min: number[]; max: number[] } | null };
         this.box = { lower: [...(bounds.box?.min ?? [-1, -1, -1]), 0].slice(0, 3), upper: [...(bounds.box?.max ?? [1, 1, 1]), 0].slice(0, 3) };
@@ -127,7 +134,8 @@ class Inspector implements Shown {
         this.list.replaceChildren();
         this.status.textContent = "";
         this.draw();
-        this.jobs.end("continuity");
+        for (const name of ["continuity", "curvatures", "section"]) this.jobs.end(name);
+        this.section();
         if (this.showing.joints) this.ask();
         this.tessellate();
     }
@@ -161,11 +169,51 @@ class Inspector implements Shown {
             model.edges = edges ?? [];
             model.coarse = undefined;
             model.deviations = deviations;
+            model.curvatures = undefined;
             this.reached = tolerance;
             this.draw();
             if (meshes.reduce((n, m) => n + m.indices.length / 3, 0) > kMany) this.coarsen(model, options);
             this.tell(performance.now() - began);
+            this.curve();
         });
+    }
+
+    /** The curvatures, if they are asked for and not known. */
+    private curve(): void {
+        const { model } = this;
+        if (!model || model.meshes.length === 0 || model.curvatures || !["gauss", "mean"].includes(this.showing.colouring)) { this.jobs.end("curvatures"); return; }
+        if (this.jobs.is("curvatures") && this.curved === model.meshes) return;
+        this.curved = model.meshes;
+        this.jobs.begin("curvatures", (progress) => curvatures(this.source, model.meshes, progress), (found) => {
+            model.curvatures = found;
+            if (found) this.draw();
+            else this.colour("plain");
+        });
+    }
+
+    /** The section at the plane, found beside the page; the one before is shown until then. */
+    private section(): void {
+        const { model } = this, { axis, at, on } = this.cut;
+        this.showing.section = on;
+        if (!model || !on) { this.jobs.end("section"); this.cutLines(); return; }
+        // A slider moves faster than sections are found: the newest place comes next, or now if the last one takes long.
+        if (this.jobs.is("section") && performance.now() - this.cut.since < kLong) { this.cut.again = true; return; }
+        const [lo = 0, hi = 1] = [this.box.lower[axis], this.box.upper[axis]];
+        const plane = [...[0, 1, 2].map((k) => (k === axis ? 1 : 0)), -(lo + at * (hi - lo))];
+        Object.assign(this.cut, { again: false, since: performance.now() });
+        this.jobs.begin("section", () => section(this.source, plane), (found) => {
+            if (found) model.section = found;
+            else { this.cut.on = this.showing.section = this.cutting.checked = false; }
+            this.cutLines();
+            if (found && this.cut.again) this.section();
+        });
+    }
+
+    /** Of the picture the section alone. */
+    private cutLines(): void {
+        if (!this.drawn || !this.model) return;
+        if (this.drawn.section) this.space.remove(this.drawn.section);
+        this.drawn = { ...this.drawn, section: this.showing.section ? cutLines(this.space, this.model) : undefined };
     }
 
     /** There are no triangles of what was asked for: what is said is about those that are shown. */
@@ -197,14 +245,11 @@ class Inspector implements Shown {
         if (!this.model || this.gone) return;
         this.key?.remove();
         this.key = undefined;
-        const { axis, at, on } = this.cut;
-        const [lo = 0, hi = 1] = [this.box.lower[axis], this.box.upper[axis]];
-        this.showing.plane = on ? [...[0, 1, 2].map((k) => (k === axis ? 1 : 0)), -(lo + at * (hi - lo))] : undefined;
         try {
             this.drawn = draw(this.space, this.model, this.showing);
         } catch (error) {
             refuse(error);
-            this.drawn = draw(this.space, this.model, { ...this.showing, colouring: "plain", plane: undefined });
+            this.drawn = draw(this.space, this.model, { ...this.showing, colouring: "plain" });
         }
         if (this.drawn.scale) {
             this.key = legend(say(kColourings[this.showing.colouring]), this.drawn.scale);
@@ -280,19 +325,20 @@ class Inspector implements Shown {
             const input = h("input", { type: "checkbox", onchange: () => { set(input.checked); this.draw(); } });
             return h("label", { class: "check" }, input, say(label));
         };
-        const isolines = h("input", { type: "range", min: 0, max: 12, step: 1, value: 0, "aria-label": say(t("Isolinien", "Iso-curves")), oninput: () => { this.showing.isolines = isolines.valueAsNumber; this.draw(); } });
-        const at = h("input", { type: "range", min: 0.001, max: 0.999, step: 0.001, value: 0.5, "aria-label": say(t("Ort der Schnittebene", "Place of the plane")), oninput: () => { this.cut.at = at.valueAsNumber; if (this.cut.on) this.draw(); } });
-        const axis = h("select", { "aria-label": say(t("Achse der Schnittebene", "Axis of the plane")), onchange: () => { this.cut.axis = Number(axis.value); if (this.cut.on) this.draw(); } },
+        const redraw = coalesced(() => { this.draw(); });
+        const isolines = h("input", { type: "range", min: 0, max: 12, step: 1, value: 0, "aria-label": say(t("Isolinien", "Iso-curves")), oninput: () => { this.showing.isolines = isolines.valueAsNumber; redraw(); } });
+        const at = h("input", { type: "range", min: 0.001, max: 0.999, step: 0.001, value: 0.5, "aria-label": say(t("Ort der Schnittebene", "Place of the plane")), oninput: () => { this.cut.at = at.valueAsNumber; this.section(); } });
+        const axis = h("select", { "aria-label": say(t("Achse der Schnittebene", "Axis of the plane")), onchange: () => { this.cut.axis = Number(axis.value); this.section(); } },
             ...["x", "y", "z"].map((name, i) => h("option", { value: i, selected: i === 2 }, name)));
         const s = this.showing;
         return h("div", { class: "tools" },
-            h("section", {}, h("h2", {}, say(t("Netz", "Mesh"))), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.jobs.progress, this.jobs.stop, this.facts),
+            h("section", {}, h("div", { class: "jobs" }, h("h2", {}, say(t("Netz", "Mesh"))), this.jobs.progress, this.jobs.stop), h("label", { class: "knob" }, h("span", {}, say(t("Toleranz", "Tolerance"))), this.said, this.tolerance), this.facts),
             h("section", {}, h("h2", {}, say(t("Aussehen", "Look"))), pick(t("Ansicht", "Look"), kLooks, (key) => { s.look = key; }), h("label", { class: "knob" }, h("span", {}, say(t("Farben", "Colours"))), this.colours),
                 check(t("Dreiecke", "Triangles"), (on) => { s.edges = on; }), check(t("Kontrollnetz", "Control net"), (on) => { s.net = on; }), check(t("Knotenlinien", "Knots"), (on) => { s.knots = on; }),
                 check(t("Anschlüsse: G⁰ rot, G¹ gelb, G² grün", "Joints: G⁰ red, G¹ yellow, G² green"), (on) => { s.joints = on; if (on) this.ask(); }),
                 check(t("Krümmungskamm (Kurven)", "Curvature comb (curves)"), (on) => { s.comb = on; }), check(t("Normalen", "Normals"), (on) => { s.normals = on; }),
                 h("label", { class: "knob" }, h("span", {}, say(t("Isolinien", "Iso-curves"))), isolines)),
-            h("section", {}, h("h2", {}, say(t("Schnitt", "Section"))), check(t("Ebene schneidet", "Cut by a plane"), (on) => { this.cut.on = on; }), h("label", { class: "knob" }, h("span", {}, say(t("Achse", "Axis"))), axis, at)),
+            h("section", {}, h("h2", {}, say(t("Schnitt", "Section"))), h("label", { class: "check" }, this.cutting, say(t("Ebene schneidet", "Cut by a plane"))), h("label", { class: "knob" }, h("span", {}, say(t("Achse", "Axis"))), axis, at)),
             h("section", {}, h("h2", {}, say(t("Flächen", "Faces"))), this.list));
     }
 }

@@ -3,7 +3,8 @@
 import type { Mesh, Shape } from "freiform";
 import type { Mesh as Object3 } from "three";
 import { comb, curve, dots, isoline, lattice, net, polygon, steps } from "../explore/draw";
-import { ff, type DocumentJson, type ObjectJson } from "../kernel/module";
+import type { Curvatures } from "../kernel/curvature";
+import type { DocumentJson } from "../kernel/module";
 import type { Look, Space } from "../views/space";
 import type { Style } from "../views/view";
 import { painted, range, type Scale } from "./colours";
@@ -20,13 +21,12 @@ export interface Showing {
     comb: boolean;
     joints: boolean;
     normals: boolean;
-    /** A x + B y + C z + D = 0, or none. */
-    plane: readonly number[] | undefined;
+    section: boolean;
     /** Of the face that is chosen in the list. */
     chosen: { shape: number; face: number } | undefined;
 }
 
-export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; /** Of each of `solid` what edges it has. */ edges: readonly (readonly Float64Array[])[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
+export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; /** Of each of `solid` what edges it has. */ edges: readonly (readonly Float64Array[])[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; curvatures: readonly Curvatures[] | undefined; section: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
 
 type Edge = `${"u" | "v"} ${"start" | "end"}`;
 /** What the module says about joints of surfaces, and edges and knots inside of objects. */
@@ -35,47 +35,43 @@ export interface Continuity {
     readonly objects: readonly { readonly edges?: readonly { readonly edge: number; readonly g_order: number }[]; readonly axes?: readonly (readonly { readonly at: number; readonly c_order: number }[])[] }[];
 }
 
-export interface Drawn { readonly objects: readonly Object3[]; readonly scale: Scale | undefined }
-
-/** Gauss or mean curvature at every vertex, where the surface of the face is a spline. */
-function curvatures(model: Model, which: "gauss" | "mean"): number[][] {
-    return model.meshes.map((mesh, i) => {
-        const shape = model.solid[i], out = new Array<number>(mesh.positions.length / 3).fill(NaN);
-        if (!shape) return out;
-        const made: Shape[] = [];
-        const own = (face: number): Shape | undefined => {
-            if (shape.type === "surface") return shape;
-            const json = shape.json() as ObjectJson & { surface?: object; faces?: { surface: { points?: unknown } }[] };
-            const surface = shape.type === "trimmed" ? json.surface : json.faces?.[face]?.surface;
-            if (!surface || !("points" in surface)) return undefined;
-            const it = ff().shape({ ...surface, type: "surface" } as unknown as ObjectJson);
-            made.push(it);
-            return it;
-        };
-        try {
-            for (const part of mesh.parts) {
-                const surface = own(part.face);
-                if (!surface) continue;
-                for (let k = 3 * part.first; k < 3 * (part.first + part.count); ++k) {
-                    const v = mesh.indices[k] ?? 0;
-                    if (!Number.isNaN(out[v])) continue;
-                    out[v] = surface.grid([[mesh.uvs[2 * v] ?? 0], [mesh.uvs[2 * v + 1] ?? 0]], { curvatures: true })[which]?.[0] ?? NaN;
-                }
-            }
-        } finally { made.forEach((s) => { s.free(); }); }
-        return out;
-    });
-}
+export interface Drawn { readonly objects: readonly Object3[]; readonly scale: Scale | undefined; readonly section: ReturnType<Space["segments"]> }
 
 /** The bound of the face that each vertex belongs to. */
-function bounds(model: Model): number[][] {
-    return model.meshes.map((mesh) => {
-        const out = new Array<number>(mesh.positions.length / 3).fill(NaN);
+function bounds(meshes: readonly Mesh[]): Float64Array[] {
+    return meshes.map((mesh) => {
+        const out = new Float64Array(mesh.positions.length / 3).fill(NaN);
         for (const part of mesh.parts)
             for (let k = 3 * part.first; k < 3 * (part.first + part.count); ++k) out[mesh.indices[k] ?? 0] = part.errorBound;
         return out;
     });
 }
+
+interface Painting { readonly scale: Scale; readonly colours: readonly Float32Array[] }
+
+/** What was painted of meshes: most pictures show the same numbers again. */
+const kept = new WeakMap<readonly Mesh[], Map<Colouring, Painting>>();
+
+/** The colours of all vertices, if the numbers are known. */
+function coloured(model: Model, by: Colouring): Painting | undefined {
+    const own = kept.get(model.meshes)?.get(by);
+    if (own) return own;
+    const values = by === "gauss" || by === "mean" ? model.curvatures?.map((found) => found[by]) : by === "bound" ? bounds(model.meshes) : by === "deviation" ? model.deviations : undefined;
+    if (!values) return undefined;
+    const scale = range(joined(values), by === "gauss" || by === "mean");
+    // A deviation is that of a triangle, and each of its corners has it.
+    const painting = { scale, colours: values.map((list) => painted(by === "deviation" ? thrice(list) : list, scale)) };
+    kept.set(model.meshes, (kept.get(model.meshes) ?? new Map<Colouring, Painting>()).set(by, painting));
+    return painting;
+}
+
+function joined(lists: readonly Float64Array[]): Float64Array {
+    const all = new Float64Array(lists.reduce((n, list) => n + list.length, 0));
+    lists.reduce((n, list) => { all.set(list, n); return n + list.length; }, 0);
+    return all;
+}
+
+const thrice = (list: Float64Array): Float64Array => Float64Array.from({ length: 3 * list.length }, (_, k) => list[Math.floor(k / 3)] ?? NaN);
 
 /** The same mesh with three vertices of its own for each triangle. */
 function apart(mesh: Mesh): { positions: Float32Array; normals: Float32Array; indices: Uint32Array } {
@@ -103,18 +99,13 @@ const hash = (i: number, j: number, k: number): number => (((i * 73856093) ^ (j 
 export function draw(space: Space, model: Model, showing: Showing): Drawn {
     space.clear();
     const { colouring } = showing;
-    const values = colouring === "gauss" || colouring === "mean" ? curvatures(model, colouring) : colouring === "bound" ? bounds(model)
-        : colouring === "deviation" ? model.deviations?.map((d) => Array.from(d)) : undefined;
-    const scale = values ? range(values.flat(), colouring === "gauss" || colouring === "mean") : undefined;
+    const painting = coloured(model, colouring);
     const objects = model.meshes.map((mesh, i) => {
-        const list = values?.[i];
-        const single = list !== undefined && colouring === "deviation";
-        const split = single ? apart(mesh) : mesh;
-        const colours = list && scale ? painted(single ? list.flatMap((x) => [x, x, x]) : list, scale)
-            : colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
+        const split = painting && colouring === "deviation" ? apart(mesh) : mesh;
+        const colours = painting ? painting.colours[i] : colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
         return space.surface({ points: split.positions, normals: split.normals, indices: split.indices, colours, origin: mesh.origin }, { look: showing.look, edges: showing.edges });
     });
-    if (!values) model.coarse?.forEach((mesh, i) => {
+    if (!painting) model.coarse?.forEach((mesh, i) => {
         const fine = objects[i], colours = colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
         if (fine) space.stands(space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, colours, origin: mesh.origin }, { look: showing.look }), fine);
     });
@@ -122,9 +113,11 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
     // Of what has no triangles the edges are all that there is to see.
     model.meshes.forEach((mesh, i) => { if (showing.knots || showing.isolines > 0 || mesh.indices.length === 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
     if (showing.joints && model.continuity) joints(space, model, model.continuity);
-    if (showing.plane) section(space, model.document, showing.plane);
-    return { objects, scale };
+    return { objects, scale: painting?.scale, section: showing.section ? section(space, model) : undefined };
 }
+
+/** What is known of the section. */
+export const section = (space: Space, model: Model): ReturnType<Space["segments"]> => edges(space, model.section ?? [], { colour: "hot", width: 4 });
 
 function lines(space: Space, shape: Shape, showing: Showing): void {
     if (shape.type === "curve") {
@@ -148,10 +141,10 @@ function lines(space: Space, shape: Shape, showing: Showing): void {
 }
 
 /** Many lines as one object: a model has thousands. */
-function edges(space: Space, all: readonly Float64Array[], style: Style): void {
+function edges(space: Space, all: readonly Float64Array[], style: Style): ReturnType<Space["segments"]> {
     const ends: number[] = [];
     for (const line of all) for (let k = 3; k < line.length; k += 3) ends.push(...line.subarray(k - 3, k + 3));
-    space.segments(ends, style);
+    return space.segments(ends, style);
 }
 
 /** Lines where faces meet, in the colour of the order that they reach. */
@@ -199,14 +192,3 @@ const inside = (shape: Shape, axis: number): number[] => {
     const [lo, hi] = shape.domain[axis] ?? [0, 1];
     return [...new Set(shape.knots[axis] ?? [])].filter((k) => k >= lo && k <= hi);
 };
-
-function section(space: Space, document: DocumentJson, plane: readonly number[]): void {
-    const cut = ff().run("section", document, { plane }).json as DocumentJson;
-    const shapes = ff().document(cut).shapes;
-    try {
-        for (const shape of shapes) {
-            if (shape.type !== "curve") continue;
-            for (const line of shape.polylines(1e-3 * extent(net(shape)))) space.line({ at: line.points, dimension: shape.dimension }, { colour: "hot", width: 4 });
-        }
-    } finally { shapes.forEach((shape) => { shape.free(); }); }
-}

@@ -1,16 +1,16 @@
-// The edges of models as lines, as finely as a screen shows them whatever the size of the model.
+// Edges of models and sections as lines, as finely as a screen shows them whatever their size.
 
-import type { Mesh, Shape } from "freiform";
+import type { Freiform, Mesh, Shape, Source } from "freiform";
 
-/** How far the lines may be from the edges, in parts of the model: less than a pixel until the eye is near. */
+/** How far the lines may be from what they show, in parts of its size: less than a pixel until the eye is near. */
 const kFine = 1e-4;
 
-/** The longest side of the box around a mesh; 0 if it has no vertices. */
-export function width(positions: Float32Array): number {
+/** The longest side of the box around points; 0 if there are none. */
+export function width(positions: Float32Array | Float64Array, dimension = 3): number {
     let size = 0;
-    for (let c = 0; c < 3; ++c) {
+    for (let c = 0; c < dimension; ++c) {
         let low = Infinity, high = -Infinity;
-        for (let k = c; k < positions.length; k += 3) {
+        for (let k = c; k < positions.length; k += dimension) {
             const x = positions[k] ?? 0;
             low = Math.min(low, x);
             high = Math.max(high, x);
@@ -31,4 +31,13 @@ export function edges(shape: Shape, mesh: Mesh, size: number): Float64Array[] {
         mesh.refused.push({ face: -1, name: shape.name, kind, where: where || "edges", message: reason });
         return [];
     }
+}
+
+/** Where a plane (A x + B y + C z + D = 0) meets all of a document. */
+export function section(ff: Freiform, source: Source, plane: readonly number[]): Float64Array[] {
+    const { shapes } = ff.document(ff.run("section", source, { plane }).json as Source);
+    return shapes.flatMap((shape) => {
+        if (shape.type !== "curve" || shape.dimension !== 3) return [];
+        return shape.polylines(kFine * (width(shape.points, shape.dimension) || 1)).map((line) => line.points);
+    });
 }

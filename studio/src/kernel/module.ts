@@ -2,6 +2,7 @@
 
 import { FreiformError, load, type CommandName, type Construction, type Freiform, type Mesh, type MeshOptions, type Options, type Shape, type Source } from "freiform";
 import wasm from "freiform/freiform.wasm?url";
+import type { Curvatures, Places } from "./curvature";
 import Worker from "./worker?worker";
 
 export type { CurveJson, DocumentJson, Freiform, Mesh, ObjectJson, Point as PointJson, Shape, Source, SurfaceJson } from "freiform";
@@ -50,6 +51,8 @@ export function construct(shape: Shape, at: readonly number[]): Construction["le
 /** What a worker is asked, and what it says. */
 export type Task =
     | { readonly kind: "mesh"; readonly source: Source; readonly options: Omit<MeshOptions, "progress">; readonly also: Also }
+    | { readonly kind: "curvatures"; readonly source: Source; readonly meshes: readonly Places[] }
+    | { readonly kind: "section"; readonly source: Source; readonly plane: readonly number[] }
     | { readonly kind: "read"; readonly source: Source }
     | { readonly kind: "run"; readonly command: CommandName; readonly source: Source; readonly options: Options };
 export interface Order { readonly module: WebAssembly.Module; readonly task: Task }
@@ -97,6 +100,13 @@ function beside<T>(task: Task, progress: (part: number) => void): Beside<T> {
 /** Triangles of everything in a document that has a surface, computed beside the page. */
 export const mesh = (source: Source, options: Omit<MeshOptions, "progress">, also: Also, progress: (part: number) => void): Beside<Meshed> =>
     beside({ kind: "mesh", source, options, also }, progress);
+
+/** Gauss and mean curvature at the vertices of meshes of that document. */
+export const curvatures = (source: Source, meshes: readonly Mesh[], progress: (part: number) => void): Beside<readonly Curvatures[]> =>
+    beside({ kind: "curvatures", source, meshes: meshes.map(({ uvs, indices, parts }) => ({ uvs, indices, parts })) }, progress);
+
+/** Where a plane meets a document, as lines of points after each other. */
+export const section = (source: Source, plane: readonly number[]): Beside<readonly Float64Array[]> => beside({ kind: "section", source, plane }, () => undefined);
 
 /** What a file holds, read beside the page. */
 export const read = (source: Source): Beside<Understood> => beside({ kind: "read", source }, () => undefined);

@@ -1,7 +1,8 @@
-// Tessellation beside the page: large models leave it fluid, and cancelling is the end of the worker.
+// What takes long, beside the page: large models leave it fluid, and cancelling is the end of the worker.
 
 import { load, type Mesh, type Shape } from "freiform";
-import { edges } from "./edges";
+import { curvatures, type Curvatures } from "./curvature";
+import { edges, section } from "./edges";
 import type { Meshed, News, Order, Understood } from "./module";
 
 const tell = (news: News, transfer: Transferable[] = []): void => { postMessage(news, { transfer }); };
@@ -34,8 +35,19 @@ async function work({ module, task }: Order): Promise<void> {
         tell({ kind: "done", result });
         return;
     }
-    const { source, options, also: { deviations, edges: size } } = task;
+    if (task.kind === "section") { tell({ kind: "done", result: section(ff, task.source, task.plane) }); return; }
+    const { source } = task;
     const shapes = ff.document(source).shapes.filter((shape) => kMeshed.has(shape.type));
+    if (task.kind === "curvatures") {
+        const result: Curvatures[] = task.meshes.map((mesh, i) => {
+            const shape = shapes[i], at = (part: number): void => { tell({ kind: "progress", part: (i + part) / task.meshes.length }); };
+            at(0);
+            return shape ? curvatures(ff, shape, mesh, at) : { gauss: new Float64Array(), mean: new Float64Array() };
+        });
+        tell({ kind: "done", result });
+        return;
+    }
+    const { options, also: { deviations, edges: size } } = task;
     const meshes: Mesh[] = [], distances: Float64Array[] = [], lines: Float64Array[][] = [];
     const share = deviations ? 0.3 : 1;
     for (const [i, shape] of shapes.entries()) {

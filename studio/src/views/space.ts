@@ -141,6 +141,13 @@ export class Space implements View {
         this.redraw();
     }
 
+    /** Takes one object out of the picture. */
+    remove(object: THREE.Object3D): void {
+        discard(object);
+        this.picture.remove(object);
+        this.redraw();
+    }
+
     /** Shows `coarse` instead of `fine` while the eye moves. */
     stands(coarse: THREE.Object3D, fine: THREE.Object3D): void {
         coarse.visible = false;

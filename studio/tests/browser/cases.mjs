@@ -505,7 +505,7 @@ export const cases = [
             await picture(`teapot-${colours}`);
         }
         await page.locator('select[aria-label="Colours"]').selectOption("plain");
-        for (const name of ["Triangles", "Control net", "Knots", "Normals", "Cut by a plane"]) { before = await shot(); await page.getByLabel(name, { exact: true }).check(); await settle(page); assert.notEqual(await shot(), before, name); }
+        for (const name of ["Triangles", "Control net", "Knots", "Normals", "Cut by a plane"]) { before = await shot(); await page.getByLabel(name, { exact: true }).check(); await until(page, (was) => document.querySelector("canvas").toDataURL() !== was, before); await settle(page); assert.notEqual(await shot(), before, name); }
         await page.getByLabel(/Joints/).check();
         before = await shot();
         await until(page, (was) => document.querySelector("canvas").toDataURL() !== was, before);
@@ -689,6 +689,61 @@ export const cases = [
             await page.goto("about:blank");
             assert.ok(drawn(near) > 2000 && differing(near, far) < 0.01 * drawn(near), `${part}: ${differing(near, far)} pixels differ of ${drawn(near)}`);
         }
+    }],
+    ["inspect: sections and curvatures are found beside the page, which goes on answering; Cancel ends them", async ({ page, url, picture }) => {
+        await page.addInitScript(() => {
+            const post = Worker.prototype.postMessage;
+            window.asked = [];
+            Worker.prototype.postMessage = function (order, ...more) { window.asked.push(order.task?.kind); if (order.task?.kind !== window.stalled) post.call(this, order, ...more); };
+        });
+        const stall = (kind) => page.evaluate((kind) => { window.stalled = kind; }, kind), asked = (kind) => page.evaluate((kind) => window.asked.filter((x) => x === kind).length, kind);
+        const idle = async () => { await until(page, () => document.querySelector("progress").hidden); await settle(page); };
+        const shot = () => page.evaluate(() => document.querySelector("canvas").toDataURL());
+        await go(page, url, "#/inspect", ".view.space");
+        await until(page, () => Number(document.querySelector(".view.space")?.dataset.triangles) > 100);
+        await idle();
+        const plain = await shot(), colours = page.locator('select[aria-label="Colours"]'), cut = page.getByLabel("Cut by a plane"), place = page.getByLabel("Place of the plane");
+        await colours.selectOption("gauss");
+        await page.waitForSelector(".legend");
+        await colours.selectOption("mean");
+        await page.waitForSelector(".legend:has-text('mean')");
+        await page.getByLabel("Triangles", { exact: true }).check();
+        await page.getByLabel("Triangles", { exact: true }).uncheck();
+        assert.equal(await asked("curvatures"), 1, "found once for the same triangles");
+        await colours.selectOption("plain");
+        await settle(page);
+        assert.equal(await shot(), plain);
+        await cut.check();
+        await idle();
+        const middle = await shot();
+        assert.notEqual(middle, plain);
+        await picture("section");
+        const before = await asked("section");
+        // A hand that draws the slider: more places than sections, and the last is shown.
+        await place.evaluate((slider) => { for (let i = 0; i < 60; ++i) { slider.value = 0.5 + i / 200; slider.dispatchEvent(new Event("input")); } });
+        await idle();
+        const moved = await shot();
+        assert.notEqual(moved, middle);
+        assert.ok((await asked("section")) - before <= 3, `${(await asked("section")) - before} sections for one movement`);
+        await place.evaluate((slider) => { slider.value = 0.7; slider.dispatchEvent(new Event("input")); });
+        await idle();
+        await place.evaluate((slider) => { slider.value = 0.795; slider.dispatchEvent(new Event("input")); });
+        await idle();
+        assert.equal(await shot(), moved, "the last place was shown");
+        await stall("section");
+        await place.press("ArrowRight");
+        await page.getByRole("button", { name: "Cancel" }).click();
+        assert.equal(await cut.isChecked(), false);
+        await settle(page);
+        assert.equal(await shot(), plain);
+        await stall("curvatures");
+        await page.getByLabel("Tolerance", { exact: true }).press("ArrowLeft");
+        await idle();
+        await colours.selectOption("gauss");
+        await page.getByRole("button", { name: "Cancel" }).click();
+        assert.equal(await colours.inputValue(), "plain");
+        assert.ok(await page.locator("progress").isHidden());
+        assert.equal(await refused(page), "");
     }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
