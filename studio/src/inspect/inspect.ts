@@ -87,7 +87,7 @@ class Inspector implements Shown {
     private gone = false;
 
     constructor(private readonly toEdit: (text: string) => void) {
-        this.space.onColours = () => { this.draw(); };
+        this.space.onColours = () => { this.drawn = undefined; this.draw(); };
         const stage = h("div", { class: "stage" }, h("h1", { class: "unseen" }, say(t("Untersuchen", "Inspect"))), this.bar(), this.space.element, this.status);
         this.element = h("div", { style: "display:contents" }, stage, this.tools());
         droppable(stage, (opened) => { this.open(opened); });
@@ -246,7 +246,7 @@ class Inspector implements Shown {
         this.key?.remove();
         this.key = undefined;
         try {
-            this.drawn = draw(this.space, this.model, this.showing);
+            this.drawn = draw(this.space, this.model, this.showing, this.drawn);
         } catch (error) {
             refuse(error);
             this.drawn = draw(this.space, this.model, { ...this.showing, colouring: "plain" });

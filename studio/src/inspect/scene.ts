@@ -35,7 +35,8 @@ export interface Continuity {
     readonly objects: readonly { readonly edges?: readonly { readonly edge: number; readonly g_order: number }[]; readonly axes?: readonly (readonly { readonly at: number; readonly c_order: number }[])[] }[];
 }
 
-export interface Drawn { readonly objects: readonly Object3[]; readonly scale: Scale | undefined; readonly section: ReturnType<Space["segments"]> }
+/** `of`: what the surfaces of the picture depend on. */
+export interface Drawn { readonly of: readonly unknown[]; readonly objects: readonly Object3[]; readonly scale: Scale | undefined; readonly section: ReturnType<Space["segments"]> }
 
 /** The bound of the face that each vertex belongs to. */
 function bounds(meshes: readonly Mesh[]): Float64Array[] {
@@ -95,11 +96,23 @@ function faceColours(mesh: Mesh, shape: number, chosen: Showing["chosen"]): Floa
 
 const hash = (i: number, j: number, k: number): number => (((i * 73856093) ^ (j * 19349663) ^ (k * 83492791)) >>> 0) % 1000 / 1000;
 
-/** Draws it all anew. */
-export function draw(space: Space, model: Model, showing: Showing): Drawn {
-    space.clear();
+/** Draws it all; surfaces that would be those of the picture before stay. */
+export function draw(space: Space, model: Model, showing: Showing, before?: Drawn): Drawn {
+    const painting = coloured(model, showing.colouring);
+    const of = [model.meshes, model.coarse, painting, showing.chosen, showing.colouring === "faces", showing.look, showing.edges];
+    const same = before && of.every((x, i) => x === before.of[i]);
+    if (same) space.clearLines();
+    else space.clear();
+    const objects = same ? before.objects : surfaces(space, model, showing, painting);
+    for (const shape of model.shapes) lines(space, shape, showing);
+    // Of what has no triangles the edges are all that there is to see.
+    model.meshes.forEach((mesh, i) => { if (showing.knots || showing.isolines > 0 || mesh.indices.length === 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
+    if (showing.joints && model.continuity) joints(space, model, model.continuity);
+    return { objects, of, scale: painting?.scale, section: showing.section ? section(space, model) : undefined };
+}
+
+function surfaces(space: Space, model: Model, showing: Showing, painting: Painting | undefined): Object3[] {
     const { colouring } = showing;
-    const painting = coloured(model, colouring);
     const objects = model.meshes.map((mesh, i) => {
         const split = painting && colouring === "deviation" ? apart(mesh) : mesh;
         const colours = painting ? painting.colours[i] : colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
@@ -109,11 +122,7 @@ export function draw(space: Space, model: Model, showing: Showing): Drawn {
         const fine = objects[i], colours = colouring === "faces" || showing.chosen ? faceColours(mesh, i, showing.chosen) : undefined;
         if (fine) space.stands(space.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, colours, origin: mesh.origin }, { look: showing.look }), fine);
     });
-    for (const shape of model.shapes) lines(space, shape, showing);
-    // Of what has no triangles the edges are all that there is to see.
-    model.meshes.forEach((mesh, i) => { if (showing.knots || showing.isolines > 0 || mesh.indices.length === 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
-    if (showing.joints && model.continuity) joints(space, model, model.continuity);
-    return { objects, scale: painting?.scale, section: showing.section ? section(space, model) : undefined };
+    return objects;
 }
 
 /** What is known of the section. */

@@ -76,6 +76,8 @@ export class Space implements View {
     readonly overlay = s("svg", { class: "overlay" });
     private readonly labels = s("g");
     private readonly picture = new THREE.Group();
+    /** Surfaces, which take longest to make. */
+    private readonly sheets = new THREE.Group();
     private texts: { at: Point; text: string; colour: string }[] = [];
     private readonly lines = new Set<LineMaterial>();
     private wanted: { lower: number[]; upper: number[] } | undefined;
@@ -105,7 +107,7 @@ export class Space implements View {
         this.eye.up.set(0, 0, 1);
         this.flat.up.set(0, 0, 1);
         this.eye.position.set(4, -6, 4);
-        this.scene.add(this.picture, new THREE.HemisphereLight(0xffffff, 0x8a8f99, 1.6));
+        this.scene.add(this.picture, this.sheets, new THREE.HemisphereLight(0xffffff, 0x8a8f99, 1.6));
         const lamp = new THREE.DirectionalLight(0xffffff, 1.9);
         lamp.position.set(0.6, 1.2, 1.5);
         this.eye.add(lamp);
@@ -133,18 +135,28 @@ export class Space implements View {
     }
 
     clear(): void {
-        for (const child of [...this.picture.children]) discard(child);
-        this.picture.clear();
-        this.lines.clear();
+        this.empty(this.sheets);
         this.levels.length = 0;
+        this.clearLines();
+    }
+
+    /** What is drawn next stands with the surfaces that are there. */
+    clearLines(): void {
+        this.empty(this.picture);
+        this.lines.clear();
         this.texts = [];
         this.redraw();
+    }
+
+    private empty(group: THREE.Group): void {
+        for (const child of [...group.children]) discard(child);
+        group.clear();
     }
 
     /** Takes one object out of the picture. */
     remove(object: THREE.Object3D): void {
         discard(object);
-        this.picture.remove(object);
+        object.removeFromParent();
         this.redraw();
     }
 
@@ -216,12 +228,12 @@ export class Space implements View {
         if (triangles.colours) geometry.setAttribute("color", new THREE.BufferAttribute(triangles.colours, 3));
         const mesh = new THREE.Mesh(geometry, material(style, triangles.colours !== undefined));
         mesh.position.set(...(triangles.origin ?? [0, 0, 0]));
-        this.add(mesh);
+        this.add(mesh, this.sheets);
         if (style.edges) {
             const wire = new THREE.LineSegments(new THREE.WireframeGeometry(geometry),
                 new THREE.LineBasicMaterial({ color: paint("ink"), transparent: true, opacity: 0.35 }));
             wire.position.copy(mesh.position);
-            this.add(wire);
+            this.add(wire, this.sheets);
         }
         mesh.updateMatrixWorld();
         return mesh;
@@ -286,8 +298,8 @@ export class Space implements View {
         return [run.at[k] ?? 0, run.at[k + 1] ?? 0, d > 2 ? run.at[k + 2] ?? 0 : 0];
     }
 
-    private add(object: THREE.Object3D): void {
-        this.picture.add(object);
+    private add(object: THREE.Object3D, to = this.picture): void {
+        to.add(object);
         this.redraw();
     }
 

@@ -745,6 +745,22 @@ export const cases = [
         assert.ok(await page.locator("progress").isHidden());
         assert.equal(await refused(page), "");
     }],
+    ["inspect: what changes lines leaves the surfaces on the graphics card", async ({ page, url }) => {
+        await page.addInitScript(() => {
+            const give = WebGL2RenderingContext.prototype.bufferData;
+            window.given = 0;
+            WebGL2RenderingContext.prototype.bufferData = function (...all) { window.given += all[1]?.byteLength ?? 0; give.apply(this, all); };
+        });
+        const given = async (act) => { await page.evaluate(() => { window.given = 0; }); await act(); await settle(page); return page.evaluate(() => window.given); };
+        await go(page, url, "#/inspect", ".view.space");
+        await until(page, () => Number(document.querySelector(".view.space")?.dataset.triangles) > 100);
+        await settle(page);
+        const comb = page.getByLabel(/Curvature comb/), look = page.locator('select[aria-label="Look"]');
+        assert.equal(await given(() => comb.check()), 0, "there are no curves, so nothing is new");
+        assert.ok((await given(() => look.selectOption("zebra"))) > 200000, "other surfaces are new");
+        assert.ok((await given(() => page.getByRole("button", { name: "Light or dark" }).click())) > 200000, "so are those of another theme");
+        assert.equal(await given(() => comb.uncheck()), 0);
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
