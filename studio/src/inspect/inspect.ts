@@ -10,10 +10,9 @@ import { say, t, type Text } from "../ui/language";
 import { refuse } from "../ui/toast";
 import { Space, type Look } from "../views/space";
 import { legend } from "./colours";
+import { Faces, type Refused } from "./faces";
 import { Jobs } from "./jobs";
 import { draw, extent, section as cutLines, type Colouring, type Continuity, type Drawn, type Model, type Showing } from "./scene";
-
-interface Refused { readonly where: string; readonly kind: string; readonly message: string }
 
 const kLooks: Record<Look, Text> = { shaded: t("Schattiert", "Shaded"), zebra: t("Zebra", "Zebra"), isophotes: t("Isophoten", "Isophotes"), normals: t("Normalen", "Normals"), flat: t("Facetten", "Facets") };
 const kColourings: Record<Colouring, Text> = { plain: t("ohne", "none"), faces: t("nach Flächen", "by faces"), gauss: t("Gauß-Krümmung", "Gauss curvature"), mean: t("mittlere Krümmung", "mean curvature"),
@@ -59,7 +58,7 @@ class Inspector implements Shown {
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
     private readonly facts = h("div", { class: "readout" });
     private readonly jobs = new Jobs();
-    private readonly list = h("ul", { class: "list", "aria-label": say(t("Flächen", "Faces")) });
+    private readonly faces = new Faces((chosen) => { this.showing.chosen = chosen; this.draw(); }, refuse);
     private readonly tolerance = h("input", { type: "range", min: 1, max: 5.5, step: 0.1, value: 3, "aria-label": say(t("Toleranz", "Tolerance")), onchange: () => { this.tessellate(); },
         oninput: () => { this.said.textContent = shown(this.accuracy(), 3); } });
     /** Where the slider was for the triangles that are shown. */
@@ -131,7 +130,7 @@ class Inspector implements Shown {
         this.showing.chosen = undefined;
         // Until there are answers for this one, those of the one before must not stand under its name.
         this.facts.replaceChildren();
-        this.list.replaceChildren();
+        this.faces.show([], [], undefined);
         this.status.textContent = "";
         this.draw();
         for (const name of ["continuity", "curvatures", "section"]) this.jobs.end(name);
@@ -270,18 +269,10 @@ class Inspector implements Shown {
             ...(this.model?.solid.some((s) => s.type === "model") ? [[say(t("offene Kanten", "open edges")), String(sum((m) => m.openEdges))] as [string, string]] : []),
             ...(bad.length > 0 ? [[say(t("nicht gelesen", "refused")), `⚠ ${bad.length}`] as [string, string]] : []), [say(t("Zeit", "time")), `${shown(time, 3)} ms`]];
         this.facts.replaceChildren(h("table", {}, ...rows.map(([a, b]) => h("tr", {}, h("th", { scope: "row" }, a), h("td", {}, b)))));
-        const entries = meshes.flatMap((m, shape) => m.parts.map((part) => {
+        this.faces.show(bad, meshes.flatMap((m, shape) => m.parts.map((part) => {
             const name = part.name || this.model?.solid[shape]?.name || `${say(t("Fläche", "face"))} ${shape}.${part.face}`;
-            const button = h("button", { "aria-pressed": "false", onclick: () => {
-                const on = button.getAttribute("aria-pressed") !== "true";
-                this.list.querySelectorAll("[aria-pressed]").forEach((b) => { b.setAttribute("aria-pressed", "false"); });
-                button.setAttribute("aria-pressed", String(on));
-                this.showing.chosen = on ? { shape, face: part.face } : undefined;
-                this.draw();
-            } }, `${name} · ${part.count} · ≤ ${shown(part.errorBound, 2)}`);
-            return h("li", {}, button);
-        }));
-        this.list.replaceChildren(...bad.map((r) => h("li", { class: "bad" }, h("button", { onclick: () => { refuse(r); } }, `⚠ ${r.where}: ${r.message}`))), ...entries.slice(0, 2000));
+            return { shape, face: part.face, text: `${name} · ${part.count} · ≤ ${shown(part.errorBound, 2)}` };
+        })), this.showing.chosen);
     }
 
     /** The nearest point of the shape that is under the cursor. */
@@ -339,7 +330,7 @@ class Inspector implements Shown {
                 check(t("Krümmungskamm (Kurven)", "Curvature comb (curves)"), (on) => { s.comb = on; }), check(t("Normalen", "Normals"), (on) => { s.normals = on; }),
                 h("label", { class: "knob" }, h("span", {}, say(t("Isolinien", "Iso-curves"))), isolines)),
             h("section", {}, h("h2", {}, say(t("Schnitt", "Section"))), h("label", { class: "check" }, this.cutting, say(t("Ebene schneidet", "Cut by a plane"))), h("label", { class: "knob" }, h("span", {}, say(t("Achse", "Axis"))), axis, at)),
-            h("section", {}, h("h2", {}, say(t("Flächen", "Faces"))), this.list));
+            h("section", {}, h("h2", {}, say(t("Flächen", "Faces"))), this.faces.element));
     }
 }
 

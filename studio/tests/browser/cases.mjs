@@ -761,6 +761,32 @@ export const cases = [
         assert.ok((await given(() => page.getByRole("button", { name: "Light or dark" }).click())) > 200000, "so are those of another theme");
         assert.equal(await given(() => comb.uncheck()), 0);
     }],
+    ["inspect: the chosen face stays marked and in sight with another tolerance; a long list says that it goes on", async ({ page, url, write, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await until(page, () => document.querySelectorAll(".tools .list li").length === 32);
+        const marked = page.locator('.tools .list [aria-pressed="true"]'), list = page.locator(".tools .list");
+        await page.locator(".tools .list button").nth(20).click();
+        const name = (await marked.innerText()).split(" · ")[0], text = await list.innerText();
+        await page.getByLabel("Tolerance", { exact: true }).press("ArrowRight");
+        await until(page, (was) => document.querySelector(".tools .list").innerText !== was && document.querySelector("progress").hidden, text);
+        assert.equal(await marked.count(), 1);
+        assert.equal((await marked.innerText()).split(" · ")[0], name);
+        const [inner, outer] = [await marked.boundingBox(), await list.boundingBox()];
+        assert.ok(inner.y >= outer.y && inner.y + inner.height <= outer.y + outer.height, "in sight");
+        await list.scrollIntoViewIfNeeded();
+        await picture("face-chosen");
+        await marked.click();
+        assert.equal(await marked.count(), 0);
+        const flat = (i) => ({ type: "surface", name: `S${i}`, points: [[[i % 50, i / 50 | 0, 0], [i % 50, (i / 50 | 0) + 0.8, 0]], [[i % 50 + 0.8, i / 50 | 0, 0], [i % 50 + 0.8, (i / 50 | 0) + 0.8, 0]]] });
+        await file(page, write("many.json", JSON.stringify({ freiform: 1, objects: Array.from({ length: 2100 }, (_, i) => flat(i)) })));
+        await until(page, () => document.querySelector(".tools .list")?.innerText.startsWith("S0 "));
+        assert.equal(await page.locator(".tools .list li").count(), 2001);
+        await list.locator("li").last().scrollIntoViewIfNeeded();
+        await picture("list-long");
+        await page.getByRole("button", { name: "100 more" }).click();
+        assert.equal(await page.locator(".tools .list li").count(), 2100);
+        assert.match(await list.locator("li").last().innerText(), /^S2099 /);
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
