@@ -54,7 +54,7 @@ export function inspect(taken: string | Opened | undefined, edit: (text: string)
 
 class Inspector implements Shown {
     readonly element: HTMLElement;
-    private readonly space = new Space(say(t("Modell: Pfeiltasten drehen, + und − zoomen, 1, 3, 7 Ansichten, F alles", "Model: arrow keys turn, + and − zoom, 1, 3, 7 views, F all")));
+    private readonly space = new Space(say(t("Modell: Pfeiltasten drehen, + und − zoomen, 1, 3, 7, 0 Ansichten, F alles", "Model: arrow keys turn, + and − zoom, 1, 3, 7, 0 views, F all")));
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
     private readonly facts = h("div", { class: "readout" });
     private readonly jobs = new Jobs();
@@ -90,8 +90,19 @@ class Inspector implements Shown {
         const stage = h("div", { class: "stage" }, h("h1", { class: "unseen" }, say(t("Untersuchen", "Inspect"))), this.bar(), this.space.element, this.status);
         this.element = h("div", { style: "display:contents" }, stage, this.tools());
         droppable(stage, (opened) => { this.open(opened); });
+        window.addEventListener("keydown", this.shortcut);
         this.space.canvas.addEventListener("pointermove", (event) => { if (event.buttons === 0) this.point(event.offsetX, event.offsetY); });
     }
+
+    /** What the titles of the buttons promise, wherever the focus is, but where letters and digits are entered. */
+    private readonly shortcut = (event: KeyboardEvent): void => {
+        const { target } = event;
+        if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
+        if ((event.ctrlKey || event.metaKey) && !event.shiftKey && event.key.toLowerCase() === "o") {
+            event.preventDefault();
+            this.element.querySelector<HTMLElement>("[data-open]")?.click();
+        } else if ("01357fF".includes(event.key) && !(target instanceof Element && target.matches("select, textarea, input:not([type=checkbox], [type=range])"))) this.space.key(event);
+    };
 
     async begin(taken: string | Opened | undefined): Promise<void> {
         if (typeof taken === "object") { this.open(taken); return; }
@@ -102,6 +113,7 @@ class Inspector implements Shown {
 
     dispose(): void {
         this.gone = true;
+        window.removeEventListener("keydown", this.shortcut);
         this.coarsening?.cancel();
         this.jobs.endAll();
         this.model?.shapes.forEach((shape) => { shape.free(); });

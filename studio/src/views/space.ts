@@ -1,6 +1,6 @@
 // Space by three.js: lines as wide as on paper, dots, surfaces as triangles whose points, normals and colours the module
 // computed. A picture is drawn only when something changed. Left: turn; Shift or middle: move; wheel: zoom to the cursor;
-// 1, 3, 7: front, side, top; 5: parallel or perspective; F or Home: all of it.
+// 1, 3, 7, 0: front, side, top, oblique; 5: parallel or perspective; F or Home: all of it.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -337,16 +337,17 @@ export class Space implements View {
         this.redraw();
     }
 
-    private key(event: KeyboardEvent): void {
+    /** Does what a key asks for. */
+    key(event: KeyboardEvent): void {
         const turn = calm() ? 0.2 : 0.12;
         const keys: Record<string, () => void> = {
-            "1": () => { this.look(0, -1, 0); }, "3": () => { this.look(1, 0, 0); }, "7": () => { this.look(0, -1e-3, 1); },
+            "1": () => { this.look(0, -1, 0); }, "3": () => { this.look(1, 0, 0); }, "7": () => { this.look(0, -1e-3, 1); }, "0": () => { this.look(4, -6, 4); },
             "5": () => { this.project5(); }, f: () => { this.frame(); }, ".": () => { this.frame(); }, Home: () => { this.frame(); },
             ArrowLeft: () => { this.turn(turn, 0); }, ArrowRight: () => { this.turn(-turn, 0); },
             ArrowUp: () => { this.turn(0, -turn); }, ArrowDown: () => { this.turn(0, turn); },
             "+": () => { this.dolly(0.85); }, "-": () => { this.dolly(1.18); },
         };
-        const act = event.ctrlKey || event.metaKey || event.altKey ? undefined : keys[event.key];
+        const act = event.ctrlKey || event.metaKey || event.altKey ? undefined : keys[event.key === "F" ? "f" : event.key];
         if (!act) return;
         event.preventDefault();
         event.stopPropagation();

@@ -787,6 +787,38 @@ export const cases = [
         assert.equal(await page.locator(".tools .list li").count(), 2100);
         assert.match(await list.locator("li").last().innerText(), /^S2099 /);
     }],
+    ["inspect: the keys that titles promise do it wherever the focus is", async ({ page, url }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await until(page, () => document.querySelectorAll(".tools .list li").length === 32);
+        const shot = async () => { await settle(page); return page.evaluate(() => document.querySelector("canvas").toDataURL()); };
+        const buttons = await page.locator(".bar button[title]").evaluateAll((all) => all.map((b) => [b.title, b.innerText]));
+        assert.deepEqual(buttons.map(([title]) => title), ["Ctrl+O", "1", "3", "7", "0", "F", "5"]);
+        for (const focus of ["canvas", 'input[type="range"]', "main"]) {
+            for (const [key, name] of buttons.slice(1)) {
+                const away = async () => { await page.getByRole("button", { name: "Right", exact: true }).click(); await page.getByRole("button", { name: "Fit", exact: true }).click(); await page.locator("canvas").press("ArrowUp"); await page.locator("canvas").press("+"); };
+                await away();
+                const before = await shot();
+                await page.getByRole("button", { name, exact: true }).click();
+                const byButton = await shot();
+                if (key === "5") await page.getByRole("button", { name, exact: true }).click();
+                await away();
+                await page.locator(focus).first().focus();
+                await page.keyboard.press(key);
+                assert.ok((await shot()) === byButton, `${key} with the focus on ${focus} is ${name}`);
+                assert.ok(byButton !== before, name);
+                if (key === "5") await page.keyboard.press(key);
+            }
+        }
+        const chooser = page.waitForEvent("filechooser", { timeout: 5000 });
+        await page.keyboard.press("Control+o");
+        await chooser;
+        const colours = page.locator('select[aria-label="Colours"]'), still = await shot();
+        await colours.focus();
+        await page.keyboard.press("7");
+        await page.keyboard.press("3");
+        await settle(page);
+        assert.ok((await shot()) === still, "what is typed in a list is the list's");
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();
