@@ -76,6 +76,7 @@ class Inspector implements Shown {
     private coarsening: Beside<Meshed> | undefined;
     private key: HTMLElement | undefined;
     private size = 1;
+    private unit = "";
     private readonly cut = { axis: 2, at: 0.5, on: false, again: false, since: 0 };
     private readonly cutting = h("input", { type: "checkbox", onchange: () => { this.cut.on = this.cutting.checked; this.section(); } });
     /** The meshes whose curvatures are on their way. */
@@ -128,16 +129,17 @@ class Inspector implements Shown {
     }
 
     private show(name: string, source: Source, refused: Refused[]): void {
-        const { shapes, leftOut } = ff().document(source);
+        const { shapes, leftOut, unit } = ff().document(source);
+        this.unit = unit;
         this.model?.shapes.forEach((shape) => { shape.free(); });
         last = { name, source, refused };
         this.source = source;
         this.refused = [...refused, ...leftOut.map((x) => ({ kind: "left out", ...x }))];
-        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), meshes: [], edges: [], deviations: undefined, curvatures: undefined, section: undefined, continuity: undefined };
+        this.model = { shapes, solid: shapes.filter((s) => s.type !== "curve" && s.type !== "volume"), document: ff().json([...shapes]), size: 1, meshes: [], edges: [], deviations: undefined, curvatures: undefined, section: undefined, continuity: undefined };
         this.name.textContent = name;
         const bounds = ff().run("bounds", source, { }).json as { box?: { min: number[]; max: number[] } | null };
         this.box = { lower: [...(bounds.box?.min ?? [-1, -1, -1]), 0].slice(0, 3), upper: [...(bounds.box?.max ?? [1, 1, 1]), 0].slice(0, 3) };
-        this.size = extent([this.box.lower, this.box.upper]);
+        this.size = this.model.size = extent([this.box.lower, this.box.upper]);
         this.space.fit([this.box.lower, this.box.upper]);
         this.showing.chosen = undefined;
         // Until there are answers for this one, those of the one before must not stand under its name.
@@ -263,7 +265,9 @@ class Inspector implements Shown {
             this.drawn = draw(this.space, this.model, { ...this.showing, colouring: "plain" });
         }
         if (this.drawn.scale) {
-            this.key = legend(say(kColourings[this.showing.colouring]), this.drawn.scale);
+            const { unit } = this, { colouring } = this.showing;
+            const of = unit === "" ? "" : colouring === "gauss" ? ` (1/${unit}²)` : colouring === "mean" ? ` (1/${unit})` : ` (${unit})`;
+            this.key = legend(say(kColourings[colouring]) + of, this.drawn.scale);
             this.space.element.append(this.key);
         }
         this.space.element.dataset["triangles"] = String(this.model.meshes.reduce((n, m) => n + m.indices.length / 3, 0));

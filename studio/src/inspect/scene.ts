@@ -26,7 +26,7 @@ export interface Showing {
     chosen: { shape: number; face: number } | undefined;
 }
 
-export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; meshes: readonly Mesh[]; /** Of each of `solid` what edges it has. */ edges: readonly (readonly Float64Array[])[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; curvatures: readonly Curvatures[] | undefined; section: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
+export interface Model { readonly shapes: readonly Shape[]; readonly solid: readonly Shape[]; readonly document: DocumentJson; size: number; meshes: readonly Mesh[]; /** Of each of `solid` what edges it has. */ edges: readonly (readonly Float64Array[])[]; /** Fewer triangles, for when the eye moves. */ coarse?: readonly Mesh[] | undefined; deviations: readonly Float64Array[] | undefined; curvatures: readonly Curvatures[] | undefined; section: readonly Float64Array[] | undefined; continuity: Continuity | undefined }
 
 type Edge = `${"u" | "v"} ${"start" | "end"}`;
 /** What the module says about joints of surfaces, and edges and knots inside of objects. */
@@ -48,6 +48,8 @@ function bounds(meshes: readonly Mesh[]): Float64Array[] {
     });
 }
 
+const kDust = 1e-9;
+
 interface Painting { readonly scale: Scale; readonly colours: readonly Float32Array[] }
 
 /** What was painted of meshes: most pictures show the same numbers again. */
@@ -59,7 +61,8 @@ function coloured(model: Model, by: Colouring): Painting | undefined {
     if (own) return own;
     const values = by === "gauss" || by === "mean" ? model.curvatures?.map((found) => found[by]) : by === "bound" ? bounds(model.meshes) : by === "deviation" ? model.deviations : undefined;
     if (!values) return undefined;
-    const scale = range(joined(values), by === "gauss" || by === "mean");
+    // Curvatures that bend the whole model by less than rounding does are none.
+    const scale = range(joined(values), by === "gauss" || by === "mean", kDust / model.size ** (by === "gauss" ? 2 : 1));
     // A deviation is that of a triangle, and each of its corners has it.
     const painting = { scale, colours: values.map((list) => painted(by === "deviation" ? thrice(list) : list, scale)) };
     kept.set(model.meshes, (kept.get(model.meshes) ?? new Map<Colouring, Painting>()).set(by, painting));

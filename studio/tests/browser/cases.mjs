@@ -819,6 +819,24 @@ export const cases = [
         await settle(page);
         assert.ok((await shot()) === still, "what is typed in a list is the list's");
     }],
+    ["inspect: legends say what their ends are", async ({ page, url, write, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        const colours = page.locator('select[aria-label="Colours"]'), words = () => page.locator(".legend").innerText();
+        await until(page, () => Number(document.querySelector(".view.space")?.dataset.triangles) > 100);
+        await colours.selectOption("gauss");
+        await page.waitForSelector(".legend");
+        assert.match(await words(), /^Gauss curvature\n≤ -[\d.]+\n0\n≥ [\d.]+\ngrey: no value$/, "the poles have none");
+        await picture("legend");
+        await file(page, write("flat.json", JSON.stringify({ freiform: 1, unit: "mm", objects: [{ type: "surface", points: [[[0, 0, 0], [0.1, 0.7, 0.3]], [[0.9, 0.2, 0.1], [1, 0.9, 0.4]]] }] })));
+        await page.waitForSelector("text=flat.json");
+        await until(page, () => document.querySelector(".view.space").dataset.triangles === "2" && document.querySelector(".legend"));
+        assert.match(await words(), /^Gauss curvature \(1\/mm²\)\n0 everywhere$/, "a plane is not curved by rounding");
+        await drop(page, ".stage", "ring.step", ring("2."));
+        await page.waitForSelector("text=ring.step");
+        await until(page, () => document.querySelector(".view.space").dataset.triangles === "0" && document.querySelector(".legend"));
+        assert.match(await words(), /no value/);
+        assert.equal(await refused(page), "");
+    }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");
         await page.getByLabel("Knots", { exact: true }).check();

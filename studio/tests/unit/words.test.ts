@@ -5,7 +5,7 @@ import { expect, test } from "vitest";
 import { formula } from "../../src/explore/formula";
 import { keyOf } from "../../src/edit/keys";
 import { address, parse } from "../../src/ui/router";
-import { range, tint } from "../../src/inspect/colours";
+import { ends, painted, range, tint } from "../../src/inspect/colours";
 
 const folder = fileURLToPath(new URL("../../src", import.meta.url));
 const sources = (at: string): string[] => readdirSync(at, { withFileTypes: true }).flatMap((entry) => {
@@ -62,5 +62,25 @@ test("colours: ends, middle, and grey where there is no number", () => {
     expect(scale.low).toBe(-scale.high);
     expect(tint(NaN, scale)).toEqual([0.55, 0.55, 0.55]);
     expect(tint(0, scale)).toEqual([0.96, 0.96, 0.94]);
-    expect(range([1, NaN, 3], false)).toEqual({ low: 1, high: 3, both: false });
+    expect(range([1, NaN, 3], false)).toEqual({ low: 1, high: 3, both: false, beyond: false, none: true, empty: false });
+});
+
+test("a legend says what the ends of the colours mean", () => {
+    const many = [-50, ...Array.from({ length: 98 }, (_, i) => (i - 49) / 100), 70];
+    expect(ends(range(many, true))).toEqual(["≤ -0.45", "0", "≥ 0.45"]);
+    expect(ends(range([-2, -1, 0, 1, 2], true)), "nothing lies beyond").toEqual(["-2", "0", "2"]);
+    expect(ends(range([1, 3, NaN], false))).toEqual(["1", "3"]);
+    expect(range([1, 3, NaN], false).none).toBe(true);
+    expect(ends(range([NaN, NaN], true)), "no scale is made up").toEqual(["no value"]);
+    expect(ends(range([0, 0, 0], true))).toEqual(["0 everywhere"]);
+    expect(ends(range([1e-17, -3e-16, 0], true, 1e-12)), "rounding is no curvature").toEqual(["0 everywhere"]);
+    expect(ends(range([4, 4], false))).toEqual(["4 everywhere"]);
+    const one = [...Array.from({ length: 99 }, () => 0), 8];
+    expect(ends(range(one, true)), "a flat model with one bend").toEqual(["-8", "0", "8"]);
+});
+
+test("vertices have the colours of the legend", () => {
+    const scale = range([0, 10], false), colours = painted(Float64Array.of(0, 10, -5, NaN), scale);
+    const linear = (c: number): number => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+    [0, 10, 0, NaN].forEach((x, i) => { tint(x, scale).forEach((c, k) => { expect(colours[3 * i + k]).toBeCloseTo(linear(c), 6); }); });
 });
