@@ -55,7 +55,7 @@ export function inspect(taken: string | Opened | undefined, edit: (text: string)
 class Inspector implements Shown {
     readonly element: HTMLElement;
     private readonly space = new Space(say(t("Modell: Pfeiltasten drehen, + und − zoomen, 1, 3, 7, 0 Ansichten, F alles", "Model: arrow keys turn, + and − zoom, 1, 3, 7, 0 views, F all")));
-    private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
+    private readonly status = h("div", { class: "status long", role: "status", "aria-live": "polite" });
     private readonly facts = h("div", { class: "readout" });
     private readonly jobs = new Jobs();
     private readonly faces = new Faces((chosen) => { this.showing.chosen = chosen; this.draw(); }, refuse);

@@ -21,6 +21,14 @@ async function until(page, f, arg) {
 }
 const go = async (page, url, hash, ready) => { await page.goto(`${url}${hash}`); await page.waitForSelector(ready, { timeout: 20000 }); await settle(page); };
 
+/** What stands beyond the edge of the panel beside a picture, or is cut off there. */
+const beyond = (page) => page.evaluate(() => {
+    const panel = document.querySelector(".tools, .side"), edge = panel.getBoundingClientRect().left + panel.clientWidth - parseFloat(getComputedStyle(panel).paddingRight);
+    const over = [...panel.querySelectorAll("*")].filter((e) => !e.closest(".formula, svg") && e.getBoundingClientRect().right > edge + 1);
+    const cut = [...panel.querySelectorAll(".formula")].filter((e) => e.scrollWidth > e.clientWidth + 1);
+    return [...over, ...cut].map((e) => `${e.tagName} ${e.className} ${e.closest("label")?.innerText ?? ""}`);
+});
+
 /** All that a figure shows, as text: changes when the picture does. */
 const seen = (page) => page.evaluate(() => {
     const flat = [...document.querySelectorAll(".picture, .readout, pre")].map((e) => e.innerHTML).join("");
@@ -109,6 +117,7 @@ const explore = kRows.map((row) => [`explore ${row}: draws, follows a handle or 
     await settle(page);
     assert.equal(await refused(page), "");
     await picture(row);
+    assert.deepEqual(await beyond(page), []);
     const before = await seen(page);
     const handle = page.locator(".handle").first();
     if (await handle.count() > 0) {
@@ -836,6 +845,28 @@ export const cases = [
         await until(page, () => document.querySelector(".view.space").dataset.triangles === "0" && document.querySelector(".legend"));
         assert.match(await words(), /no value/);
         assert.equal(await refused(page), "");
+    }],
+    ["edit and inspect: fields keep within the panel, and the status line is read to its end", async ({ page, url, picture }) => {
+        for (const other of ["Deutsch", "English"]) {
+            await go(page, url, "#/edit", ".handle");
+            await page.getByRole("button", { name: other }).click();
+            await page.waitForSelector(".tools .list button");
+            await page.locator(".tools .list button").first().click();
+            await page.locator(".handle").first().press("Enter");
+            await settle(page);
+            await picture(`panel-edit-${other}`);
+            assert.deepEqual(await beyond(page), []);
+            await go(page, url, "#/inspect", ".view.space");
+            await until(page, () => document.querySelectorAll(".tools .list li").length === 32);
+            const canvas = page.locator("canvas"), box = await canvas.boundingBox();
+            await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+            await until(page, () => /u, v/.test(document.querySelector(".status").textContent));
+            await picture(`panel-inspect-${other}`);
+            assert.deepEqual(await beyond(page), []);
+            assert.ok(await page.locator(".status").evaluate((e) => e.scrollWidth <= e.clientWidth && e.scrollHeight <= e.clientHeight), "cut off");
+            assert.deepEqual(await canvas.boundingBox(), box, "what is said leaves the picture where it is");
+            await page.mouse.move(0, 0);
+        }
     }],
     ["inspect: edges of models look alike whatever the size", async ({ page, url, picture }) => {
         await go(page, url, "#/inspect", ".view.space");

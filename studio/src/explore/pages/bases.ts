@@ -89,7 +89,8 @@ const r3: Page = {
     row: "R3", title: t("Q = G · M · T", "Q = G · M · T"), gist: t("Geometrie, Basis, Parameter", "geometry, basis, parameter"),
     text: t("Drei Faktoren: dieselben vier Punkte G geben mit einer anderen Matrix M eine andere Kurve. Unten die vier Funktionen, mit denen die Punkte gewichtet werden.",
         "Three factors: with another matrix M the same four points G give another curve. Below are the four functions that the points are weighted by."),
-    formula: `Q(t) = G · M · T, "  " T = (t^3, t^2, t, 1)^T
+    formula: `Q(t) = G · M · T
+              T = (t^3, t^2, t, 1)^T
               M_B = [-1 3 -3 1; 3 -6 3 0; -3 3 0 0; 1 0 0 0]`,
     build(stage) {
         const points = [[0, 0], [1, 2.4], [3.2, 2], [4, -0.2]];
@@ -169,7 +170,8 @@ const r5: Page = {
     row: "R5", title: t("Kubische Bézier-Kurven", "Cubic Bézier curves"), gist: t("vier Punkte, ein Polygon", "four points, one polygon"),
     text: t("Die Kurve beginnt und endet in den äußeren Punkten, in Richtung der inneren, und bleibt in der konvexen Hülle. Das Polygon verrät schon Wendepunkte, Spitzen und Schleifen; das Modul findet sie mit Beweis.",
         "The curve begins and ends at the outer points, towards the inner ones, and stays in the convex hull. The polygon already tells inflections, cusps and loops; the module finds them with a proof."),
-    formula: `R_1 = 3(P_2 - P_1), "  " R_4 = 3(P_4 - P_3)
+    formula: `R_1 = 3(P_2 - P_1)
+              R_4 = 3(P_4 - P_3)
               M_B = [-1 3 -3 1; 3 -6 3 0; -3 3 0 0; 1 0 0 0]`,
     build(stage) {
         const points = [[0, 0], [4, 3], [0, 3], [4, 0]];
@@ -249,7 +251,8 @@ const r7: Page = {
     row: "R7", title: t("Wechsel der Basis", "Change of basis"), gist: t("eine Kurve, viele Koeffizienten", "one curve, many coefficients"),
     text: t("Dieselbe Kurve hat Kontrollpunkte, Endtangenten, Potenzkoeffizienten, interpolierte Punkte oder dividierte Differenzen. Matrizen führen von jedem zu jedem; die Kondition sagt, wie viel Genauigkeit das kosten kann.",
         "The same curve has control points, end tangents, power coefficients, interpolated points or divided differences. Matrices lead from each to each other; the condition says how much accuracy that can cost."),
-    formula: `c = M d "  ⇒  coefficients go with " M^T`,
+    formula: `c = M d
+              ⇒ "coefficients go with " M^T`,
     build(stage) {
         const points = [[0, 0], [0.8, 2.4], [3, 2.8], [4, 0.4]];
         const plane = stage.plane({ label: "cubic" });

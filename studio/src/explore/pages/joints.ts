@@ -164,7 +164,8 @@ const r13: Page = {
     row: "R13", title: t("A-Rahmen", "A-frames"), gist: t("de-Boor-Punkte und Bézier-Punkte", "de Boor points and Bézier points"),
     text: t("An einem C²-Anschluss treffen sich die verlängerten Schenkel beider Polygone in einem Punkt: so entsteht ein A. Diese Punkte sind die de-Boor-Punkte des Splines und führen zu allen Bézier-Punkten zurück. Ziehen Sie einen Knoten.",
         "At a joint with two continuous derivatives the prolonged legs of both polygons meet in one point, forming an A. These points are the de Boor points of the spline and lead back to all Bézier points. Drag a knot."),
-    formula: `b_{n-1} + (b_{n-1} - b_{n-2}) = c_1 + (c_1 - c_2)`,
+    formula: `b_{n-1} + (b_{n-1} - b_{n-2})
+              = c_1 + (c_1 - c_2)`,
     build(stage) {
         const points = [[0, 0], [0.5, 2.4], [2.4, 3], [4, 0.2], [5.8, 0], [6.6, 2.4]], knots = [[1, 0], [2, 0]];
         const plane = stage.plane({ label: "A-frames" });
