@@ -62,8 +62,9 @@ export class Editor implements Shown {
         this.element = h("div", { style: "display:contents" }, this.stage, this.panel.element);
         droppable(this.stage, (opened) => { this.take(opened); });
         document.addEventListener("keydown", this.onKey);
-        if (taken === undefined) void this.restore();
-        else this.open(taken);
+        // What was kept lies below what comes from elsewhere: undo leads back to it. It is asked for first, before a step replaces it.
+        void this.restore();
+        if (taken !== undefined) this.open(taken);
         this.refresh();
         this.fit();
     }
@@ -196,9 +197,8 @@ export class Editor implements Shown {
         try {
             const state = JSON.parse(text) as Document;
             if (state.objects.length > 0) arena((make) => { state.objects.forEach((o) => make(o)); });
-            this.history = this.fresh({ ...(state.unit ? { unit: state.unit } : {}), objects: state.objects });
-            this.refresh();
-            this.fit();
+            this.history.root({ ...(state.unit ? { unit: state.unit } : {}), objects: state.objects });
+            if (this.history.names.undo === undefined) this.fit();
         } catch (error) { refuse(error); }
     }
 

@@ -26,6 +26,12 @@ export class History<T> {
         this.changed(state, this.before === undefined);
     }
 
+    /** What was there before the first step was something else: it was read late. */
+    root(first: T): void {
+        this.past[0] = { name: "", state: first };
+        this.changed(this.state, false);
+    }
+
     begin(): void {
         if (this.before) return;
         this.before = this.last();

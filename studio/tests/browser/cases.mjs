@@ -410,6 +410,24 @@ export const cases = [
         await picture("gizmo-german-dark");
         assert.equal(await refused(page), "");
     }],
+    ["edit: what Explore hands over is one more step: undo leads back to the drawing, also after a reload", async ({ page, url }) => {
+        await go(page, url, "#/edit", ".handle");
+        await drag(page, page.locator(".handle[aria-label*='point']").nth(1), 30, 20);
+        const mine = (await points(page)).objects;
+        await page.reload();
+        await page.waitForSelector(".handle");
+        await go(page, url, "#/explore/R12", ".page h1");
+        await page.getByRole("button", { name: "Open in editor" }).click();
+        await until(page, () => document.querySelectorAll(".handle[aria-label*='point']").length === 7);
+        await until(page, () => !document.querySelector("button[title^='Ctrl+Z']").disabled);
+        await new Promise((done) => setTimeout(done, 300));
+        await page.keyboard.press("Control+z");
+        await settle(page);
+        assert.deepEqual((await points(page)).objects, mine, "what was drawn before");
+        await page.keyboard.press("Control+Shift+z");
+        await settle(page);
+        assert.equal((await points(page)).objects[0].points.length, 7);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));

@@ -48,3 +48,13 @@ test("undo during a drag ends it first", () => {
     expect(history.state).toBe(0);
     expect(history.busy).toBe(false);
 });
+
+test("what was kept and is read late lies below the steps that are there already", () => {
+    const history = new History("first");
+    history.put("open", "handed over");
+    history.root("kept");
+    expect(history.state).toBe("handed over");
+    history.undo();
+    expect(history.state).toBe("kept");
+    expect(history.undo()).toBe(false);
+});
