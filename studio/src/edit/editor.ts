@@ -35,9 +35,9 @@ export class Editor implements Shown {
     private readonly panel: Panel;
     private readonly stage = h("div", { class: "stage" });
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
-    private readonly pen = h("button", { "aria-pressed": "false", title: "B", onclick: () => { this.draft = this.draft ? undefined : []; this.refresh(); } }, say(t("Stift", "Pen")));
-    private readonly back = h("button", { title: "Ctrl+Z", onclick: () => { this.history.undo(); } }, say(t("Rückgängig", "Undo")));
-    private readonly again = h("button", { title: "Ctrl+Shift+Z", onclick: () => { this.history.redo(); } }, say(t("Wiederholen", "Redo")));
+    private readonly pen = h("button", { "aria-pressed": "false", title: "B", onclick: () => { this.draft = this.draft ? undefined : this.penned(); this.refresh(); } }, say(t("Stift", "Pen")));
+    private readonly back = h("button", { title: "Ctrl+Z", onclick: () => { this.steps.undo(); } }, say(t("Rückgängig", "Undo")));
+    private readonly again = h("button", { title: "Ctrl+Shift+Z", onclick: () => { this.steps.redo(); } }, say(t("Wiederholen", "Redo")));
     private readonly grips = h("button", { title: "T", onclick: () => { this.hands.gizmo = !this.hands.gizmo; this.refresh(); } }, say(t("Gizmo", "Gizmo")));
     private readonly snap = h("input", { type: "checkbox", checked: true });
     /** What is touched is chosen beside what is chosen already: Shift for hands without a keyboard. */
@@ -46,7 +46,8 @@ export class Editor implements Shown {
     } }, say(t("Mehrere", "Several")));
     private view: View;
     private readonly hands: Hands;
-    private draft: number[][] | undefined;
+    /** The points of the pen while it is under way, with steps of their own. */
+    private draft: History<readonly number[][]> | undefined;
     private clipboard: readonly ObjectJson[] = [];
     private gone = false;
     private readonly draw = coalesced(() => { this.picture(); });
@@ -145,6 +146,11 @@ export class Editor implements Shown {
         });
     }
 
+    private penned(): History<readonly number[][]> { return new History<readonly number[][]>([], () => { this.refresh(); }); }
+
+    /** What undo and redo are about: while the pen is under way, its points. */
+    private get steps(): History<readonly number[][]> | History<Document> { return this.draft ?? this.history; }
+
     private json(state = this.document): DocumentJson { return { freiform: 1, ...(state.unit ? { unit: state.unit } : {}), objects: [...state.objects] }; }
 
     /** A change that the module may refuse: what it reads is checked before it becomes the state. */
@@ -234,7 +240,7 @@ export class Editor implements Shown {
             this.view = next;
             this.fit();
         }
-        const { undo, redo } = this.history.names;
+        const { undo, redo } = this.steps.names;
         this.back.disabled = undo === undefined;
         this.again.disabled = redo === undefined;
         this.back.title = `Ctrl+Z ${undo ?? ""}`;
@@ -252,7 +258,8 @@ export class Editor implements Shown {
         const { view } = this;
         view.clear();
         try { show(view, this.document, this.chosen); } catch (error) { refuse(error); }
-        if (this.draft) { view.line(run(this.draft.length > 0 ? this.draft : [[0, 0]]), { colour: "hot", width: 1.4, dashed: true }); view.dots(run(this.draft), { colour: "hot", width: 8 }); }
+        const points = this.draft?.state ?? [];
+        if (points.length > 0) { view.line(run(points), { colour: "hot", width: 1.4, dashed: true }); view.dots(run(points), { colour: "hot", width: 8 }); }
         this.status.textContent = this.draft ? say(t("Stift: klicken setzt Punkte, Eingabetaste beendet, Esc verwirft.", "Pen: a click sets a point, Enter ends, Esc discards."))
             : this.hands.said !== "" ? this.hands.said
             : `${this.document.objects.length} ${say(t("Objekte", "objects"))} · ${this.selection.size} ${say(t("Punkte gewählt", "points chosen"))} · ${say(t("? zeigt die Tasten", "? shows the keys"))}`;
@@ -269,8 +276,7 @@ export class Editor implements Shown {
     /** A click beside all handles: the pen sets a point, otherwise the nearest curve is chosen. */
     private ground(at: number[], event: PointerEvent): void {
         if (this.draft) {
-            this.draft = [...this.draft, this.snap.checked && !event.altKey ? this.hands.snapped(at) : at];
-            this.draw();
+            this.draft.put(say(t("Punkt", "point")), [...this.draft.state, this.snap.checked && !event.altKey ? this.hands.snapped(at) : at]);
             return;
         }
         let best: { i: number; far: number } | undefined;
@@ -308,11 +314,11 @@ export class Editor implements Shown {
 
     private does(command: Command): void {
         const acts: Record<Command, () => void> = {
-            undo: () => { this.history.undo(); }, redo: () => { this.history.redo(); }, save: () => { this.element.querySelector<HTMLElement>("[data-save]")?.click(); },
+            undo: () => { this.steps.undo(); }, redo: () => { this.steps.redo(); }, save: () => { this.element.querySelector<HTMLElement>("[data-save]")?.click(); },
             open: () => { this.element.querySelector<HTMLElement>("[data-open]")?.click(); }, all: () => { this.selection.all(this.document); this.refresh(); },
             none: () => { this.draft = undefined; this.selection.clear(); this.refresh(); }, remove: () => { this.remove(); },
             copy: () => { this.clipboard = this.taken(); notify(say(t(`${this.clipboard.length} Objekte kopiert`, `${this.clipboard.length} objects copied`))); },
-            cut: () => { this.clipboard = this.taken(); this.remove(true); }, paste: () => { this.paste(this.clipboard); }, duplicate: () => { this.paste(this.taken()); },
+            cut: () => { this.clipboard = this.taken(); this.without([...this.chosen]); }, paste: () => { this.paste(this.clipboard); }, duplicate: () => { this.paste(this.taken()); },
             fit: () => { this.fit(); }, pen: () => { this.pen.click(); }, finish: () => { this.finish(); }, help: showKeys, gizmo: () => { this.grips.click(); },
             grab: () => { this.prompt(t("Verschieben um x, y, z", "Move by x, y, z"), "0 0 0", (by) => shifted(by)); },
             scale: () => { this.prompt(t("Vergrößern um den Faktor", "Scale by the factor"), "2", ([k = 1]) => scaledAbout(this.selection.centre(this.document), [k, k, k])); },
@@ -326,8 +332,13 @@ export class Editor implements Shown {
         return this.selection.owners.flatMap((i) => this.document.objects[i] ?? []);
     }
 
-    private remove(whole = false): void {
-        const list = whole ? [...this.chosen] : this.selection.owners;
+    /** What is chosen; while the pen is under way, its last point. */
+    private remove(): void {
+        if (this.draft) this.draft.undo();
+        else this.without(this.selection.owners);
+    }
+
+    private without(list: readonly number[]): void {
         if (list.length > 0) this.attempt(say(t("Löschen", "delete")), () => removed(this.document, list));
         this.selection.clear();
         this.refresh();
@@ -343,7 +354,7 @@ export class Editor implements Shown {
     }
 
     private finish(): void {
-        const points = this.draft;
+        const points = this.draft?.state;
         if (!points) return;
         this.draft = undefined;
         if (points.length >= 2) this.attempt(say(t("Zeichnen", "draw")), () => added(this.document, [named(this.document, { ...drawn(flat(this.document) ? points : points.map((p) => [...p, 0].slice(0, 3))), name: "curve" })]), true);

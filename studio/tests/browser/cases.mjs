@@ -428,6 +428,38 @@ export const cases = [
         await settle(page);
         assert.equal((await points(page)).objects[0].points.length, 7);
     }],
+    ["edit: while the pen is under way, undo, redo and the keys that delete are of its points", async ({ page, url }) => {
+        await go(page, url, "#/edit", ".handle");
+        const objects = () => page.locator(".tools .list li").count(), dots = () => page.evaluate(() => (document.querySelector(".stage .picture path[stroke-width='8']")?.getAttribute("d") ?? "").split("M").length - 1);
+        const click = async (...places) => { for (const [x, y] of places) await page.mouse.click(box.x + x * box.width, box.y + y * box.height); await settle(page); };
+        const press = async (key) => { await page.keyboard.press(key); await settle(page); };
+        const box = await page.locator("svg.plane").first().boundingBox();
+        await page.locator(".tools .list button").first().click();
+        await page.evaluate(() => document.activeElement.blur());
+        await press("b");
+        await click([0.05, 0.1], [0.1, 0.2], [0.2, 0.1]);
+        assert.equal(await dots(), 3);
+        for (const [key, left] of [["Backspace", 2], ["Control+z", 1], ["Control+Shift+z", 2], ["Delete", 1], ["Control+y", 2], ["x", 1]]) {
+            await press(key);
+            assert.equal(await dots(), left, key);
+            assert.equal(await objects(), 1, `${key} leaves the drawing alone`);
+        }
+        for (let i = 0; i < 3; ++i) await press("Control+z");
+        await press("Delete");
+        assert.equal(await objects(), 1);
+        assert.equal(await dots(), 0);
+        await click([0.05, 0.1], [0.1, 0.2]);
+        await page.getByRole("button", { name: "Undo" }).click();
+        await settle(page);
+        assert.equal(await dots(), 1, "the button, too");
+        await click([0.2, 0.1]);
+        await page.evaluate(() => document.activeElement.blur());
+        await press("Enter");
+        assert.equal(await objects(), 2);
+        assert.equal((await points(page)).objects[1].points.length, 2);
+        await press("Control+z");
+        assert.equal(await objects(), 1, "the pen is put away: the drawing is meant again");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
