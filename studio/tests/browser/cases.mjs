@@ -460,6 +460,42 @@ export const cases = [
         await press("Control+z");
         assert.equal(await objects(), 1, "the pen is put away: the drawing is meant again");
     }],
+    ["edit: windows do not overwrite each other's drawing; what was closed comes back, one by one", async ({ page, context, url }) => {
+        const places = (on) => on.evaluate(() => [...document.querySelectorAll(".stage .handle")].map((e) => e.getAttribute("aria-valuetext")).join(";"));
+        const becomes = async (on, what, why) => { for (let i = 0; i < 60 && (await places(on)) !== what; ++i) await new Promise((done) => setTimeout(done, 50)); assert.equal(await places(on), what, why); };
+        await go(page, url, "#/edit", ".handle");
+        const two = await context.newPage();
+        await go(two, url, "#/edit", ".handle");
+        await page.bringToFront();
+        await drag(page, page.locator(".handle[aria-label*='point']").nth(1), 30, 20);
+        const first = await places(page);
+        await two.bringToFront();
+        await drag(two, two.locator(".handle[aria-label*='point']").nth(3), -40, 30);
+        const second = await places(two);
+        assert.notEqual(first, second);
+        for (const [on, what] of [[page, first], [two, second]]) {
+            await on.bringToFront();
+            await on.reload();
+            await on.waitForSelector(".handle");
+            await becomes(on, what, "after a reload");
+        }
+        const three = await context.newPage();
+        await go(three, url, "#/edit", ".handle");
+        await becomes(three, second, "a window more begins with the newest drawing");
+        await drag(three, three.locator(".handle[aria-label*='point']").nth(2), 20, 30);
+        const third = await places(three);
+        await page.reload();
+        await page.waitForSelector(".handle");
+        await becomes(page, first, "and writes it elsewhere");
+        await page.close();
+        await three.close();
+        for (const what of [third, first]) {
+            const again = await context.newPage();
+            await go(again, url, "#/edit", ".handle");
+            await becomes(again, what, "the newest of the closed");
+        }
+        await two.close();
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
