@@ -155,6 +155,7 @@ export class Editor implements Shown {
 
     /** A change that the module may refuse: what it reads is checked before it becomes the state. */
     private attempt(name: string, f: () => Document, chooseNew = false): void {
+        this.history.end();
         try {
             const next = f();
             if (next.objects.length > 0) arena((make) => { for (const o of next.objects) if (!this.document.objects.includes(o)) make(o); });

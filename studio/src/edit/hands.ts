@@ -38,6 +38,7 @@ export class Hands {
     show(view: View): void {
         if (view !== this.view) this.grips = view instanceof Space ? this.gripsIn(view) : undefined;
         this.view = view;
+        this.said = "";
         const { objects } = this.document, chosen = this.host.selection.objects;
         const count = objects.reduce((n, o) => n + pointsOf(o).length, 0);
         const shown = objects.flatMap((o, object) => (chosen.has(object) || (chosen.size === 0 && count <= kMostHandles) ? pointsOf(o).map((_, point) => ({ object, point })) : []));
@@ -88,7 +89,7 @@ export class Hands {
             },
             move: (to) => {
                 const from = this.at(place), by = to.map((x, i) => x - (from[i] ?? 0));
-                this.host.history().put(say(t("Ziehen", "drag")), moved(this.document, selection.has(place) ? selection.places : [place], shifted(by)));
+                this.host.history().carry(say(t("Ziehen", "drag")), moved(this.document, selection.has(place) ? selection.places : [place], shifted(by)));
             },
         };
     }
@@ -108,7 +109,7 @@ export class Hands {
                 history().begin();
             },
             end: () => { this.said = ""; history().end(); this.host.settled(); },
-            carry: (name, way, said) => { this.said = `${name}: ${said}`; history().put(name, moved(before, places, way)); },
+            carry: (name, way, said) => { if (history().busy) this.said = `${name}: ${said}`; history().carry(name, moved(before, places, way)); },
             snapping: this.host.snapping });
     }
 }

@@ -38,6 +38,9 @@ export class History<T> {
         this.past.push({ ...this.before });
     }
 
+    /** A state that a hand carries on from `begin`. Whatever else happened since then (undo, a deletion) took it from the hand. */
+    carry(name: string, state: T): void { if (this.before) this.put(name, state); }
+
     end(): void {
         const { before } = this;
         if (!before) return;

@@ -496,6 +496,38 @@ export const cases = [
         }
         await two.close();
     }],
+    ["edit: what is deleted or taken back during a drag lets go of the hand, with the gizmo, too", async ({ page, url, write }) => {
+        const line = (name, x) => ({ type: "curve", name, points: [[x, 0], [x + 1, 1]] });
+        const at = (locator) => locator.evaluate((e) => { const b = e.children[1].getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; });
+        const steps = async () => { let n = 0; while (await page.isEnabled("button[title^='Ctrl+Z']")) { await page.keyboard.press("Control+z"); ++n; } return n; };
+        const through = async (locator, key, dx, dy) => {
+            const [x, y] = await at(locator);
+            await page.mouse.move(x, y);
+            await page.mouse.down();
+            for (let i = 1; i <= 4; ++i) await page.mouse.move(x + (i * dx) / 8, y + (i * dy) / 8);
+            await page.keyboard.press(key);
+            for (let i = 5; i <= 8; ++i) await page.mouse.move(x + (i * dx) / 8, y + (i * dy) / 8);
+            await page.mouse.up();
+            await settle(page);
+        };
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("abc.json", JSON.stringify({ freiform: 1, objects: [line("A", 0), line("B", 2), line("C", 4)] })));
+        await through(page.locator(".handle[aria-label='A, point 0']"), "Delete", 80, -60);
+        assert.deepEqual((await points(page)).objects.map((o) => [o.name, o.points[0]]), [["B", [2, 0]], ["C", [4, 0]]], "B stays where it is");
+        await through(page.locator(".handle[aria-label='B, point 1']"), "Control+z", 80, -60);
+        assert.deepEqual((await points(page)).objects[0].points, [[2, 0], [3, 1]]);
+        assert.equal(await steps(), 3, "what was taken back leaves no steps behind: open, drag, delete");
+
+        const net = [0, 1, 2].map((i) => [0, 1, 2].map((j) => [i, j, 0]));
+        await file(page, write("net.json", JSON.stringify({ freiform: 1, objects: [{ type: "surface", name: "net", points: net }] })));
+        await page.waitForSelector(".view.space canvas");
+        await page.keyboard.press("Control+a");
+        await settle(page);
+        await through(page.locator(".parts .handle[aria-label='move, freely']"), "Control+z", 60, 40);
+        assert.deepEqual((await points(page)).objects[0].points, net);
+        assert.equal(await page.locator(".status").textContent().then((s) => /move, freely/.test(s)), false);
+        assert.equal(await steps(), 1, "open");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));

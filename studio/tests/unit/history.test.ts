@@ -58,3 +58,18 @@ test("what was kept and is read late lies below the steps that are there already
     expect(history.state).toBe("kept");
     expect(history.undo()).toBe(false);
 });
+
+test("what was taken back during a drag is not carried on", () => {
+    const history = new History(0);
+    history.begin();
+    history.carry("drag", 1);
+    history.undo();
+    history.carry("drag", 2);
+    history.end();
+    expect(history.state).toBe(0);
+    expect(history.names).toEqual({ undo: undefined, redo: "drag" });
+    history.begin();
+    history.carry("drag", 3);
+    history.end();
+    expect(history.state).toBe(3);
+});
