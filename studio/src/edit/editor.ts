@@ -50,6 +50,8 @@ export class Editor implements Shown {
     private draft: History<readonly number[][]> | undefined;
     private clipboard: readonly ObjectJson[] = [];
     private gone = false;
+    /** The state that the selection is about. */
+    private seen = kFirst;
     private readonly draw = coalesced(() => { this.picture(); });
     private readonly onKey = (event: KeyboardEvent): void => { this.key(event); };
 
@@ -141,7 +143,8 @@ export class Editor implements Shown {
     private fresh(first: Document): History<Document> {
         return new History(first, (state, settled) => {
             if (settled) keep(JSON.stringify(this.json(state))).catch(refuse);
-            this.selection.prune(state);
+            this.selection.follow(this.seen, state);
+            this.seen = state;
             this.refresh();
         });
     }

@@ -528,6 +528,32 @@ export const cases = [
         assert.equal(await page.locator(".status").textContent().then((s) => /move, freely/.test(s)), false);
         assert.equal(await steps(), 1, "open");
     }],
+    ["edit: what is chosen stays chosen when others come and go by undo", async ({ page, url, write }) => {
+        const line = (name, x) => ({ type: "curve", name, points: [[x, 0], [x + 1, 1]] });
+        const list = () => page.locator(".tools .list button").evaluateAll((l) => l.map((b) => (b.getAttribute("aria-pressed") === "true" ? "*" : "") + b.textContent[0]).join(" "));
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("abc.json", JSON.stringify({ freiform: 1, objects: [line("A", 0), line("B", 2), line("C", 4)] })));
+        await page.locator(".tools .list button").nth(0).click();
+        await page.keyboard.press("Delete");
+        await page.locator(".tools .list button").nth(0).click();
+        await page.locator(".handle[aria-label='B, point 1']").focus();
+        await page.keyboard.press("Enter");
+        await settle(page);
+        assert.equal(await list(), "*B C");
+        await page.keyboard.press("Control+z");
+        await settle(page);
+        assert.equal(await list(), "A *B C");
+        assert.equal(await page.locator(".handle.chosen").getAttribute("aria-label"), "B, point 1");
+        await page.keyboard.press("Control+z");
+        await settle(page);
+        assert.equal(await page.locator(".tools .list button[aria-pressed='true']").count(), 0, "what is gone is not chosen");
+        await page.keyboard.press("Control+Shift+z");
+        await page.keyboard.press("Control+Shift+z");
+        await page.locator(".tools .list button").nth(1).click();
+        await page.keyboard.press("Delete");
+        await settle(page);
+        assert.equal(await list(), "B");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));

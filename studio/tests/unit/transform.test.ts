@@ -55,7 +55,7 @@ test("steps are round", () => {
 });
 
 test("what is chosen: points before objects, their middle, and nothing that is gone", () => {
-    const curve = { type: "curve" as const, points: [[0, 0, 0], [2, 0, 0], [4, 6, 3]] }, document = { objects: [curve, curve] };
+    const curve = { type: "curve" as const, points: [[0, 0, 0], [2, 0, 0], [4, 6, 3]] }, document = { objects: [curve, { ...curve }] };
     const selection = new Selection();
     selection.objects.add(1);
     expect(selection.meant(document)).toHaveLength(3);
@@ -63,7 +63,7 @@ test("what is chosen: points before objects, their middle, and nothing that is g
     selection.add({ object: 0, point: 1 });
     selection.toggle({ object: 1, point: 2 });
     expect(selection.meant(document)).toEqual([{ object: 0, point: 1 }, { object: 1, point: 2 }]);
-    selection.prune({ objects: [curve] });
+    selection.follow(document, { objects: [curve] });
     expect(selection.places).toEqual([{ object: 0, point: 1 }]);
     expect(selection.objects.size).toBe(0);
     selection.toggle({ object: 0, point: 1 });
