@@ -113,14 +113,3 @@ export function chained(a: CurveJson, b: CurveJson): CurveJson {
     return { type: "curve", ...(a.name ? { name: a.name } : {}), degree: p, knots, points: [...a.points, ...b.points.slice(1)],
         ...(rational ? { weights: [...wa, ...wb.slice(1).map((w) => w * scale)] } : {}) };
 }
-
-/** The longest side of the box around all control points. */
-export function extent(document: Document): number {
-    const all = document.objects.flatMap((o) => (editable(o) ? [...pointsOf(o)] : []));
-    let most = 0;
-    for (let k = 0; k < 3; ++k) {
-        const at = all.map((p) => p[k] ?? 0);
-        if (at.length > 0) most = Math.max(most, at.reduce((a, b) => Math.max(a, b)) - at.reduce((a, b) => Math.min(a, b)));
-    }
-    return most > 0 ? most : 1;
-}

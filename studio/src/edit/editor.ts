@@ -11,7 +11,7 @@ import { Plane } from "../views/plane";
 import { Space } from "../views/space";
 import { run, type View } from "../views/view";
 import { askNumbers, showKeys } from "./dialogs";
-import { added, drawn, extent, flat, moved, named, pointsOf, raised, removed, replaced, shifted, weighted, type Document, type Place } from "./document";
+import { added, drawn, flat, moved, named, pointsOf, raised, removed, replaced, shifted, weighted, type Document, type Place } from "./document";
 import { exportButtons } from "./export";
 import { frame } from "./frame";
 import { Hands } from "./hands";
@@ -20,6 +20,7 @@ import { keyOf, type Command } from "./keys";
 import { Panel } from "./panel";
 import { show } from "./picture";
 import { Selection } from "./selection";
+import { corners, extent } from "./size";
 import { keep, kept } from "./store";
 import * as tools from "./tools";
 import { kAxes, scaledAbout, turnedAbout } from "./transform";
@@ -270,11 +271,8 @@ export class Editor implements Shown {
     }
 
     private fit(): void {
-        const all = this.document.objects.flatMap((o) => [...pointsOf(o)]);
-        if (all.length > 0) { this.view.fit(all); return; }
-        if (this.document.objects.length === 0) { this.view.fit([[0, 0], [6, 4]]); return; }
-        const bounds = ff().run("bounds", this.json()).json as { box?: { min: number[]; max: number[] } };
-        this.view.fit([bounds.box?.min ?? [0, 0, 0], bounds.box?.max ?? [1, 1, 1]]);
+        const all = corners(this.document);
+        this.view.fit(all.length > 0 ? all : [[0, 0], [6, 4]]);
     }
 
     /** A click beside all handles: the pen sets a point, otherwise the nearest curve is chosen. */

@@ -4,9 +4,11 @@ import { curve, lattice, net, polygon, surface } from "../explore/draw";
 import { arena } from "../kernel/module";
 import { Space } from "../views/space";
 import type { View } from "../views/view";
-import { extent, type Document } from "./document";
+import type { Document } from "./document";
+import { extent } from "./size";
 
 export function show(view: View, document: Document, chosen: ReadonlySet<number>): void {
+    const size = extent(document);
     arena((make) => {
         document.objects.forEach((o, i) => {
             const shape = make(o), lit = chosen.has(i);
@@ -18,7 +20,7 @@ export function show(view: View, document: Document, chosen: ReadonlySet<number>
                 surface(view, shape, { colour: lit ? "lit" : "surface" }, 36);
                 lattice(view, Array.from({ length: shape.size[0] ?? 0 }, (_, k) => points.slice(k * columns, (k + 1) * columns)), { colour: lit ? "hot" : "control", width: 1 });
             } else if (view instanceof Space && shape.type !== "volume") {
-                const mesh = shape.mesh({ tolerance: 0.003 * extent(document) });
+                const mesh = shape.mesh({ tolerance: 0.003 * size });
                 view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "lit" : "surface" });
             }
         });

@@ -554,6 +554,21 @@ export const cases = [
         await settle(page);
         assert.equal(await list(), "B");
     }],
+    ["edit: models are shown and exported within a tolerance of their size", async ({ page, url, read, picture }) => {
+        await go(page, url, "#/inspect", ".stage");
+        await drop(page, ".stage", "bracket.step", bracket());
+        await until(page, () => document.querySelector(".tools .list li, .readout tr") && document.querySelector("progress").hidden);
+        await page.locator(".bar").getByRole("button", { name: "Edit" }).click();
+        await page.getByLabel("Export as").waitFor();
+        await page.getByRole("button", { name: "Fit" }).click();
+        await settle(page);
+        const saving = page.waitForEvent("download");
+        await page.getByLabel("Export as").selectOption("stl");
+        const triangles = read(await (await saving).path()).readUInt32LE(80);
+        assert.ok(triangles > 2000 && triangles < 10000, `${triangles} triangles; within 0.001 they would be 174008`);
+        await picture("edit-model");
+        assert.equal(await refused(page), "");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
