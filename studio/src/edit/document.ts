@@ -102,9 +102,27 @@ export function raised(document: Document): Document {
     return { ...document, objects: document.objects.map((o) => (editable(o) ? withPoints(o, pointsOf(o).map((p) => (p.length < 3 ? [...p, ...new Array<number>(3 - p.length).fill(0)] : p)), o.weights ? weightsOf(o) : undefined) : o)) };
 }
 
+export const degreeOf = (c: CurveJson): number => c.degree ?? c.points.length - 1;
+
+/** The knots that the ends of the domain lack for the curve to run through a control point there. */
+export function loose(c: CurveJson): number[] {
+    const p = degreeOf(c), knots = c.knots ?? [];
+    const ends = knots.length > 0 ? [knots[p] ?? 0, knots[knots.length - 1 - p] ?? 0] : [];
+    return ends.flatMap((end) => new Array<number>(Math.max(0, p - knots.filter((k) => k === end).length)).fill(end));
+}
+
+/** The same curve without what is outside of its domain. REQUIRES nothing to be loose. */
+export function inside(c: CurveJson): CurveJson {
+    const p = degreeOf(c), { knots } = c;
+    if (!knots) return c;
+    const low = knots[p] ?? 0, high = knots[knots.length - 1 - p] ?? 1, from = knots.lastIndexOf(low) - p, to = knots.indexOf(high);
+    if (from === 0 && to === c.points.length) return c;
+    return { ...c, knots: [low, ...knots.slice(from + 1, to + p), high], points: c.points.slice(from, to), ...(c.weights ? { weights: c.weights.slice(from, to) } : {}) };
+}
+
 /** Two curves of one degree end to end as one; the point between is that of the first. Knots of the second follow. */
 export function chained(a: CurveJson, b: CurveJson): CurveJson {
-    const p = a.degree ?? a.points.length - 1;
+    const p = degreeOf(a);
     const ka = a.knots ?? clamped(a.points.length, p), kb = b.knots ?? clamped(b.points.length, p);
     const end = ka[ka.length - 1 - p] ?? 1, start = kb[p] ?? 0;
     const knots = [...ka.slice(0, ka.length - 1), ...kb.slice(p + 1).map((k) => k - start + end)];

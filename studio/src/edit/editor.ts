@@ -1,6 +1,6 @@
 // The part of the studio that makes and changes shapes.
 
-import type { CurveJson, DocumentJson, ObjectJson } from "freiform";
+import type { DocumentJson, ObjectJson } from "freiform";
 import type { Shown } from "../explore/explore";
 import { arena, ff, file, type Source } from "../kernel/module";
 import { coalesced, h } from "../ui/dom";
@@ -122,7 +122,7 @@ export class Editor implements Shown {
         const [a, b] = list ?? [];
         if (a === undefined || b === undefined) return;
         this.attempt(say(t("Verbinden", "join")), () => {
-            const made = tools.joined(this.document.objects[a] as CurveJson, this.document.objects[b] as CurveJson, tolerance);
+            const made = tools.joined(this.document.objects[a] as ObjectJson, this.document.objects[b] as ObjectJson, tolerance);
             return added(removed(this.document, [a, b]), made);
         }, true);
     }

@@ -569,6 +569,26 @@ export const cases = [
         await picture("edit-model");
         assert.equal(await refused(page), "");
     }],
+    ["edit: curves that do not end at their outer points are joined where they end; closed ones are refused", async ({ page, url, write }) => {
+        const open = async (...objects) => { await file(page, write("join.json", JSON.stringify({ freiform: 1, objects }))); await page.evaluate(() => document.activeElement.blur()); await page.keyboard.press("Escape"); await page.keyboard.press("j"); await settle(page); };
+        const close = (a, b) => { assert.equal(a.length, b.length); a.forEach((p, i) => { assert.ok(Math.hypot(p[0] - b[i][0], p[1] - b[i][1]) < 1e-9, `${a} is not ${b}`); }); };
+        const v = { type: "curve", name: "V", points: [[0, 0], [1, 2], [3, 1]] }, u = { type: "curve", name: "U", degree: 2, knots: [0, 1, 2, 3, 4, 5, 6], points: [[3, 1], [4, -1], [6, 0], [7, 3]] };
+        await go(page, url, "#/edit", ".handle");
+        await open(v, u);
+        assert.match(await toast(page), /1\.118/, "U begins at 3.5, 0");
+        assert.equal((await points(page)).objects.length, 2);
+        await page.locator(".toast .close").click();
+        await open({ ...v, points: [[0, 0], [1, 2], [3.5, 0]] }, u);
+        assert.equal(await refused(page), "");
+        const [one, ...others] = (await points(page)).objects;
+        assert.equal(others.length, 0);
+        // The curve that U is: quadratic pieces between 3.5, 0 and 6.5, 1.5.
+        close(one.points, [[0, 0], [1, 2], [3.5, 0], [4, -1], [6, 0], [6.5, 1.5]]);
+        assert.deepEqual(one.knots, [0, 0, 0, 1, 1, 2, 3, 3, 3]);
+        await open(v, { type: "curve", name: "Ring", closed: true, degree: 2, knots: [0, 1, 2, 3, 4], points: [[3, 1], [5, 1], [5, 3], [3, 3]] });
+        assert.match(await toast(page), /Ring/);
+        assert.equal((await points(page)).objects.length, 2);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));

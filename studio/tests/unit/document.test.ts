@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { chained, clamped, drawn, flat, moved, named, pointsOf, raised, removed, shifted, weighted, weightsOf, withPoints, type Document } from "../../src/edit/document";
+import { chained, clamped, drawn, flat, inside, loose, moved, named, pointsOf, raised, removed, shifted, weighted, weightsOf, withPoints, type Document } from "../../src/edit/document";
 
 const curve = { type: "curve" as const, name: "c", points: [[0, 0], [1, 2], [3, 2]] };
 const surface = { type: "surface" as const, points: [[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 5], [1, 2, 0]]] };
@@ -53,4 +53,17 @@ test("chains keep counts: knots are points + degree + 1, weights agree where the
     expect(c.points).toHaveLength(5);
     expect(c.knots).toEqual([0, 0, 0, 1, 1, 2, 2, 2]);
     expect(c.weights).toEqual([1, 1, 4, 2, 2]);
+});
+
+test("a curve that floats beyond its domain lacks knots there; what is outside goes", () => {
+    const u = { points: [[3, 1], [4, -1], [6, 0], [7, 3]], degree: 2, knots: [0, 1, 2, 3, 4, 5, 6] };
+    expect(loose(u)).toEqual([2, 4]);
+    expect(loose(drawn([[0, 0], [1, 1], [2, 0], [3, 1], [4, 0]]))).toEqual([]);
+    // What the module makes of it.
+    const whole = { degree: 2, knots: [0, 1, 2, 2, 3, 4, 4, 5, 6], points: [[3, 1], [3.5, 0], [4, -1], [6, 0], [6.5, 1.5], [7, 3]], weights: [1, 2, 3, 4, 5, 6] };
+    expect(loose(whole)).toEqual([]);
+    expect(inside(whole)).toEqual({ degree: 2, knots: [2, 2, 2, 3, 4, 4, 4], points: [[3.5, 0], [4, -1], [6, 0], [6.5, 1.5]], weights: [2, 3, 4, 5] });
+    const clean = drawn([[0, 0], [1, 1], [2, 0], [3, 1], [4, 0]]);
+    expect(inside(clean)).toBe(clean);
+    expect(inside(curve)).toBe(curve);
 });
