@@ -6,7 +6,7 @@ import { arena, ff, file, type Source } from "../kernel/module";
 import { coalesced, h } from "../ui/dom";
 import { droppable, isModel, opener, type Opened } from "../ui/files";
 import { say, t, type Text } from "../ui/language";
-import { notify, refuse } from "../ui/toast";
+import { lacking, notify, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
 import { Space } from "../views/space";
 import { run, type View } from "../views/view";
@@ -68,7 +68,7 @@ export class Editor implements Shown {
         document.addEventListener("keydown", this.onKey);
         // What was kept lies below what comes from elsewhere: undo leads back to it. It is asked for first, before a step replaces it.
         void this.restore();
-        if (taken !== undefined) this.open(taken);
+        if (taken !== undefined) this.open("", taken);
         this.refresh();
         this.fit();
     }
@@ -188,17 +188,18 @@ export class Editor implements Shown {
     /** A file: models are for looking at. */
     private take(opened: Opened): void {
         if (isModel(opened)) this.inspect(opened);
-        else this.open(file(opened.name, opened.source));
+        else this.open(opened.name, file(opened.name, opened.source));
     }
 
-    private open(source: Source): void {
+    private open(name: string, source: Source): void {
         try {
-            const { shapes, unit } = ff().document(source);
+            const { shapes, unit, leftOut } = ff().document(source);
             let state: Document;
             try { state = { ...(unit ? { unit } : {}), objects: ff().json(shapes, unit).objects }; } finally { shapes.forEach((s) => { s.free(); }); }
             this.selection.clear();
             this.history.put(say(t("Öffnen", "open")), state);
             this.fit();
+            lacking(name, leftOut);
         } catch (error) { refuse(error); }
     }
 

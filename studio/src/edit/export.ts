@@ -4,7 +4,7 @@ import type { DocumentJson } from "freiform";
 import { ff } from "../kernel/module";
 import { download, h } from "../ui/dom";
 import { say, t } from "../ui/language";
-import { refuse } from "../ui/toast";
+import { lacking, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
 import { Space } from "../views/space";
 import type { View } from "../views/view";
@@ -36,6 +36,7 @@ export function exportButtons(document: () => DocumentJson, view: () => View, to
         const reply = format === "svg" ? ff().run("draw", document(), { to: "svg" }) : format === "step" ? ff().run("convert", document(), { to: "step" })
             : ff().run("tessellate", document(), { to: format, tolerance: tolerance() });
         download(`freiform.${format}`, reply.bytes, { svg: "image/svg+xml", glb: "model/gltf-binary", stl: "model/stl", step: "model/step" }[format]);
+        lacking(`freiform.${format}`, (reply.report as { refused?: { where: string; message: string }[] } | null)?.refused ?? []);
     };
     const select = h("select", { "aria-label": say(t("Exportieren als", "Export as")), onchange: () => {
         const format = kFormats.find((f) => f === select.value);

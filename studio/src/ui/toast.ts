@@ -6,7 +6,10 @@ import { say, t } from "./language";
 const kTexts = {
     close: t("Schließen", "Close"),
     where: t("wo", "where"),
+    lacking: t("ausgelassen", "left out"),
 };
+
+const kMostTold = 5;
 
 let box: HTMLElement | undefined;
 
@@ -38,6 +41,13 @@ export function refuse(error: unknown): void {
         h("p", {}, message));
     element.append(h("button", { class: "close", "aria-label": say(kTexts.close), onclick: () => { element.remove(); } }, "×"));
     add(element);
+}
+
+/** Tells once what a file was made or read without; nothing if it is whole. */
+export function lacking(file: string, list: readonly { readonly where: string; readonly message: string }[]): void {
+    if (list.length === 0) return;
+    const some = list.slice(0, kMostTold).map(({ where, message }) => `${where}: ${message}`), more = list.length - some.length;
+    refuse({ kind: say(kTexts.lacking), where: file, message: [...some, ...(more > 0 ? [say(t(`und ${more} weitere`, `and ${more} more`))] : [])].join("; ") });
 }
 
 export function notify(text: string): void {

@@ -589,6 +589,31 @@ export const cases = [
         assert.match(await toast(page), /Ring/);
         assert.equal((await points(page)).objects.length, 2);
     }],
+    ["edit: what a file holds and the drawing does not, and what a file cannot hold, is told", async ({ page, url, write, picture }) => {
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("left.svg", '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100"><text x="1" y="9">hi</text><path d="M0 0 L10 10"/><path d="M0 0 L"/></svg>'));
+        await page.waitForSelector(".toast");
+        const told = await page.locator(".toast").allInnerTexts().then((l) => l.join(" "));
+        await picture("left-out");
+        assert.match(told, /text has no outlines/);
+        assert.match(told, /found the end/);
+        assert.equal((await points(page)).objects.length, 1);
+        while (await page.locator(".toast .close").count() > 0) await page.locator(".toast .close").first().click();
+        const net = [0, 1, 2].map((i) => [0, 1, 2].map((j) => [i, j, i === 1 && j === 1 ? 2 : 0]));
+        await file(page, write("mix.json", JSON.stringify({ freiform: 1, objects: [{ type: "surface", name: "S", points: net }, { type: "curve", name: "Edge", points: [[1, 0, 0], [2, 1, 0], [1, 3, 0]] }] })));
+        assert.equal(await refused(page), "");
+        for (const format of ["glb", "stl"]) {
+            const saving = page.waitForEvent("download");
+            await page.getByLabel("Export as").selectOption(format);
+            await saving;
+            assert.match(await toast(page), /"Edge".*a curve has no faces/s, format);
+            await page.locator(".toast .close").first().click();
+        }
+        const saving = page.waitForEvent("download");
+        await page.getByLabel("Export as").selectOption("step");
+        await saving;
+        assert.equal(await refused(page), "", "STEP holds both");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
