@@ -2,7 +2,9 @@
 
 import { h } from "../ui/dom";
 import { say, t, type Text } from "../ui/language";
+import { refusal } from "../ui/toast";
 import { kHelp } from "./keys";
+import { numbersOf } from "./numbers";
 
 function open(label: Text, ...children: HTMLElement[]): void {
     const dialog = h("dialog", { "aria-label": say(label) }, ...children);
@@ -11,13 +13,17 @@ function open(label: Text, ...children: HTMLElement[]): void {
     dialog.showModal();
 }
 
-/** Numbers with spaces or commas between them. */
+/** Numbers; what is refused is told beside them and may be mended. */
 export function askNumbers(label: Text, first: string, act: (numbers: number[]) => void): void {
     const input = h("input", { type: "text", value: first, "aria-label": say(label), style: "width:100%" });
-    open(label, h("form", { method: "dialog", onsubmit: () => {
-        const numbers = input.value.split(/[\s,;]+/).filter((x) => x !== "").map(Number);
-        if (numbers.every(Number.isFinite)) act(numbers);
-    } }, h("p", {}, say(label)), input));
+    const told = h("p", { role: "alert", style: "color: var(--hot)" });
+    open(label, h("form", { method: "dialog", onsubmit: (event: Event) => {
+        try { act(numbersOf(input.value)); } catch (error) {
+            event.preventDefault();
+            const { where, message } = refusal(error);
+            told.textContent = `${where}: ${message}`;
+        }
+    } }, h("p", {}, say(label)), input, told));
     input.select();
 }
 

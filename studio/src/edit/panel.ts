@@ -2,9 +2,11 @@
 
 import { h, shown } from "../ui/dom";
 import { say, t, type Text } from "../ui/language";
+import { refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
 import { run } from "../views/view";
 import { clamped, editable, pointsOf, weightsOf } from "./document";
+import { numbersOf, oneOf } from "./numbers";
 import type { Axis } from "./tools";
 import type { Editor } from "./editor";
 
@@ -13,10 +15,13 @@ const number = (label: string, value: number | "", set: (x: number) => void, ste
     return h("label", { class: "knob" }, h("span", {}, label), input);
 };
 
-const field = (label: Text, value: string): { element: HTMLElement; value: () => string; numbers: () => number[] } => {
+const field = (label: Text, value: string): { element: HTMLElement; numbers: () => number[]; number: () => number } => {
     const input = h("input", { type: "text", value, "aria-label": say(label), inputmode: "decimal" });
-    return { element: h("label", { class: "knob" }, h("span", {}, say(label)), input), value: () => input.value, numbers: () => input.value.split(/[\s,;]+/).filter((x) => x !== "").map(Number) };
+    return { element: h("label", { class: "knob" }, h("span", {}, say(label)), input), numbers: () => numbersOf(input.value), number: () => oneOf(input.value) };
 };
+
+/** What a reader wrote may be refused. */
+function attempt(does: () => void): void { try { does(); } catch (error) { refuse(error); } }
 
 const heading = (text: Text): HTMLElement => h("h2", {}, say(text));
 
@@ -83,8 +88,8 @@ export class Panel {
                 : { ...object, degree, knots: to };
             editor.replace(say(t("Knoten", "knots")), at, next);
         };
-        const text = h("input", { type: "text", value: knots.map((k) => shown(k, 6)).join(" "), "aria-label": say(t("Knoten", "Knots")), style: "width:100%", onchange: () => {
-            put(text.value.split(/[\s,;]+/).filter((x) => x !== "").map(Number));
+        const text = h("input", { type: "text", value: knots.join(" "), "aria-label": say(t("Knoten", "Knots")), style: "width:100%", onchange: () => {
+            attempt(() => { put(numbersOf(text.value)); });
         } });
         this.knots.append(heading(t("Knoten", "Knots")));
         if (object.type === "surface") this.knots.append(h("div", { class: "choice", role: "group", "aria-label": say(t("Richtung", "Direction")) }, ...(["u", "v"] as const).map((a) =>
@@ -109,12 +114,12 @@ export class Panel {
     private changes(): HTMLElement {
         const at = field(t("bei Parameter", "at parameter"), "0.5"), tolerance = field(t("Toleranz", "tolerance"), "0.001");
         const { editor } = this;
-        const act = (name: Text, does: () => void, title = ""): HTMLElement => h("button", { title, onclick: does }, say(name));
+        const act = (name: Text, does: () => void, title = ""): HTMLElement => h("button", { title, onclick: () => { attempt(does); } }, say(name));
         return h("section", {}, heading(t("Ändern", "Change")), at.element, h("div", { class: "row-of" },
-            act(t("Knoten einfügen", "Insert knot"), () => { editor.change("insert", { at: at.numbers()[0] ?? 0, axis: this.axis }); }), act(t("Teilen", "Split"), () => { editor.change("split", { at: at.numbers()[0] ?? 0, axis: this.axis }); })),
+            act(t("Knoten einfügen", "Insert knot"), () => { editor.change("insert", { at: at.number(), axis: this.axis }); }), act(t("Teilen", "Split"), () => { editor.change("split", { at: at.number(), axis: this.axis }); })),
             tolerance.element, h("div", { class: "row-of" },
-            act(t("Knoten entfernen", "Remove knots"), () => { editor.change("reduce", { at: tolerance.numbers()[0] ?? 0 }); }),
-            act(t("Verbinden", "Join"), () => { editor.join(tolerance.numbers()[0] ?? 0); }, "J")),
+            act(t("Knoten entfernen", "Remove knots"), () => { editor.change("reduce", { at: tolerance.number() }); }),
+            act(t("Verbinden", "Join"), () => { editor.join(tolerance.number()); }, "J")),
             h("div", { class: "row-of" }, act(t("Grad erhöhen", "Elevate"), () => { editor.change("elevate", { axis: this.axis }); }), act(t("Umkehren", "Reverse"), () => { editor.change("reverse", { axis: this.axis }); }),
             act(t("Bézier-Stücke", "Bézier pieces"), () => { editor.change("bezier", {}); }), act(t("In den Raum", "To space"), () => { editor.toSpace(); })));
     }
@@ -122,9 +127,9 @@ export class Panel {
     private constructions(): HTMLElement {
         const axis = field(t("Achse: Punkt, Richtung", "Axis: point, direction"), "0 0 0 0 1 0"), angle = field(t("Winkel", "Angle"), "360"), by = field(t("Ziehen um", "Extrude by"), "0 0 1");
         const { editor } = this;
-        const act = (name: Text, does: () => void): HTMLElement => h("button", { onclick: does }, say(name));
+        const act = (name: Text, does: () => void): HTMLElement => h("button", { onclick: () => { attempt(does); } }, say(name));
         return h("section", {}, heading(t("Flächen machen", "Make surfaces")), axis.element, angle.element,
-            h("div", { class: "row-of" }, act(t("Drehen", "Revolve"), () => { editor.make("revolve", { axis: axis.numbers(), angle: angle.numbers()[0] ?? 360 }); })), by.element,
+            h("div", { class: "row-of" }, act(t("Drehen", "Revolve"), () => { editor.make("revolve", { axis: axis.numbers(), angle: angle.number() }); })), by.element,
             h("div", { class: "row-of" }, act(t("Extrudieren", "Extrude"), () => { editor.make("extrude", { by: by.numbers() }); }), act(t("Loft", "Loft"), () => { editor.make("loft", {}); }),
                 act(t("Regelfläche", "Ruled"), () => { editor.make("ruled", {}); }), act(t("Coons (vier Kurven)", "Coons (four curves)"), () => { editor.make("coons", {}); })));
     }

@@ -614,6 +614,50 @@ export const cases = [
         await saving;
         assert.equal(await refused(page), "", "STEP holds both");
     }],
+    ["edit: one knot is edited and the others keep their last bit", async ({ page, url, write }) => {
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("k.json", JSON.stringify({ freiform: 1, objects: [{ type: "curve", name: "K", degree: 2, knots: [0, 0, 0, 1 / 3, 2 / 3, 1, 1, 1], points: [[0, 0], [1, 1], [2, 0], [3, 1], [4, 0]] }] })));
+        await page.locator(".tools .list button").click();
+        const knots = page.getByRole("textbox", { name: "Knots" });
+        await knots.fill((await knots.inputValue()).replace(/1 1 1$/, "2 2 2"));
+        await knots.press("Enter");
+        await settle(page);
+        assert.deepEqual((await points(page)).objects[0].knots, [0, 0, 0, 1 / 3, 2 / 3, 2, 2, 2]);
+        await knots.fill("0 0 0 abc 1 2 2 2");
+        await knots.press("Enter");
+        assert.match(await toast(page), /abc/);
+        assert.deepEqual((await points(page)).objects[0].knots, [0, 0, 0, 1 / 3, 2 / 3, 2, 2, 2]);
+    }],
+    ["edit: what is no number is refused aloud; a comma that may be two things is asked about", async ({ page, url, write, picture }) => {
+        const press = async (...keys) => { for (const key of keys) await page.keyboard.press(key); await settle(page); };
+        const blur = () => page.evaluate(() => document.activeElement.blur());
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("w.json", JSON.stringify({ freiform: 1, objects: [{ type: "curve", name: "A", points: [[0, 0], [1, 2], [3, 1]] }] })));
+        await page.locator(".tools .list button").click();
+        await blur();
+        const move = async (by) => { await press("g"); await page.locator("dialog input").fill(by); await press("Enter"); };
+        await move("1.5, 2");
+        assert.deepEqual((await points(page)).objects[0].points[0], [1.5, 2]);
+        for (const what of ["1,5 2", "abc"]) {
+            await move(what);
+            assert.match(await page.locator("dialog [role=alert]").innerText(), new RegExp(what.split(" ")[0]));
+            await picture("dialog-refused");
+            await press("Escape");
+            assert.deepEqual((await points(page)).objects[0].points[0], [1.5, 2]);
+        }
+        await move("abc");
+        await page.locator("dialog input").fill("-1.5 -2");
+        await press("Enter");
+        assert.deepEqual((await points(page)).objects[0].points[0], [0, 0], "it may be mended there");
+        await page.getByLabel("at parameter").fill("0,25");
+        await page.getByRole("button", { name: "Insert knot" }).click();
+        await settle(page);
+        assert.equal((await points(page)).objects[0].knots[3], 0.25);
+        await page.getByLabel("at parameter").fill("half");
+        await page.getByRole("button", { name: "Insert knot" }).click();
+        assert.match(await toast(page), /half/);
+        assert.equal((await points(page)).objects[0].points.length, 4);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
