@@ -658,6 +658,46 @@ export const cases = [
         assert.match(await toast(page), /half/);
         assert.equal((await points(page)).objects[0].points.length, 4);
     }],
+    ["edit: focus stays where it is when a step changes the panel", async ({ page, url }) => {
+        const active = () => page.evaluate(() => { const e = document.activeElement; return `${e.tagName} ${e.getAttribute("aria-label") ?? e.textContent}`; });
+        await go(page, url, "#/edit", ".handle");
+        await page.locator(".tools .list button").first().focus();
+        await page.keyboard.press("Enter");
+        await settle(page);
+        assert.match(await active(), /^BUTTON curve/);
+        await page.locator(".tools .handle").first().focus();
+        const knot = async () => (await points(page)).objects[0].knots[4];
+        await page.keyboard.press("ArrowRight");
+        await settle(page);
+        const once = await knot();
+        await page.keyboard.press("ArrowRight");
+        await settle(page);
+        assert.ok(await knot() > once, "the second arrow moves it, too");
+        await page.locator(".stage .handle").nth(1).focus();
+        await page.keyboard.press("Enter");
+        const field = (name) => page.locator(`.tools input[aria-label="${name}"]`);
+        await field("x").focus();
+        for (const x of ["2", "3"]) { await page.keyboard.press("ArrowUp"); await settle(page); assert.equal(await field("x").inputValue(), x); }
+        await field("y").fill("2");
+        await page.keyboard.press("Enter");
+        await settle(page);
+        assert.equal(await active(), "INPUT y");
+        assert.deepEqual((await points(page)).objects[0].points[1], [3, 2]);
+        const knots = page.getByRole("textbox", { name: "Knots" });
+        await knots.fill((await knots.inputValue()).replace(/^0 0 0 0/, "-1 -1 -1 -1"));
+        await knots.press("Enter");
+        await settle(page);
+        assert.equal(await active(), "INPUT Knots");
+        await page.getByLabel("weight").focus();
+        await page.getByLabel("weight").fill("2");
+        await page.keyboard.press("Tab");
+        await settle(page);
+        assert.equal(await active(), "INPUT Knots", "Tab goes on from there");
+        await page.evaluate(() => document.activeElement.blur());
+        await page.keyboard.press("Escape");
+        await settle(page);
+        assert.equal(await knots.isVisible(), false);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
