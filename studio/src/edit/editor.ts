@@ -19,20 +19,23 @@ import { History } from "./history";
 import { keyOf, type Command } from "./keys";
 import { Panel } from "./panel";
 import { show } from "./picture";
-import { Selection } from "./selection";
+import type { Selection } from "./selection";
+import { Session } from "./session";
 import { corners, extent } from "./size";
-import { keep, kept } from "./store";
+import { keep } from "./store";
 import * as tools from "./tools";
 import { kAxes, scaledAbout, turnedAbout } from "./transform";
 
 const kFirst: Document = { objects: [{ type: "curve", name: "curve", degree: 3, knots: [0, 0, 0, 0, 1, 2, 2, 2, 2], points: [[0, 0], [1, 2.4], [3, 3], [4.4, 0.6], [6, 1.2]] }] };
 
-export function edit(taken: string | undefined, inspect: (what: string | Opened) => void): Shown { return new Editor(taken, inspect); }
+let session: Session | undefined;
+
+export function edit(taken: string | undefined, inspect: (what: string | Opened) => void): Shown { return new Editor(session ??= new Session(kFirst), taken, inspect); }
 
 export class Editor implements Shown {
     readonly element: HTMLElement;
-    private readonly selection = new Selection();
-    private history: History<Document>;
+    private readonly selection: Selection;
+    private readonly history: History<Document>;
     private readonly panel: Panel;
     private readonly stage = h("div", { class: "stage" });
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
@@ -49,15 +52,16 @@ export class Editor implements Shown {
     private readonly hands: Hands;
     /** The points of the pen while it is under way, with steps of their own. */
     private draft: History<readonly number[][]> | undefined;
-    private clipboard: readonly ObjectJson[] = [];
     private gone = false;
     /** The state that the selection is about. */
-    private seen = kFirst;
+    private seen: Document;
     private readonly draw = coalesced(() => { this.picture(); });
     private readonly onKey = (event: KeyboardEvent): void => { this.key(event); };
 
-    constructor(taken: string | undefined, private readonly inspect: (what: string | Opened) => void) {
-        this.history = this.fresh(kFirst);
+    constructor(private readonly session: Session, taken: string | undefined, private readonly inspect: (what: string | Opened) => void) {
+        ({ history: this.history, selection: this.selection } = session);
+        this.seen = this.document;
+        this.history.changed = (state, settled) => { this.changed(state, settled); };
         this.view = this.viewFor(!flat(this.document));
         this.panel = new Panel(this);
         this.hands = new Hands({ history: () => this.history, selection: this.selection, snapping: () => this.snap.checked, more: () => this.more,
@@ -66,7 +70,7 @@ export class Editor implements Shown {
         this.element = h("div", { style: "display:contents" }, this.stage, this.panel.element);
         droppable(this.stage, (opened) => { this.take(opened); });
         document.addEventListener("keydown", this.onKey);
-        // What was kept lies below what comes from elsewhere: undo leads back to it. It is asked for first, before a step replaces it.
+        // First, before a step replaces what was kept.
         void this.restore();
         if (taken !== undefined) this.open("", taken);
         this.refresh();
@@ -81,6 +85,7 @@ export class Editor implements Shown {
 
     dispose(): void {
         this.gone = true;
+        this.history.end();
         document.removeEventListener("keydown", this.onKey);
         this.view.dispose();
         this.panel.dispose();
@@ -141,13 +146,11 @@ export class Editor implements Shown {
 
     // States ----------------------------------------------------------------------------------------------------------
 
-    private fresh(first: Document): History<Document> {
-        return new History(first, (state, settled) => {
-            if (settled) keep(JSON.stringify(this.json(state))).catch(refuse);
-            this.selection.follow(this.seen, state);
-            this.seen = state;
-            this.refresh();
-        });
+    private changed(state: Document, settled: boolean): void {
+        if (settled) keep(JSON.stringify(this.json(state))).catch(refuse);
+        this.selection.follow(this.seen, state);
+        this.seen = state;
+        this.refresh();
     }
 
     private penned(): History<readonly number[][]> { return new History<readonly number[][]>([], () => { this.refresh(); }); }
@@ -203,15 +206,10 @@ export class Editor implements Shown {
         } catch (error) { refuse(error); }
     }
 
+    /** What was kept lies below what is here already: undo leads back to it. */
     private async restore(): Promise<void> {
-        const text = await kept().catch(() => undefined);
-        if (text === undefined || this.gone) return;
-        try {
-            const state = JSON.parse(text) as Document;
-            if (state.objects.length > 0) arena((make) => { state.objects.forEach((o) => make(o)); });
-            this.history.root({ ...(state.unit ? { unit: state.unit } : {}), objects: state.objects });
-            if (this.history.names.undo === undefined) this.fit();
-        } catch (error) { refuse(error); }
+        await this.session.restore();
+        if (!this.gone && this.history.names.undo === undefined) this.fit();
     }
 
     // The view --------------------------------------------------------------------------------------------------------
@@ -320,8 +318,8 @@ export class Editor implements Shown {
             undo: () => { this.steps.undo(); }, redo: () => { this.steps.redo(); }, save: () => { this.element.querySelector<HTMLElement>("[data-save]")?.click(); },
             open: () => { this.element.querySelector<HTMLElement>("[data-open]")?.click(); }, all: () => { this.selection.all(this.document); this.refresh(); },
             none: () => { this.draft = undefined; this.selection.clear(); this.refresh(); }, remove: () => { this.remove(); },
-            copy: () => { this.clipboard = this.taken(); notify(say(t(`${this.clipboard.length} Objekte kopiert`, `${this.clipboard.length} objects copied`))); },
-            cut: () => { this.clipboard = this.taken(); this.without([...this.chosen]); }, paste: () => { this.paste(this.clipboard); }, duplicate: () => { this.paste(this.taken()); },
+            copy: () => { this.session.clipboard = this.taken(); notify(say(t(`${this.session.clipboard.length} Objekte kopiert`, `${this.session.clipboard.length} objects copied`))); },
+            cut: () => { this.session.clipboard = this.taken(); this.without([...this.chosen]); }, paste: () => { this.paste(this.session.clipboard); }, duplicate: () => { this.paste(this.taken()); },
             fit: () => { this.fit(); }, pen: () => { this.pen.click(); }, finish: () => { this.finish(); }, help: showKeys, gizmo: () => { this.grips.click(); },
             grab: () => { this.prompt(t("Verschieben um x, y, z", "Move by x, y, z"), "0 0 0", (by) => shifted(by)); },
             scale: () => { this.prompt(t("Vergrößern um den Faktor", "Scale by the factor"), "2", ([k = 1]) => scaledAbout(this.selection.centre(this.document), [k, k, k])); },

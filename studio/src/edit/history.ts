@@ -8,7 +8,7 @@ export class History<T> {
     private future: Entry<T>[] = [];
     private before: Entry<T> | undefined;
 
-    constructor(first: T, private readonly changed: (state: T, settled: boolean) => void = () => undefined) {
+    constructor(first: T, /** Who is told. */ public changed: (state: T, settled: boolean) => void = () => undefined) {
         this.past = [{ name: "", state: first }];
     }
 

@@ -698,6 +698,35 @@ export const cases = [
         await settle(page);
         assert.equal(await knots.isVisible(), false);
     }],
+    ["edit: undo and what was copied outlive a visit to another part and a change of language", async ({ page, url }) => {
+        await go(page, url, "#/edit", ".handle");
+        await page.locator(".tools .list button").first().click();
+        await page.getByRole("button", { name: "Elevate" }).click();
+        await page.evaluate(() => document.activeElement.blur());
+        await page.keyboard.press("Control+c");
+        for (const part of ["Inspect", "Explore", "Edit"]) { await page.locator("nav").getByText(part).click(); await settle(page); }
+        await page.waitForSelector(".stage .handle");
+        await page.getByRole("button", { name: "Deutsch" }).click();
+        await settle(page);
+        assert.equal(await page.locator(".tools .list button[aria-pressed='true']").count(), 1, "and what was chosen");
+        await page.evaluate(() => document.activeElement.blur());
+        await page.keyboard.press("Control+v");
+        await settle(page);
+        assert.equal((await points(page)).objects.length, 2);
+        await page.keyboard.press("Control+z");
+        await page.keyboard.press("Control+z");
+        await settle(page);
+        const { objects } = await points(page);
+        assert.deepEqual([objects.length, objects[0].degree], [1, 3]);
+        assert.equal(await page.locator(".toast.refused").count(), 0);
+        // What is handed over later is one more step of the same history.
+        await page.goto(`${url}#/explore/R12`);
+        await page.getByRole("button", { name: "Im Editor öffnen" }).click();
+        await until(page, () => document.querySelectorAll(".stage .handle").length === 7);
+        await page.keyboard.press("Control+z");
+        await settle(page);
+        assert.deepEqual((await points(page)).objects, objects);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
