@@ -254,6 +254,8 @@ export class Editor implements Shown {
         this.pen.setAttribute("aria-pressed", String(this.draft !== undefined));
         this.panel.show();
         this.hands.show(this.view);
+        // The pen sets points on points.
+        this.view.handles.layer.style.pointerEvents = this.draft ? "none" : "";
         this.draw();
     }
 
@@ -277,7 +279,7 @@ export class Editor implements Shown {
     /** A click beside all handles: the pen sets a point, otherwise the nearest curve is chosen. */
     private ground(at: number[], event: PointerEvent): void {
         if (this.draft) {
-            this.draft.put(say(t("Punkt", "point")), [...this.draft.state, this.snap.checked && !event.altKey ? this.hands.snapped(at) : at]);
+            this.draft.put(say(t("Punkt", "point")), [...this.draft.state, this.snap.checked && !event.altKey ? this.hands.snapped(at, true) : at]);
             return;
         }
         let best: { i: number; far: number } | undefined;
@@ -286,14 +288,15 @@ export class Editor implements Shown {
             if (!best || far < best.far) best = { i, far };
         }); });
         const reach = this.view instanceof Plane ? 12 * this.view.unit : 0;
-        if (best && best.far < reach) { this.choose(best.i, event.shiftKey || this.more); return; }
-        this.selection.clear();
+        const more = event.shiftKey || this.more;
+        if (best && best.far < reach) { this.choose(best.i, more); return; }
+        if (!more) this.selection.clear();
         this.refresh();
     }
 
     /** A frame that chooses the points inside. */
     private frame(plane: Plane, event: PointerEvent): boolean {
-        frame(plane, event, () => { this.picture(); }, ([x0, y0], [x1, y1]) => {
+        frame(plane, event, () => { this.picture(); }, (at) => { this.ground(at, event); }, ([x0, y0], [x1, y1]) => {
             this.document.objects.forEach((o, object) => { pointsOf(o).forEach(([a = 0, b = 0], point) => {
                 if (a >= x0 && a <= x1 && b >= y0 && b <= y1) this.selection.add({ object, point });
             }); });

@@ -48,14 +48,14 @@ export class Hands {
         this.grips?.show(this.gizmo);
     }
 
-    /** The nearest other control point within reach, or else the grid. */
-    snapped(to: number[]): number[] {
+    /** The nearest other control point within reach, or else the grid; of `all`, or of those that do not move along. */
+    snapped(to: number[], all = false): number[] {
         const { view, dragged } = this;
         if (!view) return to;
         const [x, y] = view.project(to);
         for (const [object, o] of this.document.objects.entries())
             for (const [point, p] of pointsOf(o).entries()) {
-                if (dragged?.object === object && dragged.point === point || this.host.selection.has({ object, point })) continue;
+                if (!all && (dragged?.object === object && dragged.point === point || this.host.selection.has({ object, point }))) continue;
                 const [a, b] = view.project(p);
                 if (Math.hypot(a - x, b - y) < 9) return [...p];
             }

@@ -727,6 +727,41 @@ export const cases = [
         await settle(page);
         assert.deepEqual((await points(page)).objects, objects);
     }],
+    ["edit: the pen sets a point on a point; Shift and Several choose a second curve", async ({ page, url, write, picture }) => {
+        const line = (name, y) => ({ type: "curve", name, points: [[0, y], [6, y]] });
+        const list = () => page.locator(".tools .list button").evaluateAll((l) => l.map((b) => (b.getAttribute("aria-pressed") === "true" ? "*" : "") + b.textContent.split(" ")[0]).join(" "));
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("two.json", JSON.stringify({ freiform: 1, objects: [line("A", 0), line("B", 2)] })));
+        const spot = (name) => page.locator(`.handle[aria-label="${name}"]`).evaluate((e) => { const b = e.children[1].getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; });
+        const [[x0, y0], [x1, y1], [, y2]] = [await spot("A, point 0"), await spot("A, point 1"), await spot("B, point 0")], mid = (x0 + x1) / 2;
+        const list2 = async (...clicks) => { for (const y of clicks) await page.mouse.click(mid, y); await settle(page); return list(); };
+        assert.equal(await list2(y1), "*A B");
+        await page.keyboard.down("Shift");
+        assert.equal(await list2(y2), "*A *B");
+        assert.equal(await list2(y2), "*A B");
+        await page.keyboard.up("Shift");
+        await page.keyboard.press("Escape");
+        await page.getByRole("button", { name: "Several" }).click();
+        assert.equal(await list2(y1, y2), "*A *B");
+        await page.mouse.move(x0 - 20, y0 + 20);
+        await page.mouse.down();
+        await page.mouse.move(mid, y1 - 20, { steps: 4 });
+        await page.mouse.up();
+        await settle(page);
+        assert.equal(await page.locator(".stage .handle.chosen").count(), 1, "a frame still chooses points");
+        await page.getByRole("button", { name: "Several" }).click();
+        await page.evaluate(() => document.activeElement.blur());
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("b");
+        await page.mouse.click(x1 + 2, y1 + 1);
+        await page.mouse.click(mid, (y1 + y2) / 2);
+        await picture("pen-on-point");
+        await page.mouse.click(x0, y0);
+        await page.keyboard.press("Enter");
+        await settle(page);
+        const { points: made } = (await points(page)).objects[2];
+        assert.deepEqual([made.length, made[0], made[2]], [3, [6, 0], [0, 0]], "from the end of A to its beginning");
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
