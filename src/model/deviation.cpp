@@ -1,6 +1,6 @@
 // Idea. The distance from a triangle is a convex function, so over a flat part of a face it is largest at a
-// corner. A part is cut finer until its bound is hardly above the largest distance that has been found
-// somewhere: branch and bound, the part with the largest bound first.
+// corner. A part is cut finer until its bound is `enough`, or where more than that was found somewhere,
+// hardly above the largest distance found: branch and bound, the part with the largest bound first.
 //
 // Bounds. A face over a box is within e of two flat triangles (face_parts.cpp). Two bounds of the distance
 // from them to the mesh; the smaller one counts. (1) One triangle: the largest distance of the four corners
@@ -338,12 +338,15 @@ Result<MeshDeviation> Judge::run() {
     });
     double found = 0;
     for (const Looked& l : looked_) found = std::max(found, l.answer.measured);
+    const auto goal = [&](const Looked& l) {
+        const double most = std::max(found, l.answer.measured);
+        return most > options_.enough ? kNearEnough * most : options_.enough;
+    };
     parallel_for(looked_.size(), 1, [&](std::size_t f) {
         Looked& l = looked_[f];
         if (stop || !l.search) return;
         l.search->refine(
-            share_, [&](const FacePart& p) { return key(l, p); },
-            [&] { return std::max(options_.enough, kNearEnough * std::max(found, l.answer.measured)); });
+            share_, [&](const FacePart& p) { return key(l, p); }, [&] { return goal(l); });
         l.answer.bound = l.search->largest();
         tell();
     });

@@ -138,6 +138,13 @@ TEST(Deviation, agrees_with_what_the_tessellation_proves) {
         }
 }
 
+TEST(Deviation, a_tolerance_just_above_what_is_measured_is_decided) {
+    const double enough = 1.02 * (1 - 1 / std::sqrt(3.0));
+    const auto d = deviation(test::sphere({}, 1), octahedron(1), {.enough = enough});
+    ASSERT_TRUE(d);
+    EXPECT_LE(d->bound, enough);
+}
+
 TEST(Deviation, does_not_depend_on_the_number_of_threads) {
     const Model m = frustum(2, 1, 3);
     const auto t = tessellate(m, {.tolerance = 0.05});
