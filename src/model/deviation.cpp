@@ -15,6 +15,10 @@
 // Rounding: coordinates enter with errors of a few u times their size; 64 u is added. Normals of thin
 // triangles are uncertain by u size longest / area, which is added for l_k over the reach of the part.
 //
+// Work. All faces get the same share of the parts; what some leave of it is shared out again among those
+// whose bounds are above their goals, in rounds. Within a round no face knows of another, so threads do not
+// matter. Each round leaves at most half of the faces or about half of the parts, so there are few.
+//
 // Cost. One bound of derivatives and one nearest triangle for each part. Parts are needed where the bound of
 // the part is above the goal: along boundaries of faces until they are as short as the goal, elsewhere until
 // their error is.
@@ -144,6 +148,7 @@ public:
     explicit Search(const FaceParts& parts) : parts_(&parts) {}
 
     std::size_t seen() const { return seen_; }
+    double stuck() const { return stuck_; }  // the largest key of parts that cannot be cut
     double top() const { return heap_.empty() ? 0 : heap_.front().key; }
     const std::vector<FacePart>& parts() const { return heap_; }
 
@@ -213,6 +218,12 @@ private:
     void first_look(std::size_t f);
     void from_mesh(MeshDeviation& out) const;
     double key(Looked& l, const FacePart& part) const;
+    // `found`: the largest distance of all faces. Beyond its share a face that is stuck is left there.
+    double goal(const Looked& l, double found) const {
+        const double most = std::max(found, l.answer.measured), stuck = l.search->stuck();
+        const double wanted = most > options_.enough ? kNearEnough * most : options_.enough;
+        return stuck > wanted && l.search->seen() >= share_ ? kNearEnough * stuck : wanted;
+    }
     void take(Looked& l, const Vec<3>& x, double distance) const {
         if (distance > l.answer.measured) l.answer.measured = distance, l.answer.at = x;
     }
@@ -329,27 +340,38 @@ Result<MeshDeviation> Judge::run() {
     refused_.resize(model_.faces.size());
     std::atomic<std::size_t> done{0};
     std::atomic<bool> stop{false};
-    const auto tell = [&] {
-        if (options_.progress && !options_.progress(double(++done) / (2.0 * double(looked_.size()))))
+    const auto tell = [&](bool finished) {
+        const std::size_t now = done += finished;
+        if (options_.progress && !options_.progress(double(now) / (2.0 * double(looked_.size()))))
             stop = true;
     };
     parallel_for(looked_.size(), 1, [&](std::size_t f) {
-        if (!stop) first_look(f), tell();
+        if (!stop) first_look(f), tell(true);
     });
     double found = 0;
-    for (const Looked& l : looked_) found = std::max(found, l.answer.measured);
-    const auto goal = [&](const Looked& l) {
-        const double most = std::max(found, l.answer.measured);
-        return most > options_.enough ? kNearEnough * most : options_.enough;
-    };
-    parallel_for(looked_.size(), 1, [&](std::size_t f) {
-        Looked& l = looked_[f];
-        if (stop || !l.search) return;
-        l.search->refine(
-            share_, [&](const FacePart& p) { return key(l, p); }, [&] { return goal(l); });
-        l.answer.bound = l.search->largest();
-        tell();
-    });
+    // Of a face whose bound is above its goal; goals never fall.
+    const auto open = [&](const Looked& l) { return l.search->top() > goal(l, found); };
+    for (std::vector<Looked*> rest; !stop;) {
+        for (const Looked& l : looked_) found = std::max(found, l.answer.measured);
+        std::size_t used = 0;
+        rest.clear();
+        for (Looked& l : looked_) {
+            if (!l.search) continue;
+            used += l.search->seen();
+            if (open(l)) rest.push_back(&l);
+        }
+        if (rest.empty() || used + rest.size() > options_.max_parts) break;
+        const std::size_t share = (options_.max_parts - used) / rest.size();
+        done = 2 * looked_.size() - rest.size();
+        parallel_for(rest.size(), 1, [&](std::size_t i) {
+            Looked& l = *rest[i];
+            if (stop) return;
+            l.search->refine(
+                l.search->seen() + share, [&](const FacePart& p) { return key(l, p); },
+                [&] { return goal(l, found); });
+            tell(!open(l));
+        });
+    }
     if (stop) return refuse(RefusalKind::limit, "progress", "stopped by the caller");
     MeshDeviation out;
     for (std::size_t f = 0; f < looked_.size(); ++f) {
@@ -358,7 +380,8 @@ Result<MeshDeviation> Judge::run() {
                 {refused_[f]->kind, text("faces[", f, "].", refused_[f]->where), refused_[f]->message});
             continue;
         }
-        const FaceDeviation& a = looked_[f].answer;
+        FaceDeviation& a = looked_[f].answer;
+        a.bound = looked_[f].search->largest();
         if (out.worst < 0 || a.measured > out.measured) out.worst = int(out.faces.size());
         out.faces.push_back(a);
         out.measured = std::max(out.measured, a.measured);

@@ -25,7 +25,8 @@ TriangleMesh octahedron(double r) {
                    {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}});
 }
 
-// [0, 1]^2 at z = 0, with a round hole of this radius in the middle; none for 0.
+// [0, 1]^2 at z = 0, with a round hole of this radius in the middle; none for
+// 0.
 Model plate(double hole) {
     Model m;
     const Vec<3> at[4] = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}};
@@ -57,6 +58,21 @@ Model plate(double hole) {
 }
 TriangleMesh square(double z) {
     return mesh_of({{{0, 0, z}}, {{1, 0, z}}, {{1, 1, z}}, {{0, 1, z}}}, {{0, 1, 2}, {0, 2, 3}});
+}
+
+// Over the unit square, with a bump under about a fiftieth of it.
+Surface<Vec<3>> bump(double control_height) {
+    const auto basis = *BSplineBasis::clamped_uniform(3, 24);
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 24; ++i)
+        for (int j = 0; j < 24; ++j)
+            c.push_back({{i / 23.0, j / 23.0, i == 13 && j == 7 ? control_height : 0.0}});
+    return *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({24, 24}, c));
+}
+Model one_face_each(const std::vector<Surface<Vec<3>>>& surfaces) {
+    ModelBuilder builder;
+    for (const auto& s : surfaces) EXPECT_TRUE(builder.add(s));
+    return std::move(builder).finish().value();
 }
 
 TEST(Deviation, of_an_octahedron_from_its_sphere_is_known) {
@@ -95,28 +111,23 @@ TEST(Deviation, a_hole_that_the_mesh_fills_is_seen_from_the_mesh_alone) {
 TEST(Deviation, a_triangle_that_is_missing_is_seen_from_the_model) {
     const auto d = deviation(plate(0), mesh_of({{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}, {{0, 1, 2}}), {});
     ASSERT_TRUE(d);
-    EXPECT_LE(d->measured, std::sqrt(0.5) + 1e-15);  // the corner (0, 1) from the diagonal
+    EXPECT_LE(d->measured,
+              std::sqrt(0.5) + 1e-15);  // the corner (0, 1) from the diagonal
     EXPECT_GE(d->measured, 0.98 * std::sqrt(0.5));
     EXPECT_GE(d->bound, std::sqrt(0.5));
     EXPECT_LE(d->mesh_measured, 1e-15);
 }
 
 TEST(Deviation, a_narrow_bump_under_a_flat_mesh_is_found) {
-    const auto basis = *BSplineBasis::clamped_uniform(3, 24);
-    std::vector<Vec<3>> c;
-    for (int i = 0; i < 24; ++i)
-        for (int j = 0; j < 24; ++j) c.push_back({{i / 23.0, j / 23.0, i == 13 && j == 7 ? 0.01 : 0.0}});
-    ModelBuilder builder;
-    const auto surface = *Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({24, 24}, c));
-    ASSERT_TRUE(builder.add(surface));
-    const auto model = std::move(builder).finish();
+    const auto surface = bump(0.01);
+    const auto model = one_face_each({surface});
     double height = 0;
     const auto on = surface.domain();
     for (int i = 0; i <= 400; ++i)
         for (int j = 0; j <= 400; ++j)
             height = std::max(
                 height, surface(on[0].lo + on[0].length() * i / 400, on[1].lo + on[1].length() * j / 400)[2]);
-    const auto d = deviation(*model, square(0), {.max_parts = 30'000});
+    const auto d = deviation(model, square(0), {.max_parts = 30'000});
     ASSERT_TRUE(d);
     EXPECT_GE(d->measured, 0.9 * height);
     EXPECT_GE(d->bound, height);
@@ -143,6 +154,38 @@ TEST(Deviation, a_tolerance_just_above_what_is_measured_is_decided) {
     const auto d = deviation(test::sphere({}, 1), octahedron(1), {.enough = enough});
     ASSERT_TRUE(d);
     EXPECT_LE(d->bound, enough);
+}
+
+TEST(Deviation, what_easy_faces_leave_is_spent_on_the_others) {
+    const double enough = 0.0053;  // the bump is 0.0044 high
+    TriangleMesh mesh = square(0);
+    for (Vec<3>& p : mesh.points) p = 3.0 * p - Vec<3>{{1, 1, 0}};
+    const auto linear = *BSplineBasis::clamped_uniform(1, 2);
+    const auto flat = *Surface<Vec<3>>::make(
+        {linear, linear}, Net<2, Vec<3>>({2, 2}, {{{0, 0, 0}}, {{0, 1, 0}}, {{1, 0, 0}}, {{1, 1, 0}}}));
+    std::vector<Surface<Vec<3>>> surfaces{bump(0.01)};
+    const auto alone = deviation(one_face_each(surfaces), mesh, {.enough = enough, .max_parts = 1000});
+    ASSERT_TRUE(alone);
+    ASSERT_LE(alone->bound, enough);
+    surfaces.resize(20, flat);
+    std::vector<MeshDeviation> all;
+    for (const int threads : {1, 3}) {
+        set_max_threads(threads);
+        double last = 0;
+        const auto tell = [&](double p) {
+            if (threads > 1) return true;
+            EXPECT_GE(p, last);
+            EXPECT_LE(p, 1);
+            last = p;
+            return true;
+        };
+        all.push_back(*deviation(one_face_each(surfaces), mesh,
+                                 {.enough = enough, .max_parts = 1000 + 20, .progress = tell}));
+    }
+    set_max_threads(0);
+    EXPECT_LE(all[0].bound, enough);
+    EXPECT_EQ(all[0].bound, all[1].bound);
+    EXPECT_EQ(all[0].parts, all[1].parts);
 }
 
 TEST(Deviation, does_not_depend_on_the_number_of_threads) {
