@@ -116,10 +116,13 @@ std::vector<OutlineEdge> outline_edges(const TriangleMesh& mesh, double angle) {
         if (!lonely) {
             // Two sides that both run from a to b have opposite orientations.
             const double sign = e.forward == e.backward ? 1 : -1;
+            const bool between = part_of[std::size_t(s)] != part_of[std::size_t(t)];
+            int bent = 0;
             for (const int point : {e.a, e.b}) {
                 int i = 0, j = 0;
                 const MeshVertex &v = vertex_at(mesh, s, point, i), &w = vertex_at(mesh, t, point, j);
-                crease = crease || (i != j && sign * dot(v.normal, w.normal) < cosine);
+                if (i == j || sign * dot(v.normal, w.normal) >= cosine) continue;
+                crease = crease || ++bent == 2 || between || v.uv == w.uv;
             }
         }
         OutlineEdge edge{e.a, e.b, !crease, {-1, -1}};

@@ -2,7 +2,9 @@
 // interpolation of the surface over each triangle. A line of constant u of the interpolation therefore lies
 // within that distance of the isoline, is cut off where the face is, and lies on the triangles themselves: no
 // triangle that it runs on can hide it. Outlines are moved from the chord to the surface, because they decide
-// how smooth a drawing looks.
+// how smooth a drawing looks. At the apex of a cone every triangle has a vertex of its own, so a line ends on
+// the side of one where n . eye has another sign at the apex of the next: there it is led to the apex. At
+// poles with one normal the signs are the same, and lines pass by.
 #include <freiform/core/visit.hpp>
 #include <freiform/mesh/level_lines.hpp>
 #include <freiform/model/surface_lines.hpp>
@@ -122,15 +124,28 @@ std::vector<SurfaceLine> silhouettes(const Model& model, const TriangleMesh& mes
         values[v] = dot(mesh.vertices[v].normal, eye);
         if (std::abs(values[v]) < kEdgeOn) values[v] = 0;
     }
+    // The last part that has a value < 0, and one >= 0, at a point.
+    std::vector<std::array<int, 2>> seen(mesh.points.size(), {-1, -1});
     for (std::size_t i = 0; i < mesh.parts.size(); ++i) {
-        const int face = mesh.parts[i].face;
+        const MeshPart& part = mesh.parts[i];
+        const int face = part.face, now = int(i);
         if (face < 0) continue;
+        for (int k = part.first; k < part.first + part.count; ++k)
+            for (const int v : mesh.triangles[std::size_t(k)])
+                seen[std::size_t(mesh.vertices[std::size_t(v)].point)][values[std::size_t(v)] >= 0] = now;
+        const auto turns = [&](int v) {
+            return seen[std::size_t(mesh.vertices[std::size_t(v)].point)] == std::array{now, now};
+        };
         const SurfaceGeometry& surface = model.faces[std::size_t(face)].surface;
-        for (const LevelLine& line : level_lines(mesh, int(i), values, 0))
+        for (LevelLine& line : level_lines(mesh, now, values, 0)) {
+            for (EdgePlace* end : {&line.places.front(), &line.places.back()})
+                if (const bool a = turns(end->a); !line.closed && a != turns(end->b))
+                    (a ? end->b : end->a) = a ? end->a : end->b, end->t = 0;
             keep(out, face, line, [&](const EdgePlace& p) {
                 return turning_point(surface, mesh.vertices[std::size_t(p.a)],
                                      mesh.vertices[std::size_t(p.b)], eye, p.t);
             });
+        }
     }
     return out;
 }

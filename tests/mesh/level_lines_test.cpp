@@ -2,6 +2,7 @@
 
 #include <freiform/mesh/level_lines.hpp>
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace freiform {
@@ -94,6 +95,33 @@ TEST(Outlines, tell_smooth_borders_from_creases_and_ends) {
         EXPECT_FALSE(o.smooth);
         EXPECT_EQ(o.parts[1], -1);
     }
+}
+
+TEST(Outlines, of_a_cone_do_not_run_from_its_apex) {
+    // Four triangles that have a vertex each at the apex.
+    TriangleMesh cone;
+    cone.points = {{{0, 0, 3}}};
+    for (int k = 0; k < 4; ++k) {
+        const auto towards = [k](double quarters) {
+            const double a = (k + quarters) * std::numbers::pi / 2;
+            return Vec<3>{{std::cos(a), std::sin(a), 0}};
+        };
+        cone.points.push_back(towards(0));
+        cone.vertices.push_back({k + 1, unit(towards(0) + Vec<3>{{0, 0, 1.0 / 3}}), {}});
+        cone.triangles.push_back({k, (k + 1) % 4, 4 + k});
+    }
+    for (int k = 0; k < 4; ++k) {
+        const Vec<3>&a = cone.vertices[std::size_t(k)].normal,
+              &b = cone.vertices[std::size_t((k + 1) % 4)].normal;
+        cone.vertices.push_back({0, unit(a + b), {{k + 0.5, 1}}});
+    }
+    const auto lines = outlines(cone, 0.1);
+    ASSERT_EQ(lines.size(), 1u) << "the circle";
+    EXPECT_EQ(lines[0].points.size(), 5u);
+    EXPECT_EQ(std::ranges::count(lines[0].points, 0), 0);
+    // A kink that ends at the circle: the same parameters, two normals.
+    cone.vertices[5].uv = cone.vertices[4].uv;
+    EXPECT_EQ(outlines(cone, 0.1).size(), 2u);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "support/solids.hpp"
 
+#include <freiform/mesh/level_lines.hpp>
 #include <freiform/mesh/refine.hpp>
 #include <freiform/model/assemble.hpp>
 #include <freiform/model/surface_field.hpp>
@@ -163,6 +164,29 @@ TEST(SurfaceLines, outlines_of_a_sphere_are_points_of_its_great_circle) {
     EXPECT_TRUE(
         silhouettes(test::frustum(1, 1, 2), mesh_of(test::frustum(1, 1, 2), 0.01), {{0, 0, 1}}).empty())
         << "a wall seen edge on";
+}
+
+TEST(SurfaceLines, outlines_of_a_cone_run_from_its_circle_to_its_apex) {
+    const Model cone = test::frustum(2, 0, 3);
+    const TriangleMesh mesh = mesh_of(cone, 0.02);
+    const Vec<3> apex{{0, 0, 3}};
+    for (int k = 0; k < 40; ++k) {
+        const Vec<3> eye = unit(Vec<3>{{std::cos(0.16 * k), std::sin(0.16 * k), 0.02 * (k - 20)}});
+        double length = 0;
+        int tips = 0;
+        for (const SurfaceLine& l : silhouettes(cone, mesh, eye)) {
+            for (std::size_t i = 1; i < l.points.size(); ++i) length += norm(l.points[i] - l.points[i - 1]);
+            for (const Vec<3>& p : {l.points.front(), l.points.back()}) tips += norm(p - apex) < 1e-12;
+        }
+        EXPECT_EQ(tips, 2) << k;
+        EXPECT_NEAR(length, 2 * std::sqrt(13), 1e-9) << k;
+    }
+}
+
+TEST(SurfaceLines, a_cone_has_no_sharp_edges_but_its_circle) {
+    for (const double tolerance : {0.2, 0.05, 0.01})
+        EXPECT_EQ(outlines(mesh_of(test::frustum(2, 0, 3), tolerance), 0.1).size(), 1u)
+            << "not its seam either";
 }
 
 TEST(SurfaceLines, a_curved_wall_seen_along_its_lines_has_no_outline_made_of_rounding) {

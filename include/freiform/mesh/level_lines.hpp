@@ -35,7 +35,8 @@ struct OutlineEdge {
     std::array<int, 2> parts{-1, -1};
 };
 // A crease is where the normals of the two triangles' vertices differ by more than `angle` (radians) at an
-// end. Sides within a part are creases only where the vertices differ.
+// end. Within a part the vertices must differ, and have the same parameters there, or it be so at both ends:
+// beside a pole, such as the apex of a cone, every triangle has a vertex with a normal of its own.
 std::vector<OutlineEdge> outline_edges(const TriangleMesh& mesh, double angle);
 
 // Outline edges of one kind and one pair of parts as polylines of points, broken where they branch.
