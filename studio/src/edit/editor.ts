@@ -18,6 +18,7 @@ import { Hands } from "./hands";
 import { History } from "./history";
 import { keyOf, type Command } from "./keys";
 import { Panel } from "./panel";
+import { under, watch, type Sheets } from "./pick";
 import { show } from "./picture";
 import type { Selection } from "./selection";
 import { Session } from "./session";
@@ -53,6 +54,7 @@ export class Editor implements Shown {
     /** The points of the pen while it is under way, with steps of their own. */
     private draft: History<readonly number[][]> | undefined;
     private gone = false;
+    private sheets: Sheets = new Map();
     /** The state that the selection is about. */
     private seen: Document;
     private readonly draw = coalesced(() => { this.picture(); });
@@ -220,6 +222,9 @@ export class Editor implements Shown {
         if (space) {
             const view = new Space(say(t("Zeichnung im Raum", "Drawing in space")));
             view.onColours = () => { this.draw(); };
+            watch(view, { framing: (event) => event.shiftKey || this.more,
+                clicked: (x, y, event) => { if (!this.draft) this.clicked(under(view, this.document, this.sheets, 0.003 * extent(this.document), x, y), event); },
+                framed: (has) => { this.framed(has); } });
             return view;
         }
         const plane = new Plane({ label: say(t("Zeichnung", "Drawing")) });
@@ -263,10 +268,11 @@ export class Editor implements Shown {
         if (this.gone) return;
         const { view } = this;
         view.clear();
-        try { show(view, this.document, this.chosen); } catch (error) { refuse(error); }
+        try { this.sheets = show(view, this.document, this.chosen); } catch (error) { refuse(error); }
         const points = this.draft?.state ?? [];
         if (points.length > 0) { view.line(run(points), { colour: "hot", width: 1.4, dashed: true }); view.dots(run(points), { colour: "hot", width: 8 }); }
-        this.status.textContent = this.draft ? say(t("Stift: klicken setzt Punkte, Eingabetaste beendet, Esc verwirft.", "Pen: a click sets a point, Enter ends, Esc discards."))
+        this.status.textContent = this.draft && view instanceof Space ? say(t("Der Stift zeichnet nur in der Ebene; hier setzt er keine Punkte. Esc legt ihn weg.", "The pen draws in the plane only; here it sets no points. Esc puts it away."))
+            : this.draft ? say(t("Stift: klicken setzt Punkte, Eingabetaste beendet, Esc verwirft.", "Pen: a click sets a point, Enter ends, Esc discards."))
             : this.hands.said !== "" ? this.hands.said
             : `${this.document.objects.length} ${say(t("Objekte", "objects"))} · ${this.selection.size} ${say(t("Punkte gewählt", "points chosen"))} · ${say(t("? zeigt die Tasten", "? shows the keys"))}`;
     }
@@ -288,8 +294,13 @@ export class Editor implements Shown {
             if (!best || far < best.far) best = { i, far };
         }); });
         const reach = this.view instanceof Plane ? 12 * this.view.unit : 0;
+        this.clicked(best && best.far < reach ? best.i : undefined, event);
+    }
+
+    /** A click on an object, or beside all: chooses that, or nothing. */
+    private clicked(object: number | undefined, event: PointerEvent): void {
         const more = event.shiftKey || this.more;
-        if (best && best.far < reach) { this.choose(best.i, more); return; }
+        if (object !== undefined) { this.choose(object, more); return; }
         if (!more) this.selection.clear();
         this.refresh();
     }
@@ -297,12 +308,14 @@ export class Editor implements Shown {
     /** A frame that chooses the points inside. */
     private frame(plane: Plane, event: PointerEvent): boolean {
         frame(plane, event, () => { this.picture(); }, (at) => { this.ground(at, event); }, ([x0, y0], [x1, y1]) => {
-            this.document.objects.forEach((o, object) => { pointsOf(o).forEach(([a = 0, b = 0], point) => {
-                if (a >= x0 && a <= x1 && b >= y0 && b <= y1) this.selection.add({ object, point });
-            }); });
-            this.refresh();
+            this.framed(([a = 0, b = 0]) => a >= x0 && a <= x1 && b >= y0 && b <= y1);
         });
         return true;
+    }
+
+    private framed(has: (point: readonly number[]) => boolean): void {
+        this.document.objects.forEach((o, object) => { pointsOf(o).forEach((p, point) => { if (has(p)) this.selection.add({ object, point }); }); });
+        this.refresh();
     }
 
     // Keys ------------------------------------------------------------------------------------------------------------

@@ -112,10 +112,10 @@ export function sheet(points: ArrayLike<number>, dimension: number, rows: number
 }
 
 /** A surface, n steps in each direction. */
-export function surface(view: Space, shape: Shape, style: SurfaceStyle = {}, n = 40): void {
+export function surface(view: Space, shape: Shape, style: SurfaceStyle = {}, n = 40): ReturnType<Space["surface"]> {
     const axes = [0, 1].map((axis) => spread(shape, axis, n));
     const grid = shape.grid(axes, { normals: shape.dimension === 3 });
-    view.surface(sheet(grid.points, shape.dimension, axes[0]?.length ?? 0, axes[1]?.length ?? 0, grid.normals), style);
+    return view.surface(sheet(grid.points, shape.dimension, axes[0]?.length ?? 0, axes[1]?.length ?? 0, grid.normals), style);
 }
 
 /** Parameters with equal steps in every span, so that kinks at knots stay sharp. */

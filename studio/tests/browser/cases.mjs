@@ -762,6 +762,47 @@ export const cases = [
         const { points: made } = (await points(page)).objects[2];
         assert.deepEqual([made.length, made[0], made[2]], [3, [6, 0], [0, 0]], "from the end of A to its beginning");
     }],
+    ["edit: in space a click and a frame choose; where the pen cannot draw, the status says so", async ({ page, url, write, picture }) => {
+        const net = [0, 1, 2].map((i) => [0, 1, 2].map((j) => [i, j, i === 1 && j === 1 ? 1.5 : 0]));
+        const list = () => page.locator(".tools .list button").evaluateAll((l) => l.map((b) => (b.getAttribute("aria-pressed") === "true" ? "*" : "") + b.textContent[0]).join(" "));
+        await go(page, url, "#/edit", ".handle");
+        await file(page, write("net.json", JSON.stringify({ freiform: 1, objects: [{ type: "surface", name: "S", points: net }, { type: "curve", name: "C", points: [[3, 0, 0], [3, 1, 1], [3, 2, 0]] }] })));
+        await page.waitForSelector(".view.space canvas");
+        await settle(page);
+        const spot = async (name) => page.locator(`.handle[aria-label="${name}"]`).evaluate((e) => { const b = e.children[1].getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; });
+        const [[ax, ay], [bx, by], [cx, cy], [dx, dy]] = [await spot("S, point 3"), await spot("S, point 4"), await spot("C, point 0"), await spot("C, point 1")];
+        const click = async (x, y) => { await page.mouse.click(x, y); await settle(page); };
+        await click(0.7 * ax + 0.3 * bx, 0.7 * ay + 0.3 * by);
+        assert.equal(await list(), "*S C");
+        // A parabola is halfway between its middle point and the middle of its ends.
+        const [ex, ey] = await (async () => { await page.keyboard.press("Escape"); await settle(page); return spot("C, point 2"); })();
+        const onC = [0.5 * dx + 0.25 * (cx + ex), 0.5 * dy + 0.25 * (cy + ey)];
+        await page.keyboard.down("Shift");
+        await click(...onC);
+        await page.keyboard.up("Shift");
+        assert.equal(await list(), "S *C");
+        const box = await page.locator(".view.space canvas").boundingBox();
+        await click(box.x + 6, box.y + box.height - 6);
+        assert.equal(await list(), "S C", "a click beside everything chooses nothing");
+        await page.keyboard.down("Shift");
+        await page.mouse.move(box.x + 5, box.y + 5);
+        await page.mouse.down();
+        await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 3 });
+        await picture("space-frame");
+        await page.mouse.move(box.x + box.width - 5, box.y + box.height - 5, { steps: 3 });
+        await page.mouse.up();
+        await page.keyboard.up("Shift");
+        await settle(page);
+        assert.match(await page.locator(".status").textContent(), /12 points chosen/);
+        assert.deepEqual(await spot("S, point 3"), [ax, ay], "the eye stays where it was");
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("b");
+        await settle(page);
+        assert.match(await page.locator(".status").textContent(), /plane/);
+        await click(box.x + 40, box.y + 40);
+        await page.keyboard.press("Enter");
+        assert.equal(await page.locator(".tools .list li").count(), 2);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
