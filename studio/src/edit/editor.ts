@@ -29,6 +29,8 @@ import { kAxes, scaledAbout, turnedAbout } from "./transform";
 
 const kFirst: Document = { objects: [{ type: "curve", name: "curve", degree: 3, knots: [0, 0, 0, 0, 1, 2, 2, 2, 2], points: [[0, 0], [1, 2.4], [3, 3], [4.4, 0.6], [6, 1.2]] }] };
 
+const kNothing = t("Nichts ist gewählt.", "Nothing is chosen.");
+
 let session: Session | undefined;
 
 export function edit(taken: string | undefined, inspect: (what: string | Opened) => void): Shown { return new Editor(session ??= new Session(kFirst), taken, inspect); }
@@ -140,7 +142,7 @@ export class Editor implements Shown {
             const o = list.flatMap((i) => this.document.objects[i] ?? []);
             const made = what === "revolve" ? tools.revolved(o, options.axis ?? [], options.angle ?? 360) : what === "extrude" ? tools.extruded(o, options.by ?? [])
                 : what === "loft" ? tools.lofted(raised({ objects: o }).objects) : what === "ruled" ? tools.ruled(raised({ objects: o }).objects) : tools.coons(raised({ objects: o }).objects, 1e-6);
-            return added(raised(this.document), made.map((m) => named(this.document, { ...m, name: what })));
+            return made.reduce((now, m) => added(now, [named(now, { ...m, name: what })]), raised(this.document));
         }, true);
     }
 
@@ -274,7 +276,7 @@ export class Editor implements Shown {
         this.status.textContent = this.draft && view instanceof Space ? say(t("Der Stift zeichnet nur in der Ebene; hier setzt er keine Punkte. Esc legt ihn weg.", "The pen draws in the plane only; here it sets no points. Esc puts it away."))
             : this.draft ? say(t("Stift: klicken setzt Punkte, Eingabetaste beendet, Esc verwirft.", "Pen: a click sets a point, Enter ends, Esc discards."))
             : this.hands.said !== "" ? this.hands.said
-            : `${this.document.objects.length} ${say(t("Objekte", "objects"))} · ${this.selection.size} ${say(t("Punkte gewählt", "points chosen"))} · ${say(t("? zeigt die Tasten", "? shows the keys"))}`;
+            : `${this.document.objects.length} ${say(t("Objekte", "objects"))} · ${this.selection.size} ${say(t("Punkte gewählt", "points chosen"))} · ${say(t("? zeigt die Tasten", "? shows the keys"))}${this.hands.lacking === "" ? "" : ` · ${this.hands.lacking}`}`;
     }
 
     private fit(): void {
@@ -334,8 +336,8 @@ export class Editor implements Shown {
             undo: () => { this.steps.undo(); }, redo: () => { this.steps.redo(); }, save: () => { this.element.querySelector<HTMLElement>("[data-save]")?.click(); },
             open: () => { this.element.querySelector<HTMLElement>("[data-open]")?.click(); }, all: () => { this.selection.all(this.document); this.refresh(); },
             none: () => { this.draft = undefined; this.selection.clear(); this.refresh(); }, remove: () => { this.remove(); },
-            copy: () => { this.session.clipboard = this.taken(); notify(say(t(`${this.session.clipboard.length} Objekte kopiert`, `${this.session.clipboard.length} objects copied`))); },
-            cut: () => { this.session.clipboard = this.taken(); this.without([...this.chosen]); }, paste: () => { this.paste(this.session.clipboard); }, duplicate: () => { this.paste(this.taken()); },
+            copy: () => { if (this.copy()) notify(say(t(`${this.session.clipboard.length} Objekte kopiert`, `${this.session.clipboard.length} objects copied`))); },
+            cut: () => { if (this.copy()) this.without(this.selection.owners); }, paste: () => { if (this.session.clipboard.length > 0) this.paste(this.session.clipboard); else notify(say(t("Nichts ist kopiert.", "Nothing was copied."))); }, duplicate: () => { this.paste(this.taken()); },
             fit: () => { this.fit(); }, pen: () => { this.pen.click(); }, finish: () => { this.finish(); }, help: showKeys, gizmo: () => { this.grips.click(); },
             grab: () => { this.prompt(t("Verschieben um x, y, z", "Move by x, y, z"), "0 0 0", (by) => shifted(by)); },
             scale: () => { this.prompt(t("Vergrößern um den Faktor", "Scale by the factor"), "2", ([k = 1]) => scaledAbout(this.selection.centre(this.document), [k, k, k])); },
@@ -361,7 +363,16 @@ export class Editor implements Shown {
         this.refresh();
     }
 
+    /** What is chosen, for later; false if that is nothing. */
+    private copy(): boolean {
+        const taken = this.taken();
+        if (taken.length > 0) this.session.clipboard = taken;
+        else notify(say(kNothing));
+        return taken.length > 0;
+    }
+
     private paste(objects: readonly ObjectJson[]): void {
+        if (objects.length === 0) { notify(say(kNothing)); return; }
         const step = 0.05 * extent(this.document);
         this.attempt(say(t("Einfügen", "paste")), () => objects.reduce((now: Document, o) => {
             const at = now.objects.length;
@@ -379,7 +390,7 @@ export class Editor implements Shown {
     }
 
     private prompt(label: Text, first: string, act: (numbers: number[]) => (p: readonly number[]) => number[]): void {
-        if (this.selection.meant(this.document).length === 0) { notify(say(t("Nichts ist gewählt.", "Nothing is chosen."))); return; }
+        if (this.selection.meant(this.document).length === 0) { notify(say(kNothing)); return; }
         askNumbers(label, first, (numbers) => { this.attempt(say(label), () => moved(this.document, this.selection.meant(this.document), act(numbers))); });
     }
 

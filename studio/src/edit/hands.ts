@@ -29,6 +29,8 @@ export class Hands {
     gizmo = true;
     /** What is told of a movement of the gizmo while it lasts. */
     said = "";
+    /** What is told if not all points can be taken hold of. */
+    lacking = "";
     private view: View | undefined;
     private grips: Gizmo | undefined;
     private dragged: Place | undefined;
@@ -42,7 +44,9 @@ export class Hands {
         const { objects } = this.document, chosen = this.host.selection.objects;
         const count = objects.reduce((n, o) => n + pointsOf(o).length, 0);
         const shown = objects.flatMap((o, object) => (chosen.has(object) || (chosen.size === 0 && count <= kMostHandles) ? pointsOf(o).map((_, point) => ({ object, point })) : []));
-        view.handles.show(shown.slice(0, kMostHandles).map((place) => this.handle(place)), {
+        const held = shown.slice(0, kMostHandles), meant = chosen.size === 0 ? count : shown.length;
+        this.lacking = held.length === meant ? "" : say(t(`${held.length} von ${meant} Punkten lassen sich greifen`, `${held.length} of ${meant} points can be taken hold of`)) + (chosen.size === 0 ? say(t(": wählen Sie ein Objekt", ": choose an object")) : "");
+        view.handles.show(held.map((place) => this.handle(place)), {
             begin: () => { this.host.history().begin(); }, end: () => { this.dragged = undefined; this.host.history().end(); this.host.settled(); },
             snap: (to, event) => (this.host.snapping() && !event.altKey ? this.snapped(to) : to) });
         this.grips?.show(this.gizmo);

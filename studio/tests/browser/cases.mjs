@@ -803,6 +803,40 @@ export const cases = [
         await page.keyboard.press("Enter");
         assert.equal(await page.locator(".tools .list li").count(), 2);
     }],
+    ["edit: small things: nothing to paste, a point to cut, many points, names", async ({ page, url, write }) => {
+        const press = async (...keys) => { for (const key of keys) await page.keyboard.press(key); await settle(page); };
+        const blur = () => page.evaluate(() => document.activeElement.blur());
+        const chosen = () => page.locator(".tools .list button[aria-pressed='true']").count();
+        await go(page, url, "#/edit", ".handle");
+        await press("Control+v");
+        assert.equal(await chosen(), 0, "nothing was copied: nothing is chosen");
+        assert.match(await page.locator(".toast").innerText(), /Nothing/);
+        assert.equal(await page.isEnabled("button[title^='Ctrl+Z']"), false);
+
+        await page.locator(".stage .handle").nth(1).focus();
+        await press("Enter", "Control+x");
+        assert.equal(await page.locator(".tools .list li").count(), 0, "a point means its curve, as for Delete");
+        await blur();
+        await press("Control+v");
+        assert.equal(await page.locator(".tools .list li").count(), 1);
+
+        await file(page, write("two.json", JSON.stringify({ freiform: 1, objects: [{ type: "curve", points: [[1, 0], [2, 1]] }, { type: "curve", points: [[3, 0], [4, 1]] }] })));
+        await blur();
+        await press("Control+a");
+        await page.getByRole("button", { name: "Revolve" }).click();
+        await settle(page);
+        const names = (await points(page)).objects.slice(2).map((o) => o.name);
+        assert.equal(names.length, 2);
+        assert.notEqual(names[0], names[1]);
+
+        await file(page, write("long.json", JSON.stringify({ freiform: 1, objects: [{ type: "curve", name: "L", degree: 1, points: Array.from({ length: 700 }, (_, i) => [i, 40 * Math.sin(i / 20)]), knots: [0, ...Array.from({ length: 700 }, (_, i) => i), 699] }] })));
+        await settle(page);
+        assert.match(await page.locator(".status").textContent(), /0 of 700 points can be taken hold of: choose an object/);
+        await page.locator(".tools .list button").click();
+        await settle(page);
+        assert.match(await page.locator(".status").textContent(), /600 of 700 points/);
+        assert.equal(await page.locator(".stage .handle").count(), 600);
+    }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
