@@ -1,7 +1,7 @@
 // What the editor asks and tells in a box of its own.
 
 import { h } from "../ui/dom";
-import { say, t, type Text } from "../ui/language";
+import { keyed, say, t, type Text } from "../ui/language";
 import { refusal } from "../ui/toast";
 import { kHelp } from "./keys";
 import { numbersOf } from "./numbers";
@@ -29,6 +29,6 @@ export function askNumbers(label: Text, first: string, act: (numbers: number[]) 
 
 export function showKeys(): void {
     const label = t("Tasten", "Keys");
-    open(label, h("h2", {}, say(label)), h("table", {}, ...kHelp.map(([keys, text]) => h("tr", {}, h("td", {}, h("kbd", {}, keys)), h("td", {}, say(text))))),
+    open(label, h("h2", {}, say(label)), h("table", {}, ...kHelp.map(([keys, text]) => h("tr", {}, h("td", {}, h("kbd", {}, keyed(keys))), h("td", {}, say(text))))),
         h("form", { method: "dialog" }, h("button", { class: "primary" }, say(t("Schließen", "Close")))));
 }

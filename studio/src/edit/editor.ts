@@ -5,7 +5,7 @@ import type { Shown } from "../explore/explore";
 import { arena, ff, file, type Source } from "../kernel/module";
 import { coalesced, h } from "../ui/dom";
 import { droppable, isModel, opener, type Opened } from "../ui/files";
-import { say, t, type Text } from "../ui/language";
+import { keyed, say, t, type Text } from "../ui/language";
 import { lacking, notify, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
 import { Space } from "../views/space";
@@ -26,14 +26,11 @@ import { corners, extent } from "./size";
 import { keep } from "./store";
 import * as tools from "./tools";
 import { kAxes, scaledAbout, turnedAbout } from "./transform";
-
-const kFirst: Document = { objects: [{ type: "curve", name: "curve", degree: 3, knots: [0, 0, 0, 0, 1, 2, 2, 2, 2], points: [[0, 0], [1, 2.4], [3, 3], [4.4, 0.6], [6, 1.2]] }] };
-
-const kNothing = t("Nichts ist gewählt.", "Nothing is chosen.");
+import { kChanges, kCurve, kMakes, kNothing } from "./words";
 
 let session: Session | undefined;
 
-export function edit(taken: string | undefined, inspect: (what: string | Opened) => void): Shown { return new Editor(session ??= new Session(kFirst), taken, inspect); }
+export function edit(taken: string | undefined, inspect: (what: string | Opened) => void): Shown { return new Editor(session ??= new Session(), taken, inspect); }
 
 export class Editor implements Shown {
     readonly element: HTMLElement;
@@ -42,13 +39,13 @@ export class Editor implements Shown {
     private readonly panel: Panel;
     private readonly stage = h("div", { class: "stage" });
     private readonly status = h("div", { class: "status", role: "status", "aria-live": "polite" });
-    private readonly pen = h("button", { "aria-pressed": "false", title: "B", onclick: () => { this.draft = this.draft ? undefined : this.penned(); this.refresh(); } }, say(t("Stift", "Pen")));
-    private readonly back = h("button", { title: "Ctrl+Z", onclick: () => { this.steps.undo(); } }, say(t("Rückgängig", "Undo")));
-    private readonly again = h("button", { title: "Ctrl+Shift+Z", onclick: () => { this.steps.redo(); } }, say(t("Wiederholen", "Redo")));
+    private readonly pen = h("button", { "aria-pressed": "false", title: "B", onclick: () => { this.draft = this.draft ? undefined : new History<readonly number[][]>([], () => { this.refresh(); }); this.refresh(); } }, say(t("Stift", "Pen")));
+    private readonly back = h("button", { title: keyed("Ctrl+Z"), onclick: () => { this.steps.undo(); } }, say(t("Rückgängig", "Undo")));
+    private readonly again = h("button", { title: keyed("Ctrl+Shift+Z"), onclick: () => { this.steps.redo(); } }, say(t("Wiederholen", "Redo")));
     private readonly grips = h("button", { title: "T", onclick: () => { this.hands.gizmo = !this.hands.gizmo; this.refresh(); } }, say(t("Gizmo", "Gizmo")));
     private readonly snap = h("input", { type: "checkbox", checked: true });
     /** What is touched is chosen beside what is chosen already: Shift for hands without a keyboard. */
-    private readonly several = h("button", { "aria-pressed": "false", title: "Shift", onclick: () => {
+    private readonly several = h("button", { "aria-pressed": "false", title: keyed("Shift"), onclick: () => {
         this.several.setAttribute("aria-pressed", String(!this.more));
     } }, say(t("Mehrere", "Several")));
     private view: View;
@@ -111,13 +108,13 @@ export class Editor implements Shown {
 
     weigh(weight: number): void { this.attempt(say(t("Gewicht", "weight")), () => weighted(this.document, this.places, weight)); }
 
-    change(what: "insert" | "split" | "reduce" | "elevate" | "reverse" | "bezier", { at = 0, axis = "u" as tools.Axis }): void {
+    change(what: keyof typeof kChanges, { at = 0, axis = "u" as tools.Axis }): void {
         const does: Record<typeof what, (o: ObjectJson) => ObjectJson[]> = {
             insert: (o) => tools.inserted(o, at, axis), split: (o) => tools.divided(o, at, axis), reduce: (o) => tools.reduced(o, at),
             elevate: (o) => tools.elevated(o, axis), reverse: (o) => tools.reversed(o, axis), bezier: (o) => tools.pieces(o) };
         const list = this.needed(1);
         if (!list) return;
-        this.attempt(what, () => {
+        this.attempt(say(kChanges[what]), () => {
             let now = this.document;
             for (const i of [...list].sort((a, b) => b - a)) { const o = now.objects[i]; if (o) now = replaced(now, i, ...does[what](o)); }
             return now;
@@ -136,13 +133,13 @@ export class Editor implements Shown {
         }, true);
     }
 
-    make(what: "revolve" | "extrude" | "loft" | "ruled" | "coons", options: { axis?: number[]; angle?: number; by?: number[] } = {}): void {
+    make(what: keyof typeof kMakes, options: { axis?: number[]; angle?: number; by?: number[] } = {}): void {
         const list = this.needed(what === "coons" ? 4 : what === "loft" || what === "ruled" ? 2 : 1);
-        if (list) this.attempt(what, () => {
+        if (list) this.attempt(say(kMakes[what][0]), () => {
             const o = list.flatMap((i) => this.document.objects[i] ?? []);
             const made = what === "revolve" ? tools.revolved(o, options.axis ?? [], options.angle ?? 360) : what === "extrude" ? tools.extruded(o, options.by ?? [])
                 : what === "loft" ? tools.lofted(raised({ objects: o }).objects) : what === "ruled" ? tools.ruled(raised({ objects: o }).objects) : tools.coons(raised({ objects: o }).objects, 1e-6);
-            return made.reduce((now, m) => added(now, [named(now, { ...m, name: what })]), raised(this.document));
+            return made.reduce((now, m) => added(now, [named(now, { ...m, name: say(kMakes[what][1]) })]), raised(this.document));
         }, true);
     }
 
@@ -156,8 +153,6 @@ export class Editor implements Shown {
         this.seen = state;
         this.refresh();
     }
-
-    private penned(): History<readonly number[][]> { return new History<readonly number[][]>([], () => { this.refresh(); }); }
 
     /** What undo and redo are about: while the pen is under way, its points. */
     private get steps(): History<readonly number[][]> | History<Document> { return this.draft ?? this.history; }
@@ -254,8 +249,8 @@ export class Editor implements Shown {
         const { undo, redo } = this.steps.names;
         this.back.disabled = undo === undefined;
         this.again.disabled = redo === undefined;
-        this.back.title = `Ctrl+Z ${undo ?? ""}`;
-        this.again.title = `Ctrl+Shift+Z ${redo ?? ""}`;
+        this.back.title = `${keyed("Ctrl+Z")} ${undo ?? ""}`;
+        this.again.title = `${keyed("Ctrl+Shift+Z")} ${redo ?? ""}`;
         this.grips.hidden = !space;
         this.grips.setAttribute("aria-pressed", String(this.hands.gizmo));
         this.pen.setAttribute("aria-pressed", String(this.draft !== undefined));
@@ -353,8 +348,7 @@ export class Editor implements Shown {
 
     /** What is chosen; while the pen is under way, its last point. */
     private remove(): void {
-        if (this.draft) this.draft.undo();
-        else this.without(this.selection.owners);
+        if (this.draft) this.draft.undo(); else this.without(this.selection.owners);
     }
 
     private without(list: readonly number[]): void {
@@ -366,9 +360,9 @@ export class Editor implements Shown {
     /** What is chosen, for later; false if that is nothing. */
     private copy(): boolean {
         const taken = this.taken();
-        if (taken.length > 0) this.session.clipboard = taken;
-        else notify(say(kNothing));
-        return taken.length > 0;
+        if (taken.length === 0) { notify(say(kNothing)); return false; }
+        this.session.clipboard = taken;
+        return true;
     }
 
     private paste(objects: readonly ObjectJson[]): void {
@@ -385,7 +379,7 @@ export class Editor implements Shown {
         const points = this.draft?.state;
         if (!points) return;
         this.draft = undefined;
-        if (points.length >= 2) this.attempt(say(t("Zeichnen", "draw")), () => added(this.document, [named(this.document, { ...drawn(flat(this.document) ? points : points.map((p) => [...p, 0].slice(0, 3))), name: "curve" })]), true);
+        if (points.length >= 2) this.attempt(say(t("Zeichnen", "draw")), () => added(this.document, [named(this.document, { ...drawn(flat(this.document) ? points : points.map((p) => [...p, 0].slice(0, 3))), name: say(kCurve) })]), true);
         this.refresh();
     }
 
@@ -398,8 +392,8 @@ export class Editor implements Shown {
         return h("div", { class: "bar", role: "toolbar", "aria-label": say(t("Werkzeuge", "Tools")) },
             h("button", { onclick: () => { this.attempt(say(t("Neu", "new")), () => ({ objects: [] })); } }, say(t("Neu", "New"))), opener((opened) => { this.take(opened); }),
             ...exportButtons(() => this.json(), () => this.view, () => 0.001 * extent(this.document)), h("span", { class: "sep" }), this.back, this.again, h("span", { class: "sep" }), this.pen,
-            h("button", { title: "Enter", onclick: () => { this.finish(); } }, say(t("Fertig", "Finish"))), h("label", { class: "check" }, this.snap, say(t("Einrasten", "Snap"))), this.several, this.grips,
-            h("button", { title: "F", onclick: () => { this.fit(); } }, say(t("Alles", "Fit"))), h("button", { title: "Del", onclick: () => { this.remove(); } }, say(t("Löschen", "Delete"))),
+            h("button", { title: keyed("Enter"), onclick: () => { this.finish(); } }, say(t("Fertig", "Finish"))), h("label", { class: "check" }, this.snap, say(t("Einrasten", "Snap"))), this.several, this.grips,
+            h("button", { title: "F", onclick: () => { this.fit(); } }, say(t("Alles", "Fit"))), h("button", { title: keyed("Del"), onclick: () => { this.remove(); } }, say(t("Löschen", "Delete"))),
             h("button", { onclick: () => { this.inspect(JSON.stringify(this.json())); } }, say(t("Untersuchen", "Inspect"))), h("button", { title: "?", "aria-label": say(t("Tasten", "Keys")), onclick: showKeys }, "?"));
     }
 }

@@ -3,7 +3,7 @@
 import type { DocumentJson } from "freiform";
 import { ff } from "../kernel/module";
 import { download, h } from "../ui/dom";
-import { say, t } from "../ui/language";
+import { keyed, say, t } from "../ui/language";
 import { lacking, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
 import { Space } from "../views/space";
@@ -43,7 +43,7 @@ export function exportButtons(document: () => DocumentJson, view: () => View, to
         select.value = "";
         try { if (format) save(format); } catch (error) { refuse(error); }
     } }, h("option", { value: "" }, say(t("Exportieren …", "Export …"))), ...kFormats.map((f) => h("option", { value: f }, f.toUpperCase())));
-    return [h("button", { title: "Ctrl+S", "data-save": true, onclick: () => {
+    return [h("button", { title: keyed("Ctrl+S"), "data-save": true, onclick: () => {
         // The numbers as the module writes them: the shortest that read back to the same bits.
         try { download("freiform.json", JSON.stringify(document(), undefined, 1), "application/json"); } catch (error) { refuse(error); }
     } }, say(t("Speichern", "Save"))), select];

@@ -19,7 +19,7 @@ export function keyOf(event: Pick<KeyboardEvent, "key" | "ctrlKey" | "metaKey" |
 }
 
 export const kHelp: readonly (readonly [string, Text])[] = [
-    ["B, Enter", t("Stift: Punkte klicken, beenden", "Pen: click points, finish")], ["Tab, Pfeile / arrows", t("zum nächsten Punkt, Punkt bewegen (Umschalt: zehnmal so weit)", "to the next point, move it (Shift: ten times as far)")],
+    ["B, Enter", t("Stift: Punkte klicken, beenden", "Pen: click points, finish")], ["Tab, arrows", t("zum nächsten Punkt, Punkt bewegen (Umschalt: zehnmal so weit)", "to the next point, move it (Shift: ten times as far)")],
     ["Enter, Space", t("Punkt wählen (Umschalt: dazu)", "choose a point (Shift: as well)")], ["Shift + drag", t("Rahmen wählt Punkte", "a frame chooses points")],
     ["G, R, S", t("verschieben, drehen, vergrößern mit Zahlen", "move, turn, scale by numbers")], ["T", t("Gizmo im Raum: Pfeile verschieben, Bögen drehen, Quadrate vergrößern", "gizmo in space: arrows move, arcs turn, squares scale")], ["J", t("zwei Kurven verbinden", "join two curves")],
     ["Ctrl+Z, Ctrl+Shift+Z", t("rückgängig, wiederholen", "undo, redo")], ["Ctrl+C, X, V, D", t("kopieren, ausschneiden, einfügen, verdoppeln", "copy, cut, paste, duplicate")],

@@ -1,5 +1,6 @@
 // The column of tools beside the drawing: objects, numbers of what is chosen, knots, changes, construction.
 
+import type { ObjectJson } from "freiform";
 import { h, set, shown } from "../ui/dom";
 import { say, t, type Text } from "../ui/language";
 import { refuse } from "../ui/toast";
@@ -8,6 +9,7 @@ import { run } from "../views/view";
 import { clamped, editable, pointsOf, weightsOf } from "./document";
 import { numbersOf, oneOf } from "./numbers";
 import type { Axis } from "./tools";
+import { kKinds } from "./words";
 import type { Editor } from "./editor";
 
 const number = (label: string, set: (x: number) => void): { element: HTMLElement; show: (x: number) => void } => {
@@ -19,6 +21,8 @@ const field = (label: Text, value: string): { element: HTMLElement; numbers: () 
     const input = h("input", { type: "text", value, "aria-label": say(label), inputmode: "decimal" });
     return { element: h("label", { class: "knob" }, h("span", {}, say(label)), input), numbers: () => numbersOf(input.value), number: () => oneOf(input.value) };
 };
+
+const kind = ({ type = "curve" }: ObjectJson): string => (kKinds[type] ? say(kKinds[type]) : type);
 
 /** Elements with a display of their own do not heed `hidden`. */
 function present(element: HTMLElement, on: boolean): void { element.style.display = on ? "" : "none"; }
@@ -68,7 +72,7 @@ export class Panel {
             list.append(h("li", {}, h("button", { onclick: (event: MouseEvent) => { this.editor.choose(i, event.shiftKey || event.ctrlKey || event.metaKey); } })));
         }
         document.objects.forEach((o, i) => {
-            const button = list.children[i]?.firstElementChild, text = `${o.name ?? `${o.type ?? "curve"} ${i + 1}`} · ${editable(o) ? `${pointsOf(o).length} ${say(t("Punkte", "points"))}` : o.type}`;
+            const button = list.children[i]?.firstElementChild, text = `${o.name ?? `${kind(o)} ${i + 1}`} · ${editable(o) ? `${pointsOf(o).length} ${say(t("Punkte", "points"))}` : kind(o)}`;
             if (!button) return;
             set(button, "aria-pressed", String(chosen.has(i)));
             if (button.textContent !== text) button.textContent = text;

@@ -2,11 +2,16 @@
 
 import type { ObjectJson } from "freiform";
 import { arena } from "../kernel/module";
+import { say } from "../ui/language";
 import { refuse } from "../ui/toast";
 import type { Document } from "./document";
 import { History } from "./history";
 import { Selection } from "./selection";
 import { kept } from "./store";
+import { kCurve } from "./words";
+
+/** What a reader finds who never drew. */
+const first = (): Document => ({ objects: [{ type: "curve", name: say(kCurve), degree: 3, knots: [0, 0, 0, 0, 1, 2, 2, 2, 2], points: [[0, 0], [1, 2.4], [3, 3], [4.4, 0.6], [6, 1.2]] }] });
 
 export class Session {
     readonly history: History<Document>;
@@ -14,7 +19,7 @@ export class Session {
     clipboard: readonly ObjectJson[] = [];
     private reading: Promise<void> | undefined;
 
-    constructor(first: Document) { this.history = new History(first); }
+    constructor() { this.history = new History(first()); }
 
     /** Puts what was kept below the steps, once. */
     restore(): Promise<void> { return this.reading ??= this.read(); }

@@ -3,7 +3,7 @@
 
 import { filesNamedIn } from "freiform";
 import { h } from "./dom";
-import { say, t } from "./language";
+import { keyed, say, t } from "./language";
 import { refuse } from "./toast";
 
 export interface Opened {
@@ -82,7 +82,7 @@ export function opener(open: (file: Opened) => void): HTMLElement {
         input.value = "";
         if (given.length > 0) read(given).then(open).catch(refuse);
     } });
-    return h("span", {}, input, h("button", { title: "Ctrl+O", "data-open": true, onclick: () => { input.click(); } }, say(t("Öffnen …", "Open …"))));
+    return h("span", {}, input, h("button", { title: keyed("Ctrl+O"), "data-open": true, onclick: () => { input.click(); } }, say(t("Öffnen …", "Open …"))));
 }
 
 /** Files dropped on an element are opened. */

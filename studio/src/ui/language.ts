@@ -24,5 +24,10 @@ export function speak(language: Language): void {
 /** The text in the language of the page. */
 export const say = (text: Text): string => text[current];
 
+const kKeys: Readonly<Record<string, string>> = { Ctrl: "Strg", Shift: "Umschalt", Del: "Entf", Home: "Pos1", Space: "Leertaste", Enter: "Eingabe", arrows: "Pfeile", drag: "Ziehen" };
+
+/** Names of keys as they stand on keyboards of the language. */
+export const keyed = (keys: string): string => (current === "de" ? keys.replace(/[A-Za-z]+/g, (word) => kKeys[word] ?? word) : keys);
+
 /** A pair of texts, German first. */
 export const t = (de: string, en: string): Text => ({ de, en });

@@ -1,11 +1,12 @@
 // Messages at the lower edge. Refusals stay until they are closed and show what kind, where and why.
 
-import { h } from "./dom";
+import { h, set } from "./dom";
 import { say, t } from "./language";
 
 const kTexts = {
     close: t("Schließen", "Close"),
     where: t("wo", "where"),
+    messages: t("Meldungen", "messages"),
     lacking: t("ausgelassen", "left out"),
 };
 
@@ -14,7 +15,8 @@ const kMostTold = 5;
 let box: HTMLElement | undefined;
 
 function host(): HTMLElement {
-    box ??= h("div", { class: "toasts", role: "region", "aria-live": "polite", "aria-label": "messages" });
+    box ??= h("div", { class: "toasts", role: "region", "aria-live": "polite" });
+    set(box, "aria-label", say(kTexts.messages));
     if (!box.isConnected) document.body.append(box);
     return box;
 }

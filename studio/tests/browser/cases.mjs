@@ -837,6 +837,21 @@ export const cases = [
         assert.match(await page.locator(".status").textContent(), /600 of 700 points/);
         assert.equal(await page.locator(".stage .handle").count(), 600);
     }],
+    ["edit: in German all words are German", async ({ page, url }) => {
+        await go(page, url, "#/edit", ".handle");
+        await page.locator(".tools .list button").first().click();
+        const titles = [];
+        for (const name of ["Grad erhöhen", "Umkehren", "Knoten einfügen", "Bézier-Stücke", "Drehen"]) {
+            if (name === "Drehen") await page.locator(".tools .list button").first().click();
+            await page.getByRole("button", { name, exact: true }).click();
+            await settle(page);
+            titles.push((await page.getAttribute("button[title^='Ctrl+Z'], button[title^='Strg+Z']", "title")).replace(/^\S+ /, ""));
+        }
+        assert.deepEqual(titles, ["Grad erhöhen", "Umkehren", "Knoten einfügen", "Bézier-Stücke", "Drehen"]);
+        await page.getByRole("button", { name: "Tasten" }).click();
+        const words = await page.locator("body").innerText();
+        for (const word of ["Space", "drag", "arrows", "Ctrl", "Shift", "curve", "revolve", "elevate"]) assert.doesNotMatch(words, new RegExp(`\\b${word}\\b`), word);
+    }, { context: { locale: "de-DE" } }],
     ["edit: bad files are refused with kind and place", async ({ page, url, write }) => {
         await go(page, url, "#/edit", ".handle");
         const before = JSON.stringify((await page.locator(".handle").count()));
