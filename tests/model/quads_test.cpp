@@ -191,13 +191,16 @@ TEST(Quads, end_at_edges_that_run_either_way) {
 }
 
 TEST(Quads, are_turned_over_with_their_face) {
-    Model m = torus(2, 0.7);
-    m.faces[0].reversed = true;
-    const auto t = tessellate(m, {.tolerance = 0.1, .quads = true});
-    ASSERT_TRUE(t);
-    EXPECT_TRUE(validate(t->mesh));
-    EXPECT_EQ(loose(*t), 0);
-    EXPECT_LT(signed_volume(t->mesh), 0);
+    for (const bool solid : {false, true}) {
+        Model m = torus(2, 0.7);
+        m.bodies[0].solid = solid;
+        m.faces[0].reversed = true;
+        const auto t = tessellate(m, {.tolerance = 0.1, .quads = true});
+        ASSERT_TRUE(t);
+        EXPECT_TRUE(validate(t->mesh));
+        EXPECT_EQ(loose(*t), 0);
+        EXPECT_EQ(signed_volume(t->mesh) > 0, solid) << "solids look outwards all the same";
+    }
 }
 
 TEST(Quads, are_refused_beyond_the_limit) {

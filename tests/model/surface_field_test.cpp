@@ -57,6 +57,7 @@ TEST(SurfaceFields, of_a_torus_follow_its_formulas_for_outward_normals) {
 
 TEST(SurfaceFields, of_a_surface_seen_from_its_other_side_have_the_other_sign) {
     Model torus = test::torus(2, 0.7);
+    torus.bodies[0].solid = false;  // solids look outwards whatever their faces say
     const auto fields = [&](SurfaceField field) {
         const TriangleMesh mesh = mesh_of(torus, 0.05);
         const FieldValues f = surface_field(torus, mesh, field);
