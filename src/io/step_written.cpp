@@ -6,11 +6,11 @@
 // A file gets one turn again, as it had, and those who read it will do the same; parameter curves, which run
 // beyond that turn, are left out.
 //
-// Seams. Where a face winds around its surface, readers join its loops along an edge that is no parameter line if
-// their vertices are not opposite each other (step_seams.cpp): nothing says what its curve in space is. Without
-// it there are two loops again, as in the file that was read, and whoever reads them will join them. From the
-// use of an edge on, such a loop goes on behind its other use: that is a permutation of the coedges, each cycle
-// of which is a loop.
+// Seams. Where a face winds around its surface, readers join its loops along an edge that is no parameter
+// line if their vertices are not opposite each other (step_seams.cpp): nothing says what its curve in space
+// is. Without it there are two loops again, as in the file that was read, and whoever reads them will join
+// them. From the use of an edge on, such a loop goes on behind its other use: that is a permutation of the
+// coedges, each cycle of which is a loop.
 //
 // Why not the part of the surface that the face covers? Where the face goes around it, its seam need not be a
 // parameter line, and the part would be more than a turn again.

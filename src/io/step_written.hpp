@@ -15,8 +15,8 @@ CurveGeometry<3> part_of(const Edge& e);
 // The surface of a face with one turn, if it has more; parameter curves of the face may be beyond it.
 std::optional<SurfaceGeometry> one_turn(const Model& m, const Face& f);
 
-// The loops of a face without edges that have no curve in space and that a loop runs along there and back; these
-// are added to `left_out`. Loops of poles alone are left out, too, if there is any other.
+// The loops of a face without edges that have no curve in space and that a loop runs along there and back;
+// these are added to `left_out`. Loops of poles alone are left out, too, if there is any other.
 std::vector<Loop> without_seams(const Model& m, const Face& f, std::vector<int>& left_out);
 
 }  // namespace freiform::detail
