@@ -123,9 +123,13 @@ __attribute__((noinline)) static void grid_points(const GridAxis& last, const do
 static void grid_row(const Net& net, const GridAxis& last, const double* outer, std::size_t row,
                      const Output& out) {
     if (out.order == 0 && net.axes == 2 && net.dim == 3) {
+#if defined(__wasm__)  // modules are to be small
+        if (last.degree == 3 && net.rational) return grid_points<3, true>(last, outer, out);
+#else
         if (last.degree == 3)
             return net.rational ? grid_points<3, true>(last, outer, out)
                                 : grid_points<3, false>(last, outer, out);
+#endif
         return net.rational ? grid_points<-1, true>(last, outer, out)
                             : grid_points<-1, false>(last, outer, out);
     }
