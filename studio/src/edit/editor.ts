@@ -5,7 +5,7 @@ import type { Shown } from "../explore/explore";
 import { arena, ff, file, type Source } from "../kernel/module";
 import { coalesced, h } from "../ui/dom";
 import { droppable, isModel, opener, type Opened } from "../ui/files";
-import { keyed, say, t, type Text } from "../ui/language";
+import { counted, keyed, say, t, type Text } from "../ui/language";
 import { lacking, notify, refuse } from "../ui/toast";
 import { Plane } from "../views/plane";
 import { Space } from "../views/space";
@@ -271,7 +271,7 @@ export class Editor implements Shown {
         this.status.textContent = this.draft && view instanceof Space ? say(t("Der Stift zeichnet nur in der Ebene; hier setzt er keine Punkte. Esc legt ihn weg.", "The pen draws in the plane only; here it sets no points. Esc puts it away."))
             : this.draft ? say(t("Stift: klicken setzt Punkte, Eingabetaste beendet, Esc verwirft.", "Pen: a click sets a point, Enter ends, Esc discards."))
             : this.hands.said !== "" ? this.hands.said
-            : `${this.document.objects.length} ${say(t("Objekte", "objects"))} · ${this.selection.size} ${say(t("Punkte gewählt", "points chosen"))} · ${say(t("? zeigt die Tasten", "? shows the keys"))}${this.hands.lacking === "" ? "" : ` · ${this.hands.lacking}`}`;
+            : `${counted(this.document.objects.length, t("Objekt", "object"), t("Objekte", "objects"))} · ${counted(this.selection.size, t("Punkt gewählt", "point chosen"), t("Punkte gewählt", "points chosen"))} · ${say(t("? zeigt die Tasten", "? shows the keys"))}${this.hands.lacking === "" ? "" : ` · ${this.hands.lacking}`}`;
     }
 
     private fit(): void {
@@ -331,7 +331,7 @@ export class Editor implements Shown {
             undo: () => { this.steps.undo(); }, redo: () => { this.steps.redo(); }, save: () => { this.element.querySelector<HTMLElement>("[data-save]")?.click(); },
             open: () => { this.element.querySelector<HTMLElement>("[data-open]")?.click(); }, all: () => { this.selection.all(this.document); this.refresh(); },
             none: () => { this.draft = undefined; this.selection.clear(); this.refresh(); }, remove: () => { this.remove(); },
-            copy: () => { if (this.copy()) notify(say(t(`${this.session.clipboard.length} Objekte kopiert`, `${this.session.clipboard.length} objects copied`))); },
+            copy: () => { if (this.copy()) notify(counted(this.session.clipboard.length, t("Objekt kopiert", "object copied"), t("Objekte kopiert", "objects copied"))); },
             cut: () => { if (this.copy()) this.without(this.selection.owners); }, paste: () => { if (this.session.clipboard.length > 0) this.paste(this.session.clipboard); else notify(say(t("Nichts ist kopiert.", "Nothing was copied."))); }, duplicate: () => { this.paste(this.taken()); },
             fit: () => { this.fit(); }, pen: () => { this.pen.click(); }, finish: () => { this.finish(); }, help: showKeys, gizmo: () => { this.grips.click(); },
             grab: () => { this.prompt(t("Verschieben um x, y, z", "Move by x, y, z"), "0 0 0", (by) => shifted(by)); },

@@ -24,6 +24,9 @@ export function speak(language: Language): void {
 /** The text in the language of the page. */
 export const say = (text: Text): string => text[current];
 
+/** A number of things: one of them has a word of its own. */
+export const counted = (n: number, one: Text, more: Text): string => `${n} ${say(n === 1 ? one : more)}`;
+
 const kKeys: Readonly<Record<string, string>> = { Ctrl: "Strg", Shift: "Umschalt", Del: "Entf", Home: "Pos1", Space: "Leertaste", Enter: "Eingabe", arrows: "Pfeile", drag: "Ziehen" };
 
 /** Names of keys as they stand on keyboards of the language. */

@@ -4,6 +4,7 @@ import { fileURLToPath } from "node:url";
 import { expect, test } from "vitest";
 import { formula } from "../../src/explore/formula";
 import { keyOf } from "../../src/edit/keys";
+import { counted, t } from "../../src/ui/language";
 import { address, parse } from "../../src/ui/router";
 import { ends, painted, range, tint } from "../../src/inspect/colours";
 
@@ -13,6 +14,11 @@ const sources = (at: string): string[] => readdirSync(at, { withFileTypes: true 
     return entry.isDirectory() ? sources(path) : path.endsWith(".ts") ? [path] : [];
 });
 const all = sources(folder).map((path) => readFileSync(path, "utf8"));
+
+test("one thing is not many", () => {
+    const points = (n: number) => counted(n, t("Punkt", "point"), t("Punkte", "points"));
+    expect([0, 1, 2].map(points)).toEqual(["0 points", "1 point", "2 points"]);
+});
 
 test("every row R1 to R36 has one page", () => {
     const rows = all.flatMap((text) => [...text.matchAll(/^ {4}row: "R(\d+)"/gm)].map((m) => Number(m[1]))).sort((a, b) => a - b);
