@@ -137,7 +137,7 @@ int run(std::vector<std::string> arguments) {
     CommandLine line(
         context, "freiform", "Free-form curves and surfaces whose answers carry a bound that holds.",
         "FILE may be - for standard input. freiform COMMAND --help has examples.\n"
-        "Exit codes: 0 done, 1 no answer, or a mesh without the faces that its report names as refused,\n"
+        "Exit codes: 0 done, 1 no answer, or a file without the faces that are told to be refused,\n"
         "2 wrong usage, 3 unreadable or invalid input, 4 a limit was reached, 5 reading or writing failed.");
 #if defined(__cpp_exceptions)
     try {

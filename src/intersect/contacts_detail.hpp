@@ -38,10 +38,11 @@ inline Interval global(const Interval& on, const Interval& t, const Interval& wi
     return {clamped(g.lo, within), clamped(g.hi, within)};
 }
 
-// What rounding of the object's parameter is in that of the piece: it moves points by so much of a
-// derivative.
+// What `global` rounds a parameter by, in that of the piece: u for the length, for the product and for the
+// sum. It moves points by so much of a derivative, to first order: where it is not small beside the piece,
+// what is made of it is an estimate.
 inline double parameter_rounding(const Interval& on) {
-    return 3 * kUnitRoundoff * std::max(std::abs(on.lo), std::abs(on.hi)) / on.length();
+    return 1.01 * kUnitRoundoff * (std::max(std::abs(on.lo), std::abs(on.hi)) / on.length() + 2);
 }
 
 // Where the pieces of a pair are in the parameters of their objects.

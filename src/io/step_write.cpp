@@ -64,9 +64,8 @@ public:
         }
         for (const Body& b : m_.bodies) {
             std::vector<int> shells;
-            for (const int s : b.shells) {
+            for (const int s : b.shells)
                 shells.push_back(add_shell(m_.shells[std::size_t(s)], b.solid, faces, !shells.empty()));
-            }
             const int id = add_body(b, shells);
             if (id > 0) put_on_layers(b.layers, id);
             if (id > 0 && b.colour) styled.push_back(coloured(*b.colour, id));

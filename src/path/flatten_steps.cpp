@@ -113,7 +113,8 @@ double joint_slip(const Chain<P>& chain) {
         const auto b = chain.piece(i);
         const double at = std::max(std::abs(chain.at(i)), std::abs(chain.at(i + 1))),
                      speed = derivative_bounds<1, P>({b.data(), {int(b.size())}, {1}}, {1.0})(1);
-        most = std::max(most, 3 * kUnitRoundoff * at / (chain.at(i + 1) - chain.at(i)) * speed);
+        // u for the length of the piece, for the product and for the sum of Chain::global.
+        most = std::max(most, 1.01 * kUnitRoundoff * (at / (chain.at(i + 1) - chain.at(i)) + 2) * speed);
     }
     return 2 * chain.error(0) + most;
 }

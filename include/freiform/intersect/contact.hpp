@@ -24,7 +24,9 @@ struct Contact {
     std::array<double, N> at{};
     std::array<Interval, N> box{};  // contains `at`, and the parameters of all roots that are meant
     Vec<D> point{};                 // of one of the objects at `at`
-    double gap = 0;                 // bound: how far the points of both objects at `at` are from each other
+    // Bound: how far the points of both objects at `at` are from each other. What parameters are rounded by,
+    // far from zero in their domain, is counted to first order.
+    double gap = 0;
     // So many isolated points of `box` are roots. Where the two run along each other, all of a `possible` box
     // may be.
     int least = 1, most = 1;
