@@ -1,9 +1,8 @@
 // freiform for node and browsers; freiform.d.ts describes all that is exported.
 //
-// One instance of the module holds the shapes. Commands run in a second one: what a command leaves behind, or breaks, no
-// shape notices. Both are made while `load` is awaited, because browsers refuse to make an instance of a large module at
-// once where a page would wait for it. A refusal leaves the module as an exception of the function `refuse` that it
-// imports, so the stack pointer is put back by hand.
+// One instance of the module holds the shapes, a second one runs commands: what a command breaks, no shape notices. Both
+// are made while `load` is awaited: browsers refuse to make one of a large module at once in a page. A refusal leaves
+// the module as an exception of the function `refuse` that it imports, so the stack pointer is put back by hand.
 
 export class FreiformError extends Error {
   constructor(kind, where, message) {
@@ -117,8 +116,7 @@ class Instance {
     }
   }
 
-  // f with addresses of copies of the arrays, which are freed afterwards. `null` is the address 0, a number n so many
-  // doubles for an answer.
+  // f with addresses of copies of the arrays, freed afterwards: `null` is 0, a number n room for n doubles.
   with(arrays, f) {
     const at = [];
     try {
@@ -324,7 +322,7 @@ class Shape {
   }
 }
 
-// Inputs and options of commands --------------------------------------------------------------------------------------
+// Inputs and options of commands
 
 const isBytes = (x) => x instanceof Uint8Array;
 const isList = (x) => Array.isArray(x) || (ArrayBuffer.isView(x) && !(x instanceof DataView) && !isBytes(x));
@@ -493,7 +491,7 @@ class Freiform {
   }
 }
 
-// Loading -------------------------------------------------------------------------------------------------------------
+// Loading
 
 async function compiled(source) {
   if (source instanceof WebAssembly.Module) return source;
