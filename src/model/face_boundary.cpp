@@ -149,7 +149,7 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
         for (std::size_t k = 0; k < kept.size(); ++k) {
             const std::size_t c = std::size_t(kept[k]), after = std::size_t(kept[(k + 1) % kept.size()]);
             Run& run = runs[c];
-            const Run& next = runs[after];
+            Run& next = runs[after];
             const std::string where = text("loops[", l, "][", c, "]");
             if (run.points.back() != next.points.front())
                 return refuse(RefusalKind::invalid, where,
@@ -174,6 +174,10 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
                                        run.uv.back()[1], ") -> (", next.uv.front()[0], ", ",
                                        next.uv.front()[1], "), up to ", moved, " apart in space"));
                 join = length_in(jump, size) > near / 4 && moved <= std::max(tolerance / 4, rounding);
+                // Where one of them settled on its neighbour in the other run, that place is taken.
+                const bool taken = next.uv.front() == run.uv[run.uv.size() - 2];
+                if (taken) next.uv.front() = run.uv.back();
+                if (taken || run.uv.back() == next.uv[1]) join = false;
                 out.gap = std::max(out.gap, moved);
             }
             for (std::size_t i = 0; i + 1 < run.uv.size() + (join ? 1 : 0); ++i) {
@@ -181,6 +185,7 @@ Result<BoundaryOfFace> boundary_of(const Model& model, int face, const EdgeMeshe
                 out.polygon.point.push_back(run.points[i]);
                 out.sources.push_back(i < run.sources.size() ? run.sources[i] : BoundaryOfFace::Source{});
             }
+            if (k + 1 == kept.size()) out.polygon.uv[std::size_t(first)] = next.uv.front();
         }
         const int end = int(out.polygon.uv.size());
         for (int i = first; i < end; ++i) out.polygon.segments.push_back({i, i + 1 < end ? i + 1 : first});

@@ -190,48 +190,59 @@ Model spiked(double tolerance, double beside, Spiked what) {
     return of_faces(std::move(m), loops);
 }
 
-// A surface with a knot at v = 0, and a side with corners there and `beside`, nearer than the digits of a
-// file: both are on the line of the knot, but not in one place.
-TEST(Boundaries, that_have_two_corners_beside_a_knot_of_the_surface_keep_both) {
+// A square on a surface with a knot at v = 0; its side at u = 0 are these splines.
+Tessellation square_beside_knot(const std::vector<CurveGeometry<2>>& side) {
     const auto line = *BSplineBasis::bezier(1);
     const auto square = *BSplineBasis::make(2, {-1, -1, -1, 0, 1, 1, 1});
     std::vector<Vec<3>> c;
     for (int i = 0; i < 2; ++i)
         for (int k = 0; k < 4; ++k) c.push_back({{double(i), k - 1.5, k == 1 || k == 2 ? 0.3 : 0.0}});
     const auto surface = *Surface<Vec<3>>::make({line, square}, Net<2, Vec<3>>({2, 4}, c));
+    const Vec<2> corner[] = {{{0, -1}}, {{1, -1}}, {{1, 1}}, {{0, 1}}};
+    std::vector<std::vector<CurveGeometry<2>>> loops(1);
+    for (int k = 0; k < 3; ++k)
+        loops[0].push_back(*Curve<Vec<2>>::make({line}, Net<1, Vec<2>>({2}, {corner[k], corner[k + 1]})));
+    loops[0].insert(loops[0].end(), side.begin(), side.end());
+    ModelBuilder builder;
+    EXPECT_TRUE(builder.add_trimmed(surface, loops));
+    Model m = *std::move(builder).finish();
+    for (Edge& e : m.edges) e.tolerance = 1e-6;
+    return *tessellate(m, {.tolerance = 0.01});
+}
+
+// A side with corners at the knot and `beside`, nearer than the digits of a file: both are on the line of the
+// knot, but not in one place.
+TEST(Boundaries, that_have_two_corners_beside_a_knot_of_the_surface_keep_both) {
     for (const double beside : {5e-9, -5e-9, 1e-9, 1e-12}) {
         const double lo = std::min(0.0, beside), hi = std::max(0.0, beside);
-        const auto side =
-            *Curve<Vec<2>>::make({*BSplineBasis::make(1, {-1, -1, -hi, -lo, 1, 1})},
-                                 Net<1, Vec<2>>({4}, {{{0, 1}}, {{0.2, hi}}, {{0.2, lo}}, {{0, -1}}}));
-        const Vec<2> corner[] = {{{0, -1}}, {{1, -1}}, {{1, 1}}, {{0, 1}}};
-        std::vector<std::vector<CurveGeometry<2>>> loops(1);
-        for (int k = 0; k < 3; ++k)
-            loops[0].push_back(*Curve<Vec<2>>::make({line}, Net<1, Vec<2>>({2}, {corner[k], corner[k + 1]})));
-        loops[0].push_back(side);
-        ModelBuilder builder;
-        ASSERT_TRUE(builder.add_trimmed(surface, loops));
-        Model m = *std::move(builder).finish();
-        for (Edge& e : m.edges) e.tolerance = 1e-6;
-        const auto t = *tessellate(m, {.tolerance = 0.01});
+        const auto t = square_beside_knot(
+            {*Curve<Vec<2>>::make({*BSplineBasis::make(1, {-1, -1, -hi, -lo, 1, 1})},
+                                  Net<1, Vec<2>>({4}, {{{0, 1}}, {{0.2, hi}}, {{0.2, lo}}, {{0, -1}}}))});
         ASSERT_TRUE(t.refused.empty()) << beside << " " << t.refused[0].reason.message;
         EXPECT_LE(t.error_bound, 0.01);
         EXPECT_LE(t.boundary_gap, 1e-6);
     }
 }
 
-TEST(Boundaries, that_run_along_each_other_within_the_tolerance_begin_where_they_part) {
-    for (const double beside : {0.0, 1e-13, -1e-13}) {
-        const auto t = *tessellate(spiked(1e-4, beside, Spiked::square), {.tolerance = 0.01});
-        ASSERT_TRUE(t.refused.empty()) << beside << " " << t.refused[0].reason.message;
-        EXPECT_EQ(t.mesh.triangles.size(), 2u) << beside;
-        EXPECT_EQ(t.mesh.points.size(), 4u) << beside;
-        EXPECT_GE(t.boundary_gap, kSpike);
-        EXPECT_LE(t.boundary_gap, 2 * kSpike);
-        const auto accurate = *tessellate(spiked(1e-7, beside, Spiked::square), {.tolerance = 0.01});
-        EXPECT_EQ(accurate.refused.size() + std::size_t(accurate.topology.degenerate_triangles > 0), 1u)
-            << beside;
-    }
+// Likewise where one of them is a vertex.
+TEST(Boundaries, that_have_a_vertex_and_a_corner_beside_a_knot_of_the_surface_keep_both) {
+    for (const double beside : {5e-9, -5e-9, 1e-12})
+        for (const bool before : {true, false}) {
+            const double at = before ? -beside : beside;  // the vertex
+            const Vec<2> from{{0, 1}}, corner{{0.2, 0}}, vertex{{0.2, at}}, to{{0, -1}};
+            const auto two = *BSplineBasis::make(1, {0, 0, 0.5, 1, 1});
+            const auto one = *BSplineBasis::bezier(1);
+            const auto first = before
+                                   ? *Curve<Vec<2>>::make({two}, Net<1, Vec<2>>({3}, {from, corner, vertex}))
+                                   : *Curve<Vec<2>>::make({one}, Net<1, Vec<2>>({2}, {from, vertex}));
+            const auto second = before
+                                    ? *Curve<Vec<2>>::make({one}, Net<1, Vec<2>>({2}, {vertex, to}))
+                                    : *Curve<Vec<2>>::make({two}, Net<1, Vec<2>>({3}, {vertex, corner, to}));
+            const auto t = square_beside_knot({first, second});
+            ASSERT_TRUE(t.refused.empty()) << at << " " << before << " " << t.refused[0].reason.message;
+            EXPECT_LE(t.error_bound, 0.01);
+            EXPECT_LE(t.boundary_gap, 1e-6);
+        }
 }
 
 // What a face was given in vain another that needs it still gets, and no other has it.
