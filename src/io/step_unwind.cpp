@@ -1,6 +1,7 @@
-// A closed spline continued beyond its end: the coefficients of its turns one after the other. The ends are
-// clamped first, so that each turn begins with the point where the last one ended. Files get one turn again:
-// where a surface passes its points twice, edges do not say which part of it is meant.
+// A closed spline continued beyond its end: the coefficients of its turns one after the other. One that goes
+// on with its first coefficients beyond its ends is as smooth between its turns as it is there. The ends of
+// others are clamped first, so that each turn begins with the point where the last one ended. Files get one
+// turn again: where a surface passes its points twice, edges do not say which part of it is meant.
 #include "step_shape.hpp"
 
 #include <freiform/core/visit.hpp>
@@ -14,64 +15,101 @@ namespace {
 
 constexpr double kSameTurn = 1e-12;  // of a turn: knots that many turns apart are so up to rounding
 
+// Whether the patch goes on after m coefficients with the same ones at the same distances of knots; its last
+// ones may be `close`.
+template <std::size_t N, class P>
+bool same_after(const Patch<N, P>& s, std::size_t axis, int m, double close) {
+    const auto& basis = s.basis(int(axis));
+    const int p = basis.degree(), n = basis.size();
+    Index<N> extent = s.net().extent(), next{};
+    next[axis] = m;
+    const auto net = s.net().view();
+    bool same = net(next) == net({});
+    const double turn = basis.knot(p + m) - basis.knot(p);
+    for (int i = 1; same && i + m < n + p; ++i)
+        same = std::abs(basis.knot(i + m) - basis.knot(i) - turn) <= kSameTurn * turn;
+    if (!same) return false;
+    extent[axis] -= m;
+    each_index(extent, [&](const Index<N>& at) {
+        next = at, next[axis] += m;
+        same = same && (net(at) == net(next) ||
+                        (next[axis] + 1 == n && norm(project(net(at)) - project(net(next))) <= close));
+    });
+    return same;
+}
+
+// After how many coefficients one begins again that is not clamped; 0 if it is, or does not.
+template <std::size_t N, class P>
+int coefficients_of_turn(const Patch<N, P>& s, int axis) {
+    const auto& basis = s.basis(axis);
+    const int p = basis.degree(), n = basis.size();
+    if (basis.is_closed() || basis.knot(0) == basis.knot(p)) return 0;
+    for (int m = std::max(n - p, p + 1); m < n; ++m)
+        if (basis.knot(p + m) == basis.knot(n) && same_after(s, std::size_t(axis), m, 0)) return m;
+    return 0;
+}
+
+// The patch with other knots along the axis; `from`: which of its coefficients each one is.
+template <std::size_t N, class P, class F>
+std::optional<Patch<N, P>> with_knots(const Patch<N, P>& s, int axis, std::vector<double> knots,
+                                      const F& from) {
+    const int p = s.basis(axis).degree(), size = int(knots.size()) - p - 1;
+    auto basis = BSplineBasis::make(p, std::move(knots));
+    if (!basis) return std::nullopt;
+    Index<N> extent = s.net().extent();
+    extent[std::size_t(axis)] = size;
+    std::vector<P> all;
+    each_index(extent, [&](Index<N> at) {
+        at[std::size_t(axis)] = from(at[std::size_t(axis)]);
+        all.push_back(s.net().view()(at));
+    });
+    auto bases = s.bases();
+    bases[std::size_t(axis)] = std::move(*basis);
+    auto made = Patch<N, P>::make(std::move(bases), Net<N, P>(extent, std::move(all)));
+    if (!made) return std::nullopt;
+    return std::move(*made);
+}
+
 // Turns `turns` of the patch along the axis; the first one is the patch itself.
 template <std::size_t N, class P>
 Patch<N, P> turned_patch(const Patch<N, P>& given, int axis, int turns) {
     const Interval whole = given.domain()[std::size_t(axis)];
-    const auto clamped_ends = restrict_to(given, axis, whole);
-    if (!clamped_ends) return given;
-    const Patch<N, P>& s = *clamped_ends;
-    const auto& basis = s.basis(axis);
+    int m = coefficients_of_turn(given, axis);
+    auto ends = m > 0 ? given : restrict_to(given, axis, whole);
+    if (!ends) return given;
+    const auto& basis = ends->basis(axis);
     const int p = basis.degree(), n = basis.size();
-    const auto knots = basis.knots();
-    std::vector<double> t(knots.begin(), knots.end() - 1);
-    for (int k = 1; k < turns; ++k) {
-        for (std::size_t i = std::size_t(p) + 1; i + 1 < knots.size(); ++i)
-            t.push_back(i >= std::size_t(n) ? whole.lo + (k + 1) * whole.length()
-                                            : knots[i] + k * whole.length());
+    if (m == 0) m = n - 1;
+    const int more = (turns - 1) * m;
+    std::vector<double> t;
+    for (int i = 0; i <= n + p + more; ++i) {
+        const int k = std::clamp((i - 1 - p) / m, 0, turns - 1);
+        const double knot = basis.knot(i - k * m);
+        t.push_back(knot == whole.hi ? whole.lo + (k + 1) * whole.length() : knot + k * whole.length());
     }
-    t.push_back(t.back());
-    auto longer = BSplineBasis::make(p, std::move(t));
-    if (!longer) return given;
-    Index<N> extent = s.net().extent();
-    const int size = 1 + turns * (n - 1);
-    extent[std::size_t(axis)] = size;
-    std::vector<P> all;
-    each_index(extent, [&](const Index<N>& at) {
-        Index<N> from = at;
-        int& i = from[std::size_t(axis)];
-        i = i == size - 1 ? n - 1 : i % (n - 1);
-        all.push_back(s.net().view()(from));
-    });
-    auto bases = s.bases();
-    bases[std::size_t(axis)] = std::move(*longer);
-    auto made = Patch<N, P>::make(std::move(bases), Net<N, P>(extent, std::move(all)));
+    auto made =
+        with_knots(*ends, axis, std::move(t), [&](int i) { return i < n - 1 + more ? i % m : n - 1; });
     return made ? *made : given;
 }
 
-// The first turn of the patch, if it goes on with the same coefficients at the same distances of knots; its
-// last ones may be `close`.
+// The first turn of the patch, if it goes on after it.
 template <std::size_t N, class P>
-bool turn_back(Patch<N, P>& s, std::size_t axis, double close) {
-    const auto& basis = s.basis(int(axis));
+bool turn_back(Patch<N, P>& s, int axis, double close) {
+    const auto& basis = s.basis(axis);
     const int p = basis.degree(), n = basis.size();
     for (int m = 1; m + p < n && !basis.is_closed(); ++m) {
-        Index<N> extent = s.net().extent(), next{};
-        next[axis] = m;
-        const auto net = s.net().view();
-        bool same = net(next) == net({});
-        const double turn = basis.knot(p + m) - basis.knot(p);
-        for (int i = 1; same && i + m < n + p; ++i)
-            same = std::abs(basis.knot(i + m) - basis.knot(i) - turn) <= kSameTurn * turn;
-        if (!same) continue;
-        extent[axis] -= m;
-        each_index(extent, [&](const Index<N>& at) {
-            next = at, next[axis] += m;
-            same = same && (net(at) == net(next) ||
-                            (next[axis] + 1 == n && norm(project(net(at)) - project(net(next))) <= close));
-        });
-        auto once = restrict_to(s, int(axis), {basis.knot(p), basis.knot(p + m)});
-        if (!same || !once) continue;
+        if (!same_after(s, std::size_t(axis), m, close)) continue;
+        const Interval turn{basis.knot(p), basis.knot(p + m)};
+        int size = n;  // of one that is not clamped
+        while (size >= p + 2 * m && basis.knot(size - m) >= turn.hi) size -= m;
+        std::optional<Patch<N, P>> once;
+        if (basis.knot(0) < turn.lo && basis.knot(size) == turn.hi) {
+            const auto knots = basis.knots().first(std::size_t(size + p) + 1);
+            once = with_knots(s, axis, {knots.begin(), knots.end()}, [](int i) { return i; });
+        } else if (auto part = restrict_to(s, axis, turn)) {
+            once = std::move(*part);
+        }
+        if (!once) continue;
         s = std::move(*once);
         return true;
     }
@@ -116,7 +154,7 @@ bool rewind(SurfaceGeometry& surface, double close) {
     bool changed = false;
     change_spline(surface, [&](auto& g) {
         if constexpr (requires { g.net(); })
-            for (std::size_t axis = 0; axis < std::remove_cvref_t<decltype(g)>::kParams; ++axis)
+            for (int axis = 0; axis < int(std::remove_cvref_t<decltype(g)>::kParams); ++axis)
                 changed |= turn_back(g, axis, close);
     });
     return changed;

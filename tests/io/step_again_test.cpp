@@ -62,9 +62,10 @@ TEST(StepAgain, edges_are_the_parts_of_their_curves_that_they_were) {
     EXPECT_NEAR(area_of(read_again(m)), 100, 1e-9);
 }
 
-// The sides beyond two corners of a square tube, over the place where its surface begins.
-TEST(StepAgain, surfaces_are_written_with_one_turn) {
-    std::string s =
+// A face on the surface #9 between the points #a and #b and those above, #(a + 1) and #(b + 1): along the
+// curves #61 and #63, and up.
+std::string side_of_tube(int a, int b) {
+    return text(
         "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
         "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
         "#14=EDGE_LOOP('',(#31,#32,#33,#34));\n#31=ORIENTED_EDGE('',*,*,#41,.T.);\n"
@@ -72,8 +73,14 @@ TEST(StepAgain, surfaces_are_written_with_one_turn) {
         "#34=ORIENTED_EDGE('',*,*,#44,.F.);\n#41=EDGE_CURVE('',#51,#52,#61,.T.);\n"
         "#42=EDGE_CURVE('',#52,#54,#62,.T.);\n#43=EDGE_CURVE('',#53,#54,#63,.T.);\n"
         "#44=EDGE_CURVE('',#51,#53,#64,.T.);\n#65=DIRECTION('',(0.,0.,1.));\n#66=VECTOR('',#65,1.);\n"
-        "#51=VERTEX_POINT('',#106);\n#52=VERTEX_POINT('',#102);\n#53=VERTEX_POINT('',#107);\n"
-        "#54=VERTEX_POINT('',#103);\n#62=LINE('',#102,#66);\n#64=LINE('',#106,#66);\n";
+        "#51=VERTEX_POINT('',#",
+        a, ");\n#52=VERTEX_POINT('',#", b, ");\n#53=VERTEX_POINT('',#", a + 1, ");\n#54=VERTEX_POINT('',#",
+        b + 1, ");\n#62=LINE('',#", b, ",#66);\n#64=LINE('',#", a, ",#66);\n");
+}
+
+// The sides beyond two corners of a square tube, over the place where its surface begins.
+TEST(StepAgain, surfaces_are_written_with_one_turn) {
+    std::string s = side_of_tube(106, 102);
     constexpr double kSquare[][2] = {{10, 0}, {0, 10}, {-10, 0}, {0, -10}, {10, 0}};
     for (int i = 0; i < 10; ++i)
         s += text("#", 100 + i, "=CARTESIAN_POINT('',(", kSquare[i / 2][0], ",", kSquare[i / 2][1], ",",
@@ -105,6 +112,35 @@ TEST(StepAgain, surfaces_are_written_with_one_turn) {
         {must(BSplineBasis::make(1, {-1, 0, 1, 2, 3, 4, 5, 5.5})), must(BSplineBasis::make(1, {0, 0, 1, 1}))},
         Net<2, Vec<3>>({6, 2}, net)));
     expect_again();
+}
+
+// Quadratic, and not clamped: where its turn ends it is as smooth as elsewhere, and so is its offset.
+TEST(StepAgain, splines_that_go_on_beyond_their_ends_stay_smooth_there) {
+    std::string s = side_of_tube(112, 114), rims[2], rows;
+    constexpr double kSquare[][2] = {{10, 0}, {0, 10}, {-10, 0}, {0, -10}, {5, -5}, {-5, 5}};
+    for (int i = 0; i < 16; ++i) {
+        const auto& p = kSquare[i < 12 ? i / 2 % 4 : i / 2 - 2];
+        const char* comma = i > 1 ? "," : "";
+        s += text("#", 100 + i, "=CARTESIAN_POINT('',(", p[0], ",", p[1], ",", i % 2, "));\n");
+        if (i < 12) rims[i % 2] += text(comma, "#", 100 + i);
+        if (i < 12 && i % 2 == 0) rows += text(comma, "(#", 100 + i, ",#", 101 + i, ")");
+    }
+    const std::string_view ones = "(1,1,1,1,1,1,1,1,1)", knots = "(-2.,-1.,0.,1.,2.,3.,4.,5.,6.)";
+    for (int k = 0; k < 2; ++k)
+        s += text("#", 61 + 2 * k, "=B_SPLINE_CURVE_WITH_KNOTS('',2,(", rims[k], "),.UNSPECIFIED.,.T.,.F.,",
+                  ones, ",", knots, ",.UNSPECIFIED.);\n");
+    s += text("#9=OFFSET_SURFACE('',#67,0.001,.F.);\n#67=B_SPLINE_SURFACE_WITH_KNOTS('',2,1,(", rows,
+              "),.UNSPECIFIED.,.T.,.F.,.F.,", ones, ",(2,2),", knots, ",(0.,1.),.UNSPECIFIED.);\n");
+    const Model m = must(read_step(flat_file(s)));
+    ASSERT_EQ(m.faces.size(), 1u);
+    const auto base = [](const Model& of) {
+        return std::get<Surface<Vec<3>>>(*std::get<OffsetSurface>(of.faces.at(0).surface).base);
+    };
+    EXPECT_GT(base(m).domain()[0].hi, 4) << "unwound";
+    EXPECT_EQ(base(m).basis(0).multiplicity(4), 1);
+    const auto t = must(tessellate(m, {.tolerance = 0.01}));
+    EXPECT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+    EXPECT_EQ(base(read_again(m)), base(m));
 }
 
 // A cylinder, the vertices of whose rims are not opposite each other: the seam between them is a screw line,
