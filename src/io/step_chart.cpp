@@ -206,7 +206,10 @@ std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
     const Vec<3> q = p - r->origin;
     const Vec<3> seen = across(q, r->axis),
                  at_profile = across((l ? l->origin : c->centre) - r->origin, r->axis);
-    Vec<3> e = at_profile;
+    // Of a circle that meets the axis it is the half that the chart keeps to.
+    Vec<3> e = c && whole_[1].length() < kTwoPi
+                   ? across(jet<0>(r->profile, whole_[1].middle()).value() - r->origin, r->axis)
+                   : at_profile;
     for (const Vec<3>& d : {l ? l->direction : c->x, c ? c->y : Vec<3>{}})
         if (const Vec<3> f = across(d, r->axis); norm(f) > 1e3 * norm(e) || norm(e) == 0) e = f;
     if (norm(e) == 0) return std::nullopt;

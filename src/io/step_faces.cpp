@@ -253,33 +253,6 @@ Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen, 
     return box.diagonal();
 }
 
-// A sphere with its poles elsewhere: as far as possible from points of the edges. An edge that runs through a
-// pole has no continuous parameter curve; the same sphere with another axis has one for it.
-std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface,
-                                                        const std::vector<Vec<3>>& on) {
-    const auto* s = std::get_if<Revolution>(&surface);
-    if (s == nullptr || s->kind != SurfaceKind::sphere) return std::nullopt;
-    const auto* circle = std::get_if<Conic<3>>(&s->profile);
-    if (circle == nullptr) return std::nullopt;
-    const double radius = norm(circle->x);
-    Vec<3> best{};
-    double widest = -1;
-    for (int a = -2; a <= 2; ++a)
-        for (int b = -2; b <= 2; ++b)
-            for (int c = 0; c <= 2; ++c) {
-                const Vec<3> z = unit(Vec<3>{{double(a) + 0.1, double(b) - 0.07, double(c) + 0.03}});
-                double near = 2;
-                for (const Vec<3>& p : on)
-                    near = std::min(near, 1 - std::abs(dot(unit(p - circle->centre), z)));
-                if (near > widest) widest = near, best = z;
-            }
-    Vec<3> x = unit(circle->x);
-    if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
-    x = unit(x - dot(x, best) * best);
-    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best}, circle->centre,
-                      best, SurfaceKind::sphere};
-}
-
 // A face, or a part of one: bounds of its own on the surface of another.
 Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type type) {
     const auto f = whole == i ? Fields::of(f_, i, type, 4) : Fields::of(f_, i, Type::SUBFACE, 3);
@@ -325,6 +298,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
                0.0, 0);
         return made;
     };
+    if (const auto half = other_half(*(*s)->chart, used)) return attempt(Chart(*half, tolerance_));
     const Chart& chart = chart_of(**s, *on, used);
     auto made = attempt(chart);
     if (&chart != (*s)->chart.get()) {

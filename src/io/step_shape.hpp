@@ -152,6 +152,7 @@ private:
     double accuracy_for(double size) const;
     static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
                                                       const std::vector<Vec<3>>& on);
+    std::optional<SurfaceGeometry> other_half(const Chart& chart, const std::vector<int>& used) const;
     void refuse_item(std::uint32_t item, Refusal why);
     void tell_approximated();
     void report(int edge, std::string what, std::optional<double> bound, double estimate);

@@ -235,5 +235,31 @@ TEST(StepProfile, what_contains_itself_is_refused) {
     }
 }
 
+// A segment of a sphere that a whole circle makes, about a line through it: every place of the surface is
+// passed twice. What the segment begins with is either half of the circle.
+TEST(StepProfile, of_a_circle_about_its_diameter_the_half_is_meant_where_the_edges_are) {
+    constexpr double kTurn = 1;
+    for (const double side : {1.0, -1.0})
+        for (const double x : {0.6, 0.8}) {
+            const double y = std::sqrt(1 - x * x), c = std::cos(kTurn), s = std::sin(kTurn);
+            const Model m = must(read_step(flat_file(text(
+                "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+                "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#20,.T.);\n"
+                "#13=FACE_OUTER_BOUND('',#14,.T.);\n#14=EDGE_LOOP('',(#15,#16));\n"
+                "#15=ORIENTED_EDGE('',*,*,#18,.T.);\n#16=ORIENTED_EDGE('',*,*,#17,.F.);\n"
+                "#17=EDGE_CURVE('',#30,#31,#32,.T.);\n#18=EDGE_CURVE('',#30,#31,#33,.T.);\n"
+                "#20=SURFACE_OF_REVOLUTION('',#21,#22);\n#21=CIRCLE('',#5,1.);\n"
+                "#22=AXIS1_PLACEMENT('',#6,#23);\n#23=DIRECTION('',(",
+                x, ",", y, ",0.));\n#30=VERTEX_POINT('',#40);\n#31=VERTEX_POINT('',#41);\n",
+                "#32=CIRCLE('',#34,1.);\n#33=CIRCLE('',#35,1.);\n#34=AXIS2_PLACEMENT_3D('',#6,#36,#37);\n"
+                "#35=AXIS2_PLACEMENT_3D('',#6,#38,#37);\n#36=DIRECTION('',(0.,0.,1.));\n#37=DIRECTION('',(",
+                side * x, ",", side * y, ",0.));\n#38=DIRECTION('',(", s * y, ",", -s * x, ",", c,
+                "));\n#40=CARTESIAN_POINT('',(", side * x, ",", side * y, ",0.));\n#41=CARTESIAN_POINT('',(",
+                -side * x, ",", -side * y, ",0.));\n"))));
+            ASSERT_EQ(m.faces.size(), 1u);
+            EXPECT_NEAR(area_of(m), 2 * kTurn, 1e-3) << side << " " << x;
+        }
+}
+
 }  // namespace
 }  // namespace freiform::test

@@ -1,0 +1,68 @@
+// Surfaces that are told with other parameters, for the sake of a face.
+#include "step_shape.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace freiform::step {
+
+// A sphere with its poles elsewhere: as far as possible from points of the edges. An edge that runs through a
+// pole has no continuous parameter curve; the same sphere with another axis has one for it.
+std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface,
+                                                        const std::vector<Vec<3>>& on) {
+    const auto* s = std::get_if<Revolution>(&surface);
+    if (s == nullptr || s->kind != SurfaceKind::sphere) return std::nullopt;
+    const auto* circle = std::get_if<Conic<3>>(&s->profile);
+    if (circle == nullptr) return std::nullopt;
+    const double radius = norm(circle->x);
+    Vec<3> best{};
+    double widest = -1;
+    for (int a = -2; a <= 2; ++a)
+        for (int b = -2; b <= 2; ++b)
+            for (int c = 0; c <= 2; ++c) {
+                const Vec<3> z = unit(Vec<3>{{double(a) + 0.1, double(b) - 0.07, double(c) + 0.03}});
+                double near = 2;
+                for (const Vec<3>& p : on)
+                    near = std::min(near, 1 - std::abs(dot(unit(p - circle->centre), z)));
+                if (near > widest) widest = near, best = z;
+            }
+    Vec<3> x = unit(circle->x);
+    if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
+    x = unit(x - dot(x, best) * best);
+    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best}, circle->centre,
+                      best, SurfaceKind::sphere};
+}
+
+// A circle that turns about a line through it passes every place twice, with either normal; charts keep to
+// one half of it. The other one, if the edges of the face that lie on the circle itself, where it begins to
+// turn, all lie there.
+std::optional<SurfaceGeometry> ShapeReader::other_half(const Chart& chart,
+                                                       const std::vector<int>& used) const {
+    const auto* s = std::get_if<Revolution>(&chart.surface());
+    const auto* circle = s != nullptr ? std::get_if<Conic<3>>(&s->profile) : nullptr;
+    const Interval half = chart.whole()[1];
+    if (circle == nullptr || s->kind != SurfaceKind::general || circle->kind != ConicKind::ellipse ||
+        !(half.length() < kTwoPi))
+        return std::nullopt;
+    bool there = false;
+    for (const int edge : used) {
+        const Edge& e = out_.model.edges[std::size_t(edge)];
+        if (!e.curve) continue;
+        double at = 0, beside = 0;
+        for (const double part : {0.0, 0.25, 0.75, 1.0, 0.5}) {  // the middle last
+            double off = 0;
+            at = parameter_of(*circle, jet<0>(*e.curve, e.range.lo + part * e.range.length()).value(), off);
+            beside = std::max(beside, off);
+        }
+        if (!(beside <= tolerance_)) continue;
+        if (std::abs(std::remainder(at - half.middle(), kTwoPi)) < half.length() / 2) return std::nullopt;
+        there = true;
+    }
+    if (!there) return std::nullopt;
+    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, -circle->x, -circle->y}, s->origin,
+                      s->axis, s->kind};
+}
+
+}  // namespace freiform::step
