@@ -236,6 +236,7 @@ void Chart::make_grid() const {
         if (!std::isfinite(on[k].length())) on[k] = {-8, 8};
     const auto us = samples_of(*s_, 0, on[0]), vs = samples_of(*s_, 1, on[1]);
     grid_.reserve(us.size() * vs.size());
+    columns_ = vs.size();
     for (const double u : us)
         for (const double v : vs) grid_.push_back({{{u, v}}, jet<0>(*s_, {u, v}).value()});
 }
@@ -244,23 +245,37 @@ Vec<2> Chart::locate(const Vec<3>& p) const {
     if (const auto at = closed_form(p)) return *at;
     if (grid_.empty()) make_grid();
     const auto* e = std::get_if<Extrusion>(s_);
-    // The best few samples that are not beside each other.
-    std::array<std::pair<double, Vec<2>>, 4> best;
-    best.fill({kInfinity, Vec<2>{}});
+    std::vector<std::pair<double, Vec<2>>> seen;
     for (const Sample& s : grid_) {
         Vec<2> at = s.at;
         double d = norm(s.point - p);
         if (e) {  // along the direction of an extrusion the nearest point has a closed form
-            if (at[1] != grid_.front().at[1]) continue;
             const Vec<3> r = p - s.point;
             const double v = dot(r, e->direction) / dot(e->direction, e->direction);
-            d = norm(r - v * e->direction);
+            d = at[1] == grid_.front().at[1] ? norm(r - v * e->direction) : kInfinity;
             at[1] += v;
         }
-        if (!(d < best.back().first)) continue;
-        best.back() = {d, at};
-        for (std::size_t k = best.size() - 1; k > 0 && best[k].first < best[k - 1].first; --k)
+        seen.push_back({d, at});
+    }
+    // The best few samples, and the best of those that are nearer than those beside them: the turns of a
+    // thread may be nearer to each other than samples are.
+    std::array<std::pair<double, Vec<2>>, 8> best;
+    best.fill({kInfinity, Vec<2>{}});
+    const auto keep = [&](std::size_t first, const std::pair<double, Vec<2>>& sample) {
+        if (!(sample.first < best[first + 3].first)) return;
+        best[first + 3] = sample;
+        for (std::size_t k = first + 3; k > first && best[k].first < best[k - 1].first; --k)
             std::swap(best[k], best[k - 1]);
+    };
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const auto is_farther = [&](std::size_t k) {
+            return k >= seen.size() || !(seen[k].first < seen[i].first);
+        };
+        const std::size_t along = i % columns_;
+        keep(0, seen[i]);
+        if ((along == 0 || is_farther(i - 1)) && (along + 1 == columns_ || is_farther(i + 1)) &&
+            is_farther(i - columns_) && is_farther(i + columns_))
+            keep(4, seen[i]);
     }
     Foot nearest;
     nearest.distance = kInfinity;

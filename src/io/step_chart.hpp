@@ -76,6 +76,7 @@ private:
         Vec<3> point;
     };
     mutable std::vector<Sample> grid_;
+    mutable std::size_t columns_ = 0;  // of it
 };
 
 }  // namespace freiform::step

@@ -7,6 +7,7 @@
 #include <support/random.hpp>
 #include <support/refusal.hpp>
 #include <support/solids.hpp>
+#include <support/step_measures.hpp>
 #include <support/step_polygons.hpp>
 
 namespace freiform::test {
@@ -272,6 +273,49 @@ TEST(StepShapes, solids_of_other_kinds_are_refused_with_their_number_and_kind) {
     EXPECT_EQ(beside->faces.size(), 1u);
     ASSERT_EQ(beside->refused.size(), 1u);
     EXPECT_EQ(beside->refused[0].where, "#61 BLOCK");
+}
+
+// A winding stair of planks, 3.6 to the turn: from the middle of one the corners of the next turns are nearer
+// than its own.
+TEST(StepCurves, are_found_on_the_turn_of_a_thread_that_they_are_on) {
+    constexpr int kCorners = 41, kPlank = 20;
+    const auto at = [](int corner, double radius, double part) {
+        const double a = corner * kPi / 1.8, b = a + kPi / 1.8;
+        return Vec<3>{{radius * ((1 - part) * std::cos(a) + part * std::cos(b)),
+                       radius * ((1 - part) * std::sin(a) + part * std::sin(b)), (corner + part) / 7.2}};
+    };
+    const auto point = [](int number, const Vec<3>& p) {
+        return text("#", number, "=CARTESIAN_POINT('',(", p[0], ",", p[1], ",", p[2], "));\n");
+    };
+    std::string rows[2], counts, knots,
+        s = "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+            "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.)"
+            ";\n"
+            "#14=EDGE_LOOP('',(#20,#21,#22,#23));\n";
+    for (int i = 0; i < kCorners; ++i) {
+        for (int k = 0; k < 2; ++k) {
+            s += point(100 + 2 * i + k, at(i, 1 + 0.2 * k, 0));
+            rows[k] += text(i > 0 ? "," : "", "#", 100 + 2 * i + k);
+        }
+        counts += text(i > 0 ? "," : "", i % (kCorners - 1) == 0 ? 2 : 1),
+            knots += text(i > 0 ? "," : "", i, ".");
+    }
+    s += text("#9=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,((", rows[0], "),(", rows[1],
+              ")),.UNSPECIFIED.,.F.,.F.,.F.,(2,2),(", counts, "),(0.,1.),(", knots, "),.UNSPECIFIED.);\n");
+    const Vec<3> corner[] = {at(kPlank, 1.05, 0.42), at(kPlank, 1.15, 0.42), at(kPlank, 1.15, 0.49),
+                             at(kPlank, 1.05, 0.49)};
+    for (int k = 0; k < 4; ++k) {
+        const int next = (k + 1) % 4;
+        const Vec<3> d = corner[next] - corner[k];
+        s += point(30 + k, corner[k]) +
+             text("#", 40 + k, "=VERTEX_POINT('',#", 30 + k, ");\n#", 50 + k, "=DIRECTION('',(", d[0], ",",
+                  d[1], ",", d[2], "));\n#", 60 + k, "=VECTOR('',#", 50 + k, ",1.);\n#", 70 + k, "=LINE('',#",
+                  30 + k, ",#", 60 + k, ");\n#", 80 + k, "=EDGE_CURVE('',#", 40 + k, ",#", 40 + next, ",#",
+                  70 + k, ",.T.);\n#", 20 + k, "=ORIENTED_EDGE('',*,*,#", 80 + k, ",.T.);\n");
+    }
+    const Model m = must(read_step(flat_file(s)));
+    ASSERT_TRUE(m.refused.empty()) << m.refused[0].where << " " << m.refused[0].message;
+    EXPECT_NEAR(area_of(m), 0.0076, 1e-4);
 }
 
 }  // namespace
