@@ -26,6 +26,18 @@ std::vector<std::string_view> fields(std::string_view s) {
     return out;
 }
 
+// Whether a word, perhaps in quotes, stands for a number, finite or not: no heading, then.
+bool stands_for_number(std::string_view word) {
+    if (word.size() > 1 && word.front() == '"' && word.back() == '"') word = word.substr(1, word.size() - 2);
+    if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+    const std::size_t length = scan_real(word).length;
+    if (length > 0) return length == word.size();
+    std::string lower(word);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    return lower == "nan" || lower == "inf" || lower == "infinity";
+}
+
 Result<void> add_point(PointTable& t, std::span<const double> x, std::string place) {
     if (x.empty() || x.size() > 4)
         return refuse(RefusalKind::unreadable, std::move(place),
@@ -132,7 +144,9 @@ Result<NumberLines> parse_number_lines(std::string_view s) {
         if (row.empty()) continue;
         std::vector<double> values;
         std::string_view wrong;
+        bool words = true;
         for (const std::string_view field : fields(row)) {
+            words = words && !stands_for_number(field);
             if (const auto x = scan_number<double>(field))
                 values.push_back(*x);
             else if (wrong.data() == nullptr)
@@ -141,7 +155,7 @@ Result<NumberLines> parse_number_lines(std::string_view s) {
         if (wrong.data() == nullptr) {
             out.row.push_back(std::move(values));
             out.line.push_back(line);
-        } else if (values.empty() && out.row.empty() && !heading && row[0] != '[' && row[0] != '{') {
+        } else if (words && out.row.empty() && !heading && row[0] != '[' && row[0] != '{') {
             heading = true;
         } else {
             return refuse(

@@ -39,6 +39,8 @@ TEST(Points, refusals_name_the_line_or_the_index) {
     expect("1,2\n3,x\n", "line 2", "found \"x\"");
     expect("x,y\na,b\n", "line 2", "found \"a\"");
     expect("1,2\n3,nan\n", "line 2", "found \"nan\"");
+    for (const char* first : {"nan", "NaN", "-inf", "+Infinity", "1e999", "\"1\""})
+        expect((text(first, ",", first, "\n1,2\n")).c_str(), "line 1", text("found \"", first, "\""));
     expect("1,2\n3,,4\n", "line 2", "found \"\"");
     expect("1,2\n3\n", "line 2", "found 1 number, the points before have 2");
     expect("1,2,3,4,5\n", "line 1", "points have 1 to 4 coordinates");

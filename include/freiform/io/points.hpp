@@ -15,8 +15,8 @@ struct NumberLines {
 };
 
 // A row per line, its numbers separated by commas, semicolons, tabs or blanks. Empty lines are skipped, `#`
-// begins a comment, and a first line without any number is a heading. Refuses, with the line, what else is
-// there and numbers that are not finite.
+// begins a comment, and a first line without any number is a heading (NaN, infinity and what is in quotes are
+// numbers here). Refuses, with the line, what else is there and numbers that are not finite.
 Result<NumberLines> parse_number_lines(std::string_view text);
 
 // Points in one sequence, or rows of points that form a grid (extent[0] rows of extent[1] points).
