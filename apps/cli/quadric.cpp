@@ -95,7 +95,7 @@ void add_quadric(CommandLine& line) {
     const Command command =
         line.add("quadric", "Spheres, ellipsoids, cylinders, cones and tori, exact (rational)",
                  "  freiform quadric sphere --radius 2 -o ball.json\n"
-                 "  freiform quadric sphere-in-six --radius 2 -o tiles.bpt\n"
+                 "  freiform quadric sphere-in-six --radius 2 -o tiles.json\n"
                  "  freiform quadric cone --radius 2 --top 1 --height 3 --axis 0,1,0 -o cup.json\n"
                  "  freiform quadric torus --radius 3 --tube 1 --angle 180 -o half.json\n"
                  "  freiform quadric ellipsoid --radii 3,2,1 -o pebble.json\n"

@@ -136,7 +136,7 @@ void add_revolve(CommandLine& line) {
     const Command command = line.add(
         "revolve", "Surfaces of revolution of curves, exact (rational) or polynomial",
         "  freiform revolve outline.json --axis 0,0,0,0,1,0 -o vase.json\n"
-        "  freiform revolve outline.json --axis 0,0,0,0,1,0 --angle 90 --polynomial 0.001 -o quarter.bpt");
+        "  freiform revolve outline.json --axis 0,0,0,0,1,0 --angle 90 --polynomial 0.001 -o quarter.json");
     command.word("FILE", options->file, "Curves; - is standard input").required();
     command.numbers("--axis", options->axis, "A point of the axis and its direction")
         .shown_as("PX,PY,PZ,DX,DY,DZ")

@@ -3,6 +3,7 @@
 #include "fonts.hpp"
 #include "solids.hpp"
 
+#include <freiform/core/scan.hpp>
 #include <freiform/io/document.hpp>
 #include <freiform/io/svg.hpp>
 #include <freiform/model/swept_solid.hpp>
@@ -58,7 +59,10 @@ Result<Letters> letters_of(const Context& context, const TextArguments& options)
     const double size = options.size.value_or(72);
     const auto font = read_font(context, options.font);
     if (!font) return std::unexpected(font.error());
-    auto set = typeset(*font, options.words, {size, options.features, options.language});
+    std::vector<std::string> features;
+    for (std::string_view all : options.features)
+        while (!all.empty()) features.emplace_back(next_part(all, ','));
+    auto set = typeset(*font, options.words, {size, features, options.language});
     if (!set) return std::unexpected(set.error());
     auto paths = outlines(*font, *set, size);
     if (!paths) return std::unexpected(paths.error());
@@ -216,7 +220,7 @@ void add_text(CommandLine& line) {
     command.words("--axis", options->font.axes, "Axes of a variable font: wght=700,wdth=80")
         .shown_as("TAG=VALUE");
     command.count("--face", options->font.face, 0, 65535, "Which font of a collection (default 0)");
-    command.words("--features", options->features, "OpenType features: -liga, ss01, kern=0");
+    command.words("--features", options->features, "OpenType features: -liga,ss01,kern=0");
     command.word("--language", options->language, "Of the text: tr, sr, ..");
     command.number("--extrude", options->extrude, "Solids of this height along z");
     command.numbers("--revolve", options->revolve, "Solids of revolution about this axis in the plane")

@@ -1,7 +1,9 @@
 #include "run.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace freiform::test {
 namespace {
@@ -30,6 +32,19 @@ protected:
         return r.code == 0 ? Json::parse(r.out) : Json();
     }
 };
+
+TEST_F(Surfaces, examples_of_the_help_of_quadric_work) {
+    std::istringstream help(run({"quadric", "--help"}).out);
+    int examples = 0;
+    for (std::string line; std::getline(help, line);) {
+        if (!line.starts_with("  freiform ")) continue;
+        std::istringstream words(line.substr(11));
+        const Ran r = run({std::istream_iterator<std::string>(words), {}});
+        EXPECT_EQ(r.code, 0) << line << r.err;
+        ++examples;
+    }
+    EXPECT_GE(examples, 4);
+}
 
 TEST_F(Surfaces, extrude_and_ruled_join_curves_by_straight_lines) {
     EXPECT_EQ(made({"extrude", "-", "--by", "0,0,4"}, kTwoCurves)["surfaces"], 2);

@@ -49,6 +49,18 @@ TEST_F(TextProgram, is_written_as_curves_and_pictures) {
     EXPECT_NE(missing.err.find("no glyph for U+F0000"), missing.err.npos) << missing.err;
 }
 
+TEST_F(TextProgram, takes_features_in_one_word_or_in_several) {
+    const auto with = [&](std::vector<std::string> features) {
+        std::vector<std::string> all{"text", "AV fi", "--font", "DejaVu Sans", "--features"};
+        all.insert(all.end(), features.begin(), features.end());
+        const Ran r = run(all);
+        EXPECT_EQ(r.code, 0) << r.err;
+        return r.out;
+    };
+    EXPECT_EQ(with({"-liga,kern=0"}), with({"-liga", "kern=0"}));
+    EXPECT_NE(with({"-liga,kern=0"}), with({"-liga"}));
+}
+
 TEST_F(TextProgram, with_contours_that_overlap_becomes_one_solid_for_each_letter) {
     const std::string inter = "/usr/share/fonts/truetype/inter-vf/Inter.var.ttf";
     if (!std::filesystem::exists(inter))
