@@ -238,6 +238,7 @@ Result<void> run_animate(const Context& context, const AnimateArguments& o) {
         wrong_usage(
             "one of --duration, --speeds, or limits (--speed, --acceleration, --across, --jerk) is expected");
     if (!o.up.empty() && o.up.size() != 3) wrong_usage("--up needs three numbers: X,Y,Z");
+    if (!o.up.empty()) require_direction("--up", o.up);
     const std::string format = output_ending(context);
     if (format != "csv" && format != "glb" && format != "svg" && format != "html")
         wrong_usage(text("animate writes .csv, .glb, .svg and .html, not \"", format, "\""));

@@ -26,6 +26,12 @@ ReadOptions Context::read_options() const {
 
 void wrong_usage(const std::string& message) { throw WrongUsage(message); }
 
+void require_direction(std::string_view option, std::span<const double> direction) {
+    for (const double x : direction)
+        if (x != 0) return;
+    wrong_usage(text(option, " needs a direction that is not 0"));
+}
+
 Result<void> emit(const Context& context, std::string_view bytes) {
     if (!context.output.empty() && context.output != "-") return write_file(context.output, bytes);
     while (!bytes.empty()) {

@@ -24,6 +24,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -178,6 +179,8 @@ class WrongUsage : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 [[noreturn]] void wrong_usage(const std::string& message);
+// Wrong usage where all numbers of a direction are 0.
+void require_direction(std::string_view option, std::span<const double> direction);
 
 // The result, to `context.output` or standard output: the only way anything gets there.
 Result<void> emit(const Context& context, std::string_view bytes);

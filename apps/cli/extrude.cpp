@@ -17,7 +17,7 @@ struct Extrusion {
 };
 
 Result<void> extruded(const Context& context, const Extrusion& options) {
-    const Vec<3> by = parse_vector("--by", options.by);
+    const Vec<3> by = parse_direction("--by", options.by);
     if (options.solid) {
         const SolidOutput output = solid_output(context, "extrude --solid", options.tolerance);
         const auto region = read_region(context, options.file, options.object);

@@ -150,6 +150,8 @@ Result<void> run_features(const Context& context, const FeaturesArguments& optio
         wrong_usage("--line needs three numbers: A,B,C of A x + B y + C = 0");
     if (!options.plane.empty() && options.plane.size() != 4)
         wrong_usage("--plane needs four numbers: A,B,C,D of A x + B y + C z + D = 0");
+    if (!options.line.empty()) require_direction("--line", std::span(options.line).first(2));
+    if (!options.plane.empty()) require_direction("--plane", std::span(options.plane).first(3));
     if (!options.line.empty() && !options.plane.empty()) wrong_usage("--line or --plane, not both");
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());

@@ -106,6 +106,7 @@ private:
 };
 
 Result<void> run_inside(const Context& context, const InsideArguments& options) {
+    if (options.tolerance.value_or(0) < 0) wrong_usage("--tolerance needs a distance that is not negative");
     const auto input = read_input(context, options.file, options.object);
     if (!input) return std::unexpected(input.error());
     const auto lines = read_number_lines(options.points, context.read_options());

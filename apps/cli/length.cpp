@@ -193,6 +193,8 @@ Result<void> run_length(const Context& context, const LengthArguments& given) {
     understand_places(options);
     if (!options.range.empty() && options.range.size() != 2)
         wrong_usage("--range needs two parameters, such as 0.25,0.75");
+    if (!options.range.empty() && options.range[0] > options.range[1])
+        wrong_usage("--range needs the smaller parameter first");
     if (int(!options.at.empty()) + options.equal.has_value() + options.spacing.has_value() +
             options.reparametrise.has_value() >
         1)

@@ -84,7 +84,11 @@ Result<void> make(const QuadricArguments& o, MadeSurfaces& made) {
 Result<void> run_quadric(const Context& context, const QuadricArguments& options) {
     const std::string format = spline_format(context, "quadric");
     MadeSurfaces made{{}, 0, text("the exact ", options.kind), {}};
-    if (auto ok = make(options, made); !ok) return ok;
+    if (auto ok = make(options, made); !ok) {
+        if (ok.error().kind == RefusalKind::invalid)  // there is no input but the options
+            wrong_usage(text(ok.error().where, ": ", ok.error().message));
+        return ok;
+    }
     return emit_surfaces(context, format, std::move(made));
 }
 

@@ -89,10 +89,9 @@ std::string revolve_text(const RevolveAnswer& a) {
 Result<void> run_revolve(const Context& context, const RevolveArguments& options) {
     if (options.axis.size() != 6)
         wrong_usage("--axis needs six numbers: a point and a direction, px,py,pz,dx,dy,dz");
+    require_direction("--axis", std::span(options.axis).last(3));
     if (const double a = std::abs(options.angle.value_or(360)); !(a > 0 && a <= 360))
-        return refuse(
-            RefusalKind::invalid, "--angle",
-            text("degrees up to 360, or down to -360, and not 0 were expected, not ", *options.angle));
+        wrong_usage(text("--angle needs degrees from -360 to 360, and not 0, found ", *options.angle));
     if (options.solid) {
         const SolidOutput output = solid_output(context, "revolve --solid", options.tolerance);
         const auto region = read_region(context, options.file, options.object);

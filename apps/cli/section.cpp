@@ -188,9 +188,10 @@ private:
 };
 
 Plane plane_of(const std::vector<double>& given) {
-    if (given.size() == 4) return {{{given[0], given[1], given[2]}}, given[3]};
-    if (given.size() != 6)
+    if (given.size() != 4 && given.size() != 6)
         wrong_usage("--plane needs A,B,C,D of A x + B y + C z + D = 0, or a point and a normal, six numbers");
+    require_direction("--plane", std::span(given).subspan(given.size() == 4 ? 0 : 3, 3));
+    if (given.size() == 4) return {{{given[0], given[1], given[2]}}, given[3]};
     const Vec<3> p{{given[0], given[1], given[2]}}, n{{given[3], given[4], given[5]}};
     return {n, -dot(n, p)};
 }

@@ -78,5 +78,10 @@ Vec<3> parse_vector(const std::string& option, const std::vector<double>& given)
     const auto x = parse_numbers(option, given, 3);
     return {{x[0], x[1], x[2]}};
 }
+Vec<3> parse_direction(const std::string& option, const std::vector<double>& given) {
+    const Vec<3> v = parse_vector(option, given);
+    require_direction(option, v.c);
+    return v;
+}
 
 }  // namespace freiform::cli

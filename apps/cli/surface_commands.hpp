@@ -45,5 +45,6 @@ Result<void> emit_surfaces(const Context& context, const std::string& format, Ma
 std::vector<double> parse_numbers(const std::string& option, const std::vector<double>& given,
                                   std::size_t count);
 Vec<3> parse_vector(const std::string& option, const std::vector<double>& given);
+Vec<3> parse_direction(const std::string& option, const std::vector<double>& given);  // not 0
 
 }  // namespace freiform::cli

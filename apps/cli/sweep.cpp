@@ -17,7 +17,7 @@ struct SweepArguments {
     bool translate = false, solid = false;
 
     FrameSweepOptions frame(double within) const {
-        return {within, x.empty() ? Vec<3>{} : parse_vector("--x", x)};
+        return {within, x.empty() ? Vec<3>{} : parse_direction("--x", x)};
     }
 };
 

@@ -149,6 +149,8 @@ Result<void> run_text(const Context& context, const TextArguments& options) {
     if (options.extrude && !options.revolve.empty()) wrong_usage("either --extrude or --revolve");
     if (!options.revolve.empty() && options.revolve.size() != 4)
         wrong_usage("--revolve needs four numbers: a point and a direction, PX,PY,DX,DY");
+    if (!options.revolve.empty()) require_direction("--revolve", std::span(options.revolve).last(2));
+    if (options.extrude == 0.0) wrong_usage("--extrude needs a height that is not 0");
     SolidOutput solid;
     const std::string format = output_ending(context, options.solid() ? "json" : "svg");
     if (options.solid())

@@ -223,7 +223,18 @@ TEST_F(Cli, wrong_usage_is_told_from_wrong_files) {
                            {{"section", "-", "--plane", "0,0,1,0", "--tolerance", "-1"}, "positive"},
                            {{"revolve", "-", "--axis", "0,0,0,1,0,0", "--polynomial", "0"}, "positive"},
                            {{"quadric", "sphere", "--radius", "-2"}, "positive"},
-                           {{"conic", "--circle", "0,0,0"}, "radius above 0"}}) {
+                           {{"conic", "--circle", "0,0,0"}, "radius above 0"},
+                           {{"extrude", "-", "--by", "0,0,0"}, "not 0"},
+                           {{"section", "-", "--plane", "0,0,0,1"}, "not 0"},
+                           {{"section", "-", "--plane", "1,1,1,0,0,0"}, "not 0"},
+                           {{"features", "-", "--line", "0,0,1"}, "not 0"},
+                           {{"features", "-", "--plane", "0,0,0,1"}, "not 0"},
+                           {{"revolve", "-", "--axis", "1,1,1,0,0,0"}, "not 0"},
+                           {{"revolve", "-", "--axis", "0,0,0,1,0,0", "--angle", "0"}, "found 0"},
+                           {{"quadric", "sphere", "--radius", "2", "--axis", "0,0,0"}, "axis: is zero"},
+                           {{"quadric", "sphere", "--radius", "2", "--angle", "400"}, "turn"},
+                           {{"length", "-", "--range", "1,0"}, "smaller parameter first"},
+                           {{"inside", "-", "--points", "-", "--tolerance", "-1"}, "negative"}}) {
         const Ran r = run(c.arguments, kCurve);
         EXPECT_EQ(r.code, 2) << r.err;
         EXPECT_EQ(r.out, "");

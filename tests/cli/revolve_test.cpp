@@ -61,10 +61,10 @@ TEST_F(Cli, revolve_makes_polynomial_surfaces_of_rational_curves_too) {
 TEST_F(Cli, revolve_says_what_is_wrong) {
     EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0", "-o", "c.json"}, kSide).code, 2);
     EXPECT_EQ(run({"revolve", "-", "-o", "c.json"}, kSide).code, 2);
-    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,0", "-o", "c.json"}, kSide).code, 3);
+    EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,0", "-o", "c.json"}, kSide).code, 2);
     EXPECT_EQ(run({"revolve", "-", "--axis", "2,0,0,0,0,1", "-o", "c.json"}, kSide).code, 1);
     EXPECT_EQ(run({"revolve", "-", "--axis", "0,0,0,0,0,1", "--angle", "400", "-o", "c.json"}, kSide).code,
-              3);
+              2);
     const Ran r = run({"revolve", "-", "--axis", "0,0,0,0,0,1", "-o", "c.json"},
                       R"({"type":"surface","points":[[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]})");
     EXPECT_EQ(r.code, 1);

@@ -63,8 +63,8 @@ TEST_F(SolidProgram, of_revolution_turn_clockwise_by_negative_angles) {
         EXPECT_NEAR(*angle == '-' ? far : near, *angle == '-' ? 2 : -2, 1e-5);
     }
     const Ran wrong = run({"revolve", square, "--axis", "0,0,0,0,1,0", "--angle", "720"});
-    EXPECT_EQ(wrong.code, 3);
-    EXPECT_NE(wrong.err.find("not 720"), wrong.err.npos) << "in degrees: " << wrong.err;
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("found 720"), wrong.err.npos) << "in degrees: " << wrong.err;
 }
 
 // First and last are the same point, and dividing by their weights does not find quite the same numbers; as

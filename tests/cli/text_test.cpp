@@ -87,7 +87,7 @@ TEST_F(TextProgram, becomes_watertight_solids) {
     const auto info = TextJson::parse(run({"info", "ring.json", "--json"}).out);
     EXPECT_EQ(info["objects"][0]["solids"], 1) << info;
     EXPECT_EQ(info["objects"][0]["open_edges"], 0) << info;
-    EXPECT_EQ(run({"text", "o", "--font", "DejaVu Sans", "--extrude", "0"}).code, 3);
+    EXPECT_EQ(run({"text", "o", "--font", "DejaVu Sans", "--extrude", "0"}).code, 2);
     EXPECT_EQ(run({"text", "o", "--font", "DejaVu Sans", "--extrude", "1", "--revolve", "0,-30,1,0"}).code,
               2);
     EXPECT_EQ(run({"text", "o", "--font", "DejaVu Sans", "--extrude", "1", "-o", "a.png"}).code, 2);
