@@ -84,6 +84,8 @@ def test_named_curves_pass_where_they_should():
     geometry = np.random.default_rng(0).normal(size=(4, 4, 3))
     m = ff.named_matrix("bezier")
     assert np.allclose(ff.bicubic(geometry, m, m).points, geometry)
+    with pytest.raises(ff.InvalidError, match="uniform-b-spline"):
+        ff.named_matrix("bspline")
 
 
 @pytest.mark.parametrize("made, size", [

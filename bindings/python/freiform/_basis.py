@@ -8,6 +8,7 @@ import numpy as np
 from . import _core
 from ._base import Array, ArrayLike, Interval, IntervalLike, from_header, pair, points_array
 from ._records import BasisChange, LocalHull, RealRoots
+from ._refusals import InvalidError
 
 __all__ = ["Basis", "PolynomialBasis", "change_basis", "convert_coefficients", "real_roots", "orient2d", "orient3d",
            "in_circle", "named_matrix", "kochanek_bartels_matrix"]
@@ -270,7 +271,9 @@ def in_circle(a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike) -> int:
 
 def named_matrix(name: str) -> Array:
     """The basis matrix M of Q = G M T: monomial, hermite, bezier, catmull-rom or uniform-b-spline."""
-    matrix: Array = getattr(_core, "matrix_" + name)
+    matrix: Array | None = getattr(_core, f"matrix_{name}", None)
+    if matrix is None:
+        raise InvalidError("name", f"\"{name}\" is none of monomial, hermite, bezier, catmull-rom and uniform-b-spline")
     return matrix.copy()
 
 
