@@ -3,6 +3,7 @@
 #include <freiform/core/scan.hpp>
 #include <freiform/core/spelling.hpp>
 #include <freiform/io/file.hpp>
+#include <freiform/io/mesh_file.hpp>
 
 #include <cerrno>
 #include <cstdlib>
@@ -92,6 +93,13 @@ void remark(std::string_view message) {
         if (n <= 0) return;  // there is nobody left to tell
         rest.remove_prefix(std::size_t(n));
     }
+}
+
+void remark_unknown_unit(std::string_view unit, std::string_view format) {
+    const bool glb = format == "glb";
+    const bool has_units = glb || format == "step" || format == "stp" || format == "iges" || format == "igs";
+    if (has_units && !unit.empty() && !metres_per(unit))
+        remark(text("the unit \"", unit, "\" is not known, so the file says ", glb ? "m" : "mm"));
 }
 
 #endif

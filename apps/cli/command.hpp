@@ -186,6 +186,8 @@ void require_direction(std::string_view option, std::span<const double> directio
 Result<void> emit(const Context& context, std::string_view bytes);
 // A remark for people, on standard error.
 void remark(std::string_view message);
+// The same where a unit is none that files of a format could name.
+void remark_unknown_unit(std::string_view unit, std::string_view format);
 
 // What a reader was asked to make right: "#12 EDGE_LOOP: ... (0.01)".
 std::string repair_text(const Repair& r);

@@ -90,6 +90,7 @@ Result<std::string> svg_again(const Context& context, const ConvertArguments& op
 
 Result<std::string> written(const Document& document, std::string_view format,
                             const ConvertArguments& options, Report& report) {
+    remark_unknown_unit(document.unit, format);
     if (format == "json") return write_document(document);
     if (format == "bpt") return write_bpt(document);
     if (format == "step" || format == "stp") return write_step(document);

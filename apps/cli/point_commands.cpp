@@ -64,6 +64,7 @@ std::vector<std::vector<double>> parse_vectors(const std::string& option, std::s
 
 Result<void> emit_spline(const Context& context, const std::string& format, Document document,
                          const std::string& text_report, const std::string& json_report) {
+    remark_unknown_unit(document.unit, format);
     const auto bytes = format == "json"   ? Result<std::string>(write_document(document))
                        : format == "step" ? write_step(document)
                        : format == "obj"  ? write_obj_freeform(document)

@@ -43,6 +43,7 @@ Result<std::string> mesh_bytes_of(const TriangleMesh& mesh, const std::string& f
 Result<void> emit_solids(const Context& context, const SolidOutput& output, const Document& document,
                          json::Writer& w, std::string said) {
     Result<std::string> bytes = "";
+    remark_unknown_unit(document.unit, output.format);
     if (output.is_mesh()) {
         const auto model = scene_of(document);
         if (!model) return std::unexpected(model.error());

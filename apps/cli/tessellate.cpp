@@ -133,6 +133,7 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
                                 0,           {},     options.angle};
         const double written = now();
         if (!output.empty()) {
+            if (format == MeshFormat::glb) remark_unknown_unit(mesh.unit, "glb");
             if (auto ok = write_mesh(mesh, report.output, format); !ok) return ok;
             if (format == MeshFormat::glb || format == MeshFormat::stl)
                 report.rounding = float_rounding(mesh);

@@ -54,7 +54,7 @@ constexpr Unit kUnits[] = {
     {"MICROMETRE", "um", 1e-3}, {"MICRON", "um", 1e-3},   {"UM", "um", 1e-3},       {"NANOMETRE", "nm", 1e-6},
     {"INCH", "inch", 25.4},     {"IN", "inch", 25.4},     {"FOOT", "ft", 304.8},    {"FT", "ft", 304.8},
     {"YARD", "yd", 914.4},      {"MILE", "mi", 1609344},  {"MI", "mi", 1609344},    {"MIL", "mil", 0.0254},
-    {"UIN", "uin", 0.0000254},
+    {"UIN", "uin", 0.0000254},  {"YD", "yd", 914.4},      {"DM", "dm", 100},        {"NM", "nm", 1e-6},
 };
 const Unit* unit_named(std::string_view name) {
     std::string upper;

@@ -3,6 +3,7 @@
 #pragma once
 #include "step_detail.hpp"
 
+#include <freiform/io/mesh_file.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/spline/in_space.hpp>
 
@@ -64,14 +65,15 @@ public:
     bool is_empty() const { return entities_ == 0; }
 
     std::string take(std::string_view unit) const {
-        static constexpr std::array<std::array<std::string_view, 3>, 5> kUnits{{{"mm", "2", "2HMM"},
-                                                                                {"inch", "1", "4HINCH"},
-                                                                                {"ft", "4", "2HFT"},
-                                                                                {"m", "6", "1HM"},
-                                                                                {"cm", "10", "2HCM"}}};
-        auto of = kUnits[0];
-        for (const auto& u : kUnits)
-            if (u[0] == unit) of = u;
+        // By the flags of the standard, of which 3 leaves it to the name.
+        static constexpr std::array<std::string_view, 12> kUnits{"",  "inch", "mm",  "",   "ft", "mi",
+                                                                 "m", "km",   "mil", "um", "cm", "uin"};
+        const auto metres = metres_per(unit);
+        std::size_t flag = metres ? 3 : 2;
+        for (std::size_t i = 1; i < kUnits.size(); ++i)
+            if (metres && metres_per(kUnits[i]) == metres) flag = i;
+        std::string name(flag == 3 ? unit : kUnits[flag]);
+        for (char& c : name) c = c >= 'a' && c <= 'z' ? char(c - 32) : c;
         const std::vector<std::string> global{"1H,",
                                               "1H;",
                                               "8Hfreiform",
@@ -85,8 +87,8 @@ public:
                                               "15",
                                               "8Hfreiform",
                                               "1.",
-                                              std::string(of[1]),
-                                              std::string(of[2]),
+                                              text(flag),
+                                              text(name.size(), "H", name),
                                               "1",
                                               "0.01",
                                               "15H20000101.000000",

@@ -1,5 +1,6 @@
 #include "io/mesh_bytes.hpp"
 
+#include <freiform/core/scan.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/mesh_file.hpp>
 
@@ -13,23 +14,42 @@ namespace {
 constexpr std::array<std::pair<std::string_view, MeshFormat>, 4> kFormats{
     {{"glb", MeshFormat::glb}, {"stl", MeshFormat::stl}, {"obj", MeshFormat::obj}, {"ply", MeshFormat::ply}}};
 
-constexpr std::array<std::pair<std::string_view, double>, 17> kUnits{{{"m", 1},
-                                                                      {"metre", 1},
-                                                                      {"meter", 1},
-                                                                      {"mm", 1e-3},
-                                                                      {"millimetre", 1e-3},
-                                                                      {"millimeter", 1e-3},
-                                                                      {"cm", 1e-2},
-                                                                      {"dm", 1e-1},
-                                                                      {"km", 1e3},
-                                                                      {"um", 1e-6},
-                                                                      {"nm", 1e-9},
-                                                                      {"in", 0.0254},
-                                                                      {"inch", 0.0254},
-                                                                      {"ft", 0.3048},
-                                                                      {"foot", 0.3048},
-                                                                      {"mil", 2.54e-5},
-                                                                      {"mile", 1609.344}}};
+// Those of documents and those that the readers of STEP, IGES and 3DM files name.
+constexpr std::pair<std::string_view, double> kUnits[] = {
+    {"m", 1},
+    {"metre", 1},
+    {"meter", 1},
+    {"mm", 1e-3},
+    {"millimetre", 1e-3},
+    {"millimeter", 1e-3},
+    {"cm", 1e-2},
+    {"dm", 1e-1},
+    {"km", 1e3},
+    {"um", 1e-6},
+    {"nm", 1e-9},
+    {"in", 0.0254},
+    {"inch", 0.0254},
+    {"ft", 0.3048},
+    {"foot", 0.3048},
+    {"yd", 0.9144},
+    {"yard", 0.9144},
+    {"mil", 2.54e-5},
+    {"uin", 2.54e-8},
+    {"microinch", 2.54e-8},
+    {"mi", 1609.344},
+    {"mile", 1609.344},
+    {"nautical mile", 1852},
+    {"angstrom", 1e-10},
+    {"dam", 10},
+    {"hm", 100},
+    {"Mm", 1e6},
+    {"Gm", 1e9},
+    {"pt", 0.0254 / 72},
+    {"pica", 0.0254 / 6},
+    {"au", 149597870700},
+    {"ly", 9460730472580800},
+    {"pc", 3.0856775814913673e16},
+};
 
 std::string lower_case(std::string_view s) {
     std::string out(s);
@@ -42,7 +62,11 @@ std::string lower_case(std::string_view s) {
 
 std::optional<double> metres_per(std::string_view unit) {
     for (const auto& [name, metres] : kUnits)
+        if (unit == name) return metres;
+    for (const auto& [name, metres] : kUnits)
         if (lower_case(unit) == name) return metres;
+    if (unit.ends_with(" m"))  // what else a STEP file may have is named by its size
+        if (const auto x = scan_number<double>(unit.substr(0, unit.size() - 2)); x && *x > 0) return x;
     return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace freiform::detail {
@@ -62,10 +63,16 @@ public:
 
 private:
     int length_unit(std::string_view unit) {
-        const std::string_view prefix = unit == "m" ? "$" : unit == "cm" ? ".CENTI." : ".MILLI.";
-        const int si = e_.add(text("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(", prefix, ",.METRE.))"));
-        const auto metres = metres_per(unit);
-        if (!metres || unit == "m" || unit == "cm" || unit == "mm") return si;
+        static constexpr std::pair<std::string_view, std::string_view> kPrefixes[] = {
+            {"m", "$"},       {"mm", ".MILLI."}, {"cm", ".CENTI."}, {"dm", ".DECI."},
+            {"km", ".KILO."}, {"um", ".MICRO."}, {"nm", ".NANO."}};
+        std::string_view prefix;
+        for (const auto& [word, its] : kPrefixes)
+            if (word == unit) prefix = its;
+        const auto metres = prefix.empty() ? metres_per(unit) : std::nullopt;
+        const int si = e_.add(
+            text("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(", prefix.empty() ? ".MILLI." : prefix, ",.METRE.))"));
+        if (!metres) return si;
         const int of =
             e_.add(text("LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(", real(*metres * 1000), "),#", si, ")"));
         const int exponents = e_.add("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)");

@@ -34,7 +34,7 @@ std::string si_word(double metres) {
     constexpr std::pair<double, std::string_view> kWords[] = {
         {1, "m"}, {1e-3, "mm"}, {1e-2, "cm"}, {0.1, "dm"}, {1e3, "km"}, {1e-6, "um"}, {1e-9, "nm"}};
     for (const auto& [size, word] : kWords)
-        if (size == metres) return std::string(word);
+        if (std::abs(metres - size) <= 1e-12 * size) return std::string(word);
     return text(metres, " m");
 }
 

@@ -50,6 +50,30 @@ TEST_F(ModelQuestions, a_trimmed_square_has_edges_a_nearest_face_a_farthest_corn
     EXPECT_GE(hull["points"].size(), 4u);
 }
 
+TEST_F(ModelQuestions, units_stay_from_file_to_file_and_unknown_ones_are_told) {
+    const auto with = [](const std::string& unit) {
+        return R"({"freiform":1,"unit":")" + unit +
+               R"(","objects":[{"type":"surface","points":[[[0,0,0],[0,8,0]],[[4,0,0],[4,8,0]]]}]})";
+    };
+    for (const std::string format : {"step", "iges"})
+        for (const std::string unit : {"mm", "cm", "dm", "m", "km", "um", "nm", "mil", "inch", "ft"}) {
+            const std::string name = "a." + format;
+            const Ran written = run({"convert", "-", "-o", name}, with(unit));
+            EXPECT_EQ(written.code, 0) << written.err;
+            EXPECT_EQ(written.err, "") << unit;
+            const Json info = answer({"info", name});
+            EXPECT_EQ(info["unit"], unit) << format;
+            EXPECT_NEAR(info["objects"][0]["box"]["max"][1].get<double>(), 8, 1e-6) << format << unit;
+        }
+    const std::string furlong = file("furlong.json", with("furlong"));
+    for (const std::string format : {"step", "iges"}) {
+        const Ran told = run({"convert", furlong, "-o", "a." + format});
+        EXPECT_NE(told.err.find("\"furlong\" is not known"), std::string::npos) << format << told.err;
+    }
+    const Ran mesh = run({"tessellate", furlong, "--tolerance", "1", "-o", "a.glb"});
+    EXPECT_NE(mesh.err.find("\"furlong\" is not known, so the file says m"), std::string::npos) << mesh.err;
+}
+
 TEST_F(ModelQuestions, what_they_do_not_answer_says_what_is_accepted) {
     const std::string square = file("square.json", kSquare);
     const Ran places = run({"length", square, "--equal", "3"});

@@ -44,6 +44,14 @@ std::vector<Vec<3>> corners(const TriangleMesh& mesh, bool as_float) {
     return out;
 }
 
+TEST(Units, of_all_readers_are_known_in_metres) {
+    const std::pair<const char*, double> units[] = {
+        {"mm", 1e-3},           {"Inch", 0.0254}, {"yd", 0.9144},      {"mi", 1609.344},
+        {"microinch", 2.54e-8}, {"Mm", 1e6},      {"angstrom", 1e-10}, {"1e-12 m", 1e-12}};
+    for (const auto& [word, metres] : units) EXPECT_EQ(metres_per(word), metres) << word;
+    for (const char* word : {"", "furlong", " m", "-1 m", "nan m"}) EXPECT_FALSE(metres_per(word)) << word;
+}
+
 TEST(MeshFile, every_format_gives_back_the_same_corners_and_a_closed_mesh) {
     for (const TriangleMesh& mesh : {test::torus(40, 20), test::sphere(12, 20), test::cube()})
         for (MeshFormat format : kMeshFormats) {
