@@ -180,6 +180,7 @@ Result<void> run_convert(Context& context, const ConvertArguments& options) {
     if (!bytes) {
         Refusal r = bytes.error();
         r.where = text(shown(options.file), ": ", r.where);
+        if (r.kind == RefusalKind::unsupported) r.kind = RefusalKind::no_answer;  // the file was read
         return std::unexpected(std::move(r));
     }
     if (auto ok = emit(context, *bytes); !ok) return ok;

@@ -26,6 +26,15 @@ void expect_near(const std::vector<double>& a, const std::vector<double>& b) {
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-14);
 }
 
+TEST_F(TriangleCommands, convert_tells_formats_without_triangles_from_wrong_files) {
+    for (const char* format : {"step", "iges", "obj", "svg", "bpt"})
+        EXPECT_EQ(
+            run({"convert", "-", "--to", format}, R"({"type":"triangle","points":[[0,0,0],[1,0,1],[0,1,1]]})")
+                .code,
+            1)
+            << format;
+}
+
 TEST_F(TriangleCommands, convert_cuts_triangles_from_a_corner_to_the_opposite_edge) {
     const std::string s = file("t.json", kTriangle);
     struct Case {
