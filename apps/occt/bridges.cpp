@@ -8,7 +8,8 @@ namespace freiform::occt {
 
 namespace {
 
-constexpr double kNear = 1e-6;  // of a period
+constexpr double kNear = 1e-6;    // of a period
+constexpr double kSliver = 1e-5;  // of a turn around the surface: what is narrower encloses nothing
 
 // The periods that a bridge goes along both parameters; nothing where the coedge is none.
 std::optional<Vec<2>> periods_of(const Coedge& c, const Edge& e, const std::array<double, 2>& period) {
@@ -23,6 +24,28 @@ std::optional<Vec<2>> periods_of(const Coedge& c, const Edge& e, const std::arra
         if (!(std::abs(by[k] - turns[k] * p) <= kNear * scale)) return std::nullopt;
     }
     return turns[0] != 0 || turns[1] != 0 ? std::optional(turns) : std::nullopt;
+}
+
+// The box of a loop in the parameters, and the area that it has on its left, of polygons along it.
+struct Extent {
+    Box<2> box;
+    double area = 0;
+};
+Extent extent_of(const Loop& loop, const std::vector<Edge>& edges) {
+    Extent out;
+    std::vector<Vec<2>> along;
+    for (const Coedge& c : loop.coedges) {
+        const Interval on = edges[std::size_t(c.edge)].range;
+        for (int i = 0; i <= 16; ++i) {
+            along.push_back(jet<0>(c.curve, on.lo + on.length() * (c.reversed ? 16 - i : i) / 16).value());
+            out.box.add(along.back());
+        }
+    }
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        const Vec<2> a = along[i] - along[0], b = along[(i + 1) % along.size()] - along[0];
+        out.area += (a[0] * b[1] - a[1] * b[0]) / 2;
+    }
+    return out;
 }
 
 Vec<3> at(const Handle(Geom_Surface) & s, const Vec<2>& uv) {
@@ -106,30 +129,28 @@ void swap_sides(Loop& loop, const std::vector<Edge>& edges, const std::array<dou
 
 void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period) {
     Vec<2> sum{}, crossed{};
-    Box<2> box;
+    Loop left;
     for (const Coedge& c : loop.coedges) {
-        const Edge& e = edges[std::size_t(c.edge)];
-        for (const double t : {e.range.lo, e.range.hi}) box.add(jet<0>(c.curve, t).value());
-        const auto turns = periods_of(c, e, period);
-        if (!turns) continue;
+        const auto turns = periods_of(c, edges[std::size_t(c.edge)], period);
+        if (!turns) {
+            left.coedges.push_back(c);
+            left.coedges.back().curve = translated(c.curve, {{-sum[0] * period[0], -sum[1] * period[1]}});
+            continue;
+        }
         sum += *turns;
         for (int k = 0; k < 2; ++k) crossed[k] += std::abs((*turns)[k]);
     }
     if (sum[0] != 0 || sum[1] != 0) return;
+    const Extent with = extent_of(loop, edges), without = extent_of(left, edges);
     bool over = false;
-    for (int k = 0; k < 2; ++k)
-        over = over || (crossed[k] > 0 && box.side(k).length() > (1 + kNear) * period[std::size_t(k)]);
-    if (!over) return;
-    std::vector<Coedge> kept;
-    for (Coedge& c : loop.coedges) {
-        if (const auto turns = periods_of(c, edges[std::size_t(c.edge)], period)) {
-            sum += *turns;
-            continue;
-        }
-        c.curve = translated(c.curve, {{-sum[0] * period[0], -sum[1] * period[1]}});
-        kept.push_back(std::move(c));
+    double turn = 0;
+    for (int k = 0; k < 2; ++k) {
+        if (!(crossed[k] > 0 && with.box.side(k).length() > (1 + kNear) * period[std::size_t(k)])) continue;
+        over = true;
+        turn = std::max(turn, period[std::size_t(k)] * with.box.side(1 - k).length());
     }
-    loop.coedges = std::move(kept);
+    const double same_side = with.area < 0 ? -without.area : without.area;
+    if (over && same_side > kSliver * turn) loop = std::move(left);
 }
 
 }  // namespace freiform::occt

@@ -13,7 +13,8 @@ namespace freiform::occt {
 
 // Leaves them out and moves what lies between them by their periods, where they go as far forth as back and
 // the loop with them is longer than a period: no face covers its surface twice. Circles at the ends of a
-// seam, which look the same, span one period. `period`: of both parameters, 0 for none.
+// seam, which look the same, span one period, give or take what the file rounds off: without them nothing is
+// left, or windows across the seam, the wrong way around. `period`: of both parameters, 0 for none.
 void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period);
 
 // The boundary of all of a torus but for windows across its seam: where both sides of the seam, a period

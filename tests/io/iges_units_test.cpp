@@ -131,6 +131,17 @@ TEST_F(IgesUnits, windows_across_the_seam_of_a_torus_are_left_out) {
         20 * std::numbers::pi * std::numbers::pi - 0.5 * (5 * (hi - lo) + std::sin(hi) - std::sin(lo)), 0.05);
 }
 
+// Far from 0 a seam lies beside its place by more than rounding, so that the wall is longer than a turn: the
+// circles at its ends are no turns too many for that.
+TEST_F(IgesUnits, walls_with_windows_far_away_keep_their_rims) {
+    const auto read = read_with_occt((kFolder / "window_in_a_wall_far_away.iges").string());
+    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_EQ(read->faces.size(), 1u);
+    EXPECT_EQ(read->faces[0].loops[0].coedges.size(), 8u);
+    // By Open CASCADE's integration; without the window 2 pi 6.526409 39.252972, which is 1609.63.
+    EXPECT_NEAR(test::area_of(*read, 1e-4), 1555.564, 0.02);
+}
+
 // What a refused face leaves behind would make the box of the model, and its largest tolerance, those of
 // that.
 TEST_F(IgesUnits, nothing_of_a_refused_face_stays) {
