@@ -27,6 +27,7 @@ constexpr double kApart = 1e-6;   // of the range: places where pieces begin
 // of what is asked for, and so many times as far as the place before.
 constexpr double kMiddles[] = {0.46875, 0.21875, 0.78125, 0.09375, 0.90625};
 constexpr double kNear = 10, kFarther = 2;
+constexpr double kOnSeam = 1e-9;  // of the period
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
 int spans_of(const CurveGeometry<3>& c) {
@@ -230,6 +231,7 @@ private:
                              });
         if (f.regular && near(f.at, guess) && !at_pole) {
             place(f, out);
+            if (is_end) keep_side(from, j.d[1], out);
             return true;
         }
         if (!is_end) return false;
@@ -248,6 +250,19 @@ private:
         out.before = out.after = g.slope;
         out.gap = norm(chart_.point(out.at) - j.d[0]);
         return true;
+    }
+    // An end on the seam of a spline, which may have a crease there, leaves it on the side of `from`.
+    void keep_side(const TraceNode& from, const Vec<3>& motion, TraceNode& n) const {
+        Vec<2> beside = n.at;
+        for (int k = 0; k < 2; ++k) {
+            const double period = chart_.is_spline(k) ? chart_.period(k) : 0;
+            const double off = std::remainder(n.at[k] - chart_.whole()[std::size_t(k)].lo, period);
+            if (std::abs(off) <= kOnSeam * period)
+                beside[k] += std::copysign(2 * kOnSeam * period, from.at[k] - n.at[k]);
+        }
+        if (beside == n.at) return;
+        if (const Foot f = chart_.foot(chart_.point(beside), motion, beside); f.regular)
+            n.before = n.after = f.slope;
     }
     bool has_corner(double t) const {
         return visit_one(

@@ -1,8 +1,10 @@
 // Seams: of surfaces that do not quite close, in any order, around holes, and those that are none.
+#include <freiform/io/file.hpp>
 #include <freiform/io/step_read.hpp>
 #include <freiform/model/tessellate.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <numbers>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
@@ -68,6 +70,20 @@ TEST(StepSeams, seams_of_splines_that_do_not_quite_close_are_seams) {
     // Sides that are farther apart than that are two sides.
     const Model wide = must(read_step(open_tube(0.05, false)));
     EXPECT_EQ(must(tessellate(wide, {.tolerance = 1e-3})).refused.size(), 1u);
+}
+
+// Slopes at the end of an edge that lies on the seam are those of the side that the edge is on: with those of
+// the other one it would be followed along the crease.
+TEST(StepSeams, edges_that_begin_at_a_creased_seam_leave_it_on_their_side) {
+    const std::filesystem::path path =
+        std::filesystem::path(FREIFORM_SOURCE_DIR) / "tests/data/step/creased_seam.stp";
+    const Model m = must(read_step(must(read_file(path.string(), 1 << 20))));
+    ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+    EXPECT_TRUE(m.refused.empty()) << m.refused[0].message;
+    const auto t = must(tessellate(m, {.tolerance = 1e-3}));
+    EXPECT_LE(t.boundary_gap, 1e-7);
+    // Integrated by scipy; without the window across the seam 11.3886.
+    EXPECT_NEAR(area_of(m, 1e-3), 11.263, 0.01);
 }
 
 // A tube of radius 1 without a seam, from z = 0 to a rim that is 2 high on one side and `low` on the other; a
