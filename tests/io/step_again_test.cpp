@@ -62,6 +62,49 @@ TEST(StepAgain, edges_are_the_parts_of_their_curves_that_they_were) {
     EXPECT_NEAR(area_of(read_again(m)), 100, 1e-9);
 }
 
+// A plane face between an open conic and a chord of it.
+Model bow(const Conic<3>& conic, Interval on) {
+    const CurveGeometry<3> curve = conic;
+    const Vec<3> a = jet<0>(curve, on.lo).value(), b = jet<0>(curve, on.hi).value();
+    const auto flat = [](const Vec<3>& v) { return Vec<2>{{v[0], v[1]}}; };
+    Model m;
+    m.unit = "mm";
+    m.vertices = {{a, 0}, {b, 0}};
+    Edge arc, chord;
+    arc.curve = curve, chord.curve = Line<3>{b, a - b};
+    arc.range = on;
+    arc.start = chord.end = 0, arc.end = chord.start = 1;
+    m.edges = {arc, chord};
+    Face f;
+    f.surface = Extrusion{Line<3>{{}, {{1, 0, 0}}}, {{0, 1, 0}}, SurfaceKind::plane};
+    f.loops = {{{{0, false, Conic<2>{conic.kind, flat(conic.centre), flat(conic.x), flat(conic.y)}},
+                 {1, false, Line<2>{flat(b), flat(a - b)}}}}};
+    m.faces = {f};
+    m.shells = {{{{0, false}}, false}};
+    m.bodies = {{{0}, false, "", std::nullopt}};
+    return must(make_model(m));
+}
+
+// Axes that were turned are at right angles but for rounding; those of x y = 1 need not be by far.
+TEST(StepAgain, hyperbolas_and_parabolas_need_not_be_given_by_their_axes) {
+    const Vec<3> x{{std::cos(0.7), std::sin(0.7), 0}}, y{{-std::sin(0.7), std::cos(0.7), 0}};
+    for (const ConicKind kind : {ConicKind::hyperbola, ConicKind::parabola})
+        for (const double skew : {0.0, 1e-15, -1e-9, 0.4, -0.9}) {
+            const Model m = bow({kind, {{1, 2, 0}}, 3.0 * x, 2.0 * (y + skew * x)}, {-0.75, 1.25});
+            const Model again = read_again(m);
+            EXPECT_NEAR(area_of(again, 1e-6), area_of(m, 1e-6), 1e-5) << kind_name(*m.edges[0].curve) << skew;
+            EXPECT_LT(norm(again.vertices[0].point - m.vertices[0].point), 1e-14);
+            const Edge& e = again.edges[again.edges[0].curve->index() == 1 ? 0 : 1];
+            const Conic<3>& c = std::get<Conic<3>>(*m.edges[0].curve);
+            for (const double part : {0.0, 0.2, 0.5, 0.8, 1.0}) {
+                const double t = e.range.lo + part * e.range.length();
+                const Vec<3> p = jet<0>(*e.curve, t).value() - c.centre, n = cross(c.x, c.y);
+                const double a = dot(cross(p, c.y), n) / dot(n, n), b = dot(cross(c.x, p), n) / dot(n, n);
+                EXPECT_NEAR(kind == ConicKind::parabola ? a - b * b : a * a - b * b - 1, 0, 1e-12) << skew;
+            }
+        }
+}
+
 // A face on the surface #9 between the points #a and #b and those above, #(a + 1) and #(b + 1): along the
 // curves #61 and #63, and up.
 std::string side_of_tube(int a, int b) {
