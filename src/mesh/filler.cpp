@@ -109,9 +109,13 @@ int Filler::turning_side(int triangle) {
     if (t_.points().size() > most_for_angles_) return -1;
     const auto& v = t_.vertices(triangle);
     if (is_narrow_or_at_pole({uv(v[0]), uv(v[1]), uv(v[2])}, s.longest)) return -1;
-    const double angle = normal_angle_bound(surface_, {uv(v[0]), uv(v[1]), uv(v[2])},
-                                            {position(v[0]), position(v[1]), position(v[2])});
-    return angle <= demands_.max_angle ? -1 : s.edge;
+    const std::array<Vec<2>, 3> corner{uv(v[0]), uv(v[1]), uv(v[2])};
+    const double angle =
+        normal_angle_bound(surface_, corner, {position(v[0]), position(v[1]), position(v[2])});
+    if (angle <= demands_.max_angle) return -1;
+    Box<2> box;
+    for (const Vec<2>& p : corner) box.add(p);
+    return has_narrow_cones(surface_, box, demands_.max_angle) ? s.edge : -1;
 }
 
 bool Filler::is_fine(int triangle) {

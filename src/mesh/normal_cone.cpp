@@ -50,14 +50,19 @@ Box<2> widened(const DerivativeQuery<2, 3>& surface, Box<2> box) {
         const double more = (width - box.side(axis).length()) / 2;
         if (!(more > 0) || !std::isfinite(more)) continue;
         const Interval end = ends[std::size_t(axis)];
-        double lo = std::max(box.lo[axis] - more, std::min(box.lo[axis], end.lo)),
-               hi = std::min(box.hi[axis] + more, std::max(box.hi[axis], end.hi));
+        double least = std::min(box.lo[axis], end.lo), most = std::max(box.hi[axis], end.hi);
         for (const Kink& k : surface.kinks(axis)) {
             if (k.jump <= kRoundedJump * own) continue;
-            if (k.at <= box.lo[axis]) lo = std::max(lo, k.at);
-            if (k.at >= box.hi[axis]) hi = std::min(hi, k.at);
+            if (k.at <= box.lo[axis]) least = std::max(least, k.at);
+            if (k.at >= box.hi[axis]) most = std::min(most, k.at);
         }
-        box.lo[axis] = lo, box.hi[axis] = hi;
+        // What there is no room for on one side is had on the other.
+        const double lo = std::max(box.lo[axis] - more, least), hi = std::min(box.hi[axis] + more, most);
+        const double missing = resolved / own - (hi - lo);
+        if (missing > 0 && lo == least)
+            box.lo[axis] = lo, box.hi[axis] = std::min(hi + missing, most);
+        else
+            box.lo[axis] = missing > 0 ? std::max(lo - missing, least) : lo, box.hi[axis] = hi;
     }
     return box;
 }
@@ -99,6 +104,16 @@ NormalCone normal_cone(const DerivativeQuery<2, 3>& surface, const Box<2>& box) 
     const double tilt = (at.tilt + kChord * jump) / (1 - jump);
     if (!(jump < 0.5) || !(tilt <= kChord * kMostTurn)) return {at.n, kPi};
     return {at.n, std::min(kPi, 2 * std::asin(tilt / 2) + kAngleError)};
+}
+
+bool has_narrow_cones(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double angle) {
+    constexpr double kSmall = 1.0 / 64;
+    const Vec<2> sides = box.hi - box.lo;
+    for (const double part : {0.41, 0.27}) {  // beside the middle, where knots are
+        const Vec<2> at = box.lo + part * sides;
+        if (normal_cone(surface, {at, at + kSmall * sides}).angle <= angle) return true;
+    }
+    return false;
 }
 
 double normal_angle_bound(const DerivativeQuery<2, 3>& surface, const std::array<Vec<2>, 3>& uv,

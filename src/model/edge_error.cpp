@@ -191,9 +191,16 @@ std::optional<OnFace::Across> OnFace::across() const {
                   (along(chord) / 8 + kinks()) / *slope * kDirectionSlack};
 }
 
+// Half the cone of normals over the box where it is more than `cone` and where shorter segments have less.
+double turn_over(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double cone) {
+    if (!std::isfinite(cone)) return 0;
+    const double turn = normal_cone(surface, box).angle;
+    return turn <= cone || has_narrow_cones(surface, box, cone) ? turn : 0;
+}
+
 }  // namespace
 
-SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, bool turns) const {
+SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, double cone) const {
     const EdgeMesh& mesh = edges_[std::size_t(edge)];
     const bool degenerate = model_.edges[std::size_t(edge)].degenerate;
     const Interval on{a, b};
@@ -217,7 +224,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
                           BoundarySide{surface, box, surface({box.side(0), box.side(1)}), from, to, apex}
                               .error_beside());
             if (degenerate) continue;
-            if (turns) out.turn = std::max(out.turn, normal_cone(surface, box).angle);
+            out.turn = std::max(out.turn, turn_over(surface, box, cone));
             const Interval there = use->lift->over(on);
             const double polyline = use->is_twin(tolerance)
                                         ? own + 2 * use->twin
@@ -233,7 +240,7 @@ SegmentError EdgeMesher::error(int edge, double a, double b, double tolerance, b
         const auto bow = side.bow();
         double uneven = 0;  // of the chord, what places on the side and on the chord differ by
         if (!degenerate) {
-            if (turns) out.turn = std::max(out.turn, normal_cone(surface, face.box).angle);
+            out.turn = std::max(out.turn, turn_over(surface, face.box, cone));
             double polyline = face.crude();
             if (!(polyline <= tolerance))
                 if (const auto better = face.across(); better && better->distance < polyline) {

@@ -47,7 +47,9 @@ struct EdgeMesh {
 struct SegmentError {
     double polyline = 0;  // bound of the distance between the chord and the curve, in space and on every face
     double triangle = 0;  // bound of the interpolation error of a triangle whose longest side is the chord
-    double turn = 0;  // normals of each face over the chord's box are within this angle of one; not of poles
+    // Normals of each face over the chord's box are within this angle of one; 0 at poles, and where shorter
+    // chords are of no help.
+    double turn = 0;
     double sliver = 0;  // what the region between chord and parameter curve adds
 };
 
@@ -74,8 +76,8 @@ public:
     EdgeMesh& mesh(int edge) { return edges_[std::size_t(edge)]; }
     const EdgeMesh& mesh(int edge) const { return edges_[std::size_t(edge)]; }
     Vec<3> position(int edge, double t) const;
-    // `tolerance`: below this errors need not be known better.
-    SegmentError error(int edge, double a, double b, double tolerance, bool turns) const;
+    // `tolerance`: below this errors need not be known better; `cone`: likewise, what normals turn by.
+    SegmentError error(int edge, double a, double b, double tolerance, double cone) const;
 
     struct Part {
         double a, b;

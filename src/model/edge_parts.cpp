@@ -43,7 +43,7 @@ bool is_near(double a, double b) {
 // How many chords the part between a and b asks for: up to 1 if its own keeps the demands.
 EdgeMesher::Part EdgeMesher::part(int edge, double a, double b, const EdgeDemands& demands) const {
     const bool turns = std::isfinite(demands.angle), degenerate = model_.edges[std::size_t(edge)].degenerate;
-    const SegmentError err = error(edge, a, b, demands.tolerance, turns);
+    const SegmentError err = error(edge, a, b, demands.tolerance, kConeOfAngle * demands.angle);
     const double length = degenerate || !(std::isfinite(demands.longest) || turns)
                               ? 0
                               : norm(position(edge, b) - position(edge, a));

@@ -77,6 +77,34 @@ TEST(TessellateShapes, what_has_no_normal_is_reported) {
     }
 }
 
+Model moved_frustum(const Vec<3>& by) {
+    Model m = frustum(2, 1, 3);
+    for (Vertex& v : m.vertices) v.point += by;
+    const auto move = [&](CurveGeometry<3>& c) {
+        if (auto* l = std::get_if<Line<3>>(&c)) l->origin += by;
+        if (auto* k = std::get_if<Conic<3>>(&c)) k->centre += by;
+    };
+    for (Edge& e : m.edges) move(*e.curve);
+    for (Face& f : m.faces) {
+        if (auto* r = std::get_if<Revolution>(&f.surface)) move(r->profile), r->origin += by;
+        if (auto* x = std::get_if<Extrusion>(&f.surface)) move(x->profile);
+    }
+    return m;
+}
+
+// Far from the origin nothing is known of normals over lengths that would do: more triangles are of no help.
+TEST(TessellateShapes, where_rounding_hides_normals_no_triangles_are_made_for_them) {
+    for (const double far : {0.0, 3e5}) {
+        const Model m = moved_frustum({{far, -far, far}});
+        const auto t = tessellate(m, {.tolerance = 0.001, .max_angle = 10 * kDegree});
+        ASSERT_TRUE(t);
+        EXPECT_LE(sampled_angle(m, *t), t->angle_bound);
+        EXPECT_LT(t->mesh.triangles.size(), 1000u) << far;
+        EXPECT_EQ(t->angle_bound > 10 * kDegree, far > 0) << t->angle_bound;
+        EXPECT_EQ(t->topology.open_edges + t->topology.non_manifold_edges, 0);
+    }
+}
+
 TEST(TessellateShapes, sides_that_stay_draw_no_points_towards_them) {
     for (const Model& m : {test::sphere({}, 1), frustum(2, 0, 3)}) {
         const double tolerance = 0.01;

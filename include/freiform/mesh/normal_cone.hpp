@@ -17,6 +17,10 @@ struct NormalCone {
 };
 NormalCone normal_cone(const DerivativeQuery<2, 3>& surface, const Box<2>& box);
 
+// Whether small boxes in the box have cones of at most `angle`, so far as two of them say: far from the
+// origin rounding hides what normals do over lengths that matter.
+bool has_narrow_cones(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double angle);
+
 // Of the angle (radians, up to pi) between the normal of the triangle in space and any normal of the surface
 // over the triangle in the parameter plane: a bound, rounding included. Corners in the same order;
 // counter-clockwise in the parameter plane. Pi where nothing is proven, as for triangles without area.
