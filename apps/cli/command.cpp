@@ -23,15 +23,15 @@ ReadOptions Context::read_options() const {
     return o;
 }
 
-#if !defined(__wasm__)  // bindings/wasm
-
-void wrong_usage(const std::string& message) { throw WrongUsage(message); }
-
 void require_direction(std::string_view option, std::span<const double> direction) {
     for (const double x : direction)
         if (x != 0) return;
     wrong_usage(text(option, " needs a direction that is not 0"));
 }
+
+#if !defined(__wasm__)  // bindings/wasm
+
+void wrong_usage(const std::string& message) { throw WrongUsage(message); }
 
 Result<void> emit(const Context& context, std::string_view bytes) {
     if (!context.output.empty() && context.output != "-") return write_file(context.output, bytes);
@@ -78,6 +78,13 @@ void write_repairs(json::Writer& w, const std::vector<Repair>& list) {
     w.end_array();
 }
 
+void remark_unknown_unit(std::string_view unit, std::string_view format) {
+    const bool glb = format == "glb";
+    const bool has_units = glb || format == "step" || format == "stp" || format == "iges" || format == "igs";
+    if (has_units && !unit.empty() && !metres_per(unit))
+        remark(text("the unit \"", unit, "\" is not known, so the file says ", glb ? "m" : "mm"));
+}
+
 #if !defined(__wasm__)
 
 void remark(std::string_view message) {
@@ -93,13 +100,6 @@ void remark(std::string_view message) {
         if (n <= 0) return;  // there is nobody left to tell
         rest.remove_prefix(std::size_t(n));
     }
-}
-
-void remark_unknown_unit(std::string_view unit, std::string_view format) {
-    const bool glb = format == "glb";
-    const bool has_units = glb || format == "step" || format == "stp" || format == "iges" || format == "igs";
-    if (has_units && !unit.empty() && !metres_per(unit))
-        remark(text("the unit \"", unit, "\" is not known, so the file says ", glb ? "m" : "mm"));
 }
 
 #endif

@@ -256,6 +256,7 @@ private:
         Vec<2> beside = n.at;
         for (int k = 0; k < 2; ++k) {
             const double period = chart_.is_spline(k) ? chart_.period(k) : 0;
+            if (!(period > 0)) continue;
             const double off = std::remainder(n.at[k] - chart_.whole()[std::size_t(k)].lo, period);
             if (std::abs(off) <= kOnSeam * period)
                 beside[k] += std::copysign(2 * kOnSeam * period, from.at[k] - n.at[k]);

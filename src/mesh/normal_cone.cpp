@@ -107,7 +107,7 @@ NormalCone normal_cone(const DerivativeQuery<2, 3>& surface, const Box<2>& box) 
 }
 
 bool has_narrow_cones(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double angle) {
-    constexpr double kSmall = 1.0 / 64;
+    constexpr double kSmall = 0x1p-20;  // of the box, or what rounding leaves room for
     const Vec<2> sides = box.hi - box.lo;
     for (const double part : {0.41, 0.27}) {  // beside the middle, where knots are
         const Vec<2> at = box.lo + part * sides;
