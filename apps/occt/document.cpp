@@ -6,6 +6,8 @@
 // leaves these as they are, or as the millimetres that they are: whoever asks divides by the factor.
 #include "document.hpp"
 
+#include <freiform/io/mesh_file.hpp>
+
 #include <BRepBndLib.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -63,6 +65,20 @@ const Unit* unit_named(std::string_view name) {
     for (const Unit& u : kUnits)
         if (u.word == upper) return &u;
     return nullptr;
+}
+
+// Of a name that no table has it is the name itself, whose size nobody knows; without a name it is mm.
+struct LengthUnit {
+    std::string word;
+    double millimetres;
+};
+LengthUnit unit_of_iges(const std::string& name) {
+    if (const Unit* u = unit_named(name.empty() ? "MM" : std::string_view(name)))
+        return {std::string(u->ours), u->millimetres};
+    std::string word = name;
+    for (char& c : word) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+    const double millimetres = 1000 * metres_per(word).value_or(1e-3);
+    return {std::move(word), millimetres};
 }
 
 std::string utf8(const TCollection_ExtendedString& s) {
@@ -284,8 +300,8 @@ Result<Document> read_iges(const std::string& path, Lengths lengths) {
                                                   "M", "KM", "MIL", "UM", "CM", "UIN"};
     const int flag = global.UnitFlag();
     const std::string named = words(global.UnitName());
-    const Unit* unit = flag > 0 && flag < 12 && flag != 3 ? unit_named(kFlags[flag]) : unit_named(named);
-    const Unit& chosen = unit != nullptr ? *unit : *unit_named("MM");
+    const bool is_named = flag <= 0 || flag >= 12 || flag == 3;
+    const LengthUnit unit = unit_of_iges(is_named ? named : std::string(kFlags[flag]));
     const Handle(TDocStd_Document) document = new_document();
     set_unit(document, 1);
     global.SetCascadeUnit(1);
@@ -296,8 +312,8 @@ Result<Document> read_iges(const std::string& path, Lengths lengths) {
     model->SetGlobalSection(global);
     Handle(TDocStd_Document) target = document;
     const bool done = reader.Transfer(target);
-    Document out = collect({target, reader.WS()}, std::string(chosen.ours));
-    out.millimetres = chosen.millimetres;
+    Document out = collect({target, reader.WS()}, unit.word);
+    out.millimetres = unit.millimetres;
     if (lengths == Lengths::in_millimetres) out.factor = out.millimetres;
     if (const double r = out.factor * global.Resolution(); r > 0 && r <= kCoarse * size_of(out))
         out.resolution = r;

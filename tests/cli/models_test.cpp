@@ -70,6 +70,14 @@ TEST_F(ModelQuestions, units_stay_from_file_to_file_and_unknown_ones_are_told) {
         const Ran told = run({"convert", furlong, "-o", "a." + format});
         EXPECT_NE(told.err.find("\"furlong\" is not known"), std::string::npos) << format << told.err;
     }
+    // IGES files name what has no number of its own there, known or not.
+    EXPECT_EQ(run({"convert", "-", "-o", "a.iges"}, with("nautical mile")).code, 0);
+    EXPECT_EQ(answer({"info", "a.iges"})["unit"], "nautical mile");
+    std::string iges = content(path("a.iges"));
+    const std::string_view nautical = "NAUTICAL MILE";
+    ASSERT_NE(iges.find(nautical), std::string::npos);
+    iges.replace(iges.find(nautical), nautical.size(), "OLDROYALCUBIT");
+    EXPECT_EQ(answer({"info", file("b.iges", iges)})["unit"], "oldroyalcubit");
     const Ran mesh = run({"tessellate", furlong, "--tolerance", "1", "-o", "a.glb"});
     EXPECT_NE(mesh.err.find("\"furlong\" is not known, so the file says m"), std::string::npos) << mesh.err;
 }
