@@ -17,6 +17,7 @@
 #include "geometry.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/make/revolve.hpp>
 
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_BezierCurve.hxx>
@@ -317,7 +318,7 @@ Result<SurfaceGeometry> surface(const Handle(Geom_Surface) & outer, const std::a
         if (auto g = Handle(Geom_SurfaceOfRevolution)::DownCast(s); !g.IsNull()) {
             auto profile = curve(g->BasisCurve(), range[1]);
             if (!profile) return std::unexpected(profile.error());
-            return Revolution{std::move(*profile), vec(g->Axis().Location()), unit(vec(g->Direction()))};
+            return revolution(std::move(*profile), vec(g->Axis().Location()), unit(vec(g->Direction())));
         }
         if (auto g = Handle(Geom_BezierSurface)::DownCast(s); !g.IsNull()) {
             auto u = bezier_basis(g->UDegree()), v = bezier_basis(g->VDegree());

@@ -108,10 +108,12 @@ public:
                           'T', 1);
     }
 
-    // The entity of these values; `form` says which kind of its type.
-    int entity(std::string_view type, IgesUse use, std::vector<std::string> values, int form = 0) {
+    // The entity of these values; `form` says which kind of its type, `placed` the transformation matrix that
+    // takes it to where it is.
+    int entity(std::string_view type, IgesUse use, std::vector<std::string> values, int form = 0,
+               int placed = 0) {
         values_ = std::move(values);
-        return entity(type, use, form);
+        return entity(type, use, form, placed);
     }
 
     // Open: closed patches are cut at their seam.
@@ -156,7 +158,7 @@ private:
         for (int i = 0; i < 3; ++i) number(x[i]);
     }
 
-    int entity(std::string_view type, IgesUse use, int form = 0) {
+    int entity(std::string_view type, IgesUse use, int form = 0, int placed = 0) {
         static constexpr std::string_view kStatus[] = {"00000000", "00010000", "00010500"};
         values_.insert(values_.begin(), std::string(type));
         const int first = rows_ + 1, entry = 2 * entities_ + 1;
@@ -170,9 +172,9 @@ private:
             return s;
         };
         const std::string kind(type);
-        directory_ +=
-            card(fields({kind, text(first), "0", "0", "0", "0", "0", "0", std::string(kStatus[int(use)])}),
-                 'D', entry);
+        directory_ += card(fields({kind, text(first), "0", "0", "0", "0", text(placed), "0",
+                                   std::string(kStatus[int(use)])}),
+                           'D', entry);
         directory_ += card(fields({kind, "0", "0", text(rows_ - first + 1), text(form), "", "", "", "0"}),
                            'D', entry + 1);
         ++entities_;

@@ -3,21 +3,25 @@
 //
 //     186 solid -> 514 shell -> 510 face -> 508 loop -> 504 edges -> 502 vertices
 //
-// Edges are splines in space, parts of conics as rational ones. Loops on splines have curves in the
-// parameters, too; others have none, so that surfaces need not keep their parameters: flat ones are 190,
-// revolutions and circular cylinders 120, all others splines (128), of extrusions exact ones over what the
-// face uses of them.
+// Edges are lines (110), arcs of circles and ellipses (100, 104) and splines, parts of other conics as
+// rational ones. Flat surfaces are 190, revolutions and circular cylinders 120, all others splines (128), of
+// extrusions exact ones over what the face uses of them. Loops have curves in the parameters, too, where the
+// parameters of the entity are ours or linear in them, of edges as well: those who read have to guess at
+// seams otherwise, and lose what lies across. Flat faces need none. Parabolas and hyperbolas, and extrusions
+// of all conics but circles, have parameters of their own.
 //
 // Orientation. Loops run counter-clockwise about the normal of the surface; a shell says which of its faces
 // are turned. Revolutions are parametrised by the profile first, ours by the angle: about the opposite axis
 // the normals are the same.
 //
-// References: the Initial Graphics Exchange Specification, version 5.3, 4.18, 4.49, 4.111 and 4.144 to 4.151.
+// References: the Initial Graphics Exchange Specification, version 5.3, 4.3, 4.5, 4.13, 4.18,
+// 4.21, 4.49, 4.111 and 4.144 to 4.151.
 // Why not 144 for each face: nothing then says that faces share edges, and every reader guesses.
 #include "iges_file.hpp"
 
 #include <freiform/core/visit.hpp>
 #include <freiform/make/image_curve.hpp>
+#include <freiform/spline/transform.hpp>
 
 namespace freiform::detail {
 
@@ -44,6 +48,13 @@ bool is_circle(const Conic<3>& c) {
     return c.kind == ConicKind::ellipse && std::abs(xx - yy) <= 16 * kUnitRoundoff * xx &&
            std::abs(dot(c.x, c.y)) <= 16 * kUnitRoundoff * xx;
 }
+
+// A surface in the file, and where our parameters are in its own, if linear maps tell.
+struct WrittenSurface {
+    int entry = 0;
+    std::optional<Affinity<2>> parameters;
+};
+constexpr Affinity<2> kSameParameters{{{{1, 0}, {0, 1}}}, {}};
 
 class IgesModel {
 public:
@@ -74,20 +85,31 @@ private:
                 const Edge& e = m_.edges[std::size_t(c.edge)];
                 int& id = curves_[std::size_t(c.edge)];
                 if (e.degenerate || id != 0) continue;
-                const auto curve = curve_of(e, c, f.surface);
-                if (!curve) return refuse_within(text("edges[", c.edge, "]"), curve.error());
-                const auto made = spline<3>(*curve);
+                const auto made = edge(e, c, f.surface);
                 if (!made) return refuse_within(text("edges[", c.edge, "]"), made.error());
                 id = *made;
             }
         return {};
     }
 
-    static Result<CurveGeometry<3>> curve_of(const Edge& e, const Coedge& c, const SurfaceGeometry& surface) {
-        if (e.curve) return space_spline(*e.curve, e.range);
+    Result<int> edge(const Edge& e, const Coedge& c, const SurfaceGeometry& surface) {
+        if (e.curve) return part(*e.curve, e.range);
         const auto flat = parameter_spline(c.curve, e.range);
         if (!flat) return std::unexpected(flat.error());
-        return image_curve(surface, *flat);
+        const auto image = image_curve(surface, *flat);
+        if (!image) return std::unexpected(image.error());
+        return spline<3>(*image);
+    }
+
+    // Those that are no splines with the parameters that they have, but for where these begin, so that loops'
+    // curves in the parameters go with them.
+    Result<int> part(const CurveGeometry<3>& curve, Interval on) {
+        if (const auto* l = std::get_if<Line<3>>(&curve)) return straight(*l, on);
+        if (const auto* c = std::get_if<Conic<3>>(&curve); c && c->kind == ConicKind::ellipse)
+            return arc(*c, on).entry;
+        const auto made = space_spline(curve, on);
+        if (!made) return std::unexpected(made.error());
+        return spline<3>(*made);
     }
 
     template <int D>
@@ -102,15 +124,18 @@ private:
             curve);
     }
 
-    // As the loop runs, which is not always as the edge does.
-    static CurveGeometry<2> along_loop(const CurveGeometry<2>& curve, bool reversed) {
-        if (!reversed) return curve;
+    // In the parameters of the file, as the loop runs, which is not always as the edge does.
+    static Result<CurveGeometry<2>> along_loop(const CurveGeometry<2>& curve, const Affinity<2>& parameters,
+                                               bool reversed) {
         return visit_one(
-            [&](const auto& c) -> CurveGeometry<2> {
-                if constexpr (requires { c.net(); })
-                    return reverse(c, 0);
-                else
+            [&](const auto& c) -> Result<CurveGeometry<2>> {
+                if constexpr (requires { c.net(); }) {
+                    const auto mapped = transform(c, parameters);
+                    if (!mapped) return std::unexpected(mapped.error());
+                    return reversed ? reverse(mapped->patch, 0) : mapped->patch;
+                } else {
                     return c;
+                }
             },
             curve);
     }
@@ -135,8 +160,7 @@ private:
         return vertices;
     }
 
-    // Of splines with the curves in the parameters, which readers would otherwise have to find again.
-    Result<int> loop(const Loop& l, bool on_spline) {
+    Result<int> loop(const Loop& l, const std::optional<Affinity<2>>& parameters) {
         std::vector<std::string> values = {text(l.coedges.size())};
         for (const Coedge& c : l.coedges) {
             const Edge& e = m_.edges[std::size_t(c.edge)];
@@ -144,13 +168,15 @@ private:
                 e.degenerate ? std::array{1, vertices_, e.start + 1, 1}
                              : std::array{0, edges_, index_[std::size_t(c.edge)], c.reversed ? 0 : 1};
             for (const int x : entry) values.push_back(text(x));
-            if (!on_spline) {
+            if (!parameters) {
                 values.emplace_back("0");
                 continue;
             }
             const auto flat = parameter_spline(c.curve, e.range);
             if (!flat) return std::unexpected(flat.error());
-            const auto id = spline<2>(along_loop(*flat, c.reversed), IgesUse::parameters);
+            const auto along = along_loop(*flat, *parameters, c.reversed);
+            if (!along) return std::unexpected(along.error());
+            const auto id = spline<2>(*along, IgesUse::parameters);
             if (!id) return id;
             for (const int x : {1, 0, *id}) values.push_back(text(x));
         }
@@ -162,13 +188,21 @@ private:
         for (const Loop& l : f.loops)
             for (const Coedge& c : l.coedges) add_extent(used, c.curve, m_.edges[std::size_t(c.edge)].range);
         const auto surface = visit_one([&](const auto& s) { return one(s, used); }, f.surface);
-        if (!surface) return surface;
-        std::vector<std::string> values = {text(*surface), text(f.loops.size()),
+        if (!surface) return std::unexpected(surface.error());
+        std::vector<std::string> values = {text(surface->entry), text(f.loops.size()),
                                            f.loops.size() == 1 ? "1" : "0"};
-        const bool on_spline = std::holds_alternative<Surface<Vec<3>>>(f.surface) ||
-                               std::holds_alternative<Surface<Hom<3>>>(f.surface);
+        // Parabolas and hyperbolas are splines with parameters of their own; readers find such curves better.
+        const bool turned =
+            std::holds_alternative<Extrusion>(f.surface) || std::holds_alternative<Revolution>(f.surface);
+        const bool own = turned && std::ranges::any_of(f.loops, [&](const Loop& l) {
+                             return std::ranges::any_of(l.coedges, [&](const Coedge& c) {
+                                 const auto& curve = m_.edges[std::size_t(c.edge)].curve;
+                                 const auto* conic = curve ? std::get_if<Conic<3>>(&*curve) : nullptr;
+                                 return conic != nullptr && conic->kind != ConicKind::ellipse;
+                             });
+                         });
         for (const Loop& l : f.loops) {
-            const auto id = loop(l, on_spline);
+            const auto id = loop(l, own ? std::nullopt : surface->parameters);
             if (!id) return id;
             values.push_back(text(*id));
         }
@@ -195,12 +229,18 @@ private:
         file_.entity("186", IgesUse::alone, values);
     }
 
-    template <class P>
-    Result<int> one(const Surface<P>& s, const Box<2>&) {
-        return file_.add(s, IgesUse::part);
+    static Result<WrittenSurface> written(const Result<int>& entry,
+                                          const std::optional<Affinity<2>>& parameters) {
+        if (!entry) return std::unexpected(entry.error());
+        return WrittenSurface{*entry, parameters};
     }
 
-    Result<int> one(const Extrusion& s, const Box<2>& used) {
+    template <class P>
+    Result<WrittenSurface> one(const Surface<P>& s, const Box<2>&) {
+        return written(file_.add(s, IgesUse::part), kSameParameters);
+    }
+
+    Result<WrittenSurface> one(const Extrusion& s, const Box<2>& used) {
         if (const auto* line = std::get_if<Line<3>>(&s.profile)) {
             const Vec<3> n = cross(line->direction, s.direction);
             const auto triple = [](const Vec<3>& v) {
@@ -210,19 +250,19 @@ private:
             at.emplace_back("0");
             const int point = file_.entity("116", IgesUse::part, at);
             const int normal = file_.entity("123", IgesUse::part, triple((1 / norm(n)) * n));
-            return file_.entity("190", IgesUse::part, {text(point), text(normal)});
+            return written(file_.entity("190", IgesUse::part, {text(point), text(normal)}), {});
         }
         const Vec<3> lo = used.side(1).lo * s.direction, hi = used.side(1).hi * s.direction;
         if (const auto* c = std::get_if<Conic<3>>(&s.profile); c && is_circle(*c)) {
             const Vec<3> n = cross(c->x, c->y);
             if (norm(cross(n, s.direction)) <= 16 * kUnitRoundoff * norm(n) * norm(s.direction))
-                return turned(Line<3>{c->centre + c->x + lo, hi - lo}, {0, 1}, c->centre, n);
+                return turned(Line<3>{c->centre + c->x, s.direction}, c->centre, n, used);
         }
-        const bool whole = std::holds_alternative<Conic<3>>(s.profile);  // the angles that are used
-        const auto profile = space_spline(s.profile, whole ? used.side(0) : domain(s.profile)[0]);
+        const bool conic = std::holds_alternative<Conic<3>>(s.profile);  // of it the angles that are used
+        const auto profile = space_spline(s.profile, conic ? used.side(0) : domain(s.profile)[0]);
         if (!profile) return std::unexpected(profile.error());
         return visit_one(
-            [&](const auto& c) -> Result<int> {
+            [&](const auto& c) -> Result<WrittenSurface> {
                 if constexpr (requires { c.net(); }) {
                     using P = typename std::remove_cvref_t<decltype(c)>::Coefficients;
                     std::vector<P> rows;
@@ -237,7 +277,8 @@ private:
                     const auto made =
                         Surface<P>::make({c.basis(), *across}, Net<2, P>({int(rows.size()) / 2, 2}, rows));
                     if (!made) return std::unexpected(made.error());
-                    return file_.add(*made, IgesUse::part);
+                    return written(file_.add(*made, IgesUse::part),
+                                   conic ? std::nullopt : std::optional(kSameParameters));
                 } else {
                     return refuse(RefusalKind::unsupported, "", "an extrusion of a line");
                 }
@@ -245,29 +286,85 @@ private:
             *profile);
     }
 
-    Result<int> one(const Revolution& s, const Box<2>& used) {
-        const bool whole = std::holds_alternative<Curve<Vec<3>>>(s.profile) ||
-                           std::holds_alternative<Curve<Hom<3>>>(s.profile);
-        return turned(s.profile, whole ? domain(s.profile)[0] : used.side(1), s.origin, s.axis);
+    Result<WrittenSurface> one(const Revolution& s, const Box<2>& used) {
+        return turned(s.profile, s.origin, s.axis, used);
     }
 
-    Result<int> one(const OffsetSurface&, const Box<2>&) {
+    Result<WrittenSurface> one(const OffsetSurface&, const Box<2>&) {
         return refuse(RefusalKind::unsupported, "", "an offset surface; STEP files have them");
     }
 
-    // The profile turned once about the axis: its angle is the first parameter.
-    Result<int> turned(const CurveGeometry<3>& profile, Interval on, const Vec<3>& origin,
-                       const Vec<3>& axis) {
-        const auto curve = space_spline(profile, on);
-        if (!curve) return std::unexpected(curve.error());
-        const Line<3> along{origin, (-1 / norm(axis)) * axis};
+    // The profile turned once about the axis: its angle, from the opposite axis, is the second parameter.
+    Result<WrittenSurface> turned(const CurveGeometry<3>& profile, const Vec<3>& origin, const Vec<3>& axis,
+                                  const Box<2>& used) {
+        const int about = straight({origin, (-1 / norm(axis)) * axis}, {0, 1});
+        const Interval on = used.side(1);
+        const double middle = (used.side(0).lo + used.side(0).hi) / 2;
+        Affinity<2> parameters{{{{0, 1}, {-1, 0}}}, {{0, kTwoPi * (1 + std::floor(middle / kTwoPi))}}};
+        const auto generatrix = visit_one(
+            [&](const auto& g) -> Result<int> {
+                using G = std::remove_cvref_t<decltype(g)>;
+                if constexpr (std::same_as<G, Line<3>>) {
+                    parameters.linear[0][1] = 1 / on.length();
+                    parameters.offset[0] = -on.lo / on.length();
+                } else if constexpr (std::same_as<G, Conic<3>>) {
+                    if (g.kind != ConicKind::ellipse) return part(profile, on);
+                    const Arc made = arc(g, on);
+                    parameters.offset[0] = made.shift;
+                    return made.entry;
+                }
+                return part(profile, std::same_as<G, Line<3>> ? on : domain(profile)[0]);
+            },
+            profile);
+        if (!generatrix) return std::unexpected(generatrix.error());
+        const auto* conic = std::get_if<Conic<3>>(&profile);
+        return written(
+            file_.entity("120", IgesUse::part, {text(about), text(*generatrix), "0.", real(kTwoPi)}),
+            conic != nullptr && conic->kind != ConicKind::ellipse ? std::nullopt : std::optional(parameters));
+    }
+
+    // Its parameter runs from 0 to 1.
+    int straight(const Line<3>& line, Interval on) {
         std::vector<std::string> ends;
-        for (const double t : {0.0, 1.0})
-            for (const double x : (along.origin + t * along.direction).c) ends.push_back(real(x));
-        const int about = file_.entity("110", IgesUse::part, ends);
-        const auto generatrix = spline<3>(*curve);
-        if (!generatrix) return generatrix;
-        return file_.entity("120", IgesUse::part, {text(about), text(*generatrix), "0.", real(kTwoPi)});
+        for (const double t : {on.lo, on.hi})
+            for (const double x : (line.origin + t * line.direction).c) ends.push_back(real(x));
+        return file_.entity("110", IgesUse::part, ends);
+    }
+
+    // Of an ellipse, at most once round, by its axes; its parameter is ours plus `shift`.
+    struct Arc {
+        int entry = 0;
+        double shift = 0;
+    };
+    Arc arc(const Conic<3>& c, Interval on) {
+        const double skew = dot(c.x, c.y), more = dot(c.x, c.x) - dot(c.y, c.y),
+                     all = dot(c.x, c.x) + dot(c.y, c.y);
+        // Of circles the first axis is where the arc begins.
+        const bool circle = std::max(std::abs(skew), std::abs(more)) <= 16 * kUnitRoundoff * all;
+        const double turn = circle ? on.lo : std::atan2(2 * skew, more) / 2,
+                     length = std::min(on.length(), kTwoPi);
+        const Vec<3> a = std::cos(turn) * c.x + std::sin(turn) * c.y,
+                     b = std::cos(turn) * c.y - std::sin(turn) * c.x, n = cross(a, b);
+        const Vec<3> x = (1 / norm(a)) * a, z = (1 / norm(n)) * n, y = cross(z, x);
+        std::vector<std::string> matrix;
+        for (int i = 0; i < 3; ++i)
+            for (const double v : {x[i], y[i], z[i], c.centre[i]}) matrix.push_back(real(v));
+        const int placed = file_.entity("124", IgesUse::part, matrix);
+        const double width = norm(a), height = circle ? width : norm(b);
+        const double begin = circle ? 0 : on.lo - turn - kTwoPi * std::floor((on.lo - turn) / kTwoPi);
+        const auto at = [&](double t) {
+            return std::array{real(width * std::cos(t)), real(height * std::sin(t))};
+        };
+        const auto first = at(begin),
+                   last = length >= kTwoPi * (1 - 16 * kUnitRoundoff) ? first : at(begin + length);
+        const int entry =
+            circle ? file_.entity("100", IgesUse::part,
+                                  {"0.", "0.", "0.", first[0], first[1], last[0], last[1]}, 0, placed)
+                   : file_.entity("104", IgesUse::part,
+                                  {real(1 / (width * width)), "0.", real(1 / (height * height)), "0.", "0.",
+                                   "-1.", "0.", first[0], first[1], last[0], last[1]},
+                                  1, placed);
+        return {entry, begin - on.lo};
     }
 
     IgesFile& file_;

@@ -14,6 +14,7 @@
 #include "step_geometry.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/make/revolve.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -201,7 +202,7 @@ Result<SurfaceGeometry> GeometryReader::basic_surface(std::uint32_t i) {
         if (!c) return std::unexpected(c.error());
         const auto axis = placement(*about);
         if (!axis) return std::unexpected(axis.error());
-        return Revolution{std::move(*c), axis->o, axis->z, SurfaceKind::general};
+        return revolution(std::move(*c), axis->o, axis->z);
     }
     return refuse(RefusalKind::unsupported, f_.label(i),
                   text("is a surface that has no exact counterpart here (byte ", f_.instances[i].at, ")"));

@@ -49,6 +49,17 @@
 
 namespace freiform {
 
+SurfaceGeometry revolution(CurveGeometry<3> profile, const Vec<3>& origin, const Vec<3>& axis) {
+    const auto* l = std::get_if<Line<3>>(&profile);
+    if (l != nullptr && norm(cross(l->direction, axis)) <= 4 * kUnitRoundoff * norm(l->direction)) {
+        const Vec<3> centre = origin + dot(l->origin - origin, axis) * axis, x = l->origin - centre;
+        if (norm(x) > 0)
+            return Extrusion{Conic<3>{ConicKind::ellipse, centre, x, cross(axis, x)}, l->direction,
+                             SurfaceKind::cylinder};
+    }
+    return Revolution{std::move(profile), origin, axis};
+}
+
 namespace {
 
 using detail::cosine;

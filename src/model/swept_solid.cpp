@@ -7,6 +7,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
+#include <freiform/make/revolve.hpp>
 #include <freiform/spline/in_space.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
@@ -85,7 +86,7 @@ struct Sweep {
     }
     SurfaceGeometry wall(CurveGeometry<3> profile) const {
         if (!turns()) return Extrusion{std::move(profile), by};
-        return Revolution{std::move(profile), origin, axis};
+        return revolution(std::move(profile), origin, axis);
     }
     detail::SweptCurve curve(const CurveGeometry<2>& c) const {
         const Vec<3> p = in_space(jet<0>(c, domain(c)[0].lo).value());

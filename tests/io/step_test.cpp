@@ -11,6 +11,7 @@
 #include <sstream>
 #include <support/random.hpp>
 #include <support/refusal.hpp>
+#include <support/regions.hpp>
 #include <support/solids.hpp>
 #include <support/step_measures.hpp>
 #include <unistd.h>
@@ -147,6 +148,41 @@ TEST_F(Step, trimmed_surfaces_come_back_with_their_boundaries) {
         EXPECT_EQ(back.edges.size(), 8u) << "cut at corners";
         EXPECT_NEAR(area_of(back, 2e-3), area, 2e-3 * area);
         for (const Edge& e : back.edges) EXPECT_LE(e.tolerance, iges ? 2e-5 : 1e-6);
+    }
+}
+
+// Edges and profiles are arcs with the parameters that they have, and loops have their curves in those: what
+// reads them has neither to guess which side of a seam the loop is on (of the sphere, which has a window
+// across, it took the window for the face) nor to bring edges and curves together.
+TEST_F(Step, turned_surfaces_come_back_from_iges_with_what_lies_across_their_seams) {
+    for (const auto& [name, size] : {std::pair{"window_in_a_sphere", 0.3}, {"quarter_dome", 20.0}}) {
+        const std::string file = text(FREIFORM_SOURCE_DIR, "/tests/data/step/", name, ".stp");
+        const Model model = must(read_step(must(read_file(file, 1 << 20))));
+        const Model back = read_again({"mm", {{"", model}}}, true);
+        ASSERT_EQ(back.faces.size(), model.faces.size()) << name;
+        EXPECT_EQ(back.edges.size(), model.edges.size()) << name;
+        const double area = area_of(model, 1e-3 * size);
+        EXPECT_NEAR(area_of(back, 1e-3 * size), area, 1e-3 * area) << name;
+        const auto mesh = must(tessellate(back, {.tolerance = 1e-3 * size}));
+        EXPECT_LE(mesh.boundary_gap, 1e-7 * size) << name;
+    }
+}
+
+// As surfaces and edges come back as what they are, it takes no more triangles than before.
+TEST_F(Step, cylinders_cones_and_ellipses_come_back_from_iges_as_such) {
+    const auto tube = [](double angle) {
+        return must(solid_of_revolution(loops_of({{rectangle(1, 0, 2, 3)}}), {{}, {{0, 1, 0}}}, angle));
+    };
+    for (const Model& solid :
+         {tube(2 * kPi), tube(2), frustum(2, 1, 3), must(prism(ring_region(), {{0, 0, 2}})),
+          must(solid_of_revolution(loops_of({{ellipse({{5, 5}}, 2, 1)}}), {{}, {{0, 1, 0}}}, 2))}) {
+        const Model back = read_again({"mm", {{"", solid}}}, true);
+        const auto mine = must(tessellate(solid, {.tolerance = 1e-2})),
+                   again = must(tessellate(back, {.tolerance = 1e-2}));
+        EXPECT_NEAR(double(again.mesh.triangles.size()), double(mine.mesh.triangles.size()),
+                    0.1 * double(mine.mesh.triangles.size()));
+        EXPECT_EQ(again.topology.open_edges, 0);
+        EXPECT_LE(again.boundary_gap, 1e-9);
     }
 }
 

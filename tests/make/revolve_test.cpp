@@ -382,5 +382,26 @@ TEST(RevolvePolynomial, of_rational_profiles_with_equal_weights_and_of_bad_toler
     EXPECT_TRUE(fine.error().where.starts_with("profile")) << fine.error().where;
 }
 
+TEST(Revolution, of_a_line_along_the_axis_is_the_cylinder_with_the_same_parameters) {
+    const Vec<3> axis{{0.48, 0.6, 0.64}}, origin{{1, -2, 3}}, away{{0.8, 0, -0.6}};
+    for (const double side : {1.0, -1.0}) {
+        const Line<3> line{origin + 0.7 * axis + 1.5 * away, (side * 2) * axis};
+        const SurfaceGeometry made = revolution(line, origin, axis);
+        ASSERT_TRUE(std::holds_alternative<Extrusion>(made));
+        EXPECT_EQ(kind_name(made), "cylinder");
+        const SurfaceGeometry turned = Revolution{line, origin, axis};
+        for (const double u : {-1.0, 0.0, 0.3, 2.0, 6.0})
+            for (const double v : {-3.0, 0.0, 0.5}) {
+                const auto a = jet<1>(made, Param<2>{{u, v}}), b = jet<1>(turned, Param<2>{{u, v}});
+                for (std::size_t k = 0; k < 3; ++k) EXPECT_LE(norm(a.d[k] - b.d[k]), 1e-14);
+            }
+    }
+    const auto other = [&](const Vec<3>& from, const Vec<3>& along) {
+        return std::holds_alternative<Revolution>(revolution(Line<3>{from, along}, origin, axis));
+    };
+    EXPECT_TRUE(other(origin + away, axis + 1e-12 * away)) << "a cone";
+    EXPECT_TRUE(other(origin + axis, axis)) << "no surface, which others refuse";
+}
+
 }  // namespace
 }  // namespace freiform

@@ -1,6 +1,7 @@
 // IGES files (5.3): entities 126 (curves), 128 (surfaces), 144 (trimmed surfaces, with 142 and 102 for their
-// loops) and 186 (solids, with 514 to 502 for shells, faces, loops, edges and vertices), numbers as the
-// shortest text that reads back as the same double.
+// loops) and 186 (solids, with 514 to 502 for shells, faces, loops, edges and vertices, and among them 100,
+// 104, 110, 120 and 190 for what is round or straight), numbers as the shortest text that reads back as the
+// same double.
 #pragma once
 #include <freiform/shape.hpp>
 

@@ -6,8 +6,13 @@
 // the axis' direction, positive angles turn counter-clockwise. Plane profiles lie in z = 0.
 #pragma once
 #include <freiform/make/made_surface.hpp>
+#include <freiform/spline/geometry.hpp>
 
 namespace freiform {
+
+// The analytic one about an axis of length 1. Of a line along it, as far as rounding tells, the cylinder as
+// the extrusion of a circle: with the same parameters, and known to be straight along v.
+SurfaceGeometry revolution(CurveGeometry<3> profile, const Vec<3>& origin, const Vec<3>& axis);
 
 struct Axis {
     Vec<3> origin{};
