@@ -235,7 +235,7 @@ void Converter::open_slit(Loop& loop, const Slit& slit) {
 }
 
 // REQUIRES f oriented forward.
-Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
+Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where) {
     const Handle(Geom_Surface) s = BRep_Tool::Surface(f);
     if (s.IsNull()) return refuse(RefusalKind::unsupported, "face", "has no surface (only triangles)");
     const Handle(Geom_Plane) plane = as_plane(s);
@@ -279,6 +279,14 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f) {
         remove_bridges(loop, out_.model.edges, period);
         for (const Coedge& c : loop.coedges)
             add_hull(used, c.curve, out_.model.edges[std::size_t(c.edge)].range);
+    }
+    if (enclose_less_than_nothing(out.loops, out_.model.edges)) {
+        ++out_.doubts;
+        report(-1,
+               "its loops run the wrong way around it, or one around them is missing; what they enclose is "
+               "taken as it stands",
+               0, 0);
+        out_.model.approximations.back().where = where;
     }
     auto converted = surface(s, {used.side(0), used.side(1)});
     if (!converted) return std::unexpected(converted.error());

@@ -30,6 +30,7 @@ std::optional<Vec<2>> periods_of(const Coedge& c, const Edge& e, const std::arra
 struct Extent {
     Box<2> box;
     double area = 0;
+    Vec<2> open{};  // from its beginning to its end
 };
 Extent extent_of(const Loop& loop, const std::vector<Edge>& edges) {
     Extent out;
@@ -41,6 +42,7 @@ Extent extent_of(const Loop& loop, const std::vector<Edge>& edges) {
             out.box.add(along.back());
         }
     }
+    out.open = along.back() - along[0];
     for (std::size_t i = 0; i < along.size(); ++i) {
         const Vec<2> a = along[i] - along[0], b = along[(i + 1) % along.size()] - along[0];
         out.area += (a[0] * b[1] - a[1] * b[0]) / 2;
@@ -151,6 +153,22 @@ void remove_bridges(Loop& loop, const std::vector<Edge>& edges, const std::array
     }
     const double same_side = with.area < 0 ? -without.area : without.area;
     if (over && same_side > kSliver * turn) loop = std::move(left);
+}
+
+bool enclose_less_than_nothing(const std::vector<Loop>& loops, const std::vector<Edge>& edges) {
+    Box<2> box;
+    double area = 0;
+    std::vector<Vec<2>> open;
+    for (const Loop& l : loops) {
+        const Extent one = extent_of(l, edges);
+        box.add(one.box.lo), box.add(one.box.hi);
+        area += one.area;
+        open.push_back(one.open);
+    }
+    const Vec<2> size = box.hi - box.lo;
+    for (const Vec<2>& by : open)
+        if (!(std::abs(by[0]) <= kSliver * size[0] && std::abs(by[1]) <= kSliver * size[1])) return false;
+    return area < -kSliver * size[0] * size[1];
 }
 
 }  // namespace freiform::occt

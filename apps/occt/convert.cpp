@@ -45,7 +45,7 @@ Result<int> Converter::face(const TopoDS_Face& original, const TopLoc_Location& 
     // What a refused face brought along stays only if another face wants it; see `finish`.
     auto made = [&]() -> Result<Face> {
         try {
-            return geometry_of(f);
+            return geometry_of(f, where);
         } catch (const Standard_Failure& failure) {
             return refuse(RefusalKind::unreadable, "face",
                           text(failure.DynamicType()->Name(), ": ", failure.GetMessageString()));
@@ -160,9 +160,11 @@ Conversion Converter::finish() {
     }
     std::size_t told = 0;
     for (std::size_t i = 0; i < m.approximations.size(); ++i) {
-        const int edge = place[std::size_t(approximated_[i])];
-        if (edge < 0) continue;
-        m.approximations[i].where = text("edges[", edge, "]");
+        if (approximated_[i] >= 0) {  // others are of the file
+            const int edge = place[std::size_t(approximated_[i])];
+            if (edge < 0) continue;
+            m.approximations[i].where = text("edges[", edge, "]");
+        }
         if (told != i) m.approximations[told] = std::move(m.approximations[i]);
         ++told;
     }

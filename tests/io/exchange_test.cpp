@@ -133,6 +133,18 @@ INSTANTIATE_TEST_SUITE_P(Exchange, ReadsFile,
                              return name;
                          });
 
+// A patch of a cylinder, cut out by a loop that has it on its right.
+TEST_F(Exchange, tells_of_loops_that_run_the_wrong_way) {
+    if (!fs::exists(FREIFORM_OCCT_BINARY)) GTEST_SKIP() << FREIFORM_OCCT_BINARY << " is not built";
+    const Variable reader("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY);
+    const auto model = read_with_occt(FREIFORM_SOURCE_DIR "/tests/data/brep/turned_loop.brep");
+    ASSERT_TRUE(model.has_value()) << model.error().message;
+    EXPECT_EQ(model->faces.size(), 1u);
+    ASSERT_FALSE(model->approximations.empty());
+    EXPECT_EQ(model->approximations[0].where, "face 0");
+    EXPECT_NE(model->approximations[0].what.find("run the wrong way"), std::string::npos);
+}
+
 TEST_F(Exchange, leaves_coordinates_in_the_unit_of_the_file) {
     FF_CORPUS_OR_SKIP(inches, "step/cube-in.step");
     FF_CORPUS_OR_SKIP(millimetres, "step/cube-mm.step");
