@@ -42,7 +42,7 @@ Extent extent_of(const Loop& loop, const std::vector<Edge>& edges) {
             out.box.add(along.back());
         }
     }
-    out.open = along.back() - along[0];
+    if (!along.empty()) out.open = along.back() - along[0];
     for (std::size_t i = 0; i < along.size(); ++i) {
         const Vec<2> a = along[i] - along[0], b = along[(i + 1) % along.size()] - along[0];
         out.area += (a[0] * b[1] - a[1] * b[0]) / 2;

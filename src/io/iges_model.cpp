@@ -4,18 +4,19 @@
 //     186 solid -> 514 shell -> 510 face -> 508 loop -> 504 edges -> 502 vertices
 //
 // Edges are lines (110), arcs of circles and ellipses (100, 104) and splines, parts of other conics as
-// rational ones. Flat surfaces are 190, revolutions and circular cylinders 120, all others splines (128), of
-// extrusions exact ones over what the face uses of them. Loops have curves in the parameters, too, where the
-// parameters of the entity are ours or linear in them, of edges as well: those who read have to guess at
-// seams otherwise, and lose what lies across. Flat faces need none. Parabolas and hyperbolas, and extrusions
-// of all conics but circles, have parameters of their own.
+// rational ones. Flat surfaces are 190, revolutions and circular cylinders 120, offsets 140, all others
+// splines (128), of extrusions exact ones over what the face uses of them. Loops have curves in the
+// parameters, too, where the parameters of the entity are ours or linear in them, of edges as well: those who
+// read have to guess at seams otherwise, and lose what lies across. Flat faces need none. Parabolas and
+// hyperbolas, ellipses all of which is an edge that begins elsewhere than at an axis, and extrusions of all
+// conics but circles have parameters of their own.
 //
 // Orientation. Loops run counter-clockwise about the normal of the surface; a shell says which of its faces
 // are turned. Revolutions are parametrised by the profile first, ours by the angle: about the opposite axis
 // the normals are the same.
 //
-// References: the Initial Graphics Exchange Specification, version 5.3, 4.3, 4.5, 4.13, 4.18,
-// 4.21, 4.49, 4.111 and 4.144 to 4.151.
+// References: the Initial Graphics Exchange Specification, version 5.3, 4.3, 4.5, 4.13, 4.18, 4.21,
+// 4.32, 4.49, 4.111 and 4.144 to 4.151.
 // Why not 144 for each face: nothing then says that faces share edges, and every reader guesses.
 #include "iges_file.hpp"
 
@@ -102,11 +103,21 @@ private:
     }
 
     // Those that are no splines with the parameters that they have, but for where these begin, so that loops'
-    // curves in the parameters go with them.
+    // curves in the parameters go with them. All of an ellipse begins at its axis for some who read.
+    static bool keeps_parameters(const CurveGeometry<3>& curve, Interval on) {
+        const auto* c = std::get_if<Conic<3>>(&curve);
+        if (c == nullptr || c->kind != ConicKind::ellipse) return c == nullptr;
+        const Axes of(*c);
+        return of.circle || !is_whole(on) ||
+               std::abs(std::remainder(on.lo - of.turn, kTwoPi)) <= 16 * kUnitRoundoff;
+    }
+    static bool is_whole(Interval on) { return on.length() >= kTwoPi * (1 - 16 * kUnitRoundoff); }
+
     Result<int> part(const CurveGeometry<3>& curve, Interval on) {
         if (const auto* l = std::get_if<Line<3>>(&curve)) return straight(*l, on);
-        if (const auto* c = std::get_if<Conic<3>>(&curve); c && c->kind == ConicKind::ellipse)
-            return arc(*c, on).entry;
+        if (keeps_parameters(curve, on)) {
+            if (const auto* c = std::get_if<Conic<3>>(&curve)) return arc(*c, on).entry;
+        }
         const auto made = space_spline(curve, on);
         if (!made) return std::unexpected(made.error());
         return spline<3>(*made);
@@ -191,14 +202,13 @@ private:
         if (!surface) return std::unexpected(surface.error());
         std::vector<std::string> values = {text(surface->entry), text(f.loops.size()),
                                            f.loops.size() == 1 ? "1" : "0"};
-        // Parabolas and hyperbolas are splines with parameters of their own; readers find such curves better.
+        // Those who read find curves to edges with parameters of their own better.
         const bool turned =
             std::holds_alternative<Extrusion>(f.surface) || std::holds_alternative<Revolution>(f.surface);
         const bool own = turned && std::ranges::any_of(f.loops, [&](const Loop& l) {
                              return std::ranges::any_of(l.coedges, [&](const Coedge& c) {
-                                 const auto& curve = m_.edges[std::size_t(c.edge)].curve;
-                                 const auto* conic = curve ? std::get_if<Conic<3>>(&*curve) : nullptr;
-                                 return conic != nullptr && conic->kind != ConicKind::ellipse;
+                                 const Edge& e = m_.edges[std::size_t(c.edge)];
+                                 return e.curve && !keeps_parameters(*e.curve, e.range);
                              });
                          });
         for (const Loop& l : f.loops) {
@@ -259,7 +269,8 @@ private:
                 return turned(Line<3>{c->centre + c->x, s.direction}, c->centre, n, used);
         }
         const bool conic = std::holds_alternative<Conic<3>>(s.profile);  // of it the angles that are used
-        const auto profile = space_spline(s.profile, conic ? used.side(0) : domain(s.profile)[0]);
+        const Interval angles{used.side(0).lo, std::min(used.side(0).hi, used.side(0).lo + kTwoPi)};
+        const auto profile = space_spline(s.profile, conic ? angles : domain(s.profile)[0]);
         if (!profile) return std::unexpected(profile.error());
         return visit_one(
             [&](const auto& c) -> Result<WrittenSurface> {
@@ -290,8 +301,23 @@ private:
         return turned(s.profile, s.origin, s.axis, used);
     }
 
-    Result<WrittenSurface> one(const OffsetSurface&, const Box<2>&) {
-        return refuse(RefusalKind::unsupported, "", "an offset surface; STEP files have them");
+    // By the normal of the base where its parameters begin; distances against it are negative.
+    Result<WrittenSurface> one(const OffsetSurface& s, const Box<2>& used) {
+        const auto base = visit_one([&](const auto& x) { return one(x, used); }, *s.base);
+        if (!base) return base;
+        auto on = domain(*s.base);
+        for (int d = 0; d < 2; ++d)
+            if (!std::isfinite(on[std::size_t(d)].length())) on[std::size_t(d)] = used.side(d);
+        Vec<3> n = normal(*s.base, Param<2>{{on[0].lo, on[1].lo}});
+        if (!(norm(n) > 0)) n = normal(*s.base, Param<2>{{on[0].hi, on[1].hi}});
+        if (!(norm(n) > 0))
+            return refuse(RefusalKind::unsupported, "",
+                          "an offset of a surface without normals where it begins and ends; STEP files have "
+                          "them");
+        std::vector<std::string> values;
+        for (const double x : n.c) values.push_back(real(x));
+        values.push_back(real(s.distance)), values.push_back(text(base->entry));
+        return written(file_.entity("140", IgesUse::part, values), base->parameters);
     }
 
     // The profile turned once about the axis: its angle, from the opposite axis, is the second parameter.
@@ -331,18 +357,26 @@ private:
         return file_.entity("110", IgesUse::part, ends);
     }
 
-    // Of an ellipse, at most once round, by its axes; its parameter is ours plus `shift`.
+    // Of an ellipse: the parameter of one of them, any of a circle.
+    struct Axes {
+        explicit Axes(const Conic<3>& c) {
+            const double skew = dot(c.x, c.y), xx = dot(c.x, c.x), yy = dot(c.y, c.y);
+            circle = std::max(std::abs(skew), std::abs(xx - yy)) <= 16 * kUnitRoundoff * (xx + yy);
+            if (!circle) turn = std::atan2(2 * skew, xx - yy) / 2;
+        }
+        bool circle = false;
+        double turn = 0;
+    };
+
+    // Of an ellipse, at most once round, by its axes; its parameter is ours plus `shift`. All of one begins
+    // at the axis.
     struct Arc {
         int entry = 0;
         double shift = 0;
     };
     Arc arc(const Conic<3>& c, Interval on) {
-        const double skew = dot(c.x, c.y), more = dot(c.x, c.x) - dot(c.y, c.y),
-                     all = dot(c.x, c.x) + dot(c.y, c.y);
-        // Of circles the first axis is where the arc begins.
-        const bool circle = std::max(std::abs(skew), std::abs(more)) <= 16 * kUnitRoundoff * all;
-        const double turn = circle ? on.lo : std::atan2(2 * skew, more) / 2,
-                     length = std::min(on.length(), kTwoPi);
+        const auto [circle, axis] = Axes(c);
+        const double turn = circle ? on.lo : axis;
         const Vec<3> a = std::cos(turn) * c.x + std::sin(turn) * c.y,
                      b = std::cos(turn) * c.y - std::sin(turn) * c.x, n = cross(a, b);
         const Vec<3> x = (1 / norm(a)) * a, z = (1 / norm(n)) * n, y = cross(z, x);
@@ -355,8 +389,8 @@ private:
         const auto at = [&](double t) {
             return std::array{real(width * std::cos(t)), real(height * std::sin(t))};
         };
-        const auto first = at(begin),
-                   last = length >= kTwoPi * (1 - 16 * kUnitRoundoff) ? first : at(begin + length);
+        const auto first = at(is_whole(on) ? 0 : begin),
+                   last = is_whole(on) ? first : at(begin + on.length());
         const int entry =
             circle ? file_.entity("100", IgesUse::part,
                                   {"0.", "0.", "0.", first[0], first[1], last[0], last[1]}, 0, placed)

@@ -155,7 +155,8 @@ TEST_F(Step, trimmed_surfaces_come_back_with_their_boundaries) {
 // reads them has neither to guess which side of a seam the loop is on (of the sphere, which has a window
 // across, it took the window for the face) nor to bring edges and curves together.
 TEST_F(Step, turned_surfaces_come_back_from_iges_with_what_lies_across_their_seams) {
-    for (const auto& [name, size] : {std::pair{"window_in_a_sphere", 0.3}, {"quarter_dome", 20.0}}) {
+    for (const auto& [name, size] :
+         {std::pair{"window_in_a_sphere", 0.3}, {"quarter_dome", 20.0}, {"slanted_cylinder", 4.0}}) {
         const std::string file = text(FREIFORM_SOURCE_DIR, "/tests/data/step/", name, ".stp");
         const Model model = must(read_step(must(read_file(file, 1 << 20))));
         const Model back = read_again({"mm", {{"", model}}}, true);
@@ -183,6 +184,39 @@ TEST_F(Step, cylinders_cones_and_ellipses_come_back_from_iges_as_such) {
                     0.1 * double(mine.mesh.triangles.size()));
         EXPECT_EQ(again.topology.open_edges, 0);
         EXPECT_LE(again.boundary_gap, 1e-9);
+    }
+}
+
+TEST_F(Step, offsets_come_back_from_iges_on_their_side) {
+    for (const double z : {0.5, -0.5}) {
+        const auto edge = [&](int i, const char* from, const char* along) {
+            return text(R"({"curve": {"type": "line", "origin": [)", from, ",", z, R"(], "direction": [)",
+                        along, R"(,0]}, "range": [0, 1], "start": )", i, R"(, "end": )", (i + 1) % 4, "}");
+        };
+        const auto use = [&](int i, const char* from, const char* along) {
+            return text(R"({"edge": )", i, R"(, "curve": {"type": "line", "origin": [)", from,
+                        R"(], "direction": [)", along, "]}}");
+        };
+        const char* corner[] = {"0,0", "1,0", "1,1", "0,1"};
+        const char* way[] = {"1,0", "0,1", "-1,0", "0,-1"};
+        std::string vertices, edges, loop;
+        for (int i = 0; i < 4; ++i) {
+            const char* comma = i > 0 ? "," : "";
+            vertices += text(comma, R"({"point": [)", corner[i], ",", z, "]}");
+            edges += comma + edge(i, corner[i], way[i]);
+            loop += comma + use(i, corner[i], way[i]);
+        }
+        const Document given = must(read_document(text(
+            R"({"freiform": 1, "unit": "mm", "objects": [{"type": "model", "vertices": [)", vertices,
+            R"(], "edges": [)", edges, R"(], "faces": [{"surface": {"type": "offset", "distance": )", z,
+            R"(, "base": {"type": "surface", "points": [[[0,0,0],[0,1,0]],[[1,0,0],[1,1,0]]]}}, "loops": [[)",
+            loop, R"(]]}], "shells": [{"faces": [{"face": 0}]}], "bodies": [{"shells": [0]}]}]})")));
+        const Model back = read_again(given, true);
+        ASSERT_EQ(back.faces.size(), 1u);
+        const auto* offset = std::get_if<OffsetSurface>(&back.faces[0].surface);
+        ASSERT_NE(offset, nullptr);
+        EXPECT_EQ(offset->distance, z);
+        EXPECT_LE(must(tessellate(back, {.tolerance = 1e-2})).boundary_gap, 1e-12);
     }
 }
 

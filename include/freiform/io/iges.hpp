@@ -13,9 +13,9 @@ namespace freiform {
 // them; others, and none, count as the millimetre. Loops of trimmed surfaces are written in the parameters
 // and in space, there as the images of the former (exact up to rounding), turned as orient_loops has them; a
 // surface with several outer loops becomes several. Refuses, with the object, what is neither a curve nor a
-// surface of two or three coordinates nor a model (unsupported; of models offset surfaces and faces without
-// loops), images of degrees above 25, several outer loops with holes, and documents without objects
-// (no_answer).
+// surface of two or three coordinates nor a model (unsupported; of models faces without loops, and offsets of
+// surfaces that have no normal where they begin and end), images of degrees above 25, several outer loops
+// with holes, and documents without objects (no_answer).
 Result<std::string> write_iges(const Document& document);
 
 }  // namespace freiform
