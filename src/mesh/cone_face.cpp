@@ -34,10 +34,11 @@
 // any (u, v), here middles of sides and of the circle through the corners. Around poles that asks for a fan
 // where feet (q in bending.cpp) ask for ever smaller triangles. Nothing is left out: let G be the projection
 // of L from the centre. Triangles that keep to R / 8 are smaller than R, so that nowhere G is opposite to S,
-// and the degree of G is that of S. On the boundary a point first goes along its side to the one y' with
-// S(y') above L (edge_error.cpp), which is within E of L, then along a great circle to G, which is within e;
-// between them the distance is at most that of the farther one and (E + e)^2 / (8 R), which counts as a
-// sliver.
+// and the degree of G is that of S. Corners a little beyond a pole, b from the axis, count as at it: they are
+// less than 2 b away, and so is what the surface has there. On the boundary a point first goes along its side
+// to the one y' with S(y') above L (edge_error.cpp), which is within E of L, then along a great circle to G,
+// which is within e; between them the distance is at most that of the farther one and (E + e)^2 / (8 R),
+// which counts as a sliver.
 //
 // Why not by what is seen along normals: S_uv / |S_u| is 1 / y, so feet near the apex have to be looked for
 // in parts of the height there. Why not developed into the plane: the curves of trims would have to follow.
@@ -55,6 +56,7 @@ namespace {
 
 constexpr double kGrow = 1 + 1e-12;
 constexpr double kBeyondApex = 0x1p-36;  // of the height of the face
+constexpr double kBeyondPole = 0x1p-28;  // of the radius: what files with ten digits of an angle have
 constexpr int kSamples = 9;
 constexpr double kLessThanTurn = 3.2;  // from pole to pole, with roundings
 constexpr double kWorth = 0.25;        // of second derivatives, what is seen along the normal
@@ -80,6 +82,11 @@ std::optional<ConeFace> ConeFace::make(const Apex& apex, const DerivativeQuery<2
     out.slip_ = 2 * apex.slip;  // of corners, and of what they are compared with
     if (apex.radius > 0) {
         out.sphere_ = std::get_if<Revolution>(&surface.geometry());
+        const Interval on = face.side(1);
+        for (const double v : {on.lo, on.hi})
+            out.beyond_ = std::max(out.beyond_, -height_of(*out.sphere_, apex, v));
+        if (!(out.beyond_ <= kBeyondPole * apex.radius)) return std::nullopt;
+        out.slip_ += 5 * out.beyond_;
         return out;
     }
     if (!is_on_one_side(apex, face)) return std::nullopt;
@@ -111,7 +118,10 @@ ConeFace::Bends ConeFace::bends(const DerivativeQuery<2, 3>& surface, const Box<
 }
 
 double ConeFace::height(const Vec<2>& p) const {
-    if (sphere_) return height_of(*sphere_, apex_, p[1]);
+    if (sphere_) {
+        const double h = height_of(*sphere_, apex_, p[1]);
+        return h < 0 && h >= -beyond_ ? 0 : h;
+    }
     if (std::isinf(apex_.at)) return 1;
     const double v = p[ruled()], whole = far_ - apex_.at;
     const double off = 4 * kUnitRoundoff * (std::abs(v) + std::abs(apex_.at) + std::abs(far_));
@@ -189,7 +199,8 @@ bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box
     const Interval lines = face.side(apex.ruled), on = face.side(1 - apex.ruled);
     if (apex.radius > 0) {
         const auto& s = std::get<Revolution>(surface);
-        return std::min(height_of(s, apex, lines.lo), height_of(s, apex, lines.hi)) >= 0 &&
+        return std::min(height_of(s, apex, lines.lo), height_of(s, apex, lines.hi)) >=
+                   -kBeyondPole * apex.radius &&
                height_of(s, apex, lines.middle()) > 0 && lines.length() < kLessThanTurn;
     }
     if (!is_on_one_side(apex, face)) return false;

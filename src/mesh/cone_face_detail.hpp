@@ -41,6 +41,7 @@ private:
     double seen_across(double highest) const;
     Apex apex_;
     double far_ = 0, slip_ = 0;
+    double beyond_ = 0;  // from the axis of a sphere, the farthest point of the face beyond a pole
     const Revolution* sphere_ = nullptr;
 };
 

@@ -251,6 +251,29 @@ TEST(ConeFace, bounds_of_spheres_hold_and_are_nearly_reached) {
     EXPECT_FALSE(apex_of(ring));
 }
 
+TEST(ConeFace, corners_a_hair_beyond_a_pole_count_as_at_it) {
+    const SurfaceGeometry s = sphere(2);
+    const DerivativeQuery<2, 3> query(s);
+    const double pole = kTwoPi / 4, beyond = 1e-9;
+    const Box<2> whole{{{0, -pole - beyond}}, {{kTwoPi, pole + beyond}}};
+    const auto apex = apex_for(s, whole);
+    ASSERT_TRUE(apex);
+    EXPECT_FALSE(apex_for(s, {{{0, -pole - 1e-7}}, {{kTwoPi, pole}}}));
+    EXPECT_FALSE(ConeFace::make(*apex, query, {{{0, 0}}, {{kTwoPi, pole + 1e-7}}}));
+    const auto face = ConeFace::make(*apex, query, whole),
+               plain = ConeFace::make(*apex, query, {{{0, -pole}}, {{kTwoPi, pole}}});
+    ASSERT_TRUE(face && plain);
+    const auto triangle = [&](double top) {
+        return std::array<Vec<2>, 3>{{{{0, 1.4}}, {{0.2, 1.4}}, {{0.1, top}}}};
+    };
+    const auto bound = [&](const ConeFace& f, double top) {
+        return f.error(f.bends(query, {{{0, 1.4}}, {{0.2, top}}}), triangle(top));
+    };
+    // What moves, corner and surface, is less than 2 of the distance from the axis away from the pole.
+    EXPECT_GE(bound(*face, pole + beyond), bound(*plain, pole) + 4 * 2 * beyond);
+    EXPECT_LE(bound(*face, pole + beyond), bound(*plain, pole) + 6 * 2 * beyond);
+}
+
 // A side that is straight between parameters is where `bow` says beside that of flat triangles.
 TEST(ConeFace, sides_bow_as_far_as_is_said) {
     const SurfaceGeometry s = cone();

@@ -240,6 +240,27 @@ TEST(TessellateEconomy, spheres_of_any_size_take_as_many_triangles) {
     }
 }
 
+// Files with ten digits have poles a little beyond where they are.
+TEST(TessellateEconomy, spheres_a_hair_beyond_their_poles_take_as_many_triangles) {
+    const Model exact = test::sphere({}, 2);
+    Model written = exact;
+    for (Coedge& c : written.faces[0].loops[0].coedges) {
+        auto& line = std::get<Line<2>>(c.curve);
+        const bool pole = written.edges[std::size_t(c.edge)].degenerate;
+        if (pole) line.origin[1] *= 1 + 1e-9;
+        if (!pole) line.origin[1] *= 1 + 1e-9, line.direction[1] *= 1 + 1e-9;
+    }
+    for (const double tolerance : {1e-2, 1e-3}) {
+        const auto a = tessellate(exact, {.tolerance = tolerance}),
+                   b = tessellate(written, {.tolerance = tolerance});
+        ASSERT_TRUE(a && b && b->refused.empty());
+        EXPECT_LE(b->error_bound, tolerance);
+        EXPECT_LE(double(b->mesh.triangles.size()), 1.05 * double(a->mesh.triangles.size()));
+        EXPECT_EQ(b->topology.open_edges, 0);
+        EXPECT_LE(sampled_deviation(written, *b, 4), b->error_bound + b->boundary_gap);
+    }
+}
+
 // Rational surfaces move points along themselves; here with poles, kinks in speed, and ends of all kinds.
 TEST(TessellateEconomy, bounds_hold_where_points_move_along_the_surface) {
     Random rng(31);

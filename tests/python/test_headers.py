@@ -129,6 +129,7 @@ FUNCTION_EXCEPTIONS = {
     "uniform_subdivision": "Basis.halve_uniform gives its matrix",
     "unit_box": "for C++",
     "usual_range": "numpy.quantile",
+    "revolution": "of surfaces as models have them; revolve",
 }
 
 
