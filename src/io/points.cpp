@@ -132,14 +132,25 @@ Refusal in_file(const std::string& path, Refusal r) {
     return r;
 }
 
+// What some editors put in front of UTF-8.
+constexpr std::string_view kMark = "\xEF\xBB\xBF";
+
+// Lines end with a line feed, a carriage return, or both.
+std::string_view next_line(std::string_view& rest) {
+    const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+    const std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(rest.size(), end + (rest.substr(end, 2) == "\r\n" ? 2 : 1)));
+    return line;
+}
+
 }  // namespace
 
 Result<NumberLines> parse_number_lines(std::string_view s) {
     NumberLines out;
-    if (s.starts_with("\xEF\xBB\xBF")) s.remove_prefix(3);  // what some editors put in front of UTF-8
+    if (s.starts_with(kMark)) s.remove_prefix(kMark.size());
     bool heading = false;
     for (std::size_t line = 1; !s.empty(); ++line) {
-        const std::string_view whole = next_part(s, '\n');
+        const std::string_view whole = next_line(s);
         const std::string_view row = trimmed(whole.substr(0, whole.find('#')));
         if (row.empty()) continue;
         std::vector<double> values;
@@ -168,6 +179,7 @@ Result<NumberLines> parse_number_lines(std::string_view s) {
 
 Result<PointTable> parse_points(std::string_view s) {
     std::string_view rest = s;
+    if (rest.starts_with(kMark)) rest.remove_prefix(kMark.size());
     while (!rest.empty() && (is_blank(rest.front()) || rest.front() == '\n')) rest.remove_prefix(1);
     if (rest.starts_with('[') || rest.starts_with('{')) return parse_json(s);
     const auto lines = parse_number_lines(s);

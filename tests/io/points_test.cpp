@@ -19,6 +19,19 @@ TEST(Points, lines_may_have_commas_semicolons_or_blanks_a_heading_and_comments) 
     EXPECT_EQ(parse_points("x y\n1 2\n\n3 4\n")->place, (std::vector<std::string>{"line 2", "line 4"}));
 }
 
+TEST(Points, lines_may_end_as_any_machine_ends_them_and_begin_with_a_mark) {
+    for (const char* bytes : {"1,2\n3,4\n\n5,6", "1,2\r\n3,4\r\n\r\n5,6\r\n", "1,2\r3,4\r\r5,6\r",
+                              "\xEF\xBB\xBF\r\n1,2\n3,4\r5,6"}) {
+        const auto t = parse_points(bytes);
+        ASSERT_TRUE(t) << t.error().where << t.error().message;
+        EXPECT_EQ(t->extent, (Index<2>{3, 1}));
+    }
+    EXPECT_TRUE(parse_points("\xEF\xBB\xBF[[1,2],[3,4]]"));
+    const auto bad = parse_points("1,2\r3,4\r5,x\r");
+    ASSERT_FALSE(bad);
+    EXPECT_EQ(bad.error().where, "line 3");
+}
+
 TEST(Points, json_holds_points_or_rows_of_points) {
     EXPECT_EQ(parse_points(" [[1,2,3],[4,5,6]]")->values, (std::vector<double>{1, 2, 3, 4, 5, 6}));
     const auto t = parse_points(R"({"points": [[[1,2],[3,4],[5,6]], [[7,8],[9,10],[11,12]]]})");
