@@ -60,9 +60,14 @@ constexpr Affinity<2> kSameParameters{{{{1, 0}, {0, 1}}}, {}};
 class IgesModel {
 public:
     IgesModel(IgesFile& file, const Model& model)
-        : file_(file), m_(model), curves_(model.edges.size()), index_(model.edges.size()) {}
+        : file_(file),
+          m_(model),
+          rational_(model.edges.size()),
+          curves_(model.edges.size()),
+          index_(model.edges.size()) {}
 
     Result<void> write() {
+        for (const Face& f : m_.faces) find_conics(f);
         for (std::size_t f = 0; f < m_.faces.size(); ++f)
             if (auto ok = find_edges(m_.faces[f]); !ok)
                 return refuse_within(text("faces[", f, "]"), ok.error());
@@ -78,6 +83,18 @@ public:
     }
 
 private:
+    static bool is_turned(const Face& f) {
+        return std::holds_alternative<Extrusion>(f.surface) || std::holds_alternative<Revolution>(f.surface);
+    }
+
+    // Conics in the parameters of splines become rational; so do their edges then.
+    void find_conics(const Face& f) {
+        if (is_turned(f)) return;
+        for (const Loop& l : f.loops)
+            for (const Coedge& c : l.coedges)
+                if (std::holds_alternative<Conic<2>>(c.curve)) rational_[std::size_t(c.edge)] = true;
+    }
+
     // The curves of all edges, each once.
     Result<void> find_edges(const Face& f) {
         if (f.loops.empty()) return refuse(RefusalKind::unsupported, "loops", "a face without boundary");
@@ -94,7 +111,8 @@ private:
     }
 
     Result<int> edge(const Edge& e, const Coedge& c, const SurfaceGeometry& surface) {
-        if (e.curve) return part(*e.curve, e.range);
+        if (e.curve)
+            return rational_[std::size_t(c.edge)] ? as_spline(*e.curve, e.range) : part(*e.curve, e.range);
         const auto flat = parameter_spline(c.curve, e.range);
         if (!flat) return std::unexpected(flat.error());
         const auto image = image_curve(surface, *flat);
@@ -118,6 +136,10 @@ private:
         if (keeps_parameters(curve, on)) {
             if (const auto* c = std::get_if<Conic<3>>(&curve)) return arc(*c, on).entry;
         }
+        return as_spline(curve, on);
+    }
+
+    Result<int> as_spline(const CurveGeometry<3>& curve, Interval on) {
         const auto made = space_spline(curve, on);
         if (!made) return std::unexpected(made.error());
         return spline<3>(*made);
@@ -203,13 +225,13 @@ private:
         std::vector<std::string> values = {text(surface->entry), text(f.loops.size()),
                                            f.loops.size() == 1 ? "1" : "0"};
         // Those who read find curves to edges with parameters of their own better.
-        const bool turned =
-            std::holds_alternative<Extrusion>(f.surface) || std::holds_alternative<Revolution>(f.surface);
-        const bool own = turned && std::ranges::any_of(f.loops, [&](const Loop& l) {
-                             return std::ranges::any_of(l.coedges, [&](const Coedge& c) {
-                                 const Edge& e = m_.edges[std::size_t(c.edge)];
-                                 return e.curve && !keeps_parameters(*e.curve, e.range);
-                             });
+        const auto is_own = [&](const Coedge& c) {
+            const Edge& e = m_.edges[std::size_t(c.edge)];
+            return std::holds_alternative<Conic<2>>(c.curve) ||
+                   (e.curve && (rational_[std::size_t(c.edge)] || !keeps_parameters(*e.curve, e.range)));
+        };
+        const bool own = is_turned(f) && std::ranges::any_of(f.loops, [&](const Loop& l) {
+                             return std::ranges::any_of(l.coedges, is_own);
                          });
         for (const Loop& l : f.loops) {
             const auto id = loop(l, own ? std::nullopt : surface->parameters);
@@ -403,8 +425,9 @@ private:
 
     IgesFile& file_;
     const Model& m_;
-    std::vector<int> curves_;  // the entities of edges, 0 for degenerate ones
-    std::vector<int> index_;   // their places in the list of edges, from 1
+    std::vector<bool> rational_;  // edges that are splines whatever they are
+    std::vector<int> curves_;     // the entities of edges, 0 for degenerate ones
+    std::vector<int> index_;      // their places in the list of edges, from 1
     int vertices_ = 0, edges_ = 0;
 };
 

@@ -187,6 +187,22 @@ TEST_F(Step, cylinders_cones_and_ellipses_come_back_from_iges_as_such) {
     }
 }
 
+// Both curves of an edge are rational, or both are angles.
+TEST_F(Step, circles_in_the_parameters_of_splines_come_back_from_iges_with_their_edges) {
+    const Document given = must(read_document(R"({"freiform": 1, "unit": "mm", "objects": [{"type": "model",
+        "vertices": [{"point": [1,0,0]}, {"point": [-1,0,0]}],
+        "edges": [{"curve": {"type": "ellipse", "centre": [0,0,0], "x": [1,0,0], "y": [0,1,0]},
+                   "range": [0,3.141592653589793], "start": 0, "end": 1},
+                  {"curve": {"type": "ellipse", "centre": [0,0,0], "x": [1,0,0], "y": [0,1,0]},
+                   "range": [3.141592653589793,6.283185307179586], "start": 1, "end": 0}],
+        "faces": [{"surface": {"type": "surface", "points": [[[-2,-2,0],[-2,2,0]],[[2,-2,0],[2,2,0]]]}, "loops": [[
+            {"edge": 0, "curve": {"type": "ellipse", "centre": [0.5,0.5], "x": [0.25,0], "y": [0,0.25]}},
+            {"edge": 1, "curve": {"type": "ellipse", "centre": [0.5,0.5], "x": [0.25,0], "y": [0,0.25]}}]]}],
+        "shells": [{"faces": [{"face": 0}]}], "bodies": [{"shells": [0]}]}]})"));
+    const auto mesh = must(tessellate(read_again(given, true), {.tolerance = 1e-2}));
+    EXPECT_LE(mesh.boundary_gap, 1e-14);
+}
+
 TEST_F(Step, offsets_come_back_from_iges_on_their_side) {
     for (const double z : {0.5, -0.5}) {
         const auto edge = [&](int i, const char* from, const char* along) {
