@@ -18,7 +18,7 @@
 // References: the Initial Graphics Exchange Specification, version 5.3, 4.3, 4.5, 4.13, 4.18, 4.21,
 // 4.32, 4.49, 4.111 and 4.144 to 4.151.
 // Why not 144 for each face: nothing then says that faces share edges, and every reader guesses.
-#include "iges_file.hpp"
+#include "iges_arcs.hpp"
 
 #include <freiform/core/visit.hpp>
 #include <freiform/make/image_curve.hpp>
@@ -42,12 +42,6 @@ void add_extent(Box<2>& box, const CurveGeometry<2>& curve, Interval on) {
             }
         },
         curve);
-}
-
-bool is_circle(const Conic<3>& c) {
-    const double xx = dot(c.x, c.x), yy = dot(c.y, c.y);
-    return c.kind == ConicKind::ellipse && std::abs(xx - yy) <= 16 * kUnitRoundoff * xx &&
-           std::abs(dot(c.x, c.y)) <= 16 * kUnitRoundoff * xx;
 }
 
 // A surface in the file, and where our parameters are in its own, if linear maps tell.
@@ -120,21 +114,10 @@ private:
         return spline<3>(*image);
     }
 
-    // Those that are no splines with the parameters that they have, but for where these begin, so that loops'
-    // curves in the parameters go with them. All of an ellipse begins at its axis for some who read.
-    static bool keeps_parameters(const CurveGeometry<3>& curve, Interval on) {
-        const auto* c = std::get_if<Conic<3>>(&curve);
-        if (c == nullptr || c->kind != ConicKind::ellipse) return c == nullptr;
-        const Axes of(*c);
-        return of.circle || !is_whole(on) ||
-               std::abs(std::remainder(on.lo - of.turn, kTwoPi)) <= 16 * kUnitRoundoff;
-    }
-    static bool is_whole(Interval on) { return on.length() >= kTwoPi * (1 - 16 * kUnitRoundoff); }
-
     Result<int> part(const CurveGeometry<3>& curve, Interval on) {
-        if (const auto* l = std::get_if<Line<3>>(&curve)) return straight(*l, on);
+        if (const auto* l = std::get_if<Line<3>>(&curve)) return add_line(file_, *l, on);
         if (keeps_parameters(curve, on)) {
-            if (const auto* c = std::get_if<Conic<3>>(&curve)) return arc(*c, on).entry;
+            if (const auto* c = std::get_if<Conic<3>>(&curve)) return add_arc(file_, *c, on).entry;
         }
         return as_spline(curve, on);
     }
@@ -285,7 +268,8 @@ private:
             return written(file_.entity("190", IgesUse::part, {text(point), text(normal)}), {});
         }
         const Vec<3> lo = used.side(1).lo * s.direction, hi = used.side(1).hi * s.direction;
-        if (const auto* c = std::get_if<Conic<3>>(&s.profile); c && is_circle(*c)) {
+        if (const auto* c = std::get_if<Conic<3>>(&s.profile);
+            c && c->kind == ConicKind::ellipse && EllipseAxes(*c).circle) {
             const Vec<3> n = cross(c->x, c->y);
             if (norm(cross(n, s.direction)) <= 16 * kUnitRoundoff * norm(n) * norm(s.direction))
                 return turned(Line<3>{c->centre + c->x, s.direction}, c->centre, n, used);
@@ -345,7 +329,7 @@ private:
     // The profile turned once about the axis: its angle, from the opposite axis, is the second parameter.
     Result<WrittenSurface> turned(const CurveGeometry<3>& profile, const Vec<3>& origin, const Vec<3>& axis,
                                   const Box<2>& used) {
-        const int about = straight({origin, (-1 / norm(axis)) * axis}, {0, 1});
+        const int about = add_line(file_, {origin, (-1 / norm(axis)) * axis}, {0, 1});
         const Interval on = used.side(1);
         const double middle = (used.side(0).lo + used.side(0).hi) / 2;
         Affinity<2> parameters{{{{0, 1}, {-1, 0}}}, {{0, kTwoPi * (1 + std::floor(middle / kTwoPi))}}};
@@ -357,7 +341,7 @@ private:
                     parameters.offset[0] = -on.lo / on.length();
                 } else if constexpr (std::same_as<G, Conic<3>>) {
                     if (g.kind != ConicKind::ellipse) return part(profile, on);
-                    const Arc made = arc(g, on);
+                    const IgesArc made = add_arc(file_, g, on);
                     parameters.offset[0] = made.shift;
                     return made.entry;
                 }
@@ -369,58 +353,6 @@ private:
         return written(
             file_.entity("120", IgesUse::part, {text(about), text(*generatrix), "0.", real(kTwoPi)}),
             conic != nullptr && conic->kind != ConicKind::ellipse ? std::nullopt : std::optional(parameters));
-    }
-
-    // Its parameter runs from 0 to 1.
-    int straight(const Line<3>& line, Interval on) {
-        std::vector<std::string> ends;
-        for (const double t : {on.lo, on.hi})
-            for (const double x : (line.origin + t * line.direction).c) ends.push_back(real(x));
-        return file_.entity("110", IgesUse::part, ends);
-    }
-
-    // Of an ellipse: the parameter of one of them, any of a circle.
-    struct Axes {
-        explicit Axes(const Conic<3>& c) {
-            const double skew = dot(c.x, c.y), xx = dot(c.x, c.x), yy = dot(c.y, c.y);
-            circle = std::max(std::abs(skew), std::abs(xx - yy)) <= 16 * kUnitRoundoff * (xx + yy);
-            if (!circle) turn = std::atan2(2 * skew, xx - yy) / 2;
-        }
-        bool circle = false;
-        double turn = 0;
-    };
-
-    // Of an ellipse, at most once round, by its axes; its parameter is ours plus `shift`. All of one begins
-    // at the axis.
-    struct Arc {
-        int entry = 0;
-        double shift = 0;
-    };
-    Arc arc(const Conic<3>& c, Interval on) {
-        const auto [circle, axis] = Axes(c);
-        const double turn = circle ? on.lo : axis;
-        const Vec<3> a = std::cos(turn) * c.x + std::sin(turn) * c.y,
-                     b = std::cos(turn) * c.y - std::sin(turn) * c.x, n = cross(a, b);
-        const Vec<3> x = (1 / norm(a)) * a, z = (1 / norm(n)) * n, y = cross(z, x);
-        std::vector<std::string> matrix;
-        for (int i = 0; i < 3; ++i)
-            for (const double v : {x[i], y[i], z[i], c.centre[i]}) matrix.push_back(real(v));
-        const int placed = file_.entity("124", IgesUse::part, matrix);
-        const double width = norm(a), height = circle ? width : norm(b);
-        const double begin = circle ? 0 : on.lo - turn - kTwoPi * std::floor((on.lo - turn) / kTwoPi);
-        const auto at = [&](double t) {
-            return std::array{real(width * std::cos(t)), real(height * std::sin(t))};
-        };
-        const auto first = at(is_whole(on) ? 0 : begin),
-                   last = is_whole(on) ? first : at(begin + on.length());
-        const int entry =
-            circle ? file_.entity("100", IgesUse::part,
-                                  {"0.", "0.", "0.", first[0], first[1], last[0], last[1]}, 0, placed)
-                   : file_.entity("104", IgesUse::part,
-                                  {real(1 / (width * width)), "0.", real(1 / (height * height)), "0.", "0.",
-                                   "-1.", "0.", first[0], first[1], last[0], last[1]},
-                                  1, placed);
-        return {entry, begin - on.lo};
     }
 
     IgesFile& file_;
