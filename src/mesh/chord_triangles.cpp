@@ -32,7 +32,7 @@ std::optional<Vec<2>> BoundarySide::bow() const {
 }
 
 std::optional<Apex> apex_for(const SurfaceGeometry& surface, const Box<2>& face) {
-    const auto apex = apex_of(surface);
+    const auto apex = apex_of(surface, face);
     return apex && !face.is_empty() && is_worth_a_cone(*apex, surface, face) ? apex : std::nullopt;
 }
 

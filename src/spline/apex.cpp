@@ -9,8 +9,10 @@
 // those of either row.
 //
 // Of revolutions of Q + v D about an axis: at the v where the line is nearest to the axis; its distance from
-// there is the slip, turned. Of circles: what its vectors are beside the plane of the axis, and what they and
-// the centre are off those of a circle about a point of it.
+// there is the slip, turned. Lines that hardly lean have that v too far away to be known: they are beside the
+// parallel to the axis in the middle of a part by half of what they lean over it. Of circles: what its
+// vectors are beside the plane of the axis, and what they and the centre are off those of a circle about a
+// point of it.
 #include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/spline/apex.hpp>
@@ -44,18 +46,27 @@ std::optional<Apex> sphere_of(const Revolution& s) {
     return found.slip <= kMostSlip * found.radius ? std::optional(found) : std::nullopt;
 }
 
-std::optional<Apex> apex_of(const Revolution& s) {
+std::optional<Apex> apex_of(const Revolution& s, const Box<2>& part) {
     const auto* line = std::get_if<Line<3>>(&s.profile);
     if (!line) return sphere_of(s);
     const auto across = [&](const Vec<3>& x) { return x - dot(x, s.axis) * s.axis; };
     const Vec<3> from = line->origin - s.origin, q = across(from), d = across(line->direction);
     const double speed = norm(line->direction);
-    if (!(norm(d) > kRoundings * speed)) return std::nullopt;
-    const double at = -dot(q, d) / dot(d, d), size = norm(from) + std::abs(at) * speed;
-    const double slip = norm(q + at * d) + kRoundings * (size + norm(s.origin));
-    Apex out;
-    out.at = at, out.slip = slip;
-    return out;
+    std::optional<Apex> cone, cylinder;
+    if (norm(d) > kRoundings * speed) {
+        const double at = -dot(q, d) / dot(d, d), size = norm(from) + std::abs(at) * speed;
+        cone.emplace().at = at;
+        cone->slip = norm(q + at * d) + kRoundings * (size + norm(s.origin));
+    }
+    if (const Interval on = part.side(1); !part.is_empty() && std::isfinite(on.length())) {
+        const double lean = norm(d) * on.length(),
+                     size = norm(from) + std::max(std::abs(on.lo), std::abs(on.hi)) * speed;
+        cylinder.emplace().at = kInfinity;
+        cylinder->slip = lean + kRoundings * (size + norm(s.origin));
+        if (!(cylinder->slip <= kMostSlip * norm(q + on.middle() * d))) cylinder.reset();
+    }
+    if (cone && cylinder) return cone->slip <= cylinder->slip ? cone : cylinder;
+    return cone ? cone : cylinder;
 }
 
 struct Row {
@@ -120,9 +131,9 @@ std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far) {
 
 }  // namespace
 
-std::optional<Apex> apex_of(const SurfaceGeometry& surface) {
+std::optional<Apex> apex_of(const SurfaceGeometry& surface, const Box<2>& part) {
     return visit_one(
-        [](const auto& s) -> std::optional<Apex> {
+        [&](const auto& s) -> std::optional<Apex> {
             if constexpr (requires { s.net(); }) {
                 for (const int axis : {1, 0}) {
                     const auto& basis = s.basis(axis);
@@ -133,7 +144,7 @@ std::optional<Apex> apex_of(const SurfaceGeometry& surface) {
                 }
                 return std::nullopt;
             } else if constexpr (std::same_as<std::remove_cvref_t<decltype(s)>, Revolution>) {
-                return apex_of(s);
+                return apex_of(s, part);
             } else {
                 return std::nullopt;
             }

@@ -251,6 +251,28 @@ TEST(ConeFace, bounds_of_spheres_hold_and_are_nearly_reached) {
     EXPECT_FALSE(apex_of(ring));
 }
 
+// Whose apex is too far away to be known.
+TEST(ConeFace, walls_that_hardly_lean_are_cylinders_in_a_part) {
+    const Vec<3> axis{{0, 0, 1}};
+    const Box<2> part{{{0, 0}}, {{4, 3}}};
+    for (const double lean : {0.0, 1e-15, 1e-9, 1e-4}) {
+        const SurfaceGeometry wall = Revolution{Line<3>{{{2, 0, 0}}, {{lean, 0, 1}}}, {}, axis};
+        const auto found = apex_for(wall, part);
+        ASSERT_TRUE(found) << lean;
+        EXPECT_EQ(std::isinf(found->at), lean < 1e-4) << lean;
+        EXPECT_LE(found->slip, 3 * lean + 1e-9);
+        if (!std::isinf(found->at)) continue;
+        const DerivativeQuery<2, 3> query(wall);
+        const auto face = ConeFace::make(*found, query, part);
+        ASSERT_TRUE(face);
+        const double step = 0.5, bow = 2 * (1 - std::cos(step / 2));
+        const double bound = face->error(face->bends(query, {{{1, 0}}, {{1 + step, 3}}}),
+                                         {{{{1, 0}}, {{1 + step, 3}}, {{1, 3}}}});
+        EXPECT_GE(bound, bow) << lean;
+        EXPECT_LE(bound, 1.02 * bow + 4 * found->slip) << lean;
+    }
+}
+
 TEST(ConeFace, corners_a_hair_beyond_a_pole_count_as_at_it) {
     const SurfaceGeometry s = sphere(2);
     const DerivativeQuery<2, 3> query(s);
