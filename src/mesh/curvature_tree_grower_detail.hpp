@@ -40,8 +40,8 @@ public:
     std::optional<Refusal> grow_parts(std::vector<Item> items);
     Refusal too_many_leaves() const {
         return {RefusalKind::limit, "max_triangles",
-                text("the tolerance ", task_.demands.tolerance, " needs more than about ", 2 * task_.max_leaves,
-                     " triangles")};
+                text("the tolerance ", task_.demands.tolerance, " needs more than about ",
+                     2 * task_.max_leaves, " triangles")};
     }
 
 private:
