@@ -160,7 +160,7 @@ Conversion Converter::finish() {
     }
     std::size_t told = 0;
     for (std::size_t i = 0; i < m.approximations.size(); ++i) {
-        if (approximated_[i] >= 0) {  // others are of the file
+        if (approximated_[i] >= 0) {  // others are of faces
             const int edge = place[std::size_t(approximated_[i])];
             if (edge < 0) continue;
             m.approximations[i].where = text("edges[", edge, "]");

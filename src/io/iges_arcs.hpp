@@ -6,16 +6,8 @@
 
 namespace freiform::detail {
 
-// Whether an ellipse is a circle, as far as rounding tells, and the parameter of an axis if it is none.
-struct EllipseAxes {
-    explicit EllipseAxes(const Conic<3>& c) {
-        const double skew = dot(c.x, c.y), xx = dot(c.x, c.x), yy = dot(c.y, c.y);
-        circle = std::max(std::abs(skew), std::abs(xx - yy)) <= 16 * kUnitRoundoff * (xx + yy);
-        if (!circle) turn = std::atan2(2 * skew, xx - yy) / 2;
-    }
-    bool circle = false;
-    double turn = 0;
-};
+// As far as rounding tells. By its axes.
+inline bool is_round(const Conic<3>& c) { return norm(c.x) - norm(c.y) <= 16 * kUnitRoundoff * norm(c.x); }
 
 inline bool is_whole(Interval on) { return on.length() >= kTwoPi * (1 - 16 * kUnitRoundoff); }
 
@@ -24,9 +16,9 @@ inline bool is_whole(Interval on) { return on.length() >= kTwoPi * (1 - 16 * kUn
 inline bool keeps_parameters(const CurveGeometry<3>& curve, Interval on) {
     const auto* c = std::get_if<Conic<3>>(&curve);
     if (c == nullptr || c->kind != ConicKind::ellipse) return c == nullptr;
-    const EllipseAxes of(*c);
-    return of.circle || !is_whole(on) ||
-           std::abs(std::remainder(on.lo - of.turn, kTwoPi)) <= 16 * kUnitRoundoff;
+    const auto [conic, shift] = by_axes(*c);
+    return is_round(conic) || !is_whole(on) ||
+           std::abs(std::remainder(on.lo - shift, kTwoPi)) <= 16 * kUnitRoundoff;
 }
 
 // Its parameter runs from 0 to 1.
@@ -44,17 +36,18 @@ struct IgesArc {
     double shift = 0;
 };
 inline IgesArc add_arc(IgesFile& file, const Conic<3>& c, Interval on) {
-    const auto [circle, axis] = EllipseAxes(c);
-    const double turn = circle ? on.lo : axis;
-    const Vec<3> a = std::cos(turn) * c.x + std::sin(turn) * c.y,
-                 b = std::cos(turn) * c.y - std::sin(turn) * c.x, n = cross(a, b);
+    const auto [conic, shift] = by_axes(c);
+    const bool circle = is_round(conic);
+    const double turn = circle ? on.lo - shift : 0;
+    const Vec<3> a = std::cos(turn) * conic.x + std::sin(turn) * conic.y,
+                 b = std::cos(turn) * conic.y - std::sin(turn) * conic.x, n = cross(a, b);
     const Vec<3> x = (1 / norm(a)) * a, z = (1 / norm(n)) * n, y = cross(z, x);
     std::vector<std::string> matrix;
     for (int i = 0; i < 3; ++i)
         for (const double v : {x[i], y[i], z[i], c.centre[i]}) matrix.push_back(real(v));
     const int placed = file.entity("124", IgesUse::part, matrix);
     const double width = norm(a), height = circle ? width : norm(b);
-    const double begin = circle ? 0 : on.lo - turn - kTwoPi * std::floor((on.lo - turn) / kTwoPi);
+    const double begin = circle ? 0 : on.lo - shift - kTwoPi * std::floor((on.lo - shift) / kTwoPi);
     const auto at = [&](double t) {
         return std::array{real(width * std::cos(t)), real(height * std::sin(t))};
     };

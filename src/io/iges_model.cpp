@@ -78,7 +78,9 @@ public:
 
 private:
     static bool is_turned(const Face& f) {
-        return std::holds_alternative<Extrusion>(f.surface) || std::holds_alternative<Revolution>(f.surface);
+        const auto* offset = std::get_if<OffsetSurface>(&f.surface);
+        const SurfaceGeometry& s = offset != nullptr ? *offset->base : f.surface;
+        return std::holds_alternative<Extrusion>(s) || std::holds_alternative<Revolution>(s);
     }
 
     // Conics in the parameters of splines become rational; so do their edges then.
@@ -269,7 +271,7 @@ private:
         }
         const Vec<3> lo = used.side(1).lo * s.direction, hi = used.side(1).hi * s.direction;
         if (const auto* c = std::get_if<Conic<3>>(&s.profile);
-            c && c->kind == ConicKind::ellipse && EllipseAxes(*c).circle) {
+            c && c->kind == ConicKind::ellipse && is_round(by_axes(*c).conic)) {
             const Vec<3> n = cross(c->x, c->y);
             if (norm(cross(n, s.direction)) <= 16 * kUnitRoundoff * norm(n) * norm(s.direction))
                 return turned(Line<3>{c->centre + c->x, s.direction}, c->centre, n, used);

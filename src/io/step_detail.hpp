@@ -211,32 +211,16 @@ private:
         return e_.add(text("LINE('',#", p, ",#", v, ")"));
     }
 
-    // By their axes: any two vectors x and y give a conic, at other parameters the same one.
-    Result<int> one(const Conic<3>& c) {
-        Vec<3> centre = c.centre, x = c.x, y = c.y;
-        const double skew = dot(x, y), xx = dot(x, x), yy = dot(y, y);
-        const bool skewed = std::abs(skew) > 4 * kUnitRoundoff * norm(x) * norm(y);
-        if (skewed && c.kind == ConicKind::parabola) {
-            const double apex = -skew / (2 * xx);
-            centre += apex * (y + apex * x), y += 2 * apex * x;
-        } else if (skewed && c.kind == ConicKind::hyperbola) {
-            const double apex = std::atanh(-2 * skew / (xx + yy)) / 2;
-            if (!std::isfinite(apex))
-                return refuse(RefusalKind::unsupported, "", "a hyperbola without width");
-            const Vec<3> axis = std::cosh(apex) * x + std::sinh(apex) * y;
-            y = std::cosh(apex) * y + std::sinh(apex) * x, x = axis;
-        } else if (skewed) {
-            const double turn = std::atan2(2 * skew, xx - yy) / 2;
-            const Vec<3> along = std::cos(turn) * x + std::sin(turn) * y;
-            y = std::cos(turn) * y - std::sin(turn) * x, x = along;
-        }
-        if (c.kind == ConicKind::parabola) {
+    Result<int> one(const Conic<3>& given) {
+        const auto [c, shift] = by_axes(given);
+        if (!std::isfinite(shift)) return refuse(RefusalKind::unsupported, "", "a hyperbola without width");
+        const auto& [kind, centre, x, y] = c;
+        if (kind == ConicKind::parabola) {
             const int at = placement(centre, cross(x, y), x);
             return e_.add(text("PARABOLA('',#", at, ",", real(dot(y, y) / (4 * norm(x))), ")"));
         }
-        if (c.kind == ConicKind::ellipse && norm(x) < norm(y)) std::swap(x, y), y = -1.0 * y;
         const int at = placement(centre, cross(x, y), x);
-        if (c.kind == ConicKind::hyperbola)
+        if (kind == ConicKind::hyperbola)
             return e_.add(text("HYPERBOLA('',#", at, ",", real(norm(x)), ",", real(norm(y)), ")"));
         if (norm(x) - norm(y) <= 8 * kUnitRoundoff * norm(x))
             return e_.add(text("CIRCLE('',#", at, ",", real(norm(x)), ")"));

@@ -3,10 +3,13 @@
 // surface that is swept for something else. Those whose parameters run another way round have no entity, nor
 // have those that are not what they are called, but for rounding.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/geometry.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace freiform::detail {
@@ -35,6 +38,34 @@ inline bool is_circle(const Conic<3>& c) {
 }
 
 }  // namespace elementary
+
+// A conic by its axes, an ellipse by the longer one first: the given one at t is it at t - shift. Any two
+// vectors x and y give a conic; this is the same one.
+struct ByAxes {
+    Conic<3> conic;
+    double shift = 0;  // not finite where a hyperbola has no width
+};
+inline ByAxes by_axes(Conic<3> c) {
+    const double skew = dot(c.x, c.y), xx = dot(c.x, c.x), yy = dot(c.y, c.y);
+    double shift = 0;
+    if (std::abs(skew) > 4 * kUnitRoundoff * norm(c.x) * norm(c.y)) {
+        const Vec<3> x = c.x, y = c.y;
+        if (c.kind == ConicKind::parabola) {
+            shift = -skew / (2 * xx);
+            c.centre += shift * (y + shift * x), c.y += 2 * shift * x;
+        } else if (c.kind == ConicKind::hyperbola) {
+            shift = std::atanh(-2 * skew / (xx + yy)) / 2;
+            c.x = std::cosh(shift) * x + std::sinh(shift) * y,
+            c.y = std::cosh(shift) * y + std::sinh(shift) * x;
+        } else {
+            shift = std::atan2(2 * skew, xx - yy) / 2;
+            c.x = std::cos(shift) * x + std::sin(shift) * y, c.y = std::cos(shift) * y - std::sin(shift) * x;
+        }
+    }
+    if (c.kind == ConicKind::ellipse && norm(c.x) < norm(c.y))
+        std::swap(c.x, c.y), c.y = -1.0 * c.y, shift += std::numbers::pi / 2;
+    return {c, shift};
+}
 
 inline std::optional<Elementary> elementary_of(const Extrusion& s) {
     const auto* c = std::get_if<Conic<3>>(&s.profile);

@@ -35,10 +35,10 @@
 // where feet (q in bending.cpp) ask for ever smaller triangles. Nothing is left out: let G be the projection
 // of L from the centre. Triangles that keep to R / 8 are smaller than R, so that nowhere G is opposite to S,
 // and the degree of G is that of S. Corners a little beyond a pole, b from the axis, count as at it: they are
-// less than 2 b away, and so is what the surface has there. On the boundary a point first goes along its side
-// to the one y' with S(y') above L (edge_error.cpp), which is within E of L, then along a great circle to G,
-// which is within e; between them the distance is at most that of the farther one and (E + e)^2 / (8 R),
-// which counts as a sliver.
+// less than 2 b away, and so is what the surface has there; with the (V - v)^2 of middles 5 b are added. On
+// the boundary a point first goes along its side to the one y' with S(y') above L (edge_error.cpp), which is
+// within E of L, then along a great circle to G, which is within e; between them the distance is at most that
+// of the farther one and (E + e)^2 / (8 R), which counts as a sliver.
 //
 // Why not by what is seen along normals: S_uv / |S_u| is 1 / y, so feet near the apex have to be looked for
 // in parts of the height there. Why not developed into the plane: the curves of trims would have to follow.
@@ -77,6 +77,8 @@ double height_of(const Revolution& s, const Apex& apex, double v) {
 
 std::optional<ConeFace> ConeFace::make(const Apex& apex, const DerivativeQuery<2, 3>& surface,
                                        const Box<2>& face) {
+    if (const Interval used = face.side(apex.ruled); used.lo < apex.part.lo || used.hi > apex.part.hi)
+        return std::nullopt;
     ConeFace out;
     out.apex_ = apex;
     out.slip_ = 2 * apex.slip;  // of corners, and of what they are compared with

@@ -12,7 +12,8 @@ namespace freiform {
 // A part of a cone that is on one side of the apex, or of a sphere.
 class ConeFace {
 public:
-    // Nothing if the box has points on both sides of the apex. A little beyond is on it.
+    // Nothing if the box has points on both sides of the apex, or where its slip is not known. A little
+    // beyond is on it.
     static std::optional<ConeFace> make(const Apex& apex, const DerivativeQuery<2, 3>& surface,
                                         const Box<2>& face);
 

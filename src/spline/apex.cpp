@@ -10,7 +10,8 @@
 //
 // Of revolutions of Q + v D about an axis: at the v where the line is nearest to the axis; its distance from
 // there is the slip, turned. Lines that hardly lean have that v too far away to be known: they are beside the
-// parallel to the axis in the middle of a part by half of what they lean over it. Of circles: what its
+// parallel to the axis in the middle of a part by what they lean from there, which is counted over twice the
+// part (it may be of samples). Of circles: what its
 // vectors are beside the plane of the axis, and what they and the centre are off those of a circle about a
 // point of it.
 #include <freiform/core/constants.hpp>
@@ -59,11 +60,12 @@ std::optional<Apex> apex_of(const Revolution& s, const Box<2>& part) {
         cone->slip = norm(q + at * d) + kRoundings * (size + norm(s.origin));
     }
     if (const Interval on = part.side(1); !part.is_empty() && std::isfinite(on.length())) {
-        const double lean = norm(d) * on.length(),
-                     size = norm(from) + std::max(std::abs(on.lo), std::abs(on.hi)) * speed;
+        const double middle = on.middle(), lean = norm(d) * on.length(),
+                     size = norm(from) + (std::abs(middle) + on.length()) * speed;
         cylinder.emplace().at = kInfinity;
+        cylinder->part = {middle - on.length(), middle + on.length()};
         cylinder->slip = lean + kRoundings * (size + norm(s.origin));
-        if (!(cylinder->slip <= kMostSlip * norm(q + on.middle() * d))) cylinder.reset();
+        if (!(cylinder->slip <= kMostSlip * norm(q + middle * d))) cylinder.reset();
     }
     if (cone && cylinder) return cone->slip <= cylinder->slip ? cone : cylinder;
     return cone ? cone : cylinder;

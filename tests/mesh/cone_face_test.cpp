@@ -265,6 +265,9 @@ TEST(ConeFace, walls_that_hardly_lean_are_cylinders_in_a_part) {
         const DerivativeQuery<2, 3> query(wall);
         const auto face = ConeFace::make(*found, query, part);
         ASSERT_TRUE(face);
+        EXPECT_TRUE(ConeFace::make(*found, query, {{{0, -1.5}}, {{4, 4.5}}}));
+        EXPECT_FALSE(ConeFace::make(*found, query, {{{0, -1.6}}, {{4, 3}}})) << "where it leans more";
+        EXPECT_FALSE(ConeFace::make(*found, query, {{{0, 0}}, {{4, 4.6}}}));
         const double step = 0.5, bow = 2 * (1 - std::cos(step / 2));
         const double bound = face->error(face->bends(query, {{{1, 0}}, {{1 + step, 3}}}),
                                          {{{{1, 0}}, {{1 + step, 3}}, {{1, 3}}}});

@@ -1,5 +1,6 @@
 // Surfaces whose parameter lines across are scaled copies of each other: cones, cylinders and spheres.
 #pragma once
+#include <freiform/core/constants.hpp>
 #include <freiform/spline/geometry.hpp>
 
 #include <optional>
@@ -17,6 +18,7 @@ struct Apex {
     double slip = 0;
     double radius = 0;  // of a sphere; 0: a cone or cylinder
     Vec<3> outwards{};
+    Interval part{-kInfinity, kInfinity};  // of the parameter `ruled`, where `slip` holds
     // Whether the slip is nothing beside a tolerance, and that little beside the radius.
     bool is_true_to(double tolerance) const {
         return slip <= 0x1p-8 * tolerance && !(radius > 0 && tolerance > radius / 8);
@@ -25,7 +27,8 @@ struct Apex {
 
 // Of splines with two rows of control points that are scaled copies of each other, of revolutions of lines
 // that meet their axis, or nearly do, for their slip, and of circles about points of it. In a part, if one is
-// given, of lines that are nearly parallel to it: their slip is that there. Nothing for others.
+// given, of lines that are nearly parallel to it: their slip holds there and half as far again to either
+// side. Nothing for others.
 std::optional<Apex> apex_of(const SurfaceGeometry& surface, const Box<2>& part = {});
 
 }  // namespace freiform
