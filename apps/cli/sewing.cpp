@@ -19,6 +19,14 @@ SewnEdge largest_bounds(const Sewing& s) {
     return most;
 }
 
+constexpr double kProvable = 0x1p-40;  // of coordinates: edges less apart may not be proven to be
+
+double farthest_from_zero(const Model& model) {
+    double most = 0;
+    for (const Vertex& v : model.vertices) most = std::max(most, max_abs(v.point));
+    return most;
+}
+
 }  // namespace
 
 void SewArguments::add_to(const Command& command) {
@@ -32,7 +40,8 @@ void SewArguments::add_to(const Command& command) {
     command.optional_value(
         "--sew", read,
         "Join edges of loose faces that are the same within this distance, in the file's unit "
-        "(without a number: the largest tolerance that the file gives)",
+        "(without a number: the largest tolerance that the file gives, or what numbers so far from zero can "
+        "tell)",
         "[NUMBER]");
 }
 
@@ -44,8 +53,13 @@ Result<std::optional<Sewing>> sewn(const Model& model, const SewArguments& how) 
         if (!(tolerance > 0))
             return refuse(RefusalKind::invalid, "--sew",
                           "the file gives no tolerance: say one, --sew NUMBER");
-        remark(text("sewn within ", tolerance, model.unit.empty() ? "" : " ", model.unit,
-                    ", the largest tolerance of the file"));
+        const double given = tolerance;
+        tolerance = std::max(given, kProvable * farthest_from_zero(model));
+        const std::string unit = model.unit.empty() ? "" : " " + model.unit;
+        remark(tolerance > given
+                   ? text("sewn within ", tolerance, unit, ", as closely as numbers so far from ",
+                          "zero can tell; the largest tolerance of the file is ", given, unit)
+                   : text("sewn within ", tolerance, unit, ", the largest tolerance of the file"));
     }
     auto s = sew(model, {.tolerance = tolerance});
     if (!s) return std::unexpected(s.error());

@@ -119,7 +119,7 @@ private:
     Piece piece(Interval on, const Vec<3>& first, const Vec<3>& last, double known);
     bool in_parts(Piece& p);
     double goal(const Terms& x) const {
-        return std::max({options_.target, options_.factor * found_, 32 * x.rounding});
+        return std::max({options_.target, options_.factor * found_, options_.roundings * x.rounding});
     }
 
     const DerivativeQuery<2, 3>& surface_;

@@ -101,7 +101,7 @@ bool Sewer::join(std::vector<Part>& parts, std::vector<int>& stays_for, std::vec
     }
     const Owner& o = owners_[at(b.edge)];
     const auto& curve = m_.faces[at(o.face)].loops[at(o.loop)].coedges[at(o.index)].curve;
-    const EdgeGapOptions coarse{.target = tolerance_ / 8};
+    const EdgeGapOptions coarse{.target = tolerance_ / 8, .roundings = kFewRoundings};
     const double own = edge_gap(*queries_[at(o.face)], curve, *b.trace.curve, b.trace.on, coarse).bound;
     const double allowed = 1.25 * (p.match->bound + own) + tolerance_ / 16;
     auto follows = followed(*queries_[at(o.face)], curve, a.trace, *p.match, allowed);

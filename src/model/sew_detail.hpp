@@ -11,7 +11,8 @@
 
 namespace freiform {
 
-inline constexpr int kPlacesPerSpan = 4;  // of a trace, at least
+inline constexpr int kPlacesPerSpan = 4;    // of a trace, at least
+inline constexpr double kFewRoundings = 4;  // of EdgeGapOptions: what is bounded closely
 
 // Part of an edge, with places along it. Places are for finding; nothing is proven by them.
 struct EdgeTrace {

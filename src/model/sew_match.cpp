@@ -192,7 +192,8 @@ Result<EdgeMatch> match(const EdgeTrace& stays, const EdgeTrace& other, bool rev
         const auto on_other = plane_curve_of(*map);
         EdgeGap gap = edge_gap(query, on_other, *stays.curve, stays.on, how);
         if (gap.bound > tolerance && kTightest * gap.found <= kWithin * tolerance) {
-            // More than was measured, and yet within the tolerance.
+            // More than was measured, and yet within the tolerance. Far from zero that may be rounding.
+            how.roundings = kFewRoundings;
             how.factor = std::clamp(kWithin * tolerance / gap.found, kTightest, how.factor);
             gap = edge_gap(query, on_other, *stays.curve, stays.on, how);
         }
@@ -306,7 +307,7 @@ std::optional<CurveGeometry<2>> at_speed(const CurveGeometry<2>& on_surface, con
 Result<FollowedCurve> followed(const DerivativeQuery<2, 3>& surface, const CurveGeometry<2>& on_surface,
                                const EdgeTrace& stays, const EdgeMatch& match, double allowed) {
     const auto bound_of = [&](const CurveGeometry<2>& curve) {
-        const EdgeGapOptions how{.target = allowed / 8};
+        const EdgeGapOptions how{.target = allowed / 8, .roundings = kFewRoundings};
         return edge_gap(surface, curve, *stays.curve, stays.on, how).bound;
     };
     const auto& nodes = match.map.nodes;

@@ -46,6 +46,31 @@ TEST_F(SolidProgram, of_closed_curves_are_extruded_and_revolved) {
         run({"extrude", badge, "--object", "plate", "--by", "0,0,2", "--solid", "-o", "plate.glb"}).code, 0);
 }
 
+// Without a number the tolerance is the file's, which is finer than numbers so far from zero can tell.
+TEST_F(SolidProgram, sews_far_from_zero_as_closely_as_numbers_can_tell) {
+    const auto half = [](int from) {
+        const auto rows = [&](double x, double z) {
+            const std::string at = "[" + std::to_string(300'000 + from + x) + ",",
+                              end = "," + std::to_string(z) + "]";
+            return "[" + at + "0" + end + "," + at + "1" + end + "]";
+        };
+        return R"({"type":"surface","degrees":[2,1],"points":[)" + rows(0, 0) + "," + rows(0.5, 0.3) + "," +
+               rows(1, 0) + "]}";
+    };
+    const Ran made = run({"convert", "-", "-o", "far.iges"},
+                         R"({"freiform":1,"unit":"m","objects":[)" + half(0) + "," + half(1) + "]}");
+    ASSERT_EQ(made.code, 0) << made.err;
+    const Ran mesh = run({"tessellate", "far.iges", "--sew", "-o", "far.stl", "--json"});
+    if (mesh.code == 5) GTEST_SKIP() << "IGES files are not read here: " << mesh.err;
+    ASSERT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_NE(mesh.err.find("as closely as numbers so far from zero can tell"), std::string::npos)
+        << mesh.err;
+    const auto sewing = SolidJson::parse(mesh.out)["sewing"];
+    EXPECT_EQ(sewing["joined"], 1) << sewing;
+    EXPECT_LE(sewing["bound"].get<double>(), sewing["tolerance"].get<double>());
+    EXPECT_LE(sewing["tolerance"].get<double>(), 0x1p-40 * 300'002);
+}
+
 double volume_of_stl(const std::string& bytes);
 
 TEST_F(SolidProgram, of_revolution_turn_clockwise_by_negative_angles) {

@@ -113,6 +113,23 @@ TEST(SewMatch, what_is_found_later_is_proven_closely_too) {
     EXPECT_FALSE(match(trace_of(circle, on), trace_of(polynomial, on), true, 0.999 * most));
 }
 
+// An arc and the same arc the other way round, a few units long and 300 000 units from zero: rounding is all
+// that they are apart, and no reason to leave them so.
+TEST(SewMatch, rounding_far_from_zero_is_told_from_gaps) {
+    const Vec<3> centre{{3e5, -2e5, 1e5}}, x{{7, 0, 0}}, y{{0, 4.2, 5.6}};
+    const double w = std::sqrt(0.5);
+    const auto arc = must(Curve<Hom<3>>::make(
+        {*BSplineBasis::bezier(2)}, Net<1, Hom<3>>({3}, {weighted(centre + x, 1), weighted(centre + x + y, w),
+                                                         weighted(centre + y, 1)})));
+    const auto back = reverse(arc, 0);
+    const CurveGeometry<3> a = arc, b = back;
+    const double tolerance = 0x1p-42 * 3e5;
+    const auto found = match(trace_of(a, arc.domain()[0]), trace_of(b, back.domain()[0]), true, tolerance);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(found->bound, tolerance);
+    EXPECT_FALSE(match(trace_of(a, arc.domain()[0]), trace_of(b, back.domain()[0]), true, 0x1p-52 * 3e5));
+}
+
 TEST(SewMatch, short_edges_are_bounded_by_their_size) {
     const double size = 5e-4, tolerance = 2e-3;
     const auto curve = [](std::vector<Vec<3>> points) -> CurveGeometry<3> {
