@@ -213,7 +213,8 @@ void add_draw(CommandLine& line) {
               "(default: plane curves as they are, others from iso)")
         .shown_as("VIEW");
     add_line_options(command, *options);
-    command.positive("--tolerance", options->tolerance, "Of the mesh that is drawn (default: below a pixel)");
+    command.positive("--tolerance", options->tolerance,
+                     "Of the mesh that is drawn (default: a quarter of a pixel)");
     command.count("--isolines", options->isolines, 0, 1000,
                   "Isolines of every face in each direction (default: as the knots of surfaces suggest)");
     command.count("--width", options->width, 1, 16384, "Pixels");

@@ -26,7 +26,8 @@ namespace freiform::cli {
 
 namespace {
 
-constexpr double kPictureTolerance = 1.0 / 2000;  // of the model's box: below a pixel
+constexpr double kFirst = 1.0 / 500, kFinest = 0x1p-20;  // of the model's box
+constexpr double kUnseen = 0.25;                         // of a pixel: outlines are smooth
 constexpr double kMirrorTolerance =
     1.0 / 16000;                          // normals between vertices are interpolated: stripes show it
 constexpr double kFieldSide = 1.0 / 150;  // longest side of a coloured triangle, of the model's box
@@ -57,17 +58,42 @@ struct Subject {
     double size = 0;  // of the box
 };
 
+RenderOptions render_options(const ShadedOptions& o) {
+    RenderOptions how;
+    how.view = o.view;
+    how.width = o.width.value_or(how.width);
+    how.height = o.height.value_or(how.height);
+    how.edges = o.edges, how.zebra = o.zebra, how.isophotes = o.isophotes, how.perspective = o.perspective;
+    return how;
+}
+
+// How large a pixel is depends on what is seen of the model, which a coarse mesh tells.
+Result<Tessellation> mesh_for_picture(const Model& model, double size, const Limits& limits,
+                                      const ShadedOptions& options) {
+    const bool reflects = options.zebra || options.isophotes;
+    TessellateOptions how;
+    how.tolerance = options.tolerance.value_or(size * (reflects ? kMirrorTolerance : kFirst));
+    how.max_triangles = (long long)(limits.max_triangles);
+    auto first = tessellate(model, how);
+    if (!first || options.tolerance) return first;
+    const double unseen =
+        std::max(kUnseen * pixel_size(first->mesh, render_options(options)), kFinest * size);
+    if (!(unseen < how.tolerance)) return first;
+    how.tolerance = unseen;
+    auto finer = tessellate(model, how);
+    if (finer || finer.error().kind != RefusalKind::limit) return finer;
+    remark(text("drawn within ", first->error_bound,
+                " of the surfaces, which may be seen: ", finer.error().message));
+    return first;
+}
+
 Result<Subject> subject_of(const Document& document, std::span<const std::size_t> objects,
                            const Limits& limits, const ShadedOptions& options) {
     auto scene = scene_with_owners(document, objects);
     if (!scene) return std::unexpected(scene.error());
     Subject s{std::move(*scene), {}, 0};
     s.size = summary(s.scene.model).box.diagonal();
-    TessellateOptions how;
-    const bool reflects = options.zebra || options.isophotes;
-    how.tolerance = options.tolerance.value_or(s.size * (reflects ? kMirrorTolerance : kPictureTolerance));
-    how.max_triangles = (long long)(limits.max_triangles);
-    auto t = tessellate(s.scene.model, how);
+    auto t = mesh_for_picture(s.scene.model, s.size, limits, options);
     if (!t) return std::unexpected(t.error());
     s.tessellation = std::move(*t);
     if (s.tessellation.mesh.triangles.empty() && !s.tessellation.refused.empty()) {
@@ -79,15 +105,6 @@ Result<Subject> subject_of(const Document& document, std::span<const std::size_t
         remark(text("face ", r.face, " is missing: ", r.reason.where, ": ", r.reason.message));
     for (const Refusal& r : s.scene.model.refused) remark(text(r.where, " is missing: ", r.message));
     return s;
-}
-
-RenderOptions render_options(const ShadedOptions& o) {
-    RenderOptions how;
-    how.view = o.view;
-    how.width = o.width.value_or(how.width);
-    how.height = o.height.value_or(how.height);
-    how.edges = o.edges, how.zebra = o.zebra, how.isophotes = o.isophotes, how.perspective = o.perspective;
-    return how;
 }
 
 RenderLines polylines(std::span<const SurfaceLine> lines, const Colour& colour, double width) {

@@ -5,6 +5,7 @@
 
 #include "gpu/outward_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/core/interval.hpp>
 
 #include <algorithm>
@@ -203,6 +204,21 @@ GpuScene make_scene(const TriangleMesh& mesh, const RenderOptions& options) {
     add_lines(scene, mesh, points, options, all);
     set_camera(scene, shown_points(scene, centred, options), options);
     return scene;
+}
+
+double pixel_size(const TriangleMesh& mesh, const RenderOptions& options) {
+    GpuScene scene;
+    const Centring centred = centring_of(mesh);
+    if (!(centred.size > 0)) return 0;
+    const Vec<3> eye = axes_of(options.view).eye;
+    double nearest = -kInfinity;
+    for (const Vec<3>& p : mesh.points) {
+        scene.vertices.push_back({.position = to_floats(centred(p))});
+        nearest = std::max(nearest, dot(eye, centred(p)));
+    }
+    add_user_lines(scene, centred, options);
+    set_camera(scene, shown_points(scene, centred, options), options);
+    return centred.size * (1 - scene.inverse_distance * nearest) / scene.pixels;
 }
 
 GpuScene make_scene(const SurfaceBuffers& surfaces, const RenderOptions& options) {

@@ -1,19 +1,13 @@
 // Shapes as curves and surfaces in space, with rational or polynomial coefficients: what the drawing sees.
 // Plane ones lie in z = 0; those of one coordinate become graphs over their parameters.
 #pragma once
+#include <freiform/basis/greville.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/in_space.hpp>
 
 #include <vector>
 
 namespace freiform::drawing {
-
-// The coefficient of u itself that belongs to coefficient i: u is a spline of every degree >= 1.
-inline double greville(const BSplineBasis& basis, int i) {
-    double sum = 0;
-    for (int k = 1; k <= basis.degree(); ++k) sum += basis.knot(i + k) / basis.degree();
-    return sum;
-}
 
 // The graph of f = F / w is (u w, F) / w, of degree p + 1, piece by piece: with b(s) = sum_i b_i B_i^p(s) on
 // [lo, hi], u = lo + (hi - lo) s and s B_i^p(s) = (i + 1) / (p + 1) B_{i+1}^{p+1}(s). All breaks get

@@ -59,7 +59,7 @@ constexpr double kBeyondApex = 0x1p-36;  // of the height of the face
 constexpr double kBeyondPole = 0x1p-28;  // of the radius: what files with ten digits of an angle have
 constexpr int kSamples = 9;
 constexpr double kLessThanTurn = 3.2;  // from pole to pole, with roundings
-constexpr double kWorth = 0.25;        // of second derivatives, what is seen along the normal
+constexpr double kWorth = 0.25;        // of second derivatives, what bends lines across: edges need as much
 
 bool is_on_one_side(const Apex& apex, const Box<2>& face) {
     const Interval on = face.side(apex.ruled);
@@ -213,8 +213,9 @@ bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box
         at[std::size_t(apex.ruled)] = far;
         at[std::size_t(1 - apex.ruled)] = on.lo + (k + 0.5) / kSamples * on.length();
         const auto j = jet<2>(surface, at);
-        const Vec<3> m = cross(j(1, 0), j(0, 1)), second = apex.ruled == 1 ? j(2, 0) : j(0, 2);
-        if (norm(m) > 0) seen += std::abs(dot(unit(m), second));
+        const auto [first, second] =
+            apex.ruled == 1 ? std::pair{j(1, 0), j(2, 0)} : std::pair{j(0, 1), j(0, 2)};
+        if (norm(first) > 0) seen += norm(cross(unit(first), second));
         all += norm(second);
     }
     return seen > kWorth * all;

@@ -1,6 +1,6 @@
 // Whether a surface is a cone, a cylinder or a sphere.
 //
-// Of splines: with the control points A_j and B_j of the two rows, and equal weights in both, S is a cone if
+// Of splines: with the control points A_j and B_j of two rows, and equal weights in both, S is a cone if
 // A_j - P = k (B_j - P) for all j, for then S(u, v) - P is a multiple of the curve of the row B less P. k is
 // found from A_j - A_0 = k (B_j - B_0) by least squares; P from the means of the rows. What is left of A_j -
 // P - k (B_j - P) bounds the slip by convexity: it is largest in the row A, and nothing in the row B. B is
@@ -8,12 +8,17 @@
 // the surface is a cylinder. Weights that differ by a part e move points by 2 e of the size, at most, against
 // those of either row.
 //
-// Of revolutions of Q + v D about an axis: at the v where the line is nearest to the axis; its distance from
-// there is the slip, turned. Lines that hardly lean have that v too far away to be known: they are beside the
-// parallel to the axis in the middle of a part by what they lean from there, which is counted over twice the
-// part (it may be of samples). Of circles: what its
-// vectors are beside the plane of the axis, and what they and the centre are off those of a circle about a
-// point of it.
+// More rows are as good as two where they lie between the first and the last as their Greville abscissae do:
+// splines of these are v itself, so what they are beside that bounds what lines are, by convexity. It counts
+// twice, as what surfaces are compared with is one of their own lines.
+//
+// Of revolutions of Q + v D about an axis, or of splines that are such lines likewise: at the v where the
+// line is nearest to the axis; its distance from there is the slip, turned. Lines that hardly lean have that
+// v too far away to be known: they are beside the parallel to the axis in the middle of a part by what they
+// lean from there, which is counted over twice the part (it may be of samples). Of circles: what its vectors
+// are beside the plane of the axis, and what they and the centre are off those of a circle about a point of
+// it.
+#include <freiform/basis/greville.hpp>
 #include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/spline/apex.hpp>
@@ -47,9 +52,76 @@ std::optional<Apex> sphere_of(const Revolution& s) {
     return found.slip <= kMostSlip * found.radius ? std::optional(found) : std::nullopt;
 }
 
+// Control points of a spline along one axis, weights the same everywhere else.
+struct Row {
+    std::vector<Vec<3>> points;
+    std::vector<double> weights;
+};
+
+// What rows between the first and the last are beside lines from one to the other; infinite where it is too
+// much, or nothing is known. Weights are off by `uneven`, relatively.
+template <class F>
+double beside_lines(const BSplineBasis& basis, F row, double& uneven) {
+    const int n = basis.size();
+    if (basis.is_closed() || basis.degree() < 1) return kInfinity;
+    const Row first = row(0), last = row(n - 1);
+    const double from = greville(basis, 0), to = greville(basis, n - 1);
+    double most = 0, size = 0;
+    for (std::size_t j = 0; j < first.points.size(); ++j)
+        size = std::max(size, norm(first.points[j] - last.points[j]));
+    const double slip = kRoundings * size * (1 + std::max(std::abs(from), std::abs(to)) / (to - from));
+    for (int i = 1; i + 1 < n && most <= kMostSlip * size; ++i) {
+        const Row here = row(i);
+        const double part = (greville(basis, i) - from) / (to - from);
+        for (std::size_t j = 0; j < here.points.size(); ++j) {
+            const Vec<3> between = (1 - part) * first.points[j] + part * last.points[j];
+            const double w = here.weights[j], v = first.weights[j];
+            most = std::max(most, norm(here.points[j] - between) + slip);
+            uneven = std::max(uneven, std::abs(w - v) / std::min(w, v));
+        }
+    }
+    return most <= kMostSlip * size ? most : kInfinity;
+}
+
+// A line, and what the curve is beside it at the same parameters.
+struct NearLine {
+    Line<3> line;
+    double beside = 0;
+};
+std::optional<NearLine> near_line(const CurveGeometry<3>& curve) {
+    return visit_one(
+        [&](const auto& c) -> std::optional<NearLine> {
+            if constexpr (std::same_as<std::remove_cvref_t<decltype(c)>, Line<3>>) {
+                return NearLine{c, 0};
+            } else if constexpr (requires { c.net(); }) {
+                using P = typename std::remove_cvref_t<decltype(c)>::Coefficients;
+                const NetView<1, const P> net = c.net().view();
+                double uneven = 0;
+                const auto row = [&](int i) {
+                    const P& p = net(Index<1>{i});
+                    return Row{{project(p)}, {Space<P>::weight(p)}};
+                };
+                const int last = c.basis().size() - 1;
+                const double beside = beside_lines(c.basis(), row, uneven);
+                if (!(beside < kInfinity)) return std::nullopt;
+                const double from = greville(c.basis(), 0), to = greville(c.basis(), last);
+                const double wa = row(0).weights[0], wb = row(last).weights[0];
+                const Vec<3> a = row(0).points[0], b = row(last).points[0],
+                             direction = (1 / (to - from)) * (b - a);
+                uneven = std::max(uneven, std::abs(wb - wa) / std::min(wa, wb));
+                const NearLine out{{a - from * direction, direction}, beside + 8 * uneven * norm(b - a)};
+                return out.beside < kMostSlip * norm(b - a) ? std::optional(out) : std::nullopt;
+            } else {
+                return std::nullopt;
+            }
+        },
+        curve);
+}
+
 std::optional<Apex> apex_of(const Revolution& s, const Box<2>& part) {
-    const auto* line = std::get_if<Line<3>>(&s.profile);
-    if (!line) return sphere_of(s);
+    const auto near = near_line(s.profile);
+    if (!near) return sphere_of(s);
+    const Line<3>* const line = &near->line;
     const auto across = [&](const Vec<3>& x) { return x - dot(x, s.axis) * s.axis; };
     const Vec<3> from = line->origin - s.origin, q = across(from), d = across(line->direction);
     const double speed = norm(line->direction);
@@ -67,16 +139,13 @@ std::optional<Apex> apex_of(const Revolution& s, const Box<2>& part) {
         cylinder->slip = lean + kRoundings * (size + norm(s.origin));
         if (!(cylinder->slip <= kMostSlip * norm(q + middle * d))) cylinder.reset();
     }
-    if (cone && cylinder) return cone->slip <= cylinder->slip ? cone : cylinder;
-    return cone ? cone : cylinder;
+    if (cone && cylinder && cylinder->slip < cone->slip) cone = cylinder;
+    if (!cone) cone = cylinder;
+    if (cone) cone->slip += 2 * near->beside;
+    return cone;
 }
 
-struct Row {
-    std::vector<Vec<3>> points;
-    std::vector<double> weights;
-};
-
-// One of two rows along the other axis, if there are no more.
+// One row along the other axis.
 template <class P>
 Row row_of(const Surface<P>& s, int axis, int which) {
     const NetView<2, const P> net = s.net().view();
@@ -95,10 +164,10 @@ Vec<3> mean_of(const std::vector<Vec<3>>& row) {
     return (1.0 / double(row.size())) * sum;
 }
 
-// Of the lines from the row at the parameter on.lo to that at on.hi.
-std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far) {
+// Of the lines from the row at the parameter on.lo to that at on.hi, where weights in between are as uneven,
+// relatively.
+std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far, double uneven) {
     const std::size_t n = near.points.size();
-    double uneven = 0;  // weights, relatively
     for (std::size_t j = 0; j < n; ++j)
         uneven = std::max(
             uneven, std::abs(near.weights[j] - far.weights[j]) / std::min(near.weights[j], far.weights[j]));
@@ -139,10 +208,16 @@ std::optional<Apex> apex_of(const SurfaceGeometry& surface, const Box<2>& part) 
             if constexpr (requires { s.net(); }) {
                 for (const int axis : {1, 0}) {
                     const auto& basis = s.basis(axis);
-                    if (basis.degree() != 1 || s.net().extent()[std::size_t(axis)] != 2) continue;
-                    if (auto found =
-                            apex_of_rows(axis, basis.domain(), row_of(s, axis, 0), row_of(s, axis, 1)))
-                        return found;
+                    const int last = s.net().extent()[std::size_t(axis)] - 1;
+                    double uneven = 0;
+                    const double beside = beside_lines(
+                        basis, [&](int i) { return row_of(s, axis, i); }, uneven);
+                    if (!(beside < kInfinity)) continue;
+                    const Interval on{greville(basis, 0), greville(basis, last)};
+                    auto found = apex_of_rows(axis, on, row_of(s, axis, 0), row_of(s, axis, last), uneven);
+                    if (!found) continue;
+                    found->slip += 2 * beside;
+                    return found;
                 }
                 return std::nullopt;
             } else if constexpr (std::same_as<std::remove_cvref_t<decltype(s)>, Revolution>) {

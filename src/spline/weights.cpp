@@ -25,6 +25,7 @@
 // References: [Farin 2002, ch. 13] for points at infinity, [LycheMorken2018] for the convergence.
 //
 // Why not degree elevation? It converges with 1/n only. Why not cutting into pieces? It makes p knots of one.
+#include <freiform/basis/greville.hpp>
 #include <freiform/core/constants.hpp>
 #include <freiform/core/tuples.hpp>
 #include <freiform/spline/weights.hpp>
@@ -180,20 +181,16 @@ private:
         });
         if (done) return {};
         Place where{};
-        for (std::size_t d = 0; d < axes(); ++d) where[d] = greville(now_.bases[d], worst_at[d]);
+        for (std::size_t d = 0; d < axes(); ++d) where[d] = place_of(now_.bases[d], worst_at[d]);
         const Value v = denominator(where);
         if (v.w > v.error && !stuck) return {};
         if (v.w < -v.error) return pole(where);
         return zero_at(v, where);
     }
 
-    static double greville(const BSplineBasis& b, int i) {
-        const int p = b.degree();
-        double sum = 0;
-        for (int k = 1; k <= p; ++k) sum += b.knot(i + k) / p;
-        if (p == 0) sum = b.knot(i);
-        sum = b.wrap(sum);
-        return std::clamp(sum, b.domain().lo, b.domain().hi);
+    static double place_of(const BSplineBasis& b, int i) {
+        const double at = b.wrap(b.degree() == 0 ? b.knot(i) : greville(b, i));
+        return std::clamp(at, b.domain().lo, b.domain().hi);
     }
 
     // Puts knots into the support of the coefficient; false if its spans are too short already.

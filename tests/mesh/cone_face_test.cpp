@@ -45,6 +45,20 @@ Surface<P> rows(Random& rng, const Vec<3>& apex, double part, int ruled, double 
     return must(ruled == 1 ? Surface<P>::make({along, lines}, net) : Surface<P>::make({lines, along}, net));
 }
 
+// The same surface with more rows of control points between the first and the last.
+template <class P>
+Surface<P> in_more_rows(const Surface<P>& s, int ruled, int degree) {
+    auto out = must(elevate(s, ruled, degree - 1));
+    return must(insert_knots(out, ruled, std::vector{0.2, 0.7, 0.7}));
+}
+template <class P>
+Surface<P> moved(const Surface<P>& s, const Index<2>& at, double by) {
+    Net<2, P> net = s.net();
+    P& c = net.view()(at);
+    c = Space<P>::lift(project(c) + Vec<3>{{0, 0, by}}, Space<P>::weight(c));
+    return must(Surface<P>::make({s.basis(0), s.basis(1)}, net));
+}
+
 TEST(ConeFace, apexes_are_found_and_what_is_no_cone_is_told_from_one) {
     const auto found = apex_of(cone());
     ASSERT_TRUE(found);
@@ -133,6 +147,11 @@ TEST(ConeFace, bounds_hold_and_are_nearly_reached) {
     all.push_back(rows<Vec<3>>(rng, {{0.2, 0.1, 2}}, 0.5, 1, 1e-6));  // as digits of a file may be
     all.push_back(rows<Hom<3>>(rng, {{0.2, 0.1, 2}}, 0.5, 1, 0, 1e-6));
     all.push_back(rows<Hom<3>>(rng, {{0.2, 0.1, 2}}, 1, 1, 0, 1e-6));
+    for (const int ruled : {0, 1}) {
+        const auto many = in_more_rows(rows<Hom<3>>(rng, {{0.2, 0.1, 2}}, 0.3, ruled), ruled, 3);
+        all.push_back(many);
+        all.push_back(moved(moved(many, {2, 3}, 1e-5), {1, 1}, -1e-5));
+    }
     double best = 0;
     for (const SurfaceGeometry& s : all) {
         const DerivativeQuery<2, 3> query(s);
@@ -176,7 +195,63 @@ TEST(ConeFace, bounds_hold_and_are_nearly_reached) {
     EXPECT_GE(best, 0.95);
 }
 
-TEST(ConeFace, faces_on_both_sides_of_the_apex_and_flat_ones_are_taken_otherwise) {
+TEST(ConeFace, lines_of_more_control_points_are_lines_if_they_are_as_fast_everywhere) {
+    Random rng(8);
+    for (const int ruled : {0, 1})
+        for (const double part : {0.0, 0.4, 1.0}) {
+            const auto few = rows<Hom<3>>(rng, {{0.2, 0.1, 2}}, part, ruled);
+            for (const int degree : {1, 2, 4}) {
+                const auto many = in_more_rows(few, ruled, degree);
+                const auto a = apex_of(few), b = apex_of(many);
+                ASSERT_TRUE(a && b) << degree;
+                EXPECT_EQ(b->ruled, ruled);
+                EXPECT_LE(b->slip, 1e-12);
+                if (part < 1) {
+                    EXPECT_NEAR(b->at, a->at, 1e-12);
+                } else {
+                    EXPECT_EQ(b->at, kInfinity);
+                }
+                Index<2> at{2, 2};
+                const auto little = apex_of(moved(many, at, 1e-7));
+                ASSERT_TRUE(little);
+                EXPECT_GE(little->slip, 2e-7) << "of corners and what they are compared with";
+                EXPECT_LE(little->slip, 3e-7);
+                EXPECT_FALSE(apex_of(moved(many, at, 1e-3)));
+            }
+        }
+}
+
+TEST(ConeFace, turned_splines_that_are_lines_make_cones) {
+    const Vec<3> from{{2, 0, 0}}, to{{0.5, 0, 1}};
+    const auto line =
+        must(Curve<Vec<3>>::make({must(BSplineBasis::bezier(1, {3, 5}))}, Net<1, Vec<3>>({2}, {from, to})));
+    const auto longer = must(insert_knots(must(elevate(line, 0, 2)), 0, std::vector{3.5, 4.0}));
+    const auto turned = [](const CurveGeometry<3>& profile) {
+        return apex_of(Revolution{profile, {}, {{0, 0, 1}}});
+    };
+    for (const auto& found : {turned(line), turned(longer), turned(to_rational(longer))}) {
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(found->at, 3 + 2 * 2 / 1.5, 1e-13);
+        EXPECT_LE(found->slip, 1e-12);
+    }
+    auto net = longer.net();
+    net.view()(Index<1>{2}) += Vec<3>{{1e-7, 0, 0}};
+    const auto bent = turned(must(Curve<Vec<3>>::make({longer.basis()}, net)));
+    ASSERT_TRUE(bent);
+    EXPECT_GE(bent->slip, 2e-7);
+    net.view()(Index<1>{2}) += Vec<3>{{0.01, 0, 0}};
+    EXPECT_FALSE(turned(must(Curve<Vec<3>>::make({longer.basis()}, net))));
+    const auto heavy = must(
+        Curve<Hom<3>>::make({line.basis()}, Net<1, Hom<3>>({2}, {weighted(from, 1), weighted(to, 1.5)})));
+    EXPECT_FALSE(turned(heavy)) << "as fast everywhere";
+    const auto wall =
+        must(Curve<Vec<3>>::make({line.basis()}, Net<1, Vec<3>>({2}, {from, from + Vec<3>{{0, 0, 1}}})));
+    const auto cylinder = apex_of(Revolution{wall, {}, {{0, 0, 1}}}, Box<2>{{{0, 3}}, {{6, 5}}});
+    ASSERT_TRUE(cylinder);
+    EXPECT_EQ(cylinder->at, kInfinity);
+}
+
+TEST(ConeFace, faces_on_both_sides_of_the_apex_and_those_of_straight_lines_are_taken_otherwise) {
     const SurfaceGeometry s = cone();
     const DerivativeQuery<2, 3> query(s);
     const Apex apex = *apex_of(s);
@@ -192,8 +267,19 @@ TEST(ConeFace, faces_on_both_sides_of_the_apex_and_flat_ones_are_taken_otherwise
     const std::array<Vec<2>, 3> nothing{{{{1, 0}}, {{1, 1}}, {{1, 2}}}};
     const ConeFace::Bends bends{1, 0, {}};
     EXPECT_GT(beyond->error(bends, nothing), before->error(bends, nothing) + 0x1p-38);
-    const SurfaceGeometry flat = Revolution{Line<3>{{{2, 0, 0}}, {{-1, 0, 0.05}}}, {{0, 0, 0}}, {{0, 0, 1}}};
-    EXPECT_FALSE(apex_for(flat, face(0, 1)));
+    // Edges across bend as much, whatever the slope; not where only their speed changes.
+    for (const double slope : {0.05, 0.0}) {
+        const SurfaceGeometry flat = Revolution{Line<3>{{{2, 0, 0}}, {{-1, 0, slope}}}, {}, {{0, 0, 1}}};
+        EXPECT_TRUE(apex_for(flat, face(0, 1)));
+    }
+    const Vec<3> top{{0.4, 1, 0}};
+    std::vector<Vec<3>> net;
+    for (const double x : {0.0, 0.1, 0.2, 1.0})
+        net.insert(net.end(), {Vec<3>{{x, 0, 0}}, 0.5 * (Vec<3>{{x, 0, 0}} + top)});
+    const SurfaceGeometry hasty = must(Surface<Vec<3>>::make(
+        {*BSplineBasis::bezier(3), *BSplineBasis::bezier(1)}, Net<2, Vec<3>>({4, 2}, net)));
+    ASSERT_TRUE(apex_of(hasty));
+    EXPECT_FALSE(apex_for(hasty, {{{0, 0}}, {{1, 1}}}));
 }
 
 Revolution sphere(double radius) {

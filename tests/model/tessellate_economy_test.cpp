@@ -33,13 +33,12 @@ TEST(TessellateEconomy, walls_of_cones_are_judged_by_their_chords) {
     }
 }
 
-// Between an ellipse about the origin and a copy of it, nearer to the apex at the height 3; moved up if
-// `part` is 1.
-Surface<Hom<3>> wall(double lean, double part, double squeeze) {
+// Between an ellipse about the origin and a copy of it, nearer to the apex; moved up if `part` is 1.
+Surface<Hom<3>> wall(double lean, double part, double squeeze, double height = 3) {
     const double w = std::sqrt(0.5);
     const double corner[9][2] = {{1, 0},   {1, 1},  {0, 1},  {-1, 1}, {-1, 0},
                                  {-1, -1}, {0, -1}, {1, -1}, {1, 0}};
-    const Vec<3> apex{{lean, 0, 3}};
+    const Vec<3> apex{{lean, 0, height}};
     std::vector<Hom<3>> c;
     for (int i = 0; i < 9; ++i) {
         const Vec<3> far{{corner[i][0], squeeze * corner[i][1], 0}};
@@ -70,6 +69,28 @@ TEST(TessellateEconomy, cones_take_few_triangles_up_to_the_apex) {
             EXPECT_LE(d->measured, t->error_bound + t->boundary_gap);
             EXPECT_GE(d->measured, 0.5 * tolerance);
         }
+}
+
+// However flat, splines even down to planes.
+TEST(TessellateEconomy, flat_cones_take_as_few_triangles_as_steep_ones) {
+    const double tolerance = 1e-4;
+    const auto expect_few = [&](const Model& m, double triangles, double height) {
+        const auto t = tessellate(m, {.tolerance = tolerance});
+        ASSERT_TRUE(t && t->refused.empty()) << height;
+        EXPECT_LE(t->error_bound, tolerance);
+        EXPECT_LE(double(t->mesh.triangles.size()), triangles) << height;
+        const auto d = deviation(m, t->mesh, {.enough = tolerance, .max_parts = 1'000});
+        ASSERT_TRUE(d);
+        EXPECT_LE(d->measured, t->error_bound + t->boundary_gap);
+        if (height > 1) EXPECT_GE(d->measured, 0.3 * tolerance);
+    };
+    const double inner = 0.1, few = 1.3 * (1 + std::sqrt(inner / 2)) * steps(2 * kPi, 2, tolerance);
+    for (const double height : {2.0, 0.4, 0.02}) expect_few(frustum(2, inner, height), 2 * few, height);
+    for (const double height : {2.0, 0.3, 1e-3, 0.0}) {
+        ModelBuilder builder;
+        ASSERT_TRUE(builder.add(wall(0.1, inner, 1, height)));
+        expect_few(*std::move(builder).finish(), few, height);
+    }
 }
 
 CurveGeometry<2> side(Vec<2> a, Vec<2> b) {
@@ -139,7 +160,7 @@ TEST(TessellateEconomy, triangles_between_holes_of_cones_do_not_turn_over) {
         const double tolerance = std::exp2(rng.real(-11, -5));
         const auto loops = with_holes(rng, {{4, 1}});
         ModelBuilder builder;
-        ASSERT_TRUE(builder.add_trimmed(wall(0.2, 0, 1), loops));
+        ASSERT_TRUE(builder.add_trimmed(wall(0.2, 0, 1, round % 4 == 1 ? 0.05 : 3), loops));
         const Model m = *std::move(builder).finish();
         const auto t = tessellate(m, {.tolerance = tolerance});
         ASSERT_TRUE(t && t->refused.empty()) << round;

@@ -52,6 +52,10 @@ struct RenderOptions {
 // large.
 Result<Image> render(const TriangleMesh& mesh, const RenderOptions& options = {});
 
+// How long a pixel of that picture is, in the unit of the mesh, where the mesh would be nearest to the eye:
+// what a mesh may be off unseen. 0 of a mesh without extent. Nothing is drawn.
+double pixel_size(const TriangleMesh& mesh, const RenderOptions& options = {});
+
 Result<std::string> to_png(const Image& image);
 
 }  // namespace freiform

@@ -8,12 +8,12 @@
 namespace freiform {
 
 struct EdgeGapOptions {
-    double target = 0;      // distance: a bound up to this is good enough
-    double factor = 1.25;   // > 1: so is one up to this times the largest gap that was found
-    double roundings = 32;  // and one up to this times what a place may be off in rounding; 3 and no less are
-                            // in every bound
+    double target = 0;     // distance: a bound up to this is good enough
+    double factor = 1.25;  // > 1: so is one up to this times the largest gap that was found
     int max_samples =
         40'000;  // effort: after that many places (a piece counts for some) the bound is what it is
+    double roundings = 32;  // and one up to this times what a place may be off in rounding; 3 and no less are
+                            // in every bound
 };
 
 struct EdgeGap {

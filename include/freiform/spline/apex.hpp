@@ -25,10 +25,10 @@ struct Apex {
     }
 };
 
-// Of splines with two rows of control points that are scaled copies of each other, of revolutions of lines
-// that meet their axis, or nearly do, for their slip, and of circles about points of it. In a part, if one is
-// given, of lines that are nearly parallel to it: their slip holds there and half as far again to either
-// side. Nothing for others.
+// Of splines whose rows of control points are scaled copies of each other, evenly along lines, of revolutions
+// of lines that meet their axis, or nearly do, for their slip, and of circles about points of it. In a part,
+// if one is given, of lines that are nearly parallel to it: their slip holds there and half as far again to
+// either side. Nothing for others.
 std::optional<Apex> apex_of(const SurfaceGeometry& surface, const Box<2>& part = {});
 
 }  // namespace freiform
