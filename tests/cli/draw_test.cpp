@@ -91,6 +91,29 @@ TEST_F(Draw, surfaces_are_coloured_and_the_range_is_said) {
         EXPECT_EQ(run({"draw", "-", "-o", "p.png", "--colour", way, "--isophotes"}, pipe).code, 0) << way;
 }
 
+// Half a tube, 100 times as long as it is wide.
+TEST_F(Draw, surfaces_are_drawn_within_less_than_a_pixel_of_what_is_seen_of_them) {
+    const std::string tube = R"({"type":"surface","degrees":[2,1],
+        "points":[[[1,0,0],[1,0,200]],[[0,3,0],[0,3,200]],[[-1,0,0],[-1,0,200]]]})";
+    const auto bound = [&](std::vector<std::string> more) {
+        std::vector<std::string> all{"draw", "-", "-o", "t.png", "--colour", "error", "--json"};
+        all.insert(all.end(), more.begin(), more.end());
+        const Ran r = run(all, tube);
+        if (r.code == 3) return -1.0;
+        EXPECT_EQ(r.code, 0) << r.err;
+        return Json::parse(r.out)["error_bound"].get<double>();
+    };
+    const double aside = bound({"--view", "front", "--width", "400", "--height", "300"});
+    if (aside < 0) GTEST_SKIP() << "no pictures of surfaces here";
+    EXPECT_LE(aside, 200 / 270.0 / 4) << "a quarter of a pixel";
+    EXPECT_LE(bound({"--view", "top", "--width", "400", "--height", "300"}), 2 / 200.0 / 4);
+    EXPECT_LE(bound({"--view", "front", "--width", "1200", "--height", "900"}), aside / 2.5);
+    EXPECT_GE(bound({"--view", "top", "--tolerance", "0.1"}), 0.01);
+    const Ran few = run({"draw", "-", "-o", "t.png", "--view", "top", "--max-triangles", "20"}, tube);
+    EXPECT_EQ(few.code, 0) << few.err;
+    EXPECT_NE(few.err.find("which may be seen"), std::string::npos) << few.err;
+}
+
 TEST_F(Draw, surfaces_are_drawn_by_shaders_or_the_reason_is_said) {
     const std::string teapot = std::string(FREIFORM_SOURCE_DIR) + "/examples/teapot.bpt";
     const auto drawn = [&](std::vector<std::string> more) {

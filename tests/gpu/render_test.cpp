@@ -247,6 +247,26 @@ TEST_F(Render, picture_stays_within_the_margin) {
         }
 }
 
+TEST_F(Render, pixels_are_as_long_as_is_said) {
+    for (const double k : {1e-3, 1.0, 700.0}) {
+        TriangleMesh ball = test::sphere(60, 120);
+        for (Vec<3>& p : ball.points) p = k * p + Vec<3>{{k, 0, 5 * k}};
+        options_.outlines = false;
+        const Extent e = drawn(picture(ball), 20);
+        EXPECT_NEAR((e.bottom - e.top + 1) * pixel_size(ball, options_), 2 * k, 0.02 * k);
+        options_.perspective = true;
+        EXPECT_LT(pixel_size(ball, options_), 2 * k / (e.bottom - e.top));
+        options_.perspective = false;
+    }
+    // A rod from above is as wide as the picture, however long it is.
+    TriangleMesh rod = test::sphere(20, 40);
+    for (Vec<3>& p : rod.points) p[2] *= 1000;
+    const double across = pixel_size(rod, options_);
+    options_.view = {0, std::numbers::pi / 2};
+    EXPECT_LT(pixel_size(rod, options_), across / 500);
+    EXPECT_EQ(pixel_size({}, options_), 0);
+}
+
 TEST_F(Render, zebra_shows_stripes) {
     options_.zebra = true;
     const Image image = picture(test::sphere(60, 120));
