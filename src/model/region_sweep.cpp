@@ -13,6 +13,11 @@
 // x c', which points to the right of c where the region is on the right of the axis. The other cases are
 // reversed.
 //
+// Axis. Points of it that curves begin or end at stay where they are: their rails are poles of the walls
+// beside. Curves that lie on it have no wall; where the turn is not full both flat faces have them as one
+// edge. The curves between two such points sweep a closed surface of their own: that from the end of the axis
+// where the loop leaves it outwards goes round all the others, which are hollows.
+//
 // Parts. Loops of even depth bound a part, with the loops one deeper inside them as holes. Loops do not
 // cross, so one point of a hole tells in which: of several that contain it the one next to it has the right
 // depth.
@@ -49,7 +54,8 @@ public:
 
 private:
     struct Ring {  // of one loop: edges of its curves at both ends of the sweep, and its walls
-        std::vector<int> near, far, faces;
+        std::vector<int> near, far;
+        std::vector<std::vector<int>> faces;  // that belong together; what goes round the others first
     };
 
     int add(Edge edge) {
@@ -59,51 +65,92 @@ private:
 
     Vec<2> at(double t, double s) const { return sweep_.turns ? Vec<2>{{s, t}} : Vec<2>{{t, s}}; }
 
+    std::optional<double> on_axis(const CurveGeometry<2>& c, bool at_end) const {
+        const Interval t = domain(c)[0];
+        return sweep_.on_axis ? sweep_.on_axis(jet<0>(c, at_end ? t.hi : t.lo).value()) : std::nullopt;
+    }
+    bool lies_on_axis(const CurveGeometry<2>& c) const {
+        return sweep_.on_axis &&
+               visit_one(
+                   [&](const auto& curve) {
+                       if constexpr (requires { curve.net(); })
+                           return std::ranges::all_of(curve.net().flat(), [&](const auto& p) {
+                               return bool(sweep_.on_axis(project(p)));
+                           });
+                       return false;
+                   },
+                   c);
+    }
+
     Result<void> walls(const std::vector<CurveGeometry<2>>& loop) {
-        const int n = int(loop.size()), first = int(model_.vertices.size());
-        const int step = sweep_.full ? 1 : 2;  // vertices for each start of a curve
+        const std::size_t n = loop.size();
         Ring ring;
-        std::vector<int> rails;
+        std::vector<int> near, far, rails;  // vertices at the starts of curves, and the edges they sweep
         std::vector<SweptCurve> swept;
         for (const auto& c : loop) {
             auto made = sweep_.curve(c);
             if (!made) return std::unexpected(made.error());
-            const int v = int(model_.vertices.size());
+            near.push_back(int(model_.vertices.size()));
             model_.vertices.push_back({made->start, made->tolerance});
-            if (step == 2) model_.vertices.push_back({made->start_far, made->tolerance});
-            rails.push_back(add({made->rail, false, sweep_.range, v, v + step - 1, made->tolerance, ""}));
+            const bool stays = on_axis(c, false).has_value();
+            if (!sweep_.full && !stays) model_.vertices.push_back({made->start_far, made->tolerance});
+            far.push_back(int(model_.vertices.size()) - 1);
+            rails.push_back(
+                stays ? -1
+                      : add({made->rail, false, sweep_.range, near.back(), far.back(), made->tolerance, ""}));
             swept.push_back(*std::move(made));
         }
-        for (int i = 0; i < n; ++i) {
-            const SweptCurve& c = swept[std::size_t(i)];
-            const Interval t = domain(loop[std::size_t(i)])[0];
-            const int a = first + i * step, b = first + (i + 1) % n * step;
-            ring.near.push_back(add({c.near, false, t, a, b, c.tolerance, ""}));
-            ring.far.push_back(sweep_.full ? ring.near.back()
-                                           : add({c.far, false, t, a + 1, b + 1, c.tolerance, ""}));
+        for (std::size_t i = 0; i < n; ++i) {
+            const SweptCurve& c = swept[i];
+            const Interval t = domain(loop[i])[0];
+            const std::size_t next = (i + 1) % n;
+            const bool stays = lies_on_axis(loop[i]);
+            const auto edge = [&](const CurveGeometry<3>& curve, const std::vector<int>& vertices) {
+                return add({curve, false, t, vertices[i], vertices[next], c.tolerance, ""});
+            };
+            ring.near.push_back(stays && sweep_.full ? -1 : edge(c.near, near));
+            ring.far.push_back(sweep_.full || stays ? ring.near.back() : edge(c.far, far));
         }
-        for (int i = 0; i < n; ++i) {
-            const Interval t = domain(loop[std::size_t(i)])[0], s = sweep_.range;
+        const auto rail = [&](std::size_t k) {
+            return rails[k] >= 0 ? rails[k]
+                                 : add({{}, true, sweep_.range, near[k], near[k], swept[k].tolerance, ""});
+        };
+        const std::size_t first = outermost(loop);
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t i = (first + k) % n, next = (i + 1) % n;
+            if (k == 0 || on_axis(loop[i], false)) ring.faces.emplace_back();
+            if (lies_on_axis(loop[i])) continue;
+            const Interval t = domain(loop[i])[0], s = sweep_.range;
             const auto along = [&](double at_s) { return from_to(t, at(t.lo, at_s), at(t.hi, at_s)); };
             const auto across = [&](double at_t) { return from_to(s, at(at_t, s.lo), at(at_t, s.hi)); };
-            const std::size_t k = std::size_t(i);
-            Loop around{{{ring.near[k], false, along(s.lo)},
-                         {rails[(k + 1) % rails.size()], false, across(t.hi)},
-                         {ring.far[k], true, along(s.hi)},
-                         {rails[k], true, across(t.lo)}}};
+            Loop around{{{ring.near[i], false, along(s.lo)},
+                         {rail(next), false, across(t.hi)},
+                         {ring.far[i], true, along(s.hi)},
+                         {rail(i), true, across(t.lo)}}};
             if (sweep_.turns) {  // (s, t) are (u, v): the same way round is the other way
                 std::ranges::reverse(around.coedges);
                 for (Coedge& e : around.coedges) e.reversed = !e.reversed;
             }
             Face face;
-            face.surface = std::move(swept[k].wall);
+            face.surface = std::move(swept[i].wall);
             face.reversed = sweep_.reversed;
             face.loops = {std::move(around)};
-            ring.faces.push_back(int(model_.faces.size()));
+            ring.faces.back().push_back(int(model_.faces.size()));
             model_.faces.push_back(std::move(face));
         }
+        std::erase_if(ring.faces, [](const auto& faces) { return faces.empty(); });
         rings_.push_back(std::move(ring));
         return {};
+    }
+
+    // The curve that leaves the axis for what goes round everything else.
+    std::size_t outermost(const std::vector<CurveGeometry<2>>& loop) const {
+        std::size_t first = 0;
+        double least = kInfinity;
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            if (const auto place = on_axis(loop[i], false); place && *place < least)
+                least = *place, first = i;
+        return first;
     }
 
     // A flat face over the loops, at the near or the far end.
@@ -124,12 +171,10 @@ private:
         return int(model_.faces.size()) - 1;
     }
 
-    int shell(const std::vector<std::size_t>& loops, std::initializer_list<int> caps) {
+    int shell(const std::vector<int>& faces) {
         Shell s;
         s.closed = true;
-        for (const std::size_t l : loops)
-            for (const int f : rings_[l].faces) s.faces.push_back({f, false});
-        for (const int f : caps) s.faces.push_back({f, false});
+        for (const int f : faces) s.faces.push_back({f, false});
         model_.shells.push_back(std::move(s));
         return int(model_.shells.size()) - 1;
     }
@@ -146,10 +191,16 @@ private:
         }
         Body body;
         body.solid = true;
-        if (sweep_.full)
-            for (const std::size_t l : loops) body.shells.push_back(shell({l}, {}));
-        else
-            body.shells = {shell(loops, {cap(loops, false), cap(loops, true)})};
+        std::vector<int> all;
+        for (const std::size_t l : loops)
+            for (const std::vector<int>& faces : rings_[l].faces) {
+                if (sweep_.full) body.shells.push_back(shell(faces));
+                all.insert(all.end(), faces.begin(), faces.end());
+            }
+        if (!sweep_.full) {
+            for (const bool at_far : {false, true}) all.push_back(cap(loops, at_far));
+            body.shells = {shell(all)};
+        }
         model_.bodies.push_back(std::move(body));
         return {};
     }

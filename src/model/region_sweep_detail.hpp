@@ -3,6 +3,7 @@
 #include <freiform/model/swept_solid.hpp>
 
 #include <functional>
+#include <optional>
 
 namespace freiform::detail {
 
@@ -22,6 +23,9 @@ struct RegionSweep {
     bool turns = false;     // parameters of walls are (s, t) of sweep and curve, otherwise (t, s)
     bool full = false;      // the far end is the near one
     bool reversed = false;  // the sweep goes to the other side of the region's left-hand walls
+    // Of points of an axis, which stay where they are: the place there, growing away from the first of the
+    // points that a loop with the region on its left leaves outwards. None, or nothing: all points move.
+    std::function<std::optional<double>(const Vec<2>&)> on_axis = {};
 };
 
 // Of all control points. Refuses curves that are no splines.

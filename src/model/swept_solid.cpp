@@ -73,9 +73,19 @@ struct Sweep {
     Vec<3> origin{}, axis{};
     double angle = 0;
     bool reversed = false;  // the sweep goes to the other side of the region's left-hand walls
+    double touches = 0;     // nothing: points no farther from the axis are on it
 
     bool turns() const { return angle != 0; }
     bool full() const { return angle == kTurn; }
+    // How far p is to the right of the axis.
+    double beside_axis(const Vec<2>& p) const {
+        return (p[0] - origin[0]) * axis[1] - (p[1] - origin[1]) * axis[0];
+    }
+    std::optional<double> on_axis(const Vec<2>& p) const {
+        if (!(std::abs(beside_axis(p)) <= touches)) return std::nullopt;
+        const double along = (p[0] - origin[0]) * axis[0] + (p[1] - origin[1]) * axis[1];
+        return reversed ? -along : along;
+    }
     Motion far() const { return turns() ? Motion{origin, axis, angle, {}} : Motion{{}, {}, 0, by}; }
     Interval range() const { return turns() ? Interval{0, angle} : Interval{0, 1}; }
 
@@ -99,11 +109,27 @@ struct Sweep {
                    : Extrusion{Line<3>{{}, x}, y, SurfaceKind::plane};
     }
     Result<Model> of(const RegionLoops& region) const {
-        return detail::sweep_region(
-            region, {[this](const CurveGeometry<2>& c) { return curve(c); },
-                     [this](bool at_far) { return cap(at_far); }, range(), turns(), full(), reversed});
+        detail::RegionSweep how{[this](const CurveGeometry<2>& c) { return curve(c); },
+                                [this](bool at_far) { return cap(at_far); },
+                                range(),
+                                turns(),
+                                full(),
+                                reversed};
+        if (turns()) how.on_axis = [this](const Vec<2>& p) { return on_axis(p); };
+        return detail::sweep_region(region, how);
     }
 };
+
+std::vector<Vec<2>> control_points(const CurveGeometry<2>& curve) {
+    return visit_one(
+        [](const auto& c) {
+            std::vector<Vec<2>> out;
+            if constexpr (requires { c.net(); })
+                for (const auto& p : c.net().flat()) out.push_back(project(p));
+            return out;
+        },
+        curve);
+}
 
 bool is_finite(const Vec<3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
@@ -146,19 +172,39 @@ Result<Model> solid_of_revolution(const RegionLoops& region, const Axis& axis, d
                       text("more than 0 and at most ", kTurn, ", not ", angle));
     Sweep sweep;
     sweep.origin = axis.origin, sweep.axis = (1 / length) * axis.direction, sweep.angle = angle;
-    // Twice the area of the triangle of axis and point; its rounding is far below what is taken for touching.
-    double least = kInfinity, most = -kInfinity, reach = 0;
-    const auto side = [&](const Vec<2>& p) {
-        const Vec<2> d{{p[0] - axis.origin[0], p[1] - axis.origin[1]}};
-        const double s = d[0] * sweep.axis[1] - d[1] * sweep.axis[0];
-        least = std::min(least, s), most = std::max(most, s), reach = std::max(reach, max_abs(d));
+    double reach = 0;
+    const auto from_axis = [&](const Vec<2>& p) {
+        return Vec<2>{{p[0] - axis.origin[0], p[1] - axis.origin[1]}};
     };
-    if (auto ok = detail::each_point(region, side); !ok) return std::unexpected(ok.error());
-    const double touches = TrimmedSurface::kSlack * reach;
-    if (!(least > touches || most < -touches))
+    if (auto ok = detail::each_point(
+            region, [&](const Vec<2>& p) { reach = std::max(reach, max_abs(from_axis(p))); });
+        !ok)
+        return std::unexpected(ok.error());
+    // Twice the area of the triangle of axis and point; its rounding is far below what is taken for touching.
+    sweep.touches = TrimmedSurface::kSlack * reach;
+    double least = kInfinity, most = -kInfinity;  // of what is not on the axis
+    for (std::size_t l = 0; l < region.size(); ++l)
+        for (std::size_t c = 0; c < region[l].size(); ++c) {
+            const auto points = control_points(region[l][c]);
+            int on_axis = 0;
+            for (const Vec<2>& p : points) {
+                const double s = sweep.beside_axis(p);
+                if (std::abs(s) <= sweep.touches)
+                    ++on_axis;
+                else
+                    least = std::min(least, s), most = std::max(most, s);
+            }
+            const int ends = (std::abs(sweep.beside_axis(points.front())) <= sweep.touches) +
+                             (std::abs(sweep.beside_axis(points.back())) <= sweep.touches);
+            if (on_axis > ends && on_axis < int(points.size()))
+                return refuse(RefusalKind::unsupported, text("loops[", l, "][", c, "]"),
+                              "has control points on the axis between its ends; cut it there");
+        }
+    if (least < 0 && most > 0)
         return refuse(RefusalKind::unsupported, "axis",
-                      text("the region reaches the axis: its control points are from ", least, " to ", most,
-                           " to the right of it"));
+                      text("the region is on both sides of the axis: its control points are from ", least,
+                           " to ", most, " to the right of it"));
+    if (!(least <= most)) return refuse(RefusalKind::no_answer, "loops", "all of the region is on the axis");
     sweep.reversed = most < 0;
     return sweep.of(region);
 }

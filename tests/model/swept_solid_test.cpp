@@ -94,6 +94,83 @@ TEST(SolidOfRevolution, has_the_volume_that_pappus_says) {
     EXPECT_NEAR(signed_volume(t.mesh), 16 * 2 * kPi * distance, 6);
 }
 
+Subpath polygon_loop(const std::vector<Vec<2>>& p) {
+    Subpath s{p[0], {}, true};
+    for (std::size_t i = 0; i < p.size(); ++i) s.segments.push_back({1, {p[i], p[(i + 1) % p.size()]}, 1});
+    return s;
+}
+// Quarters of circles about the origin from angle to angle, counted in quarters, as rational arcs.
+void add_arc(Subpath& s, double radius, int from, int to) {
+    const auto at = [&](int k) {
+        return Vec<2>{{radius * std::array{1, 0, -1, 0}[std::size_t(k & 3)],
+                       radius * std::array{0, 1, 0, -1}[std::size_t(k & 3)]}};
+    };
+    for (int k = from; k != to; k += to > from ? 1 : -1) {
+        const Vec<2> a = at(k), b = at(k + (to > from ? 1 : -1));
+        s.segments.push_back({2, {a, a + b, b}, std::sqrt(0.5)});
+    }
+}
+
+// Region, area times the distance of its centroid from x = 0, shells of a full turn, faces of a full turn.
+struct OnAxis {
+    std::string_view name;
+    Subpath loop;
+    double moment;
+    std::size_t shells, walls;
+};
+std::vector<OnAxis> regions_on_axis() {
+    std::vector<OnAxis> out;
+    out.push_back({"cylinder", square_loop({{0, 0}}, 2), 4 * 1, 1, 3});
+    out.push_back({"double cone", polygon_loop({{{0, 0}}, {{1, 1}}, {{0, 3}}}), 1.5 * (1 / 3.0), 1, 2});
+    Subpath ball{{{0, -2}}, {}, true};
+    add_arc(ball, 2, -1, 1);
+    out.push_back({"ball", ball, 2.0 / 3 * 8, 1, 2});
+    Subpath hollow = ball;
+    hollow.segments.push_back({1, {Vec<2>{{0, 2}}, Vec<2>{{0, 1}}}, 1});
+    add_arc(hollow, 1, 1, -1);
+    out.push_back({"hollow ball", hollow, 2.0 / 3 * 7, 2, 4});
+    // From the axis and back to the same point of it; to two points of it, and lines on it in between.
+    out.push_back({"tip", polygon_loop({{{0, 0}}, {{2, -1}}, {{2, 1}}}), 2 * (4 / 3.0), 1, 3});
+    out.push_back(
+        {"comb",
+         polygon_loop({{{0, 0}}, {{3, 0}}, {{3, 5}}, {{0, 5}}, {{1, 4}}, {{0, 3}}, {{0, 2}}, {{1, 1}}}),
+         15 * 1.5 - 2 * (1 * 1 / 3.0), 3, 7});
+    return out;
+}
+
+TEST(SolidOfRevolution, of_regions_that_reach_the_axis_have_poles_and_hollows_along_it) {
+    for (const OnAxis& r : regions_on_axis())
+        for (const bool left : {false, true})
+            for (const double angle : {2 * kPi, 1.0})
+                for (const double turned : {0.0, 0.7}) {
+                    const double c = std::cos(turned), s = std::sin(turned);
+                    const Path path =
+                        transformed({{r.loop}}, {{{{left ? -c : c, -s}, {left ? -s : s, c}}}, {{3, -1}}});
+                    const auto model =
+                        solid_of_revolution(loops_of(path), {{{3, -1, 0}}, {{-s, c, 0}}}, angle);
+                    const std::string which = std::string(r.name) + (left ? " left " : " right ") +
+                                              std::to_string(angle) + " " + std::to_string(turned);
+                    const Tessellation t = closed_mesh(model, 1e-2);
+                    EXPECT_NEAR(signed_volume(t.mesh), angle * r.moment, 1.5e-2 * angle * r.moment) << which;
+                    EXPECT_LE(t.boundary_gap, 1e-14) << which;
+                    ASSERT_TRUE(model) << which;
+                    ASSERT_EQ(model->bodies.size(), 1u) << which;
+                    EXPECT_TRUE(model->bodies[0].solid);
+                    EXPECT_EQ(model->bodies[0].shells.size(), angle > 6 ? r.shells : 1u) << which;
+                    EXPECT_EQ(model->faces.size(), r.walls + (angle > 6 ? 0u : 2u)) << which;
+                    // What goes round everything is first.
+                    Box<3> outer, all;
+                    for (const FaceUse& f : model->shells[std::size_t(model->bodies[0].shells[0])].faces)
+                        for (const MeshPart& p : t.mesh.parts)
+                            if (p.face == f.face)
+                                for (int k = p.first; k < p.first + p.count; ++k)
+                                    for (const int v : t.mesh.points_of(std::size_t(k)))
+                                        outer.add(t.mesh.points[std::size_t(v)]);
+                    for (const Vec<3>& p : t.mesh.points) all.add(p);
+                    EXPECT_EQ(outer, all) << which;
+                }
+}
+
 TEST(SweptSolid, open_subpaths_are_closed_and_dots_left_out) {
     const Subpath dot{{{5, 5}}, {}, true}, still{{{6, 6}}, {{1, {{{{6, 6}}, {{6, 6}}}}, 1}}, true};
     Path path{{square_loop({{0, 0}}, 1), dot, still}};
@@ -133,9 +210,13 @@ TEST(SweptSolid, refuses_what_sweeps_no_solid) {
     const CurveGeometry<2> round = Conic<2>{ConicKind::ellipse, {}, {{1, 0}}, {{0, 1}}};
     expect_refusal(prism({{round}}, {{0, 0, 1}}), RefusalKind::unsupported, "loops[0][0]");
     expect_refusal(solid_of_revolution(region, {{{2, 0, 0}}, {{0, 1, 0}}}, 1), RefusalKind::unsupported,
-                   "axis", "reaches");
-    expect_refusal(solid_of_revolution(region, {{{0, 0, 0}}, {{0, 1, 0}}}, 1), RefusalKind::unsupported,
-                   "axis");
+                   "axis", "both sides");
+    const Vec<2> low{{1, 0}}, high{{1, 3}};
+    const Subpath bulge{
+        low, {{3, {low, Vec<2>{{0, 1}}, Vec<2>{{0, 2}}, high}, 1}, {1, {high, Vec<2>{{2, 1}}}, 1}}, true};
+    expect_refusal(solid_of_revolution(loops_of({{bulge}}), {{}, {{0, 1, 0}}}, 1), RefusalKind::unsupported,
+                   "loops[0][0]", "between its ends");
+    expect_refusal(solid_of_revolution({}, {{}, {{0, 1, 0}}}, 1), RefusalKind::no_answer, "loops");
     expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 1, 1}}}, 1), RefusalKind::invalid, "axis");
     expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 0, 0}}}, 1), RefusalKind::invalid, "axis");
     expect_refusal(solid_of_revolution(region, {{{-1, 0, 0}}, {{0, 1, 0}}}, 7), RefusalKind::invalid,

@@ -26,9 +26,11 @@ RegionLoops loops_of(const Path& path);
 Result<Model> prism(const RegionLoops& region, const Vec<3>& by);
 
 // The region turned by `angle` (radians, 0 < angle <= 2 pi) about an axis in its plane, counter-clockwise
-// seen from the tip of its direction. A full turn has no flat faces; holes in the region become voids.
-// Refuses the same as prism, axes that leave the plane (invalid), and (unsupported) regions with a control
-// point on the axis or on both sides of it.
+// seen from the tip of its direction. A full turn has no flat faces; holes in the region become voids, and so
+// does what it leaves out along the axis. Curves may begin and end on the axis, where the solid has poles,
+// and lines lie on it. Refuses the same as prism, axes that leave the plane (invalid), and (unsupported)
+// regions on both sides of the axis, and curves with other control points on it.
+//   auto ball = solid_of_revolution(loops_of(half_disc), {{}, {{0, 1, 0}}}, 2 * std::numbers::pi);
 Result<Model> solid_of_revolution(const RegionLoops& region, const Axis& axis, double angle);
 
 struct SolidAlong {
