@@ -249,13 +249,20 @@ Vec<3> normal(const SurfaceGeometry& surface, const Param<2>& uv) {
     return unit(cross(unit(j.d[1]), unit(j.d[2])));
 }
 
+namespace {
+constexpr double kRound = 0x1p-46;  // of squares: axes of a circle that was turned
+}
+
 template <int D>
 std::string_view kind_name(const CurveGeometry<D>& curve) {
     return visit_one(Overloaded{[](const Line<D>&) { return std::string_view("line"); },
                                 [](const Conic<D>& c) -> std::string_view {
                                     if (c.kind == ConicKind::hyperbola) return "hyperbola";
                                     if (c.kind == ConicKind::parabola) return "parabola";
-                                    return dot(c.x, c.x) == dot(c.y, c.y) ? "circle" : "ellipse";
+                                    const double x = dot(c.x, c.x), y = dot(c.y, c.y), least = kRound * x;
+                                    return std::abs(x - y) <= least && std::abs(dot(c.x, c.y)) <= least
+                                               ? "circle"
+                                               : "ellipse";
                                 },
                                 [](const Curve<Vec<D>>&) { return std::string_view("bspline"); },
                                 [](const Curve<Hom<D>>&) { return std::string_view("nurbs"); }},

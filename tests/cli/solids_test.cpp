@@ -140,6 +140,24 @@ double volume_of_stl(const std::string& bytes) {
     return sum;
 }
 
+// Half a disc turned about its straight side, written and read again.
+TEST_F(SolidProgram, of_regions_that_reach_the_axis_are_closed_and_stay_so) {
+    const std::string half = file("half.svg", R"(<svg xmlns="http://www.w3.org/2000/svg"><path d=
+        "M 0 -2 A 2 2 0 0 1 0 2 Z"/></svg>)");
+    for (const std::string angle : {"360", "-90"})
+        for (const std::string ball : {"ball.json", "ball.step", "ball.iges"}) {
+            const Ran made =
+                run({"revolve", half, "--axis", "0,0,0,0,1,0", "--angle", angle, "--solid", "-o", ball});
+            ASSERT_EQ(made.code, 0) << made.err;
+            const Ran mesh = run({"tessellate", ball, "--tolerance", "1e-2", "-o", "ball.stl", "--json"});
+            if (mesh.code == 5) continue;  // IGES files are not read here
+            ASSERT_EQ(mesh.code, 0) << ball << mesh.err;
+            EXPECT_EQ(SolidJson::parse(mesh.out)["open_edges"], 0) << ball;
+            const double whole = 4 / 3.0 * std::numbers::pi * 8, part = angle == "360" ? 1 : 0.25;
+            EXPECT_NEAR(volume_of_stl(content(path("ball.stl"))), part * whole, 0.3) << ball;
+        }
+}
+
 // A ring of radii 2 and 1 along a straight and along a bent rail: volumes are area times length (Pappus), and
 // the triangles' volume says the same within what their bound allows.
 TEST_F(SolidProgram, of_regions_along_a_rail_are_watertight) {

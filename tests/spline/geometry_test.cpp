@@ -59,6 +59,15 @@ TEST(Geometry, quadrics_satisfy_their_equations) {
     }
 }
 
+TEST(Geometry, circles_are_called_so_within_rounding) {
+    const auto name = [](const Vec<3>& x, const Vec<3>& y) {
+        return kind_name(CurveGeometry<3>(Conic<3>{ConicKind::ellipse, {}, x, y}));
+    };
+    EXPECT_EQ(name({{3, 0, 0}}, {{0, 3 * (1 + 0x1p-50), 0x1p-50}}), "circle");
+    EXPECT_EQ(name({{3, 0, 0}}, {{0, 3 * (1 + 1e-9), 0}}), "ellipse");
+    EXPECT_EQ(name({{3, 0, 0}}, {{3 * std::sin(0.1), 3 * std::cos(0.1), 0}}), "ellipse") << "oblique";
+}
+
 TEST(Geometry, offsets_keep_their_distance_along_the_normal) {
     std::mt19937 rng(5);
     for (const auto& [name, surface, on] : surfaces_of_every_kind(2)) {
