@@ -56,6 +56,7 @@ private:
     struct Ring {  // of one loop: edges of its curves at both ends of the sweep, and its walls
         std::vector<int> near, far;
         std::vector<std::vector<int>> faces;  // that belong together; what goes round the others first
+        std::vector<SweptCurve::Flat> curves;
     };
 
     int add(Edge edge) {
@@ -102,11 +103,13 @@ private:
         }
         for (std::size_t i = 0; i < n; ++i) {
             const SweptCurve& c = swept[i];
-            const Interval t = domain(loop[i])[0];
+            ring.curves.push_back(c.flat ? *c.flat : SweptCurve::Flat{loop[i], domain(loop[i])[0]});
+            const auto& flat = ring.curves.back();
             const std::size_t next = (i + 1) % n;
             const bool stays = lies_on_axis(loop[i]);
             const auto edge = [&](const CurveGeometry<3>& curve, const std::vector<int>& vertices) {
-                return add({curve, false, t, vertices[i], vertices[next], c.tolerance, ""});
+                const int from = vertices[flat.against ? next : i], to = vertices[flat.against ? i : next];
+                return add({curve, false, flat.on, from, to, c.tolerance, ""});
             };
             ring.near.push_back(stays && sweep_.full ? -1 : edge(c.near, near));
             ring.far.push_back(sweep_.full || stays ? ring.near.back() : edge(c.far, far));
@@ -120,20 +123,21 @@ private:
             const std::size_t i = (first + k) % n, next = (i + 1) % n;
             if (k == 0 || on_axis(loop[i], false)) ring.faces.emplace_back();
             if (lies_on_axis(loop[i])) continue;
-            const Interval t = domain(loop[i])[0], s = sweep_.range;
+            const bool against = ring.curves[i].against;
+            const Interval t = ring.curves[i].on, s = sweep_.range;
             const auto along = [&](double at_s) { return from_to(t, at(t.lo, at_s), at(t.hi, at_s)); };
             const auto across = [&](double at_t) { return from_to(s, at(at_t, s.lo), at(at_t, s.hi)); };
             Loop around{{{ring.near[i], false, along(s.lo)},
-                         {rail(next), false, across(t.hi)},
+                         {rail(against ? i : next), false, across(t.hi)},
                          {ring.far[i], true, along(s.hi)},
-                         {rail(i), true, across(t.lo)}}};
+                         {rail(against ? next : i), true, across(t.lo)}}};
             if (sweep_.turns) {  // (s, t) are (u, v): the same way round is the other way
                 std::ranges::reverse(around.coedges);
                 for (Coedge& e : around.coedges) e.reversed = !e.reversed;
             }
             Face face;
             face.surface = std::move(swept[i].wall);
-            face.reversed = sweep_.reversed;
+            face.reversed = sweep_.reversed != against;
             face.loops = {std::move(around)};
             ring.faces.back().push_back(int(model_.faces.size()));
             model_.faces.push_back(std::move(face));
@@ -162,9 +166,11 @@ private:
         face.reversed = (at_far == sweep_.turns) != sweep_.reversed;
         for (const std::size_t l : loops) {
             Loop around;
-            for (std::size_t i = 0; i < loops_.loops[l].size(); ++i)
+            for (std::size_t i = 0; i < loops_.loops[l].size(); ++i) {
+                const auto& flat = rings_[l].curves[i];
                 around.coedges.push_back(
-                    {(at_far ? rings_[l].far : rings_[l].near)[i], false, loops_.loops[l][i]});
+                    {(at_far ? rings_[l].far : rings_[l].near)[i], flat.against, flat.curve});
+            }
             face.loops.push_back(std::move(around));
         }
         model_.faces.push_back(std::move(face));

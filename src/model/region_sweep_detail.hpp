@@ -13,6 +13,14 @@ struct SweptCurve {
     CurveGeometry<3> near, far, rail;
     Vec<3> start{}, start_far{};
     double tolerance = 0;  // of these edges and vertices
+    // The curve as the edges run through it, and over what, where that is not the curve over its domain.
+    // `against`: the other way; the wall, which is as the edges are, too.
+    struct Flat {
+        CurveGeometry<2> curve;
+        Interval on;
+        bool against = false;
+    };
+    std::optional<Flat> flat = {};
 };
 
 struct RegionSweep {

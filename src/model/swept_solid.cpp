@@ -1,8 +1,12 @@
 // Prisms and solids of revolution: walls are analytic extrusions or revolutions. region_sweep.cpp puts them
 // together.
 //
+// Lines and arcs of circles are edges by their lengths and angles, and their walls planes, cylinders, cones,
+// spheres and tori, as other programs know them; arcs that follow each other on one circle are one edge.
+//
 // Why not splines as walls (make/sweep.hpp): a circle as rational arcs has parameters that are no angles, so
 // that the walls' parameter curves would have to be approximated.
+#include "elementary_curve_detail.hpp"
 #include "region_sweep_detail.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -20,6 +24,7 @@ namespace freiform {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kLevel = 0x1p-44;  // of a direction: across the axis
 
 Curve<Vec<2>> bezier(std::span<const Vec<2>> points) {
     return Curve<Vec<2>>::trusted({*BSplineBasis::bezier(int(points.size()) - 1)},
@@ -61,8 +66,11 @@ CurveGeometry<3> moved(const CurveGeometry<2>& curve, const Motion& motion) {
                 auto net = s.net();
                 for (auto& p : net.flat()) p = motion(p);
                 return std::remove_cvref_t<decltype(s)>::trusted(s.bases(), std::move(net));
+            } else if constexpr (requires { c.direction; }) {
+                return Line<3>{motion(in_space(c.origin)), motion.turned(in_space(c.direction))};
             } else {
-                return Line<3>{};
+                return Conic<3>{c.kind, motion(in_space(c.centre)), motion.turned(in_space(c.x)),
+                                motion.turned(in_space(c.y))};
             }
         },
         curve);
@@ -87,20 +95,74 @@ struct Sweep {
         return reversed ? -along : along;
     }
     Motion far() const { return turns() ? Motion{origin, axis, angle, {}} : Motion{{}, {}, 0, by}; }
-    Interval range() const { return turns() ? Interval{0, angle} : Interval{0, 1}; }
+    Interval range() const { return {0, turns() ? angle : norm(by)}; }
+    Vec<3> up() const { return turns() ? axis : (1 / norm(by)) * by; }
 
     CurveGeometry<3> rail(const Vec<3>& p) const {
-        if (!turns()) return Line<3>{p, by};
+        if (!turns()) return Line<3>{p, up()};
         const Vec<3> along = dot(axis, p - origin) * axis, x = p - origin - along;
         return Conic<3>{ConicKind::ellipse, origin + along, x, cross(axis, x)};
     }
+    // Of lines and circles elementary surfaces, if they run the way that these have.
     SurfaceGeometry wall(CurveGeometry<3> profile) const {
-        if (!turns()) return Extrusion{std::move(profile), by};
-        return revolution(std::move(profile), origin, axis);
+        const auto* line = std::get_if<Line<3>>(&profile);
+        const auto* circle = std::get_if<Conic<3>>(&profile);
+        SurfaceKind kind = SurfaceKind::general;
+        if (!turns()) {
+            if (line) kind = SurfaceKind::plane;
+            if (circle && by[0] == 0 && by[1] == 0) kind = SurfaceKind::cylinder;
+            return Extrusion{std::move(profile), up(), kind};
+        }
+        if (line && std::abs(dot(line->direction, axis)) > kLevel) kind = SurfaceKind::cone;
+        if (circle) {
+            const double out = std::abs(beside_axis({{circle->centre[0], circle->centre[1]}}));
+            if (out <= touches) kind = SurfaceKind::sphere;
+            if (out > norm(circle->x)) kind = SurfaceKind::torus;
+        }
+        SurfaceGeometry made = revolution(std::move(profile), origin, axis);
+        if (auto* r = std::get_if<Revolution>(&made)) r->kind = kind;
+        return made;
     }
+
+    // Lines run upwards, circles counter-clockwise seen from above, or from the axis outwards and upwards.
+    using Flat = detail::SweptCurve::Flat;
+    Flat flat_of(const detail::PlaneLine& l) const {
+        const Vec<2> way = unit(l.end - l.start);
+        const bool against = turns() && way[0] * axis[0] + way[1] * axis[1] < 0;
+        return {Line<2>{against ? l.end : l.start, against ? -1.0 * way : way},
+                {0, norm(l.end - l.start)},
+                against};
+    }
+    Flat flat_of(const detail::PlaneArc& a) const {
+        const double whole = std::abs(a.sweep);
+        if (!turns()) {
+            const bool against = (a.sweep < 0) != (by[2] < 0);
+            const Vec<2> x = (against ? a.end : a.start) - a.centre, y{{-x[1], x[0]}};
+            return {Conic<2>{ConicKind::ellipse, a.centre, x, by[2] < 0 ? -1.0 * y : y}, {0, whole}, against};
+        }
+        const Vec<2> y{{a.radius * axis[0], a.radius * axis[1]}}, right{{y[1], -y[0]}},
+            x = reversed ? -1.0 * right : right;
+        const bool against = (a.sweep < 0) != reversed;  // x to y is counter-clockwise, unless on the left
+        const Vec<2> first = (against ? a.end : a.start) - a.centre;
+        const double from = std::atan2(dot(first, y), dot(first, x));
+        return {Conic<2>{ConicKind::ellipse, a.centre, x, y}, {from, from + whole}, against};
+    }
+    Flat flat_of(std::monostate) const { return {}; }
+
     detail::SweptCurve curve(const CurveGeometry<2>& c) const {
         const Vec<3> p = in_space(jet<0>(c, domain(c)[0].lo).value());
-        return {wall(moved(c, {})), moved(c, {}), moved(c, far()), rail(p), p, far()(p)};
+        const auto elementary = detail::elementary_of(c);
+        const bool is_one = !std::holds_alternative<std::monostate>(elementary);
+        const Flat flat = is_one ? std::visit([this](const auto& e) { return flat_of(e); }, elementary)
+                                 : Flat{c, domain(c)[0]};
+        return {wall(moved(flat.curve, {})),
+                moved(flat.curve, {}),
+                moved(flat.curve, far()),
+                rail(p),
+                p,
+                far()(p),
+                0,
+                flat};
     }
     SurfaceGeometry cap(bool at_far) const {
         const Vec<3> x{{1, 0, 0}}, y{{0, 1, 0}};
@@ -116,7 +178,11 @@ struct Sweep {
                                 full(),
                                 reversed};
         if (turns()) how.on_axis = [this](const Vec<2>& p) { return on_axis(p); };
-        return detail::sweep_region(region, how);
+        RegionLoops loops;
+        for (const auto& loop : region)
+            loops.push_back(
+                detail::with_joined_arcs(loop, [&](const Vec<2>& p) { return turns() && on_axis(p); }));
+        return detail::sweep_region(loops, how);
     }
 };
 
