@@ -28,6 +28,8 @@
 #include <freiform/trim/trimmed_surface.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace freiform::detail {
 
@@ -86,37 +88,50 @@ private:
     Result<void> walls(const std::vector<CurveGeometry<2>>& loop) {
         const std::size_t n = loop.size();
         Ring ring;
-        std::vector<int> near, far, rails;  // vertices at the starts of curves, and the edges they sweep
+        std::vector<std::array<int, 2>> vertices(n, {-1, -1});  // at the starts of curves, made when needed
+        std::vector<int> rails;                                 // the edges that these sweep
         std::vector<SweptCurve> swept;
         for (const auto& c : loop) {
             auto made = sweep_.curve(c);
             if (!made) return std::unexpected(made.error());
-            near.push_back(int(model_.vertices.size()));
-            model_.vertices.push_back({made->start, made->tolerance});
-            const bool stays = on_axis(c, false).has_value();
-            if (!sweep_.full && !stays) model_.vertices.push_back({made->start_far, made->tolerance});
-            far.push_back(int(model_.vertices.size()) - 1);
-            rails.push_back(
-                stays ? -1
-                      : add({made->rail, false, sweep_.range, near.back(), far.back(), made->tolerance, ""}));
             swept.push_back(*std::move(made));
         }
+        const auto stays = [&](std::size_t i) { return on_axis(loop[i], false).has_value(); };
+        const auto vertex = [&](std::size_t i, bool at_far) {
+            int& v = vertices[i][at_far && !sweep_.full && !stays(i) ? 1 : 0];
+            if (v < 0) {
+                v = int(model_.vertices.size());
+                model_.vertices.push_back({at_far ? swept[i].start_far : swept[i].start, swept[i].tolerance});
+            }
+            return v;
+        };
+        for (std::size_t i = 0; i < n; ++i)
+            rails.push_back(stays(i) ? -1
+                                     : add({swept[i].rail, false, sweep_.range, vertex(i, false),
+                                            vertex(i, true), swept[i].tolerance, ""}));
         for (std::size_t i = 0; i < n; ++i) {
             const SweptCurve& c = swept[i];
             ring.curves.push_back(c.flat ? *c.flat : SweptCurve::Flat{loop[i], domain(loop[i])[0]});
             const auto& flat = ring.curves.back();
             const std::size_t next = (i + 1) % n;
-            const bool stays = lies_on_axis(loop[i]);
-            const auto edge = [&](const CurveGeometry<3>& curve, const std::vector<int>& vertices) {
-                const int from = vertices[flat.against ? next : i], to = vertices[flat.against ? i : next];
+            const bool lies = lies_on_axis(loop[i]), is_seam = sweep_.full && !lies && !c.level;
+            const auto edge = [&](const CurveGeometry<3>& curve, bool at_far) {
+                const int from = vertex(flat.against ? next : i, at_far),
+                          to = vertex(flat.against ? i : next, at_far);
                 return add({curve, false, flat.on, from, to, c.tolerance, ""});
             };
-            ring.near.push_back(stays && sweep_.full ? -1 : edge(c.near, near));
-            ring.far.push_back(sweep_.full || stays ? ring.near.back() : edge(c.far, far));
+            ring.near.push_back(is_seam || !sweep_.full ? edge(c.near, false) : -1);
+            ring.far.push_back(sweep_.full || lies ? ring.near.back() : edge(c.far, true));
         }
         const auto rail = [&](std::size_t k) {
             return rails[k] >= 0 ? rails[k]
-                                 : add({{}, true, sweep_.range, near[k], near[k], swept[k].tolerance, ""});
+                                 : add({{},
+                                        true,
+                                        sweep_.range,
+                                        vertex(k, false),
+                                        vertex(k, false),
+                                        swept[k].tolerance,
+                                        ""});
         };
         const std::size_t first = outermost(loop);
         for (std::size_t k = 0; k < n; ++k) {
@@ -127,24 +142,54 @@ private:
             const Interval t = ring.curves[i].on, s = sweep_.range;
             const auto along = [&](double at_s) { return from_to(t, at(t.lo, at_s), at(t.hi, at_s)); };
             const auto across = [&](double at_t) { return from_to(s, at(at_t, s.lo), at(at_t, s.hi)); };
-            Loop around{{{ring.near[i], false, along(s.lo)},
-                         {rail(against ? i : next), false, across(t.hi)},
-                         {ring.far[i], true, along(s.hi)},
-                         {rail(against ? next : i), true, across(t.lo)}}};
-            if (sweep_.turns) {  // (s, t) are (u, v): the same way round is the other way
-                std::ranges::reverse(around.coedges);
-                for (Coedge& e : around.coedges) e.reversed = !e.reversed;
-            }
+            const std::size_t lo = against ? next : i, hi = against ? i : next;
             Face face;
             face.surface = std::move(swept[i].wall);
             face.reversed = sweep_.reversed != against;
-            face.loops = {std::move(around)};
+            if (swept[i].level) {
+                face.reversed =
+                    !face.reversed;  // it looks along the axis, revolutions of such lines against it
+                face.loops = level_loops(*swept[i].level, ring, i, {rails[lo], rails[hi]});
+            } else {
+                Loop around{{{ring.near[i], false, along(s.lo)},
+                             {rail(hi), false, across(t.hi)},
+                             {ring.far[i], true, along(s.hi)},
+                             {rail(lo), true, across(t.lo)}}};
+                if (sweep_.turns) {  // (s, t) are (u, v): the same way round is the other way
+                    std::ranges::reverse(around.coedges);
+                    for (Coedge& e : around.coedges) e.reversed = !e.reversed;
+                }
+                face.loops = {std::move(around)};
+            }
             ring.faces.back().push_back(int(model_.faces.size()));
             model_.faces.push_back(std::move(face));
         }
         std::erase_if(ring.faces, [](const auto& faces) { return faces.empty(); });
         rings_.push_back(std::move(ring));
         return {};
+    }
+
+    // Of a plane about the axis, with the rails of the ends of its line, -1 on the axis itself: a ring, or a
+    // disc, of a full turn, which has no seam, else a sector.
+    std::vector<Loop> level_loops(const Interval& from_axis, const Ring& ring, std::size_t i,
+                                  const std::array<int, 2>& rails) const {
+        const auto circle = [](double r) { return Conic<2>{ConicKind::ellipse, {}, {{r, 0}}, {{0, r}}}; };
+        const auto line = [&](double angle) {
+            const Vec<2> way{{std::cos(angle), std::sin(angle)}};
+            return from_to(ring.curves[i].on, from_axis.lo * way, from_axis.hi * way);
+        };
+        const Coedge outer{rails[1], false, circle(from_axis.hi)},
+            inner{rails[0], true, circle(from_axis.lo)};
+        if (sweep_.full) {
+            std::vector<Loop> loops{{{outer}}};
+            if (inner.edge >= 0) loops.push_back({{inner}});
+            return loops;
+        }
+        Loop around{{{ring.near[i], false, line(sweep_.range.lo)},
+                     outer,
+                     {ring.far[i], true, line(sweep_.range.hi)}}};
+        if (inner.edge >= 0) around.coedges.push_back(inner);
+        return {around};
     }
 
     // The curve that leaves the axis for what goes round everything else.

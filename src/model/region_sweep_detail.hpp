@@ -21,6 +21,9 @@ struct SweptCurve {
         bool against = false;
     };
     std::optional<Flat> flat = {};
+    // Of a line across the axis, which runs outwards: at both ends, how far it is from there. The wall is a
+    // plane then, with the axis as origin of its parameters, and the line at the near end along the first.
+    std::optional<Interval> level = {};
 };
 
 struct RegionSweep {

@@ -113,7 +113,7 @@ struct Sweep {
             if (circle && by[0] == 0 && by[1] == 0) kind = SurfaceKind::cylinder;
             return Extrusion{std::move(profile), up(), kind};
         }
-        if (line && std::abs(dot(line->direction, axis)) > kLevel) kind = SurfaceKind::cone;
+        if (line) kind = SurfaceKind::cone;
         if (circle) {
             const double out = std::abs(beside_axis({{circle->centre[0], circle->centre[1]}}));
             if (out <= touches) kind = SurfaceKind::sphere;
@@ -124,11 +124,18 @@ struct Sweep {
         return made;
     }
 
-    // Lines run upwards, circles counter-clockwise seen from above, or from the axis outwards and upwards.
+    bool is_level(const detail::PlaneLine& l) const {
+        const Vec<2> way = unit(l.end - l.start);
+        return turns() && std::abs(way[0] * axis[0] + way[1] * axis[1]) <= kLevel;
+    }
+
+    // Lines run upwards, or outwards where they are level, circles counter-clockwise seen from above, or from
+    // the axis outwards and upwards.
     using Flat = detail::SweptCurve::Flat;
     Flat flat_of(const detail::PlaneLine& l) const {
         const Vec<2> way = unit(l.end - l.start);
-        const bool against = turns() && way[0] * axis[0] + way[1] * axis[1] < 0;
+        const bool against = is_level(l) ? std::abs(beside_axis(l.end)) < std::abs(beside_axis(l.start))
+                                         : turns() && way[0] * axis[0] + way[1] * axis[1] < 0;
         return {Line<2>{against ? l.end : l.start, against ? -1.0 * way : way},
                 {0, norm(l.end - l.start)},
                 against};
@@ -155,14 +162,22 @@ struct Sweep {
         const bool is_one = !std::holds_alternative<std::monostate>(elementary);
         const Flat flat = is_one ? std::visit([this](const auto& e) { return flat_of(e); }, elementary)
                                  : Flat{c, domain(c)[0]};
-        return {wall(moved(flat.curve, {})),
-                moved(flat.curve, {}),
-                moved(flat.curve, far()),
-                rail(p),
-                p,
-                far()(p),
-                0,
-                flat};
+        detail::SweptCurve out{wall(moved(flat.curve, {})),
+                               moved(flat.curve, {}),
+                               moved(flat.curve, far()),
+                               rail(p),
+                               p,
+                               far()(p),
+                               0,
+                               flat};
+        if (const auto* l = std::get_if<detail::PlaneLine>(&elementary); l && is_level(*l)) {
+            const Vec<3> from = in_space(l->start) - origin, along = dot(axis, from) * axis,
+                         way = in_space(std::get<Line<2>>(flat.curve).direction);
+            out.wall = Extrusion{Line<3>{origin + along, way}, cross(axis, way), SurfaceKind::plane};
+            const double a = std::abs(beside_axis(l->start)), b = std::abs(beside_axis(l->end));
+            out.level = {std::min(a, b), std::max(a, b)};
+        }
+        return out;
     }
     SurfaceGeometry cap(bool at_far) const {
         const Vec<3> x{{1, 0, 0}}, y{{0, 1, 0}};

@@ -3,6 +3,7 @@
 #include "solids.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/model/swept_solid.hpp>
 
 namespace freiform::test {
@@ -169,6 +170,84 @@ TEST(SolidOfRevolution, of_regions_that_reach_the_axis_have_poles_and_hollows_al
                     for (const Vec<3>& p : t.mesh.points) all.add(p);
                     EXPECT_EQ(outer, all) << which;
                 }
+}
+
+// The kinds of all faces and edges, in alphabetical order.
+std::string kinds(const Result<Model>& model) {
+    if (!model) return model.error().message;
+    std::vector<std::string> names;
+    for (const Face& f : model->faces) names.emplace_back(kind_name(f.surface));
+    std::ranges::sort(names);
+    const auto faces = names.size();
+    for (const Edge& e : model->edges) names.emplace_back(e.curve ? kind_name(*e.curve) : "pole");
+    std::sort(names.begin() + std::ptrdiff_t(faces), names.end());
+    std::string out;
+    for (std::size_t i = 0; i < names.size(); ++i) out += (i == 0 ? "" : i == faces ? " | " : " ") + names[i];
+    return out;
+}
+
+TEST(SweptSolid, lines_and_circles_are_called_so_and_sweep_elementary_surfaces) {
+    const RegionLoops ring = loops_of({{square_loop({{-3, -3}}, 6), ellipse({{0, 0}}, 1, 1)}});
+    const std::string walls =
+        "cylinder plane plane plane plane plane plane | circle circle line line line line "
+        "line line line line line line line line line";
+    for (const double z : {2.0, -2.0}) EXPECT_EQ(kinds(prism(ring, {{0, 0, z}})), walls) << z;
+    EXPECT_EQ(kinds(prism(loops_of({{ellipse({{0, 0}}, 1, 1)}}), {{1, 0, 2}})),
+              "extrusion plane plane | circle circle line");
+    EXPECT_EQ(kinds(prism(loops_of({{ellipse({{0, 0}}, 1, 2)}}), {{0, 0, 2}})).find("circle"),
+              std::string::npos);
+    const auto turned = [](const RegionLoops& region, double angle) {
+        return kinds(solid_of_revolution(region, {{}, {{0, 1, 0}}}, angle));
+    };
+    const std::string expected[][2] = {
+        {"cylinder plane plane | circle circle line",
+         "cylinder plane plane plane plane | circle circle line line line line line line line"},
+        {"cone cone | circle line line pole pole",
+         "cone cone plane plane | circle line line line line line pole pole"},
+        {"sphere | circle pole pole", "plane plane sphere | circle circle line pole pole"},
+        {"sphere sphere | circle circle pole pole pole pole",
+         "plane plane sphere sphere | circle circle circle circle line line pole pole pole pole"}};
+    const auto regions = regions_on_axis();
+    for (std::size_t i = 0; i < 4; ++i)
+        for (const std::size_t part : {0u, 1u})
+            EXPECT_EQ(turned(loops_of({{regions[i].loop}}), part ? 1 : 2 * kPi), expected[i][part])
+                << regions[i].name;
+    const RegionLoops tube = loops_of({{ellipse({{-5, 2}}, 1, 1)}});
+    EXPECT_EQ(turned(tube, 2 * kPi), "torus | circle circle");
+    EXPECT_EQ(turned(tube, 1), "plane plane torus | circle circle circle");
+    // Higher degrees of the same curves, and circles in one piece.
+    RegionLoops high = loops_of({{regions[2].loop}});
+    for (auto& curve : high[0])
+        curve = visit_one(
+            [](const auto& c) -> CurveGeometry<2> {
+                if constexpr (requires { c.net(); }) return must(elevate(c, 0, 2));
+                return c;
+            },
+            curve);
+    EXPECT_EQ(turned(high, 2 * kPi), expected[2][0]);
+}
+
+// What is nearly a circle, in its weights or its points, is a spline.
+TEST(SweptSolid, splines_that_are_no_circles_stay_what_they_are) {
+    for (const double off : {1e-9, -1e-5}) {
+        Path heavy{{ellipse({{0, 0}}, 1, 1)}}, moved = heavy;
+        for (PathSegment& s : heavy.subpaths[0].segments) s.weight += off;
+        for (PathSegment& s : moved.subpaths[0].segments) s.points[1][0] += off;
+        for (const Path& path : {heavy, moved}) {
+            const auto model = prism(loops_of(path), {{0, 0, 1}});
+            EXPECT_EQ(kinds(model).find("circle"), std::string::npos) << kinds(model);
+        }
+    }
+    // Arcs on one circle that a line follows; and back again on the same circle.
+    Subpath s{{{1, 0}}, {}, true};
+    add_arc(s, 1, 0, 2);
+    s.segments.push_back({1, {Vec<2>{{-1, 0}}, Vec<2>{{-0.5, 0}}}, 1});
+    add_arc(s, 0.5, 2, 0);
+    EXPECT_EQ(kinds(prism(loops_of({{s}}), {{0, 0, 1}})),
+              "cylinder cylinder plane plane plane plane | circle circle circle circle line line line line "
+              "line line line line");
+    const Tessellation t = closed_mesh(prism(loops_of({{s}}), {{0, 0, -1}}), 1e-5);
+    EXPECT_NEAR(signed_volume(t.mesh), kPi / 2 * (1 - 0.25), 1e-4);
 }
 
 TEST(SweptSolid, open_subpaths_are_closed_and_dots_left_out) {

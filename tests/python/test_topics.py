@@ -20,6 +20,8 @@ def test_bases_have_partition_of_unity_and_matrices_that_keep_the_function():
     c = np.random.default_rng(0).normal(size=b.size)
     for other, matrix in (b.insert_knots([0.5, 3]), b.elevate(), b.to_bezier(), b.restrict_to((0, 4)), b.insert_knot(2)):
         assert np.allclose(other.collocation(at) @ (matrix @ c), b.collocation(at) @ c)
+    u = np.linspace(0, 4, 9)
+    assert np.allclose(b.collocation(u) @ b.greville, u)
     closed = ff.Basis.periodic(2, [0, 1, 2, 3, 4])
     assert np.allclose(closed.collocation([0.2, 3.9]).sum(axis=1), 1)
 
@@ -322,6 +324,8 @@ def test_drawings_and_views():
     try:
         picture = BOX.tessellate(0.1).mesh.render(width=64, height=48)
         assert picture.shape == (48, 64, 3) and picture.std() > 0
+        mesh = BOX.tessellate(0.1).mesh
+        assert mesh.pixel_size(width=640, height=480) * 5 < mesh.pixel_size(width=64, height=48)
         can_draw = True
     except ff.UnavailableError:
         can_draw = False

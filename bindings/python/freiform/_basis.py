@@ -71,6 +71,11 @@ class Basis:
         """The distinct knots inside the domain, both ends included."""
         return self._c.breaks
 
+    @property
+    @from_header("basis/greville:greville")
+    def greville(self) -> Array:
+        return self._c.greville
+
     def multiplicity(self, u: float) -> int:
         return self._c.multiplicity(u)
 

@@ -134,6 +134,10 @@ class Mesh:
         picture: Array = _core.render(self._c, False, options, None if field is None else points_array(field))
         return picture
 
+    @from_header("gpu/render:pixel_size")
+    def pixel_size(self, **options: Any) -> float:
+        return float(_core.pixel_size(self._c, options))
+
     def render_png(self, *, field: ArrayLike | None = None, **options: Any) -> bytes:
         """The same as PNG."""
         png: bytes = _core.render(self._c, True, options, None if field is None else points_array(field))

@@ -5,6 +5,7 @@
 #include "records/query/hull.hpp"
 
 #include <freiform/basis/blossom.hpp>
+#include <freiform/basis/greville.hpp>
 #include <freiform/basis/named.hpp>
 #include <freiform/basis/subdivide.hpp>
 #include <freiform/poly/predicates.hpp>
@@ -115,6 +116,13 @@ void bind_basis(py::module_& m) {
         .def_property_readonly("defining", [](const B& b) { return to_py(b.defining()); })
         .def_property_readonly("domain", [](const B& b) { return to_py(b.domain()); })
         .def_property_readonly("breaks", [](const B& b) { return to_py(b.breaks()); })
+        .def_property_readonly("greville",
+                               [](const B& b) {
+                                   std::vector<double> all;
+                                   for (int i = 0; b.degree() > 0 && i < b.size(); ++i)
+                                       all.push_back(greville(b, i));
+                                   return to_py(all);
+                               })
         .def("multiplicity", &B::multiplicity, py::arg("u"))
         .def(
             "span", [](const B& b, double u) { return b.span(b.wrap(u)); }, py::arg("u"))

@@ -77,6 +77,17 @@ void bind_draw(py::module_& m) {
 #endif
         },
         py::arg("mesh"), py::arg("png"), py::arg("options"), py::arg("field"));
+    m.def(
+        "pixel_size",
+        [](const MeshHandle& h, const py::dict& given) -> double {
+#if FREIFORM_HAS_GL
+            return pixel_size(*h.mesh, render_options(given));
+#else
+            (void)h, (void)given;
+            reject(RefusalKind::unavailable, "pixel_size", "built without OpenGL");
+#endif
+        },
+        py::arg("mesh"), py::arg("options"));
 }
 
 }  // namespace freiform::python

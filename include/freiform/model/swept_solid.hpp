@@ -20,13 +20,16 @@ using RegionLoops = std::vector<std::vector<CurveGeometry<2>>>;
 RegionLoops loops_of(const Path& path);
 
 // The region moved along `by`: a solid for each connected part of it, with two flat faces and a wall for each
-// curve. Coordinates are those given, and their sums with `by`. Refuses what check_loops refuses (where: a
-// loop), (invalid) vectors in the plane, (unsupported) ellipses: a rational spline is one.
+// curve. Lines and arcs of circles, in whatever degree they are written, are edges that are lines and
+// circles, one for arcs that follow each other on one circle; their walls are planes and cylinders.
+// Coordinates are those given, and their sums with `by`. Refuses what check_loops refuses (where: a loop),
+// (invalid) vectors in the plane, (unsupported) ellipses: a rational spline is one.
 //   auto badge = prism(loops_of(path), {{0, 0, 2}});
 Result<Model> prism(const RegionLoops& region, const Vec<3>& by);
 
 // The region turned by `angle` (radians, 0 < angle <= 2 pi) about an axis in its plane, counter-clockwise
-// seen from the tip of its direction. A full turn has no flat faces; holes in the region become voids, and so
+// seen from the tip of its direction. Of lines and arcs the walls are planes, cylinders, cones, spheres and
+// tori. A full turn has no flat faces at its ends; holes in the region become voids, and so
 // does what it leaves out along the axis. Curves may begin and end on the axis, where the solid has poles,
 // and lines lie on it. Refuses the same as prism, axes that leave the plane (invalid), and (unsupported)
 // regions on both sides of the axis, and curves with other control points on it.
