@@ -103,6 +103,11 @@ struct Sweep {
         const Vec<3> along = dot(axis, p - origin) * axis, x = p - origin - along;
         return Conic<3>{ConicKind::ellipse, origin + along, x, cross(axis, x)};
     }
+    SurfaceKind turned_kind(const Vec<2>& centre, double radius) const {
+        const double out = std::abs(beside_axis(centre));
+        if (out <= touches) return SurfaceKind::sphere;
+        return out - radius > touches ? SurfaceKind::torus : SurfaceKind::general;
+    }
     // Of lines and circles elementary surfaces, if they run the way that these have.
     SurfaceGeometry wall(CurveGeometry<3> profile) const {
         const auto* line = std::get_if<Line<3>>(&profile);
@@ -114,11 +119,7 @@ struct Sweep {
             return Extrusion{std::move(profile), up(), kind};
         }
         if (line) kind = SurfaceKind::cone;
-        if (circle) {
-            const double out = std::abs(beside_axis({{circle->centre[0], circle->centre[1]}}));
-            if (out <= touches) kind = SurfaceKind::sphere;
-            if (out > norm(circle->x)) kind = SurfaceKind::torus;
-        }
+        if (circle) kind = turned_kind({{circle->centre[0], circle->centre[1]}}, norm(circle->x));
         SurfaceGeometry made = revolution(std::move(profile), origin, axis);
         if (auto* r = std::get_if<Revolution>(&made)) r->kind = kind;
         return made;
@@ -158,7 +159,11 @@ struct Sweep {
 
     detail::SweptCurve curve(const CurveGeometry<2>& c) const {
         const Vec<3> p = in_space(jet<0>(c, domain(c)[0].lo).value());
-        const auto elementary = detail::elementary_of(c);
+        auto elementary = detail::elementary_of(c);
+        // Arcs whose circles cross the axis are splines: what they sweep ends in the poles, and readers know.
+        if (const auto* arc = std::get_if<detail::PlaneArc>(&elementary);
+            arc && turns() && turned_kind(arc->centre, arc->radius) == SurfaceKind::general)
+            elementary = {};
         const bool is_one = !std::holds_alternative<std::monostate>(elementary);
         const Flat flat = is_one ? std::visit([this](const auto& e) { return flat_of(e); }, elementary)
                                  : Flat{c, domain(c)[0]};

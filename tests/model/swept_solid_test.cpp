@@ -215,6 +215,10 @@ TEST(SweptSolid, lines_and_circles_are_called_so_and_sweep_elementary_surfaces) 
     const RegionLoops tube = loops_of({{ellipse({{-5, 2}}, 1, 1)}});
     EXPECT_EQ(turned(tube, 2 * kPi), "torus | circle circle");
     EXPECT_EQ(turned(tube, 1), "plane plane torus | circle circle circle");
+    const Vec<2> low{{0, -1}}, high_end{{0, 1}};
+    const Subpath lens{low, {{2, {low, Vec<2>{{1, 0}}, high_end}, std::sqrt(0.5)}}, true};
+    EXPECT_EQ(turned(loops_of({{lens}}), 2 * kPi), "revolution | nurbs pole pole")
+        << "a circle beyond the axis";
     // Higher degrees of the same curves, and circles in one piece.
     RegionLoops high = loops_of({{regions[2].loop}});
     for (auto& curve : high[0])
