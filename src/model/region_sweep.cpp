@@ -124,14 +124,9 @@ private:
             ring.far.push_back(sweep_.full || lies ? ring.near.back() : edge(c.far, true));
         }
         const auto rail = [&](std::size_t k) {
-            return rails[k] >= 0 ? rails[k]
-                                 : add({{},
-                                        true,
-                                        sweep_.range,
-                                        vertex(k, false),
-                                        vertex(k, false),
-                                        swept[k].tolerance,
-                                        ""});
+            if (rails[k] >= 0) return rails[k];
+            const int pole = vertex(k, false);
+            return add({{}, true, sweep_.range, pole, pole, swept[k].tolerance, ""});
         };
         const std::size_t first = outermost(loop);
         for (std::size_t k = 0; k < n; ++k) {
@@ -145,10 +140,9 @@ private:
             const std::size_t lo = against ? next : i, hi = against ? i : next;
             Face face;
             face.surface = std::move(swept[i].wall);
-            face.reversed = sweep_.reversed != against;
+            // Planes look along the axis, revolutions of such lines against it.
+            face.reversed = (sweep_.reversed != against) != swept[i].level.has_value();
             if (swept[i].level) {
-                face.reversed =
-                    !face.reversed;  // it looks along the axis, revolutions of such lines against it
                 face.loops = level_loops(*swept[i].level, ring, i, {rails[lo], rails[hi]});
             } else {
                 Loop around{{{ring.near[i], false, along(s.lo)},

@@ -155,8 +155,6 @@ struct Sweep {
         const double from = std::atan2(dot(first, y), dot(first, x));
         return {Conic<2>{ConicKind::ellipse, a.centre, x, y}, {from, from + whole}, against};
     }
-    Flat flat_of(std::monostate) const { return {}; }
-
     detail::SweptCurve curve(const CurveGeometry<2>& c) const {
         const Vec<3> p = in_space(jet<0>(c, domain(c)[0].lo).value());
         auto elementary = detail::elementary_of(c);
@@ -164,9 +162,14 @@ struct Sweep {
         if (const auto* arc = std::get_if<detail::PlaneArc>(&elementary);
             arc && turns() && turned_kind(arc->centre, arc->radius) == SurfaceKind::general)
             elementary = {};
-        const bool is_one = !std::holds_alternative<std::monostate>(elementary);
-        const Flat flat = is_one ? std::visit([this](const auto& e) { return flat_of(e); }, elementary)
-                                 : Flat{c, domain(c)[0]};
+        const Flat flat = visit_one(
+            [&](const auto& e) {
+                if constexpr (requires { flat_of(e); })
+                    return flat_of(e);
+                else
+                    return Flat{c, domain(c)[0]};
+            },
+            elementary);
         detail::SweptCurve out{wall(moved(flat.curve, {})),
                                moved(flat.curve, {}),
                                moved(flat.curve, far()),
