@@ -67,21 +67,13 @@ std::vector<Hom<2>> lowered(std::vector<Hom<2>> c) {
 
 // Control points of quadratic Bezier curves, one behind the other, or of one that is straight.
 std::vector<Hom<2>> low_net(const CurveGeometry<2>& curve) {
-    return visit_one(
-        [](const auto& c) {
-            std::vector<Hom<2>> net;
-            if constexpr (requires { c.net(); }) {
-                const BSplineBasis& basis = c.basis();
-                const int p = basis.degree(), pieces = int(basis.breaks().size()) - 1;
-                if (basis.is_closed() || p < 1 || basis.size() != p * pieces + 1) return net;
-                for (const auto& q : c.net().flat())
-                    net.push_back(weighted(project(q), Space<std::remove_cvref_t<decltype(q)>>::weight(q)));
-                if (pieces == 1) net = lowered(std::move(net));
-                if (pieces > 1 && p != 2) net.clear();
-            }
-            return net;
-        },
-        curve);
+    auto [basis, net] = spline_of(curve);
+    if (basis == nullptr || basis->is_closed()) return {};
+    const int p = basis->degree(), pieces = int(basis->breaks().size()) - 1;
+    if (p < 1 || int(net.size()) != p * pieces + 1) return {};
+    if (pieces == 1) return lowered(std::move(net));
+    if (p != 2) net.clear();
+    return net;
 }
 
 std::optional<PlaneArc> arc_of(const std::vector<Hom<2>>& c) {
@@ -108,6 +100,21 @@ Curve<Hom<2>> joined(std::vector<Hom<2>> net, const std::vector<Hom<2>>& more) {
 }
 
 }  // namespace
+
+PlaneSpline spline_of(const CurveGeometry<2>& curve) {
+    return visit_one(
+        [](const auto& c) {
+            PlaneSpline out;
+            if constexpr (requires { c.net(); }) {
+                out.basis = &c.basis();
+                for (const auto& q : c.net().flat())
+                    out.net.push_back(
+                        weighted(project(q), Space<std::remove_cvref_t<decltype(q)>>::weight(q)));
+            }
+            return out;
+        },
+        curve);
+}
 
 ElementaryCurve elementary_of(const CurveGeometry<2>& curve) {
     const auto net = low_net(curve);

@@ -18,6 +18,12 @@ struct PlaneArc {
 };
 using ElementaryCurve = std::variant<std::monostate, PlaneLine, PlaneArc>;
 
+struct PlaneSpline {
+    const BSplineBasis* basis = nullptr;  // none: the curve is no spline
+    std::vector<Hom<2>> net;
+};
+PlaneSpline spline_of(const CurveGeometry<2>& curve);
+
 // Of a spline with two control points, or of rational arcs of one circle, quadratic Bezier curves each. Arcs
 // of less than about a degree are left as they are: there rounding says little about the circle.
 ElementaryCurve elementary_of(const CurveGeometry<2>& curve);

@@ -21,9 +21,9 @@
 // Parts. Loops of even depth bound a part, with the loops one deeper inside them as holes. Loops do not
 // cross, so one point of a hole tells in which: of several that contain it the one next to it has the right
 // depth.
+#include "elementary_curve_detail.hpp"
 #include "region_sweep_detail.hpp"
 
-#include <freiform/core/visit.hpp>
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
@@ -73,16 +73,9 @@ private:
         return sweep_.on_axis ? sweep_.on_axis(jet<0>(c, at_end ? t.hi : t.lo).value()) : std::nullopt;
     }
     bool lies_on_axis(const CurveGeometry<2>& c) const {
-        return sweep_.on_axis &&
-               visit_one(
-                   [&](const auto& curve) {
-                       if constexpr (requires { curve.net(); })
-                           return std::ranges::all_of(curve.net().flat(), [&](const auto& p) {
-                               return bool(sweep_.on_axis(project(p)));
-                           });
-                       return false;
-                   },
-                   c);
+        return sweep_.on_axis && std::ranges::all_of(spline_of(c).net, [&](const Hom<2>& p) {
+                   return bool(sweep_.on_axis(project(p)));
+               });
     }
 
     Result<void> walls(const std::vector<CurveGeometry<2>>& loop) {
@@ -262,16 +255,9 @@ private:
 Result<void> each_point(const RegionLoops& region, const std::function<void(const Vec<2>&)>& f) {
     for (std::size_t l = 0; l < region.size(); ++l)
         for (std::size_t c = 0; c < region[l].size(); ++c) {
-            const bool spline = visit_one(
-                [&](const auto& curve) {
-                    if constexpr (requires { curve.net(); }) {
-                        for (const auto& p : curve.net().flat()) f(project(p));
-                        return true;
-                    }
-                    return false;
-                },
-                region[l][c]);
-            if (!spline)
+            const PlaneSpline spline = spline_of(region[l][c]);
+            for (const Hom<2>& p : spline.net) f(project(p));
+            if (spline.basis == nullptr)
                 return refuse(RefusalKind::unsupported, text("loops[", l, "][", c, "]"),
                               "is no spline; write ellipses as rational ones");
         }

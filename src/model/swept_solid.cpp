@@ -209,17 +209,6 @@ struct Sweep {
     }
 };
 
-std::vector<Vec<2>> control_points(const CurveGeometry<2>& curve) {
-    return visit_one(
-        [](const auto& c) {
-            std::vector<Vec<2>> out;
-            if constexpr (requires { c.net(); })
-                for (const auto& p : c.net().flat()) out.push_back(project(p));
-            return out;
-        },
-        curve);
-}
-
 bool is_finite(const Vec<3>& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
 
 }  // namespace
@@ -274,18 +263,16 @@ Result<Model> solid_of_revolution(const RegionLoops& region, const Axis& axis, d
     double least = kInfinity, most = -kInfinity;  // of what is not on the axis
     for (std::size_t l = 0; l < region.size(); ++l)
         for (std::size_t c = 0; c < region[l].size(); ++c) {
-            const auto points = control_points(region[l][c]);
-            int on_axis = 0;
-            for (const Vec<2>& p : points) {
-                const double s = sweep.beside_axis(p);
+            const auto net = detail::spline_of(region[l][c]).net;
+            int on_axis = 0, ends = 0;
+            for (std::size_t i = 0; i < net.size(); ++i) {
+                const double s = sweep.beside_axis(project(net[i]));
                 if (std::abs(s) <= sweep.touches)
-                    ++on_axis;
+                    ++on_axis, ends += i == 0 || i + 1 == net.size();
                 else
                     least = std::min(least, s), most = std::max(most, s);
             }
-            const int ends = (std::abs(sweep.beside_axis(points.front())) <= sweep.touches) +
-                             (std::abs(sweep.beside_axis(points.back())) <= sweep.touches);
-            if (on_axis > ends && on_axis < int(points.size()))
+            if (on_axis > ends && on_axis < int(net.size()))
                 return refuse(RefusalKind::unsupported, text("loops[", l, "][", c, "]"),
                               "has control points on the axis between its ends; cut it there");
         }

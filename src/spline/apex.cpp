@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace freiform {
@@ -60,8 +61,7 @@ struct Row {
 
 // What rows between the first and the last are beside lines from one to the other; infinite where it is too
 // much, or nothing is known. Weights are off by `uneven`, relatively.
-template <class F>
-double beside_lines(const BSplineBasis& basis, F row, double& uneven) {
+double beside_lines(const BSplineBasis& basis, const std::function<Row(int)>& row, double& uneven) {
     const int n = basis.size();
     if (basis.is_closed() || basis.degree() < 1) return kInfinity;
     const Row first = row(0), last = row(n - 1);
@@ -88,32 +88,31 @@ struct NearLine {
     Line<3> line;
     double beside = 0;
 };
+std::optional<NearLine> near_line(const BSplineBasis& basis, const Row& net) {
+    double uneven = 0;
+    const auto row = [&](int i) { return Row{{net.points[std::size_t(i)]}, {net.weights[std::size_t(i)]}}; };
+    const double beside = beside_lines(basis, row, uneven);
+    if (!(beside < kInfinity)) return std::nullopt;
+    const double from = greville(basis, 0), to = greville(basis, basis.size() - 1), w = net.weights.front(),
+                 v = net.weights.back();
+    const Vec<3> way = net.points.back() - net.points.front(), direction = (1 / (to - from)) * way;
+    uneven = std::max(uneven, std::abs(v - w) / std::min(v, w));
+    const NearLine out{{net.points.front() - from * direction, direction}, beside + 8 * uneven * norm(way)};
+    return out.beside < kMostSlip * norm(way) ? std::optional(out) : std::nullopt;
+}
 std::optional<NearLine> near_line(const CurveGeometry<3>& curve) {
     return visit_one(
         [&](const auto& c) -> std::optional<NearLine> {
-            if constexpr (std::same_as<std::remove_cvref_t<decltype(c)>, Line<3>>) {
-                return NearLine{c, 0};
-            } else if constexpr (requires { c.net(); }) {
-                using P = typename std::remove_cvref_t<decltype(c)>::Coefficients;
-                const NetView<1, const P> net = c.net().view();
-                double uneven = 0;
-                const auto row = [&](int i) {
-                    const P& p = net(Index<1>{i});
-                    return Row{{project(p)}, {Space<P>::weight(p)}};
-                };
-                const int last = c.basis().size() - 1;
-                const double beside = beside_lines(c.basis(), row, uneven);
-                if (!(beside < kInfinity)) return std::nullopt;
-                const double from = greville(c.basis(), 0), to = greville(c.basis(), last);
-                const double wa = row(0).weights[0], wb = row(last).weights[0];
-                const Vec<3> a = row(0).points[0], b = row(last).points[0],
-                             direction = (1 / (to - from)) * (b - a);
-                uneven = std::max(uneven, std::abs(wb - wa) / std::min(wa, wb));
-                const NearLine out{{a - from * direction, direction}, beside + 8 * uneven * norm(b - a)};
-                return out.beside < kMostSlip * norm(b - a) ? std::optional(out) : std::nullopt;
-            } else {
-                return std::nullopt;
+            if constexpr (std::same_as<std::remove_cvref_t<decltype(c)>, Line<3>>) return NearLine{c, 0};
+            if constexpr (requires { c.net(); }) {
+                Row net;
+                for (const auto& p : c.net().flat()) {
+                    net.points.push_back(project(p));
+                    net.weights.push_back(Space<std::remove_cvref_t<decltype(p)>>::weight(p));
+                }
+                return near_line(c.basis(), net);
             }
+            return std::nullopt;
         },
         curve);
 }
@@ -200,25 +199,26 @@ std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far, doubl
     return out;
 }
 
+std::optional<Apex> apex_along(int axis, const BSplineBasis& basis, const std::function<Row(int)>& row) {
+    const int last = basis.size() - 1;
+    double uneven = 0;
+    const double beside = beside_lines(basis, row, uneven);
+    if (!(beside < kInfinity)) return std::nullopt;
+    auto found = apex_of_rows(axis, {greville(basis, 0), greville(basis, last)}, row(0), row(last), uneven);
+    if (found) found->slip += 2 * beside;
+    return found;
+}
+
 }  // namespace
 
 std::optional<Apex> apex_of(const SurfaceGeometry& surface, const Box<2>& part) {
     return visit_one(
         [&](const auto& s) -> std::optional<Apex> {
             if constexpr (requires { s.net(); }) {
-                for (const int axis : {1, 0}) {
-                    const auto& basis = s.basis(axis);
-                    const int last = s.net().extent()[std::size_t(axis)] - 1;
-                    double uneven = 0;
-                    const double beside = beside_lines(
-                        basis, [&](int i) { return row_of(s, axis, i); }, uneven);
-                    if (!(beside < kInfinity)) continue;
-                    const Interval on{greville(basis, 0), greville(basis, last)};
-                    auto found = apex_of_rows(axis, on, row_of(s, axis, 0), row_of(s, axis, last), uneven);
-                    if (!found) continue;
-                    found->slip += 2 * beside;
-                    return found;
-                }
+                for (const int axis : {1, 0})
+                    if (auto found =
+                            apex_along(axis, s.basis(axis), [&](int i) { return row_of(s, axis, i); }))
+                        return found;
                 return std::nullopt;
             } else if constexpr (std::same_as<std::remove_cvref_t<decltype(s)>, Revolution>) {
                 return apex_of(s, part);
