@@ -24,6 +24,7 @@
 #include "elementary_curve_detail.hpp"
 #include "region_sweep_detail.hpp"
 
+#include <freiform/core/constants.hpp>
 #include <freiform/trim/loops.hpp>
 #include <freiform/trim/trimmed_surface.hpp>
 
