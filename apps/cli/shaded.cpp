@@ -76,9 +76,9 @@ Result<Tessellation> mesh_for_picture(const Model& model, double size, const Lim
     how.max_triangles = (long long)(limits.max_triangles);
     auto first = tessellate(model, how);
     if (!first || options.tolerance) return first;
-    const double unseen =
-        std::max(kUnseen * pixel_size(first->mesh, render_options(options)), kFinest * size);
-    if (!(unseen < how.tolerance)) return first;
+    const double pixel = pixel_size(first->mesh, render_options(options)),
+                 unseen = std::max(kUnseen * pixel, kFinest * size);
+    if (!(pixel > 0 && unseen < how.tolerance)) return first;
     how.tolerance = unseen;
     auto finer = tessellate(model, how);
     if (finer || finer.error().kind != RefusalKind::limit) return finer;

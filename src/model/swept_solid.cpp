@@ -96,7 +96,7 @@ struct Sweep {
     }
     Motion far() const { return turns() ? Motion{origin, axis, angle, {}} : Motion{{}, {}, 0, by}; }
     Interval range() const { return {0, turns() ? angle : norm(by)}; }
-    Vec<3> up() const { return turns() ? axis : (1 / norm(by)) * by; }
+    Vec<3> up() const { return turns() ? axis : unit(by); }
 
     CurveGeometry<3> rail(const Vec<3>& p) const {
         if (!turns()) return Line<3>{p, up()};

@@ -271,6 +271,12 @@ TEST_F(IntersectBox, rays_begin_at_their_point_and_overlap_the_face_that_they_ru
         EXPECT_NEAR(all["overlaps"][0]["b"][1].get<double>(), 1.5, 1e-9);
         std::vector<std::vector<double>> at(4);
         for (const auto& p : all["points"]) {
+            // Multiples of a half; parameters next to these give the same points.
+            const double b = p["b"][0], exact = std::round(2 * b) / 2;
+            if (p["proven"]) {
+                EXPECT_LE(p["b_box"][0][0].get<double>(), exact) << p;
+                EXPECT_GE(p["b_box"][0][1].get<double>(), exact) << p;
+            }
             at[p["ray"].get<std::size_t>()].push_back(p["b"][0]);
             EXPECT_EQ(p["kind"], p["ray"] == 3 ? "end" : "crossing") << p;
             EXPECT_EQ(p["proven"], p["ray"] != 3) << p;
@@ -279,7 +285,6 @@ TEST_F(IntersectBox, rays_begin_at_their_point_and_overlap_the_face_that_they_ru
         return at;
     };
     const auto by_rays = places("--rays"), by_lines = places("--lines");
-    // Parameters next to these give the same points.
     const auto expect = [](const std::vector<double>& found, const std::vector<double>& at) {
         ASSERT_EQ(found.size(), at.size());
         for (std::size_t i = 0; i < at.size(); ++i) EXPECT_DOUBLE_EQ(found[i], at[i]);
