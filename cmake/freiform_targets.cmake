@@ -5,11 +5,13 @@ if(FREIFORM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     find_program(FREIFORM_CCACHE_PROGRAM ccache)
     mark_as_advanced(FREIFORM_CCACHE_PROGRAM)
     if(FREIFORM_CCACHE_PROGRAM)
-        # What ccache has to be told before it dares to cache files that use a precompiled header, and that another clone
-        # has the same files in another folder.
+        # What ccache has to be told before it dares to cache files that use a precompiled header, that another clone has
+        # the same files in another folder, and to compare headers byte by byte (CCACHE_DEPEND). Without their comments, as
+        # it compares them otherwise, it hands out a precompiled header of the text before, and g++ takes the header with
+        # the new text for another file ("redefinition of").
         set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
             CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
-            CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${FREIFORM_CCACHE_PROGRAM})
+            CCACHE_DEPEND=1 CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${FREIFORM_CCACHE_PROGRAM})
     endif()
 endif()
 

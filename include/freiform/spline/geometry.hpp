@@ -91,7 +91,7 @@ Jet<2, K, Vec<3>> jet(const SurfaceGeometry& surface, const Param<2>& uv);
 // The unit normal in the sense of S_u x S_v; zero where S_u and S_v are parallel.
 Vec<3> normal(const SurfaceGeometry& surface, const Param<2>& uv);
 
-// "line", "circle" (within rounding), "ellipse", "bspline", "nurbs", ..., "plane", "cylinder", "offset", ...
+// "line", "circle" (within rounding), "ellipse", "bspline", "nurbs", ...; "plane", "cylinder", "offset", ...
 template <int D>
 std::string_view kind_name(const CurveGeometry<D>& curve);
 std::string_view kind_name(const SurfaceGeometry& surface);
