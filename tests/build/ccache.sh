@@ -7,6 +7,7 @@ command -v ccache >/dev/null || { echo "ccache is not installed"; exit 77; }
 root=$PWD
 temp=$(mktemp -d)
 trap 'rm -rf "$temp"' EXIT
+unset "${!CCACHE_@}"  # what it counts must not depend on how it is called
 export CCACHE_DIR=$temp/cache
 
 misses() { ccache --print-stats | sed -n 's/^cache_miss\t//p'; }
