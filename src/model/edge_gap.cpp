@@ -258,8 +258,9 @@ Terms Prover::terms(Interval on) const {
 double bound_of(const Terms& x, int order, double h, const Vec<3>& a, const Vec<3>& m, const Vec<3>& b) {
     double q = std::max(norm(a), norm(b));
     if (order == 3) q += norm(m - 0.5 * (a + b));
-    const double bound = (1 + 0x1p-18) * q + kError[order] * std::pow(h, order) * x.derivative[order] +
-                         3 * x.rounding + 4 * x.moved[order];
+    const double power = order == 1 ? h : order == 2 ? h * h : h * h * h;
+    const double bound =
+        (1 + 0x1p-18) * q + kError[order] * power * x.derivative[order] + 3 * x.rounding + 4 * x.moved[order];
     return std::isnan(bound) ? kInfinity : bound;
 }
 
