@@ -116,6 +116,7 @@ Result<void> run_tessellate(Context& context, const TessellateArguments& options
         if (options.angle) how.max_angle = *options.angle * (std::numbers::pi / 180);
         if (options.aspect) how.max_aspect = *options.aspect;
         how.quads = options.quads;
+        how.as_planes = true;  // what is written has no parameters
         how.max_triangles = (long long)(context.limits.max_triangles);
         how.progress = progress;
         all.push_back(how);

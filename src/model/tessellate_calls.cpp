@@ -84,19 +84,61 @@ constexpr double kCopiesApart = 0x1p-21;  // of the tolerance
 // What tessellations of one model share.
 struct Shared {
     std::optional<SharedWork> work;
-    Result<Tessellation> run(const Model& model, const TessellateOptions& how, std::vector<double> sizes) {
+    Result<Tessellation> run(const Model& model, const TessellateOptions& how, std::vector<double> sizes,
+                             const FlatFaces* flats) {
         if (!work) work.emplace(model);
-        return Tessellator(model, *work, how, std::move(sizes)).run();
+        return Tessellator(model, *work, how, std::move(sizes), flats).run();
     }
 };
 
 // In the order of the faces of originals_of.
-std::vector<double> of_originals(std::span<const double> of_faces, const Copies& copies) {
-    std::vector<double> out;
+template <class T>
+std::vector<T> of_originals(std::span<const T> of_faces, const Copies& copies) {
+    std::vector<T> out;
     for (std::size_t f = 0; f < of_faces.size(); ++f)
         if (copies.faces[f].of < 0) out.push_back(of_faces[f]);
     return out;
 }
+
+// The meshes of a model, or of what stands for it. Copies are looked for once.
+class Meshes {
+public:
+    Meshes(const Model& given, const Model& model, const FlatFaces* flats)
+        : given_(given), model_(model), flats_(flats) {}
+
+    Result<Tessellation> make(const TessellateOptions& how) {
+        auto sizes = face_sizes(model_, how);
+        if (auto ok = check_budget(model_, how, sizes); !ok) return std::unexpected(ok.error());
+        const auto start = std::chrono::steady_clock::now();
+        // Normals of copies are not bounded, only what is seen of them in distances.
+        const bool may_copy = !std::isfinite(how.max_angle) && model_.faces.size() > 1;
+        if (may_copy && !copies_) copies_ = copies_in(given_);
+        if (!may_copy || !copies_->any() || copies_->apart() > kCopiesApart * how.tolerance)
+            return whole_.run(model_, how, std::move(sizes), flats_);
+        if (!reduced_) {
+            reduced_ = originals_of(model_, *copies_);
+            if (flats_) reduced_flats_.faces = of_originals<std::optional<FlatFace>>(flats_->faces, *copies_);
+        }
+        TessellateOptions inner = how;  // what is moved is rounded
+        inner.max_edge *= 1 - 0x1p-40;
+        inner.tolerance *= 1 - 0x1p-20;
+        auto few = originals_.run(*reduced_, inner, of_originals<double>(sizes, *copies_),
+                                  flats_ ? &reduced_flats_ : nullptr);
+        auto all = few ? with_copies(given_, *copies_, std::move(*few), how) : std::move(few);
+        if (all)
+            all->seconds.total =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return all;
+    }
+
+private:
+    const Model &given_, &model_;
+    const FlatFaces* flats_;
+    Shared whole_, originals_;
+    std::optional<Copies> copies_;
+    std::optional<Model> reduced_;
+    FlatFaces reduced_flats_;
+};
 
 }  // namespace
 
@@ -105,38 +147,26 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
                                   [](const TessellateOptions& o) { return check_options(o).has_value(); });
     if (const int exponent = far_exponent(model); exponent != 0 && fine)
         return tessellate_far(model, options, exponent);
-    Shared whole, originals;
-    std::optional<Copies> copies;
-    std::optional<Model> reduced;
+    Meshes given(model, model, nullptr);
     std::vector<Result<Tessellation>> all;
     for (const TessellateOptions& how : options) {
-        auto ok = check_options(how);
-        std::vector<double> sizes;
-        if (ok) {
-            sizes = face_sizes(model, how);
-            ok = check_budget(model, how, sizes);
-        }
-        if (!ok) {
+        if (auto ok = check_options(how); !ok) {
             all.push_back(std::unexpected(ok.error()));
             continue;
         }
-        const auto start = std::chrono::steady_clock::now();
-        // Normals of copies are not bounded, only what is seen of them in distances.
-        const bool may_copy = !std::isfinite(how.max_angle) && model.faces.size() > 1;
-        if (may_copy && !copies) copies = copies_in(model);
-        if (!may_copy || !copies->any() || copies->apart() > kCopiesApart * how.tolerance) {
-            all.push_back(whole.run(model, how, std::move(sizes)));
+        // For each tolerance anew, as which faces are flat depends on it.
+        const FlatFaces flats = flat_faces(model, how);
+        if (!flats.standing) {
+            all.push_back(given.make(how));
             continue;
         }
-        if (!reduced) reduced = originals_of(model, *copies);
-        TessellateOptions inner = how;  // what is moved is rounded
-        inner.max_edge *= 1 - 0x1p-40;
-        inner.tolerance *= 1 - 0x1p-20;
-        auto few = originals.run(*reduced, inner, of_originals(sizes, *copies));
-        all.push_back(few ? with_copies(model, *copies, std::move(*few), how) : std::move(few));
-        if (all.back())
-            all.back()->seconds.total =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        auto t = Meshes(model, *flats.standing, &flats).make(how);
+        // What is refused as a plane may be meshed as it is given.
+        if (t && std::ranges::any_of(t->refused, [&](const RefusedFace& r) {
+                return flats.faces[std::size_t(r.face)].has_value();
+            }))
+            t = given.make(how);
+        all.push_back(std::move(t));
     }
     for (auto& t : all)
         if (t) turn_outwards(model, *t);

@@ -16,6 +16,7 @@ namespace freiform {
 namespace {
 
 constexpr std::size_t kVerticesAtOnce = 1024;
+constexpr int kSteps = 16;             // of Newton's method
 constexpr double kSameNormals = 1e-3;  // radians, about: normals of both sides of a kink that are one
 
 bool has_kinks(const DerivativeQuery<2, 3>& surface) {
@@ -197,6 +198,41 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
     return out;
 }
 
+// Parameters of the spline that a plane stands for, at the corners of its mesh: of the boundary on its
+// parameter curves; others are looked for.
+std::vector<Vec<2>> Tessellator::given_places(std::size_t f) const {
+    const Face& face = *flat(f)->given;
+    std::map<int, const Coedge*> uses;
+    for (const Loop& l : face.loops)
+        for (const Coedge& c : l.coedges) uses[c.edge] = &c;
+    const FaceMesh& m = meshes_[f];
+    const auto domain = limits(face.surface);
+    std::vector<Vec<2>> out;
+    for (std::size_t i = 0; i < m.uv.size(); ++i) {
+        const auto source =
+            i < boundaries_[f].sources.size() ? boundaries_[f].sources[i] : BoundaryOfFace::Source{};
+        if (source.edge >= 0) {
+            const Coedge& c = *uses.at(source.edge);
+            const auto& t = edges_->mesh(source.edge).parameters;
+            out.push_back(clamped(
+                jet<0>(c.curve, t[std::size_t(source.segment + (c.reversed ? 1 : 0))]).value(), domain));
+            continue;
+        }
+        const Vec<3> p = jet<0>(model_.faces[f].surface, m.uv[i].c).value();
+        Vec<2> uv = out.empty() ? Vec<2>{} : out.back();
+        for (int step = 0; step < kSteps; ++step) {
+            const auto j = jet<1>(face.surface, uv.c);
+            const Vec<3> d = p - j.value();
+            const double uu = dot(j.d[1], j.d[1]), uw = dot(j.d[1], j.d[2]), ww = dot(j.d[2], j.d[2]),
+                         det = uu * ww - uw * uw, u = dot(j.d[1], d), w = dot(j.d[2], d);
+            if (!(det > 0)) break;
+            uv = clamped(uv + (1 / det) * Vec<2>{{ww * u - uw * w, uu * w - uw * u}}, domain);
+        }
+        out.push_back(uv);
+    }
+    return out;
+}
+
 std::vector<const Colour*> body_colours(const Model& model) {
     std::vector<const Colour*> out(model.faces.size(), nullptr);
     for (const Body& b : model.bodies)
@@ -219,6 +255,7 @@ Tessellation Tessellator::collect() {
     parallel_for(faces(), 1, [&](std::size_t f) {
         if (!is_refused(f)) looks[f] = look_of(f, model_.faces[f].reversed != bool(flipped[f]));
     });
+    std::vector<std::size_t> first_vertex(faces(), 0);
     std::size_t points = points_.size(), vertices = 0, triangles = 0;
     for (std::size_t f = 0; f < faces(); ++f)
         points += looks[f].inner.size(), vertices += looks[f].vertices.size(),
@@ -237,6 +274,7 @@ Tessellation Tessellator::collect() {
         FaceMesh& m = meshes_[f];
         const bool flip = face.reversed != bool(flipped[f]);
         const int base = int(out.mesh.vertices.size());
+        first_vertex[f] = std::size_t(base);
         const int inner = int(out.mesh.points.size());
         append(out.mesh.points, std::move(looks[f].inner));
         for (MeshVertex& v : looks[f].vertices)
@@ -264,11 +302,18 @@ Tessellation Tessellator::collect() {
                 report.error_bound =
                     std::max(report.error_bound, kBesideBoundary * edges_->mesh(c.edge).bound);
         report.error_bound += rounding_of(f);
+        if (const FlatFace* of = flat(f)) report.error_bound += of->apart, report.boundary_gap += of->gap;
         out.error_bound = std::max(out.error_bound, report.error_bound);
         out.boundary_gap = std::max(out.boundary_gap, report.boundary_gap);
         out.faces.push_back(report);
     }
     if (std::isfinite(options_.max_angle)) measure_angles(out);
+    for (const MeshPart& part : out.mesh.parts) {
+        if (flat(std::size_t(part.face)) == nullptr || part.count == 0) continue;
+        const auto places = given_places(std::size_t(part.face));
+        for (std::size_t i = 0; i < places.size(); ++i)
+            out.mesh.vertices[first_vertex[std::size_t(part.face)] + i].uv = places[i];
+    }
     out.topology = topology(out.mesh);
     return out;
 }

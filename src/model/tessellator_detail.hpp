@@ -2,6 +2,7 @@
 // tessellate_collect.cpp.
 #pragma once
 #include "face_boundary_detail.hpp"
+#include "flat_faces_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
@@ -29,11 +30,13 @@ void turn_outwards(const Model& model, Tessellation& t);
 
 class Tessellator {
 public:
-    // `sizes`: estimates of the triangles of faces.
+    // `sizes`: estimates of the triangles of faces; `flats`: those that are planes in the model but not as
+    // they are given, null if there are none.
     Tessellator(const Model& model, SharedWork& shared, const TessellateOptions& options,
-                std::vector<double> sizes)
+                std::vector<double> sizes, const FlatFaces* flats)
         : model_(model),
           options_(options),
+          flats_(flats),
           sizes_(std::move(sizes)),
           queries_(shared.queries),
           apexes_(shared.apexes),
@@ -106,11 +109,16 @@ private:
     FaceLook look_of(std::size_t face, bool flip) const;
     Tessellation collect();
     void measure_angles(Tessellation& out) const;
+    const FlatFace* flat(std::size_t face) const {
+        return flats_ && flats_->faces[face] ? &*flats_->faces[face] : nullptr;
+    }
+    std::vector<Vec<2>> given_places(std::size_t face) const;
     Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards, const Vec<2>& usual) const;
     double rounding_of(std::size_t face) const;
 
     const Model& model_;
     const TessellateOptions& options_;
+    const FlatFaces* flats_;
     std::vector<double> sizes_;
     double tolerance_ = 0, rounding_ = 0;
     const std::vector<std::unique_ptr<DerivativeQuery<2, 3>>>& queries_;

@@ -4,6 +4,7 @@
 // are a rounding apart), that is enough. The box of a face is that of points on its parameter
 // curves, so a face with holes counts as one without. Each chord of the boundary
 // has a triangle, too; those of narrow faces have no others.
+#include "flat_faces_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -22,10 +23,47 @@ constexpr double kHopeless = 256;  // above the limit by more than this
 constexpr int kFewSamples = 3, kManySamples = 12;
 constexpr std::size_t kFacesAtOnce = 8;  // that a thread looks at
 
+// `at`: first and second derivative at a parameter.
+template <class F>
+double chords_of(F&& at, Interval on, double tolerance) {
+    constexpr int kSamples = 8;
+    const double h = on.length() / kSamples;
+    double sum = 0;
+    for (int k = 0; k < kSamples; ++k) {
+        const auto [first, second] = at(on.lo + (k + 0.5) * h);
+        const double speed = norm(first);
+        const Vec<3> bend = speed > 0 ? second - (dot(second, first) / (speed * speed)) * first : second;
+        sum += std::sqrt(norm(bend) * h * h / 8 / tolerance);
+    }
+    return std::isfinite(sum) ? sum : 0;
+}
+
+// Of an edge without a curve of its own.
+double estimated_chords(const SurfaceGeometry& surface, const CurveGeometry<2>& curve, Interval on,
+                        double tolerance) {
+    return chords_of(
+        [&](double t) {
+            const auto p = jet<2>(curve, t);
+            const auto s = jet<2>(surface, p.value().c);
+            const double u = p.d[1][0], v = p.d[1][1];
+            return std::pair(u * s(1, 0) + v * s(0, 1), u * u * s(2, 0) + 2 * u * v * s(1, 1) +
+                                                            v * v * s(0, 2) + p.d[2][0] * s(1, 0) +
+                                                            p.d[2][1] * s(0, 1));
+        },
+        on, tolerance);
+}
+
 std::vector<double> predicted(const Model& model, const TessellateOptions& options, int samples) {
     std::vector<double> out(model.faces.size()), chords;
     for (const Edge& e : model.edges)
         chords.push_back(std::max(e.curve ? estimated_chords(*e.curve, e.range, options.tolerance) : 0, 1.0));
+    for (const Face& face : model.faces)
+        for (const Loop& l : face.loops)
+            for (const Coedge& c : l.coedges)
+                if (const Edge& e = model.edges[std::size_t(c.edge)]; !e.curve && !e.degenerate)
+                    chords[std::size_t(c.edge)] =
+                        std::max(chords[std::size_t(c.edge)],
+                                 estimated_chords(face.surface, c.curve, e.range, options.tolerance));
     parallel_for(model.faces.size(), kFacesAtOnce, [&](std::size_t f) {
         const Face& face = model.faces[f];
         const Box<2> box = sampled_box(model, face);
@@ -60,21 +98,18 @@ Box<2> sampled_box(const Model& model, const Face& face) {
 }
 
 double estimated_chords(const CurveGeometry<3>& curve, Interval on, double tolerance) {
-    constexpr int kSamples = 8;
     if (std::holds_alternative<Line<3>>(curve)) return 0;
-    const double h = on.length() / kSamples;
-    double sum = 0;
-    for (int k = 0; k < kSamples; ++k) {
-        const auto j = jet<2>(curve, on.lo + (k + 0.5) * h);
-        const double speed = norm(j.d[1]);
-        const Vec<3> bend = speed > 0 ? j.d[2] - (dot(j.d[2], j.d[1]) / (speed * speed)) * j.d[1] : j.d[2];
-        sum += std::sqrt(norm(bend) * h * h / 8 / tolerance);
-    }
-    return std::isfinite(sum) ? sum : 0;
+    return chords_of(
+        [&](double t) {
+            const auto j = jet<2>(curve, t);
+            return std::pair(j.d[1], j.d[2]);
+        },
+        on, tolerance);
 }
 
 double predicted_triangles(const Model& model, const TessellateOptions& options) {
-    return sum_of(predicted(model, options, kManySamples));
+    const FlatFaces flats = flat_faces(model, options);
+    return sum_of(predicted(flats.standing ? *flats.standing : model, options, kManySamples));
 }
 
 std::vector<double> face_sizes(const Model& model, const TessellateOptions& options) {

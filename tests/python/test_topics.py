@@ -268,6 +268,10 @@ def test_models_and_meshes(tmp_path):
     assert np.allclose(BOX.bounds(1e-9).box.hi, [2, 1, 3])
     assert sorted(round(x.value, 9) for x in BOX.edge_lengths())[0] == 1
     assert BOX.deviation(m, 1e-3).bound <= 1e-3
+    square = np.stack([*np.meshgrid([0, 1, 2, 3], [0, 1, 2, 3], indexing="ij"), np.zeros((4, 4))], axis=-1)
+    square[1, 1] += [0.5, 0.8, 0]  # parameter lines that are bent in their plane
+    bent = ff.Model.assemble([ff.Surface(square)])
+    assert len(bent.tessellate(1e-3, as_planes=True).mesh) == 2 < len(bent.tessellate(1e-3).mesh)
     ball = ff.Model.assemble([BALL])
     assert np.isfinite(ball.surface_field(ball.tessellate(0.05).mesh, "gauss").values).all()
     tri, distance, point = m.nearest([[1, 0.5, 4]])

@@ -268,9 +268,9 @@ class Model:
 
     @from_header("model/tessellate:tessellate")
     def tessellate(self, tolerance: float, *, max_edge: float = inf, max_angle: float = inf, max_aspect: float = inf,
-                   quads: bool = False, max_triangles: int = 20_000_000) -> Tessellation:
+                   quads: bool = False, as_planes: bool = False, max_triangles: int = 20_000_000) -> Tessellation:
         """A watertight mesh within a tolerance, with a proof."""
-        return _core.tessellate(self._c, tolerance, max_edge, max_angle, max_aspect, quads, max_triangles)
+        return _core.tessellate(self._c, tolerance, max_edge, max_angle, max_aspect, quads, as_planes, max_triangles)
 
     @from_header("model/surface_field:surface_field", "model/surface_field:SurfaceField")
     def surface_field(self, mesh: Mesh, field: str) -> FieldValues:

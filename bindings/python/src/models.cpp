@@ -56,8 +56,8 @@ ModelBuilder::SplineSurface spline_of(const SurfaceHandle& h, std::string_view w
 }
 
 TessellateOptions tessellate_options(double tolerance, double max_edge, double max_angle, double max_aspect,
-                                     bool quads, long long max_triangles) {
-    return {tolerance, max_edge, max_angle, max_aspect, quads, max_triangles};
+                                     bool quads, bool as_planes, long long max_triangles) {
+    return {tolerance, max_edge, max_angle, max_aspect, quads, as_planes, max_triangles};
 }
 
 // One answer for each point, as arrays in the order of the record's fields.
@@ -326,13 +326,13 @@ void bind_tessellate(py::module_& m) {
     m.def(
         "tessellate",
         [](const ModelHandle& h, double tolerance, double max_edge, double max_angle, double max_aspect,
-           bool quads, long long max_triangles) {
-            const auto options =
-                tessellate_options(tolerance, max_edge, max_angle, max_aspect, quads, max_triangles);
+           bool quads, bool as_planes, long long max_triangles) {
+            const auto options = tessellate_options(tolerance, max_edge, max_angle, max_aspect, quads,
+                                                    as_planes, max_triangles);
             return answer([&] { return tessellate(*h.model, options); });
         },
         py::arg("model"), py::arg("tolerance"), py::arg("max_edge"), py::arg("max_angle"),
-        py::arg("max_aspect"), py::arg("quads"), py::arg("max_triangles"));
+        py::arg("max_aspect"), py::arg("quads"), py::arg("as_planes"), py::arg("max_triangles"));
     m.def(
         "surface_field",
         [](const ModelHandle& h, const MeshHandle& mesh, std::string_view field) {

@@ -21,6 +21,9 @@ struct TessellateOptions {
     // Inside faces cells of parameter lines become quads where their halves keep to all this. In faces that
     // are a rectangle of parameters with four edges the lines reach from edge to edge and end at its points.
     bool quads = false;
+    // Splines that lie in a plane are meshed as that plane, unless one of the four above is asked for: fewer
+    // triangles, but parameters of their corners do not tell what is between them.
+    bool as_planes = false;
     long long max_triangles = 20'000'000;  // more is a refusal (limit), before memory is taken for it
     // Called with a fraction in [0, 1], from any thread; false stops with a refusal (limit).
     std::function<bool(double)> progress = {};
