@@ -158,6 +158,39 @@ TEST(FlatFaces, folds_are_seen_and_meshed_as_they_are_given) {
     EXPECT_GT(most, 1.2);
 }
 
+// A ring that goes round one and a half times, of which a face has two pieces, one above the other.
+TEST(FlatFaces, pieces_above_each_other_are_both_there) {
+    constexpr int kQuarters = 6;
+    std::vector<double> knots{0, 0, 0};
+    for (int k = 1; k <= kQuarters; ++k) knots.insert(knots.end(), 2, k);
+    knots.push_back(kQuarters);
+    std::vector<Hom<3>> p;
+    for (int k = 0; k <= 2 * kQuarters; ++k)
+        for (const double r : {1.0, 2.0}) {
+            const double w = k % 2 ? std::sqrt(0.5) : 1, at = k * kPi / 4;
+            p.push_back(weighted(Vec<3>{{r / w * std::cos(at), r / w * std::sin(at), 0}}, w));
+        }
+    const auto ring = *Surface<Hom<3>>::make({*BSplineBasis::make(2, knots), *BSplineBasis::bezier(1)},
+                                             Net<2, Hom<3>>({2 * kQuarters + 1, 2}, p));
+    const auto rectangle = [](Interval u, Interval v) {
+        const std::array<Vec<2>, 4> at{{{{u.lo, v.lo}}, {{u.hi, v.lo}}, {{u.hi, v.hi}}, {{u.lo, v.hi}}}};
+        std::vector<CurveGeometry<2>> out;
+        for (std::size_t k = 0; k < 4; ++k)
+            out.push_back(Curve<Vec<2>>::trusted({*BSplineBasis::bezier(1)},
+                                                 Net<1, Vec<2>>({2}, {at[k], at[(k + 1) % 4]})));
+        return out;
+    };
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add_trimmed(
+        SplineSurface(ring),
+        std::vector{rectangle({0.2, 1.8}, {0.1, 0.9}), rectangle({4.5, 5.0}, {0.4, 0.6})}, ""));
+    const Model m = must(std::move(builder).finish());
+    const Tessellation t = meshed(m, 1e-3), as_given = must(tessellate(m, {.tolerance = 1e-3}));
+    ASSERT_TRUE(t.refused.empty());
+    EXPECT_NEAR(area(t.mesh), area(as_given.mesh), 0.01);
+    EXPECT_LT(area(t.mesh), -3);  // S_u x S_v looks down
+}
+
 TEST(FlatFaces, what_is_torn_in_its_plane_is_refused) {
     // A square with a slit that does not reach its sides.
     std::vector<Vec<3>> p;
