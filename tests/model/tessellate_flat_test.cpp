@@ -1,4 +1,5 @@
 // Splines that lie in a plane, meshed as planes.
+#include "support/random.hpp"
 #include "support/solids.hpp"
 
 #include <freiform/model/tessellate.hpp>
