@@ -12,7 +12,8 @@
 // (which the mesh asks for) goes round what it encloses once. With holes: the turns of tangents along all
 // loops add up to the Euler characteristic of D, 1 - holes, as S has no folds; so just one loop runs
 // counter-clockwise in the plane, and as no degree is negative the others are inside of it, and not inside of
-// each other. So D has to be of one piece.
+// each other. So D has to be of one piece: which loops are inside of which is asked of the parameter curves
+// themselves (face_loops.cpp). Loops that crossed themselves there would do so in the plane, too.
 //
 // Where it is not known on which side S_u x S_v is (corners of a square patch that is a disc have none), in
 // boxes B_i: a point of S(D) that the loop does not enclose is in some S(B_i), for its degree is 0. S(D)
@@ -22,13 +23,13 @@
 // The loop in the plane is that of the projected edges, and the mesh has chords of these; S along a parameter
 // curve is off the edge by what edge_gap bounds. A homotopy along the straight lines between them changes how
 // often they go round a point only where the point is on such a line, so it is that far from both.
+#include "face_loops_detail.hpp"
 #include "flat_faces_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/make/image_curve.hpp>
-#include <freiform/mesh/segment_box.hpp>
 #include <freiform/model/edge_gap.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -43,7 +44,6 @@ namespace {
 constexpr double kApart = 1.0 / 32;  // of the tolerance, in all
 constexpr double kLittle = 0x1p-10;  // of the tolerance: bends that need no points, gaps known well enough
 constexpr std::size_t kMostBoxes = 4096, kMostLoops = 64, kFacesAtOnce = 8;
-constexpr int kSamples = 16;         // of a coedge, to see which loops are inside others
 constexpr double kResolved = 1e-12;  // of the product of tangents: beyond what they are rounded by
 constexpr double kRoundings = 32;    // of coordinates
 
@@ -185,38 +185,28 @@ double doubtful(const DerivativeQuery<2, 3>& surface, const Vec<3>& normal, cons
     }
 }
 
-// One loop that has all others inside, none of which has another one.
-bool is_of_one_piece(const Model& model, const Face& face) {
+// One loop that has all others inside, none of which has another one; known from a place of each.
+bool is_of_one_piece(const Model& model, const Face& face, const Vec<2>& stretch) {
     const std::size_t n = face.loops.size();
     if (n == 1) return true;
     if (n > kMostLoops) return false;
-    struct Polygon {
-        std::vector<Vec<2>> points;
-        std::vector<std::array<int, 2>> segments;
-    };
-    std::vector<Polygon> loops(n);
-    for (std::size_t l = 0; l < n; ++l) {
-        auto& p = loops[l].points;
-        for (const Coedge& c : face.loops[l].coedges) {
-            const Interval on = model.edges[std::size_t(c.edge)].range;
-            for (int k = 0; k < kSamples; ++k) {
-                const double part = double(k) / kSamples;
-                p.push_back(
-                    jet<0>(c.curve, c.reversed ? on.hi - part * on.length() : on.lo + part * on.length())
-                        .value());
-            }
+    std::vector<int> around(n, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+        Face alone;
+        alone.loops = {face.loops[k]};
+        const auto loop = FaceLoops::make(alone, model.edges, stretch);
+        if (!loop) return false;
+        for (std::size_t l = 0; l < n; ++l) {
+            if (l == k) continue;
+            const Coedge& c = face.loops[l].coedges.front();
+            Box<2> box;
+            box.add(jet<0>(c.curve, model.edges[std::size_t(c.edge)].range.middle()).value());
+            const Place place = loop->place(box).place;
+            if (place == Place::boundary) return false;  // too near to tell
+            around[l] += place == Place::inside;
         }
-        for (int k = 0; k < int(p.size()); ++k) loops[l].segments.push_back({k, (k + 1) % int(p.size())});
     }
-    std::size_t outer = 0;
-    for (std::size_t l = 0; l < n; ++l) {
-        int around = 0;
-        for (std::size_t k = 0; k < n; ++k)
-            around += k != l && is_inside(loops[l].points.front(), loops[k].points, loops[k].segments);
-        if (around > 1) return false;
-        outer += around == 0;
-    }
-    return outer == 1;
+    return std::ranges::count(around, 0) == 1 && std::ranges::count(around, 1) == std::ptrdiff_t(n) - 1;
 }
 
 // At the parameters of the curve, which a conic's image does not have.
@@ -262,7 +252,7 @@ std::optional<FlatFace> flat(const Model& model, const Face& face, double tolera
     const auto j = jet<1>(face.surface, (0.5 * (box.lo + box.hi)).c);
     Frame on = *frame;
     if (dot(cross(j.d[1], j.d[2]), on.normal) < 0) on.normal = -on.normal, on.y = -on.y;
-    if (!is_of_one_piece(model, face)) return std::nullopt;
+    if (!is_of_one_piece(model, face, {{d(1, 0), d(0, 1)}})) return std::nullopt;
     const double beside = doubtful(surface, on.normal, box, face.loops.size() == 1 ? most / 2 : 0);
     if (!(beside < kInfinity)) return std::nullopt;
     FlatFace out{&face, 0, 0};
