@@ -26,6 +26,7 @@ namespace freiform::step {
     X(AXIS2_PLACEMENT_3D)                              \
     X(BEZIER_CURVE)                                    \
     X(BEZIER_SURFACE)                                  \
+    X(BLOCK)                                           \
     X(BOUNDARY_CURVE)                                  \
     X(BREP_WITH_VOIDS)                                 \
     X(B_SPLINE_CURVE)                                  \
@@ -48,6 +49,7 @@ namespace freiform::step {
     X(CONTEXT_DEPENDENT_SHAPE_REPRESENTATION)          \
     X(CONVERSION_BASED_UNIT)                           \
     X(COORDINATES_LIST)                                \
+    X(CSG_SOLID)                                       \
     X(CUBIC_BEZIER_TRIANGULATED_FACE)                  \
     X(CURVE_BOUNDED_SURFACE)                           \
     X(CURVE_REPLICA)                                   \
@@ -61,6 +63,8 @@ namespace freiform::step {
     X(EDGE_CURVE)                                      \
     X(EDGE_LOOP)                                       \
     X(ELLIPSE)                                         \
+    X(EXTRUDED_AREA_SOLID)                             \
+    X(EXTRUDED_FACE_SOLID)                             \
     X(FACETED_BREP)                                    \
     X(FACE_BASED_SURFACE_MODEL)                        \
     X(FACE_BOUND)                                      \
@@ -111,6 +115,11 @@ namespace freiform::step {
     X(REPOSITIONED_TESSELLATED_ITEM)                   \
     X(REPRESENTATION_RELATIONSHIP)                     \
     X(REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION) \
+    X(REVOLVED_AREA_SOLID)                             \
+    X(REVOLVED_FACE_SOLID)                             \
+    X(RIGHT_ANGULAR_WEDGE)                             \
+    X(RIGHT_CIRCULAR_CONE)                             \
+    X(RIGHT_CIRCULAR_CYLINDER)                         \
     X(SEAM_CURVE)                                      \
     X(SHAPE_DEFINITION_REPRESENTATION)                 \
     X(SHAPE_REPRESENTATION_RELATIONSHIP)               \
@@ -118,6 +127,7 @@ namespace freiform::step {
     X(SHELL_BASED_WIREFRAME_MODEL)                     \
     X(SI_UNIT)                                         \
     X(SOLID_REPLICA)                                   \
+    X(SPHERE)                                          \
     X(SPHERICAL_SURFACE)                               \
     X(STYLED_ITEM)                                     \
     X(SUBEDGE)                                         \
@@ -127,10 +137,12 @@ namespace freiform::step {
     X(SURFACE_OF_REVOLUTION)                           \
     X(SURFACE_PATCH)                                   \
     X(SURFACE_REPLICA)                                 \
+    X(SWEPT_DISK_SOLID)                                \
     X(TESSELLATED_GEOMETRIC_SET)                       \
     X(TESSELLATED_SHELL)                               \
     X(TESSELLATED_SOLID)                               \
     X(TOROIDAL_SURFACE)                                \
+    X(TORUS)                                           \
     X(TRIANGULATED_FACE)                               \
     X(TRIANGULATED_SURFACE_SET)                        \
     X(TRIMMED_CURVE)                                   \

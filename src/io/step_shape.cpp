@@ -299,7 +299,7 @@ void ShapeReader::add(std::uint32_t item) {
         set_items(item);
     } else if (is_tessellated(f_, item)) {
         ++out_.tessellated;
-    } else {
+    } else if (!add_swept(item)) {
         const std::string_view kind = unread_shape(f_, item);
         if (!kind.empty())
             refuse_item(item, {RefusalKind::unsupported, "", text("is ", kind, ", which is not read")});

@@ -5,6 +5,7 @@
 
 #include <freiform/io/step_read.hpp>
 #include <freiform/model/model.hpp>
+#include <freiform/model/swept_solid.hpp>
 
 #include <functional>
 #include <map>
@@ -84,6 +85,19 @@ private:
         std::unique_ptr<Chart> chart, seamed;
     };
 
+    // What a solid sweeps, in the plane of its frame, or the solids in that frame; `off`: how far that is
+    // from what the file says.
+    struct SweptRegion {
+        RegionLoops loops;
+        Placement frame;
+        double off = 0;
+    };
+    struct SweptModel {
+        Model model;
+        Motion to;
+        double off = 0;
+    };
+
     void solid(std::uint32_t item);
     void sheet(std::uint32_t item, std::uint32_t shell, bool solid);
     void set_items(std::uint32_t item);
@@ -135,6 +149,14 @@ private:
     // `loosely`: 1, an edge beside the surface is followed no closer than it lies beside it; more, by
     // polygons within more and more times the tolerance.
     Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size, int loosely = 0);
+    // step_swept.cpp: whether the item is such a solid.
+    bool add_swept(std::uint32_t item);
+    Result<SweptRegion> swept_region(std::uint32_t i);
+    Result<SweptModel> swept_by(const Fields& f, bool turns);
+    Result<BoundedCurve> directrix(const Fields& f, std::uint32_t item);
+    Result<SweptModel> swept_disc(const Fields& f, std::uint32_t item);
+    Result<SweptModel> primitive(const Fields& f, Type type);
+    void take(std::uint32_t item, SweptModel made);
     // step_repair.cpp: what contradicts itself beyond the tolerance, refused or made right.
     void turn_edges(std::vector<Oriented>& loop);
     Result<void> close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart, double size,

@@ -64,14 +64,14 @@ double seconds_to_read(const std::string& bytes) {
     return least;
 }
 
-// 10,000 of each of ten files, each thousand in a process of its own that stays below 256 MiB; none takes
+// 10,000 of each of eleven files, each thousand in a process of its own that stays below 256 MiB; none takes
 // more than a second.
 TEST(StepDamage, mutants_are_models_or_refusals_at_once_and_in_little_memory) {
     std::vector<std::string> seeds{round_solid("CYLINDRICAL_SURFACE('',#23,2.)", 10, false),
                                    round_solid("CONICAL_SURFACE('',#23,2.,-45.)", 0, true),
                                    round_solid("SPHERICAL_SURFACE('',#23,2.)", 0, true)};
     for (const char* name :
-         {"circular_sets", "composite", "curves", "parts", "profiles", "repositioned", "sets"})
+         {"circular_sets", "composite", "curves", "parts", "profiles", "repositioned", "sets", "swept"})
         seeds.push_back(must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/fuzz/seeds/step/", name, ".stp"),
                                        std::size_t(1) << 20)));
     const char* named = std::getenv("FREIFORM_STEP_MUTANTS");

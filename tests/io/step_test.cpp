@@ -1,8 +1,10 @@
 #include <freiform/io/document.hpp>
+#include <freiform/io/file.hpp>
 #include <freiform/io/iges.hpp>
 #include <freiform/io/read.hpp>
 #include <freiform/io/scene.hpp>
 #include <freiform/io/step.hpp>
+#include <freiform/io/step_read.hpp>
 #include <freiform/model/swept_solid.hpp>
 #include <freiform/model/tessellate.hpp>
 
