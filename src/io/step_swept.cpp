@@ -1,16 +1,17 @@
-// Solids that are said by what sweeps them: plane regions along a direction or about an axis, discs along a
-// curve, and the primitives of constructive solid geometry, which are swept, too.
+// Solids that are said by what sweeps them: plane regions along a direction or about an axis, and discs along
+// a curve.
 //
-// Idea. A region is read as a face is, with its loops in the parameters of its plane, and prism,
-// solid_of_revolution and solid_along (model/swept_solid.hpp) make the solid; then it is put where the plane
-// is. So walls are planes, cylinders, cones, spheres and tori where they can be, and exact. Only discs along
-// curves other than lines and circles have walls that are splines within the tolerance, which is told.
+// Idea. A region is read as a face is, its edges are projected into its plane, and prism, solid_of_revolution
+// and solid_along (model/swept_solid.hpp) make the solid; then it is put where the plane is. So walls are
+// planes, cylinders, cones, spheres and tori where they can be, and exact. Only discs along curves other than
+// lines and circles have walls that are splines within the tolerance, which is told.
 //
 // The parameters between which a directrix is used are those of the curve that was trimmed, or count from
 // its start; programs write both, and lengths, too. Where neither fits, all of the directrix is meant.
 //
-// References: ISO 10303-42:2014, 6.4 (extruded_area_solid, revolved_area_solid, swept_disk_solid, block,
-// right_angular_wedge, right_circular_cone, right_circular_cylinder, sphere, torus); ISO 10303-511.
+// References: ISO 10303-42:2014, 6.4 (extruded_area_solid, revolved_area_solid, swept_disk_solid).
+#include "step_swept.hpp"
+
 #include "step_shape.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -37,40 +38,6 @@ Vec<3> seen_from(const Placement& frame, const Vec<3>& d) {
         if (std::abs(out[k]) <= kRoundings * kUnitRoundoff * norm(d)) out[k] = 0;
     return out;
 }
-
-CurveGeometry<2> segment(const Vec<2>& a, const Vec<2>& b) {
-    return Curve<Vec<2>>::trusted({*BSplineBasis::bezier(1)}, Net<1, Vec<2>>({2}, {a, b}));
-}
-
-std::vector<CurveGeometry<2>> polygon(const std::vector<Vec<2>>& corners) {
-    std::vector<CurveGeometry<2>> out;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        if (const Vec<2>& next = corners[(i + 1) % corners.size()]; next != corners[i])
-            out.push_back(segment(corners[i], next));
-    return out;
-}
-
-Result<std::vector<CurveGeometry<2>>> circle_about(const Vec<2>& centre, double radius) {
-    const auto made = circle(centre, radius);
-    if (!made) return std::unexpected(made.error());
-    const auto arc = conic_arc(*made, {0, kTurn});
-    if (!arc) return std::unexpected(arc.error());
-    return std::vector<CurveGeometry<2>>{arc->curve};
-}
-
-// The half disc to the right of the second axis.
-std::vector<CurveGeometry<2>> half_disc(double r) {
-    const double w = std::numbers::sqrt2 / 2;
-    std::vector<Hom<2>> net{weighted(Vec<2>{{0, -r}}, 1.0), weighted(Vec<2>{{r, -r}}, w),
-                            weighted(Vec<2>{{r, 0}}, 1.0), weighted(Vec<2>{{r, r}}, w),
-                            weighted(Vec<2>{{0, r}}, 1.0)};
-    return {Curve<Hom<2>>::trusted({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2})},
-                                   Net<1, Hom<2>>({5}, std::move(net))),
-            segment({{0, r}}, {{0, -r}})};
-}
-
-// The frame of a profile that turns about the axis of `at`: (x, z, -y).
-Placement across(const Placement& at) { return {at.o, at.x, at.z, -1.0 * at.y}; }
 
 // Its shadow in z = 0, which is at most `off` away.
 CurveGeometry<2> flattened(const CurveGeometry<3>& spline, double& off) {
@@ -135,6 +102,18 @@ double reach_of(const RegionLoops& loops, const Vec<2>& from) {
 }
 
 }  // namespace
+
+CurveGeometry<2> segment(const Vec<2>& a, const Vec<2>& b) {
+    return Curve<Vec<2>>::trusted({*BSplineBasis::bezier(1)}, Net<1, Vec<2>>({2}, {a, b}));
+}
+
+Result<std::vector<CurveGeometry<2>>> circle_about(const Vec<2>& centre, double radius) {
+    const auto made = circle(centre, radius);
+    if (!made) return std::unexpected(made.error());
+    const auto arc = conic_arc(*made, {0, kTurn});
+    if (!arc) return std::unexpected(arc.error());
+    return std::vector<CurveGeometry<2>>{arc->curve};
+}
 
 // A region with the frame that its plane is z = 0 of.
 Result<ShapeReader::SweptRegion> ShapeReader::swept_region(std::uint32_t i) {
@@ -325,80 +304,6 @@ Result<ShapeReader::SweptModel> ShapeReader::swept_disc(const Fields& f, std::ui
     if (!made) return std::unexpected(made.error());
     out.model = *std::move(made);
     return out;
-}
-
-Result<ShapeReader::SweptModel> ShapeReader::primitive(const Fields& f, Type type) {
-    const auto placed = [&](int k) -> Result<Placement> {
-        const auto at = f.reference(k, "position");
-        if (!at) return std::unexpected(at.error());
-        return geometry_.placement(*at);
-    };
-    std::array<double, 4> n{};
-    const auto read = [&](int first, std::initializer_list<std::string_view> names) -> Result<void> {
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            const std::string_view name = names.begin()[k];
-            const auto x = f.number(first + int(k), name);
-            if (!x) return std::unexpected(x.error());
-            const bool may_be_zero = (type == Type::RIGHT_CIRCULAR_CONE && k == 1) || name == "ltx";
-            if (!(may_be_zero ? *x >= 0 : *x > 0))
-                return f.refused(text("has the ", name, " ", *x), RefusalKind::invalid);
-            n[k] = *x;
-        }
-        return {};
-    };
-    SweptModel out;
-    const auto done = [&](const Result<Placement>& at, Result<Model> made) -> Result<SweptModel> {
-        if (!at) return std::unexpected(at.error());
-        if (!made) return std::unexpected(made.error());
-        out.to = motion_to(*at);
-        out.model = *std::move(made);
-        return std::move(out);
-    };
-    const auto turned = [&](Result<Placement> at, Result<RegionLoops> region) -> Result<SweptModel> {
-        if (!region) return std::unexpected(region.error());
-        if (at) at = across(*at);
-        return done(at, solid_of_revolution(*region, {{}, {{0, 1, 0}}}, kTurn));
-    };
-    Result<void> ok;
-    switch (type) {
-        case Type::BLOCK:
-        case Type::RIGHT_ANGULAR_WEDGE: {
-            const bool wedge = type == Type::RIGHT_ANGULAR_WEDGE;
-            ok = wedge ? read(2, {"x", "y", "z", "ltx"}) : read(2, {"x", "y", "z"});
-            if (!ok) break;
-            const double top = wedge ? n[3] : n[0];
-            return done(placed(1), prism({polygon({{{0, 0}}, {{n[0], 0}}, {{top, n[1]}}, {{0, n[1]}}})},
-                                         {{0, 0, n[2]}}));
-        }
-        case Type::RIGHT_CIRCULAR_CYLINDER: {
-            if (ok = read(2, {"height", "radius"}); !ok) break;
-            auto disc = circle_about({}, n[1]);
-            if (!disc) return std::unexpected(disc.error());
-            return done(placed(1), prism({*std::move(disc)}, {{0, 0, n[0]}}));
-        }
-        case Type::RIGHT_CIRCULAR_CONE: {
-            if (ok = read(2, {"height", "radius", "semi-angle"}); !ok) break;
-            const double far = n[1] + n[0] * std::tan(n[2] * geometry_.angle);
-            if (!(far > 0 && n[2] * geometry_.angle < std::numbers::pi / 2))
-                return f.refused(text("has the semi-angle ", n[2]), RefusalKind::invalid);
-            return turned(placed(1),
-                          RegionLoops{polygon({{{0, 0}}, {{n[1], 0}}, {{far, n[0]}}, {{0, n[0]}}})});
-        }
-        case Type::SPHERE: {
-            if (ok = read(1, {"radius"}); !ok) break;
-            const auto at = f.reference(2, "centre");
-            const auto centre = at ? geometry_.point(*at) : Result<Vec<3>>(std::unexpected(at.error()));
-            if (!centre) return std::unexpected(centre.error());
-            return turned(Placement{*centre}, RegionLoops{half_disc(n[0])});
-        }
-        default: {
-            if (ok = read(2, {"major radius", "minor radius"}); !ok) break;
-            auto disc = circle_about({{n[0], 0}}, n[1]);
-            if (!disc) return std::unexpected(disc.error());
-            return turned(placed(1), RegionLoops{*std::move(disc)});
-        }
-    }
-    return std::unexpected(ok.error());
 }
 
 bool ShapeReader::add_swept(std::uint32_t item) {
