@@ -82,7 +82,7 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b) const {
 // is the first one, and stays where it is.
 void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing) {
     const Pole* pole = pole_at(last.end, next.start);
-    if (pole == nullptr) return;
+    if (pole == nullptr) return corner_between(done, last, next);
     const int o = 1 - pole->axis;
     const double turn = chart_.period(o);
     Vec<2> to = next.start;
@@ -108,6 +108,16 @@ void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& nex
     }
     if (std::abs(to[o] - last.end[o]) <= 1e-9 * scale_of(chart_, o)) return;
     done.push_back(degenerate(last.to, last.end, to));
+}
+
+// Where two neighbouring sides are one point, along both of them.
+void LoopBuilder::corner_between(std::vector<Use>& done, const Use& last, const Use& next) {
+    const Pole *a = pole_at(last.end, last.end), *b = pole_at(next.start, next.start);
+    if (a == nullptr || b == nullptr || a->axis == b->axis || norm(a->point - b->point) > close_) return;
+    Vec<2> corner;
+    corner[a->axis] = last.end[a->axis], corner[b->axis] = next.start[b->axis];
+    done.push_back(degenerate(last.to, last.end, corner));
+    done.push_back(degenerate(last.to, corner, next.start));
 }
 
 // Moved by periods to where the one before it ends.

@@ -48,6 +48,7 @@ private:
 
     void attach(std::vector<Use>& done, Use next) const;
     void pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing);
+    void corner_between(std::vector<Use>& done, const Use& last, const Use& next);
     const Pole* pole_at(const Vec<2>& a, const Vec<2>& b) const;
     Use degenerate(int vertex, const Vec<2>& from, const Vec<2>& to);
     void measure(Chain& c) const;

@@ -60,7 +60,9 @@ public:
         if (!(t && t->gap <= kNear * accuracy_))
             if (auto told = nearest_image(t ? t->gap : rough_)) return *told;
         if (!t)
-            if (auto feet = polygon_of_feet(chart_, c_, on_, rough_)) return *feet;
+            if (auto feet = polygon_of_feet(chart_, c_, on_, rough_);
+                feet && !chart_.has_pole_across(feet->curve, on_))
+                return *feet;
         return t;
     }
 

@@ -246,6 +246,51 @@ TEST(StepLoops, what_a_loop_with_a_seam_to_a_pole_encloses_is_on_the_side_of_the
         }
 }
 
+// An octant of a sphere of radius 2, one of whose sides passes over the pole, a third of the way along it.
+TEST(StepLoops, edges_that_pass_over_a_pole_get_other_poles) {
+    constexpr double kPi = std::numbers::pi;
+    const double c = std::cos(kPi / 3), s = std::sin(kPi / 3);
+    const std::array<Vec<3>, 3> corner{{{{c, 0, s}}, {{-s, 0, c}}, {{0, 1, 0}}}};
+    std::string f =
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+        "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n"
+        "#9=SPHERICAL_SURFACE('',#5,2.);\n#14=EDGE_LOOP('',(#20,#21,#22));\n";
+    const auto triple = [](const Vec<3>& p) { return text("('',(", p[0], ",", p[1], ",", p[2], "));\n"); };
+    for (std::size_t i = 0; i < 3; ++i) {
+        // From the next corner to this one: counter-clockwise about the third.
+        const std::size_t next = (i + 1) % 3;
+        f += text("#", 20 + i, "=ORIENTED_EDGE('',*,*,#", 30 + i, ",.T.);\n#", 30 + i, "=EDGE_CURVE('',#",
+                  40 + next, ",#", 40 + i, ",#", 50 + i, ",.T.);\n#", 40 + i, "=VERTEX_POINT('',#", 60 + i,
+                  ");\n#", 60 + i, "=CARTESIAN_POINT", triple(2.0 * corner[i]), "#", 50 + i, "=CIRCLE('',#",
+                  70 + i, ",2.);\n#", 70 + i, "=AXIS2_PLACEMENT_3D('',#6,#", 80 + i, ",#", 90 + next, ");\n#",
+                  80 + i, "=DIRECTION", triple(cross(corner[next], corner[i])), "#", 90 + i, "=DIRECTION",
+                  triple(corner[i]));
+    }
+    f.replace(f.find("(#20,#21,#22)"), 13, "(#22,#21,#20)");
+    const Model m = must(read_step(flat_file(f)));
+    ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
+    EXPECT_NEAR(area_of(m, 1e-4), 2 * kPi, 1e-3);
+    EXPECT_EQ(summary(m).degenerate_edges, 0);
+}
+
+// A lens between the parabolas y = +-x (1 - x), whose other two sides are both the corner at the origin.
+TEST(StepLoops, two_sides_that_are_one_point_are_both_in_the_loop) {
+    const Model m = must(read_step(flat_file(
+        "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n"
+        "#11=OPEN_SHELL('',(#12));\n#12=ADVANCED_FACE('',(#13),#9,.T.);\n#13=FACE_BOUND('',#14,.T.);\n"
+        "#14=EDGE_LOOP('',(#15,#16));\n#15=ORIENTED_EDGE('',*,*,#20,.F.);\n"
+        "#16=ORIENTED_EDGE('',*,*,#21,.T.);\n#20=EDGE_CURVE('',#30,#31,#40,.T.);\n"
+        "#21=EDGE_CURVE('',#30,#31,#41,.T.);\n#30=VERTEX_POINT('',#6);\n#31=VERTEX_POINT('',#53);\n"
+        "#40=BEZIER_CURVE('',2,(#6,#51,#53),.UNSPECIFIED.,.F.,.F.);\n"
+        "#41=BEZIER_CURVE('',2,(#6,#52,#53),.UNSPECIFIED.,.F.,.F.);\n#50=CARTESIAN_POINT('',(0.25,0.,0.));\n"
+        "#51=CARTESIAN_POINT('',(0.5,0.5,0.));\n#52=CARTESIAN_POINT('',(0.5,-0.5,0.));\n"
+        "#53=CARTESIAN_POINT('',(1.,0.,0.));\n"
+        "#9=BEZIER_SURFACE('',2,2,((#6,#6,#6),(#6,#50,#52),(#6,#51,#53)),.UNSPECIFIED.,.F.,.F.,.F.);\n")));
+    ASSERT_EQ(m.faces.size(), 1u) << (m.refused.empty() ? "" : m.refused[0].message);
+    EXPECT_EQ(summary(m).degenerate_edges, 2);
+    EXPECT_NEAR(area_of(m, 1e-5), 1.0 / 3, 1e-4);
+}
+
 // A quarter of a sphere of radius 9 as a rational spline with numbers of ten digits; two edges begin at its
 // pole.
 TEST(StepLoops, edges_that_begin_at_the_pole_of_a_spline_keep_to_their_meridians) {
