@@ -24,10 +24,9 @@
 // curve is off the edge by what edge_gap bounds. A homotopy along the straight lines between them changes how
 // often they go round a point only where the point is on such a line, so it is that far from both.
 #include "face_loops_detail.hpp"
-#include "flat_faces_detail.hpp"
+#include "stand_ins_detail.hpp"
 
 #include <freiform/core/constants.hpp>
-#include <freiform/core/parallel.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/make/image_curve.hpp>
 #include <freiform/model/edge_gap.hpp>
@@ -43,7 +42,7 @@ namespace {
 
 constexpr double kApart = 1.0 / 32;  // of the tolerance, in all
 constexpr double kLittle = 0x1p-10;  // of the tolerance: bends that need no points, gaps known well enough
-constexpr std::size_t kMostBoxes = 4096, kMostLoops = 64, kFacesAtOnce = 8;
+constexpr std::size_t kMostBoxes = 4096, kMostLoops = 64;
 constexpr double kResolved = 1e-12;  // of the product of tangents: beyond what they are rounded by
 constexpr double kRoundings = 32;    // of coordinates
 
@@ -217,20 +216,11 @@ Result<CurveGeometry<3>> image_of(const SurfaceGeometry& surface, const CurveGeo
     return image_curve(surface, *spline);
 }
 
-// `standing` becomes the plane.
-std::optional<FlatFace> flat(const Model& model, const Face& face, double tolerance, Face& standing) {
-    const double most = kApart * tolerance;
-    const auto frame = frame_of(face.surface, most / 4);
-    if (!frame || face.loops.empty()) return std::nullopt;
-    std::set<int> edges;
-    for (const Loop& l : face.loops)
-        for (const Coedge& c : l.coedges) {
-            const Edge& e = model.edges[std::size_t(c.edge)];
-            if (e.degenerate || !edges.insert(c.edge).second) return std::nullopt;
-        }
-    const DerivativeQuery<2, 3> surface(face.surface);
+}  // namespace
+
+Box<2> box_of_curves(const Model& model, const Face& face) {
     const auto domain = limits(face.surface);
-    Box<2> box;  // of the parameter curves
+    Box<2> box;
     for (const Loop& l : face.loops)
         for (const Coedge& c : l.coedges) {
             const DerivativeQuery<1, 2> query(c.curve);
@@ -244,6 +234,21 @@ std::optional<FlatFace> flat(const Model& model, const Face& face, double tolera
                 box.add(clamped(lo, domain)), box.add(clamped(hi, domain));
             }
         }
+    return box;
+}
+
+std::optional<StandIn> plane_for(const Model& model, const Face& face, double tolerance, Face& standing) {
+    const double most = kApart * tolerance;
+    const auto frame = frame_of(face.surface, most / 4);
+    if (!frame || face.loops.empty()) return std::nullopt;
+    std::set<int> edges;
+    for (const Loop& l : face.loops)
+        for (const Coedge& c : l.coedges) {
+            const Edge& e = model.edges[std::size_t(c.edge)];
+            if (e.degenerate || !edges.insert(c.edge).second) return std::nullopt;
+        }
+    const DerivativeQuery<2, 3> surface(face.surface);
+    const Box<2> box = box_of_curves(model, face);
     const auto d = surface({box.side(0), box.side(1)});
     const Vec<2> size = box.hi - box.lo;
     if (!(d(2, 0) * size[0] * size[0] + 2 * d(1, 1) * size[0] * size[1] + d(0, 2) * size[1] * size[1] >
@@ -255,7 +260,7 @@ std::optional<FlatFace> flat(const Model& model, const Face& face, double tolera
     if (!is_of_one_piece(model, face, {{d(1, 0), d(0, 1)}})) return std::nullopt;
     const double beside = doubtful(surface, on.normal, box, face.loops.size() == 1 ? most / 2 : 0);
     if (!(beside < kInfinity)) return std::nullopt;
-    FlatFace out{&face, 0, 0};
+    StandIn out{&face, true, 0, 0};
     double more = 0;
     standing = face;
     standing.surface = Extrusion{Line<3>{on.origin, on.x}, on.y, SurfaceKind::plane};
@@ -272,26 +277,6 @@ std::optional<FlatFace> flat(const Model& model, const Face& face, double tolera
         }
     out.apart = on.off + beside + more;
     return out.apart <= most ? std::optional(out) : std::nullopt;
-}
-
-}  // namespace
-
-FlatFaces flat_faces(const Model& model, const TessellateOptions& how) {
-    FlatFaces out;
-    // What else is asked for is about triangles inside, or about normals, which are not those of the plane.
-    if (!how.as_planes || how.quads || std::isfinite(how.max_edge) || std::isfinite(how.max_angle) ||
-        std::isfinite(how.max_aspect))
-        return out;
-    const double tolerance = how.tolerance;
-    out.faces.resize(model.faces.size());
-    std::vector<Face> standing(model.faces.size());
-    parallel_for(model.faces.size(), kFacesAtOnce,
-                 [&](std::size_t f) { out.faces[f] = flat(model, model.faces[f], tolerance, standing[f]); });
-    if (std::ranges::none_of(out.faces, [](const auto& f) { return f.has_value(); })) return out;
-    out.standing = model;
-    for (std::size_t f = 0; f < out.faces.size(); ++f)
-        if (out.faces[f]) out.standing->faces[f] = std::move(standing[f]);
-    return out;
 }
 
 }  // namespace freiform

@@ -85,9 +85,9 @@ constexpr double kCopiesApart = 0x1p-21;  // of the tolerance
 struct Shared {
     std::optional<SharedWork> work;
     Result<Tessellation> run(const Model& model, const TessellateOptions& how, std::vector<double> sizes,
-                             const FlatFaces* flats) {
+                             const StandIns* stand_ins) {
         if (!work) work.emplace(model);
-        return Tessellator(model, *work, how, std::move(sizes), flats).run();
+        return Tessellator(model, *work, how, std::move(sizes), stand_ins).run();
     }
 };
 
@@ -103,8 +103,8 @@ std::vector<T> of_originals(std::span<const T> of_faces, const Copies& copies) {
 // The meshes of a model, or of what stands for it. Copies are looked for once.
 class Meshes {
 public:
-    Meshes(const Model& given, const Model& model, const FlatFaces* flats)
-        : given_(given), model_(model), flats_(flats) {}
+    Meshes(const Model& given, const Model& model, const StandIns* stand_ins)
+        : given_(given), model_(model), stand_ins_(stand_ins) {}
 
     Result<Tessellation> make(const TessellateOptions& how) {
         auto sizes = face_sizes(model_, how);
@@ -114,16 +114,17 @@ public:
         const bool may_copy = !std::isfinite(how.max_angle) && model_.faces.size() > 1;
         if (may_copy && !copies_) copies_ = copies_in(given_);
         if (!may_copy || !copies_->any() || copies_->apart() > kCopiesApart * how.tolerance)
-            return whole_.run(model_, how, std::move(sizes), flats_);
+            return whole_.run(model_, how, std::move(sizes), stand_ins_);
         if (!reduced_) {
             reduced_ = originals_of(model_, *copies_);
-            if (flats_) reduced_flats_.faces = of_originals<std::optional<FlatFace>>(flats_->faces, *copies_);
+            if (stand_ins_)
+                reduced_stand_ins_.faces = of_originals<std::optional<StandIn>>(stand_ins_->faces, *copies_);
         }
         TessellateOptions inner = how;  // what is moved is rounded
         inner.max_edge *= 1 - 0x1p-40;
         inner.tolerance *= 1 - 0x1p-20;
         auto few = originals_.run(*reduced_, inner, of_originals<double>(sizes, *copies_),
-                                  flats_ ? &reduced_flats_ : nullptr);
+                                  stand_ins_ ? &reduced_stand_ins_ : nullptr);
         auto all = few ? with_copies(given_, *copies_, std::move(*few), how) : std::move(few);
         if (all)
             all->seconds.total =
@@ -133,11 +134,11 @@ public:
 
 private:
     const Model &given_, &model_;
-    const FlatFaces* flats_;
+    const StandIns* stand_ins_;
     Shared whole_, originals_;
     std::optional<Copies> copies_;
     std::optional<Model> reduced_;
-    FlatFaces reduced_flats_;
+    StandIns reduced_stand_ins_;
 };
 
 }  // namespace
@@ -154,16 +155,16 @@ std::vector<Result<Tessellation>> tessellate(const Model& model, std::span<const
             all.push_back(std::unexpected(ok.error()));
             continue;
         }
-        // For each tolerance anew, as which faces are flat depends on it.
-        const FlatFaces flats = flat_faces(model, how);
-        if (!flats.standing) {
+        // For each tolerance anew: what may stand for a face depends on it.
+        const StandIns stand_ins = stand_ins_for(model, how, true);
+        if (!stand_ins.standing) {
             all.push_back(given.make(how));
             continue;
         }
-        auto t = Meshes(model, *flats.standing, &flats).make(how);
-        // What is refused as a plane may be meshed as it is given.
+        auto t = Meshes(model, *stand_ins.standing, &stand_ins).make(how);
+        // What is refused as what stands for it may be meshed as it is given.
         if (t && std::ranges::any_of(t->refused, [&](const RefusedFace& r) {
-                return flats.faces[std::size_t(r.face)].has_value();
+                return stand_ins.faces[std::size_t(r.face)].has_value();
             }))
             t = given.make(how);
         all.push_back(std::move(t));

@@ -45,7 +45,7 @@ std::optional<Vec<3>> regular_normal(const Jet<2, 1, Vec<3>>& j) {
 // little inside the triangle. First derivatives above `usual` are not small.
 Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inwards,
                               const Vec<2>& usual) const {
-    const SurfaceGeometry& surface = model_.faces[f].surface;
+    const SurfaceGeometry& surface = shape(f);
     for (double step : {0.0, 1e-6, 1e-4, 1e-2, 0.5}) {
         const auto j = jet<1>(surface, step == 0 ? uv.c : ((1 - step) * uv + step * inwards).c);
         if (const auto n = regular_normal(j)) {
@@ -61,7 +61,9 @@ Vec<3> Tessellator::normal_at(std::size_t f, const Vec<2>& uv, const Vec<2>& inw
 double Tessellator::rounding_of(std::size_t f) const {
     Box<2> box;
     for (const Vec<2>& p : boundaries_[f].polygon.uv) box.add(p);
-    return box.is_empty() ? 0 : 2 * value_error_bound(model_.faces[f].surface, {box.side(0), box.side(1)});
+    if (box.is_empty()) return 0;
+    const std::array<Interval, 2> on{box.side(0), box.side(1)};
+    return 2 * std::max(value_error_bound(model_.faces[f].surface, on), value_error_bound(shape(f), on));
 }
 
 // With the points of the mesh itself, which on edges are not those of the face.
@@ -145,7 +147,7 @@ Tessellator::Sides Tessellator::sides_of(std::size_t f) const {
 
 // The vertices of a face; those with the point -1 - i are at inner[i].
 Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
-    const SurfaceGeometry& surface = model_.faces[f].surface;
+    const SurfaceGeometry& surface = shape(f);
     const FaceMesh& m = meshes_[f];
     FaceLook out;
     Sides sides;
@@ -201,7 +203,7 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
 // Parameters of the spline that a plane stands for, at the corners of its mesh: of the boundary on its
 // parameter curves; others are looked for.
 std::vector<Vec<2>> Tessellator::given_places(std::size_t f) const {
-    const Face& face = *flat(f)->given;
+    const Face& face = *stand_in(f)->given;
     std::map<int, const Coedge*> uses;
     for (const Loop& l : face.loops)
         for (const Coedge& c : l.coedges) uses[c.edge] = &c;
@@ -302,14 +304,18 @@ Tessellation Tessellator::collect() {
                 report.error_bound =
                     std::max(report.error_bound, kBesideBoundary * edges_->mesh(c.edge).bound);
         report.error_bound += rounding_of(f);
-        if (const FlatFace* of = flat(f)) report.error_bound += of->apart, report.boundary_gap += of->gap;
+        if (const StandIn* of = stand_in(f)) {
+            report.error_bound += of->apart;
+            report.boundary_gap = std::max(0.0, report.boundary_gap + of->gap);
+        }
         out.error_bound = std::max(out.error_bound, report.error_bound);
         out.boundary_gap = std::max(out.boundary_gap, report.boundary_gap);
         out.faces.push_back(report);
     }
     if (std::isfinite(options_.max_angle)) measure_angles(out);
     for (const MeshPart& part : out.mesh.parts) {
-        if (flat(std::size_t(part.face)) == nullptr || part.count == 0) continue;
+        const StandIn* of = stand_in(std::size_t(part.face));
+        if (of == nullptr || !of->is_plane || part.count == 0) continue;
         const auto places = given_places(std::size_t(part.face));
         for (std::size_t i = 0; i < places.size(); ++i)
             out.mesh.vertices[first_vertex[std::size_t(part.face)] + i].uv = places[i];

@@ -2,7 +2,7 @@
 // tessellate_collect.cpp.
 #pragma once
 #include "face_boundary_detail.hpp"
-#include "flat_faces_detail.hpp"
+#include "stand_ins_detail.hpp"
 
 #include <freiform/mesh/face_mesh.hpp>
 #include <freiform/model/tessellate.hpp>
@@ -30,13 +30,13 @@ void turn_outwards(const Model& model, Tessellation& t);
 
 class Tessellator {
 public:
-    // `sizes`: estimates of the triangles of faces; `flats`: those that are planes in the model but not as
-    // they are given, null if there are none.
+    // `sizes`: estimates of the triangles of faces; `stand_ins`: what stands for faces in the model, null if
+    // nothing does.
     Tessellator(const Model& model, SharedWork& shared, const TessellateOptions& options,
-                std::vector<double> sizes, const FlatFaces* flats)
+                std::vector<double> sizes, const StandIns* stand_ins)
         : model_(model),
           options_(options),
-          flats_(flats),
+          stand_ins_(stand_ins),
           sizes_(std::move(sizes)),
           queries_(shared.queries),
           apexes_(shared.apexes),
@@ -109,8 +109,13 @@ private:
     FaceLook look_of(std::size_t face, bool flip) const;
     Tessellation collect();
     void measure_angles(Tessellation& out) const;
-    const FlatFace* flat(std::size_t face) const {
-        return flats_ && flats_->faces[face] ? &*flats_->faces[face] : nullptr;
+    const StandIn* stand_in(std::size_t face) const {
+        return stand_ins_ && stand_ins_->faces[face] ? &*stand_ins_->faces[face] : nullptr;
+    }
+    // The surface at the parameters of the mesh, as it is given if it has them.
+    const SurfaceGeometry& shape(std::size_t face) const {
+        const StandIn* of = stand_in(face);
+        return of && !of->is_plane ? of->given->surface : model_.faces[face].surface;
     }
     std::vector<Vec<2>> given_places(std::size_t face) const;
     Vec<3> normal_at(std::size_t face, const Vec<2>& uv, const Vec<2>& inwards, const Vec<2>& usual) const;
@@ -118,7 +123,7 @@ private:
 
     const Model& model_;
     const TessellateOptions& options_;
-    const FlatFaces* flats_;
+    const StandIns* stand_ins_;
     std::vector<double> sizes_;
     double tolerance_ = 0, rounding_ = 0;
     const std::vector<std::unique_ptr<DerivativeQuery<2, 3>>>& queries_;

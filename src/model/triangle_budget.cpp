@@ -4,7 +4,7 @@
 // are a rounding apart), that is enough. The box of a face is that of points on its parameter
 // curves, so a face with holes counts as one without. Each chord of the boundary
 // has a triangle, too; those of narrow faces have no others.
-#include "flat_faces_detail.hpp"
+#include "stand_ins_detail.hpp"
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
@@ -108,8 +108,8 @@ double estimated_chords(const CurveGeometry<3>& curve, Interval on, double toler
 }
 
 double predicted_triangles(const Model& model, const TessellateOptions& options) {
-    const FlatFaces flats = flat_faces(model, options);
-    return sum_of(predicted(flats.standing ? *flats.standing : model, options, kManySamples));
+    const StandIns stand_ins = stand_ins_for(model, options, false);
+    return sum_of(predicted(stand_ins.standing ? *stand_ins.standing : model, options, kManySamples));
 }
 
 std::vector<double> face_sizes(const Model& model, const TessellateOptions& options) {
