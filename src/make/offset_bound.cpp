@@ -86,16 +86,34 @@ struct Form {
 };
 using Form3 = std::array<Form, 3>;
 
-void add_product(Form& to, const Form& a, const Form& b, double sign = 1) {
+// Rows of known length are multiplied more than twice as fast.
+template <int n>
+void add_rows(Form& to, const Form& a, const Form& b, double sign) {
     for (int i = 0; i <= a.p; ++i)
         for (int k = 0; k <= b.p; ++k) {
             const double *x = a.row(i), *y = b.row(k);
             double* z = to.row(i + k);
             for (int j = 0; j <= a.q; ++j) {
                 const double f = sign * x[j];
-                for (int l = 0; l <= b.q; ++l) z[j + l] += f * y[l];
+                for (int l = 0; l < (n > 0 ? n : b.q + 1); ++l) z[j + l] += f * y[l];
             }
         }
+}
+void add_product(Form& to, const Form& a, const Form& b, double sign = 1) {
+    switch (b.q + 1) {
+        case 3:
+            return add_rows<3>(to, a, b, sign);
+        case 4:
+            return add_rows<4>(to, a, b, sign);
+        case 6:
+            return add_rows<6>(to, a, b, sign);
+        case 7:
+            return add_rows<7>(to, a, b, sign);
+        case 9:
+            return add_rows<9>(to, a, b, sign);
+        default:
+            return add_rows<0>(to, a, b, sign);
+    }
 }
 Form product(const Form& a, const Form& b) {
     Form out(a.p + b.p, a.q + b.q);
@@ -105,6 +123,21 @@ Form product(const Form& a, const Form& b) {
 Form scalar_product(const Form3& a, const Form3& b) {
     Form out(a[0].p + b[0].p, a[0].q + b[0].q);
     for (std::size_t k = 0; k < 3; ++k) add_product(out, a[k], b[k]);
+    return out;
+}
+// Of each row the products with those behind it count twice.
+Form square(const Form3& a) {
+    Form out(2 * a[0].p, 2 * a[0].q);
+    for (const Form& f : a)
+        for (int i = 0; i <= f.p; ++i) {
+            Form row(0, f.q), rest(f.p - i, f.q), sum(f.p - i, 2 * f.q);
+            std::copy(f.row(i), f.row(i) + f.q + 1, row.c.begin());
+            std::copy(f.row(i), f.row(f.p) + f.q + 1, rest.c.begin());
+            add_product(sum, row, rest, 2);
+            add_product(sum, row, row, -1);
+            for (int k = i; k <= f.p; ++k)
+                for (int j = 0; j <= 2 * f.q; ++j) out.at(i + k, j) += sum.at(k - i, j);
+        }
     return out;
 }
 Form ones(int p, int q) {
@@ -181,7 +214,7 @@ double detail::offset_bound(const NetView<2, const Vec<3>>& h, const NetView<2, 
             B[k] = product(derivative(N[k], 1), w);
             add_product(B[k], N[k], w_v, -1);
         }
-        ww = product(product(w, w), ones(2 * hp, 2 * hq));
+        ww = product(product(product(w, w), ones(0, 2 * hq)), ones(2 * hp, 0));
     } else {
         const int P_ = std::max(hp, p), Q_ = std::max(hq, q);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -206,7 +239,7 @@ double detail::offset_bound(const NetView<2, const Vec<3>>& h, const NetView<2, 
     const double along_u = scalar_product(E, A).largest() + off * u + far * off_u + rounding * far * u,
                  along_v = scalar_product(E, B).largest() + off * v + far * off_v + rounding * far * v;
     const double t = (along_u * v + along_v * u) / (least_weight * least);
-    Form c = scalar_product(E, E);
+    Form c = square(E);
     const double square = distance * distance;
     for (std::size_t i = 0; i < c.c.size(); ++i) c.c[i] -= square * ww.c[i];
     const double apart =

@@ -33,7 +33,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kForSides = 0.3;  // of the tolerance, in the middle of a side along each axis
+constexpr double kForSides = 0.3;        // of the tolerance, in the middle of a side along each axis
+constexpr double kForKnownSides = 0.12;  // likewise, of their part
 constexpr int kRounds = 12;
 constexpr std::size_t kMostCells = std::size_t(1) << 16;
 constexpr double kKnown = 0.5;  // of the tolerance, for the polynomials of the coarse grid
@@ -138,7 +139,8 @@ private:
                 bad[k] = !interpolate({int(k / columns), int(k % columns)}, known_[k], errors_[k]);
             });
             if (std::ranges::find(bad, 1) != bad.end()) return no_normal();
-            if (cut_by_sides(known_lines_, errors_, kForSides * kKnown * tolerance_, kDegree + 1)) continue;
+            if (cut_by_sides(known_lines_, errors_, kForKnownSides * kKnown * tolerance_, kDegree + 1))
+                continue;
             parallel_for(known_.size(), 4, [&](std::size_t k) {
                 const Index<2> at{int(k / columns), int(k % columns)};
                 const NetView<2, const Vec<3>> net{

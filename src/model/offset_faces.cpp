@@ -1,4 +1,4 @@
-// Faces on offsets of splines, as faces on splines.
+// Faces on offsets of splines, and of what splines sweep along a line, as faces on splines.
 //
 // Idea. Of an offset only second derivatives are bounded, by those of the base and its normals; of a spline
 // it is known how far it is from a quadratic function. So a spline that is near the offset, at the same
@@ -12,6 +12,7 @@
 #include "triangle_budget_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/core/visit.hpp>
 #include <freiform/make/offset_spline.hpp>
 
 #include <algorithm>
@@ -39,6 +40,27 @@ bool has_shared_images(const Model& model, const Face& face) {
     return false;
 }
 
+// What a spline sweeps along a line is a spline of the same parameters.
+std::optional<SurfaceGeometry> spline_of(const SurfaceGeometry& base, const Interval& along) {
+    const auto* swept = std::get_if<Extrusion>(&base);
+    if (swept == nullptr) return base;
+    const auto across = BSplineBasis::bezier(1, along);
+    return visit_one(
+        [&](const auto& c) -> std::optional<SurfaceGeometry> {
+            if constexpr (requires { c.net(); }) {
+                using P = std::remove_cvref_t<decltype(c.net().flat()[0])>;
+                std::vector<P> net;
+                for (const P& p : c.net().flat())
+                    for (const double v : {along.lo, along.hi})
+                        net.push_back(Space<P>::lift(project(p) + v * swept->direction, Space<P>::weight(p)));
+                const int rows = int(c.net().flat().size());
+                return Surface<P>::trusted({c.basis(), *across}, Net<2, P>({rows, 2}, std::move(net)));
+            }
+            return std::nullopt;
+        },
+        swept->profile);
+}
+
 }  // namespace
 
 std::optional<StandIn> spline_for(const Model& model, const Face& face, double tolerance, Face& standing) {
@@ -53,7 +75,10 @@ std::optional<StandIn> spline_for(const Model& model, const Face& face, double t
         on[d] = {std::max(side.lo - more, domain[d].lo), std::min(side.hi + more, domain[d].hi)};
         if (!std::isfinite(on[d].length()) || !(on[d].lo < on[d].hi)) return std::nullopt;
     }
-    auto made = offset_spline(*offset, on, kApart / 4 * tolerance);
+    auto base = spline_of(*offset->base, on[1]);
+    if (!base) return std::nullopt;
+    auto made = offset_spline({std::make_shared<const SurfaceGeometry>(*std::move(base)), offset->distance},
+                              on, kApart / 4 * tolerance);
     if (!made) return std::nullopt;
     standing = face;
     standing.surface = std::move(made->surface);
