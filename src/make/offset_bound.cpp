@@ -247,8 +247,7 @@ double detail::offset_bound(const NetView<2, const Vec<3>>& h, const NetView<2, 
         (least_weight * least_weight);
     const bool same_side = dot(middle(E), z) * distance > 0;
     if (!same_side || !(apart + t * t < square)) return beside;
-    const double found = std::hypot(t, (apart + t * t) / std::abs(distance)) + off / least_weight;
-    return std::min(beside, found * (1 + 1e-9));
+    return (std::hypot(t, (apart + t * t) / std::abs(distance)) + off / least_weight) * (1 + 1e-9);
 }
 
 template double detail::offset_bound(const NetView<2, const Vec<3>>&, const NetView<2, const Vec<3>>&, double,

@@ -89,6 +89,10 @@ private:
         return refuse(RefusalKind::limit, "tolerance",
                       text(tolerance_, " asks for more than ", kMostCells, " pieces"));
     }
+    static std::unexpected<Refusal> crease(int axis, double at) {
+        return refuse(RefusalKind::unsupported, "base",
+                      text("has a crease at ", axis == 0 ? "u = " : "v = ", at));
+    }
     static std::unexpected<Refusal> no_normal() {
         return refuse(RefusalKind::ill_conditioned, "base", "has no normal at some place");
     }
@@ -106,9 +110,7 @@ private:
             for (const double at : basis.breaks()) {
                 const bool inside = basis.domain().lo < at && at < basis.domain().hi;
                 const int m = inside ? basis.multiplicity(at) : 0;
-                if (m >= basis.degree())
-                    return refuse(RefusalKind::unsupported, "base",
-                                  text("has a crease at ", axis == 0 ? "u = " : "v = ", at));
+                if (m > basis.degree()) return crease(axis, at);
                 known_lines_[std::size_t(axis)].push_back({at, inside && m + 1 >= basis.degree()});
             }
         }
@@ -235,6 +237,17 @@ private:
             if (at) corners_[k] = *at;
         });
         if (std::ranges::find(bad, 1) != bad.end()) return no_normal();
+        // Normals on both sides of a line are one, whatever its knots allow.
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            for (std::size_t i = 0; i + 1 < corner_[axis].size(); ++i)
+                for (std::size_t k = 0; lines_[axis][i + 1].bends && k < places[1 - axis].size(); ++k) {
+                    const std::size_t below = std::size_t(corner_[axis][i]) + 1, above = below + 1;
+                    const auto at = [&](std::size_t line) {
+                        return corners_[axis == 0 ? line * columns_ + k : k * columns_ + line].value;
+                    };
+                    if (!(norm(at(below) - at(above)) < tolerance_))
+                        return crease(int(axis), lines_[axis][i + 1].at);
+                }
         const std::size_t columns = lines_[1].size() - 1;
         errors_.assign(cells_of(lines_), {});
         parallel_for(errors_.size(), 16, [&](std::size_t k) {

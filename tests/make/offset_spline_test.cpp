@@ -87,6 +87,24 @@ TEST(OffsetSpline, has_tangents_where_the_offset_has) {
     }
 }
 
+// Rational arcs with double knots are smooth all the same.
+TEST(OffsetSpline, creases_are_those_of_the_surface_not_of_its_knots) {
+    const double w = std::sqrt(0.5);
+    std::vector<Hom<3>> net;
+    for (const auto& [x, y, weight] :
+         {std::tuple{2.0, 0.0, 1.0}, {2.0, 2.0, w}, {0.0, 2.0, 1.0}, {-2.0, 2.0, w}, {-2.0, 0.0, 1.0}})
+        for (const double z : {0.0, 3.0}) net.push_back(weighted(Vec<3>{{x, y, z}}, weight));
+    const auto base =
+        *Surface<Hom<3>>::make({*BSplineBasis::make(2, {0, 0, 0, 1, 1, 2, 2, 2}), *BSplineBasis::bezier(1)},
+                               Net<2, Hom<3>>({5, 2}, net));
+    const auto made = must(offset_spline(offset(base, 0.5), domain(SurfaceGeometry(base)), 1e-5));
+    EXPECT_LE(farthest(offset(base, 0.5), made.surface), made.bound);
+    for (int i = 0; i <= 40; ++i) {
+        const Vec<3> p = made.surface(2.0 * i / 40, 0.5);
+        EXPECT_NEAR(std::hypot(p[0], p[1]), 2.5, made.bound);
+    }
+}
+
 TEST(OffsetSpline, covers_the_part_that_is_asked_for) {
     Random r(9);
     const auto base = hills<Hom<3>>(3, 3, 4, 1, r);

@@ -111,6 +111,19 @@ def test_constructed_surfaces_have_the_right_size_and_say_what_they_are_off(made
     assert np.allclose(box.hi - box.lo, size, atol=1e-2)
 
 
+def test_offsets_are_near_the_surface_moved_along_its_normals():
+    vase = ff.revolve(ff.Curve([[1, 0, 0], [2, 0, 1], [1, 0, 2]]), angle=2.0).surface
+    part = ((0.1, 0.9), (0.0, 0.5))
+    for on, u, v in ((None, vase.domain[0], vase.domain[1]), (part, *part)):
+        made = ff.offset_spline(vase, 0.25, 1e-4, on)
+        assert 1e-6 < made.bound <= 1e-4 and made.surface.degrees == (3, 3)
+        u, v = np.linspace(*u, 20)[:, None], np.linspace(*v, 20)
+        off = np.linalg.norm(made.surface(u, v) - vase(u, v) - 0.25 * vase.normal(u, v), axis=-1)
+        assert off.max() <= made.bound
+    with pytest.raises(ff.LimitError):
+        ff.offset_spline(vase, 0.25, 1e-15)
+
+
 def test_mixed_kinds_of_curves_are_brought_together():
     half = ff.arc_through([1, 0], [0, 1], [-1, 0]).curve
     s = ff.ruled(half, ff.Curve([[1, 0, 2], [-1, 0, 2.0]])).surface

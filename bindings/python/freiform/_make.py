@@ -19,7 +19,7 @@ __all__ = ["Frame", "conic_arc", "full_ellipse", "circle", "circle_conic", "arc_
            "five_point_arc", "conic_through", "conic_equation", "classify_conic", "solve_conic", "conic_arcs_inside", "graph",
            "hermite", "hermite_spline", "catmull_rom", "cardinal", "kochanek_bartels", "uniform_b_spline", "from_basis",
            "interpolating_polynomial", "from_bases", "bicubic", "revolve", "revolve_polynomial", "extrude", "ruled",
-           "translate_along", "sweep", "loft", "coons", "coons_bicubic", "gordon", "frame_about", "sphere", "cylinder",
+           "offset_spline", "translate_along", "sweep", "loft", "coons", "coons_bicubic", "gordon", "frame_about", "sphere", "cylinder",
            "cone", "torus", "sphere_in_six", "sphere_in_eight", "rejoined", "compatible", "join_pieces", "de_boor_points"]
 
 QUARTER = pi / 2
@@ -210,6 +210,13 @@ def extrude(profile: Curve, vector_: ArrayLike) -> MadeSurface:
 def ruled(a: Curve, b: Curve) -> MadeSurface:
     """The straight lines between two curves."""
     return _core.ruled(a._c, b._c)
+
+
+@from_header("make/offset_spline:offset_spline")
+def offset_spline(surface: Surface, distance: float, tolerance: float,
+                  on: tuple[IntervalLike, IntervalLike] | None = None) -> MadeSurface:
+    """A bicubic spline near the surface moved along its normals."""
+    return _core.offset_spline(surface._c, distance, tolerance, None if on is None else [*pair(on[0]), *pair(on[1])])
 
 
 @from_header("make/sweep:translate_along")

@@ -6,6 +6,7 @@
 #include "records/make/quadric.hpp"
 #include "records/make/revolve.hpp"
 
+#include <freiform/make/offset_spline.hpp>
 #include <freiform/make/sweep.hpp>
 
 namespace freiform::python {
@@ -60,6 +61,18 @@ void bind_swept(py::module_& m) {
                                [](const auto& c) { return answer([&] { return ruled(c[0], c[1]); }); });
         },
         py::arg("a"), py::arg("b"));
+    m.def(
+        "offset_spline",
+        [](const SurfaceHandle& h, double distance, double tolerance,
+           const std::optional<std::array<double, 4>>& on) {
+            return visit_dims<3, 3>(*h.patch, "surface", [&](const auto& p) {
+                std::array<Interval, 2> part = p.domain();
+                if (on) part = {Interval{(*on)[0], (*on)[1]}, Interval{(*on)[2], (*on)[3]}};
+                const OffsetSurface offset{std::make_shared<const SurfaceGeometry>(p), distance};
+                return answer([&] { return offset_spline(offset, part, tolerance); });
+            });
+        },
+        py::arg("surface"), py::arg("distance"), py::arg("tolerance"), py::arg("on") = py::none());
     m.def(
         "translate_along",
         [](const CurveHandle& a, const CurveHandle& b) {
