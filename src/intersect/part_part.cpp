@@ -23,6 +23,7 @@ using namespace detail;
 constexpr int kDeepestCarried = 12;
 // Of the tolerance, for the search where another proof follows.
 constexpr double kForSearch = 0.75;
+constexpr double kForOffsets = 1.0 / 32;  // of the tolerance, how near splines are to them
 
 class Carrier {
 public:
@@ -160,7 +161,8 @@ bool is_same(const PartSpline& part) { return part.map[0].is_identity() && part.
 
 Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
                                    const SurfaceIntersectOptions& options) {
-    const auto spline_a = part_spline(a.surface, a.on), spline_b = part_spline(b.surface, b.on);
+    const double near = kForOffsets * options.tolerance;
+    const auto spline_a = part_spline(a.surface, a.on, near), spline_b = part_spline(b.surface, b.on, near);
     if (!spline_a) return refuse_within("a", spline_a.error());
     if (!spline_b) return refuse_within("b", spline_b.error());
     const std::array<const PartSpline*, 2> parts{&*spline_a, &*spline_b};
@@ -189,6 +191,12 @@ Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
 }
 
 Result<Box<3>> box_of_part(const SurfacePart& part) {
+    if (const auto* offset = std::get_if<OffsetSurface>(&part.surface)) {
+        const auto base = box_of_part({*offset->base, part.on});
+        if (!base) return base;
+        const double reach = std::abs(offset->distance) + 4 * kUnitRoundoff * base->scale();
+        return Box<3>{base->lo - Box<3>::filled(reach), base->hi + Box<3>::filled(reach)};
+    }
     const auto spline = part_spline(part.surface, part.on);
     if (!spline) return std::unexpected(spline.error());
     Box<3> box;

@@ -8,6 +8,7 @@
 #include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
 #include <freiform/make/conic.hpp>
+#include <freiform/make/offset_spline.hpp>
 #include <freiform/make/revolve.hpp>
 
 #include <algorithm>
@@ -195,18 +196,30 @@ Result<PartSpline> part_of(const Surface<P>& s, const std::array<Interval, 2>& o
     return PartSpline{std::move(*all), {}, bound};
 }
 
-Result<PartSpline> part_of(const OffsetSurface&, const std::array<Interval, 2>&) {
-    return refuse(RefusalKind::unsupported, "surface", "is an offset, which is no spline");
+Result<PartSpline> part_of(const OffsetSurface& o, const std::array<Interval, 2>& on, double tolerance) {
+    if (!(tolerance > 0))
+        return refuse(RefusalKind::unsupported, "surface", "is an offset, which is no spline");
+    auto near = offset_spline(o, on, tolerance);
+    if (!near) return refuse(near.error().kind, "surface", text("is an offset: ", near.error().message));
+    return PartSpline{to_rational(near->surface), {}, near->bound};
 }
 
 }  // namespace
 
-Result<PartSpline> part_spline(const SurfaceGeometry& surface, const std::array<Interval, 2>& on) {
+Result<PartSpline> part_spline(const SurfaceGeometry& surface, const std::array<Interval, 2>& on,
+                               double tolerance) {
     for (const Interval& side : on)
         if (!(std::isfinite(side.lo) && std::isfinite(side.hi) && side.lo < side.hi))
             return refuse(RefusalKind::invalid, "on",
                           text("[", side.lo, ", ", side.hi, "] is no interval of finite length"));
-    return visit_one([&](const auto& s) { return part_of(s, on); }, surface);
+    return visit_one(
+        [&](const auto& s) {
+            if constexpr (requires { s.base; })
+                return part_of(s, on, tolerance);
+            else
+                return part_of(s, on);
+        },
+        surface);
 }
 
 }  // namespace freiform::detail

@@ -44,7 +44,9 @@ struct PartSpline {
     double bound = 0;  // distance of every point from the surface at the same place
 };
 
-// Refuses (unsupported) offsets; boxes that are not bounded.
-Result<PartSpline> part_spline(const SurfaceGeometry& surface, const std::array<Interval, 2>& on);
+// Offsets of splines within the tolerance, without one none; refuses (unsupported) other offsets, and boxes
+// that are not bounded.
+Result<PartSpline> part_spline(const SurfaceGeometry& surface, const std::array<Interval, 2>& on,
+                               double tolerance = 0);
 
 }  // namespace freiform::detail

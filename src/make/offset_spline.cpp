@@ -36,7 +36,7 @@ namespace {
 constexpr double kForSides = 0.3;        // of the tolerance, in the middle of a side along each axis
 constexpr double kForKnownSides = 0.12;  // likewise, of their part
 constexpr int kRounds = 12;
-constexpr std::size_t kMostCells = std::size_t(1) << 16;
+constexpr std::size_t kMostCells = std::size_t(1) << 16, kMostKnown = std::size_t(1) << 14;  // of the grids
 constexpr double kKnown = 0.5;  // of the tolerance, for the polynomials of the coarse grid
 
 struct OffsetJet {
@@ -121,7 +121,7 @@ private:
 
     // Polynomials near the offset in the cells of a coarse grid, each for itself, and what is proven of them.
     Result<double> find_known() {
-        for (int round = 0; round < kRounds && cells_of(known_lines_) <= kMostCells; ++round) {
+        for (int round = 0; round < kRounds && cells_of(known_lines_) <= kMostKnown; ++round) {
             Surface<P> all = base_;
             for (std::size_t axis = 0; axis < 2; ++axis) {
                 std::vector<double> more;

@@ -204,7 +204,46 @@ TEST(ModelIntersect, refuses_tolerances_that_are_no_lengths_and_leaves_offsets_o
     const auto found = must(intersect(ball, offset, {.tolerance = 1e-6}));
     ASSERT_EQ(found.open.size(), 1u);
     EXPECT_EQ(found.open[0].reason->kind, RefusalKind::unsupported);
-    EXPECT_EQ(found.open[0].faces, (std::array{-1, 0}));
+    EXPECT_EQ(found.open[0].faces, (std::array{0, 0}));
+}
+
+// A quarter of a cylinder of radius 2 as a rational spline, moved outwards by 1/2, meets a plane across its axis
+// in an arc of radius 5/2, and one along it in a line.
+TEST(ModelIntersect, offsets_of_splines_meet_planes_where_they_are) {
+    const double w = std::sqrt(0.5), r = 2.5;
+    std::vector<Hom<3>> net;
+    for (const auto& [x, y, weight] : {std::tuple{2.0, 0.0, 1.0}, {2.0, 2.0, w}, {0.0, 2.0, 1.0}})
+        for (const double z : {0.0, 3.0}) net.push_back(weighted(Vec<3>{{x, y, z}}, weight));
+    const SurfaceGeometry base = *Surface<Hom<3>>::make({*BSplineBasis::bezier(2), *BSplineBasis::bezier(1)},
+                                                        Net<2, Hom<3>>({3, 2}, net));
+    const SurfaceGeometry s = OffsetSurface{std::make_shared<SurfaceGeometry>(base), r - 2};
+    const Model wall = polygon_face(s, Box<2>{{{0, 0}}, {{1, 1}}});
+    const auto plane = [](const Vec<3>& o, const Vec<3>& u, const Vec<3>& v) {
+        const SurfaceGeometry flat = Extrusion{Line<3>{o, u}, v, SurfaceKind::plane};
+        return polygon_face(flat, Box<2>{{{-9, -9}}, {{9, 9}}});
+    };
+    for (const double tolerance : {1e-3, 1e-6}) {
+        const auto arc =
+            must(intersect(wall, plane({{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}), {.tolerance = tolerance}));
+        EXPECT_TRUE(arc.open.empty());
+        EXPECT_GT(arc.search_bound, 1e-12);
+        EXPECT_LE(arc.search_bound, tolerance / 16);
+        ASSERT_EQ(arc.branches.size(), 1u);
+        EXPECT_NEAR(arc_length(arc.branches[0].curve), r * std::numbers::pi / 2, 8 * tolerance);
+        const auto on = arc.branches[0].curve.domain()[0];
+        for (int i = 0; i <= 50; ++i) {
+            const Vec<3> p = arc.branches[0].curve(on.lo + on.length() * i / 50);
+            EXPECT_NEAR(std::hypot(p[0], p[1]), r, tolerance);
+            EXPECT_NEAR(p[2], 1, tolerance);
+        }
+        const auto line =
+            must(intersect(plane({{0, 1.5, 0}}, {{1, 0, 0}}, {{0, 0, 1}}), wall, {.tolerance = tolerance}));
+        ASSERT_EQ(line.branches.size(), 1u);
+        EXPECT_NEAR(line.branches[0].curve(line.branches[0].curve.domain()[0].lo)[0], 2, tolerance);
+    }
+    // Within the radius of the base alone there is nothing to be met.
+    EXPECT_TRUE(must(intersect(wall, plane({{0, 0, 3.5}}, {{1, 0, 0}}, {{0, 1, 0}}), {.tolerance = 1e-3}))
+                    .branches.empty());
 }
 
 // Of hyperbolas and parabolas, over several of their pieces.

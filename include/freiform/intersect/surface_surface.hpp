@@ -104,14 +104,15 @@ struct SurfacePart {
     std::array<Interval, 2> on{};
 };
 struct PartIntersection : SurfaceIntersection {
-    // Analytic surfaces are searched as rational splines: bounds of how far these are from the surfaces, so
-    // that where they are proven to be apart, the surfaces may meet if they are nearer than this.
+    // Analytic surfaces and offsets are searched as splines: bounds of how far these are from the surfaces,
+    // so that where they are proven to be apart, the surfaces may meet if they are nearer than this.
     std::array<double, 2> search_bound{};
 };
 
 // The same for surfaces of models, in their own parameters; bounds of branches are those of the surfaces
-// themselves. Refuses (unsupported) offsets; (invalid) boxes that are not bounded, and tolerances that are
-// not positive.
+// themselves. Splines that are near offsets of splines are at most a 32nd of the tolerance away. Refuses
+// (unsupported) other offsets, and what offset_spline refuses; (invalid) boxes that are not bounded, and
+// tolerances that are not positive.
 Result<PartIntersection> intersect(const SurfacePart& a, const SurfacePart& b,
                                    const SurfaceIntersectOptions& options);
 
