@@ -21,7 +21,6 @@
 #include <freiform/basis/change.hpp>
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
-#include <freiform/core/visit.hpp>
 #include <freiform/make/offset_spline.hpp>
 #include <freiform/spline/bezier.hpp>
 #include <freiform/spline/jet.hpp>
@@ -59,11 +58,11 @@ std::optional<OffsetJet> offset_jet(const Jet<2, 3, Vec<3>>& s, double d) {
 
 using namespace detail;
 
-template <class P>
+// Of polynomials with weights 1: half of the code, and little more time.
 class Maker {
 public:
-    Maker(const Surface<P>& base, double distance, double tolerance)
-        : base_(base), distance_(distance), tolerance_(tolerance) {}
+    Maker(Surface<Hom<3>> base, bool is_rational, double distance, double tolerance)
+        : base_(std::move(base)), is_rational_(is_rational), distance_(distance), tolerance_(tolerance) {}
 
     Result<MadeSurface<Vec<3>>> make(const std::array<Interval, 2>& on) {
         if (auto ok = prepare(on); !ok) return std::unexpected(ok.error());
@@ -114,7 +113,7 @@ private:
                 known_lines_[std::size_t(axis)].push_back({at, inside && m + 1 >= basis.degree()});
             }
         }
-        for (const P& p : base_.net().flat()) size_ = std::max(size_, max_abs(project(p)));
+        for (const Hom<3>& p : base_.net().flat()) size_ = std::max(size_, max_abs(project(p)));
         size_ += std::abs(distance_);
         return {};
     }
@@ -122,7 +121,7 @@ private:
     // Polynomials near the offset in the cells of a coarse grid, each for itself, and what is proven of them.
     Result<double> find_known() {
         for (int round = 0; round < kRounds && cells_of(known_lines_) <= kMostKnown; ++round) {
-            Surface<P> all = base_;
+            Surface<Hom<3>> all = base_;
             for (std::size_t axis = 0; axis < 2; ++axis) {
                 std::vector<double> more;
                 const auto breaks = all.basis(int(axis)).breaks();
@@ -147,7 +146,7 @@ private:
                 const Index<2> at{int(k / columns), int(k % columns)};
                 const NetView<2, const Vec<3>> net{
                     known_[k].data(), {int(kNodes), int(kNodes)}, {std::ptrdiff_t(kNodes), 1}};
-                errors_[k].bound = offset_bound<P>(net, pieces_->net(at), distance_, size_);
+                errors_[k].bound = proven(net, pieces_->net(at));
             });
             if (const double bound = largest_bound(errors_); bound <= kKnown * tolerance_) return bound;
             if (!cut_failed(known_lines_, errors_, kKnown * tolerance_)) break;
@@ -155,7 +154,16 @@ private:
         return too_many();
     }
 
-    std::optional<Vec<3>> offset_at(const Patch<2, P, Bernstein>& piece, const Vec<2>& at) const {
+    double proven(const NetView<2, const Vec<3>>& h, const NetView<2, const Hom<3>>& base) const {
+        if (is_rational_) return offset_bound<Hom<3>>(h, base, distance_, size_);
+        std::vector<Vec<3>> net;
+        for (int i = 0; i < base.extent[0]; ++i)
+            for (int j = 0; j < base.extent[1]; ++j) net.push_back(project(base({i, j})));
+        const NetView<2, const Vec<3>> plain{net.data(), base.extent, {base.extent[1], 1}};
+        return offset_bound<Vec<3>>(h, plain, distance_, size_);
+    }
+
+    std::optional<Vec<3>> offset_at(const Patch<2, Hom<3>, Bernstein>& piece, const Vec<2>& at) const {
         const auto s = piece.template jet<1>({at[0], at[1]});
         const Vec<3> m = cross(s(1, 0), s(0, 1));
         if (!(norm(m) > 0)) return std::nullopt;
@@ -370,10 +378,11 @@ private:
         to(4) = 0.6 * c(2) + 0.4 * c(3);
     }
 
-    Surface<P> base_;
+    Surface<Hom<3>> base_;
+    bool is_rational_;
     double distance_, tolerance_, size_ = 0;
     Lines known_lines_, lines_;
-    std::optional<BezierPieces<2, P>> pieces_;  // of the base, over the coarse grid
+    std::optional<BezierPieces<2, Hom<3>>> pieces_;  // of the base, over the coarse grid
     std::vector<Known> known_;
     std::array<std::vector<int>, 2> coarse_, corner_;  // of intervals: the coarse one, its first corner
     std::size_t columns_ = 0;
@@ -389,14 +398,11 @@ Result<MadeSurface<Vec<3>>> offset_spline(const OffsetSurface& offset, const std
         return refuse(RefusalKind::invalid, "tolerance", text(tolerance, " is not a positive number"));
     if (!std::isfinite(offset.distance))
         return refuse(RefusalKind::nonfinite, "distance", text(offset.distance, " is not a finite number"));
-    return visit_one(
-        [&](const auto& s) -> Result<MadeSurface<Vec<3>>> {
-            if constexpr (requires { s.net(); })
-                return Maker(s, offset.distance, tolerance).make(on);
-            else
-                return refuse(RefusalKind::unsupported, "base", "is no spline");
-        },
-        *offset.base);
+    if (const auto* plain = std::get_if<Surface<Vec<3>>>(&*offset.base))
+        return Maker(to_rational(*plain), false, offset.distance, tolerance).make(on);
+    if (const auto* rational = std::get_if<Surface<Hom<3>>>(&*offset.base))
+        return Maker(*rational, true, offset.distance, tolerance).make(on);
+    return refuse(RefusalKind::unsupported, "base", "is no spline");
 }
 
 }  // namespace freiform

@@ -207,8 +207,8 @@ TEST(ModelIntersect, refuses_tolerances_that_are_no_lengths_and_leaves_offsets_o
     EXPECT_EQ(found.open[0].faces, (std::array{0, 0}));
 }
 
-// A quarter of a cylinder of radius 2 as a rational spline, moved outwards by 1/2, meets a plane across its axis
-// in an arc of radius 5/2, and one along it in a line.
+// A quarter of a cylinder of radius 2 as a rational spline, moved outwards by 1/2, meets a plane across its
+// axis in an arc of radius 5/2, and one along it in a line.
 TEST(ModelIntersect, offsets_of_splines_meet_planes_where_they_are) {
     const double w = std::sqrt(0.5), r = 2.5;
     std::vector<Hom<3>> net;
