@@ -82,17 +82,20 @@ function(freiform_library name)
         endif()
         list(APPEND sources ${found})
     endforeach()
-    # Modules: what makes, fits and animates, and what fills regions, is compiled without putting functions into their
+    set(all ${sources})  # those that are compiled as one are of one group, whichever part they are in
+    # Modules: but for what evaluates, bounds and tessellates, all is compiled without putting functions into their
     # callers, as files and commands are (bindings/wasm/CMakeLists.txt).
     if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32)
+        string(CONCAT hot "/src/(basis|core|io|kernel|mesh|poly)/|/src/spline/(block|derivative|geometry|patch|prepared)|"
+            "/src/model/(apex|edge_|face_|flat_faces|loop_runs|matched|offset_faces|piecewise|tessellat|triangle_)")
         set(small ${sources})
-        list(FILTER small INCLUDE REGEX "/src/(animate|colour|fit|make|path|region|trim)/")
+        list(FILTER small EXCLUDE REGEX "${hot}")
     endif()
     if(small)
-        list(FILTER sources EXCLUDE REGEX "/src/(animate|colour|fit|make|path|region|trim)/")
+        list(FILTER sources INCLUDE REGEX "${hot}")
         add_library(freiform_${name}_small OBJECT ${small})
         freiform_common(freiform_${name}_small)
-        freiform_unity(freiform_${name}_small 6 ${small})
+        freiform_unity(freiform_${name}_small 6 ${all})
         target_compile_definitions(freiform_${name}_small PRIVATE FREIFORM_SERIAL=1)
         target_compile_options(freiform_${name}_small PRIVATE "SHELL:-mllvm -inline-threshold=-20")
         target_include_directories(freiform_${name}_small PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
@@ -105,7 +108,7 @@ function(freiform_library name)
     endif()
     freiform_isa(${sources})
     freiform_cold(${sources})
-    freiform_unity(freiform_${name} 6 ${sources})
+    freiform_unity(freiform_${name} 6 ${all})
     target_include_directories(freiform_${name}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
         PRIVATE ${PROJECT_SOURCE_DIR}/src)

@@ -40,77 +40,56 @@ Placement across(const Placement& at) { return {at.o, at.x, at.z, -1.0 * at.y}; 
 }  // namespace
 
 Result<ShapeReader::SweptModel> ShapeReader::primitive(const Fields& f, Type type) {
-    const auto placed = [&](int k) -> Result<Placement> {
-        const auto at = f.reference(k, "position");
-        if (!at) return std::unexpected(at.error());
-        return geometry_.placement(*at);
-    };
+    const bool is_ball = type == Type::SPHERE, is_cone = type == Type::RIGHT_CIRCULAR_CONE,
+               is_wedge = type == Type::RIGHT_ANGULAR_WEDGE, is_box = is_wedge || type == Type::BLOCK,
+               is_torus = type == Type::TORUS;
+    constexpr std::string_view kBox[] = {"x", "y", "z", "ltx"}, kRing[] = {"major radius", "minor radius"},
+                               kRound[] = {"height", "radius", "semi-angle"}, kBall[] = {"radius"};
+    const std::string_view* names = is_box ? kBox : is_torus ? kRing : is_ball ? kBall : kRound;
+    const int count = is_wedge ? 4 : is_box || is_cone ? 3 : is_ball ? 1 : 2;
     std::array<double, 4> n{};
-    const auto read = [&](int first, std::initializer_list<std::string_view> names) -> Result<void> {
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            const std::string_view name = names.begin()[k];
-            const auto x = f.number(first + int(k), name);
-            if (!x) return std::unexpected(x.error());
-            const bool may_be_zero = (type == Type::RIGHT_CIRCULAR_CONE && k == 1) || name == "ltx";
-            if (!(may_be_zero ? *x >= 0 : *x > 0))
-                return f.refused(text("has the ", name, " ", *x), RefusalKind::invalid);
-            n[k] = *x;
-        }
-        return {};
-    };
-    SweptModel out;
-    const auto done = [&](const Result<Placement>& at, Result<Model> made) -> Result<SweptModel> {
-        if (!at) return std::unexpected(at.error());
-        if (!made) return std::unexpected(made.error());
-        out.to = motion_to(*at);
-        out.model = *std::move(made);
-        return std::move(out);
-    };
-    const auto turned = [&](Result<Placement> at, Result<RegionLoops> region) -> Result<SweptModel> {
-        if (!region) return std::unexpected(region.error());
-        if (at) at = across(*at);
-        return done(at, solid_of_revolution(*region, {{}, {{0, 1, 0}}}, kTurn));
-    };
-    Result<void> ok;
-    switch (type) {
-        case Type::BLOCK:
-        case Type::RIGHT_ANGULAR_WEDGE: {
-            const bool wedge = type == Type::RIGHT_ANGULAR_WEDGE;
-            ok = wedge ? read(2, {"x", "y", "z", "ltx"}) : read(2, {"x", "y", "z"});
-            if (!ok) break;
-            const double top = wedge ? n[3] : n[0];
-            return done(placed(1), prism({polygon({{{0, 0}}, {{n[0], 0}}, {{top, n[1]}}, {{0, n[1]}}})},
-                                         {{0, 0, n[2]}}));
-        }
-        case Type::RIGHT_CIRCULAR_CYLINDER: {
-            if (ok = read(2, {"height", "radius"}); !ok) break;
-            auto disc = circle_about({}, n[1]);
-            if (!disc) return std::unexpected(disc.error());
-            return done(placed(1), prism({*std::move(disc)}, {{0, 0, n[0]}}));
-        }
-        case Type::RIGHT_CIRCULAR_CONE: {
-            if (ok = read(2, {"height", "radius", "semi-angle"}); !ok) break;
-            const double far = n[1] + n[0] * std::tan(n[2] * geometry_.angle);
-            if (!(far > 0 && n[2] * geometry_.angle < std::numbers::pi / 2))
-                return f.refused(text("has the semi-angle ", n[2]), RefusalKind::invalid);
-            return turned(placed(1),
-                          RegionLoops{polygon({{{0, 0}}, {{n[1], 0}}, {{far, n[0]}}, {{0, n[0]}}})});
-        }
-        case Type::SPHERE: {
-            if (ok = read(1, {"radius"}); !ok) break;
-            const auto at = f.reference(2, "centre");
-            const auto centre = at ? geometry_.point(*at) : Result<Vec<3>>(std::unexpected(at.error()));
-            if (!centre) return std::unexpected(centre.error());
-            return turned(Placement{*centre}, RegionLoops{half_disc(n[0])});
-        }
-        default: {
-            if (ok = read(2, {"major radius", "minor radius"}); !ok) break;
-            auto disc = circle_about({{n[0], 0}}, n[1]);
-            if (!disc) return std::unexpected(disc.error());
-            return turned(placed(1), RegionLoops{*std::move(disc)});
-        }
+    for (int k = 0; k < count; ++k) {
+        const auto x = f.number(k + (is_ball ? 1 : 2), names[k]);
+        if (!x) return std::unexpected(x.error());
+        const bool may_be_zero = (is_cone && k == 1) || k == 3;
+        if (!(may_be_zero ? *x >= 0 : *x > 0))
+            return f.refused(text("has the ", names[k], " ", *x), RefusalKind::invalid);
+        n[std::size_t(k)] = *x;
     }
-    return std::unexpected(ok.error());
+    const auto at = f.reference(is_ball ? 2 : 1, "position");
+    if (!at) return std::unexpected(at.error());
+    Placement frame;
+    if (is_ball) {
+        const auto centre = geometry_.point(*at);
+        if (!centre) return std::unexpected(centre.error());
+        frame.o = *centre;
+    } else {
+        const auto placed = geometry_.placement(*at);
+        if (!placed) return std::unexpected(placed.error());
+        frame = *placed;
+    }
+    // Swept along the third axis of the frame by this, or about it.
+    const double height = is_box ? n[2] : is_ball || is_cone || is_torus ? 0 : n[0];
+    if (height == 0) frame = across(frame);
+    RegionLoops region(1);
+    if (is_box) {
+        region[0] = polygon({{{0, 0}}, {{n[0], 0}}, {{is_wedge ? n[3] : n[0], n[1]}}, {{0, n[1]}}});
+    } else if (is_cone) {
+        const double angle = n[2] * geometry_.angle, far = n[1] + n[0] * std::tan(angle);
+        if (!(far > 0 && angle < std::numbers::pi / 2))
+            return f.refused(text("has the semi-angle ", n[2]), RefusalKind::invalid);
+        region[0] = polygon({{{0, 0}}, {{n[1], 0}}, {{far, n[0]}}, {{0, n[0]}}});
+    } else if (is_ball) {
+        region[0] = half_disc(n[0]);
+    } else {
+        auto disc = circle_about({{is_torus ? n[0] : 0, 0}}, n[1]);
+        if (!disc) return std::unexpected(disc.error());
+        region[0] = *std::move(disc);
+    }
+    auto made =
+        height > 0 ? prism(region, {{0, 0, height}}) : solid_of_revolution(region, {{}, {{0, 1, 0}}}, kTurn);
+    if (!made) return std::unexpected(made.error());
+    return SweptModel{*std::move(made), motion_to(frame), 0};
 }
 
 }  // namespace freiform::step

@@ -61,12 +61,17 @@ public:
             if (auto told = nearest_image(t ? t->gap : rough_)) return *told;
         if (!t)
             if (auto feet = polygon_of_feet(chart_, c_, on_, rough_);
-                feet && !chart_.has_pole_across(feet->curve, on_))
+                feet && !(is_sphere() && chart_.has_pole_across(feet->curve, on_)))
                 return *feet;
         return t;
     }
 
 private:
+    // Of these there are others, with other poles.
+    bool is_sphere() const {
+        const auto* s = std::get_if<Revolution>(&chart_.surface());
+        return s != nullptr && s->kind == SurfaceKind::sphere;
+    }
     static std::unexpected<Refusal> through_pole() {
         return refuse(RefusalKind::ill_conditioned, "parameter curve",
                       "runs through a pole or a fold of the surface");
