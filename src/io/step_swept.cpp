@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 namespace freiform::step {
 
@@ -132,16 +133,12 @@ Result<ShapeReader::SweptRegion> ShapeReader::swept_region(std::uint32_t i) {
     SweptRegion out;
     out.frame = {line->origin, line->direction, plane->direction, cross(line->direction, plane->direction)};
     const Motion down = motion_from(out.frame);
+    std::set<int> used;
     for (const Loop& l : face->loops) {
         auto& loop = out.loops.emplace_back();
         for (const Coedge& c : l.coedges) {
             const Edge& e = out_.model.edges[std::size_t(c.edge)];
-            // What is told of an edge is true of the solid, whose edges are others.
-            for (std::size_t k = 0; k < out_.approximated.size(); ++k)
-                if (out_.approximated[k] == c.edge) {
-                    out_.approximated[k] = -1;
-                    out_.model.approximations[k].where = f_.label(i);
-                }
+            used.insert(c.edge);
             if (e.degenerate || !e.curve) continue;
             const auto spline = space_spline(moved(*e.curve, down), e.range);
             if (!spline) return std::unexpected(spline.error());
@@ -149,6 +146,12 @@ Result<ShapeReader::SweptRegion> ShapeReader::swept_region(std::uint32_t i) {
             add_sides(loop, c.reversed ? backwards(flat) : std::move(flat));
         }
     }
+    // What is told of an edge is true of the solid, whose edges are others.
+    for (std::size_t k = 0; k < out_.approximated.size(); ++k)
+        if (used.contains(out_.approximated[k])) {
+            out_.approximated[k] = -1;
+            out_.model.approximations[k].where = f_.label(i);
+        }
     double joint = 0;
     for (auto& loop : out.loops)
         for (std::size_t k = 0; k < loop.size(); ++k) {

@@ -38,24 +38,6 @@ constexpr int kRounds = 12;
 constexpr std::size_t kMostCells = std::size_t(1) << 16, kMostKnown = std::size_t(1) << 14;  // of the grids
 constexpr double kKnown = 0.5;  // of the tolerance, for the polynomials of the coarse grid
 
-struct OffsetJet {
-    Vec<3> value, u, v, uv;
-};
-// From the derivatives of the base to order 3. With m = S_u x S_v = l n: m_a = l_a n + l n_a.
-std::optional<OffsetJet> offset_jet(const Jet<2, 3, Vec<3>>& s, double d) {
-    const Vec<3> su = s(1, 0), sv = s(0, 1), m = cross(su, sv);
-    const double l = norm(m);
-    if (!(l > 0)) return std::nullopt;
-    const Vec<3> n = (1 / l) * m, m_u = cross(s(2, 0), sv) + cross(su, s(1, 1)),
-                 m_v = cross(s(1, 1), sv) + cross(su, s(0, 2)),
-                 m_uv = cross(s(2, 1), sv) + cross(s(2, 0), s(0, 2)) + cross(su, s(1, 2));
-    const double l_u = dot(n, m_u), l_v = dot(n, m_v);
-    const Vec<3> n_u = (1 / l) * (m_u - l_u * n), n_v = (1 / l) * (m_v - l_v * n);
-    const double l_uv = dot(n_v, m_u) + dot(n, m_uv);
-    const Vec<3> n_uv = (1 / l) * (m_uv - l_uv * n - l_u * n_v - l_v * n_u);
-    return OffsetJet{s.value() + d * n, su + d * n_u, sv + d * n_v, s(1, 1) + d * n_uv};
-}
-
 using namespace detail;
 
 // Of polynomials with weights 1: half of the code, and little more time.
