@@ -192,10 +192,11 @@ Result<ShapeReader::SweptModel> ShapeReader::swept_by(const Fields& f, bool turn
     Axis axis{seen_from(region->frame, at->o - region->frame.o), seen_from(region->frame, at->z)};
     const double reach = reach_of(region->loops, {{axis.origin[0], axis.origin[1]}});
     double angle = *most * geometry_.angle;
-    // What leaves the plane by less than the tolerance is in it.
+    // What leaves the plane by less than the tolerance is in it. Turns about two axes through a point differ
+    // by (1 + sqrt 2) times what their directions do, and by twice what the axes are apart.
     const double leaves = std::abs(axis.origin[2]) + std::abs(axis.direction[2]) * reach,
                  misses = std::abs(angle - kTurn) * reach;
-    if (leaves > 0 && leaves <= tolerance_) axis.origin[2] = axis.direction[2] = 0, out.off += 2 * leaves;
+    if (leaves > 0 && leaves <= tolerance_) axis.origin[2] = axis.direction[2] = 0, out.off += 2.5 * leaves;
     if (misses > 0 && misses <= tolerance_) angle = kTurn, out.off += misses;
     auto made = solid_of_revolution(region->loops, axis, angle);
     if (!made) return named(made.error());
@@ -234,12 +235,15 @@ Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item)
         };
         const Interval later = c->reversed ? Interval{given.hi - on.hi, given.hi - on.lo}
                                            : Interval{given.lo + on.lo, given.lo + on.hi};
+        const bool is_whole = conic != nullptr && conic->kind == ConicKind::ellipse && !c->range;
         c->range = given;
-        if (fits(on) && !c->reversed)
+        if (is_whole && on.length() <= kTurn + slack)  // from anywhere, over the seam
+            c->range = on;
+        else if (fits(on) && !c->reversed)
             c->range = {std::max(on.lo, given.lo), std::min(on.hi, given.hi)};
-        else if (c->range && fits(later))
+        else if (fits(later))
             c->range = {std::max(later.lo, given.lo), std::min(later.hi, given.hi)};
-        else if (conic == nullptr || !c->range)
+        else
             report(-1,
                    text(f_.label(item), ": its directrix has no parameters from ", *from, " to ", *to,
                         "; all of it is swept"),

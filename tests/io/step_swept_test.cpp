@@ -142,6 +142,13 @@ TEST(StepSwept, discs_along_lines_and_circles_are_exact) {
         expect_volume(disc(text(c, ",1.,$,$,$")), 4 * 3 * kPi);
         expect_volume(disc(text(c, ",1.,$,0.,3.")), 4 * 3 * kPi);
     }
+    // A whole circle has all parameters, a part of it those that it has: others are told.
+    const Model across = disc("#42,1.,$,5.,7.5");
+    expect_volume(across, 4 * 2.5 * kPi);
+    EXPECT_TRUE(across.approximations.empty());
+    const Model beyond = disc("#44,1.,$,3.,5.");
+    expect_volume(beyond, 4 * 3 * kPi);
+    EXPECT_EQ(times_told(beyond, "its directrix has no parameters from 3 to 5; all of it is swept"), 1);
     // Against the circle the first radian is its last one.
     EXPECT_LT(box_of(disc("#45,1.,$,0.,1.")).lo[0], -4.9);
     EXPECT_LT(box_of(disc("#45,1.,$,1.,2.")).lo[0], -4.9);
