@@ -68,7 +68,7 @@ private:
 
     std::unexpected<Refusal> too_many() const {
         return refuse(RefusalKind::limit, "tolerance",
-                      text(tolerance_, " asks for more than ", kMostCells, " pieces"));
+                      text(tolerance_, " is not reached with up to ", kMostCells, " pieces"));
     }
     static std::unexpected<Refusal> crease(int axis, double at) {
         return refuse(RefusalKind::unsupported, "base",
@@ -372,6 +372,21 @@ private:
     std::vector<Errors> errors_;
 };
 
+// What a spline sweeps along a line is a spline of the same parameters.
+std::optional<Surface<Hom<3>>> swept(const Extrusion& e, const Interval& along) {
+    const auto* plain = std::get_if<Curve<Vec<3>>>(&e.profile);
+    const auto* rational = std::get_if<Curve<Hom<3>>>(&e.profile);
+    const auto across = BSplineBasis::bezier(1, along);
+    if ((!plain && !rational) || !across) return std::nullopt;
+    const Curve<Hom<3>> profile = plain ? to_rational(*plain) : *rational;
+    std::vector<Hom<3>> net;
+    for (const Hom<3>& p : profile.net().flat())
+        for (const double v : {along.lo, along.hi})
+            net.push_back(weighted(project(p) + v * e.direction, p.weight()));
+    const int rows = int(net.size()) / 2;
+    return Surface<Hom<3>>::trusted({profile.basis(), *across}, Net<2, Hom<3>>({rows, 2}, std::move(net)));
+}
+
 }  // namespace
 
 Result<MadeSurface<Vec<3>>> offset_spline(const OffsetSurface& offset, const std::array<Interval, 2>& on,
@@ -384,6 +399,11 @@ Result<MadeSurface<Vec<3>>> offset_spline(const OffsetSurface& offset, const std
         return Maker(to_rational(*plain), false, offset.distance, tolerance).make(on);
     if (const auto* rational = std::get_if<Surface<Hom<3>>>(&*offset.base))
         return Maker(*rational, true, offset.distance, tolerance).make(on);
+    const auto* extrusion = std::get_if<Extrusion>(&*offset.base);
+    if (auto base = extrusion ? swept(*extrusion, on[1]) : std::nullopt) {
+        const bool is_rational = std::holds_alternative<Curve<Hom<3>>>(extrusion->profile);
+        return Maker(*std::move(base), is_rational, offset.distance, tolerance).make(on);
+    }
     return refuse(RefusalKind::unsupported, "base", "is no spline");
 }
 

@@ -241,7 +241,10 @@ TEST(ModelIntersect, offsets_of_splines_meet_planes_where_they_are) {
         ASSERT_EQ(line.branches.size(), 1u);
         EXPECT_NEAR(line.branches[0].curve(line.branches[0].curve.domain()[0].lo)[0], 2, tolerance);
     }
-    // Within the radius of the base alone there is nothing to be met.
+    // Beyond the base there is the offset alone.
+    EXPECT_EQ(must(intersect(wall, plane({{2.3, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}), {.tolerance = 1e-3}))
+                  .branches.size(),
+              1u);
     EXPECT_TRUE(must(intersect(wall, plane({{0, 0, 3.5}}, {{1, 0, 0}}, {{0, 1, 0}}), {.tolerance = 1e-3}))
                     .branches.empty());
 }

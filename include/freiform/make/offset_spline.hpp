@@ -11,8 +11,8 @@ namespace freiform {
 // most that. Its tangents are continuous but across knots where curvatures of the base are not. As many
 // pieces as that takes, of a grid.
 //
-// Refuses (unsupported) bases that are no splines or have creases inside, (ill_conditioned) those whose
-// normal vanishes, (limit) tolerances that ask for more than 2^16 pieces.
+// The base is a spline, or what a spline sweeps along a line. Refuses (unsupported) others, creases inside,
+// (ill_conditioned) normals that vanish, (limit) tolerances that 2^16 pieces do not reach.
 //   auto shell = offset_spline({base, 0.5}, domain(*base), 1e-4);
 Result<MadeSurface<Vec<3>>> offset_spline(const OffsetSurface& offset, const std::array<Interval, 2>& on,
                                           double tolerance);
