@@ -50,6 +50,10 @@ Filler::Filler(Triangulation& t, const CurvatureTree& tree, const Judge& judge,
     Box<2> box;
     for (const Vec<2>& p : t.points()) box.add(unscaled(p));
     least_ = kLeastLength * (box.hi - box.lo);
+    if (!std::isfinite(demands.max_angle)) return;
+    Box<3> size;
+    for (std::size_t v = 0; v < t.points().size(); ++v) size.add(position(int(v)));
+    angle_floor_ = angle_floor(demands.tolerance, demands.max_angle, norm(size.hi - size.lo));
 }
 
 Vec<3> Filler::position(int vertex) {
@@ -91,7 +95,7 @@ bool Filler::is_narrow_or_at_pole(const std::array<Vec<2>, 3>& corner, double lo
     const auto inside = jet<1>(surface_.geometry(), middle.c);
     const double twice_area =
         norm(cross(inside.d[1], inside.d[2])) * std::abs(cross(corner[1] - corner[0], corner[2] - corner[0]));
-    if (!(twice_area > kAngleWidth * demands_.tolerance * longest)) return true;
+    if (!(twice_area > kAngleWidth * angle_floor_ * longest)) return true;
     for (const Vec<2>& c : corner) {
         const auto j = jet<1>(surface_.geometry(), c.c);
         for (std::size_t d = 1; d < 3; ++d)
@@ -105,7 +109,7 @@ bool Filler::is_narrow_or_at_pole(const std::array<Vec<2>, 3>& corner, double lo
 int Filler::turning_side(int triangle) {
     if (!std::isfinite(demands_.max_angle)) return -1;
     const LongestSide s = longest_of_all(triangle);
-    if (s.edge < 0 || !(s.longest > kAngleFloor * demands_.tolerance)) return -1;
+    if (s.edge < 0 || !(s.longest > angle_floor_)) return -1;
     if (t_.points().size() > most_for_angles_) return -1;
     const auto& v = t_.vertices(triangle);
     if (is_narrow_or_at_pole({uv(v[0]), uv(v[1]), uv(v[2])}, s.longest)) return -1;

@@ -92,6 +92,7 @@ private:
     const DerivativeQuery<2, 3>& surface_;
     Vec<2> scale_, least_{};  // least_: what counts as a length at all
     FaceDemands demands_;
+    double angle_floor_ = 0;
     int place_ = 0;  // in the tree, of the triangle that was last judged
     std::size_t most_for_angles_ = 0;
     int first_kept_ = std::numeric_limits<int>::max();

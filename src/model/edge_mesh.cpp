@@ -192,6 +192,7 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
     const std::vector<double> must = smooth_pieces(edge, tolerance);
     mesh.parameters = {e.range.lo};
     mesh.bound = 0;
+    if (std::isfinite(demands.angle)) mesh.size = size(edge);
     const std::size_t pieces = must.size() - 1;
     const int least = e.start == e.end && !e.degenerate ? std::max(kClosedParts / int(pieces), 1) : 1;
     // By threads, some pieces at a time: what is too much is seen before all of it is there.
@@ -214,6 +215,14 @@ Result<void> EdgeMesher::discretise(int edge, const EdgeDemands& demands, std::s
         }
     }
     return {};
+}
+
+double EdgeMesher::size(int edge) const {
+    constexpr int kSamples = 8;
+    const Interval on = model_.edges[std::size_t(edge)].range;
+    Box<3> box;
+    for (int i = 0; i <= kSamples; ++i) box.add(position(edge, on.lo + (double(i) / kSamples) * on.length()));
+    return norm(box.hi - box.lo);
 }
 
 // The ends of the edge and the kinks of its curves inside, but for those that are rounding. Kinks of two

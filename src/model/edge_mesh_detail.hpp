@@ -39,6 +39,7 @@ struct EdgeMesh {
     double moved = 0;                      // how far what became a point is from it, at most
     void lengthen() { kept = {-kInfinity, kInfinity}, moved = 0; }
     double bound = 0;  // of the distance between polyline and curve, on the edge and on its faces
+    double size = 0;   // about the diagonal of a box around the edge, known where angles are asked for
     std::vector<std::unique_ptr<CoedgeQuery>> uses;
     std::unique_ptr<ChordCurve> curve;
 };
@@ -56,7 +57,7 @@ struct SegmentError {
 struct EdgeDemands {
     double tolerance = 0;
     double longest = kInfinity;  // the longest segment
-    // What normals of faces turn by along a segment that is longer than kAngleFloor tolerances, at most.
+    // What normals of faces turn by along a segment that is longer than angle_floor, at most.
     double angle = kInfinity;
 };
 
@@ -88,6 +89,7 @@ public:
     std::vector<double> smooth_pieces(int edge, double tolerance) const;
 
 private:
+    double size(int edge) const;
     double estimate(int edge, Interval on, double tolerance) const;
     // What parts ask for, and whether the bounds of all are known.
     struct Shares {

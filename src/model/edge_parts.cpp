@@ -49,8 +49,9 @@ EdgeMesher::Part EdgeMesher::part(int edge, double a, double b, const EdgeDemand
                               : norm(position(edge, b) - position(edge, a));
     const double bound = err.polyline + err.sliver;
     // Normals turn twice as much over the segment as over the cone's half.
-    const double turn =
-        length > kAngleFloor * demands.tolerance ? err.turn / (kConeOfAngle * demands.angle) : 0;
+    const bool is_short =
+        !turns || !(length > angle_floor(demands.tolerance, demands.angle, edges_[std::size_t(edge)].size));
+    const double turn = is_short ? 0 : err.turn / (kConeOfAngle * demands.angle);
     const double needs = std::max({std::sqrt(std::max(bound, err.triangle) / demands.tolerance),
                                    length / demands.longest, std::min(turn, 2.0)});
     return {a, b, std::isnan(needs) ? kInfinity : needs, bound};

@@ -64,6 +64,25 @@ TEST(TessellateShapes, normals_turn_by_no_more_than_asked_for) {
     }
 }
 
+// As large as the model: the angle alone says what the triangles are.
+TEST(TessellateShapes, angles_are_kept_within_tolerances_that_are_coarse) {
+    std::mt19937 rng(5);
+    ModelBuilder builder;
+    ASSERT_TRUE(builder.add(landscape(rng, 3, 5, 0.1)));
+    for (const Model& m : {torus(3, 1), frustum(2, 1, 3), *std::move(builder).finish()}) {
+        std::size_t before = 0;
+        for (const double wanted : {20 * kDegree, 10 * kDegree}) {
+            const auto t = tessellate(m, {.tolerance = summary(m).box.diagonal(), .max_angle = wanted});
+            ASSERT_TRUE(t) << t.error().message;
+            EXPECT_LE(t->angle_exceeded, 3);
+            EXPECT_LE(sampled_angle(m, *t), t->angle_bound);
+            EXPECT_LT(t->mesh.triangles.size(), 30000u);
+            EXPECT_GT(t->mesh.triangles.size(), before);
+            before = t->mesh.triangles.size();
+        }
+    }
+}
+
 TEST(TessellateShapes, what_has_no_normal_is_reported) {
     const double wanted = 12 * kDegree;
     for (const Model& m : {test::sphere({}, 1), frustum(2, 0, 3)}) {

@@ -4,6 +4,7 @@
 #include <freiform/spline/apex.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -39,9 +40,14 @@ struct FaceMesh {
     double bound = 0;  // of the interpolation error of all triangles
 };
 
-// Of the tolerance: where normals cannot be bounded, triangles as small as this are left as they are.
-inline constexpr double kAngleFloor = 1;
-// Likewise, as narrow as this along the surface.
+// Where normals cannot be bounded, triangles and chords as small as this are left as they are: as the
+// tolerance or, where that is coarse beside a face or an edge with this diagonal, as an arc of its size that
+// turns by a part of the angle (radians).
+inline double angle_floor(double tolerance, double angle, double diagonal) {
+    constexpr double kPart = 1.0 / 16;
+    return std::min(tolerance, kPart * angle * diagonal);
+}
+// Likewise, as narrow as this times angle_floor along the surface.
 inline constexpr double kAngleWidth = 1.0 / 64;
 
 // Quotient of two weights of a piece, above which places are looked for where no triangles and chords are
@@ -57,9 +63,8 @@ struct FaceDemands {
     // No side of a triangle inside the face is longer (sides on the boundary are given).
     double max_edge = std::numeric_limits<double>::infinity();
     // normal_angle_bound of every triangle (radians), except where a triangle's longest side lies on the
-    // boundary or is no longer than kAngleFloor times the tolerance, where a triangle is no wider than
-    // kAngleWidth times the tolerance, at poles, and beyond many times the points that the tolerance needs:
-    // those are left as they are.
+    // boundary or is no longer than angle_floor, where a triangle is no wider than kAngleWidth times that, at
+    // poles, and beyond many times the points that the tolerance needs: those are left as they are.
     double max_angle = std::numeric_limits<double>::infinity();
     // An aim: no box of points that the face is begun with is longer than this times its width in space.
     double max_aspect = std::numeric_limits<double>::infinity();
