@@ -24,7 +24,7 @@ namespace freiform::step {
 namespace {
 
 constexpr double kNearPole = 1e-6;          // of a parameter, of its period or domain
-constexpr int kOutline = 12;                // points of an edge
+constexpr int kOutline = 32;                // points of an edge
 constexpr std::size_t kMostInOrder = 2000;  // edges: pairs of them are looked at
 
 double scale_of(const Chart& chart, int axis) {

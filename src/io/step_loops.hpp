@@ -1,6 +1,7 @@
 // The boundary of a face in the parameters of its surface: loops of the file made into closed chains.
 #pragma once
 #include "step_trace.hpp"
+#include "step_ways.hpp"
 
 #include <freiform/model/model.hpp>
 
@@ -71,6 +72,11 @@ private:
     void release_seams();
     void join_pole(Chain& c, const Pole& pole);
     std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);
+    struct Seam {
+        std::vector<Use> there, back;
+    };
+    Seam seams(int from, int to, std::span<const Vec<2>> points, const Vec<2>& period);
+    std::optional<Way> way(const Chain& a, const Chain* b, int axis, double pole) const;
     bool is_closed_surface() const;
     void set_right(double all);
     bool rounds_pole(const Chain& c) const;

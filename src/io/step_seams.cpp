@@ -3,9 +3,8 @@
 // Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice,
 // one period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest
 // in the period, so that it is an isoparametric line where there is one, and with nothing across it. Where
-// something is across each, there are two such edges, to a corner of a hole and on from another: the boundary
-// of the hole between these is passed on one side, the rest of it on the other, a period apart. The rectangle
-// of parameters that a surface without any boundary gets has seams and poles as its sides.
+// something is across each, it is a row of edges around that (step_ways.cpp). The rectangle of parameters
+// that a surface without any boundary gets has seams and poles as its sides.
 #include "step_loops.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -16,12 +15,6 @@
 #include <tuple>
 
 namespace freiform::step {
-
-namespace {
-
-constexpr int kMostTries = 4000;  // corners of holes, to lead a seam by way of
-
-}  // namespace
 
 // The chain from another of its edges on.
 void LoopBuilder::turn_to(Chain& c, std::size_t first) const {
@@ -46,6 +39,15 @@ void LoopBuilder::turn_around(Chain& c) const {
 // The two uses of a new edge from a to b: there, and back one period beside it.
 std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Vec<2>& b,
                                      const Vec<2>& period) {
+    if (const int k = period[0] != 0 ? 1 : 0; a[k] > b[k]) {  // curves run along ascending parameters
+        auto uses = seam(to, from, b, a, period);
+        for (Use& u : uses) {
+            u.coedge.reversed = !u.coedge.reversed;
+            std::swap(u.from, u.to);
+            std::swap(u.start, u.end);
+        }
+        return uses;
+    }
     Edge e;
     e.start = from, e.end = to, e.tolerance = close_;
     Line<2> line{a, b - a};
@@ -68,6 +70,65 @@ std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Ve
     model_.edges.push_back(e);
     return {make_use({i, false, line}, e),
             make_use({i, true, Line<2>{line.origin - period, line.direction}}, e)};
+}
+
+// A row of them: the points between the first and the last become vertices.
+LoopBuilder::Seam LoopBuilder::seams(int from, int to, std::span<const Vec<2>> points, const Vec<2>& period) {
+    Seam out;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        int next = to;
+        if (i + 1 < points.size()) {
+            next = int(model_.vertices.size());
+            model_.vertices.push_back({chart_.point(points[i]), close_});
+        }
+        auto uses = seam(from, next, points[i - 1], points[i], period);
+        out.there.push_back(std::move(uses[0]));
+        out.back.insert(out.back.begin(), std::move(uses[1]));
+        from = next;
+    }
+    return out;
+}
+
+// Where a seam may run from a corner of `a` to one of `b`, or to the pole with this parameter, where no
+// straight one can.
+std::optional<Way> LoopBuilder::way(const Chain& a, const Chain* b, int axis, double pole) const {
+    const double turn = chart_.period(axis), other = chart_.period(1 - axis);
+    double lo = b == nullptr ? pole : kInfinity, hi = b == nullptr ? pole : -kInfinity;
+    for (const Chain* c : {&a, b})
+        if (c != nullptr)
+            for (const Vec<2>& p : c->outline) lo = std::min(lo, p[1 - axis]), hi = std::max(hi, p[1 - axis]);
+    const auto in_strip = [&](const Vec<2>& p) {
+        return Vec<2>{{p[axis] / turn, (p[1 - axis] - lo) / (hi - lo)}};
+    };
+    Strip strip;
+    const auto add = [&](const Chain& c, int periods) {
+        for (std::size_t i = 0; i < c.outline.size(); ++i) {
+            Vec<2> p = c.outline[i], q = c.outline[(i + 1) % c.outline.size()];
+            if (i + 1 == c.outline.size()) q[axis] += c.winding[std::size_t(axis)] * turn;
+            if (p == q) continue;
+            for (int n = -periods; n <= periods; ++n) {
+                const Vec<2> by{{0, n * other / (hi - lo)}};
+                strip.outlines.push_back({in_strip(p) + by, in_strip(q) + by});
+            }
+        }
+    };
+    add(a, 0);
+    if (b != nullptr) add(*b, 0);
+    for (const Chain& c : chains_) add(c, other > 0 ? 1 : 0);
+    for (const Use& u : a.uses) strip.from.push_back(in_strip(u.start));
+    if (b == nullptr)
+        strip.pole = (pole - lo) / (hi - lo);
+    else
+        for (const Use& u : b->uses) strip.to.push_back(in_strip(u.start));
+    auto way = find_way(strip);
+    if (!way) return way;
+    const auto back = [&](Vec<2>& p) {
+        const Vec<2> x = p;
+        p[axis] = turn * x[0], p[1 - axis] = lo + (hi - lo) * x[1];
+    };
+    for (Vec<2>& p : way->inner) back(p);
+    back(way->end);
+    return way;
 }
 
 // Whether the outline of a chain crosses the segment from p to q, or has a corner on it.
@@ -133,64 +194,33 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
         const Vec<2> p = a.uses[x.i].start, q = b.uses[x.j].start;
         return std::array{p, q + shift(p, q, true)};
     };
-    // A hole between them, the corner where the way comes to it, and that where it goes on.
-    std::size_t hole = chains_.size();
-    std::array<std::size_t, 2> corner{};
-    const auto choose = [&] {
-        for (const Pair& x : pairs)
-            if (const auto [p, q] = ends(x); is_free(a, b, p, q)) {
-                best = x;
-                return;
-            }
-        int tries = 0;
-        for (const Pair& x : pairs)
-            for (std::size_t h = 0; h < chains_.size() && tries < kMostTries; ++h) {
-                const auto& c = chains_[h];
-                if (c.uses.empty() || c.winding[0] != 0 || c.winding[1] != 0) continue;
-                const auto way = ends(x);
-                const Vec<2> by = shift(way[0], c.uses.front().start, false);
-                std::array<bool, 2> found{};
-                for (std::size_t end = 0; end < 2; ++end)
-                    for (std::size_t i = 0; i < c.uses.size() && !found[end] && ++tries < kMostTries; ++i)
-                        found[end] = is_free(a, b, way[end], c.uses[i].start + by), corner[end] = i;
-                if (found[0] && found[1]) {
-                    best = x, hole = h;
-                    return;
-                }
-            }
-    };
-    choose();
+    std::optional<Way> around;
+    const auto free = std::ranges::find_if(pairs, [&](const Pair& x) {
+        const auto [p, q] = ends(x);
+        return is_free(a, b, p, q);
+    });
+    if (free != pairs.end()) {
+        best = *free;
+    } else {
+        move(b, shift(a.uses.front().start, b.uses.front().start, true));
+        around = way(a, &b, axis, 0);
+        if (around) best.i = around->from, best.j = around->to;
+    }
     turn_to(a, best.i);
     turn_to(b, best.j);
-    const Vec<2> end = a.uses.back().end;
+    std::vector<Vec<2>> points{a.uses.back().end};
     Vec<2> period{};
-    period[axis] = end[axis] - a.uses.front().start[axis];
-    move(b, shift(end, b.uses.front().start, true));
-    const Vec<2> to = b.uses.front().start;
-    std::vector<Use> back;
-    int from = a.uses.front().from;
-    Vec<2> at = end;
-    if (hole < chains_.size()) {
-        Chain c = std::move(chains_[hole]);
-        chains_.erase(chains_.begin() + std::ptrdiff_t(hole));
-        move(c, shift(a.uses.front().start, c.uses.front().start, false));
-        const std::size_t n = c.uses.size();
-        turn_to(c, corner[0]);
-        const std::size_t on = (corner[1] + n - corner[0]) % n;
-        auto uses = seam(from, c.uses.front().from, at, c.uses.front().start + period, period);
-        from = c.uses[on].from, at = c.uses[on].start + period;
-        back.assign(c.uses.begin() + std::ptrdiff_t(on), c.uses.end());
-        back.push_back(std::move(uses[1]));
-        c.uses.resize(on);
-        move(c, period);
-        a.uses.push_back(std::move(uses[0]));
-        for (Use& u : c.uses) a.uses.push_back(std::move(u));
+    period[axis] = points[0][axis] - a.uses.front().start[axis];
+    if (around) {
+        for (const Vec<2>& p : around->inner) points.push_back(p + period);
+        move(b, shift(around->end + period, b.uses.front().start, false));
+    } else {
+        move(b, shift(points[0], b.uses.front().start, true));
     }
-    auto uses = seam(from, b.uses.front().from, at, to, period);
-    a.uses.push_back(std::move(uses[0]));
-    for (Use& u : b.uses) a.uses.push_back(std::move(u));
-    a.uses.push_back(std::move(uses[1]));
-    for (Use& u : back) a.uses.push_back(std::move(u));
+    points.push_back(b.uses.front().start);
+    Seam made = seams(a.uses.front().from, b.uses.front().from, points, period);
+    for (auto* uses : {&made.there, &b.uses, &made.back})
+        for (Use& u : *uses) a.uses.push_back(std::move(u));
     a.winding = {0, 0};
     measure(a);
 }
@@ -253,29 +283,32 @@ void LoopBuilder::release_seams() {
 
 void LoopBuilder::join_pole(Chain& c, const Pole& pole) {
     const int axis = 1 - pole.axis;
-    Vec<2> period{};
-    period[axis] = c.uses.back().end[axis] - c.uses.front().start[axis];
-    Vec<2> at = c.uses.back().end;
     double level = pole.at;
     if (const double turn = chart_.period(pole.axis); turn > 0)
-        level += std::round((at[pole.axis] - level) / turn) * turn;
-    at[pole.axis] = level;
-    const int tip = vertex_near(pole.point), from = c.uses.front().from;
-    const Vec<2> end = c.uses.back().end;
-    std::array<Use, 2> uses;
-    if (end[pole.axis] < level) {
-        uses = seam(from, tip, end, at, period);
-    } else {  // the edge runs up to the loop
-        uses = seam(tip, from, at, end, period);
-        for (Use& u : uses) {
-            u.coedge.reversed = !u.coedge.reversed;
-            std::swap(u.from, u.to);
-            std::swap(u.start, u.end);
-        }
-    }
-    c.uses.push_back(std::move(uses[0]));
-    c.uses.push_back(degenerate(tip, at, at - period));
-    c.uses.push_back(std::move(uses[1]));
+        level += std::round((c.uses.back().end[pole.axis] - level) / turn) * turn;
+    const auto across = [&](const Use& u) {
+        Vec<2> at = u.start;
+        at[pole.axis] = level;
+        return !is_free(c, c, u.start, at);
+    };
+    std::optional<Way> around;
+    if (std::ranges::all_of(c.uses, across)) around = way(c, nullptr, axis, level);
+    if (around)
+        turn_to(c, around->from);
+    else if (const auto free = std::ranges::find_if_not(c.uses, across); free != c.uses.end())
+        turn_to(c, std::size_t(free - c.uses.begin()));
+    std::vector<Vec<2>> points{c.uses.back().end};
+    Vec<2> period{};
+    period[axis] = points[0][axis] - c.uses.front().start[axis];
+    if (around)
+        for (const Vec<2>& p : around->inner) points.push_back(p + period);
+    points.push_back(points.back());
+    points.back()[pole.axis] = level;
+    const int tip = vertex_near(pole.point);
+    Seam made = seams(c.uses.front().from, tip, points, period);
+    for (Use& u : made.there) c.uses.push_back(std::move(u));
+    c.uses.push_back(degenerate(tip, points.back(), points.back() - period));
+    for (Use& u : made.back) c.uses.push_back(std::move(u));
     c.winding = {0, 0};
     measure(c);
 }

@@ -10,7 +10,8 @@
 // prove what dense sampling only suggests.
 //
 // Notation. p = (u, v). S_ij, u_k, v_k, c_k: bounds of derivatives over the piece and over a box that
-// contains p there (ends of the chord, widened by h^2/8 max|p''|). By the chain rule |g'''| <= c_3 + S_30
+// contains p there (ends of the chord, widened by h^2/8 max|p''|; not where the chord is longer than h^2
+// max|p''|, for p' is the chord's slope somewhere and nowhere 0 then). By the chain rule |g'''| <= c_3 + S_30
 // u_1^3
 //     + 3 S_21 u_1^2 v_1 + 3 S_12 u_1 v_1^2 + S_03 v_1^3 + 3 (S_20 u_1 u_2 + S_11 (u_1 v_2 + v_1 u_2) + S_02
 //     v_1 v_2)
@@ -25,8 +26,8 @@
 // Seams: lines of the surface's parameter plane where it is not C^2, and the ends of its domain, beyond which
 // parameters are moved back. If the box reaches over such a line by s, p is taken moved by s to one side of
 // it: that curve has the derivatives of p, and the surface is smooth along it; each point moves by at most
-// S_10 s. Edges often run along a seam, and s is rounding then; where they cross it, s shrinks with the
-// pieces. If the box reaches over two lines that are closer than it is wide, order 1 remains.
+// S_10 s. Edges often run along a seam, and s is rounding then, as it is where they cross one, for pieces end
+// there. If the box reaches over two lines that are closer than it is wide, order 1 remains.
 //
 // Accuracy. A sample is off by at most r: value_error_bound of S and of c, and S_10, S_01 times that of u, v.
 // The middle is off by rounding, at most 2^-20 h (shorter pieces use order 1), which changes q by no more
@@ -111,6 +112,7 @@ private:
 
     bool is_covered() const;
     std::vector<double> cuts() const;
+    void add_crossings(std::vector<double>& t) const;
     Vec<3> gap(double t);
     CurveBounds along(Interval on) const { return {along_[0]({on}, 3), along_[1]({on}, 3)}; }
     Box<2> box_of(Interval on, const CurveBounds& p) const;
@@ -172,9 +174,34 @@ std::vector<double> Prover::cuts() const {
     add(space_);
     if (t.size() == 2)
         for (int i = 1; i < 4; ++i) t.push_back(range_.lo + range_.length() * i / 4);
-    sort(t.begin(), t.end());
-    t.erase(std::unique(t.begin(), t.end()), t.end());
+    for (int pass = 0; pass < 2; ++pass) {
+        sort(t.begin(), t.end());
+        t.erase(std::unique(t.begin(), t.end()), t.end());
+        if (pass == 0) add_crossings(t);
+    }
     return t;
+}
+
+// Where the parameter curve crosses a seam between two of these places, but for those that it runs along.
+void Prover::add_crossings(std::vector<double>& t) const {
+    constexpr double kAlong = 0x1p-24;  // of the surface's parameters
+    const std::size_t count = t.size();
+    const auto at = [&](double x) { return jet<0>(curve_, x).value(); };
+    Vec<2> last = at(t.front());
+    for (std::size_t i = 1; i < count; ++i) {
+        const Vec<2> next = at(t[i]);
+        for (int k = 0; k < 2; ++k)
+            for (const SurfaceSeam& s : seams_[std::size_t(k)]) {
+                const double before = last[k] - s.at, after = next[k] - s.at;
+                const double along = kAlong * std::max(std::abs(last[k]), std::abs(next[k]));
+                if (!(before * after < 0) || std::min(std::abs(before), std::abs(after)) <= along) continue;
+                Interval on{t[i - 1], t[i]};
+                for (double m = on.middle(); on.lo < m && m < on.hi; m = on.middle())
+                    ((at(m)[k] - s.at) * before > 0 ? on.lo : on.hi) = m;
+                t.push_back(on.lo);
+            }
+        last = next;
+    }
 }
 
 Vec<3> Prover::gap(double t) {
@@ -188,10 +215,15 @@ Vec<3> Prover::gap(double t) {
 Box<2> Prover::box_of(Interval on, const CurveBounds& p) const {
     const double h = on.length(), grow = 1 + 0x1p-18;
     Box<2> box;
+    const Vec<2> way = jet<0>(curve_, on.hi).value() - jet<0>(curve_, on.lo).value();
+    Vec<2> sag;
+    for (int i = 0; i < 2; ++i) {
+        const double bend = grow * h * h * p[std::size_t(i)](2), rounding = grow * parameter_error_[i];
+        const bool is_monotone = std::abs(way[i]) > bend + 2 * rounding;
+        sag[i] = (is_monotone ? 0 : bend / 8) + rounding;
+    }
     for (double t : {on.lo, on.hi}) {
         const Vec<2> at = jet<0>(curve_, t).value();
-        Vec<2> sag;
-        for (int i = 0; i < 2; ++i) sag[i] = grow * (h * h / 8 * p[std::size_t(i)](2) + parameter_error_[i]);
         box.add(at - sag);
         box.add(at + sag);
     }

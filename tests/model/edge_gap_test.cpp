@@ -73,6 +73,54 @@ TEST(EdgeGap, is_largest_between_samples_too) {
     EXPECT_LE(gap.bound, 1.3 * sampled);
 }
 
+// A tube of parabolas has a jump of curvature between them; the curve in space has knots elsewhere.
+TEST(EdgeGap, is_tight_where_curves_cross_the_knots_of_surfaces) {
+    std::vector<double> knots_around(1, 0);
+    std::vector<Vec<3>> net;
+    const auto add = [&](double x, double y) {
+        for (const double z : {0.0, 10.0}) net.push_back({{x, y, z}});
+    };
+    const auto corner = [](int i) { return Vec<2>{{10 * std::cos(i), 10 * std::sin(i)}}; };
+    for (int i = 0; i <= 7; ++i) {
+        const Vec<2> joint = 0.5 * (corner(i) + corner(i + 1));
+        add(joint[0], joint[1]);
+        if (i < 7) add(corner(i + 1)[0], corner(i + 1)[1]);
+        knots_around.insert(knots_around.end(), 2, i);
+    }
+    knots_around.push_back(7);
+    const SurfaceGeometry tube = *Surface<Vec<3>>::make(
+        {*BSplineBasis::make(2, knots_around), *BSplineBasis::bezier(1)}, {{15, 2}, net});
+    const auto way = bezier({{{0.123, 0.2}}, {{2, 0.9}}, {{5, 0}}, {{6.3, 0.7}}}, {0, 10});
+    std::vector<double> at;
+    for (int i = 0; i <= 250; ++i) at.push_back(i / 25.0);
+    for (int knot = 1; knot <= 6;
+         ++knot) {  // it is near to the tube beside these, too, but has no knot there
+        Interval on{0, 10};
+        for (int i = 0; i < 50; ++i)
+            (jet<0>(way, on.middle()).value()[0] < knot ? on.lo : on.hi) = on.middle();
+        for (const double beside : {-1e-3, 2e-3}) at.push_back(on.lo + beside);
+    }
+    std::ranges::sort(at);
+    std::vector<double> knots(2, 0);
+    std::vector<Vec<3>> points;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const auto p = jet<1>(way, at[i]);
+        const auto j = jet<1>(tube, p.value().c);
+        const Vec<3> slope = p(1)[0] * j.d[1] + p(1)[1] * j.d[2];
+        knots.insert(knots.end(), 2, at[i]);
+        if (i > 0) points.push_back(j.d[0] - (at[i] - at[i - 1]) / 3 * slope);
+        if (i == 0 || i + 1 == at.size()) points.push_back(j.d[0]);
+        if (i + 1 < at.size()) points.push_back(j.d[0] + (at[i + 1] - at[i]) / 3 * slope);
+    }
+    knots.insert(knots.end(), 2, 10);
+    const int size = int(points.size());
+    const Case c{tube, way, *Curve<Vec<3>>::make({*BSplineBasis::make(3, knots)}, {{size}, points}), {0, 10}};
+    const EdgeGap gap = c.gap({.factor = 2, .max_samples = 4000});
+    const double sampled = c.sampled(200001);
+    EXPECT_GE(gap.bound, sampled);
+    EXPECT_LE(gap.bound, 4 * sampled);
+}
+
 TEST(EdgeGap, of_exact_curves_is_rounding) {
     const Case circle{cylinder(3),
                       Line<2>{{{0, 5}}, {{1, 0}}},

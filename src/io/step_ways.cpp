@@ -1,0 +1,198 @@
+// On a lattice over the strip. A node is as free as outlines are far; a hop between neighbours is free if the
+// discs around both overlap. The shortest way along free hops [Dijkstra 1959] is pulled straight as far as
+// nothing is across. A lattice too coarse for any way is made finer.
+#include "step_ways.hpp"
+
+#include <freiform/core/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
+
+namespace freiform::step {
+
+namespace {
+
+constexpr int kCoarsest = 16, kFinest = 128;  // nodes in each direction
+constexpr double kReach = 2.5;                // of corners, and how far distances matter; in cells, as all
+constexpr double kOverlap = 0.25;             // of discs
+constexpr double kApart = 0.25;               // of straight parts from outlines
+constexpr double kSame = 1e-7;                // of corners
+constexpr std::array<double, 2> kBeside{0.37, 0.41};  // of nodes, so that they are on no outline
+
+using Segment = std::array<Vec<2>, 2>;
+
+double distance(const Vec<2>& p, const Segment& s) {
+    const Vec<2> along = s[1] - s[0];
+    const double t = dot(p - s[0], along) / dot(along, along);
+    return norm(p - (s[0] + (t > 0 ? std::min(t, 1.0) : 0.0) * along));
+}
+
+// 0 if they cross.
+double distance(const Segment& x, const Segment& y) {
+    const auto side = [](const Segment& s, const Vec<2>& p) { return cross(s[1] - s[0], p - s[0]); };
+    if (side(x, y[0]) * side(x, y[1]) < 0 && side(y, x[0]) * side(y, x[1]) < 0) return 0;
+    return std::min({distance(x[0], y), distance(x[1], y), distance(y[0], x), distance(y[1], x)});
+}
+
+class Lattice {
+public:
+    Lattice(const Strip& strip, int n)
+        : strip_(strip), n_(n), free_(std::size_t(n) * std::size_t(n), kReach) {
+        for (const Segment& s : strip.outlines)
+            for (int period = -1; period <= 1; ++period) {
+                const Vec<2> by{{period - std::floor(s[0][0]), 0}};
+                add({double(n) * (s[0] + by), double(n) * (s[1] + by)});
+            }
+    }
+
+    std::optional<Way> find() const {
+        struct Known {
+            double cost = kInfinity;
+            Vec<2> at{};
+            int from = -1;  // a node, or -1 - a corner
+        };
+        std::vector<Known> known(free_.size());
+        using Entry = std::pair<double, std::size_t>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+        const auto come = [&](std::size_t node, const Known& by) {
+            if (!(by.cost < known[node].cost)) return;
+            known[node] = by;
+            open.push({by.cost, node});
+        };
+        for (std::size_t c = 0; c < strip_.from.size(); ++c) {
+            const Vec<2> corner = double(n_) * strip_.from[c];
+            each_near(corner, [&](std::size_t node, const Vec<2>& at) {
+                if (can_leave(corner, at)) come(node, {norm(at - corner), at, -1 - int(c)});
+            });
+        }
+        while (!open.empty()) {
+            const auto [cost, node] = open.top();
+            open.pop();
+            const Known here = known[node];
+            if (cost > here.cost) continue;
+            Way way;
+            if (arrives(here.at, way)) {
+                std::vector<Vec<2>> points{way.end, here.at};
+                int from = here.from;
+                for (; from >= 0; from = known[std::size_t(from)].from)
+                    points.push_back(known[std::size_t(from)].at);
+                way.from = std::size_t(-1 - from);
+                points.push_back(double(n_) * strip_.from[way.from]);
+                std::ranges::reverse(points);
+                straighten(points);
+                for (std::size_t i = 1; i + 1 < points.size(); ++i)
+                    way.inner.push_back((1.0 / n_) * points[i]);
+                way.end = (1.0 / n_) * points.back();
+                return way;
+            }
+            const int i = int(node) / n_, k = int(node) % n_;
+            for (int di = -1; di <= 1; ++di)
+                for (int dk = -1; dk <= 1; ++dk) {
+                    if (k + dk < 0 || k + dk >= n_) continue;
+                    const std::size_t next = number(i + di, k + dk);
+                    const double length = std::hypot(di, dk);
+                    if (free_[node] + free_[next] > length + kOverlap)
+                        come(next, {cost + length, here.at + Vec<2>{{double(di), double(dk)}}, int(node)});
+                }
+        }
+        return std::nullopt;
+    }
+
+private:
+    std::size_t number(int i, int k) const {
+        return std::size_t((i % n_ + n_) % n_) * std::size_t(n_) + std::size_t(k);
+    }
+    static Vec<2> place(int i, int k) { return {{i + kBeside[0], k + kBeside[1]}}; }
+
+    void add(const Segment& s) {
+        outlines_.push_back(s);
+        const auto first = [](double x) { return int(std::max(std::floor(x - kReach), 0.0)); };
+        const auto end = [&](double x) { return int(std::clamp(std::ceil(x + kReach), 0.0, double(n_))); };
+        const auto [left, right] = std::minmax(s[0][0], s[1][0]);
+        const auto [low, high] = std::minmax(s[0][1], s[1][1]);
+        for (int i = first(left); i < end(right); ++i)
+            for (int k = first(low); k < end(high); ++k) {
+                double& free = free_[number(i, k)];
+                free = std::min(free, distance(place(i, k), s));
+            }
+    }
+
+    template <class F>
+    void each_near(const Vec<2>& p, F visit) const {
+        const auto least = [](double x) { return int(std::floor(x - kReach)); };
+        for (int i = least(p[0]); i <= p[0] + kReach; ++i)
+            for (int k = std::max(least(p[1]), 0); k <= p[1] + kReach && k < n_; ++k)
+                if (const Vec<2> at = place(i, k); norm(at - p) <= kReach) visit(number(i, k), at);
+    }
+
+    // The outlines around p, in its period.
+    template <class F>
+    bool none_around(const Vec<2>& p, F is_across) const {
+        const Vec<2> by{{std::floor(p[0] / n_) * n_, 0}};
+        return std::ranges::none_of(outlines_, [&](const Segment& s) {
+            return is_across(Segment{s[0] + by, s[1] + by});
+        });
+    }
+    bool is_free(const Vec<2>& a, const Vec<2>& b) const {
+        return std::abs(a[0] - b[0]) < n_ && none_around(a, [&](const Segment& s) {
+                   return distance(Segment{a, b}, s) < kApart;
+               });
+    }
+    // From a corner, where outlines meet.
+    bool can_leave(const Vec<2>& corner, const Vec<2>& to) const {
+        const Vec<2> middle = 0.5 * (corner + to);
+        return std::abs(corner[0] - to[0]) < n_ && none_around(corner, [&](const Segment& s) {
+                   const bool meets = norm(s[0] - corner) <= kSame * n_ || norm(s[1] - corner) <= kSame * n_;
+                   return distance(Segment{middle, to}, s) < (meets ? 0.5 * kApart : kApart) ||
+                          (!meets && distance(Segment{corner, to}, s) <= kSame * n_);
+               });
+    }
+
+    bool arrives(const Vec<2>& at, Way& way) const {
+        if (strip_.pole) {
+            way.end = {{at[0], n_ * *strip_.pole}};
+            return is_free(at, way.end);
+        }
+        for (way.to = 0; way.to < strip_.to.size(); ++way.to) {
+            way.end = double(n_) * strip_.to[way.to];
+            way.end[0] += std::round((at[0] - way.end[0]) / n_) * n_;
+            if (norm(way.end - at) <= kReach && can_leave(way.end, at)) return true;
+        }
+        return false;
+    }
+
+    void straighten(std::vector<Vec<2>>& way) const {
+        std::vector<Vec<2>> out{way.front()};
+        const std::size_t end = way.size() - 1;
+        for (std::size_t i = 0; i < end;) {
+            std::size_t next = i + 1;
+            for (std::size_t k = end; k > i + 1 && next == i + 1; --k) {
+                if (i == 0 && k == end) continue;
+                const bool at_corner = k == end && !strip_.pole;
+                const Vec<2> to{{k == end && strip_.pole ? way[i][0] : way[k][0], way[k][1]}};
+                if (i == 0 ? can_leave(way[i], to) : at_corner ? can_leave(to, way[i]) : is_free(way[i], to))
+                    next = k, way[k] = to;
+            }
+            out.push_back(way[i = next]);
+        }
+        way = std::move(out);
+    }
+
+    const Strip& strip_;
+    int n_;
+    std::vector<Segment> outlines_;
+    std::vector<double> free_;
+};
+
+}  // namespace
+
+std::optional<Way> find_way(const Strip& strip) {
+    for (int n = kCoarsest; n <= kFinest; n *= 2)
+        if (auto way = Lattice(strip, n).find()) return way;
+    return std::nullopt;
+}
+
+}  // namespace freiform::step
