@@ -43,6 +43,10 @@ public:
     const std::array<Interval, 2>& whole() const { return whole_; }
     // Whether parameter `axis` is that of a spline, which has to be unwound where a face crosses its ends.
     bool is_spline(int axis) const { return spline_[std::size_t(axis)]; }
+    bool is_sphere() const {
+        const auto* s = std::get_if<Revolution>(&*s_);
+        return s != nullptr && s->kind == SurfaceKind::sphere;
+    }
 
     // Parameters outside of a spline moved into it.
     Vec<2> wrapped(Vec<2> uv) const;

@@ -308,7 +308,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
             made = attempt(*(*s)->chart);
     }
     if (!made) {
-        if (const auto turned = other_poles((*s)->surface, on_edges)) {
+        if (const auto turned = other_poles((*s)->surface, used)) {
             if (auto again = attempt(Chart(*turned, tolerance_))) return again;
         }
     }

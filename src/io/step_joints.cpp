@@ -38,6 +38,19 @@ void LoopBuilder::end_at(Use& u, bool last, const Vec<2>& to) const {
     u.coedge.curve = Curve<Vec<2>>::trusted(c.bases(), std::move(net));
 }
 
+// Ends beside a pole exactly there.
+void LoopBuilder::end_at_poles(Use& u) const {
+    if (!can_move(u)) return;
+    for (const bool last : {false, true}) {
+        Vec<2> to = last ? u.end : u.start;
+        const Pole* pole = pole_at(to, to);
+        if (pole == nullptr) continue;
+        const double turn = chart_.period(pole->axis), by = pole->at - to[pole->axis];
+        to[pole->axis] += turn > 0 ? std::remainder(by, turn) : by;
+        end_at(u, last, to);
+    }
+}
+
 void LoopBuilder::close_joints(Chain& c) const {
     const std::size_t n = c.uses.size();
     for (std::size_t k = 0; k < n && (n > 1 || !c.uses[0].fitted); ++k) {

@@ -24,7 +24,9 @@ namespace freiform::step {
 namespace {
 
 constexpr double kNearPole = 1e-6;          // of a parameter, of its period or domain
+constexpr double kBesidePole = 1e-2;        // likewise
 constexpr int kOutline = 32;                // points of an edge
+constexpr int kBegins = 64;                 // of a closed surface, to find one with no hole across
 constexpr std::size_t kMostInOrder = 2000;  // edges: pairs of them are looked at
 
 double scale_of(const Chart& chart, int axis) {
@@ -69,11 +71,14 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b) const {
     for (const Pole& p : chart_.poles()) {
         const double near = kNearPole * scale_of(chart_, p.axis);
         const double turn = chart_.period(p.axis);
-        const auto off = [&](double x) {
-            const double d = x - p.at;
-            return std::abs(turn > 0 ? d - std::round(d / turn) * turn : d);
+        // Exactly, or beside it, as near as vertices that are one: not at the other end of a side that is a
+        // point.
+        const auto is_there = [&](const Vec<2>& x) {
+            const double d = x[p.axis] - p.at, off = std::abs(turn > 0 ? d - std::round(d / turn) * turn : d);
+            return off <= near || (off <= kBesidePole * scale_of(chart_, p.axis) &&
+                                   norm(chart_.point(x) - p.point) <= close_);
         };
-        if (off(a[p.axis]) <= near && off(b[p.axis]) <= near) return &p;
+        if (is_there(a) && is_there(b)) return &p;
     }
     return nullptr;
 }
@@ -168,6 +173,7 @@ int LoopBuilder::turns(const Vec<2>& by, int k) const {
 
 LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     Chain c;
+    for (Use& u : uses) end_at_poles(u);
     for (Use& u : uses) {
         if (!c.uses.empty()) {
             const Use last = c.uses.back();
@@ -333,13 +339,11 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
         for (std::size_t k = 0; k < 2; ++k) {
             if (!std::isfinite(on[k].length()))
                 return refuse(RefusalKind::unsupported, "face", "has no boundary, and its surface has none");
-            if (chart_.is_spline(int(k)) || !(chart_.period(int(k)) > 0) ||
-                on[k].length() < chart_.period(int(k)) - 1e-9)
-                continue;
+            if (!(chart_.period(int(k)) > 0) || on[k].length() < chart_.period(int(k)) - 1e-9) continue;
             // Away from the holes.
             double begin = on[k].lo;
-            for (int i = 0; i < 16; ++i) {
-                const double x = on[k].lo + on[k].length() * i / 16;
+            for (int i = 0; i < kBegins; ++i) {
+                const double x = on[k].lo + on[k].length() * i / kBegins;
                 const bool free = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
                     double lo = kInfinity, hi = -kInfinity;
                     for (const Vec<2>& p : c.outline)

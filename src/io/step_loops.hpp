@@ -56,6 +56,7 @@ private:
     void move(Chain& c, const Vec<2>& by) const;
     void close_joints(Chain& c) const;
     void end_at(Use& u, bool last, const Vec<2>& to) const;
+    void end_at_poles(Use& u) const;
     void turn_to(Chain& c, std::size_t first) const;
     void turn_around(Chain& c) const;
     Result<void> join_winding(int axis);
@@ -72,6 +73,7 @@ private:
     void release_seams();
     void join_pole(Chain& c, const Pole& pole);
     std::array<Use, 2> seam(int from, int to, const Vec<2>& a, const Vec<2>& b, const Vec<2>& period);
+    std::optional<CurveGeometry<3>> iso_over(int axis, double at, Interval on) const;
     struct Seam {
         std::vector<Use> there, back;
     };

@@ -5,29 +5,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace freiform::step {
 
-// A sphere with its poles elsewhere: as far as possible from points of the edges. An edge that runs through a
+// A sphere with its poles elsewhere: as far as possible from the edges. An edge that runs through a
 // pole has no continuous parameter curve; the same sphere with another axis has one for it.
 std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface,
-                                                        const std::vector<Vec<3>>& on) {
+                                                        const std::vector<int>& used) const {
+    constexpr int kSamples = 48, kDirections = 400;
     const auto* s = std::get_if<Revolution>(&surface);
     if (s == nullptr || s->kind != SurfaceKind::sphere) return std::nullopt;
     const auto* circle = std::get_if<Conic<3>>(&s->profile);
     if (circle == nullptr) return std::nullopt;
     const double radius = norm(circle->x);
+    std::vector<Vec<3>> on;
+    for (const int edge : used) {
+        const Edge& e = out_.model.edges[std::size_t(edge)];
+        if (!e.curve) continue;
+        for (int i = 0; i <= kSamples; ++i)
+            on.push_back(unit(jet<0>(*e.curve, e.range.lo + e.range.length() * i / kSamples).value() -
+                              circle->centre));
+    }
     Vec<3> best{};
     double widest = -1;
-    for (int a = -2; a <= 2; ++a)
-        for (int b = -2; b <= 2; ++b)
-            for (int c = 0; c <= 2; ++c) {
-                const Vec<3> z = unit(Vec<3>{{double(a) + 0.1, double(b) - 0.07, double(c) + 0.03}});
-                double near = 2;
-                for (const Vec<3>& p : on)
-                    near = std::min(near, 1 - std::abs(dot(unit(p - circle->centre), z)));
-                if (near > widest) widest = near, best = z;
-            }
+    for (int i = 0; i < kDirections; ++i) {  // spread over half a sphere by the golden angle
+        const double h = (i + 0.5) / kDirections, turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
+        const double r = std::sqrt(1 - h * h);
+        const Vec<3> z{{r * std::cos(turn), r * std::sin(turn), h}};
+        double near = 2;
+        for (const Vec<3>& p : on) near = std::min(near, 1 - std::abs(dot(p, z)));
+        if (near > widest) widest = near, best = z;
+    }
     Vec<3> x = unit(circle->x);
     if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
     x = unit(x - dot(x, best) * best);

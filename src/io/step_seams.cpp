@@ -36,6 +36,15 @@ void LoopBuilder::turn_around(Chain& c) const {
     measure(c);
 }
 
+// The curve in space, where it has these parameters.
+std::optional<CurveGeometry<3>> LoopBuilder::iso_over(int axis, double at, Interval on) const {
+    auto c = chart_.iso(axis, at);
+    if (!c || !(std::holds_alternative<Curve<Vec<3>>>(*c) || std::holds_alternative<Curve<Hom<3>>>(*c)))
+        return c;
+    const Interval all = domain(*c)[0];
+    return all.lo <= on.lo && on.hi <= all.hi ? std::move(c) : std::nullopt;
+}
+
 // The two uses of a new edge from a to b: there, and back one period beside it.
 std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Vec<2>& b,
                                      const Vec<2>& period) {
@@ -53,19 +62,14 @@ std::array<Use, 2> LoopBuilder::seam(int from, int to, const Vec<2>& a, const Ve
     Line<2> line{a, b - a};
     const int axis = period[0] != 0 ? 0 : 1;
     if (std::abs(a[axis] - b[axis]) <= 1e-12 * std::abs(period[axis]) && a[1 - axis] < b[1 - axis])
-        if (auto c = chart_.iso(axis, a[axis])) {
+        if (auto c = iso_over(axis, a[axis], {a[1 - axis], b[1 - axis]})) {
             e.curve = std::move(*c);
             e.range = {a[1 - axis], b[1 - axis]};
             line = {};
             line.origin[axis] = a[axis];
             line.direction[1 - axis] = 1;
-            if (const auto* s = std::get_if<Curve<Vec<3>>>(&*e.curve);
-                s != nullptr || std::holds_alternative<Curve<Hom<3>>>(*e.curve)) {
-                const Interval on = domain(*e.curve)[0];
-                if (e.range.lo < on.lo || e.range.hi > on.hi) e.curve.reset();
-            }
         }
-    if (!e.curve) line = {a, b - a}, e.range = {0, 1};
+    if (!e.curve) e.range = {0, 1};
     const int i = int(model_.edges.size());
     model_.edges.push_back(e);
     return {make_use({i, false, line}, e),
@@ -426,7 +430,7 @@ void LoopBuilder::add_rectangle(const std::array<Interval, 2>& on) {
         Edge e;
         e.start = vertex[backward ? (i + 1) % 4 : i], e.end = vertex[backward ? i : (i + 1) % 4];
         e.range = on[std::size_t(1 - axis)];
-        e.curve = chart_.iso(axis, a[axis]);
+        e.curve = iso_over(axis, a[axis], e.range);
         e.tolerance = close_;
         made[i] = int(model_.edges.size());
         model_.edges.push_back(e);

@@ -172,8 +172,8 @@ private:
     const Chart& chart_of(SurfaceMade& made, std::uint32_t surface, const std::vector<int>& used);
     void tell_seam(std::uint32_t face, const Chart& chart, const std::vector<int>& used);
     double accuracy_for(double size) const;
-    static std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
-                                                      const std::vector<Vec<3>>& on);
+    std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
+                                               const std::vector<int>& used) const;
     std::optional<SurfaceGeometry> other_half(const Chart& chart, const std::vector<int>& used) const;
     void refuse_item(std::uint32_t item, Refusal why);
     void tell_approximated();

@@ -60,18 +60,14 @@ public:
         if (!(t && t->gap <= kNear * accuracy_))
             if (auto told = nearest_image(t ? t->gap : rough_)) return *told;
         if (!t)
+            // Of spheres there are others, with other poles.
             if (auto feet = polygon_of_feet(chart_, c_, on_, rough_);
-                feet && !(is_sphere() && chart_.has_pole_across(feet->curve, on_)))
+                feet && !(chart_.is_sphere() && chart_.has_pole_across(feet->curve, on_)))
                 return *feet;
         return t;
     }
 
 private:
-    // Of these there are others, with other poles.
-    bool is_sphere() const {
-        const auto* s = std::get_if<Revolution>(&chart_.surface());
-        return s != nullptr && s->kind == SurfaceKind::sphere;
-    }
     static std::unexpected<Refusal> through_pole() {
         return refuse(RefusalKind::ill_conditioned, "parameter curve",
                       "runs through a pole or a fold of the surface");
@@ -224,12 +220,25 @@ private:
         const auto left = jet<1>(c_, std::nextafter(out.t, on_.lo));
         if (const Foot g = chart_.foot(left.d[0], left.d[1], f.at); g.regular) out.before = g.slope;
     }
+    // A step that is too long beside the pole of a sphere leads over it: to parameters beyond it that are,
+    // half a turn back, also near to where it began.
+    std::optional<Vec<2>> on_this_side(const Vec<2>& at, const Vec<2>& from) const {
+        const Interval on = chart_.whole()[1];
+        if (!chart_.is_sphere() || on.contains(at[1])) return std::nullopt;
+        const double by = std::remainder(at[0] + kTwoPi / 2 - from[0], kTwoPi);
+        if (std::abs(by) > kTwoPi / 4) return std::nullopt;
+        return Vec<2>{{from[0] + by, 2 * (at[1] > on.hi ? on.hi : on.lo) - at[1]}};
+    }
     // From a known node to the next place. False where the surface has no tangent plane there.
     bool node(double t, const TraceNode& from, TraceNode& out) const {
         const double h = t - from.t;
-        const Vec<2> guess = from.at + h * (h > 0 ? from.after : from.before);
+        Vec<2> guess = from.at + h * (h > 0 ? from.after : from.before);
         const auto j = jet<1>(c_, t);
         Foot f = chart_.foot(j.d[0], j.d[1], guess);
+        if (const auto before_pole = on_this_side(f.at, from.at)) {
+            guess = *before_pole;
+            f = chart_.foot(j.d[0], j.d[1], guess);
+        }
         out.t = t;
         const bool is_end = t == on_.lo || t == on_.hi;
         // All parameters of a pole are as near.

@@ -303,6 +303,23 @@ TEST(StepLoops, edges_that_begin_at_the_pole_of_a_spline_keep_to_their_meridians
 
 // Files whose faces were refused once: edges at poles, over them and at folds, segments that run backwards,
 // seams across keyseats, edges of half a nanometre.
+// One face each, of known area: two lines to the apex of a cone whose vertex lies beside it, within the
+// tolerance; spheres that circles bound which pass a pole within 0.084 and 0.0055 of the radius; a closed
+// spline torus with a hole over one of its seams.
+TEST(StepLoops, faces_beside_poles_and_over_seams_have_their_area) {
+    const std::pair<std::string_view, double> files[] = {{"vertex_beside_apex", 19.9339163356},
+                                                         {"circle_beside_pole", 97264.3461265},
+                                                         {"circle_near_pole", 23.6996022194},
+                                                         {"hole_over_seams", 22.6667767662}};
+    for (const auto& [name, area] : files) {
+        const Model m = must(read_step(
+            must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/data/step/", name, ".stp"), 1 << 20))));
+        ASSERT_EQ(m.faces.size(), 1u) << name << ": " << m.refused[0].message;
+        EXPECT_NEAR(area_of(m, 1e-4 * std::sqrt(area)), area, 1e-3 * area) << name;
+        for (const Approximation& a : m.approximations) EXPECT_LT(*a.bound, 1e-4 * std::sqrt(area)) << name;
+    }
+}
+
 TEST(StepLoops, faces_of_real_files_are_read_and_can_be_meshed) {
     for (const char* name :
          {"step/bug24595_281390.stp", "step/plate_mode_samples_creo.stp", "step/t4mec.stp",
