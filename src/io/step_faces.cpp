@@ -49,6 +49,19 @@ double ShapeReader::accuracy_for(double size) const {
 
 bool ShapeReader::is_beside(double gap, double size) const { return gap > kBeside * accuracy_for(size); }
 
+// How far a curve is from a sphere, at some places.
+static double off_sphere(const Chart& chart, const CurveGeometry<3>& c, Interval on) {
+    constexpr int kPlaces = 32;
+    const auto* circle = std::get_if<Conic<3>>(&std::get<Revolution>(chart.surface()).profile);
+    if (circle == nullptr) return 0;
+    double off = 0;
+    for (int i = 0; i <= kPlaces; ++i) {
+        const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kPlaces).value();
+        off = std::max(off, std::abs(norm(p - circle->centre) - norm(circle->x)));
+    }
+    return off;
+}
+
 Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
                                 int loosely) {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
@@ -66,6 +79,9 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
         if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough, images);
             plain && plain->gap <= kPlain * t->gap)
             t = std::move(plain);
+    if (strict_ && is_beside(t->gap, size) && t->gap > 2 * off_sphere(chart, *e.curve, e.range))
+        return refuse(RefusalKind::ill_conditioned, "parameter curve",
+                      "runs too near to a pole to be followed");
     if (size > 0 && !(t->gap < kHopeless * size))
         return refuse(RefusalKind::ill_conditioned, "edge",
                       text("lies ", t->gap, " beside the surface; the face has a size of ", size));
@@ -300,6 +316,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
     };
     if (const auto half = other_half(*(*s)->chart, used)) return attempt(Chart(*half, tolerance_));
     const Chart& chart = chart_of(**s, *on, used);
+    strict_ = chart.is_sphere();
     auto made = attempt(chart);
     if (&chart != (*s)->chart.get()) {
         if (made)
@@ -307,11 +324,10 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
         else
             made = attempt(*(*s)->chart);
     }
-    if (!made) {
-        if (const auto turned = other_poles((*s)->surface, used)) {
-            if (auto again = attempt(Chart(*turned, tolerance_))) return again;
-        }
-    }
+    if (!made)
+        if (const auto turned = other_poles((*s)->surface, used))
+            if (auto again = attempt(Chart(*turned, tolerance_))) made = std::move(again);
+    if (std::exchange(strict_, false) && !made) made = attempt(chart);
     if (!made) out_.model.repairs.resize(repairs), turned_now_.reset();
     return made;
 }

@@ -26,7 +26,6 @@ namespace {
 constexpr double kNearPole = 1e-6;          // of a parameter, of its period or domain
 constexpr double kBesidePole = 1e-2;        // likewise
 constexpr int kOutline = 32;                // points of an edge
-constexpr int kBegins = 64;                 // of a closed surface, to find one with no hole across
 constexpr std::size_t kMostInOrder = 2000;  // edges: pairs of them are looked at
 
 double scale_of(const Chart& chart, int axis) {
@@ -222,10 +221,19 @@ void LoopBuilder::measure(Chain& c) const {
         const Interval on = model_.edges[std::size_t(u.coedge.edge)].range;
         const bool straight = std::holds_alternative<Line<2>>(u.coedge.curve);
         const int n = straight ? 1 : kOutline;
-        for (int i = 0; i < n; ++i) {
-            const double x = double(u.coedge.reversed ? n - i : i) / n;
-            c.outline.push_back(jet<0>(u.coedge.curve, on.lo + x * on.length()).value());
+        std::vector<double> t;
+        for (int i = 0; i < n; ++i) t.push_back(on.lo + on.length() * i / n);
+        if (const auto* s = std::get_if<Curve<Vec<2>>>(&u.coedge.curve); s != nullptr && u.fitted) {
+            // Splines that follow an edge have their pieces where it turns.
+            const auto breaks = s->basis().breaks();
+            if (breaks.size() > t.size()) t.assign(breaks.begin(), breaks.end() - 1);
         }
+        if (u.coedge.reversed) {
+            t.push_back(on.hi);
+            std::ranges::reverse(t);
+            t.pop_back();
+        }
+        for (const double x : t) c.outline.push_back(jet<0>(u.coedge.curve, x).value());
     }
     c.area = 0;
     for (std::size_t i = 0; i < c.outline.size(); ++i)
@@ -334,33 +342,8 @@ Result<std::vector<std::vector<Use>>> LoopBuilder::finish() {
         return c.area < 0 && !goes_around_all(c, all);
     });
     if (!is_closed_surface()) set_right(all);
-    if (only_holes && (is_closed_surface() || chains_.empty())) {
-        std::array<Interval, 2> on = chart_.whole();
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (!std::isfinite(on[k].length()))
-                return refuse(RefusalKind::unsupported, "face", "has no boundary, and its surface has none");
-            if (!(chart_.period(int(k)) > 0) || on[k].length() < chart_.period(int(k)) - 1e-9) continue;
-            // Away from the holes.
-            double begin = on[k].lo;
-            for (int i = 0; i < kBegins; ++i) {
-                const double x = on[k].lo + on[k].length() * i / kBegins;
-                const bool free = std::all_of(chains_.begin(), chains_.end(), [&](const Chain& c) {
-                    double lo = kInfinity, hi = -kInfinity;
-                    for (const Vec<2>& p : c.outline)
-                        lo = std::min(lo, p[int(k)]), hi = std::max(hi, p[int(k)]);
-                    const double turn = chart_.period(int(k));
-                    const double from = lo - x - std::floor((lo - x) / turn) * turn;
-                    return from > 0 && from + (hi - lo) < turn;
-                });
-                if (free) {
-                    begin = x;
-                    break;
-                }
-            }
-            on[k] = {begin, begin + chart_.period(int(k))};
-        }
-        add_rectangle(on);
-    }
+    if (only_holes && (is_closed_surface() || chains_.empty()))
+        if (auto ok = add_whole(); !ok) return std::unexpected(ok.error());
     place_holes(all);
     into_domain();
     std::vector<std::vector<Use>> out;

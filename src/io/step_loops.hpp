@@ -80,6 +80,8 @@ private:
     Seam seams(int from, int to, std::span<const Vec<2>> points, const Vec<2>& period);
     std::optional<Way> way(const Chain& a, const Chain* b, int axis, double pole) const;
     bool is_closed_surface() const;
+    Result<void> add_whole();
+    bool add_from_pole_to_pole(int axis);
     void set_right(double all);
     bool rounds_pole(const Chain& c) const;
     static bool goes_around_all(const Chain& c, double all);

@@ -3,8 +3,7 @@
 // Two chains that wind around the surface, or one and a pole, are joined along an edge that is used twice,
 // one period apart. It begins at a corner of one and ends at a corner of the other, the pair that is nearest
 // in the period, so that it is an isoparametric line where there is one, and with nothing across it. Where
-// something is across each, it is a row of edges around that (step_ways.cpp). The rectangle of parameters
-// that a surface without any boundary gets has seams and poles as its sides.
+// something is across each, it is a row of edges around that (step_ways.cpp).
 #include "step_loops.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -393,51 +392,6 @@ Result<void> LoopBuilder::join_winding(int axis) {
         join_pole(*a, *end);
     }
     return {};
-}
-
-void LoopBuilder::add_rectangle(const std::array<Interval, 2>& on) {
-    const std::array<Vec<2>, 4> corner{
-        {{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].lo}}, {{on[0].hi, on[1].hi}}, {{on[0].lo, on[1].hi}}}};
-    std::array<int, 4> vertex{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const Vec<3> p = chart_.point(corner[i]);
-        vertex[i] = -1;
-        for (std::size_t j = 0; j < i; ++j)
-            if (norm(model_.vertices[std::size_t(vertex[j])].point - p) <= close_) vertex[i] = vertex[j];
-        if (vertex[i] < 0) vertex[i] = vertex_near(p);
-    }
-    const auto closed = [&](int k) {
-        return chart_.period(k) > 0 &&
-               std::abs(on[std::size_t(k)].length() - chart_.period(k)) <= 1e-9 * chart_.period(k);
-    };
-    std::array<int, 4> made{-1, -1, -1, -1};
-    Chain c;
-    for (std::size_t i = 0; i < 4; ++i) {  // below, right, above, left
-        const Vec<2> a = corner[i], b = corner[(i + 1) % 4];
-        const int axis = i % 2 == 0 ? 1 : 0;  // the parameter that stays
-        if (pole_at(a, b) != nullptr && pole_at(a, b)->axis == axis) {
-            c.uses.push_back(degenerate(vertex[i], a, b));
-            continue;
-        }
-        const bool backward = i >= 2;
-        Line<2> line;
-        line.origin[axis] = a[axis];
-        line.direction[1 - axis] = 1;
-        if (backward && closed(axis) && made[i - 2] >= 0) {
-            c.uses.push_back(make_use({made[i - 2], true, line}, model_.edges[std::size_t(made[i - 2])]));
-            continue;
-        }
-        Edge e;
-        e.start = vertex[backward ? (i + 1) % 4 : i], e.end = vertex[backward ? i : (i + 1) % 4];
-        e.range = on[std::size_t(1 - axis)];
-        e.curve = iso_over(axis, a[axis], e.range);
-        e.tolerance = close_;
-        made[i] = int(model_.edges.size());
-        model_.edges.push_back(e);
-        c.uses.push_back(make_use({made[i], backward, line}, e));
-    }
-    measure(c);
-    chains_.push_back(std::move(c));
 }
 
 }  // namespace freiform::step

@@ -191,6 +191,7 @@ private:
     // Faces whose loops were turned, with what was said of it, until those beside them have been asked.
     std::unordered_map<int, std::size_t> turned_;
     std::optional<std::size_t> turned_now_;  // of the face that is being made
+    bool strict_ = false;  // likewise: edges that are not followed closely are refused, as other poles may do
     std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
     std::unordered_map<int, std::uint32_t> vertex_of_;  // what the file calls a vertex
