@@ -281,7 +281,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
     if (!bounds) return std::unexpected(bounds.error());
     const auto s = surface(*on);
     if (!s) return std::unexpected(s.error());
-    const bool same = of->flag(3);
+    bool same = of->flag(3);
     std::vector<Vec<3>> on_edges;
     std::vector<int> used;
     const auto size = size_of(*f, on_edges, used);
@@ -325,8 +325,16 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
             made = attempt(*(*s)->chart);
     }
     if (!made)
-        if (const auto turned = other_poles((*s)->surface, used))
-            if (auto again = attempt(Chart(*turned, tolerance_))) made = std::move(again);
+        if (const auto turned = other_poles(chart, used)) {
+            same = same != turned->inwards;
+            if (auto again = attempt(Chart(turned->surface, tolerance_))) {
+                made = std::move(again);
+                if (turned->off > 0)
+                    report(-1, text(f_.label(i), ": a sphere stands for its surface"), turned->off,
+                           turned->off);
+            }
+            same = same != turned->inwards;
+        }
     if (std::exchange(strict_, false) && !made) made = attempt(chart);
     if (!made) out_.model.repairs.resize(repairs), turned_now_.reset();
     return made;

@@ -43,7 +43,8 @@ void LoopBuilder::end_at_poles(Use& u) const {
     if (!can_move(u)) return;
     for (const bool last : {false, true}) {
         Vec<2> to = last ? u.end : u.start;
-        const Pole* pole = pole_at(to, to);
+        const double stated = model_.vertices[std::size_t(last ? u.to : u.from)].tolerance;
+        const Pole* pole = pole_at(to, to, 2 * stated);
         if (pole == nullptr) continue;
         const double turn = chart_.period(pole->axis), by = pole->at - to[pole->axis];
         to[pole->axis] += turn > 0 ? std::remainder(by, turn) : by;

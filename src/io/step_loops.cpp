@@ -66,7 +66,7 @@ Use LoopBuilder::degenerate(int vertex, const Vec<2>& from, const Vec<2>& to) {
     return make_use({i, false, Line<2>{from, to - from}}, e);
 }
 
-const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b) const {
+const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b, double close) const {
     for (const Pole& p : chart_.poles()) {
         const double near = kNearPole * scale_of(chart_, p.axis);
         const double turn = chart_.period(p.axis);
@@ -75,7 +75,7 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b) const {
         const auto is_there = [&](const Vec<2>& x) {
             const double d = x[p.axis] - p.at, off = std::abs(turn > 0 ? d - std::round(d / turn) * turn : d);
             return off <= near || (off <= kBesidePole * scale_of(chart_, p.axis) &&
-                                   norm(chart_.point(x) - p.point) <= close_);
+                                   norm(chart_.point(x) - p.point) <= std::max(close, close_));
         };
         if (is_there(a) && is_there(b)) return &p;
     }

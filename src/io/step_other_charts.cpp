@@ -10,15 +10,31 @@
 namespace freiform::step {
 
 // A sphere with its poles elsewhere: as far as possible from the edges. An edge that runs through a
-// pole has no continuous parameter curve; the same sphere with another axis has one for it.
-std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& surface,
-                                                        const std::vector<int>& used) const {
+// pole has no continuous parameter curve; the same sphere with another axis has one for it. Also of a circle
+// that is turned about a line through its centre, the normal of which may look inwards.
+std::optional<ShapeReader::OtherSphere> ShapeReader::other_poles(const Chart& chart,
+                                                                 const std::vector<int>& used) const {
     constexpr int kSamples = 48, kDirections = 400;
-    const auto* s = std::get_if<Revolution>(&surface);
-    if (s == nullptr || s->kind != SurfaceKind::sphere) return std::nullopt;
-    const auto* circle = std::get_if<Conic<3>>(&s->profile);
-    if (circle == nullptr) return std::nullopt;
+    constexpr double kMoved = 64,
+                     kSphere =
+                         1e-3;  // of the tolerance: what is so near to a sphere is taken for one, and told
+    const auto* s = std::get_if<Revolution>(&chart.surface());
+    const auto* circle = s != nullptr ? std::get_if<Conic<3>>(&s->profile) : nullptr;
+    if (circle == nullptr || circle->kind != ConicKind::ellipse) return std::nullopt;
     const double radius = norm(circle->x);
+    double off = 0;
+    if (s->kind != SurfaceKind::sphere) {
+        const Vec<3> from = circle->centre - s->origin, axis = unit(s->axis);
+        off = norm(from - dot(from, axis) * axis) + std::abs(norm(circle->y) - radius) +
+              std::abs(dot(circle->x, circle->y)) / radius;
+        if (!(off <= kSphere * tolerance_) ||
+            std::abs(dot(unit(cross(circle->x, circle->y)), axis)) * radius > kSphere * tolerance_)
+            return std::nullopt;
+        off += kMoved * kUnitRoundoff * (max_abs(circle->centre) + radius);
+    }
+    const Vec<2> middle{{chart.whole()[0].lo, chart.whole()[1].middle()}};
+    const auto j = jet<1>(chart.surface(), middle.c);
+    const bool inwards = dot(cross(j.d[1], j.d[2]), j.d[0] - circle->centre) < 0;
     std::vector<Vec<3>> on;
     for (const int edge : used) {
         const Edge& e = out_.model.edges[std::size_t(edge)];
@@ -40,8 +56,9 @@ std::optional<SurfaceGeometry> ShapeReader::other_poles(const SurfaceGeometry& s
     Vec<3> x = unit(circle->x);
     if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
     x = unit(x - dot(x, best) * best);
-    return Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best}, circle->centre,
-                      best, SurfaceKind::sphere};
+    return OtherSphere{Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best},
+                                  circle->centre, best, SurfaceKind::sphere},
+                       inwards, off};
 }
 
 // A circle that turns about a line through it passes every place twice, with either normal; charts keep to

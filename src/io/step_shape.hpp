@@ -172,8 +172,12 @@ private:
     const Chart& chart_of(SurfaceMade& made, std::uint32_t surface, const std::vector<int>& used);
     void tell_seam(std::uint32_t face, const Chart& chart, const std::vector<int>& used);
     double accuracy_for(double size) const;
-    std::optional<SurfaceGeometry> other_poles(const SurfaceGeometry& surface,
-                                               const std::vector<int>& used) const;
+    struct OtherSphere {
+        SurfaceGeometry surface;
+        bool inwards = false;  // the normal of the first one looks, and not that of this
+        double off = 0;        // how far the first one may be from it
+    };
+    std::optional<OtherSphere> other_poles(const Chart& chart, const std::vector<int>& used) const;
     std::optional<SurfaceGeometry> other_half(const Chart& chart, const std::vector<int>& used) const;
     void refuse_item(std::uint32_t item, Refusal why);
     void tell_approximated();

@@ -305,13 +305,13 @@ TEST(StepLoops, edges_that_begin_at_the_pole_of_a_spline_keep_to_their_meridians
 // seams across keyseats, edges of half a nanometre.
 // One face each, of known area: two lines to the apex of a cone whose vertex lies beside it, within the
 // tolerance; spheres that circles bound which pass a pole within 0.084 and 0.0055 of the radius; a closed
-// spline torus with a hole over one of its seams; a sphere with holes that no meridian passes between.
+// spline torus with a hole over one of its seams; a sphere with holes that no meridian passes between; a
+// circle that is turned about its diameter, which an edge passes at a pole.
 TEST(StepLoops, faces_beside_poles_and_over_seams_have_their_area) {
-    const std::pair<std::string_view, double> files[] = {{"vertex_beside_apex", 19.9339163356},
-                                                         {"circle_beside_pole", 97264.3461265},
-                                                         {"circle_near_pole", 23.6996022194},
-                                                         {"hole_over_seams", 22.6667767662},
-                                                         {"holes_across_meridians", 0.79836562745}};
+    const std::pair<std::string_view, double> files[] = {
+        {"vertex_beside_apex", 19.9339163356},     {"circle_beside_pole", 97264.3461265},
+        {"circle_near_pole", 23.6996022194},       {"hole_over_seams", 22.6667767662},
+        {"holes_across_meridians", 0.79836562745}, {"turned_circle_with_hole", 3.7332649361}};
     for (const auto& [name, area] : files) {
         const Model m = must(read_step(
             must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/data/step/", name, ".stp"), 1 << 20))));
