@@ -83,16 +83,24 @@ function(freiform_library name)
         list(APPEND sources ${found})
     endforeach()
     set(all ${sources})  # those that are compiled as one are of one group, whichever part they are in
-    # Modules: but for what evaluates, bounds and tessellates, all is compiled without putting functions into their
-    # callers, as files and commands are (bindings/wasm/CMakeLists.txt).
+    # Modules: but for what evaluates, bounds and tessellates, and there again for what is done seldom, all is compiled
+    # without putting functions into their callers, as files and commands are (bindings/wasm/CMakeLists.txt).
     if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32)
         string(CONCAT hot "/src/(basis|core|io|kernel|mesh|poly)/|/src/spline/(block|derivative|geometry|patch|prepared)|"
             "/src/model/(apex|edge_|face_|flat_faces|loop_runs|matched|offset_faces|piecewise|tessellat|triangle_)")
+        string(CONCAT rare "/(arc_index|change|curvature_tree_columns|curvature_tree_torn|decimal|edge_continuity|edge_gap|"
+            "edge_length|face_overlaps|face_parts|face_region|filler_separate|integer|level_lines|matched_grids|"
+            "polynomial_basis|refine|roots_exact|simple_polygons|spelling|tessellate_calls|tessellate_collect|text|"
+            "triangle_budget|visibility)[.]cpp$")
         set(small ${sources})
         list(FILTER small EXCLUDE REGEX "${hot}")
+        set(few ${sources})
+        list(FILTER few INCLUDE REGEX "${hot}")
+        list(FILTER few INCLUDE REGEX "${rare}")
+        list(APPEND small ${few})
     endif()
     if(small)
-        list(FILTER sources INCLUDE REGEX "${hot}")
+        list(REMOVE_ITEM sources ${small})
         add_library(freiform_${name}_small OBJECT ${small})
         freiform_common(freiform_${name}_small)
         freiform_unity(freiform_${name}_small 6 ${all})

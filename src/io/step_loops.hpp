@@ -57,6 +57,7 @@ private:
     void close_joints(Chain& c) const;
     void end_at(Use& u, bool last, const Vec<2>& to) const;
     void end_at_poles(Use& u) const;
+    static constexpr int kBegins = 64;  // of a closed surface, to find one with no hole across
     void turn_to(Chain& c, std::size_t first) const;
     void turn_around(Chain& c) const;
     Result<void> join_winding(int axis);
@@ -78,7 +79,7 @@ private:
         std::vector<Use> there, back;
     };
     Seam seams(int from, int to, std::span<const Vec<2>> points, const Vec<2>& period);
-    std::optional<Way> way(const Chain& a, const Chain* b, int axis, double pole) const;
+    std::optional<Way> way(const Chain* a, const Chain* b, int axis, double first, double last) const;
     bool is_closed_surface() const;
     Result<void> add_whole();
     bool add_from_pole_to_pole(int axis);

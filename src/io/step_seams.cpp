@@ -92,16 +92,21 @@ LoopBuilder::Seam LoopBuilder::seams(int from, int to, std::span<const Vec<2>> p
     return out;
 }
 
-// Where a seam may run from a corner of `a` to one of `b`, or to the pole with this parameter, where no
-// straight one can.
-std::optional<Way> LoopBuilder::way(const Chain& a, const Chain* b, int axis, double pole) const {
+// Where a seam may run between a corner of `a`, or the pole with the parameter `first`, and a corner of `b`,
+// or the pole with `last`, where no straight one can.
+std::optional<Way> LoopBuilder::way(const Chain* a, const Chain* b, int axis, double first,
+                                    double last) const {
     const double turn = chart_.period(axis), other = chart_.period(1 - axis);
-    double lo = b == nullptr ? pole : kInfinity, hi = b == nullptr ? pole : -kInfinity;
-    for (const Chain* c : {&a, b})
-        if (c != nullptr)
-            for (const Vec<2>& p : c->outline) lo = std::min(lo, p[1 - axis]), hi = std::max(hi, p[1 - axis]);
+    Interval across{kInfinity, -kInfinity};
+    const auto reach = [&](const Chain* c, double pole) {
+        const auto include = [&](double x) { across = {std::min(across.lo, x), std::max(across.hi, x)}; };
+        if (c == nullptr) return include(pole);
+        for (const Vec<2>& p : c->outline) include(p[1 - axis]);
+    };
+    reach(a, first), reach(b, last);
+    const double lo = across.lo, high = across.length();
     const auto in_strip = [&](const Vec<2>& p) {
-        return Vec<2>{{p[axis] / turn, (p[1 - axis] - lo) / (hi - lo)}};
+        return Vec<2>{{p[axis] / turn, (p[1 - axis] - lo) / high}};
     };
     Strip strip;
     const auto add = [&](const Chain& c, int periods) {
@@ -110,24 +115,29 @@ std::optional<Way> LoopBuilder::way(const Chain& a, const Chain* b, int axis, do
             if (i + 1 == c.outline.size()) q[axis] += c.winding[std::size_t(axis)] * turn;
             if (p == q) continue;
             for (int n = -periods; n <= periods; ++n) {
-                const Vec<2> by{{0, n * other / (hi - lo)}};
+                const Vec<2> by{{0, n * other / high}};
                 strip.outlines.push_back({in_strip(p) + by, in_strip(q) + by});
             }
         }
     };
-    add(a, 0);
-    if (b != nullptr) add(*b, 0);
     for (const Chain& c : chains_) add(c, other > 0 ? 1 : 0);
-    for (const Use& u : a.uses) strip.from.push_back(in_strip(u.start));
-    if (b == nullptr)
-        strip.pole = (pole - lo) / (hi - lo);
+    const auto corners = [&](const Chain& c, std::vector<Vec<2>>& out) {
+        add(c, 0);
+        for (const Use& u : c.uses) out.push_back(in_strip(u.start));
+    };
+    if (a != nullptr)
+        corners(*a, strip.from);
     else
-        for (const Use& u : b->uses) strip.to.push_back(in_strip(u.start));
+        for (int i = 0; i < kBegins; ++i) strip.from.push_back({{double(i) / kBegins, (first - lo) / high}});
+    if (b != nullptr)
+        corners(*b, strip.to);
+    else
+        strip.pole = (last - lo) / high;
     auto way = find_way(strip);
     if (!way) return way;
     const auto back = [&](Vec<2>& p) {
         const Vec<2> x = p;
-        p[axis] = turn * x[0], p[1 - axis] = lo + (hi - lo) * x[1];
+        p[axis] = turn * x[0], p[1 - axis] = lo + high * x[1];
     };
     for (Vec<2>& p : way->inner) back(p);
     back(way->end);
@@ -206,7 +216,7 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
         best = *free;
     } else {
         move(b, shift(a.uses.front().start, b.uses.front().start, true));
-        around = way(a, &b, axis, 0);
+        around = way(&a, &b, axis, 0, 0);
         if (around) best.i = around->from, best.j = around->to;
     }
     turn_to(a, best.i);
@@ -295,7 +305,7 @@ void LoopBuilder::join_pole(Chain& c, const Pole& pole) {
         return !is_free(c, c, u.start, at);
     };
     std::optional<Way> around;
-    if (std::ranges::all_of(c.uses, across)) around = way(c, nullptr, axis, level);
+    if (std::ranges::all_of(c.uses, across)) around = way(&c, nullptr, axis, 0, level);
     if (around)
         turn_to(c, around->from);
     else if (const auto free = std::ranges::find_if_not(c.uses, across); free != c.uses.end())

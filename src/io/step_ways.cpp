@@ -1,15 +1,12 @@
 // On a lattice over the strip. A node is as free as outlines are far; a hop between neighbours is free if the
-// discs around both overlap. The shortest way along free hops [Dijkstra 1959] is pulled straight as far as
-// nothing is across. A lattice too coarse for any way is made finer.
+// discs around both overlap. The way with the fewest free hops, found breadth first, is pulled straight as
+// far as nothing is across. A lattice too coarse for any way is made finer.
 #include "step_ways.hpp"
 
 #include <freiform/core/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <queue>
-#include <utility>
 
 namespace freiform::step {
 
@@ -50,35 +47,31 @@ public:
 
     std::optional<Way> find() const {
         struct Known {
-            double cost = kInfinity;
             Vec<2> at{};
-            int from = -1;  // a node, or -1 - a corner
+            int from = 0;  // a node, or -1 - a corner
         };
-        std::vector<Known> known(free_.size());
-        using Entry = std::pair<double, std::size_t>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-        const auto come = [&](std::size_t node, const Known& by) {
-            if (!(by.cost < known[node].cost)) return;
-            known[node] = by;
-            open.push({by.cost, node});
+        std::vector<std::optional<Known>> known(free_.size());
+        std::vector<std::size_t> todo;
+        const auto come = [&](std::size_t node, const Vec<2>& at, int from) {
+            if (known[node]) return;
+            known[node] = {at, from};
+            todo.push_back(node);
         };
         for (std::size_t c = 0; c < strip_.from.size(); ++c) {
             const Vec<2> corner = double(n_) * strip_.from[c];
             each_near(corner, [&](std::size_t node, const Vec<2>& at) {
-                if (can_leave(corner, at)) come(node, {norm(at - corner), at, -1 - int(c)});
+                if (!known[node] && can_leave(corner, at)) come(node, at, -1 - int(c));
             });
         }
-        while (!open.empty()) {
-            const auto [cost, node] = open.top();
-            open.pop();
-            const Known here = known[node];
-            if (cost > here.cost) continue;
+        for (std::size_t next = 0; next < todo.size(); ++next) {
+            const std::size_t node = todo[next];
+            const Known here = *known[node];
             Way way;
             if (arrives(here.at, way)) {
                 std::vector<Vec<2>> points{way.end, here.at};
                 int from = here.from;
-                for (; from >= 0; from = known[std::size_t(from)].from)
-                    points.push_back(known[std::size_t(from)].at);
+                for (; from >= 0; from = known[std::size_t(from)]->from)
+                    points.push_back(known[std::size_t(from)]->at);
                 way.from = std::size_t(-1 - from);
                 points.push_back(double(n_) * strip_.from[way.from]);
                 std::ranges::reverse(points);
@@ -92,10 +85,9 @@ public:
             for (int di = -1; di <= 1; ++di)
                 for (int dk = -1; dk <= 1; ++dk) {
                     if (k + dk < 0 || k + dk >= n_) continue;
-                    const std::size_t next = number(i + di, k + dk);
-                    const double length = std::hypot(di, dk);
-                    if (free_[node] + free_[next] > length + kOverlap)
-                        come(next, {cost + length, here.at + Vec<2>{{double(di), double(dk)}}, int(node)});
+                    const std::size_t to = number(i + di, k + dk);
+                    const Vec<2> hop{{double(di), double(dk)}};
+                    if (free_[node] + free_[to] > norm(hop) + kOverlap) come(to, here.at + hop, int(node));
                 }
         }
         return std::nullopt;
@@ -111,8 +103,8 @@ private:
         outlines_.push_back(s);
         const auto first = [](double x) { return int(std::max(std::floor(x - kReach), 0.0)); };
         const auto end = [&](double x) { return int(std::clamp(std::ceil(x + kReach), 0.0, double(n_))); };
-        const auto [left, right] = std::minmax(s[0][0], s[1][0]);
-        const auto [low, high] = std::minmax(s[0][1], s[1][1]);
+        const auto [left, right] = std::minmax({s[0][0], s[1][0]});
+        const auto [low, high] = std::minmax({s[0][1], s[1][1]});
         for (int i = first(left); i < end(right); ++i)
             for (int k = first(low); k < end(high); ++k) {
                 double& free = free_[number(i, k)];

@@ -8,12 +8,6 @@
 
 namespace freiform::step {
 
-namespace {
-
-constexpr int kBegins = 64;  // of a closed surface, to find one with no hole across
-
-}  // namespace
-
 void LoopBuilder::add_rectangle(const std::array<Interval, 2>& on) {
     const std::array<Vec<2>, 4> corner{
         {{{on[0].lo, on[1].lo}}, {{on[0].hi, on[1].lo}}, {{on[0].hi, on[1].hi}}, {{on[0].lo, on[1].hi}}}};
@@ -96,30 +90,16 @@ bool LoopBuilder::add_from_pole_to_pole(int axis) {
             last = &p;
     if (first == nullptr || last == nullptr) return false;
     const double turn = chart_.period(axis);
-    const auto place = [&](double x, double y) {
-        Vec<2> p;
-        p[axis] = turn * x, p[1 - axis] = y == 0 ? on.lo : y == 1 ? on.hi : on.lo + on.length() * y;
-        return p;
-    };
-    Strip strip;
-    for (const Chain& c : chains_)
-        for (std::size_t i = 0; i < c.outline.size(); ++i) {
-            const Vec<2> p = c.outline[i], q = c.outline[(i + 1) % c.outline.size()];
-            const auto in_strip = [&](const Vec<2>& x) {
-                return Vec<2>{{x[axis] / turn, (x[1 - axis] - on.lo) / on.length()}};
-            };
-            if (!(p == q)) strip.outlines.push_back({in_strip(p), in_strip(q)});
-        }
-    for (int i = 0; i < kBegins; ++i) strip.from.push_back({{double(i) / kBegins, 0}});
-    strip.pole = 1;
-    const auto way = find_way(strip);
-    if (!way) return false;
-    const double x = strip.from[way->from][0];
+    const auto around = way(nullptr, nullptr, axis, on.lo, on.hi);
+    if (!around) return false;
     Vec<2> period{};
     period[axis] = turn;
-    std::vector<Vec<2>> points{place(x, 0) + period};
-    for (const Vec<2>& p : way->inner) points.push_back(place(p[0], p[1]) + period);
-    points.push_back(place(way->end[0], 1) + period);
+    std::vector<Vec<2>> points(1);
+    points[0][axis] = turn * double(around->from) / kBegins, points[0][1 - axis] = on.lo;
+    points.insert(points.end(), around->inner.begin(), around->inner.end());
+    points.push_back(around->end);
+    points.back()[1 - axis] = on.hi;
+    for (Vec<2>& p : points) p += period;
     const int from = vertex_near(first->point), to = vertex_near(last->point);
     Seam made = seams(from, to, points, period);
     Chain c;
