@@ -15,9 +15,8 @@ namespace freiform::step {
 std::optional<ShapeReader::OtherSphere> ShapeReader::other_poles(const Chart& chart,
                                                                  const std::vector<int>& used) const {
     constexpr int kSamples = 48, kDirections = 400;
-    constexpr double kMoved = 64,
-                     kSphere =
-                         1e-3;  // of the tolerance: what is so near to a sphere is taken for one, and told
+    constexpr double kMoved = 64;
+    constexpr double kSphere = 1e-3;  // of the tolerance: what is so near to a sphere is one, and told
     const auto* s = std::get_if<Revolution>(&chart.surface());
     const auto* circle = s != nullptr ? std::get_if<Conic<3>>(&s->profile) : nullptr;
     if (circle == nullptr || circle->kind != ConicKind::ellipse) return std::nullopt;
@@ -25,8 +24,9 @@ std::optional<ShapeReader::OtherSphere> ShapeReader::other_poles(const Chart& ch
     double off = 0;
     if (s->kind != SurfaceKind::sphere) {
         const Vec<3> from = circle->centre - s->origin, axis = unit(s->axis);
-        off = norm(from - dot(from, axis) * axis) + std::abs(norm(circle->y) - radius) +
-              std::abs(dot(circle->x, circle->y)) / radius;
+        // A point of the circle is so far from the sphere about its centre, which moves as the circle turns.
+        off = 1.01 * (2 * norm(from - dot(from, axis) * axis) + std::abs(norm(circle->y) - radius) +
+                      std::abs(dot(circle->x, circle->y)) / radius);
         if (!(off <= kSphere * tolerance_) ||
             std::abs(dot(unit(cross(circle->x, circle->y)), axis)) * radius > kSphere * tolerance_)
             return std::nullopt;

@@ -15,6 +15,12 @@
 
 namespace freiform::step {
 
+namespace {
+
+constexpr std::size_t kMostCorners = 64;  // of a loop, where a seam may begin
+
+}  // namespace
+
 // The chain from another of its edges on.
 void LoopBuilder::turn_to(Chain& c, std::size_t first) const {
     std::rotate(c.uses.begin(), c.uses.begin() + std::ptrdiff_t(first), c.uses.end());
@@ -105,6 +111,7 @@ std::optional<Way> LoopBuilder::way(const Chain* a, const Chain* b, int axis, do
     };
     reach(a, first), reach(b, last);
     const double lo = across.lo, high = across.length();
+    if (!(high > 0)) return std::nullopt;
     const auto in_strip = [&](const Vec<2>& p) {
         return Vec<2>{{p[axis] / turn, (p[1 - axis] - lo) / high}};
     };
@@ -123,7 +130,8 @@ std::optional<Way> LoopBuilder::way(const Chain* a, const Chain* b, int axis, do
     for (const Chain& c : chains_) add(c, other > 0 ? 1 : 0);
     const auto corners = [&](const Chain& c, std::vector<Vec<2>>& out) {
         add(c, 0);
-        for (const Use& u : c.uses) out.push_back(in_strip(u.start));
+        for (std::size_t i = 0; i < c.uses.size() && i < kMostCorners; ++i)
+            out.push_back(in_strip(c.uses[i].start));
     };
     if (a != nullptr)
         corners(*a, strip.from);
@@ -194,14 +202,14 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
         std::size_t i, j;
     };
     std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < a.uses.size() && i < 64; ++i)
-        for (std::size_t j = 0; j < b.uses.size() && j < 64; ++j)
+    for (std::size_t i = 0; i < a.uses.size() && i < kMostCorners; ++i)
+        for (std::size_t j = 0; j < b.uses.size() && j < kMostCorners; ++j)
             pairs.push_back(
                 {std::abs(std::remainder(a.uses[i].start[axis] - b.uses[j].start[axis], turn)), i, j});
     sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
         return std::tie(x.cost, x.i, x.j) < std::tie(y.cost, y.i, y.j);
     });
-    pairs.resize(std::min(pairs.size(), std::size_t(64)));
+    pairs.resize(std::min(pairs.size(), kMostCorners));
     Pair best = pairs.front();
     const auto ends = [&](const Pair& x) {
         const Vec<2> p = a.uses[x.i].start, q = b.uses[x.j].start;
@@ -305,11 +313,10 @@ void LoopBuilder::join_pole(Chain& c, const Pole& pole) {
         return !is_free(c, c, u.start, at);
     };
     std::optional<Way> around;
-    if (std::ranges::all_of(c.uses, across)) around = way(&c, nullptr, axis, 0, level);
-    if (around)
-        turn_to(c, around->from);
-    else if (const auto free = std::ranges::find_if_not(c.uses, across); free != c.uses.end())
-        turn_to(c, std::size_t(free - c.uses.begin()));
+    const auto corners = std::span(c.uses).first(std::min(c.uses.size(), kMostCorners));
+    const auto free = std::size_t(std::ranges::find_if_not(corners, across) - corners.begin());
+    if (free == corners.size()) around = way(&c, nullptr, axis, 0, level);
+    turn_to(c, around ? around->from : free % corners.size());
     std::vector<Vec<2>> points{c.uses.back().end};
     Vec<2> period{};
     period[axis] = points[0][axis] - c.uses.front().start[axis];

@@ -16,7 +16,9 @@ constexpr int kCoarsest = 16, kFinest = 128;  // nodes in each direction
 constexpr double kReach = 2.5;                // of corners, and how far distances matter; in cells, as all
 constexpr double kOverlap = 0.25;             // of discs
 constexpr double kApart = 0.25;               // of straight parts from outlines
-constexpr double kSame = 1e-7;                // of corners
+constexpr double kFarthest = 1e6;             // of x and y: others are no parameters of faces
+constexpr std::size_t kMostSegments = 200000;
+constexpr double kSame = 1e-7;                        // of corners
 constexpr std::array<double, 2> kBeside{0.37, 0.41};  // of nodes, so that they are on no outline
 
 using Segment = std::array<Vec<2>, 2>;
@@ -101,8 +103,9 @@ private:
 
     void add(const Segment& s) {
         outlines_.push_back(s);
-        const auto first = [](double x) { return int(std::max(std::floor(x - kReach), 0.0)); };
-        const auto end = [&](double x) { return int(std::clamp(std::ceil(x + kReach), 0.0, double(n_))); };
+        const auto within = [&](double x) { return int(std::clamp(x, 0.0, double(n_))); };
+        const auto first = [&](double x) { return within(std::floor(x - kReach)); };
+        const auto end = [&](double x) { return within(std::ceil(x + kReach)); };
         const auto [left, right] = std::minmax({s[0][0], s[1][0]});
         const auto [low, high] = std::minmax({s[0][1], s[1][1]});
         for (int i = first(left); i < end(right); ++i)
@@ -120,23 +123,28 @@ private:
                 if (const Vec<2> at = place(i, k); norm(at - p) <= kReach) visit(number(i, k), at);
     }
 
-    // The outlines around p, in its period.
+    // Of the outlines near the straight line from p to q, in the period of p.
     template <class F>
-    bool none_around(const Vec<2>& p, F is_across) const {
+    bool none_along(const Vec<2>& p, const Vec<2>& q, F is_across) const {
         const Vec<2> by{{std::floor(p[0] / n_) * n_, 0}};
+        const auto is_apart = [&](const Segment& s, int k) {
+            const auto [lo, hi] = std::minmax({p[k] - by[k], q[k] - by[k]});
+            return (s[0][k] < lo - kApart && s[1][k] < lo - kApart) ||
+                   (s[0][k] > hi + kApart && s[1][k] > hi + kApart);
+        };
         return std::ranges::none_of(outlines_, [&](const Segment& s) {
-            return is_across(Segment{s[0] + by, s[1] + by});
+            return !is_apart(s, 0) && !is_apart(s, 1) && is_across(Segment{s[0] + by, s[1] + by});
         });
     }
     bool is_free(const Vec<2>& a, const Vec<2>& b) const {
-        return std::abs(a[0] - b[0]) < n_ && none_around(a, [&](const Segment& s) {
+        return std::abs(a[0] - b[0]) < n_ && none_along(a, b, [&](const Segment& s) {
                    return distance(Segment{a, b}, s) < kApart;
                });
     }
     // From a corner, where outlines meet.
     bool can_leave(const Vec<2>& corner, const Vec<2>& to) const {
         const Vec<2> middle = 0.5 * (corner + to);
-        return std::abs(corner[0] - to[0]) < n_ && none_around(corner, [&](const Segment& s) {
+        return std::abs(corner[0] - to[0]) < n_ && none_along(corner, to, [&](const Segment& s) {
                    const bool meets = norm(s[0] - corner) <= kSame * n_ || norm(s[1] - corner) <= kSame * n_;
                    return distance(Segment{middle, to}, s) < (meets ? 0.5 * kApart : kApart) ||
                           (!meets && distance(Segment{corner, to}, s) <= kSame * n_);
@@ -182,6 +190,12 @@ private:
 }  // namespace
 
 std::optional<Way> find_way(const Strip& strip) {
+    const auto is_near = [](const Vec<2>& p) { return max_abs(p) < kFarthest; };
+    if (strip.outlines.size() > kMostSegments || !std::ranges::all_of(strip.from, is_near) ||
+        !std::ranges::all_of(strip.to, is_near) ||
+        !std::ranges::all_of(strip.outlines,
+                             [&](const Segment& s) { return is_near(s[0]) && is_near(s[1]); }))
+        return std::nullopt;
     for (int n = kCoarsest; n <= kFinest; n *= 2)
         if (auto way = Lattice(strip, n).find()) return way;
     return std::nullopt;
