@@ -12,7 +12,7 @@ namespace freiform::step {
 
 namespace {
 
-constexpr int kCoarsest = 16, kFinest = 128;  // nodes in each direction
+constexpr int kCoarsest = 16, kFinest = 512;  // nodes in each direction
 constexpr double kReach = 2.5;                // of corners, and how far distances matter; in cells, as all
 constexpr double kOverlap = 0.25;             // of discs
 constexpr double kApart = 0.25;               // of straight parts from outlines
@@ -169,12 +169,16 @@ private:
         const std::size_t end = way.size() - 1;
         for (std::size_t i = 0; i < end;) {
             std::size_t next = i + 1;
-            for (std::size_t k = end; k > i + 1 && next == i + 1; --k) {
-                if (i == 0 && k == end) continue;
+            for (std::size_t by = 2; next < end; by *= 2) {  // twice as far each time
+                const std::size_t k = std::min(i + by, end);
+                if (i == 0 && k == end) break;
                 const bool at_corner = k == end && !strip_.pole;
                 const Vec<2> to{{k == end && strip_.pole ? way[i][0] : way[k][0], way[k][1]}};
-                if (i == 0 ? can_leave(way[i], to) : at_corner ? can_leave(to, way[i]) : is_free(way[i], to))
-                    next = k, way[k] = to;
+                if (!(i == 0      ? can_leave(way[i], to)
+                      : at_corner ? can_leave(to, way[i])
+                                  : is_free(way[i], to)))
+                    break;
+                next = k, way[k] = to;
             }
             out.push_back(way[i = next]);
         }
