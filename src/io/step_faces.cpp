@@ -28,6 +28,19 @@ constexpr double kBeside = 10, kPlain = 2.2;
 constexpr double kLoose[] = {1, 4, 16};
 constexpr int kLoosest = 1 + int(std::size(kLoose));
 
+// How far a curve is from a sphere, at some places.
+double off_sphere(const Chart& chart, const CurveGeometry<3>& c, Interval on) {
+    constexpr int kPlaces = 32;
+    const auto* circle = std::get_if<Conic<3>>(&std::get<Revolution>(chart.surface()).profile);
+    if (circle == nullptr) return 0;
+    double off = 0;
+    for (int i = 0; i <= kPlaces; ++i) {
+        const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kPlaces).value();
+        off = std::max(off, std::abs(norm(p - circle->centre) - norm(circle->x)));
+    }
+    return off;
+}
+
 }  // namespace
 
 Result<ShapeReader::SurfaceMade*> ShapeReader::surface(std::uint32_t i) {
@@ -48,19 +61,6 @@ double ShapeReader::accuracy_for(double size) const {
 }
 
 bool ShapeReader::is_beside(double gap, double size) const { return gap > kBeside * accuracy_for(size); }
-
-// How far a curve is from a sphere, at some places.
-static double off_sphere(const Chart& chart, const CurveGeometry<3>& c, Interval on) {
-    constexpr int kPlaces = 32;
-    const auto* circle = std::get_if<Conic<3>>(&std::get<Revolution>(chart.surface()).profile);
-    if (circle == nullptr) return 0;
-    double off = 0;
-    for (int i = 0; i <= kPlaces; ++i) {
-        const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kPlaces).value();
-        off = std::max(off, std::abs(norm(p - circle->centre) - norm(circle->x)));
-    }
-    return off;
-}
 
 Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
                                 int loosely) {

@@ -5,6 +5,8 @@
 
 #include <freiform/model/model.hpp>
 
+#include <span>
+
 namespace freiform::step {
 
 // An edge as a loop runs through it.

@@ -17,7 +17,8 @@ constexpr double kReach = 2.5;                // of corners, and how far distanc
 constexpr double kOverlap = 0.25;             // of discs
 constexpr double kApart = 0.25;               // of straight parts from outlines
 constexpr double kFarthest = 1e6;             // of x and y: others are no parameters of faces
-constexpr std::size_t kMostSegments = 200000;
+constexpr std::size_t kMostSegments = 100000;
+constexpr double kMostCells = 3e7;                    // that outlines are near to
 constexpr double kSame = 1e-7;                        // of corners
 constexpr std::array<double, 2> kBeside{0.37, 0.41};  // of nodes, so that they are on no outline
 
@@ -154,7 +155,7 @@ private:
     bool arrives(const Vec<2>& at, Way& way) const {
         if (strip_.pole) {
             way.end = {{at[0], n_ * *strip_.pole}};
-            return is_free(at, way.end);
+            return norm(way.end - at) <= kReach && is_free(at, way.end);
         }
         for (way.to = 0; way.to < strip_.to.size(); ++way.to) {
             way.end = double(n_) * strip_.to[way.to];
@@ -200,8 +201,13 @@ std::optional<Way> find_way(const Strip& strip) {
         !std::ranges::all_of(strip.outlines,
                              [&](const Segment& s) { return is_near(s[0]) && is_near(s[1]); }))
         return std::nullopt;
-    for (int n = kCoarsest; n <= kFinest; n *= 2)
+    for (int n = kCoarsest; n <= kFinest; n *= 2) {
+        double cells = 0;
+        const auto along = [&](double d) { return n * std::min(std::abs(d), 1.0) + 2 * kReach + 2; };
+        for (const auto& [a, b] : strip.outlines) cells += 3 * along(a[0] - b[0]) * along(a[1] - b[1]);
+        if (cells > kMostCells) break;
         if (auto way = Lattice(strip, n).find()) return way;
+    }
     return std::nullopt;
 }
 

@@ -191,13 +191,15 @@ void Prover::add_crossings(std::vector<double>& t) const {
     for (std::size_t i = 1; i < count; ++i) {
         const Vec<2> next = at(t[i]);
         for (int k = 0; k < 2; ++k)
-            for (const SurfaceSeam& s : seams_[std::size_t(k)]) {
-                const double before = last[k] - s.at, after = next[k] - s.at;
+            for (auto s = std::ranges::upper_bound(seams_[std::size_t(k)], std::min(last[k], next[k]), {},
+                                                   &SurfaceSeam::at);
+                 s != seams_[std::size_t(k)].end() && s->at < std::max(last[k], next[k]); ++s) {
+                const double before = last[k] - s->at, after = next[k] - s->at;
                 const double along = kAlong * std::max(std::abs(last[k]), std::abs(next[k]));
-                if (!(before * after < 0) || std::min(std::abs(before), std::abs(after)) <= along) continue;
+                if (std::min(std::abs(before), std::abs(after)) <= along) continue;
                 Interval on{t[i - 1], t[i]};
                 for (double m = on.middle(); on.lo < m && m < on.hi; m = on.middle())
-                    ((at(m)[k] - s.at) * before > 0 ? on.lo : on.hi) = m;
+                    ((at(m)[k] - s->at) * before > 0 ? on.lo : on.hi) = m;
                 t.push_back(on.lo);
             }
         last = next;
