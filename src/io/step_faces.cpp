@@ -29,14 +29,12 @@ constexpr double kLoose[] = {1, 4, 16};
 constexpr int kLoosest = 1 + int(std::size(kLoose));
 
 // How far a curve is from a sphere, at some places.
-double off_sphere(const Chart& chart, const CurveGeometry<3>& c, Interval on) {
+double off_sphere(const FoundSphere& sphere, const CurveGeometry<3>& c, Interval on) {
     constexpr int kPlaces = 32;
-    const auto* circle = std::get_if<Conic<3>>(&std::get<Revolution>(chart.surface()).profile);
-    if (circle == nullptr) return 0;
     double off = 0;
     for (int i = 0; i <= kPlaces; ++i) {
         const Vec<3> p = jet<0>(c, on.lo + on.length() * i / kPlaces).value();
-        off = std::max(off, std::abs(norm(p - circle->centre) - norm(circle->x)));
+        off = std::max(off, std::abs(norm(p - sphere.centre) - sphere.radius));
     }
     return off;
 }
@@ -79,7 +77,7 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart&
         if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough, images);
             plain && plain->gap <= kPlain * t->gap)
             t = std::move(plain);
-    if (strict_ && is_beside(t->gap, size) && t->gap > 2 * off_sphere(chart, *e.curve, e.range))
+    if (strict_ && is_beside(t->gap, size) && t->gap > 2 * off_sphere(*strict_, *e.curve, e.range))
         return refuse(RefusalKind::ill_conditioned, "parameter curve",
                       "runs too near to a pole to be followed");
     if (size > 0 && !(t->gap < kHopeless * size))
@@ -316,7 +314,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
     };
     if (const auto half = other_half(*(*s)->chart, used)) return attempt(Chart(*half, tolerance_));
     const Chart& chart = chart_of(**s, *on, used);
-    strict_ = chart.is_sphere();
+    strict_ = sphere_of(chart, tolerance_);
     auto made = attempt(chart);
     if (&chart != (*s)->chart.get()) {
         if (made)
@@ -335,7 +333,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
             }
             same = same != turned->inwards;
         }
-    if (std::exchange(strict_, false) && !made) made = attempt(chart);
+    if (std::exchange(strict_, std::nullopt) && !made) made = attempt(chart);
     if (!made) out_.model.repairs.resize(repairs), turned_now_.reset();
     return made;
 }

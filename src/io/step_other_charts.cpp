@@ -9,39 +9,45 @@
 
 namespace freiform::step {
 
-// A sphere with its poles elsewhere: as far as possible from the edges. An edge that runs through a
-// pole has no continuous parameter curve; the same sphere with another axis has one for it. Also of a circle
-// that is turned about a line through its centre, the normal of which may look inwards.
-std::optional<ShapeReader::OtherSphere> ShapeReader::other_poles(const Chart& chart,
-                                                                 const std::vector<int>& used) const {
-    constexpr int kSamples = 48, kDirections = 400;
+std::optional<FoundSphere> sphere_of(const Chart& chart, double tolerance) {
     constexpr double kMoved = 64;
     constexpr double kSphere = 1e-3;  // of the tolerance: what is so near to a sphere is one, and told
+    if (const auto* spline = std::get_if<Surface<Hom<3>>>(&chart.surface()))
+        return chart.poles().empty() ? std::nullopt : freiform::sphere_of(*spline, kSphere * tolerance);
     const auto* s = std::get_if<Revolution>(&chart.surface());
     const auto* circle = s != nullptr ? std::get_if<Conic<3>>(&s->profile) : nullptr;
     if (circle == nullptr || circle->kind != ConicKind::ellipse) return std::nullopt;
-    const double radius = norm(circle->x);
-    double off = 0;
-    if (s->kind != SurfaceKind::sphere) {
-        const Vec<3> from = circle->centre - s->origin, axis = unit(s->axis);
-        // A point of the circle is so far from the sphere about its centre, which moves as the circle turns.
-        off = 1.01 * (2 * norm(from - dot(from, axis) * axis) + std::abs(norm(circle->y) - radius) +
-                      std::abs(dot(circle->x, circle->y)) / radius);
-        if (!(off <= kSphere * tolerance_) ||
-            std::abs(dot(unit(cross(circle->x, circle->y)), axis)) * radius > kSphere * tolerance_)
-            return std::nullopt;
-        off += kMoved * kUnitRoundoff * (max_abs(circle->centre) + radius);
-    }
-    const Vec<2> middle{{chart.whole()[0].lo, chart.whole()[1].middle()}};
+    FoundSphere found{circle->centre, norm(circle->x), 0};
+    if (s->kind == SurfaceKind::sphere) return found;
+    const Vec<3> from = circle->centre - s->origin, axis = unit(s->axis);
+    // A point of the circle is so far from the sphere about its centre, which moves as the circle turns.
+    found.off = 1.01 * (2 * norm(from - dot(from, axis) * axis) + std::abs(norm(circle->y) - found.radius) +
+                        std::abs(dot(circle->x, circle->y)) / found.radius);
+    if (!(found.off <= kSphere * tolerance) ||
+        std::abs(dot(unit(cross(circle->x, circle->y)), axis)) * found.radius > kSphere * tolerance)
+        return std::nullopt;
+    found.off += kMoved * kUnitRoundoff * (max_abs(circle->centre) + found.radius);
+    return found;
+}
+
+// A sphere with its poles elsewhere: as far as possible from the edges. An edge that runs through a
+// pole has no continuous parameter curve; the same sphere with another axis has one for it. Also of other
+// surfaces that are spheres, the normals of which may look inwards.
+std::optional<ShapeReader::OtherSphere> ShapeReader::other_poles(const Chart& chart,
+                                                                 const std::vector<int>& used) const {
+    constexpr int kSamples = 48, kDirections = 400;
+    const auto sphere = sphere_of(chart, tolerance_);
+    if (!sphere) return std::nullopt;
+    const Vec<2> middle{{chart.whole()[0].middle(), chart.whole()[1].middle()}};
     const auto j = jet<1>(chart.surface(), middle.c);
-    const bool inwards = dot(cross(j.d[1], j.d[2]), j.d[0] - circle->centre) < 0;
+    const bool inwards = dot(cross(j.d[1], j.d[2]), j.d[0] - sphere->centre) < 0;
     std::vector<Vec<3>> on;
     for (const int edge : used) {
         const Edge& e = out_.model.edges[std::size_t(edge)];
         if (!e.curve) continue;
         for (int i = 0; i <= kSamples; ++i)
             on.push_back(unit(jet<0>(*e.curve, e.range.lo + e.range.length() * i / kSamples).value() -
-                              circle->centre));
+                              sphere->centre));
     }
     Vec<3> best{};
     double widest = -1;
@@ -53,12 +59,12 @@ std::optional<ShapeReader::OtherSphere> ShapeReader::other_poles(const Chart& ch
         for (const Vec<3>& p : on) near = std::min(near, 1 - std::abs(dot(p, z)));
         if (near > widest) widest = near, best = z;
     }
-    Vec<3> x = unit(circle->x);
-    if (std::abs(dot(x, best)) > 0.9) x = unit(circle->y);
-    x = unit(x - dot(x, best) * best);
-    return OtherSphere{Revolution{Conic<3>{ConicKind::ellipse, circle->centre, radius * x, radius * best},
-                                  circle->centre, best, SurfaceKind::sphere},
-                       inwards, off};
+    const Vec<3> beside{{std::abs(best[0]) < 0.6 ? 1.0 : 0.0, std::abs(best[0]) < 0.6 ? 0.0 : 1.0, 0}};
+    const Vec<3> x = unit(beside - dot(beside, best) * best);
+    return OtherSphere{
+        Revolution{Conic<3>{ConicKind::ellipse, sphere->centre, sphere->radius * x, sphere->radius * best},
+                   sphere->centre, best, SurfaceKind::sphere},
+        inwards, sphere->off};
 }
 
 // A circle that turns about a line through it passes every place twice, with either normal; charts keep to

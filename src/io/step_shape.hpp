@@ -6,6 +6,7 @@
 #include <freiform/io/step_read.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/model/swept_solid.hpp>
+#include <freiform/query/sphere_of.hpp>
 
 #include <functional>
 #include <map>
@@ -195,7 +196,8 @@ private:
     // Faces whose loops were turned, with what was said of it, until those beside them have been asked.
     std::unordered_map<int, std::size_t> turned_;
     std::optional<std::size_t> turned_now_;  // of the face that is being made
-    bool strict_ = false;  // likewise: edges that are not followed closely are refused, as other poles may do
+    // Likewise, if its surface is one: edges not followed closely are refused, as other poles may do.
+    std::optional<FoundSphere> strict_;
     std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
     std::unordered_map<int, std::uint32_t> vertex_of_;  // what the file calls a vertex
@@ -208,6 +210,10 @@ private:
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
     std::unordered_map<const Chart*, std::uint32_t> charts_;
 };
+
+// The sphere that the surface of a chart is, or stands for: a circle that turns about a line through its
+// centre is one, and so is a rational spline with poles that lies on one. Nothing for others.
+std::optional<FoundSphere> sphere_of(const Chart& chart, double tolerance);
 
 // Of what has its name first; some programs write NONE for none.
 std::string name_in(const Fields& f);

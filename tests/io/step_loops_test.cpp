@@ -311,7 +311,9 @@ TEST(StepLoops, faces_beside_poles_and_over_seams_have_their_area) {
     const std::pair<std::string_view, double> files[] = {
         {"vertex_beside_apex", 19.9339163356},     {"circle_beside_pole", 97264.3461265},
         {"circle_near_pole", 23.6996022194},       {"hole_over_seams", 22.6667767662},
-        {"holes_across_meridians", 0.79836562745}, {"turned_circle_with_hole", 3.7332649361}};
+        {"holes_across_meridians", 0.79836562745}, {"turned_circle_with_hole", 3.7332649361},
+        {"spline_sphere_cap", 278.38231949067},    {"spline_sphere_lune", 0.058070326256},
+        {"spline_sphere_ring", 1.2853364591715}};
     for (const auto& [name, area] : files) {
         const Model m = must(read_step(
             must(read_file(text(FREIFORM_SOURCE_DIR, "/tests/data/step/", name, ".stp"), 1 << 20))));
