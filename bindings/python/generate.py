@@ -54,6 +54,7 @@ RECORDS = {
     "query/oriented_box": ["OrientedBox"],
     "query/reparametrise": ["ArcLengthCurve"],
     "query/self_intersection": ["SelfIntersection"],
+    "query/sphere_of": ["FoundSphere"],
     "query/surface_continuity": ["LargestJump", "SurfaceContinuity", "LineContinuity", "SurfaceMeeting", "SurfaceJoint"],
     "query/surface_curvature": ["SurfaceCurvature", "LimitNormal"],
     "query/triangle_joint": ["Deviation", "TriangleJoint"],

@@ -5,6 +5,7 @@
 
 #include <freiform/io/step_read.hpp>
 #include <freiform/model/model.hpp>
+#include <freiform/model/pipe.hpp>
 #include <freiform/model/swept_solid.hpp>
 #include <freiform/query/sphere_of.hpp>
 
@@ -154,7 +155,8 @@ private:
     bool add_swept(std::uint32_t item);
     Result<SweptRegion> swept_region(std::uint32_t i);
     Result<SweptModel> swept_by(const Fields& f, bool turns);
-    Result<BoundedCurve> directrix(const Fields& f, std::uint32_t item);
+    Result<BoundedCurve> directrix(const Fields& f, std::uint32_t item, std::uint32_t curve);
+    Result<std::vector<RailPart>> rail_of(const Fields& f, std::uint32_t item);
     Result<SweptModel> swept_disc(const Fields& f, std::uint32_t item);
     Result<SweptModel> primitive(const Fields& f, Type type);
     void take(std::uint32_t item, SweptModel made);

@@ -30,6 +30,7 @@ namespace freiform::step {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi, kRoundings = 8, kMoved = 64;
+constexpr double kAll = 1e-6;   // of its parameters: a row is asked for from end to end
 constexpr double kFine = 1e-7;  // of the size: walls that are splines are not asked to be nearer
 
 // Coordinates, without those that are but the rounding of zero.
@@ -87,6 +88,22 @@ double end_at(CurveGeometry<2>& curve, const Vec<2>& p) {
             return 0;
         },
         curve);
+}
+
+// Polylines as lines, all else as it is.
+void add_rail(const CurveGeometry<3>& c, Interval on, bool backward, std::vector<RailPart>& out) {
+    const auto* polyline = std::get_if<Curve<Vec<3>>>(&c);
+    if (polyline == nullptr || polyline->basis().degree() != 1) return out.push_back({c, on, backward});
+    std::vector<double> at{on.lo};
+    for (const double t : polyline->basis().breaks())
+        if (at.back() < t && t < on.hi) at.push_back(t);
+    at.push_back(on.hi);
+    std::vector<Vec<3>> corners;
+    for (const double t : at) corners.push_back(jet<0>(c, t).value());
+    if (backward) std::ranges::reverse(corners);
+    for (std::size_t k = 0; k + 1 < corners.size(); ++k)
+        if (const Vec<3> way = corners[k + 1] - corners[k]; norm(way) > 0)
+            out.push_back({Line<3>{corners[k], way}, {0, 1}, false});
 }
 
 double reach_of(const RegionLoops& loops, const Vec<2>& from) {
@@ -204,27 +221,59 @@ Result<ShapeReader::SweptModel> ShapeReader::swept_by(const Fields& f, bool turn
     return out;
 }
 
-// The part of the directrix that its solid uses.
-Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item) {
+// What the directrix consists of, as its solid uses it.
+Result<std::vector<RailPart>> ShapeReader::rail_of(const Fields& f, std::uint32_t item) {
     auto at = f.reference(1, "directrix");
     if (!at) return std::unexpected(at.error());
-    for (std::uint32_t c = composite_in(f_, *at); c != kMissing; c = composite_in(f_, *at)) {
-        const auto segments = segments_in(f_, c);
+    std::uint32_t composite = composite_in(f_, *at);
+    for (; composite != kMissing; composite = composite_in(f_, *at)) {
+        const auto segments = segments_in(f_, composite);
         if (!segments) return std::unexpected(segments.error());
         if (segments->size() != 1 || items_left_ == 0) break;
         --items_left_;
         at = segments->front().curve;
     }
-    auto c = curve_in_space(*at, nullptr);
+    if (composite == kMissing) {
+        const auto c = directrix(f, item, *at);
+        if (!c) return std::unexpected(c.error());
+        std::vector<RailPart> out;
+        add_rail(c->curve, *c->range, false, out);
+        return out;
+    }
+    auto row = segments_of(composite);
+    if (!row) return std::unexpected(row.error());
+    turn_segments(*row, tolerance_);
+    double sum = 0;  // the parameters of a row count on
+    std::vector<RailPart> out;
+    for (const Segment& s : *row) {
+        sum += s.on.length();
+        add_rail(s.shape, s.on, s.backward, out);
+    }
+    if (f.is_omitted(4) && f.is_omitted(5)) return out;
+    const auto from = f.number(4, "start parameter"), to = f.number(5, "end parameter");
+    if (!from || !to) return std::unexpected(from ? to.error() : from.error());
+    const double given = *to - *from;
+    if (std::abs(given - sum) > kAll * sum && given != double(row->size()))
+        report(-1,
+               text(f_.label(item), ": its directrix of ", row->size(), " segments is asked for from ", *from,
+                    " to ", *to, "; all of it is swept"),
+               0.0, 0);
+    return out;
+}
+
+// The part of a directrix of one curve that its solid uses.
+Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item, std::uint32_t curve) {
+    auto c = curve_in_space(curve, nullptr);
     if (!c) return c;
     const Interval whole = domain(c->curve)[0], given = c->range.value_or(whole);
+    const auto* conic = std::get_if<Conic<3>>(&c->curve);
+    const bool goes_round = conic != nullptr && conic->kind == ConicKind::ellipse;
     if (f.is_omitted(4) && f.is_omitted(5)) {
         c->range = given;
     } else {
         const auto from = f.number(4, "start parameter"), to = f.number(5, "end parameter");
         if (!from || !to) return std::unexpected(from ? to.error() : from.error());
-        const auto* conic = std::get_if<Conic<3>>(&c->curve);
-        const bool angles = c->has_angles || (conic != nullptr && conic->kind == ConicKind::ellipse);
+        const bool angles = c->has_angles || goes_round;
         const double unit = angles ? geometry_.angle : 1;
         const Interval on{*from * unit, *to * unit};
         if (!(on.lo < on.hi))
@@ -235,7 +284,7 @@ Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item)
         };
         const Interval later = c->reversed ? Interval{given.hi - on.hi, given.hi - on.lo}
                                            : Interval{given.lo + on.lo, given.lo + on.hi};
-        const bool is_whole = conic != nullptr && conic->kind == ConicKind::ellipse && !c->range;
+        const bool is_whole = goes_round && !c->range;
         c->range = given;
         if (is_whole && on.length() <= kTurn + slack)  // from anywhere, over the seam
             c->range = on;
@@ -251,6 +300,7 @@ Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item)
     }
     if (!std::isfinite(c->range->length()) || !(c->range->lo < c->range->hi))
         return f.refused("has a directrix without an end", RefusalKind::invalid);
+    if (goes_round) c->range->hi = std::min(c->range->hi, c->range->lo + kTurn);
     return c;
 }
 
@@ -260,56 +310,36 @@ Result<ShapeReader::SweptModel> ShapeReader::swept_disc(const Fields& f, std::ui
     if (!radius || !hole) return std::unexpected(radius ? hole.error() : radius.error());
     if (!(*hole >= 0 && *hole < *radius))
         return f.refused(text("has the radii ", *radius, " and ", *hole), RefusalKind::invalid);
-    const auto c = directrix(f, item);
-    if (!c) return std::unexpected(c.error());
-    const Interval on = *c->range;
-    const auto* line = std::get_if<Line<3>>(&c->curve);
-    const auto* conic = std::get_if<Conic<3>>(&c->curve);
-    const double size = conic != nullptr ? norm(conic->x) : 0;
-    const bool is_circle = conic != nullptr && conic->kind == ConicKind::ellipse &&
-                           std::abs(norm(conic->y) - size) <= kRoundings * kUnitRoundoff * size &&
-                           std::abs(dot(conic->x, conic->y)) <= kRoundings * kUnitRoundoff * size * size;
-    const Vec<2> centre{{is_circle ? size : 0, 0}};
+    const auto rail = rail_of(f, item);
+    if (!rail) return std::unexpected(rail.error());
+    SweptModel out;
+    auto exact = pipe(*rail, *radius, *hole, tolerance_);
+    if (exact) {
+        out.model = *std::move(exact);
+        return out;
+    }
+    if (rail->size() > 1 || is_line_or_circle(rail->front().curve)) {
+        const Refusal& r = exact.error();
+        const bool of_rail = r.where.starts_with("rail");
+        return refuse(r.kind, of_rail ? text("its directrix", r.where.substr(4)) : r.where, r.message);
+    }
     RegionLoops ring;
     for (const double r : {*radius, *hole}) {
         if (r == 0) continue;
-        auto loop = circle_about(centre, r);
+        auto loop = circle_about({}, r);
         if (!loop) return std::unexpected(loop.error());
         ring.push_back(*std::move(loop));
     }
-    SweptModel out;
-    Result<Model> made = Model{};
-    if (line != nullptr) {
-        const Vec<3> z = unit(line->direction);
-        int least = 0;
-        for (int k = 1; k < 3; ++k)
-            if (std::abs(z[k]) < std::abs(z[least])) least = k;
-        Vec<3> e;
-        e[least] = 1;
-        const Vec<3> x = unit(cross(e, z));
-        out.to = motion_to({line->origin + on.lo * line->direction, x, cross(z, x), z});
-        made = prism(ring, {{0, 0, on.length() * norm(line->direction)}});
-    } else if (is_circle) {
-        const Vec<3> x = unit(conic->x), y = unit(conic->y), z = cross(x, y);
-        const Vec<3> start = std::cos(on.lo) * x + std::sin(on.lo) * y;
-        out.to = motion_to({conic->centre, start, z, cross(start, z)});
-        const double turn = on.length(), misses = std::abs(turn - kTurn) * (size + *radius);
-        if (misses > 0 && misses <= tolerance_) out.off += misses;
-        made = solid_of_revolution(ring, {{}, {{0, 1, 0}}}, misses <= tolerance_ ? kTurn : turn);
-    } else {
-        const auto rail = space_spline(c->curve, on);
-        if (!rail) return std::unexpected(rail.error());
-        const auto* plain = std::get_if<Curve<Vec<3>>>(&*rail);
-        const auto spline = plain != nullptr ? to_rational(*plain) : std::get<Curve<Hom<3>>>(*rail);
-        Box<3> box;
-        for (const Hom<3>& p : spline.net().flat()) box.add(project(p));
-        auto along = solid_along(ring, spline, {.tolerance = std::max(tolerance_, kFine * box.diagonal())});
-        if (!along) return std::unexpected(along.error());
-        out.off = along->bound;
-        made = std::move(along->model);
-    }
+    const auto spline = space_spline(rail->front().curve, rail->front().on);
+    if (!spline) return std::unexpected(spline.error());
+    const auto* plain = std::get_if<Curve<Vec<3>>>(&*spline);
+    const auto along = plain != nullptr ? to_rational(*plain) : std::get<Curve<Hom<3>>>(*spline);
+    Box<3> box;
+    for (const Hom<3>& p : along.net().flat()) box.add(project(p));
+    auto made = solid_along(ring, along, {.tolerance = std::max(tolerance_, kFine * box.diagonal())});
     if (!made) return std::unexpected(made.error());
-    out.model = *std::move(made);
+    out.off = made->bound;
+    out.model = std::move(made->model);
     return out;
 }
 

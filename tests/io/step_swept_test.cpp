@@ -159,6 +159,41 @@ TEST(StepSwept, discs_along_lines_and_circles_are_exact) {
     EXPECT_EQ(times_told(m, "its directrix has no parameters from 0 to 4; all of it is swept"), 1);
 }
 
+// A line from (2, 0, 3) up to z = 7, a quarter of a circle of radius 2, a line to x = 9.
+constexpr std::string_view kRow =
+    "#40=COMPOSITE_CURVE('',(#41,#42,#43),.F.);\n#41=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#44);\n"
+    "#42=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.F.,#45);\n#43=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#46);\n"
+    "#44=POLYLINE('',(#51,#52));\n#51=CARTESIAN_POINT('',(2.,0.,3.));\n"
+    "#52=CARTESIAN_POINT('',(2.,0.,7.));\n#46=POLYLINE('',(#53,#54));\n"
+    "#53=CARTESIAN_POINT('',(4.,0.,9.));\n#54=CARTESIAN_POINT('',(9.,0.,9.));\n"
+    "#45=TRIMMED_CURVE('',#55,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(1.5707963267949)),.T.,.PARAMETER.);\n"
+    "#55=CIRCLE('',#56,2.);\n#56=AXIS2_PLACEMENT_3D('',#57,#58,#59);\n"
+    "#57=CARTESIAN_POINT('',(4.,0.,7.));\n#58=DIRECTION('',(0.,-1.,0.));\n#59=DIRECTION('',(0.,0.,1.));\n";
+
+TEST(StepSwept, discs_along_rows_of_lines_and_arcs_are_exact) {
+    const auto disc = [&](std::string_view fields, std::string_view row = kRow) {
+        return swept(text("SWEPT_DISK_SOLID('pipe',", fields, ")"), row);
+    };
+    const double length = 4 + kPi + 5;
+    const Model m = disc("#40,1.,0.5,$,$");
+    expect_volume(m, length * kPi * 0.75);
+    EXPECT_TRUE(m.approximations.empty());
+    EXPECT_EQ(m.faces.size(), 8u);
+    EXPECT_EQ(m.bodies.at(0).name, "pipe");
+    const Box<3> box = box_of(m);
+    EXPECT_LT(norm(box.lo - Vec<3>{{1, -1, 3}}), kNear);
+    EXPECT_LT(norm(box.hi - Vec<3>{{9, 1, 10}}), kNear);
+    // Parameters of all of it are those of its parts, one after the other; others are told.
+    EXPECT_TRUE(disc(text("#40,1.,$,0.,", 1 + kPi / 2 + 1)).approximations.empty());
+    EXPECT_TRUE(disc("#40,1.,$,0.,3.").approximations.empty());
+    EXPECT_EQ(times_told(disc("#40,1.,$,0.5,2."), "is asked for from 0.5 to 2; all of it is swept"), 1);
+    std::string corner(kRow);
+    corner.replace(corner.find("(9.,0.,9.)"), 10, "(9.,0.,5.)");
+    expect_refused("SWEPT_DISK_SOLID('',#40,1.,$,$)", RefusalKind::invalid, "its directrix[1]", corner);
+    expect_refused("SWEPT_DISK_SOLID('',#40,2.,$,$)", RefusalKind::unsupported, "bends with the radius 2",
+                   kRow);
+}
+
 TEST(StepSwept, discs_along_splines_are_near_within_what_is_told) {
     const Model m = swept("SWEPT_DISK_SOLID('',#40,0.2,0.1,0.,1.)",
                           "#40=B_SPLINE_CURVE_WITH_KNOTS('',2,(#30,#31,#34),.UNSPECIFIED.,.F.,.F.,(3,3),(0.,"

@@ -298,6 +298,27 @@ def test_a_region_along_a_rail_is_a_solid():
     assert s.bound <= 1e-4 and s.model.summary().solids == 1 and s.model.tessellate(0.01).topology.open_edges == 0
 
 
+def test_a_pipe_has_the_volume_of_its_disc_times_its_way():
+    corners = [[0, 0, 0], [9, 0, 0], [9, 7, 0]]
+    m = ff.Model.pipe(corners, 0.75, 0.5, bend=1.5)
+    made = m.tessellate(1e-3)
+    assert made.topology.open_edges == 0 and [f.kind for f in m.faces].count("torus") == 2
+    a, b, c = made.mesh.points[made.mesh.vertex_points[made.mesh.triangles.T]]
+    volume = (a * np.cross(b, c)).sum() / 6
+    assert volume == pytest.approx((9 + 7 - 2 * 1.5 + 1.5 * pi / 2) * pi * (0.75**2 - 0.5**2), 1e-2)
+    assert m.summary().solids == 1
+    with pytest.raises(ff.InvalidError, match="needs an arc"):
+        ff.Model.pipe(corners, 0.75)
+
+
+def test_the_sphere_that_a_surface_lies_on_is_found():
+    found = BALL.sphere(1e-9)
+    assert found.off < 1e-12 and found.radius == pytest.approx(2, 1e-12)
+    assert SAIL.sphere(1e-3) is None
+    assert ff.sphere_through([[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0]]).radius == pytest.approx(1)
+    assert ff.sphere_through([[1, 0, 0], [0, 1, 0], [0, 0, 0], [-1, 0, 0]]) is None
+
+
 def test_a_model_that_is_not_closed_is_refused_a_side():
     with pytest.raises(ff.NoAnswerError):
         ff.Model.assemble([SAIL]).inside([[0, 0, 0]], 1e-3)

@@ -144,6 +144,12 @@ class Model:
         """The region that a path bounds, along a rail in the frame that does not turn about it."""
         return _core.solid_along(path._c, rail._c, tolerance, points_array(x_at_start))
 
+    @staticmethod
+    @from_header("model/pipe:pipe")
+    def pipe(corners: ArrayLike, radius: float, hole: float = 0.0, *, bend: float = 0.0, closed: bool = False) -> Model:
+        """A pipe along a polyline of shape (n, 3), whose corners are rounded by arcs of the radius `bend`."""
+        return _core.pipe(points_array(corners), radius, hole, bend, closed)
+
     @classmethod
     def unpacked(cls, text: str) -> Model:
         """From the text that the repr of a model holds."""

@@ -10,13 +10,14 @@ import numpy as np
 from . import _core
 from ._base import Array, ArrayLike, IntervalLike, Record, from_header, handles, pair, points_array
 from ._patches import AnyPatch, Curve, Surface
-from ._records import (ConvexHull, CurveJoint, Intersections, LeastDistance, NearestFeet, NearRegions, OrientedBox,
-                       SurfaceContinuity, SurfaceIntersection, SurfaceJoint)
+from ._records import (ConvexHull, CurveJoint, FoundSphere, Intersections, LeastDistance, NearestFeet,
+                       NearRegions, OrientedBox, SurfaceContinuity, SurfaceIntersection, SurfaceJoint)
 from ._refusals import InvalidError, UnsupportedError
 from ._triangles import TriangularPatch
 
 __all__ = ["NearestQuery", "NearestPoints", "FarthestPoints", "nearest", "farthest", "least_distance", "convex_hull",
-           "oriented_box", "hull_of_points", "intersect", "intersect_all", "intersect_lines", "joints", "surface_joint"]
+           "oriented_box", "sphere_through", "hull_of_points", "intersect", "intersect_all", "intersect_lines",
+           "joints", "surface_joint"]
 
 NearObject = Union[AnyPatch, TriangularPatch]
 
@@ -130,6 +131,12 @@ def convex_hull(object: NearObject, tolerance: float) -> ConvexHull:
 def oriented_box(object: NearObject, accuracy: float) -> OrientedBox:
     """A small box in any orientation."""
     return NearestQuery(object).oriented_box(accuracy)
+
+
+@from_header("query/sphere_of:sphere_through")
+def sphere_through(points: ArrayLike) -> FoundSphere | None:
+    """The sphere nearest to points of shape (n, 3) by least squares; None for points in a plane."""
+    return _core.sphere_through(points_array(points))
 
 
 @from_header("query/hull:convex_hull", "query/hull:hull_triangles")

@@ -7,7 +7,7 @@ from . import _core
 from ._base import Array, ArrayLike, Interval, IntervalLike, from_header, pair, points_array
 from ._curves import Curve
 from ._patch import _basis_tuples, _broadcast, _Patch
-from ._records import LimitNormal, LineContinuity, Section, SurfaceCurvature
+from ._records import FoundSphere, LimitNormal, LineContinuity, Section, SurfaceCurvature
 from ._refusals import InvalidError
 
 if TYPE_CHECKING:
@@ -100,6 +100,11 @@ class Surface(_Patch[_core.SurfaceHandle]):
     def limit_normal(self, u: float, v: float, direction: ArrayLike | None = None) -> LimitNormal:
         """The unit normal, also at poles."""
         return _core.limit_normal(self._c, (u, v), None if direction is None else points_array(direction))
+
+    @from_header("query/sphere_of:sphere_of")
+    def sphere(self, tolerance: float) -> FoundSphere | None:
+        """The sphere that the surface lies on within the tolerance, with a proven distance; None for others."""
+        return _core.sphere_of(self._c, tolerance)
 
     def partial(self, axis: int) -> Surface:
         """The partial derivative as a surface; refused of rational ones."""

@@ -27,6 +27,7 @@
 #include <freiform/model/assemble.hpp>
 #include <freiform/model/bounds.hpp>
 #include <freiform/model/edge_length.hpp>
+#include <freiform/model/pipe.hpp>
 #include <freiform/model/rescale.hpp>
 #include <freiform/trim/loops.hpp>
 
@@ -148,6 +149,17 @@ void bind_model_making(py::module_& m) {
             });
         },
         py::arg("path"), py::arg("rail"), py::arg("tolerance"), py::arg("x_at_start"));
+    m.def(
+        "pipe",
+        [](const Array& corners, double radius, double hole, double bend, bool closed) {
+            const auto at = points_of<Vec<3>>(corners, "corners");
+            return answer([&]() -> Result<Model> {
+                const auto rail = bent_polyline(at, bend, closed);
+                if (!rail) return std::unexpected(rail.error());
+                return pipe(*rail, radius, hole);
+            });
+        },
+        py::arg("corners"), py::arg("radius"), py::arg("hole"), py::arg("bend"), py::arg("closed"));
     m.def(
         "inside_loops",
         [](const std::vector<std::vector<CurveHandle>>& loops, double gap, const Array& points) {

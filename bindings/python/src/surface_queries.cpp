@@ -3,6 +3,7 @@
 #include "records/query/bounds.hpp"
 #include "records/query/continuity.hpp"
 #include "records/query/surface_continuity.hpp"
+#include "records/query/sphere_of.hpp"
 #include "records/query/surface_curvature.hpp"
 #include "records/spline/edge.hpp"
 
@@ -75,6 +76,17 @@ void bind_surface_queries(py::module_& m) {
             });
         },
         py::arg("surface"), py::arg("uv"), py::arg("direction"));
+    m.def(
+        "sphere_of",
+        [](const SurfaceHandle& h, double tolerance) {
+            const auto s = as<Hom<3>, 2>(*h.patch, "surface");
+            return to_py(unlocked([&] { return sphere_of(s, tolerance); }));
+        },
+        py::arg("surface"), py::arg("tolerance"));
+    m.def(
+        "sphere_through",
+        [](const Array& points) { return to_py(sphere_through(points_of<Vec<3>>(points, "points"))); },
+        py::arg("points"));
     m.def(
         "surface_continuity",
         [](const SurfaceHandle& h, int axis, const SurfaceOptions& o) {
