@@ -2,8 +2,8 @@
 #include "records/core/interval.hpp"
 #include "records/query/bounds.hpp"
 #include "records/query/continuity.hpp"
-#include "records/query/surface_continuity.hpp"
 #include "records/query/sphere_of.hpp"
+#include "records/query/surface_continuity.hpp"
 #include "records/query/surface_curvature.hpp"
 #include "records/spline/edge.hpp"
 
