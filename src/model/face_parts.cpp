@@ -33,19 +33,25 @@ double cut(std::span<const Kink> kinks, Interval on, bool anywhere) {
 }  // namespace
 
 Result<FaceParts> FaceParts::make(const Face& face, const std::vector<Edge>& edges, double accuracy) {
-    // A first look without demands says how large the face is, and how far parameters move its points.
-    const double any = std::numeric_limits<double>::infinity();
-    const auto rough = FaceRegion::make(face, edges, {{any, any}}, 1);
+    // A first look without demands says how large the face is.
+    const auto rough = FaceRegion::rough(face, edges);
     if (!rough) return std::unexpected(rough.error());
     const DerivativeQuery<2, 3> surface(face.surface);
-    const auto d = surface({rough->box().side(0), rough->box().side(1)}, 1);
-    Vec<2> sag;
-    for (int i = 0; i < 2; ++i) {
-        const double stretch = i == 0 ? d(1, 0) : d(0, 1);
-        sag[i] =
-            stretch > 0 && std::isfinite(stretch) ? accuracy / stretch : 1e-4 * rough->box().side(i).length();
-    }
-    auto region = FaceRegion::make(face, edges, sag, kMaxChords);
+    const auto on = limits(face.surface);
+    const auto too_much = [&](const Box<2>& around, const Vec<2>& sag) {
+        Box<2> box;
+        box.add(clamped(around.lo, on)), box.add(clamped(around.hi, on));
+        const auto d = surface({box.side(0), box.side(1)}, 1);
+        double most = 0;
+        for (int i = 0; i < 2; ++i) {
+            const double stretch = i == 0 ? d(1, 0) : d(0, 1);
+            const double may =
+                std::isfinite(stretch) ? accuracy / stretch : 1e-4 * rough->box().side(i).length();
+            if (sag[i] > 0) most = std::max(most, sag[i] / may);
+        }
+        return most;
+    };
+    auto region = FaceRegion::make(face, edges, too_much, kMaxChords);
     if (!region) return std::unexpected(region.error());
     return FaceParts(face, std::move(*region));
 }

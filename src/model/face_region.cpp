@@ -1,5 +1,6 @@
 // Method. |p(t) - chord| <= h^2 / 8 max |p''| on an interval of length h, for u and v by themselves;
-// intervals begin at kinks. Curve and chord are both in the box of the control points, too, which says more
+// intervals begin at kinks, and the worst is halved first, so that where there are no more to be had none is
+// left coarse. Curve and chord are both in the box of the control points, too, which says more
 // where knots are crowded and the interval holds many. Jumps between neighbouring curves become chords of
 // their own, so that the polygon is closed and the odd-even rule has a meaning. A point that no fattened
 // chord holds is inside the polygon exactly if it is inside the curves: moving the curves to their chords
@@ -20,13 +21,16 @@ namespace {
 
 constexpr double kRound = 1e-15;  // of the size of the coordinates: evaluated points are off by less
 
-// Of one parameter curve: the ends of intervals, each with what its curve may leave the chord by.
-struct Pieces {
-    std::vector<double> at;
-    std::vector<Vec<2>> sag;  // one fewer
+// An interval of a parameter curve, and what the curve may leave its chord by.
+struct Piece {
+    Interval on;
+    Vec<2> sag{};
+    double too_much = 0;
 };
 
-Result<Pieces> pieces_of(const CurveGeometry<2>& curve, Interval on, Vec<2> sag, std::size_t max_chords) {
+// In order.
+Result<std::vector<Piece>> pieces_of(const CurveGeometry<2>& curve, Interval on,
+                                     const FaceRegion::TooMuch& too_much, std::size_t max_chords) {
     const CurveGeometry<1> u = component_of(curve, 0), v = component_of(curve, 1);
     const DerivativeQuery<1, 1> bounds[2] = {DerivativeQuery<1, 1>(u), DerivativeQuery<1, 1>(v)};
     std::vector<double> must{on.lo, on.hi};
@@ -35,28 +39,43 @@ Result<Pieces> pieces_of(const CurveGeometry<2>& curve, Interval on, Vec<2> sag,
             if (on.lo < k.at && k.at < on.hi) must.push_back(k.at);
     sort(must);
     must.erase(std::unique(must.begin(), must.end()), must.end());
-    Pieces out{{on.lo}, {}};
-    std::vector<Interval> stack;
-    for (std::size_t i = must.size() - 1; i-- > 0;) stack.push_back({must[i], must[i + 1]});
-    while (!stack.empty()) {
-        const Interval part = stack.back();
-        stack.pop_back();
-        const double h2 = part.length() * part.length() / 8, middle = part.middle();
-        Vec<2> found{{h2 * bounds[0]({part})(2), h2 * bounds[1]({part})(2)}};
-        if (const auto hull = hull_box(curve, {part}); hull && is_finite(found))
-            for (int i = 0; i < 2; ++i) found[i] = std::min(found[i], hull->side(i).length());
-        const bool fine = found[0] <= sag[0] && found[1] <= sag[1];
-        if (!fine && out.at.size() + stack.size() < max_chords && part.lo < middle && middle < part.hi) {
-            stack.push_back({middle, part.hi});
-            stack.push_back({part.lo, middle});
+    const auto piece = [&](Interval part) {
+        const double h2 = part.length() * part.length() / 8;
+        Piece out{part, {{h2 * bounds[0]({part})(2), h2 * bounds[1]({part})(2)}}};
+        if (const auto hull = hull_box(curve, {part}); hull && is_finite(out.sag))
+            for (int i = 0; i < 2; ++i) out.sag[i] = std::min(out.sag[i], hull->side(i).length());
+        Box<2> box;
+        for (const double t : {part.lo, part.hi}) {
+            const Vec<2> p = jet<0>(curve, t).value();
+            box.add(p - out.sag), box.add(p + out.sag);
+        }
+        out.too_much = is_finite(out.sag) ? too_much(box, out.sag) : kInfinity;
+        return out;
+    };
+    std::vector<Piece> heap, out;
+    const auto push = [&](Interval part) {
+        heap.push_back(piece(part));
+        std::ranges::push_heap(heap, {}, &Piece::too_much);
+    };
+    for (std::size_t i = 0; i + 1 < must.size(); ++i) push({must[i], must[i + 1]});
+    while (!heap.empty() && heap.front().too_much > 1 && heap.size() + out.size() < max_chords) {
+        std::ranges::pop_heap(heap, {}, &Piece::too_much);
+        const Piece worst = heap.back();
+        heap.pop_back();
+        const double middle = worst.on.middle();
+        if (!(worst.on.lo < middle && middle < worst.on.hi)) {
+            out.push_back(worst);
             continue;
         }
-        if (!is_finite(found))
-            return refuse(RefusalKind::ill_conditioned, text("t = ", part.lo),
-                          "the parameter curve has no bounded second derivative here");
-        out.at.push_back(part.hi);
-        out.sag.push_back(found);
+        push({worst.on.lo, middle});
+        push({middle, worst.on.hi});
     }
+    out.insert(out.end(), heap.begin(), heap.end());
+    sort(out, [](const Piece& a, const Piece& b) { return a.on.lo < b.on.lo; });
+    for (const Piece& p : out)
+        if (!is_finite(p.sag))
+            return refuse(RefusalKind::ill_conditioned, text("t = ", p.on.lo),
+                          "the parameter curve has no bounded second derivative here");
     return out;
 }
 
@@ -75,7 +94,12 @@ void FaceRegion::add(const Vec<2>& from, const Vec<2>& to, const Vec<2>& sag) {
     }
 }
 
-Result<FaceRegion> FaceRegion::make(const Face& face, const std::vector<Edge>& edges, Vec<2> sag,
+Result<FaceRegion> FaceRegion::rough(const Face& face, const std::vector<Edge>& edges) {
+    return make(
+        face, edges, [](const Box<2>&, const Vec<2>&) { return 0.0; }, 1);
+}
+
+Result<FaceRegion> FaceRegion::make(const Face& face, const std::vector<Edge>& edges, const TooMuch& too_much,
                                     std::size_t max_chords) {
     FaceRegion out;
     const auto on = limits(face.surface);
@@ -94,13 +118,13 @@ Result<FaceRegion> FaceRegion::make(const Face& face, const std::vector<Edge>& e
         for (std::size_t c = 0; c < face.loops[l].coedges.size(); ++c) {
             const Coedge& coedge = face.loops[l].coedges[c];
             const auto pieces =
-                pieces_of(coedge.curve, edges[std::size_t(coedge.edge)].range, sag, max_chords);
+                pieces_of(coedge.curve, edges[std::size_t(coedge.edge)].range, too_much, max_chords);
             if (!pieces) return refuse_within(text("loops[", l, "][", c, "]"), pieces.error());
-            Vec<2> last = clamped(jet<0>(coedge.curve, pieces->at[0]).value(), on);
+            Vec<2> last = clamped(jet<0>(coedge.curve, pieces->front().on.lo).value(), on);
             const Vec<2> first = last;
-            for (std::size_t i = 1; i < pieces->at.size(); ++i) {
-                const Vec<2> next = clamped(jet<0>(coedge.curve, pieces->at[i]).value(), on);
-                out.add(last, next, pieces->sag[i - 1]);
+            for (const Piece& p : *pieces) {
+                const Vec<2> next = clamped(jet<0>(coedge.curve, p.on.hi).value(), on);
+                out.add(last, next, p.sag);
                 last = next;
             }
             ends.push_back(coedge.reversed ? last : first);

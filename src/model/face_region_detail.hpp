@@ -5,17 +5,23 @@
 #include <freiform/spline/derivative_bounds.hpp>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace freiform {
 
 class FaceRegion {
 public:
-    // The parameter curves are halved until they leave their chords by at most `sag` (in u and in v), or
-    // until there are `max_chords`. Without loops: the rectangle of the surface's domain. Refuses (invalid)
-    // domains that are not bounded, (ill_conditioned) curves without a finite bound.
-    static Result<FaceRegion> make(const Face& face, const std::vector<Edge>& edges, Vec<2> sag,
+    // How many times too much it is that a parameter curve leaves its chord by `sag` (in u and in v); both
+    // are in the box.
+    using TooMuch = std::function<double(const Box<2>& box, const Vec<2>& sag)>;
+    // Each parameter curve is halved where that is the most, until it is at most 1 everywhere or there are
+    // `max_chords`. Without loops: the rectangle of the surface's domain. Refuses (invalid) domains that are
+    // not bounded, (ill_conditioned) curves without a finite bound.
+    static Result<FaceRegion> make(const Face& face, const std::vector<Edge>& edges, const TooMuch& too_much,
                                    std::size_t max_chords);
+    // Of one chord for each smooth piece of each curve.
+    static Result<FaceRegion> rough(const Face& face, const std::vector<Edge>& edges);
 
     // Contains the face.
     const Box<2>& box() const { return box_; }

@@ -64,11 +64,16 @@ Result<Interval> window(const Interval& loops, AxisKind kind, const Interval& do
 }  // namespace
 
 Result<PreparedFace> PreparedFace::make(const Model& model, const Face& face) {
-    const double any = std::numeric_limits<double>::infinity();
-    const auto rough = FaceRegion::make(face, model.edges, {{any, any}}, 1);
+    const auto rough = FaceRegion::rough(face, model.edges);
     if (!rough) return std::unexpected(rough.error());
     const Vec<2> size{{rough->box().side(0).length(), rough->box().side(1).length()}};
-    auto region = FaceRegion::make(face, model.edges, 0x1p-12 * size, kChordsOfLoops);
+    const auto too_much = [&](const Box<2>&, const Vec<2>& sag) {
+        double most = 0;
+        for (int i = 0; i < 2; ++i)
+            if (sag[i] > 0) most = std::max(most, 0x1p12 * sag[i] / size[i]);
+        return most;
+    };
+    auto region = FaceRegion::make(face, model.edges, too_much, kChordsOfLoops);
     if (!region) return std::unexpected(region.error());
     const auto kinds = axes_of(face.surface);
     const auto whole = domain(face.surface);

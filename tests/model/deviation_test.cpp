@@ -1,3 +1,4 @@
+#include "support/random.hpp"
 #include "support/shapes.hpp"
 #include "support/solids.hpp"
 
@@ -232,6 +233,36 @@ TEST(Deviation, distances_of_points_are_within_the_accuracy) {
     ASSERT_TRUE(d);
     const double known[] = {hole, std::hypot(hole, 2), 1, 1};
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR((*d)[i], known[i], accuracy) << i;
+}
+
+// Such as blends of files whose splines go on beyond their faces and are wild there: what the whole surface
+// does says nothing about how closely the boundary has to be known.
+TEST(Deviation, is_bounded_closely_where_the_surface_is_wild_beyond_the_face) {
+    const auto v = must(BSplineBasis::make(3, {0, 0, 0, 0, 0.25, 0.5, 0.75, 0.9999, 1, 1, 1, 1}));
+    const double y[] = {0, 0.1, 0.25, 0.5, 0.75, 0.9, 1, 1e9};
+    Net<2, Vec<3>> net({2, 8});
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 8; ++j) net.view()({i, j}) = {{double(i), y[j], 0.1 * y[j] * (j < 7) * i}};
+    const auto surface = must(Surface<Vec<3>>::make({must(BSplineBasis::make(1, {0, 0, 1, 1})), v}, net));
+    std::vector<Vec<2>> loop;
+    constexpr int kPoints = 40;
+    for (int k = 0; k <= kPoints; ++k) {
+        const double a = 2 * kPi * k / kPoints, r = 0.25 + 0.05 * std::cos(5 * a);
+        loop.push_back({{0.5 + r * std::cos(a), 0.35 + r * std::sin(a)}});
+    }
+    std::vector<double> knots(4, 0.0);
+    for (int k = 1; k <= kPoints - 3; ++k) knots.push_back(double(k) / (kPoints - 2));
+    knots.insert(knots.end(), 4, 1.0);
+    const CurveGeometry<2> boundary =
+        must(Curve<Vec<2>>::make({must(BSplineBasis::make(3, knots))}, Net<1, Vec<2>>({kPoints + 1}, loop)));
+    ModelBuilder builder;
+    must(builder.add_trimmed(surface, std::vector<std::vector<CurveGeometry<2>>>{{boundary}}));
+    const Model m = must(std::move(builder).finish());
+    const auto t = must(tessellate(m, {.tolerance = 1e-3}));
+    ASSERT_TRUE(t.refused.empty());
+    const MeshDeviation d = must(deviation(m, t.mesh, {.max_parts = 20000}));
+    EXPECT_LE(d.measured, t.error_bound + t.boundary_gap);
+    EXPECT_LE(d.bound, 1.2 * d.measured);
 }
 
 }  // namespace

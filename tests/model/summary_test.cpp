@@ -146,8 +146,7 @@ TEST(Summary, boxes_do_not_care_how_crowded_knots_are) {
         uv.push_back(a + p[1] * (b - a) + p[2] * (1 - p[1]) * Vec<2>{{b[1] - a[1], a[0] - b[0]}});
     for (double& k : knots) k = on.lo + on.length() * k;
     side.curve = *Curve<Vec<2>>::make({*BSplineBasis::make(3, knots)}, Net<1, Vec<2>>({basis.size()}, uv));
-    constexpr double kAny = std::numeric_limits<double>::infinity();
-    const auto rough = FaceRegion::make(face.faces[0], face.edges, {{kAny, kAny}}, 1);
+    const auto rough = FaceRegion::rough(face.faces[0], face.edges);
     ASSERT_TRUE(rough);
     EXPECT_LT(rough->box().diagonal(), 3);
     EXPECT_GE(rough->box().diagonal(), std::sqrt(2.0));
