@@ -89,7 +89,7 @@ function(freiform_library name)
         string(CONCAT hot "/src/(basis|core|io|kernel|mesh|poly)/|/src/spline/(block|derivative|geometry|patch|prepared)|"
             "/src/model/(apex|edge_|face_|flat_faces|loop_runs|matched|offset_faces|piecewise|tessellat|triangle_)")
         string(CONCAT rare "/(arc_index|change|curvature_tree_columns|curvature_tree_torn|decimal|edge_continuity|edge_gap|"
-            "edge_length|face_overlaps|face_parts|face_region|filler_separate|integer|level_lines|matched_grids|"
+            "edge_length|face_overlaps|face_parts|face_region|filler_separate|flat_faces|integer|level_lines|matched_grids|offset_faces|"
             "polynomial_basis|refine|roots_exact|simple_polygons|spelling|tessellate_calls|tessellate_collect|text|"
             "triangle_budget|visibility)[.]cpp$")
         set(small ${sources})

@@ -20,8 +20,8 @@
 // matter. Each round leaves at most half of the faces or about half of the parts, so there are few.
 //
 // Cost. One bound of derivatives and one nearest triangle for each part. Parts are needed where the bound of
-// the part is above the goal: along boundaries of faces until they are as short as the goal, elsewhere until
-// their error is.
+// the part is above the goal: until their error is below it, and along boundaries until the chords of the
+// boundary in them are nearly on one line, which clips them (FaceParts::clipped).
 //
 // References. [Guthe Borodin Klein 2005] refine what may hold the largest distance, from triangles to
 // triangles.
@@ -48,9 +48,9 @@ constexpr std::size_t kFirstParts = 256;  // of a face, before anything is judge
 constexpr std::size_t kBoundaryPoints = 512;
 constexpr std::size_t kMostTriangles = 64;  // that bound (2) looks at
 constexpr double kLeastCosine = 0.25;
-constexpr double kLeastSag = 1e-6;  // of the size of model and mesh: how well boundaries are known
-constexpr double kDiagonal = 1.5;   // of a box, over its longest side, at most
-constexpr double kBoundaryCounts = 1.0 / 8;
+constexpr double kLeastSag = 1e-6;      // of the size of model and mesh: how well boundaries are known
+constexpr double kLeastGoal = 0x1p-36;  // likewise: bounds need not be smaller
+constexpr double kBoundaryCounts = 1.0 / 12;
 constexpr int kMostSteps = 8;  // of samples along a side of a triangle of the mesh
 
 Vec<3> normal_of(const Triangle3& t) { return cross(t[1] - t[0], t[2] - t[0]); }
@@ -62,6 +62,12 @@ std::vector<Triangle3> triangles_of(const TriangleMesh& mesh) {
         for (std::size_t k = 0; k < 3; ++k) out[i][k] = mesh.points[std::size_t(p[k])];
     }
     return out;
+}
+
+Vec<3> mean_of(std::span<const Vec<3>> points) {
+    Vec<3> sum{};
+    for (const Vec<3>& p : points) sum += p;
+    return (1 / double(points.size())) * sum;
 }
 
 class MeshSide {
@@ -85,19 +91,21 @@ public:
     const TriangleTree& tree() const { return tree_; }
     const Box<3>& box() const { return box_; }
 
-    // Of the distance from every point of the part to the mesh; `nearest`: to a point near its middle.
-    double bound(const FacePart& part, const TriangleTree::Found& nearest) const {
-        if (!std::isfinite(part.error)) return kInfinity;
+    // Of the distance to the mesh from every point that is within `error` of flat pieces with these corners;
+    // `nearest`: to a point near their middle.
+    double bound(std::span<const Vec<3>> corners, double error, const TriangleTree::Found& nearest) const {
+        if (!std::isfinite(error)) return kInfinity;
         const Triangle3& t = tree_.triangles()[std::size_t(nearest.triangle)];
         double one = 0;
-        for (const Vec<3>& c : part.corner) one = std::max(one, norm(c - closest_point(t, c)));
+        for (const Vec<3>& c : corners) one = std::max(one, norm(c - closest_point(t, c)));
         double scale = box_.scale();
-        for (const Vec<3>& c : part.corner) scale = std::max(scale, max_abs(c));
-        return std::min(one + part.error, across(part, nearest, scale)) + kSlack * scale;
+        for (const Vec<3>& c : corners) scale = std::max(scale, max_abs(c));
+        return std::min(one + error, across(corners, error, nearest, scale)) + kSlack * scale;
     }
 
 private:
-    double across(const FacePart& part, const TriangleTree::Found& nearest, double scale) const;
+    double across(std::span<const Vec<3>> corners, double error, const TriangleTree::Found& nearest,
+                  double scale) const;
 
     TriangleTree tree_;
     std::vector<std::array<int, 3>>
@@ -106,15 +114,16 @@ private:
 };
 
 // Bound (2), e included; infinite where its conditions do not hold.
-double MeshSide::across(const FacePart& part, const TriangleTree::Found& nearest, double scale) const {
+double MeshSide::across(std::span<const Vec<3>> corners, double error, const TriangleTree::Found& nearest,
+                        double scale) const {
     const auto& all = tree_.triangles();
     const Vec<3> n = unit(normal_of(all[std::size_t(nearest.triangle)]));
     if (!(norm(n) > 0.5)) return kInfinity;
     const auto flat = [&](const Vec<3>& x) { return x - dot(x, n) * n; };
-    const Vec<3> middle = 0.25 * (part.corner[0] + part.corner[1] + part.corner[2] + part.corner[3]);
+    const Vec<3> middle = mean_of(corners);
     double radius = 0;
-    for (const Vec<3>& c : part.corner) radius = std::max(radius, norm(flat(c - middle)));
-    radius = (radius + part.error) * (1 + 1e-12) + kSlack * scale;
+    for (const Vec<3>& c : corners) radius = std::max(radius, norm(flat(c - middle)));
+    radius = (radius + error) * (1 + 1e-12) + kSlack * scale;
     if (!(norm(flat(nearest.point - middle)) <= radius)) return kInfinity;
     std::vector<int> met{nearest.triangle};
     double worst = 0;
@@ -125,8 +134,8 @@ double MeshSide::across(const FacePart& part, const TriangleTree::Found& nearest
         if (!(facing > kLeastCosine * length)) return kInfinity;
         double reach = 0, longest = 0;
         for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t[(k + 1) % 3] - t[k]));
-        for (const Vec<3>& c : part.corner) {
-            worst = std::max(worst, (std::abs(dot(nk, c - t[0])) + part.error * length) / facing);
+        for (const Vec<3>& c : corners) {
+            worst = std::max(worst, (std::abs(dot(nk, c - t[0])) + error * length) / facing);
             reach = std::max(reach, norm(c - t[0]));
         }
         worst += 4 * kSlack * scale * longest * reach / facing;
@@ -217,11 +226,12 @@ public:
 private:
     void first_look(std::size_t f);
     void from_mesh(MeshDeviation& out) const;
-    double key(Looked& l, const FacePart& part) const;
+    double key(Looked& l, FacePart& part) const;
     // `found`: the largest distance of all faces. Beyond its share a face that is stuck is left there.
     double goal(const Looked& l, double found) const {
         const double most = std::max(found, l.answer.measured), stuck = l.search->stuck();
-        const double wanted = most > options_.enough ? kNearEnough * most : options_.enough;
+        const double wanted =
+            std::max(most > options_.enough ? kNearEnough * most : options_.enough, kLeastGoal * size_);
         return stuck > wanted && l.search->seen() >= share_ ? kNearEnough * stuck : wanted;
     }
     void take(Looked& l, const Vec<3>& x, double distance) const {
@@ -237,11 +247,20 @@ private:
     std::vector<std::optional<Refusal>> refused_;
 };
 
-double Judge::key(Looked& l, const FacePart& part) const {
-    const Vec<3> x = l.parts->value(0.5 * (part.box.lo + part.box.hi));
-    const auto found = side_.tree().nearest(x);
-    if (!part.crossing) take(l, x, found.distance);
-    return side_.bound(part, found);
+double Judge::key(Looked& l, FacePart& part) const {
+    if (!part.crossing) {
+        const Vec<3> x = l.parts->value(0.5 * (part.box.lo + part.box.hi));
+        const auto found = side_.tree().nearest(x);
+        take(l, x, found.distance);
+        return side_.bound(part.corner, part.error, found);
+    }
+    std::array<Vec<3>, 12> corners;
+    std::size_t n = 0;
+    for (const ClippedTriangle& t : l.parts->clipped(part))
+        for (const Vec<3>& p : t.corners()) corners[n++] = p;
+    if (n == 0) return 0;  // all of it is beyond the boundary
+    const auto all = std::span(corners).first(n);
+    return side_.bound(all, part.error, side_.tree().nearest(mean_of(all)));
 }
 
 void Judge::first_look(std::size_t f) {
@@ -262,7 +281,7 @@ void Judge::first_look(std::size_t f) {
         take(l, x, side_.tree().nearest(x).distance);
     }
     l.search.emplace(*l.parts);
-    const auto of = [&](const FacePart& p) { return key(l, p); };
+    const auto of = [&](FacePart& p) { return key(l, p); };
     l.search->start(of);
     l.search->refine(std::min(kFirstParts, share_), of, [&] { return options_.enough; });
 }
@@ -278,16 +297,18 @@ struct Soup {
 // `boundary`: how much a length that sticks out counts against an error of the same length.
 Soup soup_of(const FaceParts& parts, double accuracy, double boundary, std::size_t most) {
     Search search(parts);
-    const auto key = [&](const FacePart& p) { return p.error + (p.crossing ? boundary * p.size : 0); };
+    const auto key = [&](FacePart& p) { return p.error + boundary * parts.overhang(p); };
     search.start(key);
     search.refine(most, key, [&] { return accuracy; });
     Soup out;
     out.parts = search.seen();
     for (const auto* list : {&search.parts(), &search.kept()})
-        for (const FacePart& p : *list) {
-            for (const Triangle3& t : p.triangles()) out.triangles.push_back(t);
+        for (FacePart p : *list) {
+            for (const ClippedTriangle& t : parts.clipped(p))
+                for (std::size_t k = 2; k < std::size_t(t.size); ++k)
+                    out.triangles.push_back({t.corner[0], t.corner[k - 1], t.corner[k]});
             out.error = std::max(out.error, p.error);
-            if (p.crossing) out.overhang = std::max(out.overhang, kDiagonal * p.size);
+            out.overhang = std::max(out.overhang, parts.overhang(p));
         }
     return out;
 }
@@ -367,7 +388,7 @@ Result<MeshDeviation> Judge::run() {
             Looked& l = *rest[i];
             if (stop) return;
             l.search->refine(
-                l.search->seen() + share, [&](const FacePart& p) { return key(l, p); },
+                l.search->seen() + share, [&](FacePart& p) { return key(l, p); },
                 [&] { return goal(l, found); });
             tell(!open(l));
         });
@@ -412,8 +433,8 @@ Result<std::vector<double>> distances_from_model(const Model& model, std::span<c
         if (auto p = FaceParts::make(face, model.edges, accuracy / 8)) parts.push_back(std::move(*p));
     std::vector<const FaceParts*> faces;
     for (const FaceParts& p : parts) faces.push_back(&p);
-    Soup soup = soup_of(faces, 0.7 * accuracy, kDiagonal,
-                        max_parts);  // the rest: boundaries are known to accuracy / 8
+    // The rest: boundaries are known to accuracy / 8.
+    Soup soup = soup_of(faces, 0.7 * accuracy, 1, max_parts);
     if (soup.triangles.empty()) return refuse(RefusalKind::no_answer, "model", "has no face to measure from");
     const TriangleTree tree(std::move(soup.triangles));
     std::vector<double> out(points.size());

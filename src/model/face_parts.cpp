@@ -16,6 +16,7 @@ namespace freiform {
 namespace {
 
 constexpr std::size_t kMaxChords = 4096;  // of one parameter curve
+constexpr std::size_t kClipped = 64;      // chords that run through a part, of which there is a strip
 
 // Where to halve: the kink that adds most, else the middle. On both sides the error falls with the square of
 // the size then. `anywhere`: not only in the middle half. Where the surface is torn only one side has its
@@ -57,13 +58,14 @@ Result<FaceParts> FaceParts::make(const Face& face, const std::vector<Edge>& edg
 }
 
 std::optional<FacePart> FaceParts::part_over(const Box<2>& box, const std::vector<int>& near,
-                                             bool known_inside) const {
+                                             const FacePart* of) const {
     FacePart part;
     part.box = box;
     for (const int i : near)
         if (region_.meets(box, std::size_t(i))) part.near.push_back(i);
     part.crossing = !part.near.empty();
-    if (!part.crossing && !known_inside && !region_.is_inside(0.5 * (box.lo + box.hi))) return std::nullopt;
+    if (!part.crossing && !is_inside(part, of)) return std::nullopt;
+    if (of != nullptr && part.near == of->near) part.sides = of->sides;
     const Vec<2> size = box.hi - box.lo;
     const auto d = (*surface_)({box.side(0), box.side(1)});
     part.rounding = 2 * value_error_bound(face_->surface, {box.side(0), box.side(1)});
@@ -81,6 +83,127 @@ std::optional<FacePart> FaceParts::part_over(const Box<2>& box, const std::vecto
     return part;
 }
 
+// A box that meets no chord.
+bool FaceParts::is_inside(const FacePart& part, const FacePart* of) const {
+    if (of != nullptr && !of->crossing) return true;
+    const Vec<2> middle = 0.5 * (part.box.lo + part.box.hi);
+    if (of != nullptr && of->sides >= 0) {
+        const Strip s = strip_of(of->near, of->box);
+        const double beside = cross(s.along, middle - s.from);
+        if (std::abs(beside) > s.width) return (of->sides & (beside > 0 ? 1 : 2)) != 0;
+    }
+    return region_.is_inside(middle);
+}
+
+FaceParts::Strip FaceParts::strip_of(const std::vector<int>& chords, const Box<2>& box) const {
+    const auto farthest = [&](const Vec<2>& x) {
+        Vec<2> best = x;
+        for (const int i : chords)
+            for (const Vec<2>& p : region_.chord(std::size_t(i)))
+                if (norm(p - x) > norm(best - x)) best = p;
+        return best;
+    };
+    Strip s{farthest(region_.chord(std::size_t(chords[0]))[0]), {}, 0};
+    s.along = farthest(s.from) - s.from;
+    const auto sizes = [&](const Vec<2>& d) {
+        return std::abs(s.along[0] * d[1]) + std::abs(s.along[1] * d[0]);
+    };
+    double reach = std::max(sizes(box.lo - s.from), sizes(box.hi - s.from));
+    for (const int i : chords) {
+        double off = 0;
+        for (const Vec<2>& p : region_.chord(std::size_t(i))) {
+            off = std::max(off, std::abs(cross(s.along, p - s.from)));
+            reach = std::max(reach, sizes(p - s.from));
+        }
+        s.width = std::max(s.width, off + sizes(region_.sag(std::size_t(i))));
+    }
+    // Twice as wide, so that the corners of the region's box, which is as far from its chords as their curves
+    // may be, are in it whatever the roundings.
+    s.width = 2 * s.width + 1e-15 * reach;
+    return s;
+}
+
+// What is left of the strip of all chords is wholly inside of the face or outside of it, and so is what is
+// right of it: no chord runs through either.
+std::optional<FaceParts::Strip> FaceParts::cut_by(FacePart& part) const {
+    if (part.near.empty() || part.near.size() > kClipped) return std::nullopt;
+    const Strip s = strip_of(part.near, part.box);
+    if (part.sides >= 0) return s;
+    part.sides = 3;
+    Vec<2> farthest[2];
+    double beside[2] = {s.width, s.width};
+    for (const double u : {part.box.lo[0], part.box.hi[0]})
+        for (const double v : {part.box.lo[1], part.box.hi[1]})
+            for (int side = 0; side < 2; ++side)
+                if (const double off = (side == 0 ? 1 : -1) * cross(s.along, Vec<2>{{u, v}} - s.from);
+                    off > beside[side])
+                    beside[side] = off, farthest[side] = {{u, v}};
+    for (int side = 0; side < 2; ++side) {
+        const Vec<2>& x = farthest[side];
+        const auto meets = [&](int i) { return region_.meets({x, x}, std::size_t(i)); };
+        const bool is_there = beside[side] > s.width;
+        if (!is_there || (std::ranges::none_of(part.near, meets) && !region_.is_inside(x)))
+            part.sides -= 1 + side;
+    }
+    return s;
+}
+
+// Each triangle of the part is the image of one half of the box under a linear map, which takes what is cut
+// off the half to what is cut off the triangle.
+std::array<ClippedTriangle, 2> FaceParts::clipped(FacePart& part) const {
+    const Box<2>& box = part.box;
+    const Vec<2> place[4] = {box.lo, {{box.hi[0], box.lo[1]}}, {{box.lo[0], box.hi[1]}}, box.hi};
+    constexpr int kTriangles[2][3] = {{0, 1, 3}, {0, 3, 2}};
+    std::array<ClippedTriangle, 2> out;
+    const auto s = cut_by(part);
+    double beside[4] = {0, 0, 0, 0};
+    for (int k = 0; s && k < 4; ++k) beside[k] = cross(s->along, place[k] - s->from);
+    for (std::size_t t = 0; t < 2; ++t) {
+        ClippedTriangle now;
+        std::array<double, 6> at{};
+        for (const int k : kTriangles[t]) {
+            at[std::size_t(now.size)] = beside[k];
+            now.add(part.corner[std::size_t(k)]);
+        }
+        for (int side = 0; s && side < 2; ++side) {
+            if (part.sides & (1 + side)) continue;
+            // Keeps what is at most `width` on that side.
+            const double sign = side == 0 ? 1 : -1;
+            ClippedTriangle kept;
+            std::array<double, 6> values{};
+            const auto add = [&](const Vec<3>& p, double value) {
+                values[std::size_t(kept.size)] = value;
+                kept.add(p);
+            };
+            for (int k = 0; k < now.size; ++k) {
+                const auto i = std::size_t(k), j = std::size_t((k + 1) % now.size);
+                const double a = sign * at[i] - s->width, b = sign * at[j] - s->width;
+                if (a <= 0) add(now.corner[i], at[i]);
+                if ((a < 0 && b > 0) || (a > 0 && b < 0)) {
+                    const double share = a / (a - b);
+                    add(now.corner[i] + share * (now.corner[j] - now.corner[i]), sign * s->width);
+                }
+            }
+            now = kept, at = values;
+        }
+        out[t] = now;
+    }
+    return out;
+}
+
+// Where one side of the strip is in the face and the other one is not, the boundary is between them.
+double FaceParts::overhang(FacePart& part) const {
+    constexpr double kDiagonal = 1.5;  // of a box, over its longest side, at most
+    if (!part.crossing) return 0;
+    const double most = kDiagonal * part.size;
+    const auto s = cut_by(part);
+    if (!s || part.sides == 0 || part.sides == 3) return most;
+    const auto d = (*surface_)({part.box.side(0), part.box.side(1)}, 1);
+    const double across = 2 * s->width / dot(s->along, s->along),
+                 beside = across * (d(1, 0) * std::abs(s->along[1]) + d(0, 1) * std::abs(s->along[0]));
+    return std::isfinite(beside) ? std::min(most, beside) : most;
+}
+
 bool FaceParts::holds(const FacePart& part, const Vec<2>& uv) const {
     if (!part.crossing) return true;
     for (const int i : part.near)
@@ -96,7 +219,7 @@ std::optional<FacePart> FaceParts::whole() const {
     box.add(clamped(region_.box().hi, on));
     std::vector<int> all(region_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = int(i);
-    return part_over(box, all, false);
+    return part_over(box, all, nullptr);
 }
 
 std::vector<FacePart> FaceParts::halves(const FacePart& part, bool by_bend) const {
@@ -117,7 +240,7 @@ std::vector<FacePart> FaceParts::halves(const FacePart& part, bool by_bend) cons
         for (int half = 0; half < 2; ++half) {
             Box<2> box = part.box;
             (half == 0 ? box.hi : box.lo)[a] = at;
-            if (auto p = part_over(box, part.near, !part.crossing)) {
+            if (auto p = part_over(box, part.near, &part)) {
                 p->halvings = part.halvings + 1;
                 out.push_back(std::move(*p));
             }

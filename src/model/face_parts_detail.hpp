@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <span>
 
 namespace freiform {
 
@@ -25,7 +27,10 @@ struct FacePart {
     bool crossing = false;  // the boundary may run through it; else it is wholly inside the face
     std::vector<int> near;  // chords of the region that meet it
     int halvings = 0;       // that made it of the whole
-    double key = 0;         // for the caller
+    // On which sides of the strip of these chords there is face, 1 (left) + 2 (right); -1: nobody has asked
+    // yet.
+    int sides = -1;
+    double key = 0;  // for the caller
 
     // Bound: of how far it leaves the hull of the corners.
     double beside_corners() const { return std::min(hull_error, size + rounding); }
@@ -38,6 +43,15 @@ struct FacePart {
     }
 };
 
+// A triangle of a part without what is beyond the boundary: convex, with these corners. Two cuts leave 5 of
+// them, 6 where roundings disagree.
+struct ClippedTriangle {
+    std::array<Vec<3>, 6> corner;
+    int size = 0;
+    void add(const Vec<3>& p) { corner[std::size_t(size++)] = p; }
+    std::span<const Vec<3>> corners() const { return {corner.data(), std::size_t(size)}; }
+};
+
 class FaceParts {
 public:
     static Result<FaceParts> make(const Face& face, const std::vector<Edge>& edges, double accuracy);
@@ -47,6 +61,11 @@ public:
     // The parts of its two halves that are not outside; none where the box cannot be halved. Across the
     // longer side in space, or (`by_bend`) the side along which the surface bends more.
     std::vector<FacePart> halves(const FacePart& part, bool by_bend = false) const;
+    // What the face may be near, within part.error, of the two triangles of a part; all of them where many
+    // chords run through it. Sets part.sides.
+    std::array<ClippedTriangle, 2> clipped(FacePart& part) const;
+    // About how far these go beyond the face.
+    double overhang(FacePart& part) const;
     // False: the distance from q has no critical point on the part, proven, so that its least value over the
     // face is on the boundary of the face or elsewhere.
     bool may_have_foot(const FacePart& part, const Vec<3>& q) const;
@@ -63,8 +82,18 @@ private:
         : face_(&face),
           surface_(std::make_unique<DerivativeQuery<2, 3>>(face.surface)),
           region_(std::move(region)) {}
+    // `of`: the part that it is a part of.
     std::optional<FacePart> part_over(const Box<2>& box, const std::vector<int>& near,
-                                      bool known_inside) const;
+                                      const FacePart* of) const;
+    bool is_inside(const FacePart& part, const FacePart* of) const;
+    // Chords as a strip that their curves are in: left of it is where cross(along, x - from) > width.
+    struct Strip {
+        Vec<2> from, along;
+        double width;
+    };
+    Strip strip_of(const std::vector<int>& chords, const Box<2>& box) const;
+    // The strip of the part's chords, if they are not many; sets part.sides.
+    std::optional<Strip> cut_by(FacePart& part) const;
 
     const Face* face_;
     std::unique_ptr<DerivativeQuery<2, 3>> surface_;

@@ -4,6 +4,7 @@
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/model/deviation.hpp>
+#include <freiform/model/swept_solid.hpp>
 
 #include <gtest/gtest.h>
 
@@ -233,6 +234,22 @@ TEST(Deviation, distances_of_points_are_within_the_accuracy) {
     ASSERT_TRUE(d);
     const double known[] = {hole, std::hypot(hole, 2), 1, 1};
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR((*d)[i], known[i], accuracy) << i;
+}
+
+// Flat faces with straight edges need few parts, however they lie.
+TEST(Deviation, is_known_exactly_and_soon_where_mesh_and_model_are_the_same) {
+    const std::vector<Vec<2>> corners{{{0, 0}}, {{3, 0.5}}, {{2, 1}}, {{2.5, 2}}, {{0.3, 1.7}}};
+    std::vector<CurveGeometry<2>> loop;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        loop.push_back(
+            must(Curve<Vec<2>>::make({must(BSplineBasis::bezier(1))},
+                                     Net<1, Vec<2>>({2}, {corners[k], corners[(k + 1) % corners.size()]}))));
+    const Model m = must(prism({loop}, {{0.3, 0.2, 1}}));
+    const MeshDeviation d = must(deviation(m, must(tessellate(m, {.tolerance = 1e-2})).mesh, {}));
+    EXPECT_LE(d.bound, 1e-9);
+    EXPECT_LE(d.mesh_measured, 1e-9);
+    EXPECT_LE(d.overhang, 1e-5);
+    EXPECT_LE(d.parts, 20000u);
 }
 
 // Such as blends of files whose splines go on beyond their faces and are wild there: what the whole surface
