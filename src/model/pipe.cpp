@@ -27,6 +27,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kRounding = 0x1p-46;
+constexpr double kNothing = 0x1p-36;   // of what is farthest: circles may always be so far apart at joints
 constexpr double kCircle = 0x1p-46;    // of its radius: how far an ellipse is from being a circle
 constexpr double kStraight = 0x1p-40;  // the sine of a corner that is none
 
@@ -95,7 +96,8 @@ public:
         rounding_ = kRounding * (far + radius);
         const Run& last = runs_.back();
         const double misses = norm(last.to - runs_.front().from);
-        closed_ = misses <= joint_ + rounding_ && (runs_.size() > 1 || last.turns);
+        const double most = joint_ + kNothing * (far + radius);
+        closed_ = misses <= most && (runs_.size() > 1 || last.turns);
         Vec<3> e = any_across(runs_.front().along);
         for (std::size_t i = 0; i <= runs_.size(); ++i) {
             const bool at_end = i == runs_.size();
@@ -109,13 +111,13 @@ public:
             if (before != nullptr) {
                 const double apart = norm(before->to - j.o), turn = norm(carried - j.t);
                 const double off = apart + 4 * radius * turn;
-                if (off > joint_ + rounding_)
+                if (!(off <= most))
                     return refuse(RefusalKind::invalid, text("rail[", i - 1, "]"),
                                   text("ends ", apart, " from where ", at_end ? "the first" : "the next",
                                        " part begins, and turns by ", turn, " there"));
                 if (at_end && closed_) {
                     const double back = radius * norm(e - j.e);
-                    if (!(off + back <= joint_ + rounding_))
+                    if (!(off + back <= most))
                         return refuse(
                             RefusalKind::unsupported, "rail",
                             text("ends where it begins, and the disc comes back turned by ", norm(e - j.e)));

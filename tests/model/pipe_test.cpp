@@ -87,6 +87,15 @@ TEST(Pipe, rings_have_no_ends_and_holes_in_them_are_voids) {
     EXPECT_NEAR(signed_volume(closed_mesh(torus, 1e-4)), 8 * kPi * kPi, 8e-2);
 }
 
+TEST(Pipe, corners_that_are_hardly_any_need_no_arc) {
+    for (const double off : {0.0, 1e-15, 5e-13, 1e-11, 1e-6}) {
+        const std::vector<Vec<3>> nearly{{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2 + off}}, {{3, 3, 3}}};
+        const Model m = must(pipe(must(bent_polyline(nearly, 0.5)), 0.25));
+        const auto mesh = closed_mesh(m, 1e-3, 1e-11);
+        EXPECT_NEAR(signed_volume(mesh), kPi / 16 * std::sqrt(27.0), 1e-2) << off;
+    }
+}
+
 TEST(Pipe, parts_may_run_backwards) {
     auto rail = must(bent_polyline(kCorners, 1.5));
     const double volume = signed_volume(closed_mesh(must(pipe(rail, 0.5)), 1e-3));

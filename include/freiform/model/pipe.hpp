@@ -19,7 +19,7 @@ bool is_line_or_circle(const CurveGeometry<3>& curve);
 // across them; with a `hole`, the radius of another disc, what lies between the two. Watertight by its
 // construction: walls share the circles at joints. A rail that ends where it begins makes a ring, the hole of
 // which is a void. At joints ends may be apart, and directions turn, by so much that circles there are no
-// more than `joint` apart; tolerances of edges say by how much they are.
+// more than `joint` apart, or by roundings; tolerances of edges say by how much they are.
 //   auto bend = pipe(*bent_polyline(corners, 2), 0.5, 0.4);
 // Refuses radii that are not positive or hardly differ from that of the hole, parts of other curves and arcs
 // of no more than `radius` (unsupported), corners and gaps (invalid, where: rail[i]), and rings on which the
