@@ -87,12 +87,12 @@ function(freiform_library name)
     # without putting functions into their callers, as files and commands are (bindings/wasm/CMakeLists.txt).
     if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32)
         string(CONCAT hot "/src/(basis|core|io|kernel|mesh|poly)/|/src/spline/(block|derivative|geometry|patch|prepared)|"
-            "/src/model/(apex|edge_|face_|flat_faces|loop_runs|matched|offset_faces|piecewise|tessellat|triangle_)")
+            "/src/model/(apex|edge_|face_|matched|piecewise|tessellat|triangle_)")
         string(CONCAT rare "/(arc_index|change|curvature_tree_columns|curvature_tree_torn|decimal|edge_continuity|edge_gap|"
             "edge_length|edge_mesh|edge_parts|exact|face_boundary|face_box|face_loops|face_overlaps|"
-            "face_parts|face_region|face_rim|filler_separate|flat_faces|insertion_order|integer|level_lines|"
-            "loop_runs|matched_grids|normal_cone|offset_faces|orient3d|polynomial_basis|predicates_integer|"
-            "refine|roots|roots_exact|simple_polygons|spelling|subdivide|tessellate|tessellate_boundaries|"
+            "face_parts|face_region|face_rim|filler_separate|grid|insertion_order|integer|level_lines|"
+            "matched_grids|normal_cone|orient3d|polynomial_basis|predicates_integer|refine|roots|roots_exact|"
+            "segment_box|simple_polygons|spelling|subdivide|tessellate|tessellate_boundaries|"
             "tessellate_calls|tessellate_collect|text|topology|triangle_budget|triangle_mesh|view|visibility)[.]cpp$")
         set(small ${sources})
         list(FILTER small EXCLUDE REGEX "${hot}")

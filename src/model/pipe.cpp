@@ -2,8 +2,10 @@
 // e x f. e is carried along: it stays on lines, and arcs turn it about their axis, so that the point o + r e
 // draws a line or a circle on each wall, which is the wall's seam. Walls between joints j and j + 1 run from
 // the circle o_j + r (cos u e_j + sin u f_j):
-//     cylinder  S(u, v) = circle(u) + v t        normal outwards
-//     torus     S(u, v) = circle(v) turned by u  normal inwards
+//     cylinder  S(u, v) = circle(u) + v t
+//     torus     S(u, v) = the circle from its outermost point over the arc's axis, turned by u
+// with normals outwards. On tori the circle runs the other way: with out = (o - centre) / bend, t = axis x
+// out and e = cos(w) out + sin(w) axis it is at v = w - u.
 //
 // Accuracy. A wall ends at the circle that its part carries there; the edge is the circle of the next joint.
 // With joints d apart, directions t and t' of unit length, and e' the part of e across t', circles of radius
@@ -186,11 +188,15 @@ private:
             seam.tolerance = std::max(out_.vertices[std::size_t(seam.start)].tolerance,
                                       out_.vertices[std::size_t(seam.end)].tolerance);
             Face face;
-            face.reversed = run.turns != is_hole;
+            face.reversed = is_hole;
+            double w = 0;
             if (run.turns) {
                 const Vec<3> from = run.centre + dot(run.axis, p - run.centre) * run.axis;
                 seam.curve = Conic<3>{ConicKind::ellipse, from, p - from, cross(run.axis, p - from)};
-                face.surface = Revolution{circle, run.centre, run.axis, SurfaceKind::torus};
+                const Vec<3> out = unit(j.o - run.centre);
+                w = std::atan2(dot(j.e, run.axis), dot(j.e, out));
+                const Conic<3> profile{ConicKind::ellipse, j.o, r * out, r * run.axis};
+                face.surface = Revolution{profile, run.centre, run.axis, SurfaceKind::torus};
             } else {
                 seam.curve = Line<3>{p, j.t};
                 face.surface = Extrusion{circle, j.t, SurfaceKind::cylinder};
@@ -199,21 +205,21 @@ private:
             const double far = seam.range.hi;
             out_.edges.push_back(std::move(seam));
             // Parameters (along, around) of tori, (around, along) of cylinders.
-            const auto line = [](bool first, double a, double b) {
-                return Line<2>{{{a, b}}, {{first ? 1.0 : 0.0, first ? 0.0 : 1.0}}};
+            const auto line = [](double a, double b, double du, double dv) {
+                return Line<2>{{{a, b}}, {{du, dv}}};
             };
             const int near_circle = circle_of(i), far_circle = circle_of(i + 1);
             Loop loop;
             if (run.turns)
-                loop.coedges = {{along, false, line(true, 0, 0)},
-                                {far_circle, false, line(false, far, 0)},
-                                {along, true, line(true, 0, kTurn)},
-                                {near_circle, true, line(false, 0, 0)}};
+                loop.coedges = {{along, false, line(0, w - kTurn, 1, 0)},
+                                {far_circle, true, line(far, w, 0, -1)},
+                                {along, true, line(0, w, 1, 0)},
+                                {near_circle, false, line(0, w, 0, -1)}};
             else
-                loop.coedges = {{near_circle, false, line(true, 0, 0)},
-                                {along, false, line(false, kTurn, 0)},
-                                {far_circle, true, line(true, 0, far)},
-                                {along, true, line(false, 0, 0)}};
+                loop.coedges = {{near_circle, false, line(0, 0, 1, 0)},
+                                {along, false, line(kTurn, 0, 0, 1)},
+                                {far_circle, true, line(0, far, 1, 0)},
+                                {along, true, line(0, 0, 0, 1)}};
             face.loops.push_back(std::move(loop));
             shell.faces.push_back({int(out_.faces.size()), false});
             out_.faces.push_back(std::move(face));

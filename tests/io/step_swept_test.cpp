@@ -183,6 +183,14 @@ TEST(StepSwept, discs_along_rows_of_lines_and_arcs_are_exact) {
     const Box<3> box = box_of(m);
     EXPECT_LT(norm(box.lo - Vec<3>{{1, -1, 3}}), kNear);
     EXPECT_LT(norm(box.hi - Vec<3>{{9, 1, 10}}), kNear);
+    // Other programs know its walls.
+    const Model back = must(read_step(must(write_step({"mm", {{"", m}}}))));
+    const auto kinds = [&](std::string_view kind) {
+        return std::ranges::count_if(back.faces, [&](const Face& f) { return kind_name(f.surface) == kind; });
+    };
+    EXPECT_EQ(kinds("torus"), 2);
+    EXPECT_EQ(kinds("cylinder"), 4);
+    expect_volume(back, length * kPi * 0.75);
     // Parameters of all of it are those of its parts, one after the other; others are told.
     EXPECT_TRUE(disc(text("#40,1.,$,0.,", 1 + kPi / 2 + 1)).approximations.empty());
     EXPECT_TRUE(disc("#40,1.,$,0.,3.").approximations.empty());

@@ -59,10 +59,11 @@ TEST(Pipe, walls_are_as_far_from_the_rail_as_the_radius) {
                 const Vec<3> p = j.value() + 0.5 * across;
                 const Face& wall = m.faces[i];
                 double least = kInfinity;  // from the wall of the part, in its own parameters
-                const auto& e = m.edges[std::size_t(wall.loops[0].coedges[wall.reversed ? 0 : 1].edge)];
+                const bool turns = std::holds_alternative<Revolution>(wall.surface);
+                const auto& e = m.edges[std::size_t(wall.loops[0].coedges[turns ? 0 : 1].edge)];
                 for (int n = 0; n < 720; ++n) {
                     const double way = e.range.lo + e.range.length() * k / 8, turn = 2 * kPi * n / 720;
-                    const Vec<2> at = wall.reversed ? Vec<2>{{way, turn}} : Vec<2>{{turn, way}};
+                    const Vec<2> at = turns ? Vec<2>{{way, turn}} : Vec<2>{{turn, way}};
                     least = std::min(least, norm(jet<0>(wall.surface, at.c).value() - p));
                 }
                 EXPECT_LT(least, 0.5 * kPi / 720 + 1e-9) << i;
