@@ -88,14 +88,14 @@ bool FaceParts::is_inside(const FacePart& part, const FacePart* of) const {
     if (of != nullptr && !of->crossing) return true;
     const Vec<2> middle = 0.5 * (part.box.lo + part.box.hi);
     if (of != nullptr && of->sides >= 0) {
-        const Strip s = strip_of(of->near, of->box);
+        const Strip s = strip_of(of->near);
         const double beside = cross(s.along, middle - s.from);
         if (std::abs(beside) > s.width) return (of->sides & (beside > 0 ? 1 : 2)) != 0;
     }
     return region_.is_inside(middle);
 }
 
-FaceParts::Strip FaceParts::strip_of(const std::vector<int>& chords, const Box<2>& box) const {
+FaceParts::Strip FaceParts::strip_of(const std::vector<int>& chords) const {
     const auto farthest = [&](const Vec<2>& x) {
         Vec<2> best = x;
         for (const int i : chords)
@@ -108,13 +108,11 @@ FaceParts::Strip FaceParts::strip_of(const std::vector<int>& chords, const Box<2
     const auto sizes = [&](const Vec<2>& d) {
         return std::abs(s.along[0] * d[1]) + std::abs(s.along[1] * d[0]);
     };
-    double reach = std::max(sizes(box.lo - s.from), sizes(box.hi - s.from));
+    const double reach = std::max(sizes(region_.box().lo - s.from), sizes(region_.box().hi - s.from));
     for (const int i : chords) {
         double off = 0;
-        for (const Vec<2>& p : region_.chord(std::size_t(i))) {
+        for (const Vec<2>& p : region_.chord(std::size_t(i)))
             off = std::max(off, std::abs(cross(s.along, p - s.from)));
-            reach = std::max(reach, sizes(p - s.from));
-        }
         s.width = std::max(s.width, off + sizes(region_.sag(std::size_t(i))));
     }
     // Twice as wide, so that the corners of the region's box, which is as far from its chords as their curves
@@ -127,7 +125,7 @@ FaceParts::Strip FaceParts::strip_of(const std::vector<int>& chords, const Box<2
 // right of it: no chord runs through either.
 std::optional<FaceParts::Strip> FaceParts::cut_by(FacePart& part) const {
     if (part.near.empty() || part.near.size() > kClipped) return std::nullopt;
-    const Strip s = strip_of(part.near, part.box);
+    const Strip s = strip_of(part.near);
     if (part.sides >= 0) return s;
     part.sides = 3;
     Vec<2> farthest[2];

@@ -86,12 +86,13 @@ private:
     std::optional<FacePart> part_over(const Box<2>& box, const std::vector<int>& near,
                                       const FacePart* of) const;
     bool is_inside(const FacePart& part, const FacePart* of) const;
-    // Chords as a strip that their curves are in: left of it is where cross(along, x - from) > width.
+    // Chords as a strip that their curves are in: left of it is where cross(along, x - from) > width. The
+    // same for all parts that they run through.
     struct Strip {
         Vec<2> from, along;
         double width;
     };
-    Strip strip_of(const std::vector<int>& chords, const Box<2>& box) const;
+    Strip strip_of(const std::vector<int>& chords) const;
     // The strip of the part's chords, if they are not many; sets part.sides.
     std::optional<Strip> cut_by(FacePart& part) const;
 
