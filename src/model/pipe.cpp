@@ -11,7 +11,7 @@
 // With joints d apart, directions t and t' of unit length, and e' the part of e across t', circles of radius
 // r are no more than d + 4 r |t - t'| apart at equal angles: |e - e'| <= 2 |t - t'|, as the part of e along
 // t' is e . (t' - t), and |f - f'| <= 3 |t - t'|. Rounding: every number comes from few operations with those
-// of the part, 2^-46 of what is farthest.
+// of the part, and circles are such but for 2^-46 of their radius: 2^-44 of what is farthest.
 //
 // Why not prism and solid_of_revolution for each part: what they have at both of their ends would have to be
 // taken away, and their edges joined.
@@ -28,7 +28,7 @@ namespace freiform {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kRounding = 0x1p-46;
+constexpr double kRounding = 0x1p-44;
 constexpr double kNothing = 0x1p-36;   // of what is farthest: circles may always be so far apart at joints
 constexpr double kCircle = 0x1p-46;    // of its radius: how far an ellipse is from being a circle
 constexpr double kStraight = 0x1p-40;  // the sine of a corner that is none

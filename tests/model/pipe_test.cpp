@@ -17,19 +17,6 @@ double length_of(std::span<const RailPart> rail) {
     return sum;
 }
 
-// The mesh of a model without gaps.
-TriangleMesh closed_mesh(const Model& m, double tolerance, double gap = 1e-12) {
-    EXPECT_TRUE(make_model(m));
-    EXPECT_EQ(summary(m).open_edges, 0);
-    auto t = must(tessellate(m, {.tolerance = tolerance}));
-    EXPECT_TRUE(t.refused.empty());
-    EXPECT_EQ(t.topology.open_edges, 0);
-    EXPECT_EQ(t.topology.non_manifold_edges, 0);
-    EXPECT_EQ(t.topology.misoriented_edges, 0);
-    EXPECT_LE(t.boundary_gap, gap);
-    return std::move(t.mesh);
-}
-
 // An L of lines and an arc, then back upwards, out of its plane.
 const std::vector<Vec<3>> kCorners{{{0, 0, 0}}, {{9, 0, 0}}, {{9, 7, 1}}, {{2, 7, 9}}, {{2, 0, 20}}};
 
@@ -40,7 +27,7 @@ TEST(Pipe, has_the_volume_that_guldin_says_and_looks_outwards) {
         const Model m = must(pipe(rail, 0.75, hole));
         EXPECT_EQ(m.faces.size(), (hole > 0 ? 2 : 1) * 7 + 2u);
         const double volume = kPi * (0.75 * 0.75 - hole * hole) * length_of(rail);
-        EXPECT_NEAR(signed_volume(closed_mesh(m, 1e-4)), volume, 2e-3 * volume);
+        EXPECT_NEAR(signed_volume(closed_tessellation(m, 1e-4).mesh), volume, 2e-3 * volume);
         for (std::size_t f = 0; f + 2 < m.faces.size(); ++f)
             EXPECT_EQ(kind_name(m.faces[f].surface),
                       std::holds_alternative<Line<3>>(rail[f % 7].curve) ? "cylinder" : "torus");
@@ -80,29 +67,29 @@ TEST(Pipe, rings_have_no_ends_and_holes_in_them_are_voids) {
     ASSERT_EQ(m.bodies.size(), 1u);
     EXPECT_EQ(m.bodies[0].shells.size(), 2u);
     const double volume = kPi * (0.25 - 0.04) * length_of(rail);
-    EXPECT_NEAR(signed_volume(closed_mesh(m, 1e-4)), volume, 2e-3 * volume);
+    EXPECT_NEAR(signed_volume(closed_tessellation(m, 1e-4).mesh), volume, 2e-3 * volume);
     // A circle alone is a torus.
     const RailPart circle{Conic<3>{ConicKind::ellipse, {}, {{0, 4, 0}}, {{0, 0, 4}}}, {1, 1 + 2 * kPi}};
     const Model torus = must(pipe(std::array{circle}, 1));
     EXPECT_EQ(torus.faces.size(), 1u);
-    EXPECT_NEAR(signed_volume(closed_mesh(torus, 1e-4)), 8 * kPi * kPi, 8e-2);
+    EXPECT_NEAR(signed_volume(closed_tessellation(torus, 1e-4).mesh), 8 * kPi * kPi, 8e-2);
 }
 
 TEST(Pipe, corners_that_are_hardly_any_need_no_arc) {
     for (const double off : {0.0, 1e-15, 5e-13, 1e-11, 1e-6}) {
         const std::vector<Vec<3>> nearly{{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2 + off}}, {{3, 3, 3}}};
         const Model m = must(pipe(must(bent_polyline(nearly, 0.5)), 0.25));
-        const auto mesh = closed_mesh(m, 1e-3, 1e-11);
-        EXPECT_NEAR(signed_volume(mesh), kPi / 16 * std::sqrt(27.0), 1e-2) << off;
+        EXPECT_NEAR(signed_volume(closed_tessellation(m, 1e-3, 1e-11).mesh), kPi / 16 * std::sqrt(27.0), 1e-2)
+            << off;
     }
 }
 
 TEST(Pipe, parts_may_run_backwards) {
     auto rail = must(bent_polyline(kCorners, 1.5));
-    const double volume = signed_volume(closed_mesh(must(pipe(rail, 0.5)), 1e-3));
+    const double volume = signed_volume(closed_tessellation(must(pipe(rail, 0.5)), 1e-3).mesh);
     for (RailPart& p : rail) p.reversed = true;
     std::ranges::reverse(rail);
-    EXPECT_NEAR(signed_volume(closed_mesh(must(pipe(rail, 0.5)), 1e-3)), volume, 1e-2 * volume);
+    EXPECT_NEAR(signed_volume(closed_tessellation(must(pipe(rail, 0.5)), 1e-3).mesh), volume, 1e-2 * volume);
 }
 
 TEST(Pipe, joints_may_be_apart_as_far_as_is_said_and_edges_say_so) {

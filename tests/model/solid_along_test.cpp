@@ -32,17 +32,6 @@ Curve<Hom<3>> quarter_rail() {
                                  weighted(Vec<3>{{0, 0, 5}}, 1.0)});
 }
 
-Tessellation closed_mesh_along(const Model& model, double tolerance) {
-    EXPECT_EQ(summary(model).open_edges, 0);
-    auto t = must(tessellate(model, {.tolerance = tolerance}));
-    EXPECT_TRUE(t.refused.empty());
-    EXPECT_EQ(t.topology.open_edges, 0);
-    EXPECT_EQ(t.topology.non_manifold_edges, 0);
-    EXPECT_EQ(t.topology.misoriented_edges, 0);
-    EXPECT_LT(t.boundary_gap, 1e-12);
-    return t;
-}
-
 // Guldin: a region whose centroid moves along the rail, orthogonal to it, sweeps its area times the length.
 TEST(SolidAlong, has_the_volume_of_its_region_times_the_length_of_the_rail) {
     const auto check = [](const auto& rail) {
@@ -52,7 +41,7 @@ TEST(SolidAlong, has_the_volume_of_its_region_times_the_length_of_the_rail) {
         EXPECT_TRUE(s.model.bodies[0].solid);
         EXPECT_EQ(s.model.faces.size(), 4 + 4 + 2u);
         const double volume = kWindow * length(rail, 1e-9).value;
-        EXPECT_NEAR(signed_volume(closed_mesh_along(s.model, 1e-3).mesh), volume, 1e-3 * volume);
+        EXPECT_NEAR(signed_volume(closed_tessellation(s.model, 1e-3).mesh), volume, 1e-3 * volume);
         return s.pieces;
     };
     EXPECT_GT(check(winding_rail()), 4);
@@ -65,7 +54,7 @@ TEST(SolidAlong, beside_the_rail_has_the_volume_that_pappus_says) {
     for (const double x : {1.0, -1.0}) {
         const SolidAlong s = must(solid_along(loops_of(square), quarter_rail(), {1e-6, {{x, 0, 0}}}));
         const double volume = 2 * (5 + 1.5 * x) * kPi / 2;
-        EXPECT_NEAR(signed_volume(closed_mesh_along(s.model, 1e-4).mesh), volume, 1e-3 * volume) << x;
+        EXPECT_NEAR(signed_volume(closed_tessellation(s.model, 1e-4).mesh), volume, 1e-3 * volume) << x;
     }
 }
 
@@ -76,8 +65,8 @@ TEST(SolidAlong, along_a_line_is_the_prism) {
     for (const Vertex& v : prism.vertices)  // which has no more of them than arcs need
         EXPECT_TRUE(std::ranges::any_of(s.model.vertices,
                                         [&](const Vertex& w) { return norm(v.point - w.point) < 1e-15; }));
-    EXPECT_NEAR(signed_volume(closed_mesh_along(s.model, 1e-4).mesh),
-                signed_volume(closed_mesh_along(prism, 1e-4).mesh), 1e-2);
+    EXPECT_NEAR(signed_volume(closed_tessellation(s.model, 1e-4).mesh),
+                signed_volume(closed_tessellation(prism, 1e-4).mesh), 1e-2);
 }
 
 TEST(SolidAlong, walls_stay_within_the_bound) {

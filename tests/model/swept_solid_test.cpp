@@ -27,15 +27,7 @@ constexpr double kAreaOfFour = 16 - 4 + 1 + kPi;
 Tessellation closed_mesh(const Result<Model>& model, double tolerance) {
     EXPECT_TRUE(model) << model.error().where << ": " << model.error().message;
     if (!model) return {};
-    EXPECT_EQ(summary(*model).open_edges, 0);
-    auto t = tessellate(*model, {.tolerance = tolerance});
-    EXPECT_TRUE(t) << t.error().message;
-    if (!t) return {};
-    EXPECT_TRUE(t->refused.empty());
-    EXPECT_EQ(t->topology.open_edges, 0);
-    EXPECT_EQ(t->topology.non_manifold_edges, 0);
-    EXPECT_LT(t->error_bound, tolerance);
-    return *std::move(t);
+    return closed_tessellation(*model, tolerance);
 }
 
 TEST(Prism, has_the_volume_of_its_region_times_its_height) {

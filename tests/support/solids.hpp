@@ -4,6 +4,7 @@
 #include <freiform/model/assemble.hpp>
 #include <freiform/model/tessellate.hpp>
 
+#include <gtest/gtest.h>
 #include <numbers>
 
 namespace freiform::test {
@@ -22,6 +23,22 @@ inline Model in_one_body(Model m) {
     m.shells = {shell};
     m.bodies = {{{0}, true, "", {}}};
     return *make_model(std::move(m));
+}
+
+// Of a model without gaps, all of which is there.
+inline Tessellation closed_tessellation(const Model& model, double tolerance, double gap = 1e-12) {
+    EXPECT_TRUE(make_model(model));
+    EXPECT_EQ(summary(model).open_edges, 0);
+    auto t = tessellate(model, {.tolerance = tolerance});
+    EXPECT_TRUE(t);
+    if (!t) return {};
+    EXPECT_TRUE(t->refused.empty());
+    EXPECT_EQ(t->topology.open_edges, 0);
+    EXPECT_EQ(t->topology.non_manifold_edges, 0);
+    EXPECT_EQ(t->topology.misoriented_edges, 0);
+    EXPECT_LT(t->error_bound, tolerance);
+    EXPECT_LE(t->boundary_gap, gap);
+    return *std::move(t);
 }
 
 // One face, a seam at u = 0 and a pole at either end.

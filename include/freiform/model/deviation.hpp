@@ -9,8 +9,8 @@
 namespace freiform {
 
 struct DeviationOptions {
-    // A distance in model units >= 0: bounds need not be made smaller than it. A mesh that is claimed to be
-    // within a tolerance is decided soonest when this is the tolerance.
+    // A distance in model units >= 0: bounds need not be made smaller than it (nor than 2^-36 of the size). A
+    // mesh that is claimed to be within a tolerance is decided soonest when this is the tolerance.
     double enough = 0;
     // Work: parts of faces that are looked at, in all. When it is used up, bounds are what they are then.
     std::size_t max_parts = 1'000'000;
