@@ -116,22 +116,10 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
         return {};
     }
     if (f_.is(*at, Type::POLY_LOOP)) {
-        const auto g = Fields::of(f_, *at, Type::POLY_LOOP, 2);
-        const auto ids =
-            g ? g->references(1, "points") : Result<std::vector<std::uint32_t>>(std::unexpected(g.error()));
-        if (!ids) return std::unexpected(ids.error());
-        std::vector<int> corners;
-        for (const std::uint32_t id : *ids) {
-            const auto p = geometry_.point(id);
-            if (!p) return std::unexpected(p.error());
-            corners.push_back(vertex_at(id, *p));
-        }
-        if (corners.size() < 3) return g->refused("has fewer than three points", RefusalKind::invalid);
-        if (!forward) std::reverse(corners.begin(), corners.end());
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            const auto made = straight_edge(corners[k], corners[(k + 1) % corners.size()]);
-            if (auto ok = append(*made, true, *at); !ok) return ok;
-        }
+        const auto made = polygon_edges(*at, forward);
+        if (!made) return std::unexpected(made.error());
+        for (const EdgeMade& e : *made)
+            if (auto ok = append(e, true, *at); !ok) return ok;
     } else {
         const auto g = Fields::of(f_, *at, Type::EDGE_LOOP, 2);
         if (!g) return std::unexpected(g.error());
@@ -237,7 +225,7 @@ Result<double> ShapeReader::size_of(const Fields& f, std::vector<Vec<3>>& seen, 
         const auto at = g->reference(1, "loop");
         if (!at) return std::unexpected(at.error());
         if (f_.is(*at, Type::POLY_LOOP)) {
-            const auto ids = Fields(f_, *at, f_.part(*at, Type::POLY_LOOP)).references(1, "points");
+            const auto ids = corners_of(*at);
             if (!ids) return std::unexpected(ids.error());
             for (const std::uint32_t id : *ids)
                 if (const auto p = geometry_.point(id)) box.add(*p);
@@ -312,6 +300,16 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
                0.0, 0);
         return made;
     };
+    if (const auto own = own_plane(i, *on)) {
+        same = true;
+        auto made = attempt(Chart(*own, tolerance_));
+        if (made)
+            report(-1,
+                   text(f_.label(i), ": polygons miss ", f_.label(*on),
+                        "; the plane through its corners stands for that"),
+                   0.0, 0);
+        return made;
+    }
     if (const auto half = other_half(*(*s)->chart, used)) return attempt(Chart(*half, tolerance_));
     const Chart& chart = chart_of(**s, *on, used);
     strict_ = sphere_of(chart, tolerance_);

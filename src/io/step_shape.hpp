@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace freiform::step {
 
@@ -140,6 +141,14 @@ private:
                                                  std::uint32_t composite, const std::array<int, 2>& vertices);
     Result<void> free_composite(std::uint32_t composite);
     Result<EdgeMade> straight_edge(int from, int to);
+    // step_polygons.cpp
+    Result<std::vector<std::uint32_t>> corners_of(std::uint32_t polygon) const;
+    Result<std::vector<EdgeMade>> polygon_edges(std::uint32_t polygon, bool forward);
+    std::vector<std::vector<Vec<3>>> polygons_of(std::uint32_t face) const;
+    static double off_plane(const std::vector<std::vector<Vec<3>>>& polygons, const Vec<3>& origin,
+                            const Vec<3>& normal);
+    bool is_missed(std::uint32_t plane);
+    std::optional<SurfaceGeometry> own_plane(std::uint32_t face, std::uint32_t surface);
     // step_pcurve.cpp: `ends` are those of the edge, if they are known.
     Result<BoundedCurve> curve_in_space(std::uint32_t i, const std::array<Vec<3>, 2>* ends);
     Result<BoundedCurve> lifted_curve(std::uint32_t pcurve, const std::array<Vec<3>, 2>* ends);
@@ -209,6 +218,7 @@ private:
     std::size_t items_left_;     // of sets, each time that one is named
     std::map<std::pair<std::uint32_t, bool>, Result<BoundedCurve>> lifts_;  // of PCURVEs, by unit of angles
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
+    std::optional<std::unordered_set<std::uint32_t>> missed_planes_;
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
     std::unordered_map<const Chart*, std::uint32_t> charts_;
 };

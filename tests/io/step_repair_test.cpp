@@ -16,12 +16,6 @@ namespace {
 
 const StepReadOptions kRepair{.repair = true};
 
-std::string replaced(std::string s, std::string_view what, std::string_view by) {
-    const std::size_t at = s.find(what);
-    EXPECT_NE(at, s.npos) << what;
-    return at == s.npos ? s : s.replace(at, what.size(), by);
-}
-
 Model must_repair(const std::string& file, const StepReadOptions& options = kRepair) {
     auto m = read_step(file, options);
     EXPECT_TRUE(m) << m.error().where << ": " << m.error().message;

@@ -2,6 +2,7 @@
 #include <freiform/io/step_read.hpp>
 
 #include <support/refusal.hpp>
+#include <support/solids.hpp>
 #include <support/step_items.hpp>
 #include <support/step_polygons.hpp>
 
@@ -34,8 +35,8 @@ TEST(StepTopology, wires_of_edges_loops_and_segments_are_edges) {
     EXPECT_EQ(m.edges.size(), 2u);
 }
 
-// A tetrahedron of POLY_LOOPs, each face on the plane through its corners.
-TEST(StepTopology, polyhedra_share_the_edges_between_their_points) {
+// A tetrahedron of POLY_LOOPs, each face on the plane through its corners, or all on that of the first.
+std::string tetrahedron(bool one_plane) {
     const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
     std::string s = "#10=FACETED_BREP('',#11);\n#11=CLOSED_SHELL('',(#100,#101,#102,#103));\n";
@@ -48,20 +49,69 @@ TEST(StepTopology, polyhedra_share_the_edges_between_their_points) {
             return Vec<3>{{p[0], p[1], p[2]}};
         };
         const Vec<3> x = at(1) - at(0), z = cross(x, at(2) - at(0));
-        s += text("#", 100 + k, "=FACE_SURFACE('',(#", 110 + k, "),#", 120 + k, ",.T.);\n#", 110 + k,
-                  "=FACE_OUTER_BOUND('',#", 130 + k, ",.T.);\n#", 130 + k, "=POLY_LOOP('',(#",
+        s += text("#", 100 + k, "=FACE_SURFACE('',(#", 110 + k, "),#", one_plane ? 120 : 120 + k, ",.T.);\n#",
+                  110 + k, "=FACE_OUTER_BOUND('',#", 130 + k, ",.T.);\n#", 130 + k, "=POLY_LOOP('',(#",
                   40 + faces[k][0], ",#", 40 + faces[k][1], ",#", 40 + faces[k][2], "));\n#", 120 + k,
                   "=PLANE('',#", 140 + k, ");\n#", 140 + k, "=AXIS2_PLACEMENT_3D('',#", 40 + faces[k][0],
                   ",#", 150 + k, ",#", 160 + k, ");\n#", 150 + k, "=DIRECTION('',(", z[0], ".,", z[1], ".,",
                   z[2], ".));\n#", 160 + k, "=DIRECTION('',(", x[0], ".,", x[1], ".,", x[2], ".));\n");
     }
-    const Model m = items_model("#10", s);
+    return s;
+}
+void expect_tetrahedron(const Model& m) {
     const ModelSummary n = summary(m);
     EXPECT_EQ(n.faces, 4);
     EXPECT_EQ(n.edges, 6);
     EXPECT_EQ(n.vertices, 4);
     EXPECT_EQ(n.open_edges, 0);
     EXPECT_EQ(n.solids, 1);
+}
+
+TEST(StepTopology, polyhedra_share_the_edges_between_their_points) {
+    const Model m = items_model("#10", tetrahedron(false));
+    expect_tetrahedron(m);
+    EXPECT_TRUE(m.approximations.empty());
+}
+
+TEST(StepTopology, planes_that_polygons_miss_are_those_through_their_corners_and_told) {
+    const std::string good = tetrahedron(true);
+    // With the first bound said to run the other way, and its polygon told the other way: the same face.
+    const std::string turned =
+        replaced(replaced(good, "#110=FACE_OUTER_BOUND('',#130,.T.)", "#110=FACE_OUTER_BOUND('',#130,.F.)"),
+                 "(#40,#42,#41)", "(#41,#42,#40)");
+    for (const std::string& file : {good, turned}) {
+        const Model m = items_model("#10", file);
+        expect_tetrahedron(m);
+        ASSERT_EQ(m.approximations.size(), 4u);
+        EXPECT_NE(m.approximations[1].what.find("#101 FACE_SURFACE"), std::string::npos)
+            << m.approximations[1].what;
+        EXPECT_NE(m.approximations[1].what.find("#120 PLANE"), std::string::npos);
+        const Tessellation made = closed_tessellation(m, 0.01);
+        EXPECT_TRUE(made.turned_shells.empty());
+        EXPECT_NEAR(signed_volume(made.mesh), 1.0 / 6, 1e-12);
+    }
+}
+
+// Corners that are in no plane do not say which plane is meant.
+TEST(StepTopology, polygons_that_are_in_no_plane_are_taken_on_that_of_the_file_if_it_is_near) {
+    for (const double off : {0.01, 5.0}) {
+        const auto m = read_step(item_file(
+            "#10", text("#10=OPEN_SHELL('',(#50));\n#50=FACE_SURFACE('',(#51),#7,.T.);\n"
+                        "#51=FACE_BOUND('',#52,.T.);\n#52=POLY_LOOP('',(#60,#61,#62,#63));\n"
+                        "#60=CARTESIAN_POINT('',(0.,0.,",
+                        off, "));\n#61=CARTESIAN_POINT('',(3.,0.,0.));\n#62=CARTESIAN_POINT('',(3.,3.,", off,
+                        "));\n#63=CARTESIAN_POINT('',(0.,3.,0.));\n")));
+        if (off < 1) {
+            ASSERT_EQ(must(m).faces.size(), 1u);
+            ASSERT_EQ(m->approximations.size(), 4u);
+            for (const Approximation& a : m->approximations)
+                EXPECT_NE(a.what.find("beside #50 FACE_SURFACE; the file says"), std::string::npos) << a.what;
+        } else {
+            ASSERT_TRUE(!m || m->faces.empty());
+            EXPECT_NE((m ? m->refused.at(0) : m.error()).message.find("beside the surface"),
+                      std::string::npos);
+        }
+    }
 }
 
 constexpr std::string_view kTwoBalls =

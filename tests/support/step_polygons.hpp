@@ -19,6 +19,12 @@ inline std::string flat_file(std::string_view data) {
                 data, "ENDSEC;\nEND-ISO-10303-21;\n");
 }
 
+inline std::string replaced(std::string s, std::string_view what, std::string_view by) {
+    const std::size_t at = s.find(what);
+    EXPECT_NE(at, s.npos) << what;
+    return at == s.npos ? s : s.replace(at, what.size(), by);
+}
+
 struct Corner {
     double x, y;
 };
