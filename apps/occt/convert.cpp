@@ -141,7 +141,9 @@ Conversion Converter::finish() {
                     m.refused.push_back(made.error());
     } else if (free_edges_ > 0) {
         m.refused.push_back(
-            {RefusalKind::unsupported, "file", text(free_edges_, " curves that bound no face are left out")});
+            {RefusalKind::unsupported, "file",
+             text(free_edges_, free_edges_ == 1 ? " curve that bounds no face is left out"
+                                                : " curves that bound no face are left out")});
     }
     // Edges and vertices that only refused faces had.
     std::vector<int> place(m.edges.size(), free_edges_ > 0 && m.faces.empty() ? 0 : -1);

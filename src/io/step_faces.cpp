@@ -137,10 +137,13 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
             around.push_back({id, *of, {made->begin(), made->end()}, o->flag(4) == forward});
         }
         turn_edges(around);
+        std::vector<LoopPiece> pieces;
         for (const Oriented& e : around)
             for (std::size_t k = 0; k < e.made.size(); ++k)
-                if (auto ok = append(e.made[e.along ? k : e.made.size() - 1 - k], e.along, e.edge); !ok)
-                    return ok;
+                pieces.push_back({e.made[e.along ? k : e.made.size() - 1 - k], e.along, e.edge});
+        fold_twins(pieces);
+        for (const LoopPiece& p : pieces)
+            if (auto ok = append(p.made, p.along, p.of); !ok) return ok;
     }
     if (uses.empty()) return {};
     if (auto ok = close_loop(*at, uses, chart, size, loosely); !ok) return ok;
@@ -279,6 +282,7 @@ Result<Face> ShapeReader::make_face(std::uint32_t i, std::uint32_t whole, Type t
         out_.model.repairs.resize(repairs);  // without what another attempt said
         out_.model.approximations.resize(told), out_.approximated.resize(told);
         turned_now_.reset();
+        twins_now_.clear();
         for (const std::uint32_t b : *bounds)
             if (auto ok = add_bound(b, same, chart, *size, loosely, loops); !ok)
                 return std::unexpected(ok.error());
@@ -389,6 +393,7 @@ int ShapeReader::face(std::uint32_t i) {
                                         : bare_face(i);
     int at = -1;
     if (!made) {
+        twins_now_.clear();
         refuse_item(i, made.error());
     } else {
         const Fields f(f_, i, f_.instances[i].first + 1);
@@ -396,6 +401,7 @@ int ShapeReader::face(std::uint32_t i) {
         made->colour = colour_of(i);
         styles_.add_layers(made->layers, i);
         at = int(out_.model.faces.size());
+        twins_.merge(std::exchange(twins_now_, {}));
         if (turned_now_) turned_.emplace(at, *std::exchange(turned_now_, std::nullopt));
         out_.model.faces.push_back(std::move(*made));
     }

@@ -310,8 +310,10 @@ private:
     void take_curves() {
         if (free_.empty()) return;
         if (!model_.faces.empty()) {
-            model_.refused.push_back({RefusalKind::unsupported, "file",
-                                      text(free_.size(), " curves that bound no face are left out")});
+            model_.refused.push_back(
+                {RefusalKind::unsupported, "file",
+                 text(free_.size(), free_.size() == 1 ? " curve that bounds no face is left out"
+                                                      : " curves that bound no face are left out")});
             return;
         }
         std::map<std::pair<int, int>, int> known;  // by the place and the number there

@@ -352,6 +352,7 @@ void ShapeReader::tell_approximated() {
 Part ShapeReader::finish() {
     Model& m = out_.model;
     tell_approximated();
+    if (!twins_.empty()) merge_twins();
     if (!same_.empty()) merge_vertices();
     cut_touched_edges(m, kTouches * tolerance_, [&](int edge, int parts, int first) {
         const std::size_t known = out_.approximated.size();

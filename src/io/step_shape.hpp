@@ -75,6 +75,13 @@ private:
         std::vector<EdgeMade> made;
         bool along;
     };
+    // What one edge of those is made into.
+    struct LoopPiece {
+        EdgeMade made;
+        bool along;
+        std::uint32_t of;
+        bool twin = false;  // another edge stands for it
+    };
     // A segment of a composite curve, as that runs through it.
     struct Segment {
         std::uint32_t instance, curve;  // itself, and the curve that it is a part of
@@ -149,6 +156,11 @@ private:
                             const Vec<3>& normal);
     bool is_missed(std::uint32_t plane);
     std::optional<SurfaceGeometry> own_plane(std::uint32_t face, std::uint32_t surface);
+    // step_twins.cpp
+    bool are_twins(const EdgeMade& a, const EdgeMade& b) const;
+    int twin_of(int edge) const;
+    void fold_twins(std::vector<LoopPiece>& loop);
+    void merge_twins();
     // step_pcurve.cpp: `ends` are those of the edge, if they are known.
     Result<BoundedCurve> curve_in_space(std::uint32_t i, const std::array<Vec<3>, 2>* ends);
     Result<BoundedCurve> lifted_curve(std::uint32_t pcurve, const std::array<Vec<3>, 2>* ends);
@@ -209,6 +221,7 @@ private:
     std::optional<std::size_t> turned_now_;  // of the face that is being made
     // Likewise, if its surface is one: edges not followed closely are refused, as other poles may do.
     std::optional<FoundSphere> strict_;
+    std::map<int, int> twins_, twins_now_;   // edges that others stand for; of the face that is being made
     std::vector<std::pair<int, int>> same_;  // vertices that loops say are one
     std::unordered_map<std::uint32_t, int> vertices_, points_, faces_;
     std::unordered_map<int, std::uint32_t> vertex_of_;  // what the file calls a vertex

@@ -109,7 +109,7 @@ TEST(StepWires, of_several_objects_and_beside_solids_are_written) {
     const Model mixed = must(read_step(text));  // which leaves them out, and says so
     EXPECT_EQ(mixed.faces.size(), 1u);
     ASSERT_EQ(mixed.refused.size(), 1u);
-    EXPECT_NE(mixed.refused[0].message.find("1 curves that bound no face"), std::string::npos);
+    EXPECT_NE(mixed.refused[0].message.find("1 curve that bounds no face"), std::string::npos);
 
     Model loose = sphere(Vec<3>{}, 1);  // an edge of the same model
     loose.vertices.insert(loose.vertices.end(), cross.vertices.begin(), cross.vertices.end());
