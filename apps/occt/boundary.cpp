@@ -7,16 +7,19 @@
 
 #include <freiform/model/edge_gap.hpp>
 
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_RectangularTrimmedSurface.hxx>
 #include <Precision.hxx>
 #include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace freiform::occt {
 
@@ -234,6 +237,29 @@ void Converter::open_slit(Loop& loop, const Slit& slit) {
     }
 }
 
+// The surface of the face, if it is closed all around and no other face lies on it: the reader may have made
+// two of one, and another one has the loops then that this one lacks.
+std::optional<Face> Converter::all_of(const TopoDS_Face& f, std::string_view where) {
+    TopLoc_Location at;
+    const Handle(Geom_Surface) own = BRep_Tool::Surface(f, at);
+    int on_it = 0;
+    for (const Part& part : document_.parts)
+        for (TopExp_Explorer i(part.shape, TopAbs_FACE); i.More(); i.Next())
+            on_it += BRep_Tool::Surface(TopoDS::Face(i.Current()), at) == own ? 1 : 0;
+    BRepBuilderAPI_MakeFace bounded(BRep_Tool::Surface(f), Precision::Confusion());
+    if (on_it > 1 || !bounded.IsDone()) return std::nullopt;
+    auto made = geometry_of(TopoDS::Face(bounded.Face().Oriented(TopAbs_FORWARD)), where);
+    if (!made) return std::nullopt;
+    std::map<int, int> uses;
+    for (const Loop& l : made->loops)
+        for (const Coedge& c : l.coedges)
+            if (!out_.model.edges[std::size_t(c.edge)].degenerate) ++uses[c.edge];
+    if (std::ranges::any_of(uses, [](const auto& u) { return u.second != 2; })) return std::nullopt;
+    report(-1, "its loop encloses nothing, and its surface is closed; all of that is taken", 0, 0);
+    out_.model.approximations.back().where = where;
+    return std::move(*made);
+}
+
 // REQUIRES f oriented forward.
 Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where) {
     const Handle(Geom_Surface) s = BRep_Tool::Surface(f);
@@ -273,6 +299,8 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where
         const double close = std::max(out.tolerance, document_.resolution);
         if (const auto slit = slit_of(out.loops[0], out_.model.edges, s, period, close))
             open_slit(out.loops[0], *slit);
+        else if (is_slit(out.loops[0], out_.model.edges, s))
+            if (auto all = all_of(f, where)) return std::move(*all);
     }
     for (Loop& loop : out.loops) {
         swap_sides(loop, out_.model.edges, period);

@@ -1,5 +1,6 @@
 #include "bridges.hpp"
 
+#include <Precision.hxx>
 #include <algorithm>
 #include <cmath>
 #include <gp_Pnt.hxx>
@@ -87,6 +88,17 @@ std::optional<Slit> slit_of(const Loop& loop, const std::vector<Edge>& edges, co
         if (poles) return slit;
     }
     return std::nullopt;
+}
+
+bool is_slit(const Loop& loop, const std::vector<Edge>& edges, const Handle(Geom_Surface) & s) {
+    const Box<2> box = extent_of(loop, edges).box;
+    Vec<2> lo, hi;
+    s->Bounds(lo[0], hi[0], lo[1], hi[1]);
+    for (int axis = 0; axis < 2; ++axis)
+        if (!Precision::IsInfinite(lo[axis]) && !Precision::IsInfinite(hi[axis]) &&
+            box.side(axis).length() <= kNear * (hi[axis] - lo[axis]))
+            return true;
+    return false;
 }
 
 void swap_sides(Loop& loop, const std::vector<Edge>& edges, const std::array<double, 2>& period) {

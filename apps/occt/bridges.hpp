@@ -33,6 +33,9 @@ struct Slit {
 std::optional<Slit> slit_of(const Loop& loop, const std::vector<Edge>& edges, const Handle(Geom_Surface) & s,
                             const std::array<double, 2>& period, double close);
 
+// Whether the loop goes somewhere and back in one place of the parameters.
+bool is_slit(const Loop& loop, const std::vector<Edge>& edges, const Handle(Geom_Surface) & s);
+
 // Whether loops, all of which close in the parameters, have more on their right than on their left: they run
 // the wrong way, or one that is around the others has been lost.
 bool enclose_less_than_nothing(const std::vector<Loop>& loops, const std::vector<Edge>& edges);

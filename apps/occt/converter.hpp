@@ -41,6 +41,7 @@ public:
 private:
     Result<int> face(const TopoDS_Face& original, const TopLoc_Location& at, const Part& part);
     Result<Face> geometry_of(const TopoDS_Face& f, std::string_view where);
+    std::optional<Face> all_of(const TopoDS_Face& f, std::string_view where);
     Result<Loop> loop_of(std::vector<Piece> pieces, std::vector<Loop>& more);
     Result<Piece> piece(const TopoDS_Edge& e, const TopoDS_Face& f, const Handle(Geom_Plane) & plane);
     void open_slit(Loop& loop, const Slit& slit);
