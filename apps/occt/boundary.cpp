@@ -199,15 +199,57 @@ bool Converter::is_second_pole(const Piece& p, const std::vector<Piece>& pieces)
            });
 }
 
+Vec<2> Converter::end_of(const Coedge& c, bool last) const {
+    const Interval on = out_.model.edges[std::size_t(c.edge)].range;
+    return jet<0>(c.curve, last != c.reversed ? on.hi : on.lo).value();
+}
+
+// A degenerate edge from the end of one coedge to the beginning of the next.
+Coedge Converter::pole_between(const Coedge& before, const Coedge& after) {
+    const Edge& e = out_.model.edges[std::size_t(before.edge)];
+    Edge made;
+    made.degenerate = true;
+    made.range = {0, 1};
+    made.start = made.end = before.reversed ? e.start : e.end;
+    made.tolerance = e.tolerance;
+    const Vec<2> from = end_of(before, true);
+    stated_.push_back(made.tolerance);
+    out_.edges.push_back({});
+    out_.model.edges.push_back(std::move(made));
+    return Coedge{int(out_.model.edges.size()) - 1, false, Line<2>{from, end_of(after, false) - from}};
+}
+
+// Where a loop goes on elsewhere in the parameters, at the same point of the surface, the file lacks the
+// degenerate edge between.
+void Converter::add_poles(Loop& loop, const Handle(Geom_Surface) & s, double close) {
+    constexpr int kSteps = 8;
+    constexpr double kFar = 0.01;  // of the loop's extent
+    Box<2> box;
+    for (const Coedge& c : loop.coedges) {
+        const Interval on = out_.model.edges[std::size_t(c.edge)].range;
+        for (int k = 0; k <= kSteps; ++k) box.add(jet<0>(c.curve, on.lo + on.length() * k / kSteps).value());
+    }
+    for (std::size_t i = 0; i < loop.coedges.size(); ++i) {
+        const std::size_t next = (i + 1) % loop.coedges.size();
+        const Vec<2> from = end_of(loop.coedges[i], true), by = end_of(loop.coedges[next], false) - from;
+        if (std::abs(by[0]) <= kFar * box.side(0).length() && std::abs(by[1]) <= kFar * box.side(1).length())
+            continue;
+        bool is_point = true;
+        for (int k = 1; k <= kSteps && is_point; ++k) {
+            const Vec<2> there = from + double(k) / kSteps * by;
+            is_point = s->Value(from[0], from[1]).Distance(s->Value(there[0], there[1])) <= close;
+        }
+        if (!is_point) continue;
+        const Coedge between = pole_between(loop.coedges[i], loop.coedges[next]);
+        loop.coedges.insert(loop.coedges.begin() + std::ptrdiff_t(++i), between);
+    }
+}
+
 // Moves one side of the seam by a period, so that the boundary runs round all of the surface, with the poles
 // between the sides.
 void Converter::open_slit(Loop& loop, const Slit& slit) {
     std::rotate(loop.coedges.begin(), loop.coedges.begin() + std::ptrdiff_t(slit.turn), loop.coedges.end());
     const int along = 1 - slit.axis;
-    const auto end_of = [&](const Coedge& c, bool last) {
-        const Interval on = out_.model.edges[std::size_t(c.edge)].range;
-        return jet<0>(c.curve, last != c.reversed ? on.hi : on.lo).value();
-    };
     const auto runs_up = [&](const Coedge& c) { return end_of(c, true)[along] > end_of(c, false)[along]; };
     // The face is on the left: u = u0 + period runs up, v = v0 + period down.
     for (Coedge& c : loop.coedges)
@@ -216,23 +258,10 @@ void Converter::open_slit(Loop& loop, const Slit& slit) {
             by[slit.axis] = slit.period;
             c.curve = translated(c.curve, by);
         }
-    const auto pole = [&](const Coedge& before, const Coedge& after) {
-        const Edge& e = out_.model.edges[std::size_t(before.edge)];
-        Edge made;
-        made.degenerate = true;
-        made.range = {0, 1};
-        made.start = made.end = before.reversed ? e.start : e.end;
-        made.tolerance = e.tolerance;
-        const Vec<2> from = end_of(before, true);
-        stated_.push_back(made.tolerance);
-        out_.edges.push_back({});
-        out_.model.edges.push_back(std::move(made));
-        return Coedge{int(out_.model.edges.size()) - 1, false, Line<2>{from, end_of(after, false) - from}};
-    };
     for (std::size_t i = 0; i < loop.coedges.size(); ++i) {
         const std::size_t next = (i + 1) % loop.coedges.size();
         if (runs_up(loop.coedges[i]) == runs_up(loop.coedges[next])) continue;
-        const Coedge between = pole(loop.coedges[i], loop.coedges[next]);
+        const Coedge between = pole_between(loop.coedges[i], loop.coedges[next]);
         loop.coedges.insert(loop.coedges.begin() + std::ptrdiff_t(++i), between);
     }
 }
@@ -295,8 +324,8 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where
                       "has no boundary, and its surface has none that could take its place");
     const std::array<double, 2> period{s->IsUPeriodic() ? s->UPeriod() : 0,
                                        s->IsVPeriodic() ? s->VPeriod() : 0};
+    const double close = std::max(out.tolerance, document_.resolution);
     if (out.loops.size() == 1) {
-        const double close = std::max(out.tolerance, document_.resolution);
         if (const auto slit = slit_of(out.loops[0], out_.model.edges, s, period, close))
             open_slit(out.loops[0], *slit);
         else if (is_slit(out.loops[0], out_.model.edges, s))
@@ -305,6 +334,7 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where
     for (Loop& loop : out.loops) {
         swap_sides(loop, out_.model.edges, period);
         remove_bridges(loop, out_.model.edges, period);
+        add_poles(loop, s, close);
         for (const Coedge& c : loop.coedges)
             add_hull(used, c.curve, out_.model.edges[std::size_t(c.edge)].range);
     }

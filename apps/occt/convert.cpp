@@ -51,8 +51,17 @@ Result<int> Converter::face(const TopoDS_Face& original, const TopLoc_Location& 
                           text(failure.DynamicType()->Name(), ": ", failure.GetMessageString()));
         }
     }();
+    const bool open = made && is_open(*made);
     if (made)
         if (auto ok = check_tolerance(*made, where); !ok) made = std::unexpected(ok.error());
+    if (!made || open)
+        if (auto again = retraced(f); again && check_tolerance(*again, where)) {
+            made = std::move(*again);
+            report(-1,
+                   "its parameter curves contradict its edges; those that follow the edges take their place",
+                   0, 0);
+            out_.model.approximations.back().where = where;
+        }
     if (!made) {
         out_.model.refused.push_back(
             {made.error().kind, where, text(made.error().where, ": ", made.error().message)});

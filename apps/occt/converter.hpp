@@ -42,8 +42,15 @@ private:
     Result<int> face(const TopoDS_Face& original, const TopLoc_Location& at, const Part& part);
     Result<Face> geometry_of(const TopoDS_Face& f, std::string_view where);
     std::optional<Face> all_of(const TopoDS_Face& f, std::string_view where);
+    // retrace.cpp
+    bool is_open(const Face& f) const;
+    double size_of(const Face& f) const;  // the extent of its edges, from points on them
+    Result<Face> retraced(const TopoDS_Face& f);
     Result<Loop> loop_of(std::vector<Piece> pieces, std::vector<Loop>& more);
     Result<Piece> piece(const TopoDS_Edge& e, const TopoDS_Face& f, const Handle(Geom_Plane) & plane);
+    Vec<2> end_of(const Coedge& c, bool last) const;  // in the parameters, as the loop runs
+    Coedge pole_between(const Coedge& before, const Coedge& after);
+    void add_poles(Loop& loop, const Handle(Geom_Surface) & s, double close);
     void open_slit(Loop& loop, const Slit& slit);
     bool is_second_pole(const Piece& p, const std::vector<Piece>& pieces) const;
     Result<int> edge(const TopoDS_Edge& e, const TopoDS_Face& f);

@@ -74,16 +74,20 @@ void Converter::prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspe
     e.tolerance = std::max(e.tolerance, distance);
 }
 
-// Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
-// that the others do not keep. Refuses the face if one misses by a good part of the size of the face.
-Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
+double Converter::size_of(const Face& f) const {
     Box<3> box;
     for (const Loop& l : f.loops)
         for (const Coedge& c : l.coedges)
             if (const Edge& e = out_.model.edges[std::size_t(c.edge)]; e.curve)
                 for (int i = 0; i <= 8; ++i)
                     box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * i / 8).value());
-    const double size = box.diagonal();
+    return box.diagonal();
+}
+
+// Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
+// that the others do not keep. Refuses the face if one misses by a good part of the size of the face.
+Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
+    const double size = size_of(f);
     std::vector<Suspect> suspects;
     for (Loop& l : f.loops)
         for (Coedge& c : l.coedges) {

@@ -39,6 +39,7 @@ void ShapeReader::fold_twins(std::vector<LoopPiece>& loop) {
             other.made.edge,
             text(f_.label(other.of), " and ", f_.label(loop[k].of), " are the same, and taken for one edge"),
             0.0, 0);
+        loop[k].along = is_reversed(loop[k]) == other.made.flipped;
         loop[k].made = other.made;
         loop[k].twin = true;
         found = true;

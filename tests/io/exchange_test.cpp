@@ -8,10 +8,12 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <numbers>
 #include <random>
 #include <set>
 #include <support/corpus.hpp>
 #include <support/sanitizer.hpp>
+#include <support/solids.hpp>
 #include <unistd.h>
 
 namespace {
@@ -143,6 +145,19 @@ TEST_F(Exchange, tells_of_loops_that_run_the_wrong_way) {
     ASSERT_FALSE(model->approximations.empty());
     EXPECT_EQ(model->approximations[0].where, "face 0");
     EXPECT_NE(model->approximations[0].what.find("run the wrong way"), std::string::npos);
+}
+
+// Half a ball, whose boundary has no degenerate edge where its seam ends at the pole.
+TEST_F(Exchange, adds_the_degenerate_edges_that_loops_lack) {
+    if (!fs::exists(FREIFORM_OCCT_BINARY)) GTEST_SKIP() << FREIFORM_OCCT_BINARY << " is not built";
+    const Variable reader("FREIFORM_OCCT_IMPORT", FREIFORM_OCCT_BINARY);
+    const auto model = read_with_occt(FREIFORM_SOURCE_DIR "/tests/data/brep/pole_without_an_edge.brep");
+    ASSERT_TRUE(model.has_value()) << model.error().message;
+    EXPECT_EQ(std::ranges::count_if(model->edges, &Edge::degenerate), 1);
+    EXPECT_TRUE(model->approximations.empty());
+    const double tolerance = 0.01;
+    const Tessellation made = test::closed_tessellation(*model, tolerance);
+    EXPECT_NEAR(test::signed_volume(made.mesh), 16 * std::numbers::pi / 3, 12 * std::numbers::pi * tolerance);
 }
 
 TEST_F(Exchange, leaves_coordinates_in_the_unit_of_the_file) {

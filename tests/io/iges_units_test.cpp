@@ -79,11 +79,13 @@ TEST_F(IgesUnits, the_resolution_of_the_file_is_the_tolerance_of_its_edges) {
 
 // What files and their reader leave behind, once each: ends of edges beside the vertices they share, twice
 // the tolerance from one to the other; an edge that lies in such a gap, and that one face has alone; a seam
-// whose two sides are one in the parameters, all of it, or one of two, or half. All of it is closed.
+// whose two sides are one in the parameters, all of it, or one of two, or half; parameter curves that are not
+// those of the edges. All of it is closed.
 TEST_F(IgesUnits, gaps_at_vertices_and_seams_in_one_place_are_closed) {
     const Solid solids[] = {{"ends_beside_vertices.iges", "cm", 14, 2.684877, 12.91348, 0.004},
                             {"short_edge_in_a_gap.iges", "mm", 7, 5979.542, 2022.323, 0.05},
                             {"seam_in_one_place.iges", "mm", 1, 798.0574, 452.1391, 0.02},
+                            {"edge_without_length.iges", "mm", 4, 348.918, 426.053, 0.02},
                             {"ring_of_one_seam.iges", "mm", 1, 196.112, 284.150, 0.02},
                             {"ball_of_half_a_seam.iges", "mm", 5, 560.144, 537.546, 0.02}};
     for (const Solid& x : solids) {

@@ -102,7 +102,9 @@ TEST(StepTwins, two_edges_to_an_apex_are_one) {
 // A plate whose loop goes from a corner inwards along one edge and back along another. On each of the two
 // stands a triangle; these share the edge, and the plate has it no more. In any order.
 TEST(StepTwins, ways_that_enclose_nothing_hang_shells_together) {
-    for (const std::string_view order : {"#700,#701,#702", "#702,#701,#700", "#701,#700,#702"}) {
+    for (const std::string_view order :
+         {"#700,#701,#702", "#702,#701,#700", "#701,#700,#702", "#700,#702,#701"}) {
+        const bool turned = order == "#700,#702,#701";  // the second edge runs against the curve
         Rows r;
         for (const Vec<3>& p : {Vec<3>{{0, 0, 0}},
                                 {{4, 0, 0}},
@@ -113,16 +115,19 @@ TEST(StepTwins, ways_that_enclose_nothing_hang_shells_together) {
                                 {{0, 2, 2}}})
             r.vertex(p);
         for (int k = 0; k < 4; ++k) r.straight(k, k, (k + 1) % 4);
-        r.straight(4, 0, 4), r.edge(5, 0, 4, 304);
+        r.straight(4, 0, 4), r.edge(5, turned ? 4 : 0, turned ? 0 : 4, 304);
+        if (turned) r.rows = replaced(r.rows, "#204,#200,#304,.T.", "#204,#200,#304,.F.");
+        const int back = turned ? 6 : -6;
         r.straight(6, 4, 5), r.straight(7, 5, 0), r.straight(8, 0, 6), r.straight(9, 6, 4);
         r.plane(0, 0, 1, 2), r.plane(1, 0, 4, 5), r.plane(2, 0, 6, 4);
-        r.face(0, "850", {1, 2, 3, 4, 5, -6});
-        r.face(1, "851", {5, 7, 8}), r.face(2, "852", {-6, 9, 10});
+        r.face(0, "850", {1, 2, 3, 4, 5, back});
+        r.face(1, "851", {5, 7, 8}), r.face(2, "852", {back, 9, 10});
         const Model m = items_model(
             "#10",
             text("#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(", order, "));\n", r.rows));
         ASSERT_EQ(m.faces.size(), 3u);
         EXPECT_EQ(m.edges.size(), 9u);
+        EXPECT_EQ(m.approximations.size(), 1u);
         int shared = 0;
         std::vector<int> uses(m.edges.size(), 0);
         for (const Face& f : m.faces)
