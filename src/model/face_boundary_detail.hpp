@@ -13,6 +13,13 @@ struct BoundaryOfFace {
     };
     std::vector<Source> sources;  // one for each segment of the polygon
     double gap = 0;               // of the model along this boundary
+    // Triangles beside the polygon, of parts of the boundary that cross others (tessellate_lenses.cpp).
+    struct StripTriangle {
+        std::array<Vec<2>, 3> uv;
+        std::array<int, 3> point;  // of the mesh
+    };
+    std::vector<StripTriangle> strip;
+    double strip_bound = 0;  // of their interpolation error
 };
 
 // Refuses loops whose coedges do not meet, in the model or in the parameter plane. `rounding`: distances in

@@ -242,6 +242,7 @@ Result<void> Tessellator::fill_all() {
         if (round == kManifoldRounds) break;
         which = faces_to_mend();
     }
+    add_strips();
     // A loop that runs back along itself; where parts of edges became points the face is smaller than the
     // tolerance.
     for (std::size_t f = 0; f < faces(); ++f) {

@@ -6,7 +6,8 @@
 // segments, the more of them do. Mostly an edge is to blame that is shorter than the tolerance; as a point it
 // does no harm. Else what of the edges that clash lies within the tolerance of their vertices becomes part of
 // these: curves of intersections begin with spikes that their neighbours have, too. Where that does not help,
-// the edges are whole again. Vertices of one face at one place are one point in any case, for two of them
+// the edges are whole again, and what crosses within the tolerance is closed by strips
+// (tessellate_lenses.cpp). Vertices of one face at one place are one point in any case, for two of them
 // would leave triangles without area. What becomes a point is moved by `EdgeMesh::moved` at most, which
 // counts as gap.
 #include "tessellator_detail.hpp"
@@ -103,20 +104,24 @@ void Tessellator::edges_of(std::size_t f, const BoundaryConflict& conflict, std:
     }
 }
 
+// After that part of the segment, as the loop runs.
+void Tessellator::add_cut(std::size_t f, int s, double part, std::vector<Cut>& cuts) const {
+    if (s < 0) return;
+    const auto& polygon = boundaries_[f].polygon;
+    const auto [edge, segment] = boundaries_[f].sources[std::size_t(s)];
+    if (edge < 0) return;
+    const auto& points = edges_->mesh(edge).points;
+    const int a = points[std::size_t(segment)], b = points[std::size_t(segment) + 1];
+    const bool back = polygon.point[std::size_t(polygon.segments[std::size_t(s)][0])] == b;
+    cuts.push_back({edge, segment, a == b ? 0.5 : back ? 1 - part : part});
+}
+
 // Segments to cut. One of two that cross is cut beside an end of the other: where curves touch in a common
 // end and part slowly, chords cross unless their ends are abreast.
 std::vector<Tessellator::Cut> Tessellator::cuts_for(std::size_t f, const BoundaryConflict& conflict) const {
     const auto& polygon = boundaries_[f].polygon;
     std::vector<Cut> out;
-    const auto add = [&](int s, double part) {
-        if (s < 0) return;
-        const auto [edge, segment] = boundaries_[f].sources[std::size_t(s)];
-        if (edge < 0) return;
-        const auto& points = edges_->mesh(edge).points;
-        const int a = points[std::size_t(segment)], b = points[std::size_t(segment) + 1];
-        const bool back = polygon.point[std::size_t(polygon.segments[std::size_t(s)][0])] == b;
-        out.push_back({edge, segment, a == b ? 0.5 : back ? 1 - part : part});
-    };
+    const auto add = [&](int s, double part) { add_cut(f, s, part, out); };
     // The part of s after which an end of `other` is beside it; 0 if none is.
     const auto abreast = [&](int s, int other) {
         const auto ends = polygon.segments[std::size_t(s)];
@@ -196,7 +201,7 @@ double Tessellator::accuracy_at(int e, int vertex, double of_face) const {
 bool Tessellator::collapse(int e, double of_face) {
     const Edge& edge = model_.edges[std::size_t(e)];
     EdgeMesh& mesh = edges_->mesh(e);
-    if (mesh.collapsed || edge.degenerate || edge.start == edge.end) return false;
+    if (mesh.collapsed || edge.degenerate) return false;
     const Vec<3> from = model_.vertices[std::size_t(edge.start)].point;
     double reach = norm(model_.vertices[std::size_t(edge.end)].point - from);
     for (const double t : mesh.parameters) reach = std::max(reach, norm(edges_->position(e, t) - from));
@@ -343,9 +348,10 @@ void Tessellator::resolve_conflicts() {
                 for (const int e : twice[f].edges) change(f, e, false);
             }
         }
-        if (changed.empty() && !again) return;
+        if (changed.empty() && !again) break;
         undo_cuts(before);
     }
+    close_all_lenses(std::move(clashed));
 }
 
 }  // namespace freiform

@@ -65,6 +65,7 @@ private:
         int edge, segment;
         double part;
     };
+    void add_cut(std::size_t face, int segment, double part, std::vector<Cut>& cuts) const;
     std::vector<Cut> cuts_for(std::size_t face, const BoundaryConflict& conflict) const;
     // A face whose boundary touches itself, and the edges that do; or one that is open.
     struct Clash {
@@ -85,6 +86,14 @@ private:
     bool shorten(int edge, double of_face);
     void undo_cuts(const std::vector<std::vector<double>>& before);
     void resolve_conflicts();
+    static std::vector<int> corners_between(const FaceBoundary& polygon, int s, int t);
+    bool add_strip(std::size_t face, int s, int t, const std::vector<int>& lens, std::vector<Cut>& cuts);
+    static void leave_out(BoundaryOfFace& boundary, int s, int t, const std::vector<int>& lens);
+    void cut_at_crossing(std::size_t face, int s, int t, std::vector<Cut>& cuts) const;
+    bool close_lenses(std::size_t face, std::vector<Cut>& cuts);
+    void close_all_lenses(std::vector<char> crossing);
+    std::vector<char> cut_lenses(std::vector<char> looked_at);
+    void add_strips();
     Result<void> fill(std::span<const std::size_t> which);
     Result<void> fill_all();
     std::optional<Refusal> far_parameter(std::size_t face) const;

@@ -186,5 +186,41 @@ TEST(Saddle, what_is_added_and_included_takes_signs_away) {
     EXPECT_FALSE(both.is_saddle());
 }
 
+// Also of triangles that are turned over, and across a kink.
+TEST(TriangleBound, holds_for_triangles_in_any_sense) {
+    Random random(23);
+    const auto bent = must(Surface<Vec<3>>::make(
+        {*BSplineBasis::make(2, {0, 0, 0, 2, 2, 4, 4, 4}), *BSplineBasis::bezier(1, {0, 4})},
+        Net<2, Vec<3>>({5, 2}, [&] {
+            std::vector<Vec<3>> c;
+            for (int i = 0; i < 5; ++i)
+                for (int k = 0; k < 2; ++k) c.push_back({{double(i), 4.0 * k, random.real(-1, 1)}});
+            return c;
+        }())));
+    double closest = 0;
+    for (const SurfaceGeometry& s : {SurfaceGeometry(bent), waves<Vec<3>>(random), waves<Hom<3>>(random)}) {
+        const DerivativeQuery<2, 3> surface(s);
+        for (int n = 0; n < 300; ++n) {
+            const double size = std::exp2(random.integer(-4, 0));
+            const Vec<2> at{{random.real(0, 4 - size), random.real(0, 4 - size)}};
+            std::array<Vec<2>, 3> t;
+            for (Vec<2>& p : t) p = at + Vec<2>{{random.real(0, size), random.real(0, size)}};
+            const double bound = triangle_bound(surface, t);
+            double worst = 0;
+            for (int i = 0; i <= 12; ++i)
+                for (int k = 0; i + k <= 12; ++k) {
+                    const double a = i / 12.0, b = k / 12.0, c = 1 - a - b;
+                    const Vec<2> uv = a * t[0] + b * t[1] + c * t[2];
+                    const auto on = [&](const Vec<2>& p) { return jet<0>(s, p.c).value(); };
+                    worst = std::max(worst, norm(on(uv) - (a * on(t[0]) + b * on(t[1]) + c * on(t[2]))));
+                }
+            EXPECT_LE(worst, bound * (1 + 1e-12) + 1e-15);
+            closest = std::max(closest, worst / bound);
+        }
+        EXPECT_EQ(triangle_bound(surface, {{{{-1, 0}}, {{1, 0}}, {{0, 1}}}}), kInfinity);
+    }
+    EXPECT_GT(closest, 0.5);
+}
+
 }  // namespace
 }  // namespace freiform

@@ -1,4 +1,5 @@
 // Boundaries that nearly touch themselves in the parameter plane, or do within the tolerance of the file.
+#include "support/bezier.hpp"
 #include "support/solids.hpp"
 
 #include <freiform/model/assemble.hpp>
@@ -300,6 +301,67 @@ TEST(Boundaries, that_cross_are_refused_and_leave_no_cuts_behind) {
     ASSERT_EQ(t.refused.size(), 1u);
     EXPECT_EQ(t.refused[0].face, 0);
     EXPECT_EQ(t.mesh.triangles.size(), 2u);
+}
+
+// A sharp tip whose edges cross before they meet, up to 0.0044 apart behind that, and the faces on both
+// sides.
+Model crossed_tip(double tolerance) {
+    Model m;
+    const Vec<2> at[] = {{{0, 1}}, {{0, -1}}, {{10, 0}}, {{0, 5}}, {{10, 5}}, {{10, -5}}, {{0, -5}}};
+    for (const Vec<2>& p : at) m.vertices.push_back({on_plane(p), tolerance});
+    std::vector<std::vector<Coedge>> loops(3);
+    const auto curved = [&](int from, double side, int above) {  // to the tip
+        const std::vector<Vec<2>> p{at[from], {{10 / 3.0, 0.3 * side}}, {{20 / 3.0, -0.03 * side}}, at[2]};
+        const std::vector<Vec<3>> q{on_plane(p[0]), on_plane(p[1]), on_plane(p[2]), on_plane(p[3])};
+        loops[0].push_back({int(m.edges.size()), above == 1, bezier(p)});
+        loops[std::size_t(above)].push_back({int(m.edges.size()), above == 2, bezier(p)});
+        m.edges.push_back({bezier(q), false, {0, 1}, from, 2, tolerance, ""});
+    };
+    const auto straight = [&](int face, int from, int to) {
+        loops[std::size_t(face)].push_back({int(m.edges.size()), false, side_between(at[from], at[to])});
+        m.edges.push_back(
+            {side_between(on_plane(at[from]), on_plane(at[to])), false, {0, 1}, from, to, tolerance, ""});
+    };
+    curved(1, -1, 2), curved(0, 1, 1), straight(0, 0, 1);
+    straight(1, 2, 4), straight(1, 4, 3), straight(1, 3, 0);
+    straight(2, 1, 6), straight(2, 6, 5), straight(2, 5, 2);
+    return of_faces(std::move(m), loops);
+}
+
+// The face ends where they cross; what is behind that closes the mesh. All together is a rectangle, whose
+// area counts triangles that are turned over as what they are.
+TEST(Boundaries, that_cross_within_the_tolerance_of_the_file_before_they_meet_are_closed) {
+    for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
+        const auto t = *tessellate(crossed_tip(0.002), {.tolerance = tolerance});
+        ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+        EXPECT_LE(t.error_bound, tolerance);
+        EXPECT_GT(t.boundary_gap, 1e-3) << tolerance;
+        EXPECT_LT(t.boundary_gap, 0.008) << tolerance;
+        EXPECT_EQ(t.topology.degenerate_triangles, 0);
+        EXPECT_EQ(t.topology.misoriented_edges + t.topology.non_manifold_edges, 0);
+        EXPECT_EQ(t.topology.open_edges, 7);
+        double area = 0;
+        for (std::size_t i = 0; i < t.mesh.triangles.size(); ++i) {
+            const auto c = t.mesh.points_of(i);
+            const auto p = [&](std::size_t k) { return t.mesh.points[std::size_t(c[k])]; };
+            area += cross(p(1) - p(0), p(2) - p(0))[2] / 2;
+        }
+        EXPECT_NEAR(area, 100, 1e-9);
+    }
+}
+
+TEST(Boundaries, that_cross_by_more_than_the_tolerance_of_the_file_stay_refused) {
+    const auto t = *tessellate(crossed_tip(1e-4), {.tolerance = 1e-4});
+    ASSERT_EQ(t.refused.size(), 1u);
+    EXPECT_EQ(t.refused[0].face, 0);
+    std::size_t alone = 0;
+    for (const int f : {1, 2}) {
+        Model one = crossed_tip(1e-4);
+        one.faces = {one.faces[std::size_t(f)]};
+        one.shells[0].faces = {{0, false}};
+        alone += tessellate(*make_model(std::move(one)), {.tolerance = 1e-4})->mesh.triangles.size();
+    }
+    EXPECT_EQ(t.mesh.triangles.size(), alone);
 }
 
 }  // namespace

@@ -31,6 +31,10 @@ struct BoundaryConflict {
 // Empty if the boundary can be triangulated as it is.
 std::vector<BoundaryConflict> find_conflicts(const FaceBoundary& boundary);
 
+// Bound of the distance between the surface on a triangle and its linear interpolant at the corners, in any
+// sense around; infinite where they are not in its domain.
+double triangle_bound(const DerivativeQuery<2, 3>& surface, const std::array<Vec<2>, 3>& corner);
+
 struct FaceMesh {
     std::vector<Vec<2>> uv;  // the corners of the boundary first, in order, then further points
     std::vector<int> point;  // one for each uv: as FaceBoundary::point, -1 for inner points
