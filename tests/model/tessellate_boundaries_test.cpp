@@ -92,6 +92,30 @@ TEST(Boundaries, edges_shorter_than_the_tolerance_of_the_file_become_points) {
     }
 }
 
+// A square, and a closed edge in its loop that runs around a tiny circle within it.
+TEST(Boundaries, closed_edges_within_the_tolerance_of_their_vertex_become_points) {
+    for (const double tolerance : {1e-3, 1e-6}) {
+        constexpr double kTiny = 1e-5;
+        Model m;
+        const Vec<2> at[] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
+        std::vector<Coedge> loop;
+        for (const Vec<2>& p : at) m.vertices.push_back({on_plane(p), tolerance});
+        for (int i = 0; i < 4; ++i) {
+            const int k = (i + 1) % 4;
+            m.edges.push_back(
+                {side_between(on_plane(at[i]), on_plane(at[k])), false, {0, 1}, i, k, tolerance, ""});
+            loop.push_back({i, false, side_between(at[i], at[k])});
+        }
+        const Conic<2> round{ConicKind::ellipse, {{kTiny, kTiny}}, {{-kTiny, -kTiny}}, {{kTiny, -kTiny}}};
+        m.edges.push_back({on_plane(round), false, {0, 2 * kPi}, 0, 0, tolerance, ""});
+        loop.push_back({4, false, round});
+        const auto t = *tessellate(of_faces(std::move(m), {loop}), {.tolerance = 0.01});
+        EXPECT_EQ(t.refused.size(), tolerance < kTiny ? 1u : 0u);
+        EXPECT_EQ(t.mesh.triangles.size(), tolerance < kTiny ? 0u : 2u);
+        EXPECT_LE(t.boundary_gap, 4 * kTiny);
+    }
+}
+
 // A square with a triangle cut out of it that touches the middle of the lower side, there `below` it in the
 // parameter plane. `own`: the triangle has a vertex of its own for that.
 Model touched_square(double tolerance, double below, bool own) {
