@@ -18,6 +18,8 @@ namespace {
 constexpr double kTiny = 1e-3;
 // A spline around one vertex that misses closing by less, of its length, is meant to close.
 constexpr double kNearlyClosed = 0.01;
+// Of the tolerance: an open curve between a vertex and itself that is longer is no point.
+constexpr double kPoint = 16;
 // Parameters beyond this have lost digits of an angle.
 constexpr double kFarAround = 100;
 
@@ -200,7 +202,12 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
                 const double off = std::max(at_end(whole.lo, a), at_end(whole.hi, a));
                 if (off <= kNearlyClosed * length)
                     lo = whole.lo, hi = whole.hi, off_a = off_b = off;
-                else if (length > tolerance_)
+                else if (length > tolerance_ && length <= kPoint * tolerance_) {
+                    report(-1, text(f_.label(i), " begins and ends at one vertex, and is taken for that"),
+                           std::nullopt, off);
+                    made.empty = true;
+                    return made;
+                } else if (length > tolerance_)
                     return f->refused(
                         text("begins and ends at one vertex, but its curve is ",
                              norm(jet<0>(c->curve, whole.lo).value() - jet<0>(c->curve, whole.hi).value()),

@@ -25,6 +25,7 @@ namespace {
 
 constexpr int kConflictRounds = 12;  // each cuts the segments that touch
 constexpr int kGrowingRounds = 3;    // conflicts get more by cutting: curves that lie on each other
+constexpr int kLooks = 8;            // at the curve of a segment
 constexpr double kLeastPart = 0.1;   // of a segment, that is cut from it
 constexpr double kLittle = 0.1;      // of an edge, that may become part of the vertex at its end
 constexpr double kOnePlace = 1e-6;   // of the box of the face in the parameter plane
@@ -145,6 +146,38 @@ std::vector<Tessellator::Cut> Tessellator::cuts_for(std::size_t f, const Boundar
     return out;
 }
 
+bool Tessellator::is_straight(int edge) const {
+    const auto& curve = model_.edges[std::size_t(edge)].curve;
+    return curve && std::holds_alternative<Line<3>>(*curve);
+}
+
+// Whether the polygon runs clockwise, though the curves that it stands for do not: chords of narrow faces.
+bool Tessellator::is_turned_over(std::size_t f) const {
+    double area = 0;
+    const auto& polygon = boundaries_[f].polygon;
+    if (polygon.uv.empty()) return false;
+    const Vec<2> from = polygon.uv[0];
+    for (const auto& [a, b] : polygon.segments)
+        area += cross(polygon.uv[std::size_t(a)] - from, polygon.uv[std::size_t(b)] - from);
+    if (!(area < 0)) return false;
+    area = 0;
+    for (const Loop& loop : model_.faces[f].loops) {
+        std::vector<Vec<2>> along;
+        for (const Coedge& c : loop.coedges) {
+            const auto& t = edges_->mesh(c.edge).parameters;
+            const std::size_t first = along.size();
+            for (std::size_t k = 0; k + 1 < t.size(); ++k)
+                for (int i = 0; i < kLooks; ++i)
+                    along.push_back(jet<0>(c.curve, t[k] + (t[k + 1] - t[k]) * i / kLooks).value());
+            along.push_back(jet<0>(c.curve, t.back()).value());
+            if (c.reversed) std::reverse(along.begin() + std::ptrdiff_t(first), along.end());
+        }
+        for (std::size_t k = 0; k < along.size(); ++k)
+            area += cross(along[k] - from, along[(k + 1) % along.size()] - from);
+    }
+    return area > 0;
+}
+
 // The faces that had to be refused. Then cuts have been made that nobody needs; `before` keeps what was there
 // before the first.
 std::vector<Tessellator::Clash> Tessellator::cut_conflicts(std::vector<std::vector<double>>& before) {
@@ -155,17 +188,22 @@ std::vector<Tessellator::Clash> Tessellator::cut_conflicts(std::vector<std::vect
     for (int round = 0;; ++round) {
         number_points();
         std::vector<std::vector<BoundaryConflict>> conflicts(faces());
-        std::vector<char> open(faces(), 0);
+        std::vector<char> open(faces(), 0), turned(faces(), 0);
         parallel_for(faces(), 1, [&](std::size_t f) {
             if (is_refused(f)) return;
             assemble(f);  // point numbers change with every cut
             open[f] = is_refused(f);
-            if (!open[f] && stale[f]) conflicts[f] = find_conflicts(boundaries_[f].polygon);
+            if (open[f] || !stale[f]) return;
+            conflicts[f] = find_conflicts(boundaries_[f].polygon);
+            turned[f] = conflicts[f].empty() && is_turned_over(f);
         });
         std::map<std::pair<int, int>, double, std::greater<>> cuts;  // later segments of an edge first
         std::fill(stale.begin(), stale.end(), 0);
         for (std::size_t f = 0; f < faces(); ++f) {
             if (open[f]) refused.push_back({f, true, {}});
+            if (turned[f])
+                for (const auto& [edge, segment] : boundaries_[f].sources)
+                    if (edge >= 0 && !is_straight(edge)) cuts.try_emplace({edge, segment}, 0.5);
             growing[f] = round > 0 && conflicts[f].size() > known[f] ? growing[f] + 1 : 0;
             known[f] = conflicts[f].size();
             const bool hopeless = round == kConflictRounds || growing[f] == kGrowingRounds;

@@ -73,6 +73,8 @@ private:
         bool open;
         std::vector<int> edges;
     };
+    bool is_straight(int edge) const;
+    bool is_turned_over(std::size_t face) const;
     std::vector<Clash> cut_conflicts(std::vector<std::vector<double>>& before);
     void edges_of(std::size_t face, const BoundaryConflict& conflict, std::vector<int>& out) const;
     // Points of a boundary at one place: vertices, and the edges that have the others.

@@ -89,6 +89,29 @@ TEST(StepLoops, edges_around_one_vertex_whose_spline_ends_beside_its_beginning_r
         << far.error().message;
 }
 
+// A tiny curve of one vertex that does not close is that vertex; a longer one contradicts it.
+TEST(StepLoops, open_curves_between_a_vertex_and_itself_are_that_if_they_are_tiny) {
+    const auto file = [](std::string_view x) {
+        return replaced(
+            polygon_file(
+                {{0, 0}, {3, 0}, {3, 2}, {0, 2}},
+                text("#960=ORIENTED_EDGE('',*,*,#961,.T.);\n#961=EDGE_CURVE('',#201,#201,#962,.T.);\n"
+                     "#962=B_SPLINE_CURVE_WITH_KNOTS('',1,(#101,#963),.UNSPECIFIED.,.F.,.F.,(2,2),"
+                     "(0.,1.),.UNSPECIFIED.);\n#963=CARTESIAN_POINT('',(",
+                     x, ",0.,0.));\n")),
+            "(#500,", "(#500,#960,");
+    };
+    const Model m = must(read_step(file("3.0002")));
+    ASSERT_TRUE(m.refused.empty()) << m.refused[0].message;
+    EXPECT_EQ(m.edges.size(), 4u);
+    EXPECT_EQ(times_told(m, "#961 EDGE_CURVE begins and ends at one vertex, and is taken for that"), 1);
+    EXPECT_NEAR(area_of(m, 1e-3), 6, 1e-9);
+    const auto longer = read_step(file("3.002"));
+    ASSERT_TRUE(!longer || longer->faces.empty());
+    EXPECT_NE((longer ? longer->refused.at(0) : longer.error()).message.find("0.002 from closing"),
+              std::string::npos);
+}
+
 TEST(StepLoops, vertices_that_loops_take_for_one_are_told_with_their_numbers_and_how_far_they_are_apart) {
     const auto apart = [](std::string_view x) {
         std::string s =

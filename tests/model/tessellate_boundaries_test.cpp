@@ -352,6 +352,36 @@ Model crossed_tip(double tolerance) {
     return of_faces(std::move(m), loops);
 }
 
+// Between an arc and two lines above it, whose chord at a coarse tolerance is above both; and a face below
+// the arc, which has the chord, too.
+TEST(Boundaries, chords_turn_no_face_over) {
+    Model m;
+    const Vec<2> at[] = {{{0, 0}}, {{10, 0}}, {{5, -0.1}}, {{0, -5}}, {{10, -5}}};
+    for (const Vec<2>& p : at) m.vertices.push_back({on_plane(p), 1e-7});
+    const std::vector<Vec<2>> arc{at[0], {{5, -0.4}}, at[1]};
+    m.edges.push_back({bezier(std::vector{on_plane(arc[0]), on_plane(arc[1]), on_plane(arc[2])}),
+                       false,
+                       {0, 1},
+                       0,
+                       1,
+                       1e-7,
+                       ""});
+    std::vector<std::vector<Coedge>> loops{{{0, false, bezier(arc)}}, {{0, true, bezier(arc)}}};
+    const auto side = [&](std::size_t face, int from, int to) {
+        loops[face].push_back({int(m.edges.size()), false, side_between(at[from], at[to])});
+        m.edges.push_back(
+            {side_between(on_plane(at[from]), on_plane(at[to])), false, {0, 1}, from, to, 1e-7, ""});
+    };
+    side(0, 1, 2), side(0, 2, 0), side(1, 0, 3), side(1, 3, 4), side(1, 4, 1);
+    const Model model = of_faces(std::move(m), loops);
+    for (const double tolerance : {1.0, 0.3, 0.1, 0.01}) {
+        const auto t = *tessellate(model, {.tolerance = tolerance});
+        ASSERT_TRUE(t.refused.empty()) << t.refused[0].reason.message;
+        EXPECT_EQ(t.topology.open_edges, 5) << tolerance;
+        EXPECT_EQ(t.topology.misoriented_edges + t.topology.non_manifold_edges, 0) << tolerance;
+    }
+}
+
 // The face ends where they cross; what is behind that closes the mesh. All together is a rectangle, whose
 // area counts triangles that are turned over as what they are.
 TEST(Boundaries, that_cross_within_the_tolerance_of_the_file_before_they_meet_are_closed) {
