@@ -108,7 +108,7 @@ TEST(StepLoops, open_curves_between_a_vertex_and_itself_are_that_if_they_are_tin
     EXPECT_NEAR(area_of(m, 1e-3), 6, 1e-9);
     const auto longer = read_step(file("3.002"));
     ASSERT_TRUE(!longer || longer->faces.empty());
-    EXPECT_NE((longer ? longer->refused.at(0) : longer.error()).message.find("0.002 from closing"),
+    EXPECT_NE((longer ? longer->refused.at(0) : longer.error()).message.find("from closing"),
               std::string::npos);
 }
 
