@@ -287,7 +287,11 @@ double size_of(const Document& document) {
 
 constexpr double kCoarse = 1e-3;  // of the size: resolutions that are larger are none
 
-Result<Document> read_iges(const std::string& path, Lengths lengths) {
+Result<Document> read_iges(const std::string& path, IgesWay way) {
+    constexpr int kPreferred = 0, kInParameters = -2, kInSpace = 3;
+    Interface_Static::SetIVal("read.surfacecurve.mode", way.curves == Curves::preferred       ? kPreferred
+                                                        : way.curves == Curves::in_parameters ? kInParameters
+                                                                                              : kInSpace);
     IGESCAFControl_Reader reader;
     reader.SetLayerMode(false);
     const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
@@ -305,7 +309,7 @@ Result<Document> read_iges(const std::string& path, Lengths lengths) {
     const Handle(TDocStd_Document) document = new_document();
     set_unit(document, 1);
     global.SetCascadeUnit(1);
-    if (lengths == Lengths::as_written) {
+    if (way.lengths == Lengths::as_written) {
         global.SetUnitFlag(2);
         global.SetUnitName(new TCollection_HAsciiString("MM"));
     }
@@ -314,7 +318,7 @@ Result<Document> read_iges(const std::string& path, Lengths lengths) {
     const bool done = reader.Transfer(target);
     Document out = collect({target, reader.WS()}, unit.word);
     out.millimetres = unit.millimetres;
-    if (lengths == Lengths::in_millimetres) out.factor = out.millimetres;
+    if (way.lengths == Lengths::in_millimetres) out.factor = out.millimetres;
     if (const double r = out.factor * global.Resolution(); r > 0 && r <= kCoarse * size_of(out))
         out.resolution = r;
     if (!done || out.parts.empty())
@@ -334,12 +338,12 @@ Result<Document> read_brep(const std::string& path) {
 
 }  // namespace
 
-Result<Document> read_document(const std::string& path, Format format, Lengths lengths) {
+Result<Document> read_document(const std::string& path, Format format, IgesWay way) {
     switch (format) {
         case Format::step:
             return read_step(path);
         case Format::iges:
-            return read_iges(path, lengths);
+            return read_iges(path, way);
         case Format::brep:
             return read_brep(path);
     }

@@ -38,9 +38,18 @@ struct Document {
     std::function<Attributes(const TopoDS_Shape&)> attributes;  // of a face or solid of a part
 };
 
-// How the lengths of an IGES file are read: its numbers as if they were millimetres, or as millimetres.
-enum class Lengths { as_written, in_millimetres };
+// How an IGES file is read.
+enum class Lengths { as_written, in_millimetres };  // its numbers as if they were millimetres, or as such
+enum class Curves {
+    preferred,
+    in_parameters,
+    in_space
+};  // of boundaries: those that the file says, or one kind
+struct IgesWay {
+    Lengths lengths = Lengths::as_written;
+    Curves curves = Curves::preferred;
+};
 
-Result<Document> read_document(const std::string& path, Format format, Lengths lengths = Lengths::as_written);
+Result<Document> read_document(const std::string& path, Format format, IgesWay way = {});
 
 }  // namespace freiform::occt

@@ -118,8 +118,8 @@ struct Reading {
     double worst = 0;  // the largest tolerance of an edge, of that size
 };
 
-Result<Reading> read(const Arguments& a, occt::Lengths lengths) {
-    auto document = occt::read_document(a.input, a.format, lengths);
+Result<Reading> read(const Arguments& a, occt::IgesWay way) {
+    auto document = occt::read_document(a.input, a.format, way);
     if (!document) return std::unexpected(document.error());
     Reading out{*std::move(document), {}};
     out.conversion = occt::convert(out.document);
@@ -130,30 +130,45 @@ Result<Reading> read(const Arguments& a, occt::Lengths lengths) {
     return out;
 }
 
-// An IGES file is read in the other way, too, where that may be better: where the reader's tolerances are not
+// An IGES file is read in other ways, too, where that may be better: where the reader's tolerances are not
 // small against the numbers of the file, where it leaves out a face, a pole has two edges, or an edge is far
-// off.
+// off. Where faces are missing whatever the unit, it is asked to go by one kind of boundary curves alone.
 Result<Reading> read(const Arguments& a) {
-    constexpr double kSmall = 8, kFarOff = 1e-4;
-    auto written = read(a, occt::Lengths::as_written);
-    if (!written || written->document.millimetres == 1) return written;
-    const bool is_small = written->document.millimetres > 1 && written->size < kSmall;
-    const occt::Conversion& c = written->conversion;
-    if (!is_small && c.doubts == 0 && c.model.refused.empty() && written->worst <= kFarOff) return written;
-    auto other = [&]() -> Result<Reading> {
+    constexpr double kSmall = 8, kFarOff = 1e-4, kWorst = 1e-3;
+    auto best = read(a, occt::IgesWay{});
+    if (!best || a.format != occt::Format::iges) return best;
+    const auto attempt = [&](occt::IgesWay way) -> Result<Reading> {
         try {
-            return read(a, occt::Lengths::in_millimetres);
+            return read(a, way);
         } catch (const Standard_Failure& f) {  // what is read already is not lost for it
             return refuse(RefusalKind::unreadable, a.input, f.GetMessageString());
         }
-    }();
-    if (!other) return written;
+    };
     const auto faults = [](const Reading& r) {
         return std::pair(r.conversion.model.refused.size(), r.conversion.doubts);
     };
-    const auto mine = faults(*written), others = faults(*other);
-    const bool is_better = others != mine ? others < mine : is_small || other->worst < written->worst;
-    return is_better ? std::move(other) : std::move(written);
+    occt::IgesWay way;
+    if (best->document.millimetres != 1) {
+        const bool is_small = best->document.millimetres > 1 && best->size < kSmall;
+        if (is_small || faults(*best) > std::pair(std::size_t(0), 0) || best->worst > kFarOff)
+            if (auto other = attempt({occt::Lengths::in_millimetres})) {
+                const auto mine = faults(*best), others = faults(*other);
+                if (others != mine ? others < mine : is_small || other->worst < best->worst) {
+                    best = std::move(other);
+                    way.lengths = occt::Lengths::in_millimetres;
+                }
+            }
+    }
+    const std::size_t faces = best->conversion.model.faces.size();
+    for (const auto curves : {occt::Curves::in_parameters, occt::Curves::in_space}) {
+        if (best->conversion.model.refused.empty()) break;
+        way.curves = curves;
+        auto other = attempt(way);
+        if (other && other->conversion.model.faces.size() >= faces && faults(*other) < faults(*best) &&
+            other->worst <= std::max(best->worst, kWorst))
+            best = std::move(other);
+    }
+    return best;
 }
 
 int run(const Arguments& a, int output) {

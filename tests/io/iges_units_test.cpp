@@ -85,6 +85,7 @@ TEST_F(IgesUnits, gaps_at_vertices_and_seams_in_one_place_are_closed) {
     const Solid solids[] = {{"ends_beside_vertices.iges", "cm", 14, 2.684877, 12.91348, 0.004},
                             {"short_edge_in_a_gap.iges", "mm", 7, 5979.542, 2022.323, 0.05},
                             {"seam_in_one_place.iges", "mm", 1, 798.0574, 452.1391, 0.02},
+                            {"curves_in_space.iges", "mm", 9, 4.50617, 34.2131, 0.004},
                             {"edge_without_length.iges", "mm", 4, 348.918, 426.053, 0.02},
                             {"ring_of_one_seam.iges", "mm", 1, 196.112, 284.150, 0.02},
                             {"ball_of_half_a_seam.iges", "mm", 5, 560.144, 537.546, 0.02}};
