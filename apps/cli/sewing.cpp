@@ -27,6 +27,11 @@ double farthest_from_zero(const Model& model) {
     return most;
 }
 
+// Whether another edge may run along it within twice the tolerance.
+bool is_beside_another(const RemainingGap& gap, double tolerance) {
+    return gap.reason.where == "edges" || gap.gap <= 2 * tolerance;
+}
+
 }  // namespace
 
 void SewArguments::add_to(const Command& command) {
@@ -40,29 +45,34 @@ void SewArguments::add_to(const Command& command) {
     command.optional_value(
         "--sew", read,
         "Join edges of loose faces that are the same within this distance, in the file's unit "
-        "(without a number: the largest tolerance that the file gives, or what numbers so far from zero can "
-        "tell)",
+        "(without a number: the largest tolerance that the file gives, twice that where edges along each "
+        "other stay "
+        "open, or what numbers so far from zero can tell)",
         "[NUMBER]");
 }
 
 Result<std::optional<Sewing>> sewn(const Model& model, const SewArguments& how) {
     if (!how.wanted) return std::nullopt;
-    double tolerance = how.tolerance.value_or(0);
-    if (!how.tolerance) {
-        tolerance = largest_tolerance(model);
-        if (!(tolerance > 0))
-            return refuse(RefusalKind::invalid, "--sew",
-                          "the file gives no tolerance: say one, --sew NUMBER");
-        const double given = tolerance;
-        tolerance = std::max(given, kProvable * farthest_from_zero(model));
-        const std::string unit = model.unit.empty() ? "" : " " + model.unit;
-        remark(tolerance > given
-                   ? text("sewn within ", tolerance, unit, ", as closely as numbers so far from ",
-                          "zero can tell; the largest tolerance of the file is ", given, unit)
-                   : text("sewn within ", tolerance, unit, ", the largest tolerance of the file"));
-    }
+    const double given = how.tolerance ? *how.tolerance : largest_tolerance(model);
+    if (!how.tolerance && !(given > 0))
+        return refuse(RefusalKind::invalid, "--sew", "the file gives no tolerance: say one, --sew NUMBER");
+    const double tolerance = how.tolerance ? given : std::max(given, kProvable * farthest_from_zero(model));
     auto s = sew(model, {.tolerance = tolerance});
     if (!s) return std::unexpected(s.error());
+    if (how.tolerance) return *std::move(s);
+    bool is_twice = false;
+    if (std::ranges::any_of(s->remaining,
+                            [&](const RemainingGap& g) { return is_beside_another(g, tolerance); }))
+        if (auto wider = sew(model, {.tolerance = 2 * tolerance});
+            wider && wider->remaining.size() < s->remaining.size())
+            s = std::move(wider), is_twice = true;
+    const std::string unit = model.unit.empty() ? "" : " " + model.unit;
+    remark(
+        is_twice ? text("sewn within ", s->tolerance, unit, ", twice the largest tolerance of the file: two ",
+                        "edges at one place may be that far apart")
+        : tolerance > given ? text("sewn within ", tolerance, unit, ", as closely as numbers so far from ",
+                                   "zero can tell; the largest tolerance of the file is ", given, unit)
+                            : text("sewn within ", tolerance, unit, ", the largest tolerance of the file"));
     return *std::move(s);
 }
 

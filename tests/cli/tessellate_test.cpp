@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <support/step_polygons.hpp>
 
 namespace freiform::test {
 namespace {
@@ -124,6 +125,35 @@ TEST_F(CliMesh, tessellate_sews_where_asked_and_names_what_stays_open) {
         run({"tessellate", "-", "--sew", "0.001"}, kSlit).out.find("remaining gaps  6") == std::string::npos,
         false);
     EXPECT_EQ(said({"--sew", "x"}).code, 2);
+}
+
+// Each of two edges at one place may be off by the tolerance of the file.
+TEST_F(CliMesh, tessellate_sews_within_twice_the_tolerance_of_the_file_where_edges_stay_open) {
+    const auto sewing = [&](double slit) {
+        std::string s =
+            "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#20,#30));\n"
+            "#8=SHAPE_REPRESENTATION('',(#10),#1);\n";
+        for (const int face : {20, 30}) {
+            const double x = face == 20 ? 0 : 1 + slit;
+            s += text("#", face, "=FACE_SURFACE('',(#", face + 1, "),#7,.T.);\n#", face + 1,
+                      "=FACE_OUTER_BOUND('',#", face + 2, ",.T.);\n#", face + 2, "=POLY_LOOP('',(#", face + 3,
+                      ",#", face + 4, ",#", face + 5, ",#", face + 6, "));\n");
+            const double at[4][2] = {{x, 0}, {x + 1, 0}, {x + 1, 1}, {x, 1}};
+            for (int k = 0; k < 4; ++k)
+                s += text("#", face + 3 + k, "=CARTESIAN_POINT('',(", at[k][0], ",", at[k][1], ",0.));\n");
+        }
+        const std::string path = file("slit.step", test::flat_file(s));
+        const Ran r = run({"tessellate", path, "--tolerance", "0.1", "--sew", "--json"});
+        EXPECT_EQ(r.code, 0) << r.out;
+        return Json::parse(r.out)["sewing"];
+    };
+    const double stated = sewing(1e-9)["tolerance"];
+    EXPECT_EQ(sewing(0.9 * stated)["tolerance"], stated);
+    EXPECT_EQ(sewing(0.9 * stated)["joined"], 1);
+    EXPECT_EQ(sewing(1.5 * stated)["tolerance"], 2 * stated);
+    EXPECT_EQ(sewing(1.5 * stated)["joined"], 1);
+    EXPECT_EQ(sewing(2.5 * stated)["tolerance"], stated);
+    EXPECT_EQ(sewing(2.5 * stated)["joined"], 0);
 }
 
 TEST_F(CliMesh, tessellate_takes_several_tolerances_and_shapes) {
