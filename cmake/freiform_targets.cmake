@@ -93,7 +93,7 @@ function(freiform_library name)
             "face_parts|face_region|face_rim|filler_separate|grid|insertion_order|integer|level_lines|"
             "matched_grids|normal_cone|orient3d|polynomial_basis|predicates_integer|refine|roots|roots_exact|"
             "segment_box|simple_polygons|spelling|subdivide|tessellate|tessellate_boundaries|"
-            "tessellate_calls|tessellate_collect|text|topology|triangle_budget|triangle_mesh|view|visibility)[.]cpp$")
+            "tessellate_calls|tessellate_collect|tessellate_lenses|text|topology|triangle_budget|triangle_mesh|view|visibility)[.]cpp$")
         set(small ${sources})
         list(FILTER small EXCLUDE REGEX "${hot}")
         set(few ${sources})

@@ -33,6 +33,7 @@
 // itself, which is exact in space: of degree 5 p.
 // References: [Farin 2002, ch. 23] for the problem; the bound is ours.
 #include "query/speed_detail.hpp"
+#include "spline/wide_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/query/reparametrise.hpp>
@@ -317,8 +318,8 @@ constexpr int kDeepestStep = 60;
 }  // namespace
 
 template <class P>
-Result<ArcLengthCurve<Space<P>::kDim>> by_arc_length(const Curve<P>& curve, double tolerance,
-                                                     int max_pieces) {
+static Result<ArcLengthCurve<Space<P>::kDim>> at_unit_speed(const Curve<P>& curve, double tolerance,
+                                                            int max_pieces) {
     constexpr int D = Space<P>::kDim;
     if (!(tolerance > 0 && std::isfinite(tolerance)))
         return refuse(RefusalKind::invalid, "tolerance",
@@ -393,6 +394,20 @@ Result<ArcLengthCurve<Space<P>::kDim>> by_arc_length(const Curve<P>& curve, doub
     auto made = Curve<Vec<D>>::make({std::move(*basis)}, Net<1, Vec<D>>({count}, std::move(points)));
     if (!made) return std::unexpected(made.error());
     return ArcLengthCurve<D>{std::move(*made), std::scalbn(bound, e), speed, total};
+}
+
+template <class P>
+Result<ArcLengthCurve<Space<P>::kDim>> by_arc_length(const Curve<P>& curve, double tolerance,
+                                                     int max_pieces) {
+    constexpr int D = Space<P>::kDim;
+    if constexpr (detail::kIsWidened<P>) {
+        const auto made = at_unit_speed(detail::widened(curve), tolerance, max_pieces);
+        if (!made) return std::unexpected(made.error());
+        return ArcLengthCurve<D>{detail::narrowed<D>(made->curve), made->bound, made->speed_bound,
+                                 made->length};
+    } else {
+        return at_unit_speed(curve, tolerance, max_pieces);
+    }
 }
 
 #define FF_INSTANTIATE(P) \
