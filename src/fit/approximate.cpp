@@ -1,6 +1,7 @@
 // Points to parameters, the search (approximate_search.cpp) among some of them and among all, and the report.
 #include "approximate_search_detail.hpp"
 #include "fit_report_detail.hpp"
+#include "spline/wide_detail.hpp"
 
 #include <freiform/fit/approximate.hpp>
 
@@ -104,8 +105,8 @@ Result<void> check(std::span<const Vec<D>> points, const ApproximateOptions& o,
 }  // namespace
 
 template <int D>
-Result<Fitted<D>> approximate(std::span<const Vec<D>> points, const ApproximateOptions& options,
-                              std::span<const KeptPoint<D>> kept) {
+static Result<Fitted<D>> fitted_to(std::span<const Vec<D>> points, const ApproximateOptions& options,
+                                   std::span<const KeptPoint<D>> kept) {
     if (auto ok = check(points, options, kept); !ok) return std::unexpected(ok.error());
     double end = 0;
     auto at = shared_parameters(points, options, end);
@@ -144,6 +145,20 @@ Result<Fitted<D>> approximate(std::span<const Vec<D>> points, const ApproximateO
         return refuse(RefusalKind::no_answer, "tolerance",
                       text("rounding leaves the curve at a distance of up to ", fitted->report.bound));
     return fitted;
+}
+
+template <int D>
+Result<Fitted<D>> approximate(std::span<const Vec<D>> points, const ApproximateOptions& options,
+                              std::span<const KeptPoint<D>> kept) {
+    if constexpr (detail::kIsWidened<Vec<D>>) {
+        std::vector<KeptPoint<detail::kWidest>> wide_kept;
+        for (const KeptPoint<D>& k : kept) wide_kept.push_back({k.point, k.order, detail::widened(k.value)});
+        auto made = fitted_to<detail::kWidest>(detail::widened(points), options, wide_kept);
+        if (!made) return std::unexpected(made.error());
+        return Fitted<D>{detail::narrowed<D>(made->curve), std::move(made->at), made->report};
+    } else {
+        return fitted_to(points, options, kept);
+    }
 }
 
 #define FF_APPROXIMATE(D)                                                                      \

@@ -8,6 +8,7 @@
 // Adaptive by number: the number of segments falls as the tolerance grows (up to small exceptions), so the
 // tolerance is bisected, on a logarithmic scale, for the smallest that needs no more than the given number.
 #include "path/flatten_detail.hpp"
+#include "spline/wide_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 
@@ -94,7 +95,7 @@ double measured(const Curve<P>& curve, const Polyline<Space<P>::kDim>& line) {
 }  // namespace detail
 
 template <class P>
-Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOptions& options) {
+static Result<Polyline<Space<P>::kDim>> flattened(const Curve<P>& curve, const FlattenOptions& options) {
     if (auto ok = detail::check_options(options); !ok) return std::unexpected(ok.error());
     const detail::Chain<P> chain(curve);
     const double tolerance = std::scalbn(options.tolerance, -chain.exponent());
@@ -117,13 +118,27 @@ Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOpt
     return line;
 }
 
+template <class P>
+Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOptions& options) {
+    constexpr int D = Space<P>::kDim;
+    if constexpr (detail::kIsWidened<P> && D != 2) {  // drawings are of two
+        auto line = flattened(detail::widened(curve), options);
+        if (!line) return std::unexpected(line.error());
+        Polyline<D> out{{}, std::move(line->parameters), std::move(line->parts), line->bound, line->closed};
+        for (const auto& p : line->points) out.points.push_back(detail::narrowed<D>(p));
+        return out;
+    } else {
+        return flattened(curve, options);
+    }
+}
+
 std::string_view name_of(FlattenMethod method) {
     constexpr std::string_view kNames[] = {"adaptive", "uniform", "forward", "halving"};
     return kNames[std::size_t(method)];
 }
 
 template <class P>
-Result<std::vector<FlattenComparison>> compare_flattening(const Curve<P>& curve, int segments) {
+static Result<std::vector<FlattenComparison>> compared(const Curve<P>& curve, int segments) {
     std::vector<FlattenComparison> rows;
     const auto add = [&](FlattenMethod method, bool polygons) -> Result<void> {
         FlattenOptions options;
@@ -138,6 +153,14 @@ Result<std::vector<FlattenComparison>> compare_flattening(const Curve<P>& curve,
     for (int k = 0; k < 5; ++k)
         if (auto ok = add(FlattenMethod(std::min(k, 3)), k == 4); !ok) return std::unexpected(ok.error());
     return rows;
+}
+
+template <class P>
+Result<std::vector<FlattenComparison>> compare_flattening(const Curve<P>& curve, int segments) {
+    if constexpr (detail::kIsWidened<P>)
+        return compared(detail::widened(curve), segments);
+    else
+        return compared(curve, segments);
 }
 
 #define FF_INSTANTIATE(P)                                                                      \

@@ -18,6 +18,7 @@
 //
 // References: [PT97, 2.5], [Lyche & Morken 2018, ch. 3].
 #include "knot_window_detail.hpp"
+#include "spline/wide_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/query/continuity.hpp>
@@ -135,8 +136,8 @@ KnotLine line_at(const Patch<N, P>& patch, int axis, const KnotFrame<P>& frame, 
 }  // namespace
 
 template <std::size_t N, class P>
-Result<std::vector<KnotLine>> knot_lines(const Patch<N, P>& patch, int axis,
-                                         const ContinuityOptions& options) {
+static Result<std::vector<KnotLine>> lines_across(const Patch<N, P>& patch, int axis,
+                                                  const ContinuityOptions& options) {
     FF_REQUIRE(axis >= 0 && axis < int(N));
     const std::pair<const char*, double> numbers[] = {{"tolerance", options.tolerance},
                                                       {"roundings", options.roundings}};
@@ -158,6 +159,15 @@ Result<std::vector<KnotLine>> knot_lines(const Patch<N, P>& patch, int axis,
                     RefusalKind::ill_conditioned, text("knot ", line.at),
                     text("the derivative of order ", k, " or its error leaves the range of double"));
     return all;
+}
+
+template <std::size_t N, class P>
+Result<std::vector<KnotLine>> knot_lines(const Patch<N, P>& patch, int axis,
+                                         const ContinuityOptions& options) {
+    if constexpr (detail::kIsWidened<P>)
+        return lines_across(detail::widened(patch), axis, options);
+    else
+        return lines_across(patch, axis, options);
 }
 
 #define FF_INSTANTIATE_LINES(N, P) \

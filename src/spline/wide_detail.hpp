@@ -1,10 +1,11 @@
-// Curves of one to three dimensions as curves of four, the last of which are 0. Modules, which have to be
+// Splines of one to three dimensions as those of four, the last of which are 0. Modules, which have to be
 // small, have what is called seldom for four dimensions alone.
 #pragma once
 #include <freiform/spline/patch.hpp>
 
-#include <algorithm>
+#include <span>
 #include <type_traits>
+#include <vector>
 
 namespace freiform::detail {
 
@@ -30,11 +31,17 @@ WideOf<P> widened(const P& x) {
     if constexpr (Space<P>::kRational) out[kWidest] = x.weight();
     return out;
 }
-template <class P>
-Curve<WideOf<P>> widened(const Curve<P>& curve) {
-    Net<1, WideOf<P>> net(curve.net().extent());
-    for (std::size_t i = 0; i < net.flat().size(); ++i) net.flat()[i] = widened(curve.net().flat()[i]);
-    return Curve<WideOf<P>>::trusted(curve.bases(), std::move(net));
+template <std::size_t N, class P>
+Patch<N, WideOf<P>> widened(const Patch<N, P>& patch) {
+    Net<N, WideOf<P>> net(patch.net().extent());
+    for (std::size_t i = 0; i < net.flat().size(); ++i) net.flat()[i] = widened(patch.net().flat()[i]);
+    return Patch<N, WideOf<P>>::trusted(patch.bases(), std::move(net));
+}
+template <int D>
+std::vector<Vec<kWidest>> widened(std::span<const Vec<D>> points) {
+    std::vector<Vec<kWidest>> out;
+    for (const Vec<D>& p : points) out.push_back(widened(p));
+    return out;
 }
 
 template <int D>
