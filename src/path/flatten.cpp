@@ -121,7 +121,7 @@ static Result<Polyline<Space<P>::kDim>> flattened(const Curve<P>& curve, const F
 template <class P>
 Result<Polyline<Space<P>::kDim>> flatten(const Curve<P>& curve, const FlattenOptions& options) {
     constexpr int D = Space<P>::kDim;
-    if constexpr (detail::kIsWidened<P> && D != 2) {  // drawings are of two
+    if constexpr (detail::kIsWidened<P> && D == 3) {  // of one: by parameters; of two: drawings
         auto line = flattened(detail::widened(curve), options);
         if (!line) return std::unexpected(line.error());
         Polyline<D> out{{}, std::move(line->parameters), std::move(line->parts), line->bound, line->closed};
@@ -157,7 +157,7 @@ static Result<std::vector<FlattenComparison>> compared(const Curve<P>& curve, in
 
 template <class P>
 Result<std::vector<FlattenComparison>> compare_flattening(const Curve<P>& curve, int segments) {
-    if constexpr (detail::kIsWidened<P>)
+    if constexpr (detail::kIsWidened<P> && Space<P>::kDim == 3)
         return compared(detail::widened(curve), segments);
     else
         return compared(curve, segments);
