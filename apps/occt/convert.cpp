@@ -43,25 +43,38 @@ Result<int> Converter::face(const TopoDS_Face& original, const TopLoc_Location& 
             if (bounded.IsDone()) f = TopoDS::Face(bounded.Face().Oriented(TopAbs_FORWARD));
         }
     // What a refused face brought along stays only if another face wants it; see `finish`.
-    auto made = [&]() -> Result<Face> {
+    const auto caught = [&](auto make) -> Result<Face> {
         try {
-            return geometry_of(f, where);
+            return make();
         } catch (const Standard_Failure& failure) {
             return refuse(RefusalKind::unreadable, "face",
                           text(failure.DynamicType()->Name(), ": ", failure.GetMessageString()));
         }
-    }();
-    const bool open = made && is_open(*made);
-    if (made)
+    };
+    const std::size_t before = approximated_.size();
+    auto made = caught([&] { return geometry_of(f, where); });
+    const auto take_edges = [&] {
+        const std::size_t told = approximated_.size();
+        auto again = caught([&] { return retraced(f); });
+        const bool taken = again && check_tolerance(*again, where);
+        // What was said of the parameter curves, which are gone; or of those that were not taken.
+        auto& all = out_.model.approximations;
+        const auto forget = [&](std::size_t from, std::size_t to) {
+            all.erase(all.begin() + std::ptrdiff_t(from), all.begin() + std::ptrdiff_t(to));
+            approximated_.erase(approximated_.begin() + std::ptrdiff_t(from),
+                                approximated_.begin() + std::ptrdiff_t(to));
+        };
+        taken ? forget(before, told) : forget(told, approximated_.size());
+        if (!taken) return false;
+        made = std::move(*again);
+        report(-1, "its parameter curves contradict its edges; those that follow the edges take their place",
+               0, 0);
+        all.back().where = where;
+        return true;
+    };
+    if (made && !(is_open(*made) && take_edges()))
         if (auto ok = check_tolerance(*made, where); !ok) made = std::unexpected(ok.error());
-    if (!made || open)
-        if (auto again = retraced(f); again && check_tolerance(*again, where)) {
-            made = std::move(*again);
-            report(-1,
-                   "its parameter curves contradict its edges; those that follow the edges take their place",
-                   0, 0);
-            out_.model.approximations.back().where = where;
-        }
+    if (!made) take_edges();
     if (!made) {
         out_.model.refused.push_back(
             {made.error().kind, where, text(made.error().where, ": ", made.error().message)});

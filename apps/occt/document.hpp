@@ -40,11 +40,7 @@ struct Document {
 
 // How an IGES file is read.
 enum class Lengths { as_written, in_millimetres };  // its numbers as if they were millimetres, or as such
-enum class Curves {
-    preferred,
-    in_parameters,
-    in_space
-};  // of boundaries: those that the file says, or one kind
+enum class Curves { preferred, in_parameters, in_space };  // of boundaries: as the file says, or one kind
 struct IgesWay {
     Lengths lengths = Lengths::as_written;
     Curves curves = Curves::preferred;

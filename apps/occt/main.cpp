@@ -144,13 +144,15 @@ Result<Reading> read(const Arguments& a) {
             return refuse(RefusalKind::unreadable, a.input, f.GetMessageString());
         }
     };
-    const auto faults = [](const Reading& r) {
-        return std::pair(r.conversion.model.refused.size(), r.conversion.doubts);
+    const auto lost = [](const Reading& r) {  // but for what is said of the file as a whole
+        return std::ranges::count_if(r.conversion.model.refused,
+                                     [](const Refusal& x) { return x.where != "file"; });
     };
+    const auto faults = [&](const Reading& r) { return std::pair(lost(r), r.conversion.doubts); };
     occt::IgesWay way;
     if (best->document.millimetres != 1) {
         const bool is_small = best->document.millimetres > 1 && best->size < kSmall;
-        if (is_small || faults(*best) > std::pair(std::size_t(0), 0) || best->worst > kFarOff)
+        if (is_small || faults(*best) > std::pair(std::ptrdiff_t(0), 0) || best->worst > kFarOff)
             if (auto other = attempt({occt::Lengths::in_millimetres})) {
                 const auto mine = faults(*best), others = faults(*other);
                 if (others != mine ? others < mine : is_small || other->worst < best->worst) {
@@ -161,7 +163,7 @@ Result<Reading> read(const Arguments& a) {
     }
     const std::size_t faces = best->conversion.model.faces.size();
     for (const auto curves : {occt::Curves::in_parameters, occt::Curves::in_space}) {
-        if (best->conversion.model.refused.empty()) break;
+        if (lost(*best) == 0) break;
         way.curves = curves;
         auto other = attempt(way);
         if (other && other->conversion.model.faces.size() >= faces && faults(*other) < faults(*best) &&

@@ -41,13 +41,14 @@ std::vector<std::vector<Way>> loops_of(std::vector<Way> left, const std::vector<
         std::vector<Way>& loop = loops.emplace_back();
         loop.push_back(left.front());
         left.erase(left.begin());
-        while (end_of(loop.back(), true) != end_of(loop.front(), false)) {
+        for (;;) {
             const auto next = std::ranges::find_if(
                 left, [&](const Way& w) { return end_of(w, false) == end_of(loop.back(), true); });
-            if (next == left.end()) return {};
+            if (next == left.end()) break;
             loop.push_back(*next);
             left.erase(next);
         }
+        if (end_of(loop.back(), true) != end_of(loop.front(), false)) return {};
     }
     return loops;
 }
