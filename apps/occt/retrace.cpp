@@ -5,45 +5,39 @@
 #include "converter.hpp"
 #include "geometry.hpp"
 
+#include <freiform/io/face_by_edges.hpp>
+
 #include <BRep_Tool.hxx>
 #include <Precision.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <algorithm>
 #include <cmath>
-#include <io/step_shape.hpp>
-#include <io/step_tangles.hpp>
 
 namespace freiform::occt {
 
 namespace {
 
-constexpr double kFollows = 1e-9, kRough = 1e-3;  // of the size of the face
-constexpr double kMostBeside = 0.02;  // likewise: what lies further beside the surface is no edge of it
-constexpr double kOpen = 0.01;        // of a loop's extent in the parameters
+constexpr double kOpen = 0.01;  // of a loop's extent in the parameters
 
 bool is_used(const TopoDS_Shape& s, TopAbs_ShapeEnum type) {
     return s.ShapeType() == type && s.Orientation() != TopAbs_INTERNAL && s.Orientation() != TopAbs_EXTERNAL;
 }
 
 // Each followed by one that begins where it ends, the next one of the wire if it does; empty where none does.
-struct Way {
-    int edge;
-    bool reversed;
-};
-std::vector<std::vector<Way>> loops_of(std::vector<Way> left, const std::vector<Edge>& edges) {
-    const auto end_of = [&](const Way& w, bool last) {
+std::vector<std::vector<EdgeUse>> loops_of(std::vector<EdgeUse> left, const std::vector<Edge>& edges) {
+    const auto end_of = [&](const EdgeUse& w, bool last) {
         const Edge& e = edges[std::size_t(w.edge)];
         return last != w.reversed ? e.end : e.start;
     };
-    std::vector<std::vector<Way>> loops;
+    std::vector<std::vector<EdgeUse>> loops;
     while (!left.empty()) {
-        std::vector<Way>& loop = loops.emplace_back();
+        std::vector<EdgeUse>& loop = loops.emplace_back();
         loop.push_back(left.front());
         left.erase(left.begin());
         for (;;) {
             const auto next = std::ranges::find_if(
-                left, [&](const Way& w) { return end_of(w, false) == end_of(loop.back(), true); });
+                left, [&](const EdgeUse& w) { return end_of(w, false) == end_of(loop.back(), true); });
             if (next == left.end()) break;
             loop.push_back(*next);
             left.erase(next);
@@ -94,10 +88,10 @@ Result<Face> Converter::retraced(const TopoDS_Face& f) {
     const auto no = [](std::string why) { return refuse(RefusalKind::no_answer, "edges", std::move(why)); };
     const Handle(Geom_Surface) s = BRep_Tool::Surface(f);
     if (s.IsNull()) return no("no surface");
-    std::vector<std::vector<Way>> loops;
+    std::vector<std::vector<EdgeUse>> loops;
     for (TopoDS_Iterator w(f); w.More(); w.Next()) {
         if (!is_used(w.Value(), TopAbs_WIRE)) continue;
-        std::vector<Way> ways;
+        std::vector<EdgeUse> ways;
         for (TopoDS_Iterator i(w.Value()); i.More(); i.Next()) {
             if (!is_used(i.Value(), TopAbs_EDGE)) continue;
             const TopoDS_Edge e = TopoDS::Edge(i.Value());
@@ -113,11 +107,6 @@ Result<Face> Converter::retraced(const TopoDS_Face& f) {
     }
     if (loops.empty()) return no("no edges");
 
-    Face of_edges;
-    for (const auto& loop : loops)
-        for (const Way& w : loop)
-            of_edges.loops.resize(1), of_edges.loops[0].coedges.push_back({w.edge, false, {}});
-    const double size = size_of(of_edges);
     std::array<Interval, 2> on{Interval{0, 1}, Interval{0, 1}};
     Vec<2> lo, hi;
     s->Bounds(lo[0], hi[0], lo[1], hi[1]);
@@ -128,44 +117,14 @@ Result<Face> Converter::retraced(const TopoDS_Face& f) {
     if (!converted) return std::unexpected(converted.error());
 
     const double close = std::max(BRep_Tool::Tolerance(f), document_.resolution);
-    const step::Chart chart(*converted, close);
     const std::size_t edges = out_.model.edges.size(), vertices = out_.model.vertices.size();
-    step::LoopBuilder builder(chart, out_.model, close);
-    const double rough = std::max(close, kRough * size);
-    for (const auto& loop : loops) {
-        std::vector<step::Use> uses;
-        for (const Way& w : loop) {
-            const Edge& e = out_.model.edges[std::size_t(w.edge)];
-            auto t = step::trace(chart, *e.curve, e.range, kFollows * size, rough);
-            if (!t) return std::unexpected(t.error());
-            if (!(t->gap <= std::max(close, kMostBeside * size))) return no("an edge beside the surface");
-            uses.push_back(step::make_use({w.edge, w.reversed, std::move(t->curve)}, e));
-            uses.back().gap = t->gap, uses.back().fitted = t->fitted;
-        }
-        builder.add(std::move(uses));
-    }
-    const auto made = builder.finish();
-    Face out;
-    if (made) {
-        Box<2> used;
-        for (const auto& uses : *made) {
-            Loop& loop = out.loops.emplace_back();
-            for (const step::Use& u : uses) {
-                loop.coedges.push_back(u.coedge);
-                for (int k = 0; k <= 4; ++k) {
-                    const Interval range = out_.model.edges[std::size_t(u.coedge.edge)].range;
-                    used.add(jet<0>(u.coedge.curve, range.lo + range.length() * k / 4).value());
-                }
-            }
-        }
-        out.surface = step::unwound(chart.surface(), chart, used);
-        out.tolerance = BRep_Tool::Tolerance(f);
-    }
-    if (!made || is_open(out) || enclose_less_than_nothing(out.loops, out_.model.edges) ||
-        step::is_tangled(*made, out_.model, chart)) {
+    auto out = face_by_edges(out_.model, *converted, loops, close);
+    if (!out) return out;
+    if (is_open(*out) || enclose_less_than_nothing(out->loops, out_.model.edges)) {
         out_.model.edges.resize(edges), out_.model.vertices.resize(vertices);
-        return made ? Result<Face>(no("no boundary")) : std::unexpected(made.error());
+        return no("no boundary");
     }
+    out->tolerance = BRep_Tool::Tolerance(f);
     for (std::size_t k = edges; k < out_.model.edges.size(); ++k) {  // seams and poles
         stated_.push_back(out_.model.edges[k].tolerance);
         out_.edges.push_back({});

@@ -1,9 +1,9 @@
 // Points to parameters, the search (approximate_search.cpp) among some of them and among all, and the report.
 #include "approximate_search_detail.hpp"
 #include "fit_report_detail.hpp"
-#include "spline/wide_detail.hpp"
 
 #include <freiform/fit/approximate.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <algorithm>
 #include <cmath>

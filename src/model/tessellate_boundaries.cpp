@@ -165,6 +165,7 @@ bool Tessellator::is_turned_over(std::size_t f) const {
         std::vector<Vec<2>> along;
         for (const Coedge& c : loop.coedges) {
             const auto& t = edges_->mesh(c.edge).parameters;
+            if (t.empty()) continue;
             const std::size_t first = along.size();
             for (std::size_t k = 0; k + 1 < t.size(); ++k)
                 for (int i = 0; i < kLooks; ++i)

@@ -1,9 +1,8 @@
 // Boundaries that cross themselves within the tolerance of the model.
 //
-//        A --------.            The file means a tip that is sharp, and its edges cross before they meet.
-//        What
-//                   X == tip    the loop does beyond the crossing X is a lens, no wider than the model is
-//        B --------'            accurate, or a mesh of this tolerance can show.
+//     A --------.            The file means a sharp tip, and its edges cross before they meet. What the loop
+//                X == tip    does beyond the crossing X is a lens, no wider than the model is accurate.
+//     B --------'
 //
 // The face ends at the crossing: its polygon goes from the last corner before it to the first one after it.
 // The points of the lens are on edges that other faces have, too, so they stay; a strip of triangles between
@@ -22,11 +21,13 @@ namespace freiform {
 
 namespace {
 
-constexpr int kMostLenses = 16;         // of a face
-constexpr double kNarrow = 0.25;        // width over length
-constexpr int kLensRounds = 6;          // each cuts the segments that cross
-constexpr double kFlat = 1e-9;          // of the squared longest side: no area
-constexpr double kLeastCut = 1.0 / 64;  // of a segment, that is cut from it
+constexpr int kMostLenses = 16;             // of a face
+constexpr std::size_t kMostTried = 64;      // crossings, each time
+constexpr std::size_t kMostCorners = 1024;  // of a lens
+constexpr double kNarrow = 0.25;            // width over length
+constexpr int kLensRounds = 6;              // each cuts the segments that cross
+constexpr double kFlat = 1e-9;              // of the squared longest side: no area
+constexpr double kLeastCut = 1.0 / 64;      // of a segment, that is cut from it
 
 struct Chain {
     std::vector<int> corners;    // of the polygon
@@ -201,9 +202,10 @@ void Tessellator::cut_at_crossing(std::size_t f, int s, int t, std::vector<Cut>&
 bool Tessellator::close_lenses(std::size_t f, std::vector<Cut>& cuts) {
     BoundaryOfFace& boundary = boundaries_[f];
     for (int n = 0;; ++n) {
-        const auto conflicts = find_conflicts(boundary.polygon);
+        auto conflicts = find_conflicts(boundary.polygon);
         if (conflicts.empty()) return boundary.polygon.segments.size() >= 3;
         if (n == kMostLenses) return false;
+        if (conflicts.size() > kMostTried) conflicts.resize(kMostTried);
         bool closed = false;
         for (const BoundaryConflict& c : conflicts) {
             std::vector<int> others{c.second};
@@ -220,7 +222,7 @@ bool Tessellator::close_lenses(std::size_t f, std::vector<Cut>& cuts) {
                 for (const auto& [s, t] : {std::array{c.first, other}, std::array{other, c.first}}) {
                     if (s < 0 || t < 0) continue;
                     auto between = corners_between(boundary.polygon, s, t);
-                    if (between.empty()) continue;
+                    if (between.empty() || between.size() > kMostCorners) continue;
                     const double area = area_within(boundary.polygon, s, t, between);
                     if (lens.empty() || area < least) lens = std::move(between), ends = {s, t}, least = area;
                 }

@@ -8,9 +8,9 @@
 // Adaptive by number: the number of segments falls as the tolerance grows (up to small exceptions), so the
 // tolerance is bisected, on a logarithmic scale, for the smallest that needs no more than the given number.
 #include "path/flatten_detail.hpp"
-#include "spline/wide_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <optional>
 

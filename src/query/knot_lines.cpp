@@ -18,10 +18,10 @@
 //
 // References: [PT97, 2.5], [Lyche & Morken 2018, ch. 3].
 #include "knot_window_detail.hpp"
-#include "spline/wide_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/query/continuity.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -33,10 +33,10 @@
 // itself, which is exact in space: of degree 5 p.
 // References: [Farin 2002, ch. 23] for the problem; the bound is ours.
 #include "query/speed_detail.hpp"
-#include "spline/wide_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/query/reparametrise.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <optional>
 

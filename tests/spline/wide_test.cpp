@@ -1,6 +1,5 @@
 // Of splines among those of four dimensions, the last of which are 0, everything is said as of themselves:
 // what modules do, which have the code for four alone.
-#include "spline/wide_detail.hpp"
 #include "support/curves.hpp"
 #include "support/random.hpp"
 
@@ -8,6 +7,7 @@
 #include <freiform/path/flatten.hpp>
 #include <freiform/query/continuity.hpp>
 #include <freiform/query/reparametrise.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <gtest/gtest.h>
 
