@@ -45,6 +45,10 @@ TEST(FaceByEdges, what_is_no_face_is_refused_and_leaves_the_model_as_it_was) {
     };
     const Refusal alone = refused(two_circles(), {{{0, false}}});
     EXPECT_FALSE(alone.message.empty()) << "one end alone";
+    Model crossing = two_circles();  // an ellipse that crosses the other end
+    crossing.vertices[1].point = {{2, 0, 1}};
+    crossing.edges[1].curve = Conic<3>{ConicKind::ellipse, {}, {{2, 0, 1}}, {{0, 2, 0}}};
+    EXPECT_EQ(refused(crossing, {{{0, false}}, {{1, true}}}).message, "the boundary touches itself");
     Model bare = two_circles();
     bare.edges[1].curve.reset();
     EXPECT_EQ(refused(bare, {{{0, false}}, {{1, true}}}).kind, RefusalKind::invalid);
