@@ -46,8 +46,7 @@ void SewArguments::add_to(const Command& command) {
         "--sew", read,
         "Join edges of loose faces that are the same within this distance, in the file's unit "
         "(without a number: the largest tolerance that the file gives, twice that where edges along each "
-        "other stay "
-        "open, or what numbers so far from zero can tell)",
+        "other stay open, or what numbers so far from zero can tell)",
         "[NUMBER]");
 }
 
@@ -61,8 +60,9 @@ Result<std::optional<Sewing>> sewn(const Model& model, const SewArguments& how) 
     if (!s) return std::unexpected(s.error());
     if (how.tolerance) return *std::move(s);
     bool is_twice = false;
-    if (std::ranges::any_of(s->remaining,
-                            [&](const RemainingGap& g) { return is_beside_another(g, tolerance); }))
+    if (tolerance == given && std::ranges::any_of(s->remaining, [&](const RemainingGap& g) {
+            return is_beside_another(g, tolerance);
+        }))
         if (auto wider = sew(model, {.tolerance = 2 * tolerance});
             wider && wider->remaining.size() < s->remaining.size())
             s = std::move(wider), is_twice = true;

@@ -277,7 +277,7 @@ std::optional<Face> Converter::all_of(const TopoDS_Face& f, std::string_view whe
             on_it += BRep_Tool::Surface(TopoDS::Face(i.Current()), at) == own ? 1 : 0;
     BRepBuilderAPI_MakeFace bounded(BRep_Tool::Surface(f), Precision::Confusion());
     if (on_it > 1 || !bounded.IsDone()) return std::nullopt;
-    auto made = geometry_of(TopoDS::Face(bounded.Face().Oriented(TopAbs_FORWARD)), where);
+    auto made = geometry_of(TopoDS::Face(bounded.Face().Oriented(TopAbs_FORWARD)), where, false);
     if (!made) return std::nullopt;
     std::map<int, int> uses;
     for (const Loop& l : made->loops)
@@ -290,7 +290,7 @@ std::optional<Face> Converter::all_of(const TopoDS_Face& f, std::string_view whe
 }
 
 // REQUIRES f oriented forward.
-Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where) {
+Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where, bool may_be_all) {
     const Handle(Geom_Surface) s = BRep_Tool::Surface(f);
     if (s.IsNull()) return refuse(RefusalKind::unsupported, "face", "has no surface (only triangles)");
     const Handle(Geom_Plane) plane = as_plane(s);
@@ -328,7 +328,7 @@ Result<Face> Converter::geometry_of(const TopoDS_Face& f, std::string_view where
     if (out.loops.size() == 1) {
         if (const auto slit = slit_of(out.loops[0], out_.model.edges, s, period, close))
             open_slit(out.loops[0], *slit);
-        else if (is_slit(out.loops[0], out_.model.edges, s))
+        else if (may_be_all && is_slit(out.loops[0], out_.model.edges, s))
             if (auto all = all_of(f, where)) return std::move(*all);
     }
     for (Loop& loop : out.loops) {

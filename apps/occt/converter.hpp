@@ -40,7 +40,8 @@ public:
 
 private:
     Result<int> face(const TopoDS_Face& original, const TopLoc_Location& at, const Part& part);
-    Result<Face> geometry_of(const TopoDS_Face& f, std::string_view where);
+    // `may_be_all`: a slit on a surface that is closed all around means all of it.
+    Result<Face> geometry_of(const TopoDS_Face& f, std::string_view where, bool may_be_all = true);
     std::optional<Face> all_of(const TopoDS_Face& f, std::string_view where);
     // retrace.cpp
     bool is_open(const Face& f) const;

@@ -167,8 +167,14 @@ Result<Reading> read(const Arguments& a) {
         way.curves = curves;
         auto other = attempt(way);
         if (other && other->conversion.model.faces.size() >= faces && faults(*other) < faults(*best) &&
-            other->worst <= std::max(best->worst, kWorst))
+            other->worst <= std::max(best->worst, kWorst)) {
             best = std::move(other);
+            best->conversion.model.approximations.push_back(
+                {"file",
+                 text("faces are missing by the boundary curves that it prefers; those in ",
+                      curves == occt::Curves::in_space ? "space" : "the parameters", " are taken"),
+                 0.0, 0});
+        }
     }
     return best;
 }

@@ -1,4 +1,5 @@
-// CURVE_BOUNDED_SURFACE: boundaries that are composite curves instead of loops of edges. Each segment becomes
+// Surfaces that stand for faces. CURVE_BOUNDED_SURFACE: boundaries that are composite curves instead of loops
+// of edges. Each segment becomes
 // an edge; what two boundaries share as one instance is one edge. Corners are points that agree within the
 // tolerance.
 #include "step_shape.hpp"
@@ -114,6 +115,48 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
     for (std::size_t k = 0; k < uses.size(); ++k) join_vertices(uses[k].to, uses[(k + 1) % uses.size()].from);
     loops.add(std::move(uses));
     return {};
+}
+
+// A surface that stands for a face: RECTANGULAR_TRIMMED_SURFACE, CURVE_BOUNDED_SURFACE, or any that ends.
+Result<Face> ShapeReader::bare_face(std::uint32_t i) {
+    const auto s = surface(i);
+    if (!s) return std::unexpected(s.error());
+    const Chart& chart = *(*s)->chart;
+    LoopBuilder loops(chart, out_.model, tolerance_);
+    std::array<Interval, 2> on = chart.whole();
+    if (f_.is(i, Type::CURVE_BOUNDED_SURFACE)) {
+        const auto f = Fields::of(f_, i, Type::CURVE_BOUNDED_SURFACE, 4);
+        if (!f) return std::unexpected(f.error());
+        const auto boundaries = f->references(2, "boundaries");
+        if (!boundaries) return std::unexpected(boundaries.error());
+        for (const std::uint32_t b : *boundaries)
+            if (auto ok = add_boundary_curve(b, chart, loops); !ok) return std::unexpected(ok.error());
+        Face face;
+        face.tolerance = tolerance_;
+        if (!f->flag(3)) return close_face(std::move(face), loops, chart, i, 0);
+    }
+    if (f_.is(i, Type::RECTANGULAR_TRIMMED_SURFACE)) {
+        const auto f = Fields::of(f_, i, Type::RECTANGULAR_TRIMMED_SURFACE, 6);
+        if (!f) return std::unexpected(f.error());
+        std::array<double, 4> t{};
+        for (int k = 0; k < 4; ++k) {
+            const auto x = f->number(2 + k, "trim");
+            if (!x) return std::unexpected(x.error());
+            const bool turns = chart.period(k / 2) > 0 && !chart.is_spline(k / 2);
+            t[std::size_t(k)] = *x * (turns ? geometry_.angle : 1);
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            on[k] = {std::min(t[2 * k], t[2 * k + 1]), std::max(t[2 * k], t[2 * k + 1])};
+            if (!(on[k].lo < on[k].hi)) return f->refused("is trimmed to nothing", RefusalKind::invalid);
+        }
+    }
+    if (!std::isfinite(on[0].length()) || !std::isfinite(on[1].length()))
+        return refuse(RefusalKind::unsupported, f_.label(i),
+                      "is a surface without end, and bounded by nothing");
+    loops.add_rectangle(on);
+    Face face;
+    face.tolerance = tolerance_;
+    return close_face(std::move(face), loops, chart, i, 0);
 }
 
 }  // namespace freiform::step

@@ -19,6 +19,29 @@ struct Use {
 };
 Use make_use(Coedge coedge, const Edge& edge);
 
+// Leaves out what a loop goes out along and comes back the same way, also from its end to its beginning.
+// `is_back`: whether the second one of two neighbours is the way back of the first; `left_out`: is called
+// with one of them.
+template <class T, class IsBack, class LeftOut>
+void fold_spurs(std::vector<T>& loop, const IsBack& is_back, const LeftOut& left_out) {
+    std::vector<T> kept;
+    for (T& x : loop) {
+        if (kept.empty() || !is_back(kept.back(), x)) {
+            kept.push_back(std::move(x));
+            continue;
+        }
+        left_out(x);
+        kept.pop_back();
+    }
+    std::size_t first = 0;
+    for (; kept.size() - first > 1 && is_back(kept.back(), kept[first]); ++first) {
+        left_out(kept[first]);
+        kept.pop_back();
+    }
+    kept.erase(kept.begin(), kept.begin() + std::ptrdiff_t(first));
+    loop = std::move(kept);
+}
+
 class LoopBuilder {
 public:
     // New edges and vertices (seams, poles) go into the model. `close`: points nearer than this are one.

@@ -1,7 +1,7 @@
 // Faces within polygons. The corners of a polygon are all that says where its face is: the faces beside it
 // have the same corners. Some programs name any plane for such faces, the same one for all. A plane that
-// polygons miss is therefore not what bounds their faces: each gets the plane through its corners, with the
-// normal about which they run counter-clockwise, and it is told.
+// polygons of a shell miss is therefore not what bounds its faces: each gets the plane through its corners,
+// with the normal about which they run counter-clockwise, and it is told.
 #include "step_shape.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -38,9 +38,11 @@ Result<std::vector<ShapeReader::EdgeMade>> ShapeReader::polygon_edges(std::uint3
     return made;
 }
 
-// Nothing if one of the loops is no polygon.
+// Nothing if one of the loops is no polygon, or if they name points more often than there are words in the
+// file.
 std::vector<std::vector<Vec<3>>> ShapeReader::polygons_of(std::uint32_t face) const {
     std::vector<std::vector<Vec<3>>> polygons;
+    std::size_t left = f_.tokens.size();
     const auto bounds = Fields(f_, face, f_.instances[face].first + 1).references(1, "bounds");
     if (!bounds) return {};
     for (const std::uint32_t b : *bounds) {
@@ -48,7 +50,8 @@ std::vector<std::vector<Vec<3>>> ShapeReader::polygons_of(std::uint32_t face) co
         const auto loop = bound.reference(1, "loop");
         if (!loop || f_.type(*loop) != Type::POLY_LOOP) return {};
         const auto ids = corners_of(*loop);
-        if (!ids || ids->size() < 3) return {};
+        if (!ids || ids->size() < 3 || ids->size() > left) return {};
+        left -= ids->size();
         std::vector<Vec<3>>& corners = polygons.emplace_back();
         for (const std::uint32_t id : *ids) {
             const auto p = geometry_.point(id);
@@ -69,27 +72,27 @@ double ShapeReader::off_plane(const std::vector<std::vector<Vec<3>>>& polygons, 
     return off;
 }
 
-// Whether polygons that name the plane miss it.
-bool ShapeReader::is_missed(std::uint32_t plane) {
-    if (!missed_planes_) {
-        missed_planes_.emplace();
-        for (std::uint32_t i = 0; i < f_.instances.size(); ++i) {
-            const Type type = f_.type(i);
-            if (type != Type::FACE_SURFACE && type != Type::ADVANCED_FACE) continue;
-            const auto on = Fields(f_, i, f_.instances[i].first + 1).reference(2, "surface");
-            if (!on || f_.type(*on) != Type::PLANE || missed_planes_->contains(*on)) continue;
-            const auto polygons = polygons_of(i);
-            if (polygons.empty()) continue;
-            const auto at = Fields(f_, *on, f_.instances[*on].first + 1).reference(1, "position");
-            const auto p = at ? geometry_.placement(*at) : std::unexpected(at.error());
-            if (p && off_plane(polygons, p->o, p->z) > tolerance_) missed_planes_->insert(*on);
-        }
+// Before the faces of a shell are made: those of their planes that their polygons miss.
+void ShapeReader::note_missed_plane(std::uint32_t face) {
+    if (f_.is(face, Type::ORIENTED_FACE)) {
+        const auto of = Fields(f_, face, f_.part(face, Type::ORIENTED_FACE)).reference(2, "face");
+        if (!of) return;
+        face = *of;
     }
-    return missed_planes_->contains(plane);
+    if (!noted_faces_.insert(face).second) return;
+    const Type type = f_.type(face);
+    if (type != Type::FACE_SURFACE && type != Type::ADVANCED_FACE) return;
+    const auto on = Fields(f_, face, f_.instances[face].first + 1).reference(2, "surface");
+    if (!on || f_.type(*on) != Type::PLANE || missed_planes_.contains(*on)) return;
+    const auto polygons = polygons_of(face);
+    if (polygons.empty()) return;
+    const auto at = Fields(f_, *on, f_.instances[*on].first + 1).reference(1, "position");
+    const auto p = at ? geometry_.placement(*at) : std::unexpected(at.error());
+    if (p && off_plane(polygons, p->o, p->z) > tolerance_) missed_planes_.insert(*on);
 }
 
 std::optional<SurfaceGeometry> ShapeReader::own_plane(std::uint32_t face, std::uint32_t surface) {
-    if (f_.type(surface) != Type::PLANE || !is_missed(surface)) return std::nullopt;
+    if (!missed_planes_.contains(surface)) return std::nullopt;
     const auto polygons = polygons_of(face);
     Vec<3> normal{}, origin{}, along{};
     for (const auto& corners : polygons) {

@@ -250,24 +250,11 @@ void LoopBuilder::join(Chain& a, Chain b, int axis) {
 void LoopBuilder::release_spurs() {
     if (!is_closed_surface()) return;
     for (Chain& c : chains_) {
-        std::vector<Use> kept;
-        for (Use& u : c.uses) {
-            if (kept.empty() || !is_way_back(kept.back(), u)) {
-                kept.push_back(std::move(u));
-                continue;
-            }
-            released.push_back(u.coedge.edge);
-            kept.pop_back();
-        }
-        std::size_t first = 0;  // the last and the first, as well
-        for (; kept.size() - first > 1 && is_way_back(kept.back(), kept[first]); ++first) {
-            released.push_back(kept[first].coedge.edge);
-            kept.pop_back();
-        }
-        kept.erase(kept.begin(), kept.begin() + std::ptrdiff_t(first));
-        const bool changed = kept.size() < c.uses.size();
-        c.uses = std::move(kept);
-        if (changed) measure(c);
+        const std::size_t before = c.uses.size();
+        fold_spurs(
+            c.uses, [&](const Use& x, const Use& y) { return is_way_back(x, y); },
+            [&](const Use& u) { released.push_back(u.coedge.edge); });
+        if (c.uses.size() < before) measure(c);
     }
     std::erase_if(chains_, [](const Chain& c) { return c.uses.empty(); });
 }

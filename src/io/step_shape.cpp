@@ -96,6 +96,7 @@ Result<void> ShapeReader::shell_faces(std::uint32_t i, bool forward, Shell& out,
     if (!f) return std::unexpected(f.error());
     const auto ids = f->references(f->size() - 1, "faces");
     if (!ids) return std::unexpected(ids.error());
+    for (const std::uint32_t id : *ids) note_missed_plane(id);
     for (std::uint32_t id : *ids) {
         bool same = forward;
         if (f_.is(id, Type::ORIENTED_FACE)) {

@@ -154,7 +154,7 @@ private:
     std::vector<std::vector<Vec<3>>> polygons_of(std::uint32_t face) const;
     static double off_plane(const std::vector<std::vector<Vec<3>>>& polygons, const Vec<3>& origin,
                             const Vec<3>& normal);
-    bool is_missed(std::uint32_t plane);
+    void note_missed_plane(std::uint32_t face);
     std::optional<SurfaceGeometry> own_plane(std::uint32_t face, std::uint32_t surface);
     // step_twins.cpp
     bool are_twins(const EdgeMade& a, const EdgeMade& b) const;
@@ -231,7 +231,7 @@ private:
     std::size_t items_left_;     // of sets, each time that one is named
     std::map<std::pair<std::uint32_t, bool>, Result<BoundedCurve>> lifts_;  // of PCURVEs, by unit of angles
     std::unordered_map<std::uint64_t, EdgeMade> straight_;
-    std::optional<std::unordered_set<std::uint32_t>> missed_planes_;
+    std::unordered_set<std::uint32_t> missed_planes_, noted_faces_;
     std::unordered_map<std::uint32_t, std::unique_ptr<SurfaceMade>> surfaces_;
     std::unordered_map<const Chart*, std::uint32_t> charts_;
 };

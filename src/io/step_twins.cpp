@@ -45,19 +45,13 @@ void ShapeReader::fold_twins(std::vector<LoopPiece>& loop) {
         found = true;
     }
     if (!found) return;
-    const auto encloses_nothing = [&](const LoopPiece& a, const LoopPiece& b) {
-        return (a.twin || b.twin) && !a.made.empty && a.made.edge == b.made.edge &&
-               is_reversed(a) != is_reversed(b);
-    };
-    std::vector<LoopPiece> kept;
-    for (LoopPiece& p : loop)
-        if (!kept.empty() && encloses_nothing(kept.back(), p)) {
-            out_.released.push_back(p.made.edge);
-            kept.pop_back();
-        } else {
-            kept.push_back(std::move(p));
-        }
-    loop = std::move(kept);
+    fold_spurs(
+        loop,
+        [&](const LoopPiece& a, const LoopPiece& b) {
+            return (a.twin || b.twin) && !a.made.empty && a.made.edge == b.made.edge &&
+                   is_reversed(a) != is_reversed(b);
+        },
+        [&](const LoopPiece& p) { out_.released.push_back(p.made.edge); });
 }
 
 // What stands for the edge by now.

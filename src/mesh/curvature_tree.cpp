@@ -137,17 +137,6 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
     return grow * best;
 }
 
-double triangle_bound(const DerivativeQuery<2, 3>& surface, const std::array<Vec<2>, 3>& corner) {
-    Box<2> box;
-    for (const Vec<2>& p : corner) box.add(p);
-    const auto limit = limits(surface.geometry());
-    if (clamped(box.lo, limit) != box.lo || clamped(box.hi, limit) != box.hi) return kInfinity;
-    const auto bends = surface({box.side(0), box.side(1)});
-    return linear_interpolation_bound({bends(2, 0), bends(1, 1), bends(0, 2)}, corner[0], corner[1],
-                                      corner[2]) +
-           kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
-}
-
 // Half the squared radius of the smallest circle around a triangle with such squared sides. The angle
 // opposite the longest has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <=
 // s2. Where that would be negative, sides or none, the largest is at the middle of the longest.

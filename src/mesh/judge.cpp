@@ -15,6 +15,17 @@ constexpr double kGrow = 1 + 1e-14;  // roundings of bounds over cells
 
 }  // namespace
 
+double triangle_bound(const DerivativeQuery<2, 3>& surface, const std::array<Vec<2>, 3>& corner) {
+    Box<2> box;
+    for (const Vec<2>& p : corner) box.add(p);
+    const auto limit = limits(surface.geometry());
+    if (clamped(box.lo, limit) != box.lo || clamped(box.hi, limit) != box.hi) return kInfinity;
+    const auto bends = surface({box.side(0), box.side(1)});
+    return linear_interpolation_bound({bends(2, 0), bends(1, 1), bends(0, 2)}, corner[0], corner[1],
+                                      corner[2]) +
+           kink_bound_of(surface.kinks(0), box.side(0)) + kink_bound_of(surface.kinks(1), box.side(1));
+}
+
 Judge::Judge(const CurvatureTree& tree, const DerivativeQuery<2, 3>& surface, const Box<2>& face,
              double tolerance)
     : tree_(tree), surface_(surface), tolerance_(tolerance), limits_(limits(surface.geometry())) {

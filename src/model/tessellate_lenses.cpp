@@ -7,8 +7,12 @@
 // The face ends at the crossing: its polygon goes from the last corner before it to the first one after it.
 // The points of the lens are on edges that other faces have, too, so they stay; a strip of triangles between
 // its two sides closes the mesh. In the parameter plane these may be turned over: what bounds the distance
-// of a triangle from the surface does not ask for that. Polygon and strip together have the loop as their
-// boundary, as the face would have.
+// of a triangle from the surface does not ask for that. Nothing of the face is left out: polygon and strip
+// together are a chain that has the loop as its boundary, so what it is mapped to covers all parameters about
+// which the loop winds. On the side that both have, triangles of the polygon are compared with the surface at
+// feet (bending.cpp), and those of the strip straight: what lies between a place y there and its foot is
+// covered by going downhill from y, where the surface is within the bound of the strip, which becomes that of
+// the face if it is larger.
 #include "tessellator_detail.hpp"
 
 #include <freiform/core/parallel.hpp>

@@ -96,6 +96,10 @@ TEST_F(IgesUnits, gaps_at_vertices_and_seams_in_one_place_are_closed) {
         EXPECT_EQ(read->unit, x.unit);
         EXPECT_EQ(int(read->faces.size()), x.faces);
         EXPECT_TRUE(read->refused.empty());
+        const bool told = std::ranges::any_of(read->approximations, [](const Approximation& a) {
+            return a.what.find("those in space are taken") != a.what.npos;
+        });
+        EXPECT_EQ(told, std::string_view(x.name) == "curves_in_space.iges");
         const auto sewn = sew(*read, {.tolerance = largest_tolerance(*read)});
         ASSERT_TRUE(sewn) << sewn.error().message;
         EXPECT_TRUE(sewn->remaining.empty());

@@ -104,7 +104,8 @@ TEST(StepTwins, two_edges_to_an_apex_are_one) {
 TEST(StepTwins, ways_that_enclose_nothing_hang_shells_together) {
     for (const std::string_view order :
          {"#700,#701,#702", "#702,#701,#700", "#701,#700,#702", "#700,#702,#701"}) {
-        const bool turned = order == "#700,#702,#701";  // the second edge runs against the curve
+        const bool begins_back = order == "#701,#700,#702";  // the loop begins with the way back
+        const bool turned = order == "#700,#702,#701";       // the second edge runs against the curve
         Rows r;
         for (const Vec<3>& p : {Vec<3>{{0, 0, 0}},
                                 {{4, 0, 0}},
@@ -120,7 +121,10 @@ TEST(StepTwins, ways_that_enclose_nothing_hang_shells_together) {
         const int back = turned ? 6 : -6;
         r.straight(6, 4, 5), r.straight(7, 5, 0), r.straight(8, 0, 6), r.straight(9, 6, 4);
         r.plane(0, 0, 1, 2), r.plane(1, 0, 4, 5), r.plane(2, 0, 6, 4);
-        r.face(0, "850", {1, 2, 3, 4, 5, back});
+        if (begins_back)
+            r.face(0, "850", {back, 1, 2, 3, 4, 5});
+        else
+            r.face(0, "850", {1, 2, 3, 4, 5, back});
         r.face(1, "851", {5, 7, 8}), r.face(2, "852", {back, 9, 10});
         const Model m = items_model(
             "#10",

@@ -18,7 +18,7 @@ inline constexpr bool kWidens = false;
 
 // Whether calls for such coefficients are those for four dimensions.
 template <class P>
-inline constexpr bool kIsWidened = kWidens&& Space<P>::kDim != kWidest;
+inline constexpr bool kIsWidened = Space<P>::kDim < kWidest ? kWidens : false;
 
 template <class P>
 using WideOf = std::conditional_t<Space<P>::kRational, Hom<kWidest>, Vec<kWidest>>;
