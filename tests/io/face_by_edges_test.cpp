@@ -30,6 +30,8 @@ TEST(FaceByEdges, a_wall_between_circles_gets_its_seam) {
     const std::vector<std::vector<EdgeUse>> loops{{{0, false}}, {{1, true}}};
     m.faces.push_back(must(face_by_edges(m, kWall, loops, 1e-7)));
     EXPECT_EQ(m.edges.size(), 3u);
+    for (const Coedge& c : m.faces[0].loops.at(0).coedges)
+        if (c.edge < 2) EXPECT_EQ(c.reversed, c.edge == 1);
     const Model made = in_one_body(std::move(m));
     EXPECT_EQ(summary(made).seams, 1);
     EXPECT_NEAR(area_of(made, 1e-3), 12 * std::numbers::pi, 0.02);
