@@ -30,11 +30,29 @@ TEST(FaceByEdges, a_wall_between_circles_gets_its_seam) {
     const std::vector<std::vector<EdgeUse>> loops{{{0, false}}, {{1, true}}};
     m.faces.push_back(must(face_by_edges(m, kWall, loops, 1e-7)));
     EXPECT_EQ(m.edges.size(), 3u);
-    for (const Coedge& c : m.faces[0].loops.at(0).coedges)
-        if (c.edge < 2) EXPECT_EQ(c.reversed, c.edge == 1);
     const Model made = in_one_body(std::move(m));
     EXPECT_EQ(summary(made).seams, 1);
     EXPECT_NEAR(area_of(made, 1e-3), 12 * std::numbers::pi, 0.02);
+}
+
+// A circle of a sphere of radius 2, at the height 1: the sense in which it is run through says which part.
+TEST(FaceByEdges, the_face_lies_on_the_left_of_its_loop) {
+    for (const bool reversed : {false, true}) {
+        Model m;
+        const double r = std::sqrt(3.0);
+        m.vertices.push_back({{{r, 0, 1}}, 1e-7});
+        Edge e;
+        e.curve = Conic<3>{ConicKind::ellipse, {{0, 0, 1}}, {{r, 0, 0}}, {{0, r, 0}}};
+        e.range = {0, 2 * std::numbers::pi};
+        e.start = e.end = 0;
+        e.tolerance = 1e-7;
+        m.edges.push_back(std::move(e));
+        const SurfaceGeometry ball = Revolution{
+            Conic<3>{ConicKind::ellipse, {}, {{2, 0, 0}}, {{0, 0, 2}}}, {}, {{0, 0, 1}}, SurfaceKind::sphere};
+        const std::vector<std::vector<EdgeUse>> loops{{{0, reversed}}};
+        m.faces.push_back(must(face_by_edges(m, ball, loops, 1e-7)));
+        EXPECT_NEAR(area_of(in_one_body(std::move(m)), 1e-3), (reversed ? 12 : 4) * std::numbers::pi, 0.05);
+    }
 }
 
 TEST(FaceByEdges, what_is_no_face_is_refused_and_leaves_the_model_as_it_was) {
