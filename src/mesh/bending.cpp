@@ -311,6 +311,10 @@ Shift shift_of(const Bending& at, double e, const Curvature& near, double reflec
 
 double Shift::across(double seen, double e) const { return (seen + q * e * far * far / 2) * (1 + 1e-14); }
 
+double Shift::left_of(double tolerance, double e) const {
+    return (tolerance - q * e * far * far / 2) * (1 - 1e-12);
+}
+
 double Shift::way(double e) const { return (e + q * e * far * far / 8) * (1 + 1e-14); }
 
 bool is_rounding(const Kink& kink, double side, double tolerance) {

@@ -28,17 +28,22 @@ struct BlockJudge {
         const double error = judge.cell_error(at, block.box, cell);
         JudgedBlock out;
         out.flat = out.flat_halves = within(error);
-        const auto with = [&](int plain) {
-            return within(judge.leaf(at, block.box, error, plain, block.node).bound);
-        };
         if (!std::isfinite(out.flat) && at.knows_middle())
             out.flat_halves = within(judge.whole_halves_error(at, block.box));
         if (tree.is_all_plain()) return out;
-        out.usual = out.halves = with(0);
-        if (!std::isfinite(out.usual) && at.knows_middle())
-            out.halves = within(judge.halves(at, block.box, error, block.node).bound);
-        if (std::isfinite(out.halves)) out.footless = with(1);
+        if (at.knows_middle()) out.halves = within(judge.halves(at, block.box, error, block.node).bound);
+        if (!std::isfinite(out.halves)) out.halves = out.usual = of_leaf(at, error, 0);
+        if (std::isfinite(out.halves)) out.footless = of_leaf(at, error, 1);
         return out;
+    }
+
+    double of_leaf(const Bending& at, double error, int plain) const {
+        return within(judge.leaf(at, block.box, error, plain, block.node).bound);
+    }
+    double usual_of_leaf() const {
+        const Bending& at = tree.part_bendings(block)[0];
+        const Vec<2> cell = kCellRounding * (block.box.hi - block.box.lo);
+        return of_leaf(at, judge.cell_error(at, block.box, cell), 0);
     }
 
     // Of the first cell of each part, as if corners were plain where a foot is not needed.
@@ -65,6 +70,11 @@ struct BlockJudge {
 };
 
 }  // namespace
+
+double usual_of_leaf(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                     const CurvatureTree::Block& leaf) {
+    return BlockJudge{tree, judge, tolerance, leaf}.usual_of_leaf();
+}
 
 JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,
                          const CurvatureTree::Block& block) {

@@ -57,7 +57,10 @@ struct JudgedBlock {
            flat_halves = kInfinity;
 };
 
+// Of leaves whose halves do, `usual` is left out: usual_of_leaf is asked for where there are more triangles.
 JudgedBlock judged_block(const CurvatureTree& tree, const Judge& judge, double tolerance,
                          const CurvatureTree::Block& block);
+double usual_of_leaf(const CurvatureTree& tree, const Judge& judge, double tolerance,
+                     const CurvatureTree::Block& leaf);
 
 }  // namespace freiform

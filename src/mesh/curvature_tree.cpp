@@ -237,11 +237,11 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
     };
     if (of_halves <= tolerance && sides_keep(false)) return true;
     if (!knows_normals_) return false;
-    for (const bool halves : {false, true}) {
+    for (const bool halves : {true, false}) {
         const double whole = halves ? std::min(error, of_halves) : error;
         const Shift shift = shift_of(b, whole, b.full, kBeyond, true);
         if (!shift.exists) continue;
-        const double seen = halves ? b.halves_error(cell, shift.turn) : b.seen_error(cell, shift.turn);
+        const double seen = halves ? b.halves_error(cell, shift.turn, shift.left_of(tolerance, whole)) : b.seen_error(cell, shift.turn);
         if (shift.across(seen, whole) <= tolerance && (!halves || sides_keep(true))) return true;
     }
     return false;

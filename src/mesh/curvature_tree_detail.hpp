@@ -145,8 +145,10 @@ struct Bending {
     double seen_error(const Box<2>& cell, double turn) const;
     // The same of the halves of the cell on both sides of the better diagonal, and of one triangle in it.
     // REQUIRES knows_middle().
-    double halves_error(const Box<2>& cell, double turn) const;
-    double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn) const;
+    // Less is not looked for than `enough`.
+    double halves_error(const Box<2>& cell, double turn, double enough) const;
+    double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn,
+                          double enough) const;
     // Of all of the interpolation error in the triangle. REQUIRES knows_middle().
     double whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const;
     double whole_halves_error(const Box<2>& cell) const;
@@ -171,8 +173,10 @@ private:
     struct Rest;
     double turned(double du, double dv) const;
     Rest rest_in(const Box<2>& cell, double turn) const;
-    Rest rest_of_fit(const Box<2>& cell, double turn) const;
-    double of_part(const Box<2>& cell, double turn, double most, double u, double v, double times) const;
+    double fit_error(const std::array<Vec<2>, 3>& corner, double most, double turn, double times,
+                     double enough) const;
+    double of_part(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn, double most,
+                   double u, double v, double times, double enough) const;
     double steady_error(const Rest& rest, const Curvature& seen) const;
 };
 
@@ -216,6 +220,7 @@ struct Shift {
     // Bounds of the distance from the foot, where `seen` bounds the interpolation error along normals, and of
     // the distance from places on the way there.
     double across(double seen, double e) const;
+    double left_of(double tolerance, double e) const;  // for `seen`, about
     double way(double e) const;
 };
 // e: bound of the whole interpolation error. `near`: bounds as far around as reach_of says; `reflected`: 3 if

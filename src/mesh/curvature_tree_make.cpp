@@ -29,7 +29,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kLittleTilt = 0.125;
+constexpr double kLittleTilt = 0.25;
 constexpr std::size_t kPartsOfTree = 64;
 constexpr double kLeavesAtOnce = 16;
 constexpr std::size_t kLeavesCounted = 256;  // at once

@@ -54,10 +54,10 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     double e = error_of(at.full);
     if (at.knows_middle()) e = std::min(e, at.whole_error(box, corner) * kGrow);
     e += tree_.kink_bound(box);
-    const auto seen_error = [&](double turn) {
+    const auto seen_error = [&](double turn, double enough) {
         const double by_all = std::min(error_of(at.seen(turn)), at.seen_error(box, turn) * kGrow);
-        if (by_all <= tolerance_ || !at.knows_middle()) return by_all;
-        return std::min(by_all, at.triangle_error(box, corner, turn) * kGrow);
+        if (by_all <= enough || !at.knows_middle()) return by_all;
+        return std::min(by_all, at.triangle_error(box, corner, turn, enough / kGrow) * kGrow);
     };
     return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
 }
@@ -78,19 +78,19 @@ double Judge::cell_error(const Bending& at, const Box<2>& box, const Vec<2>& sid
 
 Judgement Judge::cell(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error, int plain,
                       int near_place) const {
-    const auto seen_error = [&](double turn) { return at.seen(turn).error(sides) * kGrow; };
+    const auto seen_error = [&](double turn, double) { return at.seen(turn).error(sides) * kGrow; };
     return judged(at, box, std::cref(seen_error), error, plain, near_place, true);
 }
 
 Judgement Judge::leaf(const Bending& at, const Box<2>& box, double error, int plain, int near_place) const {
-    const auto seen_error = [&](double turn) { return at.seen_error(box, turn) * kGrow; };
+    const auto seen_error = [&](double turn, double) { return at.seen_error(box, turn) * kGrow; };
     return judged(at, box, std::cref(seen_error), error, plain, near_place, true);
 }
 
 Judgement Judge::cells(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error,
                        int near_place) const {
     const Vec<2> size = kGrow * (box.hi - box.lo);
-    const auto seen_error = [&](double turn) { return at.cells_error(size, sides, turn) * kGrow; };
+    const auto seen_error = [&](double turn, double) { return at.cells_error(size, sides, turn) * kGrow; };
     return judged(at, box, std::cref(seen_error), error, 0, near_place, true);
 }
 
@@ -99,13 +99,15 @@ double Judge::whole_halves_error(const Bending& at, const Box<2>& box) const {
 }
 
 Judgement Judge::halves(const Bending& at, const Box<2>& box, double error, int near_place) const {
-    const auto seen_error = [&](double turn) { return at.halves_error(box, turn) * kGrow; };
+    const auto seen_error = [&](double turn, double enough) {
+        return at.halves_error(box, turn, enough / kGrow) * kGrow;
+    };
     return judged(at, box, std::cref(seen_error), std::min(error, whole_halves_error(at, box)), 0, near_place,
-                  true);
+                  true, true);
 }
 
 Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double e,
-                        int plain, int near_place, bool is_deep) const {
+                        int plain, int near_place, bool is_deep, bool is_likely) const {
     Judgement k{false, kInfinity, e, at.full};
     if (plain == 3) {
         k.bound = e;
@@ -113,9 +115,13 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
     }
     if (!(at.least > 0)) return k;
     // Where a foot straight below would not do, none will.
-    if (e > tolerance_ && (plain > 0 || seen_error(0) > tolerance_)) {
-        k.curvature = plain > 0 ? at.full : at.seen(0);
-        return k;
+    double straight = 0;
+    if (e > tolerance_ && !is_likely) {
+        straight = plain > 0 ? e : seen_error(0, tolerance_);
+        if (straight > tolerance_) {
+            k.curvature = plain > 0 ? at.full : at.seen(0);
+            return k;
+        }
     }
     const Vec<2> reach = reach_of(at, e);
     const Box<2> around{box.lo - reach, box.hi + reach};
@@ -126,22 +132,26 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
             reflected = 3;
             if (reach[d] > limits_[std::size_t(d)].length()) return k;
         }
-    // True if it is enough to know that `near` bounds second derivatives around.
-    const auto is_enough = [&](const Curvature& near) {
+    // True if it is enough to know that `near` bounds second derivatives around. `is_last`: nothing else is known.
+    const auto is_enough = [&](const Curvature& near, bool is_last) {
         const Shift shift = shift_of(at, e, near, reflected, is_deep);
         if (!shift.exists) return false;
         k.shifted = true;
-        const double bound = plain > 0 ? shift.way(e) : std::min(e, shift.across(seen_error(shift.turn), e));
+        if (!is_last && plain == 0 && std::min(e, shift.across(straight, e)) > tolerance_) return false;
+        const auto across = [&] {
+            return shift.across(seen_error(shift.turn, shift.left_of(tolerance_, e)), e);
+        };
+        const double bound = plain > 0 ? shift.way(e) : std::min(e, across());
         if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : at.seen(shift.turn);
         return k.bound <= tolerance_;
     };
     // What holds everywhere first, then what holds in the part of the tree that has all of it.
     const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
-    if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_)) return k;
-    const int place = tree_.place_of(around, near_place);
-    if (const Curvature* all = tree_.all_in(place, around); all && is_enough(*all)) return k;
-    const auto near = tree_.all_over(around, place);
-    is_enough(near ? *near : over_clamped(inside));
+    if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_, false)) return k;
+    const int place = tree_.place_of(inside, near_place);
+    if (const Curvature* all = tree_.all_in(place, inside); all && is_enough(*all, false)) return k;
+    const auto near = tree_.all_over(inside, place);
+    is_enough(near ? *near : over_clamped(inside), true);
     return k;
 }
 

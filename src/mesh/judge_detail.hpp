@@ -38,9 +38,10 @@ public:
     double whole_halves_error(const Bending& at, const Box<2>& box) const;  // where they are plain; likewise
 
 private:
-    using SeenError = std::function<double(double)>;  // of what is seen along normals that turn by so much
+    // Of what is seen along normals that turn by so much; less is not looked for than what is enough.
+    using SeenError = std::function<double(double, double)>;
     Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
-                     int plain, int near_place, bool is_deep) const;
+                     int plain, int near_place, bool is_deep, bool is_likely = false) const;
     Curvature over_clamped(const Box<2>& box) const;
     bool is_turned_over(const std::array<Vec<2>, 3>& corner) const;  // of a cone
 
