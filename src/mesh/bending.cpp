@@ -65,11 +65,14 @@
 // R is small, so that these lose little where weights vary much, which bounds of derivatives of S do. Second
 // derivatives of S are those of M, and at most those of R more. And S - L = (M - L M) + (R - L R), where
 // |R - L R| <= max |R| in halves of the box, at whose corners R is 0, and twice that in other triangles in
-// it. M - L M is known with all signs; along N(x), which turns by t from n, it is that along n, and the part
-// beside n times what N turns by over |y - m| and from y to x (`rest_of_fit`), and n . R becomes |n . R| + t
-// |R| at most (`of_part`). For one triangle M is S at its corners. Where it is hardly more than a side, such
-// an M may be far from S beside it; then it is S at the ends and in the middle of that side, and what R is at
-// the third corner is added. So what is said of slivers tends to what is true of their sides.
+// it. M - L M is known with all signs: p along n, and beside it at most b, quadratic both, and 0 at corners.
+// Along N(x), which turns from n by at most t, it is at most |p| + t b, and n . R becomes |n . R| + t |R| at
+// most. t is what N turns by over |y - m|, a convex function of y, and from y to x: on each of the four parts
+// that the middles of its sides make of T at most linear, so that the Bezier points of |p| + t (b + |R|)
+// there bound it (`TurningError`). As t is small near m, where p is large, that is little more than |p|. For
+// one triangle M is S at its corners. Where it is hardly more than a side, such an M may be far from S beside
+// it; then it is S at the ends and in the middle of that side, and what R is at the third corner is added. So
+// what is said of slivers tends to what is true of their sides.
 //
 // Nothing is left out: let G(y) = y + w(y) (F(y) - y), w continuous and linear on each triangle, 0 or 1 at
 // vertices ("plain" ones have 0). G is continuous on D and homotopic to the identity by y + s (G(y) - y), so

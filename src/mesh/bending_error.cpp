@@ -1,5 +1,6 @@
 // Interpolation errors from what is known of a part of the plane: essay in bending.cpp.
 #include "bending_detail.hpp"
+#include "turning_error_detail.hpp"
 
 namespace freiform {
 
@@ -31,45 +32,6 @@ struct Bending::Rest {
 };
 
 namespace {
-
-// The largest of |p| + t (b + whole) on a triangle, p and b quadratic and 0 at its corners, given by eight
-// times what they are in the middles of the sides opposite the corners, t convex: by Bezier points of its
-// four parts.
-struct TurningError {
-    std::array<double, 3> along, beside, at_corner, at_middle;  // p, b; t
-    double whole = 0;
-    double together = 0, turned = 0;  // of t (b + whole) alone
-
-    void note(double p, double b, double t) {
-        const double more = b + t * whole;
-        turned = std::max(turned, more), together = std::max(together, std::abs(p) + more);
-    }
-    using Six = std::array<double, 6>;  // 00, 11, 22, 12, 20, 01
-    void look(const Six& p, const Six& b, const std::array<double, 3>& t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            note(p[i], t[i] * b[i], t[i]);
-            for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
-                const std::size_t ij = 6 - i - j;
-                note((p[i] + 2 * p[ij]) / 3, (t[j] * b[i] + 2 * t[i] * b[ij]) / 3, (2 * t[i] + t[j]) / 3);
-            }
-        }
-        note((p[3] + p[4] + p[5]) / 3, (t[0] * b[3] + t[1] * b[4] + t[2] * b[5]) / 3, (t[0] + t[1] + t[2]) / 3);
-    }
-    static Six centre(const std::array<double, 3>& x) {
-        const double all = (x[0] + x[1] + x[2]) / 16;
-        return Six{x[0] / 8, x[1] / 8, x[2] / 8, all, all, all};
-    }
-    static Six part(const std::array<double, 3>& x, std::size_t j, std::size_t k) {
-        return Six{0, x[k] / 8, x[j] / 8, (x[0] + x[1] + x[2]) / 16, x[j] / 8, x[k] / 8};
-    }
-    void look() {
-        look(centre(along), centre(beside), at_middle);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-            look(part(along, j, k), part(beside, j, k), {at_corner[i], at_middle[k], at_middle[j]});
-        }
-    }
-};
 
 // Half the sides of the cell, and how far its middle is from that of the box.
 std::array<Vec<2>, 2> place_of(const Box<2>& cell, const Vec<2>& middle) {
@@ -103,41 +65,41 @@ Bending::Rest Bending::rest_in(const Box<2>& cell, double turn) const {
             of(h[0] * (2.0 / 3), 0, turned(h[0], 0)), of(0, h[1] * (2.0 / 3), turned(0, h[1]))};
 }
 
-// Of the quadratic function alone, as normals turn.
-double Bending::fit_error(const std::array<Vec<2>, 3>& corner, double most, double turn, double times,
+// Of the quadratic function, of which the error along n is `most`, and of `times` the bounds of the rest.
+double Bending::fit_error(const std::array<Vec<2>, 3>& corner, double turn, double most, double times,
                           double enough) const {
-    TurningError e;
+    TurningError error;
+    const auto& [uu, uv, vv] = middle.whole_second;
+    const double sizes[3] = {norm(uu), norm(uv), norm(vv)};
+    double slip = 0, most_beside = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec<2> d = corner[(k + 2) % 3] - corner[(k + 1) % 3];
+        const Vec<3> x = d[0] * d[0] * uu + 2 * d[0] * d[1] * uv + d[1] * d[1] * vv;
+        const double by_n = dot(n, x),
+                     rounding = 16 * kUnitRoundoff *
+                                (d[0] * d[0] * sizes[0] + 2 * std::abs(d[0] * d[1]) * sizes[1] +
+                                 d[1] * d[1] * sizes[2]);
+        error.along[k] = by_n, error.beside[k] = norm(x - by_n * n) + rounding;
+        slip = std::max(slip, rounding), most_beside = std::max(most_beside, error.beside[k]);
+    }
+    error.more = times * fit.whole;
+    const double rest = times * fit.along + slip,
+                 rough = (most + (tilt + turn) * (most_beside / 6 + error.more) + rest) * (1 + 1e-13);
+    if (rough <= enough || (enough > 0 && most >= enough)) return rough;
     const double still = kChord / least * kBendingRounding + turn;
     const auto turned_at = [&](const Vec<2>& p) {
-        const auto off = [&](int d) {
-            return std::abs(p[d] - middle.at[d]) +
-                   4 * kUnitRoundoff * std::max(std::abs(p[d]), std::abs(middle.at[d]));
-        };
-        return turned(off(0), off(1)) + still;
+        double off[2];
+        for (const int d : {0, 1})
+            off[d] = std::abs(p[d] - middle.at[d]) +
+                     4 * kUnitRoundoff * std::max(std::abs(p[d]), std::abs(middle.at[d]));
+        return turned(off[0], off[1]) + still;
     };
-    const auto& q = middle.whole_second;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vec<2>&a = corner[(k + 1) % 3], &b = corner[(k + 2) % 3], d = b - a;
-        const Vec<3> x = d[0] * d[0] * q[0] + 2 * d[0] * d[1] * q[1] + d[1] * d[1] * q[2];
-        const double part = dot(n, x);
-        e.along[k] = part;
-        e.beside[k] = norm(x - part * n) +
-                      16 * kUnitRoundoff *
-                          (d[0] * d[0] * norm(q[0]) + 2 * std::abs(d[0] * d[1]) * norm(q[1]) +
-                           d[1] * d[1] * norm(q[2]));
+        error.at_corner[k] = turned_at(corner[k]);
+        error.at_middle[k] = turned_at(0.5 * (corner[(k + 1) % 3] + corner[(k + 2) % 3]));
     }
-    e.whole = times * fit.whole;
-    const double rest = times * fit.along,
-                 rough = (most + (tilt + turn) * (std::max({e.beside[0], e.beside[1], e.beside[2]}) / 6 + e.whole) +
-                          rest) *
-                         (1 + 1e-13);
-    if (rough <= enough || most >= enough) return rough;
-    for (std::size_t k = 0; k < 3; ++k) {
-        e.at_corner[k] = turned_at(corner[k]);
-        e.at_middle[k] = turned_at(0.5 * (corner[(k + 1) % 3] + corner[(k + 2) % 3]));
-    }
-    e.look();
-    return (std::min({e.together, most + e.turned}) + rest) * (1 + 1e-13);
+    error.find();
+    return std::min(rough, (std::min(error.together, most + error.turned) + rest) * (1 + 1e-13));
 }
 
 // Of the part with constant second derivatives Rest::error says what `most`, u and v are. The rest adds
@@ -147,7 +109,7 @@ double Bending::of_part(const Box<2>& cell, const std::array<Vec<2>, 3>& corner,
     double best = kInfinity;
     if (fit.exists()) {
         const double more = times * (fit.along + (tilt + turn) * fit.whole);
-        best = fit_error(corner, most / 2, turn, times, enough);
+        best = fit_error(corner, turn, most / 2, times, enough);
         if (best <= enough) return best;
         const auto& off = middle.off;
         const Vec<2> half = half_sides({cell.side(0), cell.side(1)});

@@ -228,8 +228,8 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
 // triangles around them have that bound for less.
 bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, double error,
                           double tolerance) const {
-    if (keeps(b, cell.hi - cell.lo, kinks, error, tolerance)) return true;
-    if (kinks || !b.knows_middle()) return false;
+    if (kinks || !b.knows_middle()) return keeps(b, cell.hi - cell.lo, kinks, error, tolerance);
+    if (error <= tolerance) return true;
     const double of_halves = b.whole_halves_error(cell);
     // Slivers beside it have bounds of their own, which may be worse than those of halves with that side.
     const auto sides_keep = [&](bool along_normal) {
@@ -237,14 +237,14 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
     };
     if (of_halves <= tolerance && sides_keep(false)) return true;
     if (!knows_normals_) return false;
-    for (const bool halves : {true, false}) {
-        const double whole = halves ? std::min(error, of_halves) : error;
-        const Shift shift = shift_of(b, whole, b.full, kBeyond, true);
-        if (!shift.exists) continue;
-        const double seen = halves ? b.halves_error(cell, shift.turn, shift.left_of(tolerance, whole)) : b.seen_error(cell, shift.turn);
-        if (shift.across(seen, whole) <= tolerance && (!halves || sides_keep(true))) return true;
+    const double whole = std::min(error, of_halves);
+    if (const Shift shift = shift_of(b, whole, b.full, kBeyond, true); shift.exists) {
+        const double seen = b.halves_error(cell, shift.turn, shift.left_of(tolerance, whole));
+        if (shift.across(seen, whole) > tolerance) return false;
+        if (sides_keep(true)) return true;
     }
-    return false;
+    const Shift shift = shift_of(b, error, b.full, kBeyond, true);
+    return shift.exists && shift.across(b.seen_error(cell, shift.turn), error) <= tolerance;
 }
 
 // The same of all cells of a block in a box of this size.

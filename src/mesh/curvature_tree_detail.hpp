@@ -145,7 +145,8 @@ struct Bending {
     double seen_error(const Box<2>& cell, double turn) const;
     // The same of the halves of the cell on both sides of the better diagonal, and of one triangle in it.
     // REQUIRES knows_middle().
-    // Less is not looked for than `enough`.
+    // No effort is made for less than `enough`, nor where that is out of reach; 0: as small as it can be
+    // said.
     double halves_error(const Box<2>& cell, double turn, double enough) const;
     double triangle_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn,
                           double enough) const;
@@ -173,7 +174,7 @@ private:
     struct Rest;
     double turned(double du, double dv) const;
     Rest rest_in(const Box<2>& cell, double turn) const;
-    double fit_error(const std::array<Vec<2>, 3>& corner, double most, double turn, double times,
+    double fit_error(const std::array<Vec<2>, 3>& corner, double turn, double most, double times,
                      double enough) const;
     double of_part(const Box<2>& cell, const std::array<Vec<2>, 3>& corner, double turn, double most,
                    double u, double v, double times, double enough) const;

@@ -132,7 +132,8 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
             reflected = 3;
             if (reach[d] > limits_[std::size_t(d)].length()) return k;
         }
-    // True if it is enough to know that `near` bounds second derivatives around. `is_last`: nothing else is known.
+    // True if it is enough to know that `near` bounds second derivatives around. `is_last`: nothing else is
+    // known.
     const auto is_enough = [&](const Curvature& near, bool is_last) {
         const Shift shift = shift_of(at, e, near, reflected, is_deep);
         if (!shift.exists) return false;

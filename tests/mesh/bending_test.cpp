@@ -120,8 +120,13 @@ void look_at_parts(Random& random, const SurfaceGeometry& s, const Bending& b, c
     const std::array halves{half_of(cell, rising),
                             std::array{cell.lo, rising ? cell.hi : Vec<2>{{cell.hi[0], cell.lo[1]}},
                                        Vec<2>{{cell.lo[0], cell.hi[1]}}}};
-    const double most = largest_seen(s, halves, turn), said = b.halves_error(cell, turn);
+    const double most = largest_seen(s, halves, turn), said = b.halves_error(cell, turn, 0);
     EXPECT_LE(most, said * (1 + 1e-9));
+    for (const double enough : {0.8 * said, said, 1.2 * said, 2 * said}) {
+        const double less = b.halves_error(cell, turn, enough);
+        EXPECT_LE(said, less * (1 + 1e-9));
+        EXPECT_LE(less, std::max(enough, said) * (enough < said ? 10 : 1));
+    }
     out.halved += said < 0.8 * b.seen_error(cell, turn);
     out.sharpest_half = std::max(out.sharpest_half, most / said);
     const double whole = b.whole_halves_error(cell);
@@ -133,7 +138,7 @@ void look_at_parts(Random& random, const SurfaceGeometry& s, const Bending& b, c
     out.whole_halved += whole < 0.8 * b.full.error(cell.hi - cell.lo);
     for (int i = 0; i < 4; ++i) {
         const std::array t{place_in(random, cell), place_in(random, cell), place_in(random, cell)};
-        EXPECT_LE(largest_seen(s, std::span(&t, 1), turn), b.triangle_error(cell, t, turn) * (1 + 1e-9));
+        EXPECT_LE(largest_seen(s, std::span(&t, 1), turn), b.triangle_error(cell, t, turn, 0) * (1 + 1e-9));
         EXPECT_LE(largest_whole(s, t), b.whole_error(cell, t) * (1 + 1e-9));
     }
 }
@@ -250,7 +255,7 @@ TEST(Bending, what_one_triangle_shows_is_bounded_by_a_fit_to_it) {
             ++known;
             const double turn = random.real(0, 0.1);
             EXPECT_LE(largest_seen(s, std::span(&t, 1), turn),
-                      b.triangle_error(box, t, turn) * (1 + 1e-9) + 1e-14)
+                      b.triangle_error(box, t, turn, 0) * (1 + 1e-9) + 1e-14)
                 << width;
         }
         EXPECT_GT(known, 500);
@@ -373,7 +378,7 @@ TEST(Shift, feet_are_as_near_as_it_says) {
         if (!shift.exists) continue;
         beyond += !shift_of(b, e, near, 1, false).exists;
         const auto t = half_of(cell, b.prefers_rising(cell.hi - cell.lo));
-        const double across = shift.across(b.halves_error(cell, shift.turn), e);
+        const double across = shift.across(b.halves_error(cell, shift.turn, 0), e);
         std::array<Vec<3>, 3> corner;
         for (std::size_t k = 0; k < 3; ++k) corner[k] = jet<0>(s, t[k].c).value();
         for (int i = 0; i < 20; ++i) {
