@@ -240,8 +240,9 @@ bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, doub
     const double whole = std::min(error, of_halves);
     if (const Shift shift = shift_of(b, whole, b.full, kBeyond, true); shift.exists) {
         const double seen = b.halves_error(cell, shift.turn, shift.left_of(tolerance, whole));
-        if (shift.across(seen, whole) > tolerance) return false;
-        if (sides_keep(true)) return true;
+        const bool keeps = shift.across(seen, whole) <= tolerance;
+        if (keeps && sides_keep(true)) return true;
+        if (!keeps && b.fit.exists()) return false;  // nor will what says less
     }
     const Shift shift = shift_of(b, error, b.full, kBeyond, true);
     return shift.exists && shift.across(b.seen_error(cell, shift.turn), error) <= tolerance;

@@ -151,8 +151,10 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
     if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_, false)) return k;
     const int place = tree_.place_of(inside, near_place);
     if (const Curvature* all = tree_.all_in(place, inside); all && is_enough(*all, false)) return k;
-    const auto near = tree_.all_over(inside, place);
-    is_enough(near ? *near : over_clamped(inside), true);
+    if (const auto near = tree_.all_over(inside, place)) {
+        if (is_enough(*near, inside == around) || inside == around) return k;
+    }
+    is_enough(over_clamped(inside), true);  // less: of nothing else
     return k;
 }
 
