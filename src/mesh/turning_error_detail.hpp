@@ -18,38 +18,43 @@ public:
 
     double together = 0, turned = 0;  // all of it, and t (b + c) alone
     void find() {
-        look(inner(along), inner(beside), at_middle);
+        const double along_inside = inside(along), beside_inside = inside(beside);
+        // Of the part between the middles: at these, between them, and inside of it.
+        double all_p = along_inside, all_b = 0, all_t = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-            look(outer(along, j, k), outer(beside, j, k), {at_corner[i], at_middle[k], at_middle[j]});
+            const double t = at_middle[i], p = along[i] / 8, b = beside[i] / 8;
+            note(p, t * b, t);
+            for (const std::size_t other : {j, k})
+                note((p + 2 * along_inside) / 3, (at_middle[other] * b + 2 * t * beside_inside) / 3,
+                     (2 * t + at_middle[other]) / 3);
+            all_b += t * beside_inside / 3, all_t += t / 3;
         }
+        note(all_p, all_b, all_t);
+        for (std::size_t i = 0; i < 3; ++i) look_from(i);
     }
 
 private:
-    using Points = std::array<double, 6>;  // of a quadratic function: 00, 11, 22, 12, 20, 01
+    // Of quadratic functions: between two middles of sides.
+    static double inside(const std::array<double, 3>& x) { return (x[0] + x[1] + x[2]) / 16; }
 
-    static Points inner(const std::array<double, 3>& x) {
-        const double side = (x[0] + x[1] + x[2]) / 16;
-        return {x[0] / 8, x[1] / 8, x[2] / 8, side, side, side};
+    void note(double p, double tb, double t) {
+        const double turning = tb + t * more;
+        turned = std::max(turned, turning), together = std::max(together, std::abs(p) + turning);
     }
-    // From a corner to the middles opposite k and j.
-    static Points outer(const std::array<double, 3>& x, std::size_t j, std::size_t k) {
-        return {0, x[k] / 8, x[j] / 8, (x[0] + x[1] + x[2]) / 16, x[j] / 8, x[k] / 8};
-    }
-    void look(const Points& p, const Points& b, const std::array<double, 3>& t) {
-        const auto note = [&](double of_p, double of_b, double of_t) {
-            const double turning = of_b + of_t * more;
-            turned = std::max(turned, turning), together = std::max(together, std::abs(of_p) + turning);
-        };
-        for (std::size_t i = 0; i < 3; ++i) {
-            note(p[i], t[i] * b[i], t[i]);
-            for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
-                const std::size_t ij = 6 - i - j;
-                note((p[i] + 2 * p[ij]) / 3, (t[j] * b[i] + 2 * t[i] * b[ij]) / 3, (2 * t[i] + t[j]) / 3);
-            }
+    // The part that has this corner, but for what it shares with the one between the middles.
+    void look_from(std::size_t i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        const double t = at_corner[i];
+        note(0, 0, t);
+        for (const std::size_t side : {k, j}) {
+            const double u = at_middle[side], p = along[side] / 8, b = beside[side] / 8;
+            note(2 * p / 3, 2 * t * b / 3, (2 * t + u) / 3);
+            note(p, (t * b + 2 * u * b) / 3, (t + 2 * u) / 3);
         }
-        note((p[3] + p[4] + p[5]) / 3, (t[0] * b[3] + t[1] * b[4] + t[2] * b[5]) / 3,
-             (t[0] + t[1] + t[2]) / 3);
+        note((along[k] / 8 + along[j] / 8 + inside(along)) / 3,
+             (t * inside(beside) + at_middle[k] * beside[j] / 8 + at_middle[j] * beside[k] / 8) / 3,
+             (t + at_middle[j] + at_middle[k]) / 3);
     }
 };
 
