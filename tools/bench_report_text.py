@@ -274,8 +274,8 @@ Other comparisons: [evaluation of many points](EVALUATION.md), with plots agains
 
 ## Summary
 
-{listing(summary(rows))}
 {listing(summary(rows) + [of_copies(c) for c in data.get("copies") or []])}
+
 Shape of the triangles, smallest angle: {'; '.join(angles) or 'not measured'}.
 
 ## Table
