@@ -138,7 +138,10 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
         const Shift shift = shift_of(at, e, near, reflected, is_deep);
         if (!shift.exists) return false;
         k.shifted = true;
-        if (!is_last && plain == 0 && std::min(e, shift.across(straight, e)) > tolerance_) return false;
+        if (!is_last && plain == 0 && std::min(e, shift.across(straight, e)) > tolerance_) {
+            k.bound = std::min(k.bound, e);
+            return false;
+        }
         const auto across = [&] {
             return shift.across(seen_error(shift.turn, shift.left_of(tolerance_, e)), e);
         };
