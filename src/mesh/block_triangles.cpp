@@ -21,10 +21,9 @@ void BlockTriangles::settle(MeshedLeaf& l, const JudgedBlock& of_leaf, Work& wor
         }
         return std::isfinite(bound);
     };
-    l.bound = l.count == 4 ? of_leaf.halves
-              : tree_.is_all_plain() || std::isfinite(of_leaf.usual)
-                  ? of_leaf.usual
-                  : usual_of_leaf(tree_, judge_, tolerance_, tree_.block(l.block));
+    l.bound = l.count == 4 ? of_leaf.halves : of_leaf.usual;
+    if (!l.is_plain && l.count != 4 && !std::isfinite(l.bound))
+        l.bound = usual_of_leaf(tree_, judge_, tolerance_, tree_.block(l.block));
     l.flat = l.count == 4 ? of_leaf.flat_halves : of_leaf.flat;
     if (!l.is_plain && attempt(l.bound)) return;
     l.is_plain = true;

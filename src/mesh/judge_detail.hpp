@@ -40,6 +40,7 @@ public:
 private:
     // Of what is seen along normals that turn by so much; less is not looked for than what is enough.
     using SeenError = std::function<double(double, double)>;
+    // `is_likely`: it is known already that a foot straight below would do, or nearly so.
     Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
                      int plain, int near_place, bool is_deep, bool is_likely = false) const;
     Curvature over_clamped(const Box<2>& box) const;
