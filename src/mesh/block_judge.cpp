@@ -26,12 +26,13 @@ struct BlockJudge {
         const Bending& at = tree.part_bendings(block)[0];
         const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
         const double error = judge.cell_error(at, block.box, cell);
+        double of_halves = error;
+        if (at.knows_middle() && error > tolerance)
+            of_halves = std::min(error, judge.whole_halves_error(at, block.box));
         JudgedBlock out;
-        out.flat = out.flat_halves = within(error);
-        if (!std::isfinite(out.flat) && at.knows_middle())
-            out.flat_halves = within(judge.whole_halves_error(at, block.box));
+        out.flat = within(error), out.flat_halves = within(of_halves);
         if (tree.is_all_plain()) return out;
-        if (at.knows_middle()) out.halves = within(judge.halves(at, block.box, error, block.node).bound);
+        if (at.knows_middle()) out.halves = within(judge.halves(at, block.box, of_halves, block.node).bound);
         if (!std::isfinite(out.halves)) out.halves = out.usual = of_leaf(at, error, 0);
         if (std::isfinite(out.halves)) out.footless = of_leaf(at, error, 1);
         return out;

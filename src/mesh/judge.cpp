@@ -51,13 +51,17 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
-    double e = error_of(at.full);
-    if (at.knows_middle()) e = std::min(e, at.whole_error(box, corner) * kGrow);
+    // Sharper ones first: what says less says it for about as much.
+    double e = kInfinity;
+    if (at.knows_middle()) e = at.whole_error(box, corner) * kGrow;
+    if (!at.fit.exists()) e = std::min(e, error_of(at.full));
     e += tree_.kink_bound(box);
     const auto seen_error = [&](double turn, double enough) {
-        const double by_all = std::min(error_of(at.seen(turn)), at.seen_error(box, turn) * kGrow);
-        if (by_all <= enough || !at.knows_middle()) return by_all;
-        return std::min(by_all, at.triangle_error(box, corner, turn, enough / kGrow) * kGrow);
+        double seen = kInfinity;
+        if (at.knows_middle()) seen = at.triangle_error(box, corner, turn, enough / kGrow) * kGrow;
+        if (seen <= enough) return seen;
+        seen = std::min(seen, at.seen_error(box, turn) * kGrow);
+        return seen <= enough ? seen : std::min(seen, error_of(at.seen(turn)));
     };
     return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
 }
@@ -102,8 +106,7 @@ Judgement Judge::halves(const Bending& at, const Box<2>& box, double error, int 
     const auto seen_error = [&](double turn, double enough) {
         return at.halves_error(box, turn, enough / kGrow) * kGrow;
     };
-    return judged(at, box, std::cref(seen_error), std::min(error, whole_halves_error(at, box)), 0, near_place,
-                  true, true);
+    return judged(at, box, std::cref(seen_error), error, 0, near_place, true, true);
 }
 
 Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double e,
