@@ -75,7 +75,8 @@ struct RestFound {
     double square, across;  // of x . x and |direction . x|, x a coefficient of S - M
     double largest;         // |coordinate| of A
     double least_weight, most_weight;
-    double of[kRestDifferences][4];  // of differences of A - w M: x . x, |direction . x|, |weight|
+    // Of differences of A - w M: x . x, |direction . x|, |weight|; of those that are taken once the last alone.
+    double of[kRestDifferences][4];
 };
 
 // Sums of w[0][a][i] w[1][b][j] * coefficient (i, j) of 4 numbers each, for all a + b <= order, in graded

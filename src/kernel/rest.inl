@@ -160,6 +160,13 @@ struct RestOf {
             note(m, x);
         });
     }
+    // Likewise once, of weights alone.
+    FF_PART void look_at_weights(Most& m, const Row& row) const {
+        each<kVectors>(vectors, [&](int v) FF_BODY {
+            const V4* const p = row.at[kWeight];
+            m.weight = larger(m.weight, size_of(kept(further<1>(p, v) - p[v], first_of(count - 1 - 4 * v))));
+        });
+    }
     FF_BODY inline void look_at_quotients(const Row& row) {
         each<kVectors>(vectors, [&](int v) FF_BODY {
             const V4 divide = all4(1) / row.at[kWeight][v];
@@ -185,11 +192,14 @@ struct RestOf {
                 subtract_m(at, *now);
                 look<0>(values, *now);
             }
-            look<1>(of[1], *now);
+            if constexpr (kRational) look_at_weights(of[1], *now);
             look<2>(of[4], *now);
             if (at > 0) {
                 subtract(*now, *before);
-                look<0>(of[0], *before);
+                if constexpr (kRational)
+                    each<kVectors>(vectors, [&](int v) FF_BODY {
+                        of[0].weight = larger(of[0].weight, size_of(before->at[kWeight][v]));
+                    });
                 look<1>(of[3], *before);
                 if (at > 1) {
                     subtract(*before, *change);

@@ -2,6 +2,8 @@
 #pragma once
 #include "curvature_tree_detail.hpp"
 
+#include <freiform/spline/repeated_jets.hpp>
+
 #include <atomic>
 #include <optional>
 #include <utility>
@@ -33,7 +35,7 @@ public:
     };
 
     Grower(CurvatureTree& tree, Task& task, const BoxBending& outer)
-        : tree_(tree), task_(task), outers_{{outer}} {}
+        : tree_(tree), task_(task), jets_(task.surface.geometry(), task.expected_nodes), outers_{{outer}} {}
     // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
     std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
     // Each of them by itself.
@@ -72,6 +74,7 @@ private:
 
     CurvatureTree& tree_;
     Task& task_;
+    RepeatedJets jets_;
     std::vector<Outer> outers_;  // what items refer to
     double length_[2] = {};      // of the sides of the box that was looked at last
     std::size_t uncounted_ = 0;  // leaves that the task does not know of

@@ -129,7 +129,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     }
     // What is seen in the middle is no more than the bounds. Where it is too much already, as in all but the
     // last boxes, they need not be found.
-    const auto middle = jet<2>(task_.surface.geometry(), {box.side(0).middle(), box.side(1).middle()});
+    const auto middle = jets_.at<2>({box.side(0).middle(), box.side(1).middle()});
     const Curvature seen = tree_.seen_in(middle);
     set_lengths(middle, size);
     const bool may_be_halved = tree_.knows_normals_ && !node.has_columns();

@@ -4,6 +4,7 @@
 #include <freiform/core/constants.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/mesh/normal_cone.hpp>
+#include <freiform/spline/repeated_jets.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -166,17 +167,22 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
         bool are_regular = false;
     };
     std::vector<Tangents> tangents(place.size());
-    parallel_for(place.size(), kVerticesAtOnce, [&](std::size_t i) {
+    const auto look_at = [&](std::size_t i, RepeatedJets& jets) {
         MeshVertex& v = out.vertices[i];
         const bool is_own = i < m.uv.size();
         v.uv = is_own ? m.uv[i] : m.uv[std::size_t(sides.copy_of[i - m.uv.size()])];
-        const auto j = jet<1>(surface, place[i].c);
+        const auto j = jets.at<1>(place[i].c);
         const auto normal = regular_normal(j);
         tangents[i] = {norm(j.d[1]), norm(j.d[2]), normal.has_value()};
         if (normal) v.normal = flip ? -*normal : *normal;
         if (is_own && v.point < 0)
             out.inner[std::size_t(-1 - v.point)] =
                 place[i] == v.uv ? j.value() : jet<0>(surface, v.uv.c).value();
+    };
+    parallel_for((place.size() + kVerticesAtOnce - 1) / kVerticesAtOnce, 1, [&](std::size_t part) {
+        const std::size_t first = part * kVerticesAtOnce, end = std::min(place.size(), first + kVerticesAtOnce);
+        RepeatedJets jets(surface, end - first);
+        for (std::size_t i = first; i < end; ++i) look_at(i, jets);
     });
     Vec<2> usual{};
     for (const Tangents& t : tangents)

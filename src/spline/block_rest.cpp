@@ -7,7 +7,8 @@
 // that the block is of, where M is again such a function. Without weights R = D is a block of the degree of
 // A. Nothing is lost where weights vary. Derivatives: D and w have derivatives of at most p (p - 1) .. times
 // their differences, and by Leibniz, as in block_bounds.cpp, |R_a| <= (|D_a| + sum_{0 < b <= a} C(a, b) |w_b|
-// |R_{a-b}|) / w_min. As R is small, so are the terms with w_b.
+// |R_{a-b}|) / w_min. As R is small, so are the terms with w_b: for first
+// differences of D, which are in these alone, twice its coefficients will do.
 //
 // Accuracy: coefficients of the block are off as block_bounds.cpp says; those of D are sums of at most nine
 // products, with fewer than 64 roundings, or 16 without weights, of numbers of the size |A_i| + w_i |b_k|. Of
@@ -87,13 +88,14 @@ constexpr bool is_few(int count) { return 2 <= count && count <= kFew; }
 
 // M on a part of the box, or around it. What the terms of its values are together, at most.
 double set_part(const BoxQuadratic& m, const std::array<Interval, 2>& part, kernel::RestTask& out) {
+    const bool is_all = part[0] == Interval{0, 1} && part[1] == Interval{0, 1};
     double corner = 0, most = 0;
     for (const Vec<3>& c : m.corner) corner = std::max(corner, max_abs(c));
     const double bulge[2] = {max_abs(m.bulge[0]), max_abs(m.bulge[1])};
     for (std::size_t k = 0; k < 4; ++k) {
         const double s = k & 1 ? part[0].hi : part[0].lo, t = k & 2 ? part[1].hi : part[1].lo,
                      u = std::abs(1 - s) + std::abs(s), v = std::abs(1 - t) + std::abs(t);
-        const Vec<3> x = m(s, t);
+        const Vec<3> x = is_all ? m.corner[k] : m(s, t);
         for (int d = 0; d < 3; ++d) out.corner[k][d] = x[d];
         const double terms = u * v * corner + u * u * bulge[0] + v * v * bulge[1];
         if (!(terms <= most)) most = terms;
@@ -163,7 +165,8 @@ void include_rest(const BezierBlock& block, const std::array<Interval, 2>& part,
         for (std::size_t k = 0; k < 5; ++k) {
             const double twice = k < 2 ? 2 : 4, *const of = found.of[k];
             weight[k + 1] = factor[k] * (of[2] + twice * rounding * found.most_weight);
-            r[k + 1] = factor[k] * ((which == 0 ? std::sqrt(of[0]) : of[1]) + twice * times * slip);
+            r[k + 1] = factor[k] * (k < 2 ? 2 * r[0] * found.most_weight * (1 + rounding)
+                                          : (which == 0 ? std::sqrt(of[0]) : of[1]) + twice * times * slip);
         }
         if (rational) {
             r[1] += weight[1] * r[0], r[2] += weight[2] * r[0];
