@@ -300,38 +300,48 @@ void differences(const BlockTask& t, BlockFound& out) {
 
 #include "rest.inl"
 
-template <int Order>
+// `Count`: coefficients along both axes that do not wrap, or -1.
+template <int Order, int Count>
 FF_INLINE void contract_to(const Contraction& t, double* out) {
     constexpr int kSlots = (Order + 1) * (Order + 2) / 2;
     V4 sum[kSlots];
     each<kSlots>(kSlots, [&](int i) FF_BODY { sum[i] = all4(0); });
     int row = t.first[0];
-    for (int k = 0; k < t.count[0]; ++k) {
+    each<Count>(t.count[0], [&](int k) FF_BODY {
         const double* const from = t.net + row * t.stride[0];
         V4 inner[Order + 1];
         each<Order + 1>(Order + 1, [&](int b) FF_BODY { inner[b] = all4(0); });
         int column = t.first[1];
-        for (int l = 0; l < t.count[1]; ++l) {
+        each<Count>(t.count[1], [&](int l) FF_BODY {
             const V4 p = load4(from + column * t.stride[1]);
             each<Order + 1>(Order + 1, [&](int b) FF_BODY {
                 inner[b] += all4(t.weights[1][b * t.weight_stride + l]) * p;
             });
-            if (++column == t.extent[1]) column = 0;
-        }
+            if (++column == t.extent[1] && Count < 0) column = 0;
+        });
         each<Order + 1>(Order + 1, [&](int b) FF_BODY {
             for (int a = 0; a + b <= Order; ++a)
                 sum[(a + b) * (a + b + 1) / 2 + b] += all4(t.weights[0][a * t.weight_stride + k]) * inner[b];
         });
-        if (++row == t.extent[0]) row = 0;
-    }
+        if (++row == t.extent[0] && Count < 0) row = 0;
+    });
     each<kSlots>(kSlots, [&](int i) FF_BODY { store4(out + 4 * i, sum[i]); });
+}
+template <int Count>
+FF_INLINE void contract_all(const Contraction& t, double* out) {
+    t.order == 0   ? contract_to<0, Count>(t, out)
+    : t.order == 1 ? contract_to<1, Count>(t, out)
+    : t.order == 2 ? contract_to<2, Count>(t, out)
+                   : contract_to<3, Count>(t, out);
 }
 
 void contract(const Contraction& t, double* out) {
-    t.order == 0   ? contract_to<0>(t, out)
-    : t.order == 1 ? contract_to<1>(t, out)
-    : t.order == 2 ? contract_to<2>(t, out)
-                   : contract_to<3>(t, out);
+#if !defined(__wasm__)  // for size
+    constexpr int kUsual = 4;
+    const auto is_usual = [&](int d) { return t.count[d] == kUsual && t.first[d] + kUsual <= t.extent[d]; };
+    if (is_usual(0) && is_usual(1)) return contract_all<kUsual>(t, out);
+#endif
+    contract_all<-1>(t, out);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ std::vector<double> halved(const Interval& on, int times) {
 
 // By samples, their mean; 0 where there are too few or too many, or the surface does not bend evenly, or its
 // normals turn so much within a part that bounds would see other things than samples.
-double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
+double CurvatureTree::cells_seen(RepeatedJets& jets, const Box<2>& box,
                                  const Jet<2, 2, Vec<3>>& middle, double tolerance) const {
     const Vec<2> size = box.hi - box.lo;
     const Curvature bent = seen_in(middle);
@@ -94,7 +94,7 @@ double CurvatureTree::cells_seen(const DerivativeQuery<2, 3>& surface, const Box
     for (int k = 0; k < 4; ++k) {
         const Vec<2> at{
             {box.lo[0] + (k & 1 ? 0.875 : 0.125) * size[0], box.lo[1] + (k & 2 ? 0.875 : 0.125) * size[1]}};
-        const double cells = cells_for(seen_in(jet<2>(surface.geometry(), at.c)), size, tolerance);
+        const double cells = cells_for(seen_in(jets.at<2>(at.c)), size, tolerance);
         if (!(cells <= kUneven * here) || !(here <= kUneven * cells)) return 0;
         most = std::max(most, cells), sum += cells;
     }

@@ -7,6 +7,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
+#include <freiform/spline/repeated_jets.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -362,7 +363,7 @@ private:
                                       double tolerance) const;
     // curvature_tree_blocks.cpp
     Curvature matters_of(const Bending& part) const;
-    double cells_seen(const DerivativeQuery<2, 3>& surface, const Box<2>& box,
+    double cells_seen(RepeatedJets& jets, const Box<2>& box,
                       const Jet<2, 2, Vec<3>>& middle, double tolerance) const;
     bool make_block(const DerivativeQuery<2, 3>& surface, int node, const Jet<2, 2, Vec<3>>& middle,
                     double cells, double tolerance, BoxBending& known);

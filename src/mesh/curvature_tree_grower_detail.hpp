@@ -2,8 +2,6 @@
 #pragma once
 #include "curvature_tree_detail.hpp"
 
-#include <freiform/spline/repeated_jets.hpp>
-
 #include <atomic>
 #include <optional>
 #include <utility>

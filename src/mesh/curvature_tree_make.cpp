@@ -98,7 +98,7 @@ bool CurvatureTree::Grower::is_block(const Item& item, const Jet<2, 2, Vec<3>>& 
                                      bool& found) {
     const double tolerance = task_.demands.tolerance;
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
-    const double cells = tree_.cells_seen(task_.surface, box, middle, tolerance);
+    const double cells = tree_.cells_seen(jets_, box, middle, tolerance);
     if (!(cells > 0)) return false;
     found = true;
     if (!tree_.make_block(task_.surface, item.node, middle, cells, tolerance, outer)) return false;
