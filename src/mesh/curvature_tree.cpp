@@ -387,6 +387,25 @@ void CurvatureTree::find_corners() {
     }
 }
 
+void CurvatureTree::fill_grid() {
+    constexpr std::size_t kFewNodes = 512;  // to walk past
+    if (is_all_plain() || nodes_.count() < kFewNodes) return;
+    double nodes = 0;
+    const Box<2>& whole = nodes_[0].box;
+    Vec<2> sum{};
+    nodes_.each_place([&](std::size_t i) {
+        const Node& n = nodes_[i];
+        if (n.child < 0) sum += n.box.hi - n.box.lo, ++nodes;
+    });
+    grid_ = BoundsGrid(whole, (1 / nodes) * sum);
+    nodes_.each_place([&](std::size_t i) {
+        const Node& n = nodes_[i];
+        if (n.child >= 0) return;
+        const Curvature c = n.outside ? Curvature{kInfinity, kInfinity, kInfinity} : bending(n).full;
+        grid_.include(n.box, {c.uu, c.uv, c.vv});
+    });
+}
+
 Vec<2> CurvatureTree::mean_leaf() const {
     Vec<2> sum{};
     double count = 0;

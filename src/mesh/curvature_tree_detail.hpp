@@ -1,6 +1,7 @@
 // Where a surface curves how much: a binary tree of parameter boxes, each with proven bounds of the second
 // derivatives, fine where the surface needs fine triangles.
 #pragma once
+#include "bounds_grid_detail.hpp"
 #include "chunks_detail.hpp"
 #include "cone_face_detail.hpp"
 #include "segments_detail.hpp"
@@ -284,6 +285,12 @@ public:
     int place_of(const Box<2>& box, int near = 0) const;
     // Of all of the part of the tree at `place`; nothing if the box is not in it, or some of it is not known.
     const Curvature* all_in(int place, const Box<2>& box) const;
+    // Of the whole box and some places beside it; nothing if that is not known without a walk.
+    std::optional<Curvature> about(const Box<2>& box) const {
+        const auto found = grid_.over(box);
+        if (!found || !((*found)[0] < kInfinity)) return std::nullopt;
+        return Curvature{(*found)[0], (*found)[1], (*found)[2]};
+    }
     // Over the part of the box that is not wholly outside the polygon. `place`: of the box.
     Bending over(const Box<2>& box, int place) const;
     // Of the whole box; nothing if some of it is not in the tree.
@@ -384,6 +391,7 @@ private:
     // leaves are flat, so that the tree can do without normals.
     bool sum_up(std::size_t end);
     void find_corners();
+    void fill_grid();
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
     Curvature seen_in(const Jet<2, 2, Vec<3>>& middle) const;
     bool is_sharp() const { return !sharp_[0].empty() || !sharp_[1].empty(); }
@@ -400,6 +408,7 @@ private:
     std::vector<int> block_leaves_;
     std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
+    BoundsGrid grid_;  // of S; infinite where some is outside
     std::optional<ConeFace> cone_;
     std::array<std::vector<Kink>, 2> kinks_;
     std::array<std::vector<double>, 2> sharp_;    // where kinks are that are more than rounding

@@ -321,6 +321,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     tree.segments_ = {};
     if (ways.blocks) tree.take_leaves(demands.is_shared);
     tree.find_corners();
+    tree.fill_grid();
     return tree;
 }
 

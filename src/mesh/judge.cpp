@@ -155,6 +155,7 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
     // What holds everywhere first, then what holds in the part of the tree that has all of it.
     const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};
     if (whole_.contains(inside.lo) && whole_.contains(inside.hi) && is_enough(whole_bends_, false)) return k;
+    if (const auto near = tree_.about(inside); near && is_enough(*near, false)) return k;
     const int place = tree_.place_of(inside, near_place);
     if (const Curvature* all = tree_.all_in(place, inside); all && is_enough(*all, false)) return k;
     if (const auto near = tree_.all_over(inside, place)) {
