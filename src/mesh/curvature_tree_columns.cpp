@@ -4,6 +4,8 @@
 // along each axis as it needs, 1.4 times on average. If its box is first cut into 3, 5 or 7 columns, halves
 // of these come nearer. Which number is best is tried with the curvature at a few samples: boxes are halved
 // as the tree will halve them, and the fewest cells win. Samples decide about the number of triangles only.
+// Of a spline the columns may be its pieces: a box in one piece is asked about once, and its bounds are
+// sharp, where a box in several has those of each.
 //
 // Why not cut any box into thirds: cuts of neighbours would not fit each other. Columns of the whole box do.
 #include "curvature_tree_detail.hpp"
@@ -14,10 +16,13 @@ namespace freiform {
 
 namespace {
 
-constexpr int kColumnSamples = 3;  // along each axis
+constexpr int kColumnSamples = 3, kPieceSamples = 7;  // along each axis
 constexpr std::array<int, 4> kColumnCounts{1, 3, 5, 7};
 constexpr double kColumnRoom = 0.97;    // of the tolerance, for what bounds are larger than samples
 constexpr double kWorthColumns = 0.95;  // as many cells as with halves alone
+constexpr double kWorthPieces = 0.85;  // likewise, where columns are the pieces of a spline
+constexpr double kLeastPiece = 0.25;   // of their mean length
+constexpr std::size_t kMostPieces = 64;
 constexpr double kMostCells = 1e12;
 constexpr double kFewColumnCells = 64;  // the boundary, which is halved, decides about fewer
 
@@ -45,53 +50,102 @@ double cells_of(const ColumnSample& s, Vec<2> size, double tolerance) {
 
 // `cone_seen`: of cones, what counts of derivatives.
 using ConeSeen = std::function<Curvature(const Jet<2, 2, Vec<3>>&)>;
-std::array<int, 2> columns_for(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance,
-                               const ConeSeen& cone_seen) {
-    const Vec<2> size = box.hi - box.lo;
-    std::vector<ColumnSample> samples;
-    for (int i = 0; i < kColumnSamples; ++i)
-        for (int k = 0; k < kColumnSamples; ++k) {
-            const auto j = jet<2>(surface.geometry(), {box.lo[0] + (i + 0.5) / kColumnSamples * size[0],
-                                                       box.lo[1] + (k + 0.5) / kColumnSamples * size[1]});
-            ColumnSample s{cone_seen ? cone_seen(j) : seen_at(j, true), {}, norm(j(1, 0)), norm(j(0, 1))};
-            if (!(s.a * s.b > 0) || !s.along.is_finite()) continue;
-            const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
-            const auto rest = [&](const Vec<3>& x) { return norm(x - dot(n, x) * n); };
-            if (!cone_seen) s.beside = {rest(j(2, 0)), rest(j(1, 1)), rest(j(0, 2))};
-            if (error_of(s, size) > kColumnRoom * tolerance) samples.push_back(s);
-        }
-    std::array<int, 2> best{1, 1};
-    if (samples.empty()) return best;
-    const auto cells_with = [&](int u, int v) {
+using Columns = std::vector<double>;  // the ends
+Columns equal_columns(const Interval& on, int count) {
+    Columns out{on.lo};
+    for (int k = 1; k < count; ++k) out.push_back(on.lo + on.length() * k / count);
+    out.push_back(on.hi);
+    return out;
+}
+
+// Where a spline's pieces end in the interval; none where these are few, or many, or uneven.
+Columns pieces_in(std::span<const double> breaks, const Interval& on) {
+    Columns out{on.lo};
+    for (const double x : breaks)
+        if (on.lo < x && x < on.hi) out.push_back(x);
+    out.push_back(on.hi);
+    const double usual = on.length() / double(out.size() - 1);
+    if (out.size() > 3 && out[1] - out[0] < kLeastPiece * usual) out.erase(out.begin() + 1);
+    if (out.size() > 3 && out.end()[-1] - out.end()[-2] < kLeastPiece * usual) out.erase(out.end() - 2);
+    if (out.size() < 3 || out.size() > kMostPieces + 1) return {};
+    for (std::size_t k = 1; k < out.size(); ++k)
+        if (out[k] - out[k - 1] < kLeastPiece * usual) return {};
+    return out;
+}
+
+class ColumnPlan {
+public:
+    ColumnPlan(const DerivativeQuery<2, 3>& surface, const Box<2>& box, double tolerance,
+               const ConeSeen& cone_seen)
+        : surface_(surface), box_(box), tolerance_(tolerance), cone_seen_(cone_seen) {}
+
+    std::array<Columns, 2> best() const {
+        const auto samples = samples_of(kColumnSamples);
+        std::array<int, 2> counts{1, 1};
+        double least = cells(samples, counts) * kWorthColumns;
+        if (samples.empty() || !(least >= kFewColumnCells * double(samples.size()))) return {};
+        for (const int u : kColumnCounts)
+            for (const int v : kColumnCounts)
+                if (const double with = cells(samples, {u, v}); with < least) least = with, counts = {u, v};
+        const std::array pieces{pieces_in(surface_.breaks(0), box_.side(0)),
+                                pieces_in(surface_.breaks(1), box_.side(1))};
+        if (pieces[0].empty() || pieces[1].empty() || !are_worth_it(pieces, counts))
+            return {equal_columns(box_.side(0), counts[0]), equal_columns(box_.side(1), counts[1])};
+        return pieces;
+    }
+
+private:
+    std::vector<ColumnSample> samples_of(int count) const {
+        const Vec<2> size = box_.hi - box_.lo;
+        std::vector<ColumnSample> samples;
+        for (int i = 0; i < count; ++i)
+            for (int k = 0; k < count; ++k) {
+                const auto j = jet<2>(surface_.geometry(), {box_.lo[0] + (i + 0.5) / count * size[0],
+                                                            box_.lo[1] + (k + 0.5) / count * size[1]});
+                ColumnSample s{cone_seen_ ? cone_seen_(j) : seen_at(j, true), {}, norm(j(1, 0)), norm(j(0, 1))};
+                if (!(s.a * s.b > 0) || !s.along.is_finite()) continue;
+                const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
+                const auto rest = [&](const Vec<3>& x) { return norm(x - dot(n, x) * n); };
+                if (!cone_seen_) s.beside = {rest(j(2, 0)), rest(j(1, 1)), rest(j(0, 2))};
+                if (error_of(s, size) > kColumnRoom * tolerance_) samples.push_back(s);
+            }
+        return samples;
+    }
+    double cells(std::span<const ColumnSample> samples, const std::array<int, 2>& counts) const {
+        const Vec<2> size = box_.hi - box_.lo;
         double sum = 0;
         for (const ColumnSample& s : samples)
-            sum += cells_of(s, {{size[0] / u, size[1] / v}}, kColumnRoom * tolerance) * u * v;
+            sum += cells_of(s, {{size[0] / counts[0], size[1] / counts[1]}}, kColumnRoom * tolerance_) *
+                   counts[0] * counts[1];
         return sum;
-    };
-    double least = cells_with(1, 1) * kWorthColumns;
-    if (!(least >= kFewColumnCells * double(samples.size()))) return best;
-    for (const int u : kColumnCounts)
-        for (const int v : kColumnCounts)
-            if (const double cells = cells_with(u, v); cells < least) least = cells, best = {u, v};
-    return best;
-}
+    }
+    // By more samples: where a surface bends differently everywhere, few say little.
+    bool are_worth_it(const std::array<Columns, 2>& pieces, const std::array<int, 2>& counts) const {
+        const auto samples = samples_of(kPieceSamples);
+        return kWorthPieces * cells(samples, {int(pieces[0].size()) - 1, int(pieces[1].size()) - 1}) <=
+               cells(samples, counts);
+    }
+
+    const DerivativeQuery<2, 3>& surface_;
+    Box<2> box_;
+    double tolerance_;
+    const ConeSeen& cone_seen_;
+};
 
 }  // namespace
 
 void CurvatureTree::plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance) {
     Node& root = nodes_[0];
     if (worst_kink(root.box)) return;  // boxes are cut there
-    const auto counts = columns_for(surface, root.box, tolerance,
-                                    cone_ ? ConeSeen([&](const auto& j) { return seen_in(j); }) : ConeSeen());
+    const ConeSeen cone_seen = cone_ ? ConeSeen([&](const auto& j) { return seen_in(j); }) : ConeSeen();
+    auto columns = ColumnPlan(surface, root.box, tolerance, cone_seen).best();
     for (std::size_t d = 0; d < 2; ++d) {
-        if (counts[d] == 1) continue;
-        const Interval on = root.box.side(int(d));
-        std::vector<double> ends{on.lo};
-        for (int k = 1; k < counts[d]; ++k) ends.push_back(on.lo + on.length() * k / counts[d]);
-        ends.push_back(on.hi);
-        if (std::adjacent_find(ends.begin(), ends.end(), std::greater_equal<>()) != ends.end()) continue;
+        Columns& ends = columns[d];
+        if (ends.size() < 3 ||
+            std::adjacent_find(ends.begin(), ends.end(), std::greater_equal<>()) != ends.end())
+            continue;
+        root.columns[d][1] = std::uint8_t(ends.size() - 1);
         columns_[d] = std::move(ends);
-        root.columns[d][1] = std::uint8_t(counts[d]);
     }
 }
 

@@ -335,6 +335,17 @@ QuadraticFit DerivativeQuery<N, D>::fit(const BoxQuadratic& m, bool at_corners, 
 }
 
 template <std::size_t N, int D>
+std::span<const double> DerivativeQuery<N, D>::breaks(int axis) const {
+    std::span<const double> out;
+    visit_one(
+        [&](const auto& pieces) {
+            if constexpr (requires { pieces.breaks(axis); }) out = pieces.breaks(axis);
+        },
+        pieces_);
+    return out;
+}
+
+template <std::size_t N, int D>
 bool DerivativeQuery<N, D>::is_twice_smooth(const std::array<Interval, N>& box) const {
     for (std::size_t d = 0; d < N; ++d) {
         const auto& b = bends_[d];

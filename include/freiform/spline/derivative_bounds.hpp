@@ -122,6 +122,8 @@ public:
     // Of a spline: the ends of its domain, and where second derivatives may jump, in increasing order. Else
     // empty.
     std::span<const double> bends(int axis) const { return bends_[std::size_t(axis)]; }
+    // Of a spline: the ends of its polynomial or rational pieces, in increasing order. Else empty.
+    std::span<const double> breaks(int axis) const;
     // How many numbers the control points of a polynomial or rational piece are; 0 where there is no spline.
     long long piece_numbers() const { return piece_numbers_; }
     // The largest quotient of two weights of one piece; 1 where there are none.
