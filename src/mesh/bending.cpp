@@ -195,7 +195,8 @@ void add_normals(BoxBending& out, const std::array<Interval, 2>& on, const Vec<3
     const double a = norm(u), b = norm(v), hu = on[0].length() / 2, hv = on[1].length() / 2;
     const double c = std::abs(dot(u, v)) / (a * b);
     const auto swing = [&](const Curvature& k) {
-        return std::hypot((k.uu * hu + k.uv * hv) / a, (k.uv * hu + k.vv * hv) / b) + kBendingRounding;
+        const double by_u = (k.uu * hu + k.uv * hv) / a, by_v = (k.uv * hu + k.vv * hv) / b;
+        return std::sqrt(by_u * by_u + by_v * by_v) + kBendingRounding;
     };
     out.a = a, out.b = b;
     out.n = n;

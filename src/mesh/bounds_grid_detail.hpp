@@ -15,7 +15,7 @@ namespace freiform {
 // rounded as they may be.
 class BoundsGrid {
 public:
-    using Bounds = std::array<double, 3>;
+    using Bounds = std::array<double, 4>;
 
     BoundsGrid() = default;
     // With about as many cells as there are parts of this size.
@@ -29,7 +29,7 @@ public:
     }
     void include(const Box<2>& part, const Bounds& bounds) {
         each_cell(range_of(part), [&](Bounds& cell) {
-            for (std::size_t k = 0; k < 3; ++k) cell[k] = std::max(cell[k], bounds[k]);
+            for (std::size_t k = 0; k < cell.size(); ++k) cell[k] = std::max(cell[k], bounds[k]);
         });
     }
     // Of all parts that the box meets, and some beside them; nothing where the box is not inside, or looking
@@ -42,7 +42,7 @@ public:
         for (int i = r.lo[0]; i <= r.hi[0]; ++i)
             for (int j = r.lo[1]; j <= r.hi[1]; ++j) {
                 const Bounds& cell = cells_[place(i, j)];
-                for (std::size_t k = 0; k < 3; ++k) out[k] = std::max(out[k], cell[k]);
+                for (std::size_t k = 0; k < out.size(); ++k) out[k] = std::max(out[k], cell[k]);
             }
         return out;
     }

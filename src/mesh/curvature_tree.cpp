@@ -402,7 +402,7 @@ void CurvatureTree::fill_grid() {
         const Node& n = nodes_[i];
         if (n.child >= 0) return;
         const Curvature c = n.outside ? Curvature{kInfinity, kInfinity, kInfinity} : bending(n).full;
-        grid_.include(n.box, {c.uu, c.uv, c.vv});
+        grid_.include(n.box, {c.uu, c.uv, c.vv, n.inside ? 0.0 : 1.0});
     });
 }
 

@@ -185,6 +185,7 @@ bool CurvatureTree::is_deep(int leaf) const {
     const Box<2>& box = nodes_[std::size_t(leaf)].box;
     const Vec<2> margin = kDeep * (box.hi - box.lo);
     const Box<2> around{box.lo - margin, box.hi + margin};
+    if (const auto found = grid_.over(around); found && (*found)[3] == 0) return true;
     int place = leaf;
     while (place != 0 && !(nodes_[std::size_t(place)].box.contains(around.lo) &&
                            nodes_[std::size_t(place)].box.contains(around.hi)))

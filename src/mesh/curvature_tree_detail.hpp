@@ -408,7 +408,7 @@ private:
     std::vector<int> block_leaves_;
     std::vector<Bending> part_bendings_;
     bool knows_normals_ = true;
-    BoundsGrid grid_;  // of S; infinite where some is outside
+    BoundsGrid grid_;  // of S, infinite where some is outside; and 1 where some is not known to be inside
     std::optional<ConeFace> cone_;
     std::array<std::vector<Kink>, 2> kinks_;
     std::array<std::vector<double>, 2> sharp_;    // where kinks are that are more than rounding

@@ -51,11 +51,12 @@ int longer_side(const Curvature& c, const Vec<2>& size, const double (&length)[2
     return by_u >= by_v ? 0 : 1;
 }
 
-// Of halves of a box of this size, by what is seen in the middle: of the better ones, if they may be chosen.
+// Of halves of a box of this size, by what is seen along the normal in the middle: of the better ones.
 double least_error(const Curvature& seen, const Jet<2, 2, Vec<3>>& middle, const Vec<2>& size) {
     const Vec<3> m = cross(middle(1, 0), middle(0, 1));
     if (!(norm(m) > 0)) return seen.error(size);
-    return Quadratic{seen.sure_uu, dot(unit(m), middle(1, 1)), seen.sure_vv}.halves_error(size);
+    return Quadratic{seen.sure_uu, std::copysign(seen.uv, dot(m, middle(1, 1))), seen.sure_vv}.halves_error(
+        size);
 }
 
 }  // namespace
@@ -319,9 +320,9 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (bad) return std::unexpected(*bad);
     if (tree.sum_up(task.in_parts ? top : tree.nodes_.end()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
+    tree.fill_grid();
     if (ways.blocks) tree.take_leaves(demands.is_shared);
     tree.find_corners();
-    tree.fill_grid();
     return tree;
 }
 

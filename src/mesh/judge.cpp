@@ -51,17 +51,15 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
-    // Sharper ones first: what says less says it for about as much.
-    double e = kInfinity;
-    if (at.knows_middle()) e = at.whole_error(box, corner) * kGrow;
-    if (!at.fit.exists()) e = std::min(e, error_of(at.full));
+    double e = error_of(at.full);
+    if (at.knows_middle()) e = std::min(e, at.whole_error(box, corner) * kGrow);
     e += tree_.kink_bound(box);
+    // What takes least first, then what says most.
     const auto seen_error = [&](double turn, double enough) {
-        double seen = kInfinity;
-        if (at.knows_middle()) seen = at.triangle_error(box, corner, turn, enough / kGrow) * kGrow;
-        if (seen <= enough) return seen;
-        seen = std::min(seen, at.seen_error(box, turn) * kGrow);
-        return seen <= enough ? seen : std::min(seen, error_of(at.seen(turn)));
+        double seen = error_of(at.seen(turn));
+        if (seen > enough && at.knows_middle())
+            seen = std::min(seen, at.triangle_error(box, corner, turn, enough / kGrow) * kGrow);
+        return seen <= enough ? seen : std::min(seen, at.seen_error(box, turn) * kGrow);
     };
     return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
 }
