@@ -75,7 +75,8 @@ struct RestFound {
     double square, across;  // of x . x and |direction . x|, x a coefficient of S - M
     double largest;         // |coordinate| of A
     double least_weight, most_weight;
-    // Of differences of A - w M: x . x, |direction . x|, |weight|; of those that are taken once the last alone.
+    // Of differences of A - w M: x . x, |direction . x|, |weight|; of those that are taken once the last
+    // alone.
     double of[kRestDifferences][4];
 };
 

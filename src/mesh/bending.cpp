@@ -144,16 +144,16 @@ void add_signs(Curvature& along, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j, co
 Bending::Middle middle_of(const std::array<Interval, 2>& on, const Vec<3>& n, const Jet<2, 2, Vec<3>>& j,
                           const Curvature& slip, const std::array<double, 4>& third,
                           const std::array<double, 4>& whole_third) {
-    const auto off = [&](const Vec<3>& second, double by) {
-        return (8 * kUnitRoundoff * norm(second) + by) * kSumSlack;
-    };
+    const std::array size{norm(j(2, 0)), norm(j(1, 1)), norm(j(0, 2))};
+    const auto off = [](double of, double by) { return (8 * kUnitRoundoff * of + by) * kSumSlack; };
     return {{{on[0].middle(), on[1].middle()}},
             {dot(n, j(2, 0)), dot(n, j(1, 1)), dot(n, j(0, 2))},
-            {off(j(2, 0), slip.uu), off(j(1, 1), slip.uv), off(j(0, 2), slip.vv)},
+            {off(size[0], slip.uu), off(size[1], slip.uv), off(size[2], slip.vv)},
             third,
             {j(2, 0), j(1, 1), j(0, 2)},
-            {off(j(2, 0), slip.uu), off(j(1, 1), slip.uv), off(j(0, 2), slip.vv)},
-            whole_third};
+            {off(size[0], slip.uu), off(size[1], slip.uv), off(size[2], slip.vv)},
+            whole_third,
+            size};
 }
 
 // Of second derivatives less their part along n.

@@ -70,7 +70,7 @@ double Bending::fit_error(const std::array<Vec<2>, 3>& corner, double turn, doub
                           double enough) const {
     TurningError error;
     const auto& [uu, uv, vv] = middle.whole_second;
-    const double sizes[3] = {norm(uu), norm(uv), norm(vv)};
+    const auto& sizes = middle.whole_size;
     double slip = 0, most_beside = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec<2> d = corner[(k + 2) % 3] - corner[(k + 1) % 3];
@@ -86,13 +86,16 @@ double Bending::fit_error(const std::array<Vec<2>, 3>& corner, double turn, doub
     const double rest = times * fit.along + slip,
                  rough = (most + (tilt + turn) * (most_beside / 6 + error.more) + rest) * (1 + 1e-13);
     if (rough <= enough || (enough > 0 && most >= enough)) return rough;
-    const double still = kChord / least * kBendingRounding + turn;
-    const auto turned_at = [&](const Vec<2>& p) {
+    const double still = kChord / least * kBendingRounding + turn, chord = kChord / least * (1 + 1e-14),
+                 by_a = chord / a, by_b = chord / b;
+    const auto turned_at = [&](const Vec<2>& p) {  // as `turned` says
         double off[2];
         for (const int d : {0, 1})
             off[d] = std::abs(p[d] - middle.at[d]) +
                      4 * kUnitRoundoff * std::max(std::abs(p[d]), std::abs(middle.at[d]));
-        return turned(off[0], off[1]) + still;
+        const double u = (across.uu * off[0] + across.uv * off[1]) * by_a,
+                     v = (across.uv * off[0] + across.vv * off[1]) * by_b;
+        return std::sqrt(u * u + v * v) + still;
     };
     for (std::size_t k = 0; k < 3; ++k) {
         error.at_corner[k] = turned_at(corner[k]);
@@ -121,8 +124,8 @@ double Bending::of_part(const Box<2>& cell, const std::array<Vec<2>, 3>& corner,
 
 double Bending::whole_error(const Box<2>& cell, const std::array<Vec<2>, 3>& corner) const {
     const auto [h, off] = place_of(cell, middle.at);
-    const auto& [uu, uv, vv] = middle.whole_second;
-    const std::array size{norm(uu) * h[0] * h[0], norm(uv) * h[0] * h[1], norm(vv) * h[1] * h[1]};
+    const auto& length = middle.whole_size;
+    const std::array size{length[0] * h[0] * h[0], length[1] * h[0] * h[1], length[2] * h[1] * h[1]};
     const double slip = 128 * kUnitRoundoff * (size[0] + 2 * size[1] + size[2]),
                  quadratic = quadratic_error(middle.whole_second, corner, slip);
     double best = kInfinity;

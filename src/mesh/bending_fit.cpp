@@ -135,7 +135,8 @@ BoxBending bending_by_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& bo
                          (r[5] + slip / (dv * dv)) * kSumSlack};
     };
     const Curvature rest = rest_of(fit.all);
-    out.full = Curvature{norm(second[0]), norm(second[1]), norm(second[2])}.plus(kSumSlack, rest);
+    const std::array lengths{norm(second[0]), norm(second[1]), norm(second[2])};
+    out.full = Curvature{lengths[0], lengths[1], lengths[2]}.plus(kSumSlack, rest);
     if (!out.full.is_finite()) return out;
     const Vec<2> half = half_sides(on);
     for (int d = 0; d < 2; ++d)
@@ -146,18 +147,19 @@ BoxBending bending_by_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& bo
     const Curvature rest_along = n ? rest_of(fit.along) : rest;
     const Quadratic seen{dot(out.n, second[0]), dot(out.n, second[1]), dot(out.n, second[2])};
     const auto three = [](const Curvature& c) { return std::array{c.uu, c.uv, c.vv}; };
-    out.middle = {{{on[0].middle(), on[1].middle()}}, seen, three(rest_along), {}, second, three(rest), {}};
+    out.middle = {{{on[0].middle(), on[1].middle()}}, seen, three(rest_along), {}, second, three(rest), {}, lengths};
     out.fit = {box, fit.all[0] + off, fit.along[0] + off, triangle != nullptr};
     if (!n) return out;
     Curvature along =
         Curvature{std::abs(seen.uu), std::abs(seen.uv), std::abs(seen.vv)}.plus(kSumSlack, rest_along);
-    along.sure_uu = Curvature::less(seen.uu, rest_along.uu + 8 * kUnitRoundoff * norm(second[0]));
-    along.sure_vv = Curvature::less(seen.vv, rest_along.vv + 8 * kUnitRoundoff * norm(second[2]));
-    const auto beside = [&](const Vec<3>& x, double by) {
-        return (norm(x - dot(*n, x) * *n) + 16 * kUnitRoundoff * norm(x) + by) * kSumSlack;
+    along.sure_uu = Curvature::less(seen.uu, rest_along.uu + 8 * kUnitRoundoff * lengths[0]);
+    along.sure_vv = Curvature::less(seen.vv, rest_along.vv + 8 * kUnitRoundoff * lengths[2]);
+    const auto beside = [&](std::size_t k, double by) {
+        const Vec<3>& x = second[k];
+        return (norm(x - dot(*n, x) * *n) + 16 * kUnitRoundoff * lengths[k] + by) * kSumSlack;
     };
     add_normals(out, on, j(1, 0), j(0, 1), *n, along,
-                {beside(second[0], rest.uu), beside(second[1], rest.uv), beside(second[2], rest.vv)});
+                {beside(0, rest.uu), beside(1, rest.uv), beside(2, rest.vv)});
     return out;
 }
 

@@ -26,13 +26,12 @@ public:
     }
     void include(const Box<2>& part, const Curvature& c) {
         each_cell(part, [&](Cell& cell) {
-            cell.uu = std::max(cell.uu, c.uu), cell.uv = std::max(cell.uv, c.uv), cell.vv = std::max(cell.vv, c.vv);
+            cell.uu = std::max(cell.uu, c.uu), cell.uv = std::max(cell.uv, c.uv),
+            cell.vv = std::max(cell.vv, c.vv);
         });
     }
     // Of all parts that the box meets, and some beside it. Nothing where that would take long.
-    std::optional<Curvature> over(const Box<2>& box) {
-        ...
-    }
+    std::optional<Curvature> over(const Box<2>& box) { ... }
 };
 
 }  // namespace freiform

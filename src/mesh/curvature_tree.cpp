@@ -141,12 +141,14 @@ double linear_interpolation_bound(const Curvature& c, const Vec<2>& a, const Vec
 // opposite the longest has a cosine of (s0 + s1 - s2) / (2 sqrt(s0 s1)), at most sqrt(s0 / s1) / 2 as s1 <=
 // s2. Where that would be negative, sides or none, the largest is at the middle of the longest.
 double largest_of_sides(std::array<double, 3> s, double slip) {
-    for (const std::size_t k : {0, 1, 0})
-        if (s[k] > s[k + 1]) std::swap(s[k], s[k + 1]);
-    const double beyond = s[0] + s[1] - s[2] + slip;
-    if (beyond <= 0 || !(s[1] > slip)) return s[2] / 8 + slip;
-    const double most = (s[0] + slip) / (4 * s[1]), found = beyond * beyond / (4 * s[0] * s[1]);
-    return s[2] / 8 / (1 - std::min(most, found)) + 4 * slip;
+    const double lower = std::min(s[0], s[1]), upper = std::max(s[0], s[1]), least = std::min(lower, s[2]),
+                 middle = std::max(lower, std::min(upper, s[2])), most = std::max(upper, s[2]);
+    const double beyond = least + middle - most + slip;
+    if (beyond <= 0 || !(middle > slip)) return most / 8 + slip;
+    // The square of the cosine, as a quotient: of the sides, or of what it is at most.
+    const double whole = 4 * middle, found = beyond * beyond, at_most = least + slip;
+    const double part = found < at_most * least ? found / least : at_most;
+    return most / 8 * (whole / (whole - part)) + 4 * slip;
 }
 
 double quadratic_error(const std::array<Vec<3>, 3>& second, const std::array<Vec<2>, 3>& corner,
@@ -388,19 +390,18 @@ void CurvatureTree::find_corners() {
 }
 
 void CurvatureTree::fill_grid() {
-    constexpr std::size_t kFewNodes = 512;  // to walk past
-    if (is_all_plain() || nodes_.count() < kFewNodes) return;
-    double nodes = 0;
-    const Box<2>& whole = nodes_[0].box;
+    const auto each_leaf = [&](auto&& look) {
+        nodes_.each_place([&](std::size_t i) {  // some are of no box: curvature_tree_parts.cpp
+            if (const Node& n = nodes_[i]; n.child < 0 && !n.box.is_empty()) look(n);
+        });
+    };
+    double leaves = 0;
     Vec<2> sum{};
-    nodes_.each_place([&](std::size_t i) {
-        const Node& n = nodes_[i];
-        if (n.child < 0) sum += n.box.hi - n.box.lo, ++nodes;
-    });
-    grid_ = BoundsGrid(whole, (1 / nodes) * sum);
-    nodes_.each_place([&](std::size_t i) {
-        const Node& n = nodes_[i];
-        if (n.child >= 0) return;
+    each_leaf([&](const Node& n) { sum += n.box.hi - n.box.lo, ++leaves; });
+    constexpr double kFewLeaves = 256;  // to walk past
+    if (is_all_plain() || leaves < kFewLeaves) return;
+    grid_ = BoundsGrid(nodes_[0].box, (1 / leaves) * sum);
+    each_leaf([&](const Node& n) {
         const Curvature c = n.outside ? Curvature{kInfinity, kInfinity, kInfinity} : bending(n).full;
         grid_.include(n.box, {c.uu, c.uv, c.vv, n.inside ? 0.0 : 1.0});
     });

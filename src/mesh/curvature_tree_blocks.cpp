@@ -76,8 +76,8 @@ std::vector<double> halved(const Interval& on, int times) {
 
 // By samples, their mean; 0 where there are too few or too many, or the surface does not bend evenly, or its
 // normals turn so much within a part that bounds would see other things than samples.
-double CurvatureTree::cells_seen(RepeatedJets& jets, const Box<2>& box,
-                                 const Jet<2, 2, Vec<3>>& middle, double tolerance) const {
+double CurvatureTree::cells_seen(RepeatedJets& jets, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
+                                 double tolerance) const {
     const Vec<2> size = box.hi - box.lo;
     const Curvature bent = seen_in(middle);
     const double here = cells_for(bent, size, tolerance);

@@ -20,8 +20,8 @@ constexpr int kColumnSamples = 3, kPieceSamples = 7;  // along each axis
 constexpr std::array<int, 4> kColumnCounts{1, 3, 5, 7};
 constexpr double kColumnRoom = 0.97;    // of the tolerance, for what bounds are larger than samples
 constexpr double kWorthColumns = 0.95;  // as many cells as with halves alone
-constexpr double kWorthPieces = 0.85;  // likewise, where columns are the pieces of a spline
-constexpr double kLeastPiece = 0.25;   // of their mean length
+constexpr double kWorthPieces = 0.85;   // likewise, where columns are the pieces of a spline
+constexpr double kLeastPiece = 0.25;    // of their mean length
 constexpr std::size_t kMostPieces = 64;
 constexpr double kMostCells = 1e12;
 constexpr double kFewColumnCells = 64;  // the boundary, which is halved, decides about fewer
@@ -102,7 +102,8 @@ private:
             for (int k = 0; k < count; ++k) {
                 const auto j = jet<2>(surface_.geometry(), {box_.lo[0] + (i + 0.5) / count * size[0],
                                                             box_.lo[1] + (k + 0.5) / count * size[1]});
-                ColumnSample s{cone_seen_ ? cone_seen_(j) : seen_at(j, true), {}, norm(j(1, 0)), norm(j(0, 1))};
+                ColumnSample s{
+                    cone_seen_ ? cone_seen_(j) : seen_at(j, true), {}, norm(j(1, 0)), norm(j(0, 1))};
                 if (!(s.a * s.b > 0) || !s.along.is_finite()) continue;
                 const Vec<3> m = cross(j(1, 0), j(0, 1)), n = norm(m) > 0 ? unit(m) : Vec<3>{};
                 const auto rest = [&](const Vec<3>& x) { return norm(x - dot(n, x) * n); };

@@ -126,6 +126,7 @@ struct Bending {
         std::array<Vec<3>, 3> whole_second{};
         std::array<double, 3> whole_off{};
         std::array<double, 4> whole_third{};
+        std::array<double, 3> whole_size{};  // lengths of whole_second
     } middle = {};
     // Of a box with the function that has these second derivatives and is S at its corners, or at those of
     // the triangle that this is asked of: bounds of the rest, |S - it| and |n . (S - it)|, in all of the box.
@@ -370,8 +371,8 @@ private:
                                       double tolerance) const;
     // curvature_tree_blocks.cpp
     Curvature matters_of(const Bending& part) const;
-    double cells_seen(RepeatedJets& jets, const Box<2>& box,
-                      const Jet<2, 2, Vec<3>>& middle, double tolerance) const;
+    double cells_seen(RepeatedJets& jets, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
+                      double tolerance) const;
     bool make_block(const DerivativeQuery<2, 3>& surface, int node, const Jet<2, 2, Vec<3>>& middle,
                     double cells, double tolerance, BoxBending& known);
     bool add_parts(const DerivativeQuery<2, 3>& surface, const Box<2>& box, const Halves& halves,

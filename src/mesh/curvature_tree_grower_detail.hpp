@@ -32,8 +32,8 @@ public:
         std::atomic<bool> all_flat{true};  // of the parts that have been summed up
     };
 
-    Grower(CurvatureTree& tree, Task& task, const BoxBending& outer)
-        : tree_(tree), task_(task), jets_(task.surface.geometry(), task.expected_nodes), outers_{{outer}} {}
+    Grower(CurvatureTree& tree, Task& task, const BoxBending& outer, RepeatedJets& jets)
+        : tree_(tree), task_(task), jets_(jets), outers_{{outer}} {}
     // Until there are `enough` boxes to split, or none. The first refusal, if there is one.
     std::optional<Refusal> grow(std::vector<Item>& items, std::size_t enough);
     // Each of them by itself.
@@ -72,7 +72,7 @@ private:
 
     CurvatureTree& tree_;
     Task& task_;
-    RepeatedJets jets_;
+    RepeatedJets& jets_;
     std::vector<Outer> outers_;  // what items refer to
     double length_[2] = {};      // of the sides of the box that was looked at last
     std::size_t uncounted_ = 0;  // leaves that the task does not know of

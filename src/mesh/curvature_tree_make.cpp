@@ -312,7 +312,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                       ways.blocks,
                       demands.is_shared && !is_serial(),
                       nodes / kPartsOfTree};
-    Grower grower(tree, task, any);
+    RepeatedJets jets(surface.geometry(), nodes);
+    Grower grower(tree, task, any, jets);
     std::vector<Grower::Item> items{{0, 0, 0, {segments.begin(), segments.end()}}};
     auto bad = grower.grow(items, demands.is_shared ? kPartsOfTree : 0);
     const std::size_t top = tree.nodes_.end();

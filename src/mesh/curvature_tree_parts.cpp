@@ -22,7 +22,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
             const BoxBending& outer = outers_[std::size_t(items[i].outer)].known;
             std::vector<Item> own{std::move(items[i])};
             own.front().outer = 0;
-            bad[i] = Grower(tree_, task_, outer).grow(own, 0);
+            bad[i] = Grower(tree_, task_, outer, jets_).grow(own, 0);
         }
         return worst();
     }
@@ -43,7 +43,8 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
             part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
             own.front().variation = 0;
         }
-        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)].known).grow(own, 0);
+        RepeatedJets jets(task_.surface.geometry(), task_.expected_nodes);
+        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)].known, jets).grow(own, 0);
         if (!bad[i] && !part.sum_up(part.nodes_.end())) task_.all_flat = false;
     });
     if (auto first = worst()) return first;

@@ -147,8 +147,10 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
             return shift.across(seen_error(shift.turn, shift.left_of(tolerance_, e)), e);
         };
         const double bound = plain > 0 ? shift.way(e) : std::min(e, across());
-        if (bound < k.bound) k.bound = bound, k.curvature = plain > 0 ? at.full : at.seen(shift.turn);
-        return k.bound <= tolerance_;
+        if (bound < k.bound) k.bound = bound;
+        if (k.bound <= tolerance_) return true;
+        if (bound == k.bound) k.curvature = plain > 0 ? at.full : at.seen(shift.turn);
+        return false;
     };
     // What holds everywhere first, then what holds in the part of the tree that has all of it.
     const Box<2> inside{clamped(around.lo, limits_), clamped(around.hi, limits_)};

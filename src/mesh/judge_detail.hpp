@@ -9,7 +9,7 @@ namespace freiform {
 struct Judgement {
     bool shifted = false;         // a foot exists for each of its points
     double bound = 0, whole = 0;  // of the distance; of the whole interpolation error
-    Curvature curvature;          // that matters
+    Curvature curvature;          // that matters, where the bound is above the tolerance
 };
 
 class Judge {

@@ -180,7 +180,8 @@ Tessellator::FaceLook Tessellator::look_of(std::size_t f, bool flip) const {
                 place[i] == v.uv ? j.value() : jet<0>(surface, v.uv.c).value();
     };
     parallel_for((place.size() + kVerticesAtOnce - 1) / kVerticesAtOnce, 1, [&](std::size_t part) {
-        const std::size_t first = part * kVerticesAtOnce, end = std::min(place.size(), first + kVerticesAtOnce);
+        const std::size_t first = part * kVerticesAtOnce,
+                          end = std::min(place.size(), first + kVerticesAtOnce);
         RepeatedJets jets(surface, end - first);
         for (std::size_t i = first; i < end; ++i) look_at(i, jets);
     });

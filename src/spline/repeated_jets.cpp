@@ -15,7 +15,9 @@ constexpr int kMost = 4;  // weights of a parameter
 constexpr std::size_t kFewPlaces = 64, kMostKept = 512;
 
 template <class S>
-constexpr bool is_spline = requires(const S& s) { s.net(); };
+constexpr bool is_spline = requires(const S& s) {
+    s.net();
+};
 
 }  // namespace
 
@@ -27,8 +29,9 @@ RepeatedJets::RepeatedJets(const SurfaceGeometry& surface, std::size_t places) :
             if constexpr (is_spline<std::remove_cvref_t<decltype(s)>>)
                 if (s.basis(0).degree() < kMost && s.basis(1).degree() < kMost)
                     for (auto& kept : kept_)
-                        kept.assign(std::bit_floor(std::min(places, kMostKept)),
-                                    {std::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN()), 0, {}});
+                        kept.assign(
+                            std::bit_floor(std::min(places, kMostKept)),
+                            {std::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN()), 0, {}});
         },
         surface);
 #endif

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <gtest/gtest.h>
+#include <set>
 
 namespace freiform {
 namespace {
@@ -111,6 +112,59 @@ TEST(Columns, bring_leaves_near_the_number_that_is_needed) {
     }
     EXPECT_LT(most, 1.9);
     EXPECT_LT(sum / kTolerances, 1.45);
+}
+
+// A bumpy spline with `pieces` that end about as far from each other along each axis, but for one that is
+// `narrow` of the others.
+DerivativeQuery<2, 3> bumpy(int pieces, double narrow, SurfaceGeometry& surface,
+                            std::vector<double>& breaks) {
+    test::Random random(23);
+    breaks = {0};
+    for (int k = 0; k < pieces; ++k)
+        breaks.push_back(breaks.back() + (k == pieces / 2 ? narrow : 1) * random.real(0.9, 1.1));
+    std::vector<double> knots{0, 0, 0};
+    knots.insert(knots.end(), breaks.begin(), breaks.end());
+    knots.insert(knots.end(), 3, breaks.back());
+    const auto basis = test::must(BSplineBasis::make(3, knots));
+    std::vector<Vec<3>> points;
+    for (int i = 0; i < basis.size(); ++i)
+        for (int k = 0; k < basis.size(); ++k) points.push_back({{1.0 * i, 1.0 * k, random.real(-1, 1)}});
+    surface = test::must(
+        Surface<Vec<3>>::make({basis, basis}, Net<2, Vec<3>>({basis.size(), basis.size()}, points)));
+    return DerivativeQuery<2, 3>(surface);
+}
+// How many of the breaks leaves end at.
+int met_breaks(const DerivativeQuery<2, 3>& surface, const std::vector<double>& breaks, double tolerance) {
+    const double a = breaks.front(), b = breaks.back();
+    const std::vector<Vec<2>> polygon{{{a, a}}, {{b, a}}, {{b, b}}, {{a, b}}};
+    const std::vector<std::array<int, 2>> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+    const auto tree =
+        must(CurvatureTree::make(surface, polygon, segments, {.tolerance = tolerance}, 1'000'000));
+    std::set<double> ends;
+    for (const auto& c : tree.corners()) ends.insert(c.at[0]);
+    int met = 0;
+    for (std::size_t k = 1; k + 1 < breaks.size(); ++k) met += int(ends.count(breaks[k]));
+    return met;
+}
+
+TEST(Columns, are_the_pieces_of_a_bumpy_spline) {
+    SurfaceGeometry geometry;
+    std::vector<double> breaks;
+    const DerivativeQuery<2, 3> even = bumpy(11, 1, geometry, breaks);
+    EXPECT_EQ(std::vector<double>(even.breaks(0).begin(), even.breaks(0).end()), breaks);
+    EXPECT_EQ(met_breaks(even, breaks, 1e-3), 10);
+    EXPECT_EQ(met_breaks(even, breaks, 0.5), 0);  // leaves are larger than pieces
+}
+
+TEST(Columns, are_no_pieces_where_one_is_narrow) {
+    SurfaceGeometry geometry;
+    std::vector<double> breaks;
+    const DerivativeQuery<2, 3> uneven = bumpy(11, 0.05, geometry, breaks);
+    EXPECT_EQ(met_breaks(uneven, breaks, 1e-3), 0);
+    const SurfaceGeometry ring =
+        Revolution{Conic<3>{ConicKind::ellipse, {{4, 0, 0}}, {{1, 0, 0}}, {{0, 0, 1}}}, {}, {{0, 0, 1}}};
+    const DerivativeQuery<2, 3> of_ring(ring);
+    EXPECT_TRUE(of_ring.breaks(0).empty());
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ HEADER_EXCEPTIONS = {
     "mesh/chord_triangles": CPP, "mesh/face_mesh": CPP, "mesh/grid": CPP, "mesh/normal_cone": CPP,
     "mesh/segment_box": CPP, "mesh/visibility": CPP, "model/edge_gap": CPP, "query/checks": CPP,
     "query/hull_search": CPP, "query/pair_search": CPP, "spline/apex": CPP, "spline/chain": CPP,
-    "spline/derivative_bounds": CPP, "spline/hull_box": CPP, "spline/jet": CPP, "io/json": CPP, "io/colour_bar": FIGURE, "io/figure": FIGURE, "io/paper": FIGURE,
+    "spline/derivative_bounds": CPP, "spline/repeated_jets": CPP, "spline/hull_box": CPP, "spline/jet": CPP, "io/json": CPP, "io/colour_bar": FIGURE, "io/figure": FIGURE, "io/paper": FIGURE,
     "io/exchange": "read() calls it", "io/face_by_edges": CPP, "spline/wide": CPP,
     "intersect/curve_part": CPP, "make/image_curve": CPP,
     "model/spline_faces": CPP, "path/path_data": CPP,

@@ -21,7 +21,7 @@ public:
 private:
     struct Weights {
         std::uint64_t at;  // the bits of the parameter
-        int first;  // of the coefficients
+        int first;         // of the coefficients
         double of_order[3][4];
     };
     template <class S>
