@@ -147,7 +147,8 @@ BoxBending bending_by_fit(const DerivativeQuery<2, 3>& surface, const Box<2>& bo
     const Curvature rest_along = n ? rest_of(fit.along) : rest;
     const Quadratic seen{dot(out.n, second[0]), dot(out.n, second[1]), dot(out.n, second[2])};
     const auto three = [](const Curvature& c) { return std::array{c.uu, c.uv, c.vv}; };
-    out.middle = {{{on[0].middle(), on[1].middle()}}, seen, three(rest_along), {}, second, three(rest), {}, lengths};
+    out.middle = {
+        {{on[0].middle(), on[1].middle()}}, seen, three(rest_along), {}, second, three(rest), {}, lengths};
     out.fit = {box, fit.all[0] + off, fit.along[0] + off, triangle != nullptr};
     if (!n) return out;
     Curvature along =

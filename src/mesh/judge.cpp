@@ -9,6 +9,8 @@ namespace freiform {
 
 namespace {
 
+constexpr double kLittleTilt =
+    0.1;  // where all of what is seen says about as much as sharper bounds do, for less
 constexpr double kMargin = 0.125;  // of the box of the face: what is looked at beyond it
 
 constexpr double kGrow = 1 + 1e-14;  // roundings of bounds over cells
@@ -56,10 +58,12 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     e += tree_.kink_bound(box);
     // What takes least first, then what says most.
     const auto seen_error = [&](double turn, double enough) {
-        double seen = error_of(at.seen(turn));
+        const auto of_all = [&] { return error_of(at.seen(turn)); };
+        double seen = at.tilt < kLittleTilt ? of_all() : kInfinity;
         if (seen > enough && at.knows_middle())
             seen = std::min(seen, at.triangle_error(box, corner, turn, enough / kGrow) * kGrow);
-        return seen <= enough ? seen : std::min(seen, at.seen_error(box, turn) * kGrow);
+        if (seen > enough) seen = std::min(seen, at.seen_error(box, turn) * kGrow);
+        return seen <= enough || at.tilt < kLittleTilt ? seen : std::min(seen, of_all());
     };
     return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
 }
