@@ -9,9 +9,8 @@ namespace freiform {
 
 namespace {
 
-constexpr double kLittleTilt =
-    0.1;  // where all of what is seen says about as much as sharper bounds do, for less
-constexpr double kMargin = 0.125;  // of the box of the face: what is looked at beyond it
+constexpr double kLittleTilt = 0.1;  // of normals: cheap bounds say about as much as sharp ones
+constexpr double kMargin = 0.125;    // of the box of the face: what is looked at beyond it
 
 constexpr double kGrow = 1 + 1e-14;  // roundings of bounds over cells
 
