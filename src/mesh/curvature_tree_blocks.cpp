@@ -16,6 +16,10 @@
 #include "curvature_tree_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
+#include <freiform/mesh/segment_box.hpp>
+
+#include <algorithm>
+#include <unordered_map>
 
 namespace freiform {
 
@@ -31,7 +35,10 @@ constexpr int kPartHalves = 8;                       // likewise, into parts
 constexpr double kPartRounding = 1 + 1e-9;           // of the sizes of parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
 constexpr std::size_t kLeavesOfThread = 256;         // that a thread looks at
-constexpr double kDeep = 0.3;                        // of a leaf: nearer to the boundary it makes slivers
+constexpr std::size_t kManyLeaves = 256;
+constexpr double kFewMore =
+    0.125;                     // of them: where the boundary is near everywhere, what is between is cheaper
+constexpr double kDeep = 0.6;  // of a leaf: nearer to the boundary it makes slivers
 
 // Cells of a box of this size whose halves are off by the tolerance, nearly: sides are chosen so that the
 // derivatives along both count equally, and the better diagonals.
@@ -180,8 +187,55 @@ bool CurvatureTree::make_block(const DerivativeQuery<2, 3>& surface, int node,
     return true;
 }
 
-// Whether the boundary is not near.
-bool CurvatureTree::is_deep(int leaf) const {
+// What there is of the boundary in leaves: a box around it for each, by their nodes.
+class CurvatureTree::Border {
+public:
+    Border(const CurvatureTree& tree, std::span<const Vec<2>> polygon,
+           std::span<const std::array<int, 2>> segments)
+        : tree_(tree) {
+        for (const auto& s : segments) add(polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]);
+    }
+    // Whether some of it is in this leaf and in the box.
+    bool meets(int leaf, const Box<2>& box) const {
+        const auto found = of_node_.find(leaf);
+        if (found == of_node_.end()) return false;
+        const Box<2>& b = found->second;
+        return b.lo[0] <= box.hi[0] && box.lo[0] <= b.hi[0] && b.lo[1] <= box.hi[1] && box.lo[1] <= b.hi[1];
+    }
+
+private:
+    void add(const Vec<2>& p, const Vec<2>& q) {
+        int stack[2 * kMaxTreeDepth + 4], size = 0;
+        stack[size++] = 0;
+        while (size > 0) {
+            const int at = stack[--size];
+            const Node& n = tree_.nodes_[std::size_t(at)];
+            if (n.inside || !freiform::meets(n.box, p, q)) continue;
+            if (n.child < 0) {
+                add(at, n.box, p, q);
+                continue;
+            }
+            stack[size++] = n.child;
+            stack[size++] = n.child + 1;
+        }
+    }
+    void add(int leaf, const Box<2>& box, const Vec<2>& p, const Vec<2>& q) {
+        Box<2>& of_leaf = of_node_[leaf];
+        double from = 0, to = 1;
+        for (int d = 0; d < 2; ++d)
+            if (const double way = q[d] - p[d]; way != 0) {
+                const double a = (box.lo[d] - p[d]) / way, b = (box.hi[d] - p[d]) / way;
+                from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+            }
+        for (const double t : {from, to}) of_leaf.add(p + std::clamp(t, 0.0, 1.0) * (q - p));
+    }
+
+    const CurvatureTree& tree_;
+    std::unordered_map<int, Box<2>> of_node_;
+};
+
+// Whether the boundary is not near: without a border no leaf that has some of it.
+bool CurvatureTree::is_deep(int leaf, const Border* border) const {
     const Box<2>& box = nodes_[std::size_t(leaf)].box;
     const Vec<2> margin = kDeep * (box.hi - box.lo);
     const Box<2> around{box.lo - margin, box.hi + margin};
@@ -196,16 +250,21 @@ bool CurvatureTree::is_deep(int leaf) const {
     int stack[2 * kMaxTreeDepth + 4], size = 0;
     stack[size++] = place;
     while (size > 0) {
-        const Node& n = nodes_[std::size_t(stack[--size])];
+        const int at = stack[--size];
+        const Node& n = nodes_[std::size_t(at)];
         if (n.inside || !has_common_part(n.box, around)) continue;
-        if (n.child < 0) return false;
+        if (n.child < 0) {
+            if (n.outside || !border || border->meets(at, around)) return false;
+            continue;
+        }
         stack[size++] = n.child;
         stack[size++] = n.child + 1;
     }
     return true;
 }
 
-void CurvatureTree::take_leaves(bool is_shared) {
+void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
+                                bool is_shared) {
     std::vector<int> leaves;
     nodes_.each_place([&](std::size_t i) {
         const Node& n = nodes_[i];
@@ -213,8 +272,18 @@ void CurvatureTree::take_leaves(bool is_shared) {
         leaves.push_back(int(i));
     });
     std::vector<char> deep(leaves.size());
-    parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(),
-                 [&](std::size_t i) { deep[i] = is_deep(leaves[i]); });
+    const auto look = [&](const Border* border) {
+        parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(), [&](std::size_t i) {
+            if (!deep[i] && is_deep(leaves[i], border)) deep[i] = border ? 2 : 1;
+        });
+    };
+    look(nullptr);
+    if (leaves.size() >= kManyLeaves) {
+        const Border border(*this, polygon, segments);
+        look(&border);
+        if (double(std::count(deep.begin(), deep.end(), 2)) > kFewMore * double(leaves.size()))
+            std::replace(deep.begin(), deep.end(), char(2), char(0));
+    }
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         if (!deep[i]) continue;
         nodes_[std::size_t(leaves[i])].block = kOneCell;

@@ -385,8 +385,10 @@ private:
     std::optional<Cut> cut(const Node& node, int axis) const;
     void plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance);  // curvature_tree_columns.cpp
     // Those away from the boundary, as blocks. `is_shared`: all threads may be used.
-    void take_leaves(bool is_shared);
-    bool is_deep(int leaf) const;
+    void take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
+                     bool is_shared);
+    class Border;
+    bool is_deep(int leaf, const Border* border) const;
     void reserve(std::size_t nodes);  // before there are any
     // Of the first `end` nodes, whose children are there: what holds for both children. Whether all of these
     // leaves are flat, so that the tree can do without normals.

@@ -322,7 +322,7 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (tree.sum_up(task.in_parts ? top : tree.nodes_.end()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
     tree.fill_grid();
-    if (ways.blocks) tree.take_leaves(demands.is_shared);
+    if (ways.blocks) tree.take_leaves(polygon, segments, demands.is_shared);
     tree.find_corners();
     return tree;
 }
