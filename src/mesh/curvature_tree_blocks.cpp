@@ -12,7 +12,9 @@
 //
 // Cells are halved sides, as leaves are, so that the corners of both are the same where they meet. So other
 // leaves away from the boundary are blocks, too, of one cell: they need no triangulation and one proof for
-// all triangles.
+// all triangles. How far away counts by the boundary itself where most leaves are, and by the leaves that
+// have some of it where it is near everywhere: what is between the boundary and blocks has few points then,
+// and a strip of it takes more triangles than leaves that are left to it would.
 #include "curvature_tree_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
