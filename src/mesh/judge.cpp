@@ -55,7 +55,7 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     double e = error_of(at.full);
     if (at.knows_middle()) e = std::min(e, at.whole_error(box, corner) * kGrow);
     e += tree_.kink_bound(box);
-    // What takes least first, then what says most.
+    // What takes least first where it mostly does, then what says most.
     const auto seen_error = [&](double turn, double enough) {
         const auto of_all = [&] { return error_of(at.seen(turn)); };
         double seen = at.tilt < kLittleTilt ? of_all() : kInfinity;
@@ -150,9 +150,10 @@ Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& s
             return shift.across(seen_error(shift.turn, shift.left_of(tolerance_, e)), e);
         };
         const double bound = plain > 0 ? shift.way(e) : std::min(e, across());
-        if (bound < k.bound) k.bound = bound;
+        const bool is_less = bound < k.bound;
+        if (is_less) k.bound = bound;
         if (k.bound <= tolerance_) return true;
-        if (bound == k.bound) k.curvature = plain > 0 ? at.full : at.seen(shift.turn);
+        if (is_less) k.curvature = plain > 0 ? at.full : at.seen(shift.turn);
         return false;
     };
     // What holds everywhere first, then what holds in the part of the tree that has all of it.

@@ -7,8 +7,8 @@
 // that the block is of, where M is again such a function. Without weights R = D is a block of the degree of
 // A. Nothing is lost where weights vary. Derivatives: D and w have derivatives of at most p (p - 1) .. times
 // their differences, and by Leibniz, as in block_bounds.cpp, |R_a| <= (|D_a| + sum_{0 < b <= a} C(a, b) |w_b|
-// |R_{a-b}|) / w_min. As R is small, so are the terms with w_b: for first
-// differences of D, which are in these alone, twice its coefficients will do.
+// |R_{a-b}|) / w_min. As R is small, so are the terms with w_b: for first differences of D, which are in
+// these alone, twice its coefficients will do.
 //
 // Accuracy: coefficients of the block are off as block_bounds.cpp says; those of D are sums of at most nine
 // products, with fewer than 64 roundings, or 16 without weights, of numbers of the size |A_i| + w_i |b_k|. Of
