@@ -59,8 +59,9 @@ private:
         if (outer.slot < 0) outer.slot = int(tree_.bendings_.add(outer.known));
         node.slot = outer.slot;
     }
-    void ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer);
-    bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer, bool& found);
+    BoxBending ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, const Curvature& around);
+    bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, const BoxBending& around,
+                  std::optional<BoxBending>& own);
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
     void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
     struct Place {  // where in the tree what a part has begins

@@ -81,28 +81,30 @@ void CurvatureTree::Grower::set_lengths(const Jet<2, 2, Vec<3>>& middle, const V
 
 // Control points. What holds for the whole holds for a part: of very small boxes rounding would make the
 // bound larger.
-void CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
-                                BoxBending& outer) {
-    const Curvature before = outer.full;
+BoxBending CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
+                                      const Curvature& around) {
     const bool varies = tree_.varies(task_.surface, box);
     Variation variation;
     const bool knows_normals = tree_.knows_normals_ && !tree_.is_sharp_inside(box);
-    outer = tree_.bending_in(task_.surface, box, knows_normals, middle, varies ? &variation : nullptr);
-    outer.full.restrict_to(before);
-    if (!varies) return;
+    BoxBending out =
+        tree_.bending_in(task_.surface, box, knows_normals, middle, varies ? &variation : nullptr);
+    out.full.restrict_to(around);
+    if (!varies) return out;
     node.variation = int(tree_.variations_.size());
     tree_.variations_.push_back(variation);
+    return out;
 }
 
-// Whether the box, which is inside, is a leaf that stands for many. `found`: whether `outer` is of the box.
-bool CurvatureTree::Grower::is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, BoxBending& outer,
-                                     bool& found) {
+// Whether the box, which is inside, is a leaf that stands for many. Finds what is known of it, if that is
+// asked.
+bool CurvatureTree::Grower::is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle,
+                                     const BoxBending& around, std::optional<BoxBending>& own) {
     const double tolerance = task_.demands.tolerance;
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
     const double cells = tree_.cells_seen(jets_, box, middle, tolerance);
     if (!(cells > 0)) return false;
-    found = true;
-    if (!tree_.make_block(task_.surface, item.node, middle, cells, tolerance, outer)) return false;
+    own = around;
+    if (!tree_.make_block(task_.surface, item.node, middle, cells, tolerance, *own)) return false;
     const auto& halves = tree_.blocks_.back().halves;
     uncounted_ += (std::size_t(1) << (halves[0] + halves[1])) - 1;
     return true;
@@ -140,23 +142,21 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         cut = tree_.cut(node, longer_side(seen, size, length_));
     // Where control points are many, they are asked about boxes of some leaves, and within these the middle
     // and what varies tell.
-    BoxBending outer = around;
+    std::optional<BoxBending> own;  // large: not where those around are all that is known
     const bool may_be_block = task_.blocks && inside && cut && !node.has_columns();
-    bool found = false;  // others than those around
-    if (may_be_block && is_block(item, middle, outer, found)) return std::nullopt;
+    if (may_be_block && is_block(item, middle, around, own)) return std::nullopt;
     if (item.variation >= 0) {
-        outer = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
-                                    tree_.variations_[std::size_t(item.variation)]);
-        outer.full.restrict_to(around.full);
-        found = true;
+        own = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
+                                  tree_.variations_[std::size_t(item.variation)]);
+        own->full.restrict_to(around.full);
     } else if (!cut || (asked <= kLeavesAtOnce * tolerance && tree_.varies(task_.surface, box))) {
-        ask(node, box, middle, outer);
-        found = true;
+        own = ask(node, box, middle, own ? own->full : around.full);
     }
     if (!cut) {
+        BoxBending& outer = *own;
         bool whole = is_leaf(node, outer) || !(size[0] > 0) || !(size[1] > 0);
         if (!whole && item.variation >= 0) {
-            ask(node, box, middle, outer);
+            outer = ask(node, box, middle, outer.full);
             whole = is_leaf(node, outer);
         }
         const double error = outer.full.along(size[0], size[1]);
@@ -176,14 +176,13 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
             cut = tree_.cut(node, axis);
         }
         if (!cut) {  // also where there is no double between the ends
-            Outer own{outer};
-            stay_whole(node, own);
+            node.slot = int(tree_.bendings_.add(outer));
             return std::nullopt;
         }
     }
     if (++uncounted_ >= kLeavesCounted && !count_leaves()) return too_many_leaves();
-    if (found) outers_.push_back({outer});
-    split(item, found ? int(outers_.size()) - 1 : item.outer, *cut, inside, items);
+    if (own) outers_.push_back({*own});
+    split(item, own ? int(outers_.size()) - 1 : item.outer, *cut, inside, items);
     return std::nullopt;
 }
 

@@ -11,6 +11,11 @@ namespace freiform {
 
 namespace {
 
+#if defined(__wasm__)
+constexpr bool kKeeps = false;  // for size
+#else
+constexpr bool kKeeps = true;
+#endif
 constexpr int kMost = 4;  // weights of a parameter
 constexpr std::size_t kFewPlaces = 64, kMostKept = 512;
 
@@ -22,8 +27,7 @@ constexpr bool is_spline = requires(const S& s) {
 }  // namespace
 
 RepeatedJets::RepeatedJets(const SurfaceGeometry& surface, std::size_t places) : surface_(&surface) {
-#if !defined(__wasm__)  // for size
-    if (places < kFewPlaces) return;
+    if (!kKeeps || places < kFewPlaces) return;
     visit_one(
         [&](const auto& s) {
             if constexpr (is_spline<std::remove_cvref_t<decltype(s)>>)
@@ -34,7 +38,6 @@ RepeatedJets::RepeatedJets(const SurfaceGeometry& surface, std::size_t places) :
                             {std::bit_cast<std::uint64_t>(std::numeric_limits<double>::quiet_NaN()), 0, {}});
         },
         surface);
-#endif
 }
 
 template <class S>
@@ -52,12 +55,12 @@ const RepeatedJets::Weights& RepeatedJets::weights(const S& surface, std::size_t
 
 template <int K>
 Jet<2, K, Vec<3>> RepeatedJets::at(const Param<2>& uv) {
-    if (kept_[0].empty()) return jet<K>(*surface_, uv);
+    if (!kKeeps || kept_[0].empty()) return jet<K>(*surface_, uv);
     return visit_one(
         [&](const auto& s) {
             using S = std::remove_cvref_t<decltype(s)>;
             Jet<2, K, Vec<3>> out;
-            if constexpr (is_spline<S>) {
+            if constexpr (kKeeps && is_spline<S>) {
                 using P = typename S::Coefficients;
                 const Weights &u = weights(s, 0, uv[0]), &v = weights(s, 1, uv[1]);
                 P h[jet_size(2, K)];
