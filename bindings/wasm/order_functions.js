@@ -24,7 +24,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-const kRun = 6, kCommon = 200;
+const kRun = 6, kCommon = 400;
 // Windows in bytes, and powers.
 const kTries = [25500, 26000, 26250, 26500, 26750, 27000, 27500, 28500].flatMap((window) =>
   [0.76, 0.77, 0.78, 0.79, 0.8].map((power) => [window, power]));

@@ -16,12 +16,12 @@
 // have some of it where it is near everywhere: what is between the boundary and blocks has few points then,
 // and a strip of it takes more triangles than leaves that are left to it would.
 #include "curvature_tree_detail.hpp"
+#include "parameter_table_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
 #include <freiform/mesh/segment_box.hpp>
 
 #include <algorithm>
-#include <unordered_map>
 
 namespace freiform {
 
@@ -194,18 +194,19 @@ class CurvatureTree::Border {
 public:
     Border(const CurvatureTree& tree, std::span<const Vec<2>> polygon,
            std::span<const std::array<int, 2>> segments)
-        : tree_(tree) {
+        : tree_(tree), leaves_(segments.size()) {
         for (const auto& s : segments) add(polygon[std::size_t(s[0])], polygon[std::size_t(s[1])]);
     }
     // Whether some of it is in this leaf and in the box.
     bool meets(int leaf, const Box<2>& box) const {
-        const auto found = of_node_.find(leaf);
-        if (found == of_node_.end()) return false;
-        const Box<2>& b = found->second;
+        const int at = leaves_.find(key(leaf));
+        if (at < 0) return false;
+        const Box<2>& b = boxes_[std::size_t(at)];
         return b.lo[0] <= box.hi[0] && box.lo[0] <= b.hi[0] && b.lo[1] <= box.hi[1] && box.lo[1] <= b.hi[1];
     }
 
 private:
+    static Vec<2> key(int leaf) { return {{double(leaf), 0}}; }
     void add(const Vec<2>& p, const Vec<2>& q) {
         int stack[2 * kMaxTreeDepth + 4], size = 0;
         stack[size++] = 0;
@@ -222,18 +223,20 @@ private:
         }
     }
     void add(int leaf, const Box<2>& box, const Vec<2>& p, const Vec<2>& q) {
-        Box<2>& of_leaf = of_node_[leaf];
+        const auto number = std::size_t(leaves_.number(key(leaf)));
+        if (number == boxes_.size()) boxes_.push_back({});
         double from = 0, to = 1;
         for (int d = 0; d < 2; ++d)
             if (const double way = q[d] - p[d]; way != 0) {
                 const double a = (box.lo[d] - p[d]) / way, b = (box.hi[d] - p[d]) / way;
                 from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
             }
-        for (const double t : {from, to}) of_leaf.add(p + std::clamp(t, 0.0, 1.0) * (q - p));
+        for (const double t : {from, to}) boxes_[number].add(p + std::clamp(t, 0.0, 1.0) * (q - p));
     }
 
     const CurvatureTree& tree_;
-    std::unordered_map<int, Box<2>> of_node_;
+    ParameterTable leaves_;  // by their numbers
+    std::vector<Box<2>> boxes_;
 };
 
 // Whether the boundary is not near: without a border no leaf that has some of it.
@@ -283,11 +286,12 @@ void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const
     if (leaves.size() >= kManyLeaves) {
         const Border border(*this, polygon, segments);
         look(&border);
-        if (double(std::count(deep.begin(), deep.end(), 2)) > kFewMore * double(leaves.size()))
-            std::replace(deep.begin(), deep.end(), char(2), char(0));
     }
+    std::size_t more = 0;
+    for (const char d : deep) more += d == 2;
+    const bool all = double(more) <= kFewMore * double(leaves.size());
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-        if (!deep[i]) continue;
+        if (!(deep[i] == 1 || (deep[i] == 2 && all))) continue;
         nodes_[std::size_t(leaves[i])].block = kOneCell;
         block_leaves_.push_back(leaves[i]);
     }

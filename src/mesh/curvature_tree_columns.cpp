@@ -60,17 +60,18 @@ Columns equal_columns(const Interval& on, int count) {
 
 // Where a spline's pieces end in the interval; none where these are few, or many, or uneven.
 Columns pieces_in(std::span<const double> breaks, const Interval& on) {
+    std::size_t count = 1;
+    for (const double x : breaks) count += on.lo < x && x < on.hi;
+    if (count > kMostPieces) return {};
+    const double least = kLeastPiece * on.length() / double(count);
     Columns out{on.lo};
-    for (const double x : breaks)
-        if (on.lo < x && x < on.hi) out.push_back(x);
+    for (const double x : breaks) {
+        if (!(x - on.lo >= least && on.hi - x >= least)) continue;  // a sliver at the end is none by itself
+        if (x - out.back() < least) return {};
+        out.push_back(x);
+    }
     out.push_back(on.hi);
-    const double usual = on.length() / double(out.size() - 1);
-    if (out.size() > 3 && out[1] - out[0] < kLeastPiece * usual) out.erase(out.begin() + 1);
-    if (out.size() > 3 && out.end()[-1] - out.end()[-2] < kLeastPiece * usual) out.erase(out.end() - 2);
-    if (out.size() < 3 || out.size() > kMostPieces + 1) return {};
-    for (std::size_t k = 1; k < out.size(); ++k)
-        if (out[k] - out[k - 1] < kLeastPiece * usual) return {};
-    return out;
+    return out.size() < 3 ? Columns{} : out;
 }
 
 class ColumnPlan {

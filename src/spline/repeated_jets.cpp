@@ -7,15 +7,11 @@
 #include <bit>
 #include <limits>
 
+#if !defined(__wasm__)
 namespace freiform {
 
 namespace {
 
-#if defined(__wasm__)
-constexpr bool kKeeps = false;  // for size
-#else
-constexpr bool kKeeps = true;
-#endif
 constexpr int kMost = 4;  // weights of a parameter
 constexpr std::size_t kFewPlaces = 64, kMostKept = 512;
 
@@ -27,7 +23,7 @@ constexpr bool is_spline = requires(const S& s) {
 }  // namespace
 
 RepeatedJets::RepeatedJets(const SurfaceGeometry& surface, std::size_t places) : surface_(&surface) {
-    if (!kKeeps || places < kFewPlaces) return;
+    if (places < kFewPlaces) return;
     visit_one(
         [&](const auto& s) {
             if constexpr (is_spline<std::remove_cvref_t<decltype(s)>>)
@@ -55,12 +51,12 @@ const RepeatedJets::Weights& RepeatedJets::weights(const S& surface, std::size_t
 
 template <int K>
 Jet<2, K, Vec<3>> RepeatedJets::at(const Param<2>& uv) {
-    if (!kKeeps || kept_[0].empty()) return jet<K>(*surface_, uv);
+    if (kept_[0].empty()) return jet<K>(*surface_, uv);
     return visit_one(
         [&](const auto& s) {
             using S = std::remove_cvref_t<decltype(s)>;
             Jet<2, K, Vec<3>> out;
-            if constexpr (kKeeps && is_spline<S>) {
+            if constexpr (is_spline<S>) {
                 using P = typename S::Coefficients;
                 const Weights &u = weights(s, 0, uv[0]), &v = weights(s, 1, uv[1]);
                 P h[jet_size(2, K)];
@@ -81,3 +77,4 @@ template Jet<2, 1, Vec<3>> RepeatedJets::at<1>(const Param<2>&);
 template Jet<2, 2, Vec<3>> RepeatedJets::at<2>(const Param<2>&);
 
 }  // namespace freiform
+#endif

@@ -10,6 +10,19 @@ namespace freiform {
 
 // Bit for bit what `jet` says. Of B-splines up to degree 3 the weights of a parameter are kept for the next
 // place that has it. For one thread; the surface must outlive it.
+#if defined(__wasm__)  // for size
+class RepeatedJets {
+public:
+    RepeatedJets(const SurfaceGeometry& surface, std::size_t) : surface_(surface) {}
+    template <int K>
+    Jet<2, K, Vec<3>> at(const Param<2>& uv) {
+        return jet<K>(surface_, uv);
+    }
+
+private:
+    const SurfaceGeometry& surface_;
+};
+#else
 class RepeatedJets {
 public:
     // About so many places will be asked for: that many parameters are kept.
@@ -30,5 +43,6 @@ private:
     const SurfaceGeometry* surface_;
     std::vector<Weights> kept_[2];  // by the bits of the parameter
 };
+#endif
 
 }  // namespace freiform
