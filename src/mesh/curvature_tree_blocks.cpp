@@ -37,7 +37,8 @@ constexpr int kPartHalves = 8;                       // likewise, into parts
 constexpr double kPartRounding = 1 + 1e-9;           // of the sizes of parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
 constexpr std::size_t kLeavesOfThread = 256;         // that a thread looks at
-// The boundary itself counts where it is not near everywhere: of so many leaves it adds that part at most.
+// The boundary itself counts where it is not near everywhere: of so many leaves (of fewer it always is more)
+// it adds that part at most.
 constexpr std::size_t kManyLeaves = 256;
 constexpr double kFewMore = 0.125;
 constexpr double kDeep = 0.6;  // of a leaf: nearer to the boundary it makes slivers
