@@ -32,8 +32,8 @@ public:
     // of whose corners have feet. REQUIRES at.knows_middle().
     Judgement cells(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error,
                     int near_place) const;
-    // Of halves of the box by the better diagonal, all of whose corners have feet; `error` may be that of halves
-    // alone. REQUIRES at.knows_middle().
+    // Of halves of the box by the better diagonal, all of whose corners have feet; `error` may be that of
+    // halves alone. REQUIRES at.knows_middle().
     Judgement halves(const Bending& at, const Box<2>& box, double error, int near_place) const;
     double whole_halves_error(const Bending& at, const Box<2>& box) const;  // where they are plain; likewise
 
