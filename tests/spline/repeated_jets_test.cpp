@@ -1,5 +1,6 @@
 // Derivatives at parameters that come again are those that are found at once.
 #include "support/prepared.hpp"
+#include "support/random.hpp"
 #include "support/shapes.hpp"
 
 #include <freiform/spline/repeated_jets.hpp>
