@@ -269,25 +269,28 @@ bool CurvatureTree::is_deep(int leaf, const Border* border) const {
     return true;
 }
 
+// The boundary is looked for while the grid is filled, which needs as long.
 void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
                                 bool is_shared) {
     std::vector<int> leaves;
-    nodes_.each_place([&](std::size_t i) {
-        const Node& n = nodes_[i];
-        if (n.child >= 0 || n.is_block() || !n.inside || n.has_columns() || meets_kink(n.box)) return;
-        leaves.push_back(int(i));
-    });
+    std::optional<Border> border;
+    const auto list = [&] {
+        nodes_.each_place([&](std::size_t i) {
+            const Node& n = nodes_[i];
+            if (n.child >= 0 || n.is_block() || !n.inside || n.has_columns() || meets_kink(n.box)) return;
+            leaves.push_back(int(i));
+        });
+        if (leaves.size() >= kManyLeaves) border.emplace(*this, polygon, segments);
+    };
+    parallel_for(2, is_shared ? 1 : 2, [&](std::size_t k) { k == 0 ? fill_grid() : list(); });
     std::vector<char> deep(leaves.size());
-    const auto look = [&](const Border* border) {
+    const auto look = [&](const Border* at_boundary) {
         parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(), [&](std::size_t i) {
-            if (!deep[i] && is_deep(leaves[i], border)) deep[i] = border ? 2 : 1;
+            if (!deep[i] && is_deep(leaves[i], at_boundary)) deep[i] = at_boundary ? 2 : 1;
         });
     };
     look(nullptr);
-    if (leaves.size() >= kManyLeaves) {
-        const Border border(*this, polygon, segments);
-        look(&border);
-    }
+    if (border) look(&*border);
     std::size_t more = 0;
     for (const char d : deep) more += d == 2;
     const bool all = double(more) <= kFewMore * double(leaves.size());

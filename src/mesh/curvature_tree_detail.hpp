@@ -384,7 +384,7 @@ private:
     }
     std::optional<Cut> cut(const Node& node, int axis) const;
     void plan_columns(const DerivativeQuery<2, 3>& surface, double tolerance);  // curvature_tree_columns.cpp
-    // Those away from the boundary, as blocks. `is_shared`: all threads may be used.
+    // Those away from the boundary, as blocks; fills the grid. `is_shared`: all threads may be used.
     void take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
                      bool is_shared);
     class Border;

@@ -320,8 +320,10 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (bad) return std::unexpected(*bad);
     if (tree.sum_up(task.in_parts ? top : tree.nodes_.end()) && task.all_flat) tree.knows_normals_ = false;
     tree.segments_ = {};
-    tree.fill_grid();
-    if (ways.blocks) tree.take_leaves(polygon, segments, demands.is_shared);
+    if (ways.blocks)
+        tree.take_leaves(polygon, segments, demands.is_shared);
+    else
+        tree.fill_grid();
     tree.find_corners();
     return tree;
 }

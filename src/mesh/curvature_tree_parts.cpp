@@ -1,12 +1,47 @@
 // Parts of a tree, grown by themselves and put together as they are: what refers to places in a part is
 // brought to those that it has in the tree, where it lies.
 #include "curvature_tree_grower_detail.hpp"
+#include "serial_detail.hpp"
 
 #include <freiform/core/parallel.hpp>
 
 #include <algorithm>
+#include <array>
+#include <memory>
 
 namespace freiform {
+
+namespace {
+
+// Jets that threads use one after the other: what they keep is worth more than a part of the tree, and takes
+// as long to make.
+class IdleJets {
+public:
+    IdleJets(const SurfaceGeometry& surface, std::size_t places) : surface_(surface), places_(places) {}
+    ~IdleJets() {
+        for (auto& p : idle_) delete p.load();
+    }
+    std::unique_ptr<RepeatedJets> take() {
+        for (auto& p : idle_)
+            if (RepeatedJets* jets = p.exchange(nullptr)) return std::unique_ptr<RepeatedJets>(jets);
+        return std::make_unique<RepeatedJets>(surface_, places_);
+    }
+    // Where there is no room for them, they are gone.
+    void put(std::unique_ptr<RepeatedJets> jets) {
+        for (auto& p : idle_)
+            if (RepeatedJets* none = nullptr; p.compare_exchange_strong(none, jets.get())) {
+                jets.release();
+                return;
+            }
+    }
+
+private:
+    const SurfaceGeometry& surface_;
+    std::size_t places_;
+    std::array<std::atomic<RepeatedJets*>, 16> idle_{};
+};
+
+}  // namespace
 
 std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items) {
     std::vector<std::optional<Refusal>> bad(items.size());
@@ -17,7 +52,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
                 if (b && (!limit || b->kind == RefusalKind::limit)) return b;
         return std::nullopt;
     };
-    if (!task_.in_parts) {  // into this tree at once, in the order in which parts are added below
+    if (kIsSerialBuild || !task_.in_parts) {  // into this tree at once, in the order in which parts are added below
         for (std::size_t i = 0; i < items.size(); ++i) {
             const BoxBending& outer = outers_[std::size_t(items[i].outer)].known;
             std::vector<Item> own{std::move(items[i])};
@@ -27,6 +62,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         return worst();
     }
     std::vector<CurvatureTree> parts(items.size());
+    IdleJets idle(task_.surface.geometry(), task_.expected_nodes * items.size());
     parallel_for(items.size(), 1, [&](std::size_t i) {
         CurvatureTree& part = parts[i];
         part.knows_normals_ = tree_.knows_normals_;
@@ -43,8 +79,9 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
             part.variations_.push_back(tree_.variations_[std::size_t(own.front().variation)]);
             own.front().variation = 0;
         }
-        RepeatedJets jets(task_.surface.geometry(), task_.expected_nodes);
-        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)].known, jets).grow(own, 0);
+        auto jets = idle.take();
+        bad[i] = Grower(part, task_, outers_[std::size_t(items[i].outer)].known, *jets).grow(own, 0);
+        idle.put(std::move(jets));
         if (!bad[i] && !part.sum_up(part.nodes_.end())) task_.all_flat = false;
     });
     if (auto first = worst()) return first;

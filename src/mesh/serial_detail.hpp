@@ -6,9 +6,11 @@
 namespace freiform {
 
 #ifdef FREIFORM_SERIAL
-constexpr bool is_serial() { return true; }
+constexpr bool kIsSerialBuild = true;
 #else
-inline bool is_serial() { return max_threads() == 1; }
+constexpr bool kIsSerialBuild = false;
 #endif
+// Others may change the number of threads meanwhile.
+inline bool is_serial() { return kIsSerialBuild || max_threads() == 1; }
 
 }  // namespace freiform
