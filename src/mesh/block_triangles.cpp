@@ -12,7 +12,6 @@
 namespace freiform {
 
 void BlockTriangles::settle(MeshedLeaf& l, const JudgedBlock& of_leaf, Work& work) const {
-    if (l.count > kMostAround) return;
     const auto attempt = [&](double& bound) {
         for (const bool has_centre : {false, true}) {
             if (std::isfinite(bound)) return true;

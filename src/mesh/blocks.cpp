@@ -58,7 +58,6 @@ private:
         for (const Block& b : blocks_) b.grid.each_border_point([&](const Vec<2>& p) { table_.number(p); });
         find_sides();
         plain_.assign(table_.size(), 0);
-        add_sides();
         if (!tree_.is_all_plain()) settle_feet();
         number_outline();
     }
@@ -184,6 +183,26 @@ private:
             if (!bad) out_.bound = std::max(out_.bound, bound);
             return bad;
         });
+        find_borders();
+        // What is found of sides meanwhile holds but for leaves that have to go.
+        const std::size_t parts = borders_.size();
+        parallel_for(1 + parts, is_shared_ ? 1 : 1 + parts, [&](std::size_t part) {
+            if (part == 0) return add_sides();
+            BlockTriangles::Work work;
+            for (std::size_t i = (part - 1) * kBlocksAtOnce,
+                             end = std::min(leaves_.size(), part * kBlocksAtOnce);
+                 i < end; ++i)
+                triangles.settle(leaves_[i], judged(leaves_[i]), work);
+        });
+        std::erase_if(leaves_, [&](const Leaf& l) {
+            const bool bad = !std::isfinite(bound_of(l));
+            if (bad) dissolve(box_of(l)), sides_.remove(border_of(l));
+            return bad;
+        });
+    }
+
+    // Of leaves. Those with too many points are left out.
+    void find_borders() {
         borders_.resize((leaves_.size() + kBlocksAtOnce - 1) / kBlocksAtOnce);  // of some leaves at a time
         parallel_for(borders_.size(), is_shared_ ? 1 : borders_.size(), [&](std::size_t part) {
             std::vector<int>& border = borders_[part];
@@ -199,16 +218,14 @@ private:
                 }
                 begins[i - first + 1] = border.size();
             }
-            BlockTriangles::Work work;
             for (std::size_t i = first; i < end; ++i) {
                 leaves_[i].border = border.data() + begins[i - first];
                 const std::size_t count = begins[i - first + 1] - begins[i - first];
                 leaves_[i].count = std::uint16_t(std::min(count, kMostAround + 1));
-                triangles.settle(leaves_[i], judged(leaves_[i]), work);
             }
         });
         std::erase_if(leaves_, [&](const Leaf& l) {
-            const bool bad = l.count > kMostAround || !std::isfinite(bound_of(l));
+            const bool bad = l.count > kMostAround;
             if (bad) dissolve(box_of(l));
             return bad;
         });

@@ -26,12 +26,6 @@ BoundsGrid::Range BoundsGrid::range_of(const Box<2>& box) const {
     return r;
 }
 
-void BoundsGrid::include(const Box<2>& part, const Bounds& bounds) {
-    const Range r = range_of(part);
-    for (int i = r.lo[0]; i <= r.hi[0]; ++i)
-        for (int j = r.lo[1]; j <= r.hi[1]; ++j) include(cells_[place(i, j)], bounds);
-}
-
 std::optional<BoundsGrid::Bounds> BoundsGrid::over(const Box<2>& box) const {
     if (cells_.empty() || !whole_.contains(box.lo) || !whole_.contains(box.hi)) return std::nullopt;
     const Range r = range_of(box);

@@ -2,6 +2,7 @@
 #pragma once
 #include <freiform/core/interval.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -16,9 +17,24 @@ public:
     using Bounds = std::array<double, 4>;
 
     BoundsGrid() = default;
+    bool is_empty() const { return cells_.empty(); }
     // With about as many cells as there are parts of this size.
     BoundsGrid(const Box<2>& whole, const Vec<2>& part);
-    void include(const Box<2>& part, const Bounds& bounds);
+    void include(const Box<2>& part, const Bounds& bounds) {
+        include(part, 0, 1, [&] { return bounds; });
+    }
+    // In the cells of one of so many groups alone, so that threads can share them; `bounds` is asked if there
+    // are any.
+    template <class F>
+    void include(const Box<2>& part, int group, int groups, F&& bounds) {
+        Range r = range_of(part);
+        r.lo[0] = std::max(r.lo[0], count_[0] * group / groups);
+        r.hi[0] = std::min(r.hi[0], count_[0] * (group + 1) / groups - 1);
+        if (r.lo[0] > r.hi[0]) return;
+        const Bounds known = bounds();
+        for (int i = r.lo[0]; i <= r.hi[0]; ++i)
+            for (int j = r.lo[1]; j <= r.hi[1]; ++j) include(cells_[place(i, j)], known);
+    }
     // Of all parts that the box meets, and some beside them; nothing where the box is not inside, or looking
     // would take longer than a walk.
     std::optional<Bounds> over(const Box<2>& box) const;

@@ -36,6 +36,7 @@ constexpr double kPartError = 4;                     // of a part, times the tol
 constexpr int kPartHalves = 8;                       // likewise, into parts
 constexpr double kPartRounding = 1 + 1e-9;           // of the sizes of parts
 constexpr double kAlmost = 0.97;                     // of the tolerance: what shifts leave
+constexpr int kGroupsOfGrid = 2;                     // each walks past all leaves
 constexpr std::size_t kLeavesOfThread = 256;         // that a thread looks at
 // The boundary itself counts where it is not near everywhere: of so many leaves (of fewer it always is more)
 // it adds that part at most.
@@ -272,6 +273,7 @@ bool CurvatureTree::is_deep(int leaf, const Border* border) const {
 // The boundary is looked for while the grid is filled, which needs as long.
 void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
                                 bool is_shared) {
+    plan_grid();
     std::vector<int> leaves;
     std::optional<Border> border;
     const auto list = [&] {
@@ -282,7 +284,11 @@ void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const
         });
         if (leaves.size() >= kManyLeaves) border.emplace(*this, polygon, segments);
     };
-    parallel_for(2, is_shared ? 1 : 2, [&](std::size_t k) { k == 0 ? fill_grid() : list(); });
+    const int groups = is_shared ? kGroupsOfGrid : 1;
+    parallel_for(std::size_t(groups) + 1, is_shared ? 1 : 2, [&](std::size_t k) {
+        if (k == 0) return list();
+        fill_grid(int(k) - 1, groups);
+    });
     std::vector<char> deep(leaves.size());
     const auto look = [&](const Border* at_boundary) {
         parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(), [&](std::size_t i) {

@@ -8,6 +8,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/mesh/face_mesh.hpp>
+#include <freiform/mesh/segment_box.hpp>
 #include <freiform/spline/repeated_jets.hpp>
 
 #include <algorithm>
@@ -368,7 +369,7 @@ private:
     bool keeps_in_cells(const Bending& b, const Vec<2>& box, const Vec<2>& cell, double tolerance) const;
     bool accept(Node& node, const Bending& known, double error, double tolerance) const;
     std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
-                                      double tolerance) const;
+                                      std::span<const std::array<int, 2>> segments, double tolerance) const;
     // curvature_tree_blocks.cpp
     Curvature matters_of(const Bending& part) const;
     double cells_seen(RepeatedJets& jets, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
@@ -394,13 +395,13 @@ private:
     // leaves are flat, so that the tree can do without normals.
     bool sum_up(std::size_t end);
     void find_corners();
-    void fill_grid();
+    void plan_grid();
+    void fill_grid(int group, int groups);  // of its cells
     bool varies(const DerivativeQuery<2, 3>& surface, const Box<2>& box) const;
     Curvature seen_in(const Jet<2, 2, Vec<3>>& middle) const;
     bool is_sharp() const { return !sharp_[0].empty() || !sharp_[1].empty(); }
     bool is_sharp_inside(const Box<2>& box) const;
-    bool holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const;
-    std::span<const std::array<int, 2>> segments_;  // while it is made
+    const PolygonRows* rows_ = nullptr;  // of the polygon, while it is made
     static constexpr int kOneCell = -2;
     Segments<Node> nodes_;
     Chunks<Bending> bendings_;  // of leaves that are not outside; neighbours may share one

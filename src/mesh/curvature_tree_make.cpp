@@ -117,7 +117,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
     const Vec<2> size = box.hi - box.lo;
     bool inside = item.inside;
     if (item.near.empty() && !inside) {
-        inside = tree_.holds_inside(0.5 * (box.lo + box.hi), task_.polygon);
+        inside = tree_.rows_->is_inside(0.5 * (box.lo + box.hi));
         node.outside = !inside;
         if (node.outside) return std::nullopt;
     }
@@ -275,10 +275,6 @@ BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const
     return out;
 }
 
-bool CurvatureTree::holds_inside(const Vec<2>& p, std::span<const Vec<2>> polygon) const {
-    return is_inside(p, polygon, segments_);
-}
-
 Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
                                           std::span<const Vec<2>> polygon,
                                           std::span<const std::array<int, 2>> segments,
@@ -286,7 +282,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     CurvatureTree tree;
     tree.knows_normals_ = ways.knows_normals;
     tree.cone_ = ways.cone;
-    tree.segments_ = segments;
+    const PolygonRows rows(polygon, segments);
+    tree.rows_ = &rows;
     for (std::size_t d = 0; d < 2; ++d)
         tree.kinks_[d].assign(surface.kinks(int(d)).begin(), surface.kinks(int(d)).end());
     Box<2> root;
@@ -299,7 +296,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (demands.is_shared && is_serial()) tree.reserve(nodes);
     tree.nodes_.add({root, 0});
     if (!tree.cone_ || tree.cone_->is_sphere()) tree.plan_columns(surface, demands.tolerance);
-    if (auto torn = tree.torn_place(surface, polygon, demands.tolerance)) return std::unexpected(*torn);
+    if (auto torn = tree.torn_place(surface, polygon, segments, demands.tolerance))
+        return std::unexpected(*torn);
     BoxBending any;
     any.full = {kInfinity, kInfinity, kInfinity};
     any.first[0] = any.first[1] = kInfinity;
@@ -319,11 +317,11 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     if (!bad && demands.is_shared) bad = grower.grow_parts(std::move(items));
     if (bad) return std::unexpected(*bad);
     if (tree.sum_up(task.in_parts ? top : tree.nodes_.end()) && task.all_flat) tree.knows_normals_ = false;
-    tree.segments_ = {};
+    tree.rows_ = nullptr;
     if (ways.blocks)
         tree.take_leaves(polygon, segments, demands.is_shared);
     else
-        tree.fill_grid();
+        tree.plan_grid(), tree.fill_grid(0, 1);
     tree.find_corners();
     return tree;
 }

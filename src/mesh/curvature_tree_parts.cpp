@@ -52,7 +52,8 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
                 if (b && (!limit || b->kind == RefusalKind::limit)) return b;
         return std::nullopt;
     };
-    if (kIsSerialBuild || !task_.in_parts) {  // into this tree at once, in the order in which parts are added below
+    if (kIsSerialBuild ||
+        !task_.in_parts) {  // into this tree at once, in the order in which parts are added below
         for (std::size_t i = 0; i < items.size(); ++i) {
             const BoxBending& outer = outers_[std::size_t(items[i].outer)].known;
             std::vector<Item> own{std::move(items[i])};
@@ -70,7 +71,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         part.kinks_ = tree_.kinks_;
         part.sharp_ = tree_.sharp_;
         part.columns_ = tree_.columns_;
-        part.segments_ = tree_.segments_;
+        part.rows_ = tree_.rows_;
         part.reserve(task_.expected_nodes);
         part.nodes_.add(tree_.nodes_[std::size_t(items[i].node)]);
         std::vector<Item> own{items[i]};

@@ -31,7 +31,9 @@ struct WorstBox {
 
 // Nothing, if nothing is known to be in the way.
 std::optional<Refusal> CurvatureTree::torn_place(const DerivativeQuery<2, 3>& surface,
-                                                 std::span<const Vec<2>> polygon, double tolerance) const {
+                                                 std::span<const Vec<2>> polygon,
+                                                 std::span<const std::array<int, 2>> segments,
+                                                 double tolerance) const {
     if (!(surface.weight_spread() > kWeightsFarApart)) return std::nullopt;
     const auto look = [&](WorstBox& w) {
         const Vec<2> size = w.box.hi - w.box.lo;
@@ -48,7 +50,7 @@ std::optional<Refusal> CurvatureTree::torn_place(const DerivativeQuery<2, 3>& su
                 part.near.push_back(s);
         return part;
     };
-    WorstBox worst{nodes_[0].box, {segments_.begin(), segments_.end()}, false, {}, 0};
+    WorstBox worst{nodes_[0].box, {segments.begin(), segments.end()}, false, {}, 0};
     if (!look(worst)) return std::nullopt;
     for (int depth = 0; depth < kMaxTreeDepth; ++depth) {
         const Vec<2> size = worst.box.hi - worst.box.lo;
@@ -61,7 +63,7 @@ std::optional<Refusal> CurvatureTree::torn_place(const DerivativeQuery<2, 3>& su
         for (const bool upper : {false, true}) {
             WorstBox part = half_of(worst, cut_at->axis, cut_at->at, upper);
             if (part.near.empty() && !part.inside) {
-                part.inside = holds_inside(0.5 * (part.box.lo + part.box.hi), polygon);
+                part.inside = rows_->is_inside(0.5 * (part.box.lo + part.box.hi));
                 if (!part.inside) continue;
             }
             if (look(part) && (!next || part.error > next->error)) next = std::move(part);

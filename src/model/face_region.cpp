@@ -94,6 +94,11 @@ void FaceRegion::add(const Vec<2>& from, const Vec<2>& to, const Vec<2>& sag) {
     }
 }
 
+FaceRegion FaceRegion::ready() {
+    rows_ = PolygonRows(points_, segments_);
+    return std::move(*this);
+}
+
 Result<FaceRegion> FaceRegion::rough(const Face& face, const std::vector<Edge>& edges) {
     return make(
         face, edges, [](const Box<2>&, const Vec<2>&) { return 0.0; }, 1);
@@ -111,7 +116,7 @@ Result<FaceRegion> FaceRegion::make(const Face& face, const std::vector<Edge>& e
             if (!is_finite(corner[i]))
                 return refuse(RefusalKind::invalid, "loops", "a face without boundary on an endless surface");
         for (int i = 0; i < 4; ++i) out.add(corner[i], corner[(i + 1) % 4], {});
-        return out;
+        return out.ready();
     }
     for (std::size_t l = 0; l < face.loops.size(); ++l) {
         std::vector<Vec<2>> ends;  // first and last of each coedge
@@ -133,14 +138,12 @@ Result<FaceRegion> FaceRegion::make(const Face& face, const std::vector<Edge>& e
         for (std::size_t k = 1; k < ends.size(); k += 2)
             if (const Vec<2>& next = ends[(k + 1) % ends.size()]; next != ends[k]) out.add(ends[k], next, {});
     }
-    return out;
+    return out.ready();
 }
 
 bool FaceRegion::meets(const Box<2>& box, std::size_t i) const {
     const Box<2> fat{box.lo - sags_[i], box.hi + sags_[i]};
     return freiform::meets(fat, points_[std::size_t(segments_[i][0])], points_[std::size_t(segments_[i][1])]);
 }
-
-bool FaceRegion::is_inside(const Vec<2>& x) const { return freiform::is_inside(x, points_, segments_); }
 
 }  // namespace freiform

@@ -1,6 +1,7 @@
 // The part of the parameter plane that a face is: its boundary as chords, each with a proven bound of how far
 // the parameter curve leaves it. For measuring; meshes are made from polygons of their own (edge_mesh.cpp).
 #pragma once
+#include <freiform/mesh/segment_box.hpp>
 #include <freiform/model/model.hpp>
 #include <freiform/spline/derivative_bounds.hpp>
 
@@ -34,16 +35,18 @@ public:
     // Bound: how far the curve leaves chord i, in u and in v.
     const Vec<2>& sag(std::size_t i) const { return sags_[i]; }
     // Odd-even rule. REQUIRES a point in a box that meets nothing.
-    bool is_inside(const Vec<2>& x) const;
+    bool is_inside(const Vec<2>& x) const { return rows_.is_inside(x); }
     // Points of the face's boundary.
     const std::vector<Vec<2>>& points() const { return points_; }
 
 private:
+    FaceRegion ready();  // all are there
     void add(const Vec<2>& from, const Vec<2>& to, const Vec<2>& sag);
 
     std::vector<Vec<2>> points_;
     std::vector<std::array<int, 2>> segments_;
     std::vector<Vec<2>> sags_;
+    PolygonRows rows_;
     Box<2> box_;
 };
 

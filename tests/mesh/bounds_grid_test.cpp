@@ -63,6 +63,27 @@ TEST(BoundsGrid, far_away_nothing_is_said) {
     EXPECT_FALSE(BoundsGrid().over({{{0, 0}}, {{0, 0}}}));
 }
 
+TEST(BoundsGrid, groups_of_cells_share_them) {
+    Random random(43);
+    const Box<2> whole{{{-1, 0}}, {{1, 3}}};
+    for (const int groups : {2, 3, 7}) {
+        BoundsGrid at_once(whole, {{0.1, 0.2}}), in_groups(whole, {{0.1, 0.2}});
+        int asked = 0;
+        for (int k = 0; k < 200; ++k) {
+            const Box<2> part = random_box(random, whole, 0.2);
+            const BoundsGrid::Bounds bounds{random.real(0, 1), random.real(0, 1), 0, random.real(0, 1)};
+            at_once.include(part, bounds);
+            for (int g = 0; g < groups; ++g)
+                in_groups.include(part, g, groups, [&] { return ++asked, bounds; });
+        }
+        EXPECT_LT(asked, 200 * groups);
+        for (int k = 0; k < 200; ++k) {
+            const Box<2> box = random_box(random, whole, 0.1);
+            EXPECT_EQ(in_groups.over(box), at_once.over(box));
+        }
+    }
+}
+
 TEST(BoundsGrid, a_box_without_an_extent_has_one_cell) {
     BoundsGrid grid({{{2, 3}}, {{2, 5}}}, {{0, 0.5}});
     grid.include({{{2, 3}}, {{2, 3.2}}}, {1, 0, 0, 0});
