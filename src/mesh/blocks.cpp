@@ -42,12 +42,16 @@ public:
           avoid_(avoid),
           table_(tree.corners().size() + tree.block_count()) {}
 
-    BlockMesh run(const std::function<void(const BlockOutline&)>& around) {
+    BlockMesh run(const BesideBlocks& beside) {
         outline_.corners.assign(tree_.corners().begin(), tree_.corners().end());
-        judge_all();
-        take_all();
-        if (!blocks_.empty() || !leaves_.empty()) find_outline();
-        parallel_for(2, is_shared_ ? 1 : 2, [&](std::size_t k) { k == 0 ? fill() : around(outline_); });
+        parallel_for(2, is_shared_ ? 1 : 2, [&](std::size_t k) {
+            if (k == 1) return beside.before();
+            judge_all();
+            take_all();
+            if (!blocks_.empty() || !leaves_.empty()) find_outline();
+        });
+        parallel_for(2, is_shared_ ? 1 : 2,
+                     [&](std::size_t k) { k == 0 ? fill() : beside.around(outline_); });
         out_.outline = std::move(outline_);
         return std::move(out_);
     }
@@ -385,8 +389,8 @@ private:
 }  // namespace
 
 BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
-                      std::span<const Vec<2>> avoid, const std::function<void(const BlockOutline&)>& around) {
-    return BlockMesher(tree, judge, tolerance, is_shared, avoid).run(around);
+                      std::span<const Vec<2>> avoid, const BesideBlocks& beside) {
+    return BlockMesher(tree, judge, tolerance, is_shared, avoid).run(beside);
 }
 
 }  // namespace freiform

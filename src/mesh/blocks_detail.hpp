@@ -25,9 +25,14 @@ struct BlockMesh {
     double bound = 0;  // of the distance, of all triangles
 };
 
-// Blocks near places to `avoid` are left out. `around` is called with the outline, once. `is_shared`: all
-// threads may be used; triangles inside of the outline are then made meanwhile, else before.
+// What else there is to do, called once each: `before` while the outline is found, `around` with the outline
+// while triangles inside of it are made; one after the other unless `is_shared`: all threads may be used.
+struct BesideBlocks {
+    std::function<void()> before;
+    std::function<void(const BlockOutline&)> around;
+};
+// Blocks near places to `avoid` are left out.
 BlockMesh mesh_blocks(const CurvatureTree& tree, const Judge& judge, double tolerance, bool is_shared,
-                      std::span<const Vec<2>> avoid, const std::function<void(const BlockOutline&)>& around);
+                      std::span<const Vec<2>> avoid, const BesideBlocks& beside);
 
 }  // namespace freiform

@@ -188,46 +188,61 @@ struct Filling {
     const Judge& judge;
 };
 
-// What lies outside the blocks. `stuck`: where they have to be left out, if that is why there is nothing.
-// `first_on_outline`: a vertex; the others on the outline follow it.
-Result<FaceMesh> mesh_around(const Filling& f, Polygon polygon, const BlockOutline& outline,
+std::vector<Vec<2>> scaled(std::span<const Vec<2>> points, const Vec<2>& scale) {
+    std::vector<Vec<2>> out(points.begin(), points.end());
+    for (Vec<2>& p : out) p = {{p[0] * scale[0], p[1] * scale[1]}};
+    return out;
+}
+
+// The polygon of the boundary, as far as it can be triangulated without the outline of blocks.
+struct Bounded {
+    Polygon polygon;
+    Vec<2> scale;
+    Result<Triangulation> triangulation;
+    std::vector<int> place;  // of its points: the first one that stands for the same mesh point
+};
+
+// `corners`: where poles may be cut.
+Bounded bounded(const Filling& f, Polygon polygon, std::span<const CurvatureTree::Corner> corners,
+                const Vec<2>& leaf) {
+    cut_poles(polygon, f.boundary, corners, leaf);
+    const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
+    auto triangulation = Triangulation::make(scaled(polygon.points, scale), polygon.segments);
+    std::vector<int> place;
+    std::map<int, int> first;
+    for (const int corner : polygon.corner)
+        place.push_back(
+            first.try_emplace(f.boundary.point[std::size_t(corner)], int(place.size())).first->second);
+    return {std::move(polygon), scale, std::move(triangulation), std::move(place)};
+}
+
+// What lies outside the blocks. `corners`: points to begin with. `stuck`: where blocks have to be left out,
+// if that is why there is nothing. `first_on_outline`: a vertex; the others on the outline follow it.
+Result<FaceMesh> mesh_around(const Filling& f, Bounded inner, int merged_corners, const GridLines* grid,
+                             std::span<const CurvatureTree::Corner> corners, const BlockOutline& outline,
                              std::vector<Vec<2>>& stuck, int& first_on_outline) {
     const auto& [surface, boundary, demands, max_triangles, extra, ways, tree, judge] = f;
+    auto& [polygon, scale, triangulation, place] = inner;
     const double tolerance = demands.tolerance;
-    const int merged_corners = int(polygon.points.size());
-    const auto grid = grid_of(surface, tree, polygon, demands, max_triangles);
-    const std::vector<CurvatureTree::Corner> crossings =
-        grid ? crossings_of(*grid, demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
-    const std::span<const CurvatureTree::Corner> corners = grid ? crossings : outline.corners;
-    const Vec<2> leaf = grid ? mean_cell(*grid) : tree.mean_leaf();
-    cut_poles(polygon, boundary, corners, leaf);
-    const Vec<2> scale{{scale_for(leaf[0]), scale_for(leaf[1])}};
+    if (!triangulation) return std::unexpected(triangulation.error());
     // The outline is a boundary as the polygon is.
     const int first_outline = int(polygon.points.size());
-    std::vector<Vec<2>> points = polygon.points;
-    points.insert(points.end(), outline.points.begin(), outline.points.end());
-    for (const auto& [a, b] : outline.sides)
-        polygon.segments.push_back({first_outline + a, first_outline + b});
-    for (Vec<2>& p : points) p = {{p[0] * scale[0], p[1] * scale[1]}};
-    auto triangulation = Triangulation::make(points, polygon.segments);
-    if (!triangulation) return std::unexpected(triangulation.error());
+    std::vector<Triangulation::Segment> sides;
+    for (const auto& [a, b] : outline.sides) sides.push_back({first_outline + a, first_outline + b});
+    if (!outline.points.empty())
+        if (auto ok = triangulation->extend(scaled(outline.points, scale), sides); !ok)
+            return std::unexpected(ok.error());
 
     Filler filler(*triangulation, tree, judge, surface, scale, demands);
     filler.keep_feet(first_outline, outline.needs_foot, outline.plain);
     for (const Vec<2>& p : extra) triangulation->insert({{p[0] * scale[0], p[1] * scale[1]}});
     filler.insert_corners(corners);
-    // Corners that stand for the same mesh point, numbered by the first of them.
-    std::vector<int> place(points.size());
-    std::map<int, int> first;
-    for (std::size_t i = 0; i < place.size(); ++i)
-        place[i] =
-            i < polygon.corner.size()
-                ? first.try_emplace(boundary.point[std::size_t(polygon.corner[i])], int(i)).first->second
-                : int(i);
+    const std::size_t at_first = polygon.points.size() + outline.points.size();
+    while (place.size() < at_first) place.push_back(int(place.size()));
     // Leaves and boundary say how many points to expect; many times as many mean that something does not
     // converge.
-    const std::size_t limit = std::size_t(max_triangles) / 2 + points.size();
-    const std::size_t expected = points.size() + corners.size() + 600;
+    const std::size_t limit = std::size_t(max_triangles) / 2 + at_first;
+    const std::size_t expected = at_first + corners.size() + 600;
     const std::size_t most = demands.shapes_triangles()
                                  ? limit
                                  : std::min(limit, (ways.knows_normals ? kHope : kPatience) * expected);
@@ -278,16 +293,35 @@ Result<FaceMesh> mesh_around(const Filling& f, Polygon polygon, const BlockOutli
     return out;
 }
 
+// Whether poles are part of the boundary, which cut_poles may cut.
+bool has_poles(const Polygon& polygon, const FaceBoundary& boundary) {
+    const auto point = [&](int i) { return boundary.point[std::size_t(polygon.corner[std::size_t(i)])]; };
+    return std::ranges::any_of(polygon.segments, [&](const auto& s) { return point(s.a) == point(s.b); });
+}
+
 // Blocks are left out near places to `avoid`. `stuck`: as above.
 Result<FaceMesh> filled_around(const Filling& f, const Polygon& polygon, std::span<const Vec<2>> avoid,
                                std::vector<Vec<2>>& stuck) {
+    const auto grid = grid_of(f.surface, f.tree, polygon, f.demands, f.max_triangles);
+    const std::vector<CurvatureTree::Corner> crossings =
+        grid ? crossings_of(*grid, f.demands.lines != nullptr) : std::vector<CurvatureTree::Corner>{};
+    const bool waits = !grid && has_poles(polygon, f.boundary);  // for corners of leaves
+    std::optional<Bounded> inner;
     Result<FaceMesh> out;
     int first_on_outline = 0;
+    const auto begin = [&](std::span<const CurvatureTree::Corner> corners) {
+        inner = bounded(f, polygon, corners, grid ? mean_cell(*grid) : f.tree.mean_leaf());
+    };
+    const auto before = [&] {
+        if (!waits) begin(crossings);
+    };
     const auto around = [&](const BlockOutline& outline) {
-        out = mesh_around(f, polygon, outline, stuck, first_on_outline);
+        if (waits) begin(outline.corners);
+        out = mesh_around(f, std::move(*inner), int(polygon.points.size()), grid ? &*grid : nullptr,
+                          grid ? crossings : outline.corners, outline, stuck, first_on_outline);
     };
     const BlockMesh blocks =
-        mesh_blocks(f.tree, f.judge, f.demands.tolerance, f.demands.is_shared, avoid, around);
+        mesh_blocks(f.tree, f.judge, f.demands.tolerance, f.demands.is_shared, avoid, {before, around});
     if (out) add_blocks(*out, blocks, first_on_outline);
     return out;
 }

@@ -208,11 +208,13 @@ void Triangulation::triangulate_points() {
 // number of segments ends at each point, all ways to a triangle cross the same number of segments modulo 2.
 void Triangulation::find_inside() {
     std::vector<int> todo;
-    for (int t = 0; t < size(); ++t)
+    for (int t = 0; t < size(); ++t) {
+        at(t).flags &= std::uint8_t(~kInsideFlag);
         if (is_infinite(t)) {
             todo.push_back(t);
             at(t).flags |= kMarkFlag;
         }
+    }
     while (!todo.empty()) {
         const int t = todo.back();
         todo.pop_back();
@@ -225,6 +227,31 @@ void Triangulation::find_inside() {
         }
     }
     for (Triangle& t : triangles_) t.flags &= std::uint8_t(~kMarkFlag);
+}
+
+Result<void> Triangulation::extend(std::span<const Vec<2>> points, std::span<const Segment> segments) {
+    const std::size_t before = points_.size();
+    points_.insert(points_.end(), points.begin(), points.end());
+    vertex_triangle_.resize(points_.size(), -1);
+    if (auto ok = check_input(points_, segments); !ok) return std::unexpected(std::move(ok.error().refusal));
+    if (triangles_.empty()) return refuse(RefusalKind::invalid, "points", "the others are on one line");
+    start_change();
+    for (const int k : detail::insertion_order(points)) {
+        const int v = int(before) + k;
+        const Location where = locate(point(v));
+        if (where.on == Location::On::vertex ||
+            (where.on == Location::On::edge && is_constrained(where.triangle, where.part)))
+            return refuse(RefusalKind::invalid, text("points[", v, "]"),
+                          "equals another point, or lies on a segment");
+        insert_vertex(v, where);
+    }
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        if (Conflict c; !insert_segment(segments[i], c))
+            return refuse(RefusalKind::invalid, text("segments[", i, "]"),
+                          "crosses another segment, or passes through a point");
+    find_inside();
+    changed_.clear();
+    return {};
 }
 
 Triangulation::Edge Triangulation::find_edge(int a, int b) const {

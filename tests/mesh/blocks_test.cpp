@@ -197,8 +197,8 @@ TEST(Blocks, of_steep_hills_do_without_feet) {
             for (std::size_t i = 0; i < tree.block_count(); ++i) leaves += tree.block(i).first_part < 0;
             const Judge judge(tree, surface, {boundary.uv.front(), {{6, 6}}}, tolerance);
             BlockOutline told;
-            const auto blocks =
-                mesh_blocks(tree, judge, tolerance, true, {}, [&](const BlockOutline& o) { told = o; });
+            const auto blocks = mesh_blocks(tree, judge, tolerance, true, {},
+                                            {[] {}, [&](const BlockOutline& o) { told = o; }});
             const BlockOutline& outline = blocks.outline;
             EXPECT_EQ(told.sides, outline.sides);
             ASSERT_EQ(outline.plain.size(), outline.points.size());
@@ -212,7 +212,7 @@ TEST(Blocks, of_steep_hills_do_without_feet) {
                               on_outline = outline.points.size();
             const Vec<2> place = some < on_outline ? outline.points[some] : blocks.points[some - on_outline];
             const auto less = mesh_blocks(tree, judge, tolerance, false, std::vector<Vec<2>>{place},
-                                          [](const BlockOutline&) {});
+                                          {[] {}, [](const BlockOutline&) {}});
             EXPECT_LT(less.triangles.size(), blocks.triangles.size());
             EXPECT_GT(less.outline.corners.size(), outline.corners.size());
             for (const auto& p : less.outline.points) EXPECT_NE(p, place);
@@ -273,7 +273,7 @@ TEST(Blocks, are_halved_along_waves_and_meet_in_the_middle_beside_finer_ones) {
             CurvatureTree::make(surface, boundary.uv, boundary.segments, demands, 1'000'000, {true, true}));
         const Judge judge(tree, surface, {{{0, 0}}, {{9, 9}}}, demands.tolerance);
         const BlockMesh blocks =
-            mesh_blocks(tree, judge, demands.tolerance, false, {}, [](const BlockOutline&) {});
+            mesh_blocks(tree, judge, demands.tolerance, false, {}, {[] {}, [](const BlockOutline&) {}});
         std::vector<Vec<2>> points = blocks.outline.points;
         points.insert(points.end(), blocks.points.begin(), blocks.points.end());
         int falling = 0, rising = 0;

@@ -138,6 +138,10 @@ public:
         start_change();
         return {Insert::done, insert_at(p, where)};
     }
+    // More points, whose numbers follow those that are there, and segments, which may end at any of them:
+    // what is there counts as a boundary as before. Refused as `make` does; the triangulation is of no use
+    // then.
+    Result<void> extend(std::span<const Vec<2>> points, std::span<const Segment> segments);
     // Inserts many points in an order of its own, which is fast: result[i] is about points[i]. Of equal
     // points, one is inserted.
     std::vector<Inserted> insert_all(std::span<const Vec<2>> points);
