@@ -74,3 +74,15 @@ test('a module with instructions that are not known is refused', () => {
   bad[bad.length - 2] = 0xff;
   assert.throws(() => ordered(bad), /no instruction: 0xff/);
 });
+
+test('locals that are used most have the first numbers of their type, and those of no use are gone', () => {
+  // (x: i32) => i32 with locals 1: f64, 2: i64, of no use, 3 and 4: i32; 4 is used most.
+  const code = [0x20, 0, 0x41, 5, 0x6a, 0x21, 4, 0x20, 4, 0xb7, 0x22, 1, 0xaa, 0x22, 3, 0x20, 4, 0x6a, 0x20, 4, 0x6a];
+  const given = Uint8Array.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0, ...section(1, 1, 0x60, 1, 0x7f, 1, 0x7f),
+    ...section(3, 1, 0), ...section(7, 1, ...name('f'), 0, 0),
+    ...section(10, 1, code.length + 8, 3, 1, 0x7c, 1, 0x7e, 2, 0x7f, ...code, 0x0b)]);
+  const now = ordered(given);
+  const f = (bytes) => new WebAssembly.Instance(new WebAssembly.Module(bytes)).exports.f;
+  for (const x of [0, 7, -100]) assert.deepStrictEqual([f(given)(x), f(now)(x)], [3 * (x + 5), 3 * (x + 5)]);
+  assert(Buffer.from(now).includes(Buffer.from([2, 2, 0x7f, 1, 0x7c, 0x20, 0, 0x41, 5, 0x6a, 0x21, 1, 0x20, 1, 0xb7, 0x22, 3])));
+});
