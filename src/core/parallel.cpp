@@ -8,6 +8,7 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <pthread.h>
 #endif
 
 namespace freiform {
@@ -16,6 +17,15 @@ namespace {
 std::atomic<int> g_max_threads{0};
 #ifndef FREIFORM_SERIAL
 thread_local bool t_is_inside = false;  // of a loop
+
+// A process that was forked off one with threads has none of them, though what is theirs says that they are
+// there: whoever waits for them waits forever. It does without.
+std::atomic<bool> g_has_lost_threads{false};
+
+void watch_forks() {
+    [[maybe_unused]] static const int once =
+        pthread_atfork(nullptr, nullptr, [] { g_has_lost_threads = true; });
+}
 #endif
 }  // namespace
 
@@ -25,7 +35,8 @@ int max_threads() { return g_max_threads; }
 #ifndef FREIFORM_SERIAL
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t)>& f) {
     grain = std::max<std::size_t>(grain, 1);
-    if (const int threads = g_max_threads; n >= 2 * grain && threads != 1) {
+    if (const int threads = g_max_threads; n >= 2 * grain && threads != 1 && !g_has_lost_threads) {
+        watch_forks();
         const auto loop = [&] {
             oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, n, grain),
                                       [&](const auto& range) {

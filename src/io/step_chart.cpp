@@ -230,29 +230,30 @@ std::optional<Vec<2>> Chart::closed_form(const Vec<3>& p) const {
     return best;
 }
 
-void Chart::make_grid() const {
+std::unique_ptr<Chart::Grid> Chart::make_grid() const {
     std::array<Interval, 2> on = whole_;
     for (std::size_t k = 0; k < 2; ++k)
         if (!std::isfinite(on[k].length())) on[k] = {-8, 8};
     const auto us = samples_of(*s_, 0, on[0]), vs = samples_of(*s_, 1, on[1]);
-    grid_.reserve(us.size() * vs.size());
-    columns_ = vs.size();
+    auto out = std::make_unique<Grid>(Grid{{}, vs.size()});
+    out->samples.reserve(us.size() * vs.size());
     for (const double u : us)
-        for (const double v : vs) grid_.push_back({{{u, v}}, jet<0>(*s_, {u, v}).value()});
+        for (const double v : vs) out->samples.push_back({{{u, v}}, jet<0>(*s_, {u, v}).value()});
+    return out;
 }
 
 Vec<2> Chart::locate(const Vec<3>& p) const {
     if (const auto at = closed_form(p)) return *at;
-    if (grid_.empty()) make_grid();
+    const auto& [grid, columns] = grid_.get([&] { return make_grid(); });
     const auto* e = std::get_if<Extrusion>(s_);
     std::vector<std::pair<double, Vec<2>>> seen;
-    for (const Sample& s : grid_) {
+    for (const Sample& s : grid) {
         Vec<2> at = s.at;
         double d = norm(s.point - p);
         if (e) {  // along the direction of an extrusion the nearest point has a closed form
             const Vec<3> r = p - s.point;
             const double v = dot(r, e->direction) / dot(e->direction, e->direction);
-            d = at[1] == grid_.front().at[1] ? norm(r - v * e->direction) : kInfinity;
+            d = at[1] == grid.front().at[1] ? norm(r - v * e->direction) : kInfinity;
             at[1] += v;
         }
         seen.push_back({d, at});
@@ -271,10 +272,10 @@ Vec<2> Chart::locate(const Vec<3>& p) const {
         const auto is_farther = [&](std::size_t k) {
             return k >= seen.size() || !(seen[k].first < seen[i].first);
         };
-        const std::size_t along = i % columns_;
+        const std::size_t along = i % columns;
         keep(0, seen[i]);
-        if ((along == 0 || is_farther(i - 1)) && (along + 1 == columns_ || is_farther(i + 1)) &&
-            is_farther(i - columns_) && is_farther(i + columns_))
+        if ((along == 0 || is_farther(i - 1)) && (along + 1 == columns || is_farther(i + 1)) &&
+            is_farther(i - columns) && is_farther(i + columns))
             keep(4, seen[i]);
     }
     Foot nearest;

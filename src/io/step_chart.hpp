@@ -4,6 +4,8 @@
 #include <freiform/core/constants.hpp>
 #include <freiform/spline/geometry.hpp>
 
+#include <atomic>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,6 +25,26 @@ struct Foot {
     Vec<2> at{}, slope{};  // the parameters, and their derivative by that of the curve
     double distance = 0;   // of the point of the surface there
     bool regular = false;  // false: at a pole or a fold, where `slope` means nothing
+};
+
+// What is made when it is first asked for, by any thread: of several that make it at once, one is kept.
+// Copies make their own.
+template <class T>
+class Once {
+public:
+    Once() = default;
+    Once(const Once&) {}
+    Once& operator=(const Once&) = delete;
+    ~Once() { delete made_.load(); }
+    const T& get(auto&& make) const {
+        if (const T* made = made_.load()) return *made;
+        std::unique_ptr<const T> own = make();
+        const T* kept = nullptr;
+        return made_.compare_exchange_strong(kept, own.get()) ? *own.release() : *kept;
+    }
+
+private:
+    mutable std::atomic<const T*> made_{nullptr};
 };
 
 class Chart {
@@ -67,7 +89,15 @@ private:
     void poles_of(const Revolution& s, double close);
     void poles_of_sides(double stated);
     std::optional<Vec<2>> closed_form(const Vec<3>& p) const;
-    void make_grid() const;
+    struct Sample {
+        Vec<2> at;
+        Vec<3> point;
+    };
+    struct Grid {
+        std::vector<Sample> samples;
+        std::size_t columns;
+    };
+    std::unique_ptr<Grid> make_grid() const;
 
     const SurfaceGeometry* s_;
     double close_, seam_;
@@ -75,12 +105,7 @@ private:
     std::array<Interval, 2> whole_{};
     std::array<bool, 2> spline_{};
     std::vector<Pole> poles_;
-    struct Sample {
-        Vec<2> at;
-        Vec<3> point;
-    };
-    mutable std::vector<Sample> grid_;
-    mutable std::size_t columns_ = 0;  // of it
+    Once<Grid> grid_;
 };
 
 }  // namespace freiform::step

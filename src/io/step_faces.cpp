@@ -5,6 +5,7 @@
 #include "step_tangles.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/core/parallel.hpp>
 #include <freiform/model/edge_gap.hpp>
 
 #include <algorithm>
@@ -60,13 +61,21 @@ double ShapeReader::accuracy_for(double size) const {
 
 bool ShapeReader::is_beside(double gap, double size) const { return gap > kBeside * accuracy_for(size); }
 
+std::vector<CurveGeometry<3>> ShapeReader::images_of(const EdgeMade& made, const Chart& chart) {
+    const auto on = charts_.find(&chart);
+    if (on == charts_.end() || made.curve == kMissing) return {};
+    return geometry_.images(made.curve, on->second);
+}
+
 Result<Use> ShapeReader::use_of(const EdgeMade& made, bool forward, const Chart& chart, double size,
                                 int loosely) {
+    return use_of(made, images_of(made, chart), forward, chart, size, loosely);
+}
+
+Result<Use> ShapeReader::use_of(const EdgeMade& made, std::span<const CurveGeometry<3>> images, bool forward,
+                                const Chart& chart, double size, int loosely) const {
     const Edge& e = out_.model.edges[std::size_t(made.edge)];
     const double rough = std::max(tolerance_, kRough * size);
-    std::vector<CurveGeometry<3>> images;
-    if (const auto on = charts_.find(&chart); on != charts_.end() && made.curve != kMissing)
-        images = geometry_.images(made.curve, on->second);
     auto t = trace(chart, *e.curve, e.range, accuracy_for(size), rough, images);
     if (!t) return std::unexpected(t.error());
     if (loosely > 1 && is_beside(t->gap, size))
@@ -98,12 +107,24 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
     const auto at = f->reference(1, "loop");
     if (!at) return std::unexpected(at.error());
     std::vector<Use> uses;
-    const auto append = [&](const EdgeMade& made, bool along, std::uint32_t of) -> Result<void> {
-        if (made.empty) return {};
-        auto u = use_of(made, along, chart, size, loosely);
-        if (!u) return refuse(u.error().kind, f_.label(of), text(u.error().where, ": ", u.error().message));
-        if (auto ok = accept_gap(of, *u, chart, size); !ok) return ok;
-        uses.push_back(std::move(*u));
+    // Each edge is followed by itself, by any thread.
+    const auto append = [&](std::vector<LoopPiece> pieces) -> Result<void> {
+        std::erase_if(pieces, [](const LoopPiece& p) { return p.made.empty; });
+        std::vector<std::vector<CurveGeometry<3>>> images;
+        for (const LoopPiece& p : pieces) images.push_back(images_of(p.made, chart));
+        std::vector<std::optional<Result<Use>>> followed(pieces.size());
+        const bool takes_long = chart.is_spline(0) || chart.is_spline(1);
+        parallel_for(pieces.size(), takes_long ? 1 : pieces.size(), [&](std::size_t k) {
+            followed[k] = use_of(pieces[k].made, images[k], pieces[k].along, chart, size, loosely);
+        });
+        for (std::size_t k = 0; k < pieces.size(); ++k) {
+            auto& u = *followed[k];
+            if (!u)
+                return refuse(u.error().kind, f_.label(pieces[k].of),
+                              text(u.error().where, ": ", u.error().message));
+            if (auto ok = accept_gap(pieces[k].of, *u, chart, size); !ok) return ok;
+            uses.push_back(std::move(*u));
+        }
         return {};
     };
     if (f_.is(*at, Type::VERTEX_LOOP)) {
@@ -118,8 +139,9 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
     if (f_.is(*at, Type::POLY_LOOP)) {
         const auto made = polygon_edges(*at, forward);
         if (!made) return std::unexpected(made.error());
-        for (const EdgeMade& e : *made)
-            if (auto ok = append(e, true, *at); !ok) return ok;
+        std::vector<LoopPiece> pieces;
+        for (const EdgeMade& e : *made) pieces.push_back({e, true, *at});
+        if (auto ok = append(std::move(pieces)); !ok) return ok;
     } else {
         const auto g = Fields::of(f_, *at, Type::EDGE_LOOP, 2);
         if (!g) return std::unexpected(g.error());
@@ -142,8 +164,7 @@ Result<void> ShapeReader::add_bound(std::uint32_t i, bool forward, const Chart& 
             for (std::size_t k = 0; k < e.made.size(); ++k)
                 pieces.push_back({e.made[e.along ? k : e.made.size() - 1 - k], e.along, e.edge});
         fold_twins(pieces);
-        for (const LoopPiece& p : pieces)
-            if (auto ok = append(p.made, p.along, p.of); !ok) return ok;
+        if (auto ok = append(std::move(pieces)); !ok) return ok;
     }
     if (uses.empty()) return {};
     if (auto ok = close_loop(*at, uses, chart, size, loosely); !ok) return ok;

@@ -172,6 +172,9 @@ private:
     // `loosely`: 1, an edge beside the surface is followed no closer than it lies beside it; more, by
     // polygons within more and more times the tolerance.
     Result<Use> use_of(const EdgeMade& made, bool forward, const Chart& chart, double size, int loosely = 0);
+    Result<Use> use_of(const EdgeMade& made, std::span<const CurveGeometry<3>> images, bool forward,
+                       const Chart& chart, double size, int loosely) const;
+    std::vector<CurveGeometry<3>> images_of(const EdgeMade& made, const Chart& chart);
     // step_swept.cpp: whether the item is such a solid.
     bool add_swept(std::uint32_t item);
     Result<SweptRegion> swept_region(std::uint32_t i);

@@ -1,10 +1,13 @@
 #include <freiform/core/parallel.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 namespace freiform {
@@ -82,6 +85,30 @@ TEST(ParallelFor, gives_the_same_bits_for_any_number_of_threads) {
     };
     EXPECT_EQ(compute(1), compute(2));
     EXPECT_EQ(compute(1), compute(0));
+}
+
+// It has none of the threads of the one it was forked off, and whatever these were at.
+TEST(ParallelFor, forked_processes_go_on_alone) {
+    const auto is_done = [] {
+        std::vector<std::atomic<int>> calls(64);
+        for (int round = 0; round < 20; ++round)
+            parallel_for(calls.size(), 1, [&](std::size_t i) {
+                parallel_for(4, 1, [&](std::size_t) { calls[i] += int(std::sqrt(double(i + 1))) > 0; });
+            });
+        return std::all_of(calls.begin(), calls.end(), [](const auto& c) { return c == 80; });
+    };
+    for (int k = 0; k < 300; ++k) {
+        ASSERT_TRUE(is_done());
+        const pid_t child = fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            alarm(30);
+            _exit(is_done() ? 0 : 1);
+        }
+        int status = 0;
+        ASSERT_EQ(waitpid(child, &status, 0), child);
+        ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "after " << k;
+    }
 }
 
 TEST(ParallelFor, a_negative_limit_means_no_limit) {
