@@ -24,9 +24,12 @@ struct Piece {
 
 // A parameter curve whose distance from its edge has to be proven.
 struct Suspect {
-    const Coedge* coedge = nullptr;
+    Coedge* coedge = nullptr;
     double sampled = 0;  // the largest gap among samples
     bool replaced = false, stretched = false;
+    bool is_first = true;  // of its edge
+    EdgeGap gap = {};
+    bool is_changed() const { return replaced || stretched; }
 };
 
 class Converter {
@@ -63,9 +66,9 @@ private:
     // `bound` may be infinite: then nothing is proven, and the estimate is all there is.
     void report(int edge, std::string what, double bound, double estimate);
     Result<void> check_tolerance(Face& f, std::string_view where);
-    bool improve(const Face& f, Coedge& c, double size, double& worst);
-    void prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target,
-               std::string_view where);
+    bool improve(const Face& f, Coedge& c, double size, double& worst) const;
+    EdgeGap gap_of(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target) const;
+    void tell(const Suspect& suspect, const EdgeGap& gap, std::string_view where);
     int shell(const TopoDS_Shape& s, bool closed, const TopLoc_Location& at, const Part& part);
     void body(const TopoDS_Shape& s, bool solid, const Part& part, const TopLoc_Location& at);
 

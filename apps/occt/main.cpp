@@ -8,6 +8,7 @@
 #include "convert.hpp"
 #include "verify.hpp"
 
+#include <freiform/core/parallel.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/model_binary.hpp>
 #include <freiform/model/rescale.hpp>
@@ -24,6 +25,7 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <malloc.h>
 #include <new>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -92,6 +94,17 @@ Result<void> write_all(int fd, std::string_view bytes) {
         bytes.remove_prefix(std::size_t(n));
     }
     return {};
+}
+
+// Threads take addresses before they use memory: few of them, and none where addresses are few.
+void limit_threads() {
+    constexpr rlim_t kEnough = rlim_t(2) << 30;
+    struct rlimit limit {};
+    const bool is_free = ::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY;
+    set_max_threads(is_free || limit.rlim_cur >= kEnough ? 4 : 1);
+#if defined(__GLIBC__)
+    ::mallopt(M_ARENA_MAX, 2);
+#endif
 }
 
 // Whether the address space was nearly used up at some time. The reader takes the failure of an allocation
@@ -217,6 +230,7 @@ int main(int count, char** values) {
     const int output = ::dup(STDOUT_FILENO);
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
+    limit_threads();
     try {
         return run(*arguments, output);
     } catch (const Standard_OutOfMemory&) {

@@ -4,9 +4,13 @@
 #include "converter.hpp"
 #include "refit.hpp"
 
+#include <freiform/core/parallel.hpp>
+#include <freiform/core/visit.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 namespace freiform::occt {
 
@@ -33,7 +37,7 @@ constexpr double kWorthRefitting = 1e-9, kHopeless = 0.25;
 }  // namespace
 
 // Replaces a parameter curve that misses its edge if that helps. `worst`: its gap, before and after.
-bool Converter::improve(const Face& f, Coedge& c, double size, double& worst) {
+bool Converter::improve(const Face& f, Coedge& c, double size, double& worst) const {
     const Edge& e = out_.model.edges[std::size_t(c.edge)];
     if (!e.curve || !(worst > kWorthRefitting * size)) return false;
     auto better = refit(f.surface, *e.curve, c.curve, e.range, kWorthRefitting / 10 * size);
@@ -45,19 +49,23 @@ bool Converter::improve(const Face& f, Coedge& c, double size, double& worst) {
     return true;
 }
 
+EdgeGap Converter::gap_of(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target) const {
+    const Coedge& c = *suspect.coedge;
+    const Edge& e = out_.model.edges[std::size_t(c.edge)];
+    const CurveGeometry<3> vertex = Line<3>{vertex_of(e), {}};
+    EdgeGapOptions options;
+    options.target = suspect.is_changed() ? target : e.tolerance;
+    options.factor = suspect.is_changed() ? 1.25 : 1.05;
+    return edge_gap(surface, c.curve, e.curve ? *e.curve : vertex, e.range, options);
+}
+
 // Lists a parameter curve that was replaced or does not keep the tolerance of the file, with a proven bound
 // of its distance from the edge, and raises the tolerance of the edge to it.
-void Converter::prove(const DerivativeQuery<2, 3>& surface, const Suspect& suspect, double target,
-                      std::string_view where) {
+void Converter::tell(const Suspect& suspect, const EdgeGap& gap, std::string_view where) {
     const Coedge& c = *suspect.coedge;
     Edge& e = out_.model.edges[std::size_t(c.edge)];
     const double stated = stated_[std::size_t(c.edge)];
-    const bool changed = suspect.replaced || suspect.stretched;
-    const CurveGeometry<3> vertex = Line<3>{vertex_of(e), {}};
-    EdgeGapOptions options;
-    options.target = changed ? target : e.tolerance;
-    options.factor = changed ? 1.25 : 1.05;
-    const EdgeGap gap = edge_gap(surface, c.curve, e.curve ? *e.curve : vertex, e.range, options);
+    const bool changed = suspect.is_changed();
     const double found = std::max(suspect.sampled, gap.found), estimate = kMargin * found,
                  distance = std::isfinite(gap.bound) ? gap.bound : estimate;
     const bool beyond = distance > stated;
@@ -85,27 +93,48 @@ double Converter::size_of(const Face& f) const {
 }
 
 // Replaces parameter curves that miss their edge, as far as that helps, and raises the tolerances of edges
-// that the others do not keep. Refuses the face if one misses by a good part of the size of the face.
+// that the others do not keep. Refuses the face if one misses by a good part of the size of the face. On
+// splines that takes longer than reading: threads share it.
 Result<void> Converter::check_tolerance(Face& f, std::string_view where) {
     const double size = size_of(f);
+    const bool takes_long = visit_one(
+        [](const auto& s) {
+            return requires { s.net(); };
+        },
+        f.surface);
+    const auto each = [&](std::span<Suspect> all, auto&& what) {
+        parallel_for(all.size(), takes_long ? 1 : all.size(), [&](std::size_t k) { what(all[k]); });
+    };
     std::vector<Suspect> suspects;
     for (Loop& l : f.loops)
-        for (Coedge& c : l.coedges) {
-            const Edge& e = out_.model.edges[std::size_t(c.edge)];
-            double worst = sampled_gap(f.surface, e, vertex_of(e), c.curve);
-            const bool replaced = improve(f, c, size, worst);
-            if (size > 0 && !(worst < kHopeless * size))
-                return refuse(
-                    RefusalKind::ill_conditioned, "parameter curve",
-                    text("misses its edge by ", in_file(worst), "; the face has a size of ", in_file(size)));
-            const bool stretched = std::find(stretched_.begin(), stretched_.end(),
-                                             std::pair(c.edge, c.reversed)) != stretched_.end();
-            if (replaced || stretched || kMargin * worst > e.tolerance)
-                suspects.push_back({&c, worst, replaced, stretched});
-        }
+        for (Coedge& c : l.coedges) suspects.push_back({&c});
+    each(suspects, [&](Suspect& s) {
+        const Edge& e = out_.model.edges[std::size_t(s.coedge->edge)];
+        s.sampled = sampled_gap(f.surface, e, vertex_of(e), s.coedge->curve);
+        s.replaced = improve(f, *s.coedge, size, s.sampled);
+    });
+    for (Suspect& s : suspects) {
+        if (size > 0 && !(s.sampled < kHopeless * size))
+            return refuse(
+                RefusalKind::ill_conditioned, "parameter curve",
+                text("misses its edge by ", in_file(s.sampled), "; the face has a size of ", in_file(size)));
+        s.stretched = std::find(stretched_.begin(), stretched_.end(),
+                                std::pair(s.coedge->edge, s.coedge->reversed)) != stretched_.end();
+    }
+    std::erase_if(suspects, [&](const Suspect& s) {
+        const Edge& e = out_.model.edges[std::size_t(s.coedge->edge)];
+        return !s.is_changed() && !(kMargin * s.sampled > e.tolerance);
+    });
     if (suspects.empty()) return {};
     const DerivativeQuery<2, 3> surface(f.surface);
-    for (const Suspect& s : suspects) prove(surface, s, kWorthRefitting * size, where);
+    const double target = kWorthRefitting * size;
+    // Of an edge that comes twice the second use is asked about with what the first makes of its tolerance.
+    std::set<int> seen;
+    for (Suspect& s : suspects) s.is_first = seen.insert(s.coedge->edge).second;
+    each(suspects, [&](Suspect& s) {
+        if (s.is_first) s.gap = gap_of(surface, s, target);
+    });
+    for (const Suspect& s : suspects) tell(s, s.is_first ? s.gap : gap_of(surface, s, target), where);
     return {};
 }
 
