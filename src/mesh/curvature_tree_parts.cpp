@@ -52,8 +52,8 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
                 if (b && (!limit || b->kind == RefusalKind::limit)) return b;
         return std::nullopt;
     };
-    if (kIsSerialBuild ||
-        !task_.in_parts) {  // into this tree at once, in the order in which parts are added below
+    if (kIsSerialBuild || !task_.in_parts) {
+        // Into this tree at once, in the order in which parts are added below.
         for (std::size_t i = 0; i < items.size(); ++i) {
             const BoxBending& outer = outers_[std::size_t(items[i].outer)].known;
             std::vector<Item> own{std::move(items[i])};

@@ -7,7 +7,7 @@
 namespace freiform {
 
 // Calls f(i) once for every i in [0, n), possibly at the same time; f may have such loops itself. Serial if n
-// < 2 * grain or max_threads == 1.
+// < 2 * grain or max_threads == 1, and in a process that was forked off one that has used threads.
 #ifdef FREIFORM_SERIAL  // a build without threads: nothing but the loop
 template <class F>
 void parallel_for(std::size_t n, std::size_t, const F& f) {
