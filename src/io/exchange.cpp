@@ -160,7 +160,7 @@ struct Outcome {
 #if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory takes terabytes of addresses
     limit(RLIMIT_AS, rlim_t(limits.memory_bytes));
 #endif
-    // Of all its threads together, should this process not live to stop it.
+    // Of all its threads together (apps/occt/main.cpp), should this process not live to stop it.
     constexpr double kMostThreads = 4;
     limit(RLIMIT_CPU, rlim_t(kMostThreads * std::min(limits.seconds, 1e9)) + 2);
     limit(RLIMIT_CORE, 0);
