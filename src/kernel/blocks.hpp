@@ -117,6 +117,7 @@ const BlockKernels& block_kernels();
 extern const BlockKernels kBaseBlocks;
 #if defined(__x86_64__)
 extern const BlockKernels kAvx2Blocks;
+extern const BlockKernels kAvx512Blocks;
 #endif
 
 }  // namespace freiform::kernel

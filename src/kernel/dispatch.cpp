@@ -64,7 +64,8 @@ void choose(const Kernels& other) { chosen().store(&other); }
 
 const BlockKernels& block_kernels() {
 #if defined(__x86_64__)
-    if (&kernels() != &kBase) return kAvx2Blocks;  // what has AVX-512 has AVX2
+    if (&kernels() == &kAvx512) return kAvx512Blocks;
+    if (&kernels() != &kBase) return kAvx2Blocks;
 #endif
     return kBaseBlocks;
 }

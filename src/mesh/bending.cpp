@@ -301,11 +301,9 @@ Vec<2> reach_of(const Bending& at, double e) {
 Shift shift_of(const Bending& at, double e, const Curvature& near, double reflected, bool is_deep) {
     Shift out;
     if (!(at.least > 0)) return out;
-    const double most = is_deep ? kMostQ : kMostQAtBoundary, ab = at.a * at.b, stretch = at.least * ab;
+    const double most = is_deep ? kMostQ : kMostQAtBoundary, stretch = at.least * (at.a * at.b);
     // Where q is clearly too large, it need not be known: divisions are most of the rest.
-    if (e * reflected * (near.uv * ab + std::max(near.uu * (at.b * at.b), near.vv * (at.a * at.a))) >
-        1.001 * most * (stretch * stretch))
-        return out;
+    if (e * reflected * bend_of_lengths(at, near) > 1.001 * most * (stretch * stretch)) return out;
     const double k =
         reflected * (near.uv / (at.a * at.b) + std::max(near.uu / (at.a * at.a), near.vv / (at.b * at.b)));
     const double q = e * k / (at.least * at.least) * (1 + 1e-9);

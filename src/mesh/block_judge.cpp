@@ -27,12 +27,15 @@ struct BlockJudge {
         const Vec<2> size = block.box.hi - block.box.lo, cell = kCellRounding * size;
         const double error = judge.cell_error(at, block.box, cell);
         double of_halves = error;
+        const auto& proof = tree.proof_of(block.node);
         if (at.knows_middle() && error > tolerance)
-            of_halves = std::min(error, judge.whole_halves_error(at, block.box));
+            of_halves = std::min(
+                error, proof.whole < kInfinity ? proof.whole : judge.whole_halves_error(at, block.box));
         JudgedBlock out;
         out.flat = within(error), out.flat_halves = within(of_halves);
         if (tree.is_all_plain()) return out;
-        if (at.knows_middle()) out.halves = within(judge.halves(at, block.box, of_halves, block.node).bound);
+        if (at.knows_middle())
+            out.halves = within(judge.halves(at, block.box, of_halves, proof.bound, block.node));
         if (!std::isfinite(out.halves)) out.halves = out.usual = of_leaf(at, error, 0);
         if (std::isfinite(out.halves)) out.footless = of_leaf(at, error, 1);
         return out;

@@ -41,7 +41,7 @@ namespace freiform {
 
 namespace {
 
-constexpr double kBeyond = 1.5;  // what surfaces may bend beside a leaf, times what they do within
+constexpr double kProofSlack = 1 + 1e-11;  // more than the roundings of bounds over cells
 
 // Half of the squared min-containment radius with the metric diag(A, B).
 double half_squared_radius(double A, double B, const Vec<2>& a, const Vec<2>& b, const Vec<2>& c) {
@@ -228,26 +228,32 @@ bool CurvatureTree::keeps(const Bending& b, const Vec<2>& size, bool kinks, doub
 
 // What only the sharper bound allows has to allow for what is beside the cell, too: where blocks fail, the
 // triangles around them have that bound for less.
-bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, double error,
-                          double tolerance) const {
+bool CurvatureTree::keeps(const Bending& b, const Box<2>& cell, bool kinks, double error, double tolerance,
+                          Proof& proof) const {
     if (kinks || !b.knows_middle()) return keeps(b, cell.hi - cell.lo, kinks, error, tolerance);
     if (error <= tolerance) return true;
-    const double of_halves = b.whole_halves_error(cell);
+    const double of_halves = kProofSlack * b.whole_halves_error(cell);
     // Slivers beside it have bounds of their own, which may be worse than those of halves with that side.
     const auto sides_keep = [&](bool along_normal) {
         return b.sides_error(cell.hi - cell.lo, along_normal) <= tolerance;
     };
-    if (of_halves <= tolerance && sides_keep(false)) return true;
+    const double whole = proof.whole = std::min(kProofSlack * error, of_halves);
+    const Shift shift = knows_normals_ ? shift_of(b, whole, b.full, kBeyond, true) : Shift{};
+    if (of_halves <= tolerance && sides_keep(false)) {
+        if (shift.exists) proof.bound = whole;
+        return true;
+    }
     if (!knows_normals_) return false;
-    const double whole = std::min(error, of_halves);
-    if (const Shift shift = shift_of(b, whole, b.full, kBeyond, true); shift.exists) {
+    if (shift.exists) {
         const double seen = b.halves_error(cell, shift.turn, shift.left_of(tolerance, whole));
-        const bool keeps = shift.across(seen, whole) <= tolerance;
+        const double bound = kProofSlack * shift.across(seen, whole);
+        const bool keeps = bound <= tolerance;
+        if (keeps) proof.bound = bound;
         if (keeps && sides_keep(true)) return true;
         if (!keeps && b.fit.exists()) return false;  // nor will what says less
     }
-    const Shift shift = shift_of(b, error, b.full, kBeyond, true);
-    return shift.exists && shift.across(b.seen_error(cell, shift.turn), error) <= tolerance;
+    const Shift other = shift_of(b, error, b.full, kBeyond, true);
+    return other.exists && other.across(b.seen_error(cell, other.turn), error) <= tolerance;
 }
 
 // The same of all cells of a block in a box of this size.
@@ -260,11 +266,12 @@ bool CurvatureTree::keeps_in_cells(const Bending& b, const Vec<2>& box, const Ve
     return shift.exists && shift.across(b.cells_error(box, cell, shift.turn), error) <= tolerance;
 }
 
-bool CurvatureTree::accept(Node& node, const Bending& known, double error, double tolerance) const {
+bool CurvatureTree::accept(Node& node, const Bending& known, double error, double tolerance,
+                           Proof& proof) const {
     node.flat = error <= tolerance;
     if (node.flat) return true;
     const bool kinks = meets_kink(node.box);
-    return !node.has_columns() ? keeps(known, node.box, kinks, error, tolerance)
+    return !node.has_columns() ? keeps(known, node.box, kinks, error, tolerance, proof)
                                : keeps(known, node.box.hi - node.box.lo, kinks, error, tolerance);
 }
 

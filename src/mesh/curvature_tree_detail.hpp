@@ -218,6 +218,10 @@ inline BoxBending bending_of(const DerivativeQuery<2, 3>& surface, const Box<2>&
                       jet<2>(surface.geometry(), {box.side(0).middle(), box.side(1).middle()}));
 }
 
+// What bends make of lengths, but for a factor of `at` alone: all that shift_of asks of those around.
+inline double bend_of_lengths(const Bending& at, const Curvature& around) {
+    return around.uv * (at.a * at.b) + std::max(around.uu * (at.b * at.b), around.vv * (at.a * at.a));
+}
 // How points of the mesh find their feet on S.
 struct Shift {
     bool exists = false;
@@ -248,6 +252,8 @@ inline bool has_common_part(const Box<2>& a, const Box<2>& b) {
 // The ends of the parts of an interval that is halved so many times.
 std::vector<double> halved(const Interval& on, int times);
 
+inline constexpr double kBeyond = 1.5;  // what surfaces may bend beside a leaf, times what they do within
+
 inline constexpr int kMaxTreeDepth = 100;  // backstop: 2^-50 of the box in both directions
 
 class CurvatureTree {
@@ -269,6 +275,18 @@ public:
                                       std::span<const std::array<int, 2>> segments,
                                       const FaceDemands& demands, std::size_t max_leaves) {
         return make(surface, polygon, segments, demands, max_leaves, {});
+    }
+
+    // What has been found of a leaf while it was made: bounds, for its halves by the better diagonal, of all
+    // of the interpolation error, and of the distance where feet exist and all around bends at most kBeyond
+    // times as much as `Bending::full` says.
+    struct Proof {
+        double whole = kInfinity, bound = kInfinity;
+    };
+    const Proof& proof_of(int leaf) const {
+        static constexpr Proof kNone{};
+        const int p = nodes_[std::size_t(leaf)].proof;
+        return p < 0 ? kNone : proofs_[std::size_t(p)];
     }
 
     bool is_outside(const Box<2>& box) const;  // wholly, and known to be
@@ -346,6 +364,7 @@ private:
         int variation = -1;  // over it, in variations_
         int block = -1;      // in blocks_; kOneCell: in block_leaves_
         int slot = -1;       // of a leaf in bendings_, of others in sums_
+        int proof = -1;      // of a leaf, in proofs_
         bool outside = false;
         bool inside = false;  // known to be so while it was made, with its border
         bool whole = false;   // nothing of it is outside
@@ -365,9 +384,10 @@ private:
     // Whether the two triangles of a box of this size, or of this box, keep the tolerance, without a shift or
     // with one, which kinks do not allow.
     bool keeps(const Bending& b, const Vec<2>& size, bool kinks, double error, double tolerance) const;
-    bool keeps(const Bending& b, const Box<2>& cell, bool kinks, double error, double tolerance) const;
+    bool keeps(const Bending& b, const Box<2>& cell, bool kinks, double error, double tolerance,
+               Proof& proof) const;
     bool keeps_in_cells(const Bending& b, const Vec<2>& box, const Vec<2>& cell, double tolerance) const;
-    bool accept(Node& node, const Bending& known, double error, double tolerance) const;
+    bool accept(Node& node, const Bending& known, double error, double tolerance, Proof& proof) const;
     std::optional<Refusal> torn_place(const DerivativeQuery<2, 3>& surface, std::span<const Vec<2>> polygon,
                                       std::span<const std::array<int, 2>> segments, double tolerance) const;
     // curvature_tree_blocks.cpp
@@ -405,6 +425,7 @@ private:
     static constexpr int kOneCell = -2;
     Segments<Node> nodes_;
     Chunks<Bending> bendings_;  // of leaves that are not outside; neighbours may share one
+    Chunks<Proof, 512> proofs_;
     Segments<Curvature> sums_;  // of S over other nodes
     std::vector<Variation> variations_;
     std::vector<Corner> corners_;

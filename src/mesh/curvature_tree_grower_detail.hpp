@@ -58,6 +58,10 @@ private:
     void stay_whole(Node& node, Outer& outer) {
         if (outer.slot < 0) outer.slot = int(tree_.bendings_.add(outer.known));
         node.slot = outer.slot;
+        keep_proof(node);
+    }
+    void keep_proof(Node& node) {  // of the box that was looked at last
+        if (proof_.whole < kInfinity) node.proof = int(tree_.proofs_.add(proof_));
     }
     BoxBending ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, const Curvature& around);
     bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, const BoxBending& around,
@@ -66,7 +70,7 @@ private:
     void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
     struct Place {  // where in the tree what a part has begins
         std::size_t nodes = 0, nodes_end = 0, variations = 0, blocks = 0, part_bendings = 0, bendings = 0,
-                    sums = 0;
+                    proofs = 0, sums = 0;
     };
     void add(std::vector<CurvatureTree>& parts, std::span<const Item> items);
     void put(const CurvatureTree& part, const Item& item, const Place& place);
@@ -78,6 +82,7 @@ private:
     double length_[2] = {};      // of the sides of the box that was looked at last
     std::size_t uncounted_ = 0;  // leaves that the task does not know of
     bool fine_ = false;          // whether its error is small enough
+    Proof proof_;                // of that
 };
 
 }  // namespace freiform

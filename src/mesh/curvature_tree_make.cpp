@@ -70,7 +70,8 @@ bool CurvatureTree::Grower::is_leaf(Node& node, const BoxBending& known) {
     for (int d = 0; d < 2; ++d) length_[d] = known.first[d] * size[d];
     const double longer = std::max(length_[0], length_[1]), shorter = std::min(length_[0], length_[1]);
     const bool round = longer <= task_.demands.max_aspect * shorter || longer <= tolerance;
-    fine_ = tree_.accept(node, known, error, tolerance);
+    proof_ = {};
+    fine_ = tree_.accept(node, known, error, tolerance, proof_);
     return fine_ && longer <= task_.demands.max_edge && round;
 }
 
@@ -177,6 +178,7 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         }
         if (!cut) {  // also where there is no double between the ends
             node.slot = int(tree_.bendings_.add(outer));
+            keep_proof(node);
             return std::nullopt;
         }
     }

@@ -101,6 +101,7 @@ void CurvatureTree::Grower::add(std::vector<CurvatureTree>& parts, std::span<con
         end.nodes = tree_.nodes_.take(std::move(p.nodes_));
         end.nodes_end += end.nodes;
         end.bendings = tree_.bendings_.take(std::move(p.bendings_));
+        end.proofs = tree_.proofs_.take(std::move(p.proofs_));
         end.sums = tree_.sums_.take(std::move(p.sums_));
         places.push_back(end);
         end.variations += p.variations_.size(), end.blocks += p.blocks_.size();
@@ -136,6 +137,7 @@ void CurvatureTree::Grower::put(const CurvatureTree& part, const Item& item, con
         if (n.child >= 0) n.child += nodes;
         if (n.variation >= 0) n.variation += variations;
         if (n.block >= 0) n.block += blocks;
+        if (n.proof >= 0) n.proof += int(place.proofs);
         if (n.slot >= 0) n.slot += int(n.child < 0 ? place.bendings : place.sums);
     }
     Node& first = tree_.nodes_[place.nodes];  // the item's box: known by its number before

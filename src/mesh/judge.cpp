@@ -52,17 +52,19 @@ Judgement Judge::operator()(const Bending& at, const Box<2>& box, const std::arr
     const auto error_of = [&](const Curvature& c) {
         return linear_interpolation_bound(c, corner[0], corner[1], corner[2]);
     };
-    double e = error_of(at.full);
-    if (at.knows_middle()) e = std::min(e, at.whole_error(box, corner) * kGrow);
+    const bool is_fitted = at.fit.exists();  // which says more than second derivatives alone
+    double e = at.knows_middle() ? at.whole_error(box, corner) * kGrow : kInfinity;
+    if (!is_fitted) e = std::min(e, error_of(at.full));
     e += tree_.kink_bound(box);
     // What takes least first where it mostly does, then what says most.
+    const bool is_steady = !is_fitted && at.tilt < kLittleTilt;
     const auto seen_error = [&](double turn, double enough) {
         const auto of_all = [&] { return error_of(at.seen(turn)); };
-        double seen = at.tilt < kLittleTilt ? of_all() : kInfinity;
+        double seen = is_steady ? of_all() : kInfinity;
         if (seen > enough && at.knows_middle())
             seen = std::min(seen, at.triangle_error(box, corner, turn, enough / kGrow) * kGrow);
         if (seen > enough) seen = std::min(seen, at.seen_error(box, turn) * kGrow);
-        return seen <= enough || at.tilt < kLittleTilt ? seen : std::min(seen, of_all());
+        return seen <= enough || is_fitted || is_steady ? seen : std::min(seen, of_all());
     };
     return judged(at, box, std::cref(seen_error), e, plain, near_place, is_deep);
 }
@@ -103,11 +105,27 @@ double Judge::whole_halves_error(const Bending& at, const Box<2>& box) const {
     return at.whole_halves_error(box) * kGrow + tree_.kink_bound(box);
 }
 
-Judgement Judge::halves(const Bending& at, const Box<2>& box, double error, int near_place) const {
+bool Judge::is_within_limits(const Box<2>& box) const {
+    return limits_[0].lo <= box.lo[0] && box.hi[0] <= limits_[0].hi && limits_[1].lo <= box.lo[1] &&
+           box.hi[1] <= limits_[1].hi;
+}
+
+bool Judge::bends_evenly_around(const Bending& at, const Box<2>& box, double e) const {
+    if (!(at.least > 0)) return false;
+    const Vec<2> reach = reach_of(at, e);
+    const Box<2> around{box.lo - reach, box.hi + reach};
+    if (tree_.meets_kink(around) || !is_within_limits(around)) return false;
+    const auto near = tree_.about(around);
+    return near && bend_of_lengths(at, *near) <= (kBeyond - 0x1p-40) * bend_of_lengths(at, at.full);
+}
+
+double Judge::halves(const Bending& at, const Box<2>& box, double error, double proven,
+                     int near_place) const {
+    if (proven < kInfinity && bends_evenly_around(at, box, error)) return std::min(error, proven);
     const auto seen_error = [&](double turn, double enough) {
         return at.halves_error(box, turn, enough / kGrow) * kGrow;
     };
-    return judged(at, box, std::cref(seen_error), error, 0, near_place, true, true);
+    return judged(at, box, std::cref(seen_error), error, 0, near_place, true, true).bound;
 }
 
 Judgement Judge::judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double e,

@@ -32,9 +32,9 @@ public:
     // of whose corners have feet. REQUIRES at.knows_middle().
     Judgement cells(const Bending& at, const Box<2>& box, const Vec<2>& sides, double error,
                     int near_place) const;
-    // Of halves of the box by the better diagonal, all of whose corners have feet; `error` may be that of
-    // halves alone. REQUIRES at.knows_middle().
-    Judgement halves(const Bending& at, const Box<2>& box, double error, int near_place) const;
+    // Of halves of the box by the better diagonal, all of whose corners have feet: the bound; `error` may be
+    // that of halves alone. `proven`: as CurvatureTree::Proof says. REQUIRES at.knows_middle().
+    double halves(const Bending& at, const Box<2>& box, double error, double proven, int near_place) const;
     double whole_halves_error(const Bending& at, const Box<2>& box) const;  // where they are plain; likewise
 
 private:
@@ -43,6 +43,9 @@ private:
     // `is_likely`: it is known already that a foot straight below would do, or nearly so.
     Judgement judged(const Bending& at, const Box<2>& box, const SeenError& seen_error, double error,
                      int plain, int near_place, bool is_deep, bool is_likely = false) const;
+    bool is_within_limits(const Box<2>& box) const;
+    // Whether what a CurvatureTree::Proof asks of what is around a box with this error is so.
+    bool bends_evenly_around(const Bending& at, const Box<2>& box, double error) const;
     Curvature over_clamped(const Box<2>& box) const;
     bool is_turned_over(const std::array<Vec<2>, 3>& corner) const;  // of a cone
 
