@@ -63,11 +63,12 @@ private:
     void keep_proof(Node& node) {  // of the box that was looked at last
         if (proof_.whole < kInfinity) node.proof = int(tree_.proofs_.add(proof_));
     }
-    BoxBending ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle, const Curvature& around);
+    BoxBending ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle);
     bool is_block(const Item& item, const Jet<2, 2, Vec<3>>& middle, const BoxBending& around,
                   std::optional<BoxBending>& own);
     std::optional<Refusal> take(const Item& item, std::vector<Item>& items);
-    void split(const Item& item, int outer, const Cut& cut, bool inside, std::vector<Item>& items);
+    std::optional<Refusal> split(const Item& item, int outer, const Cut& cut, bool inside,
+                                 std::vector<Item>& items);
     struct Place {  // where in the tree what a part has begins
         std::size_t nodes = 0, nodes_end = 0, variations = 0, blocks = 0, part_bendings = 0, bendings = 0,
                     proofs = 0, sums = 0;

@@ -82,17 +82,16 @@ void CurvatureTree::Grower::set_lengths(const Jet<2, 2, Vec<3>>& middle, const V
 
 // Control points. What holds for the whole holds for a part: of very small boxes rounding would make the
 // bound larger.
-BoxBending CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle,
-                                      const Curvature& around) {
+BoxBending CurvatureTree::Grower::ask(Node& node, const Box<2>& box, const Jet<2, 2, Vec<3>>& middle) {
     const bool varies = tree_.varies(task_.surface, box);
     Variation variation;
     const bool knows_normals = tree_.knows_normals_ && !tree_.is_sharp_inside(box);
     BoxBending out =
         tree_.bending_in(task_.surface, box, knows_normals, middle, varies ? &variation : nullptr);
-    out.full.restrict_to(around);
-    if (!varies) return out;
-    node.variation = int(tree_.variations_.size());
-    tree_.variations_.push_back(variation);
+    if (varies) {
+        node.variation = int(tree_.variations_.size());
+        tree_.variations_.push_back(variation);
+    }
     return out;
 }
 
@@ -143,21 +142,25 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
         cut = tree_.cut(node, longer_side(seen, size, length_));
     // Where control points are many, they are asked about boxes of some leaves, and within these the middle
     // and what varies tell.
-    std::optional<BoxBending> own;  // large: not where those around are all that is known
+    std::optional<BoxBending> of_block;  // large: what is known of a box is copied as rarely as can be
     const bool may_be_block = task_.blocks && inside && cut && !node.has_columns();
-    if (may_be_block && is_block(item, middle, around, own)) return std::nullopt;
-    if (item.variation >= 0) {
-        own = bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
-                                  tree_.variations_[std::size_t(item.variation)]);
-        own->full.restrict_to(around.full);
-    } else if (!cut || (asked <= kLeavesAtOnce * tolerance && tree_.varies(task_.surface, box))) {
-        own = ask(node, box, middle, own ? own->full : around.full);
+    if (may_be_block && is_block(item, middle, around, of_block)) return std::nullopt;
+    const bool asks = !cut || (asked <= kLeavesAtOnce * tolerance && tree_.varies(task_.surface, box));
+    if (item.variation < 0 && !asks) {
+        if (of_block) outers_.emplace_back(*of_block);
+        return split(item, of_block ? int(outers_.size()) - 1 : item.outer, *cut, inside, items);
     }
+    BoxBending outer = item.variation >= 0
+                           ? bending_from_middle(task_.surface, box, tree_.knows_normals_, middle,
+                                                 tree_.variations_[std::size_t(item.variation)])
+                           : ask(node, box, middle);
+    outer.full.restrict_to(of_block ? of_block->full : around.full);
     if (!cut) {
-        BoxBending& outer = *own;
         bool whole = is_leaf(node, outer) || !(size[0] > 0) || !(size[1] > 0);
         if (!whole && item.variation >= 0) {
-            outer = ask(node, box, middle, outer.full);
+            const Curvature before = outer.full;
+            outer = ask(node, box, middle);
+            outer.full.restrict_to(before);
             whole = is_leaf(node, outer);
         }
         const double error = outer.full.along(size[0], size[1]);
@@ -182,14 +185,13 @@ std::optional<Refusal> CurvatureTree::Grower::take(const Item& item, std::vector
             return std::nullopt;
         }
     }
-    if (++uncounted_ >= kLeavesCounted && !count_leaves()) return too_many_leaves();
-    if (own) outers_.push_back({*own});
-    split(item, own ? int(outers_.size()) - 1 : item.outer, *cut, inside, items);
-    return std::nullopt;
+    outers_.emplace_back(outer);
+    return split(item, int(outers_.size()) - 1, *cut, inside, items);
 }
 
-void CurvatureTree::Grower::split(const Item& item, int outer, const Cut& cut, bool inside,
-                                  std::vector<Item>& items) {
+std::optional<Refusal> CurvatureTree::Grower::split(const Item& item, int outer, const Cut& cut, bool inside,
+                                                    std::vector<Item>& items) {
+    if (++uncounted_ >= kLeavesCounted && !count_leaves()) return too_many_leaves();
     const Box<2> box = tree_.nodes_[std::size_t(item.node)].box;
     const int child = int(tree_.nodes_.end()), variation = tree_.nodes_[std::size_t(item.node)].variation;
     tree_.nodes_[std::size_t(item.node)].child = child;
@@ -208,6 +210,7 @@ void CurvatureTree::Grower::split(const Item& item, int outer, const Cut& cut, b
             if (meets(part[half], task_.polygon[std::size_t(s[0])], task_.polygon[std::size_t(s[1])]))
                 items.back().near.push_back(s);
     }
+    return std::nullopt;
 }
 
 std::optional<Refusal> CurvatureTree::Grower::grow(std::vector<Item>& items, std::size_t enough) {
@@ -265,10 +268,14 @@ BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const
     const Vec<2> size = box.hi - box.lo;
     const bool is_small =
         size[0] * size[1] < kSmallPart * (surface.thinnest_piece(0) * surface.thinnest_piece(1));
-    if (!cone_ && !variation && !is_small && is_fitted(surface, box))
-        if (const auto out = bending_by_fit(surface, box, knows_normals, middle); out.full.is_finite())
-            return out;
-    if (!cone_) return bending_of(surface, box, knows_normals, middle, variation);
+    if (!cone_) {
+        const bool fits = !variation && !is_small && is_fitted(surface, box);
+        BoxBending out = fits ? bending_by_fit(surface, box, knows_normals, middle)
+                              : bending_of(surface, box, knows_normals, middle, variation);
+        if (fits && !out.full.is_finite())
+            out = bending_of(surface, box, knows_normals, middle, variation);
+        return out;
+    }
     const ConeFace::Bends bends = cone_->bends(surface, box);
     BoxBending out;
     out.full = cone_->across() == 0 ? Curvature{bends.across, 0, bends.along}
