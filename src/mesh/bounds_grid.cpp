@@ -3,6 +3,7 @@
 #include <freiform/core/constants.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace freiform {
 
@@ -26,14 +27,25 @@ BoundsGrid::Range BoundsGrid::range_of(const Box<2>& box) const {
     return r;
 }
 
+BoundsGrid::Cell BoundsGrid::above(const Bounds& bounds) {
+    using Limits = std::numeric_limits<float>;
+    Cell out;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const float near = bounds[k] > double(Limits::max()) ? Limits::infinity() : float(bounds[k]);
+        const float step = std::max(near * Limits::epsilon(), Limits::denorm_min());  // one number at least
+        out[k] = double(near) < bounds[k] ? near + step : near;
+    }
+    return out;
+}
+
 std::optional<BoundsGrid::Bounds> BoundsGrid::over(const Box<2>& box) const {
     if (cells_.empty() || !whole_.contains(box.lo) || !whole_.contains(box.hi)) return std::nullopt;
     const Range r = range_of(box);
     if ((r.hi[0] - r.lo[0] + 1) * (r.hi[1] - r.lo[1] + 1) > kMostLookedAt) return std::nullopt;
-    Bounds out{};
+    Cell all{};
     for (int i = r.lo[0]; i <= r.hi[0]; ++i)
-        for (int j = r.lo[1]; j <= r.hi[1]; ++j) include(out, cells_[place(i, j)]);
-    return out;
+        for (int j = r.lo[1]; j <= r.hi[1]; ++j) include(all, cells_[place(i, j)]);
+    return Bounds{all[0], all[1], all[2], all[3]};
 }
 
 }  // namespace freiform

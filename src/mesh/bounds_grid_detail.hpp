@@ -31,7 +31,7 @@ public:
         r.lo[0] = std::max(r.lo[0], count_[0] * group / groups);
         r.hi[0] = std::min(r.hi[0], count_[0] * (group + 1) / groups - 1);
         if (r.lo[0] > r.hi[0]) return;
-        const Bounds known = bounds();
+        const Cell known = above(bounds());
         for (int i = r.lo[0]; i <= r.hi[0]; ++i)
             for (int j = r.lo[1]; j <= r.hi[1]; ++j) include(cells_[place(i, j)], known);
     }
@@ -47,16 +47,18 @@ private:
     };
     int cell_of(double x, std::size_t d) const;
     Range range_of(const Box<2>& box) const;
-    static void include(Bounds& all, const Bounds& bounds) {
-        for (std::size_t k = 0; k < all.size(); ++k)
-            if (bounds[k] > all[k]) all[k] = bounds[k];
+    using Cell = std::array<float, 4>;  // half the memory, which most of the time goes to
+    // Not less than these. REQUIRES that they are not negative.
+    static Cell above(const Bounds& bounds);
+    static void include(Cell& all, const Cell& bounds) {
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] = bounds[k] > all[k] ? bounds[k] : all[k];
     }
     std::size_t place(int i, int j) const { return std::size_t(i) * std::size_t(count_[1]) + std::size_t(j); }
 
     Box<2> whole_;
     std::array<int, 2> count_{};
     Vec<2> scale_{};
-    std::vector<Bounds> cells_;
+    std::vector<Cell> cells_;
 };
 
 }  // namespace freiform
