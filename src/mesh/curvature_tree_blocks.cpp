@@ -270,10 +270,9 @@ bool CurvatureTree::is_deep(int leaf, const Border* border) const {
     return true;
 }
 
-// The boundary is looked for while the grid is filled, which needs as long.
+// The boundary is looked for while the grid is planned. Leaves are marked by who has just looked at them.
 void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
                                 bool is_shared) {
-    plan_grid();
     std::vector<int> leaves;
     std::optional<Border> border;
     const auto list = [&] {
@@ -284,25 +283,26 @@ void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const
         });
         if (leaves.size() >= kManyLeaves) border.emplace(*this, polygon, segments);
     };
+    parallel_for(2, is_shared ? 1 : 2, [&](std::size_t k) { k == 0 ? list() : plan_grid(); });
     const int groups = is_shared ? kGroupsOfGrid : 1;
-    parallel_for(std::size_t(groups) + 1, is_shared ? 1 : 2, [&](std::size_t k) {
-        if (k == 0) return list();
-        fill_grid(int(k) - 1, groups);
-    });
+    parallel_for(std::size_t(groups), 1, [&](std::size_t k) { fill_grid(int(k), groups); });
     std::vector<char> deep(leaves.size());
     const auto look = [&](const Border* at_boundary) {
         parallel_for(leaves.size(), is_shared ? kLeavesOfThread : leaves.size(), [&](std::size_t i) {
-            if (!deep[i] && is_deep(leaves[i], at_boundary)) deep[i] = at_boundary ? 2 : 1;
+            if (deep[i] || !is_deep(leaves[i], at_boundary)) return;
+            deep[i] = at_boundary ? 2 : 1;
+            if (!at_boundary) nodes_[std::size_t(leaves[i])].block = kOneCell;
         });
     };
     look(nullptr);
     if (border) look(&*border);
-    std::size_t more = 0;
-    for (const char d : deep) more += d == 2;
+    const std::size_t away = std::size_t(std::ranges::count(deep, 1)),
+                      more = std::size_t(std::ranges::count(deep, 2));
     const bool all = double(more) <= kFewMore * double(leaves.size());
+    block_leaves_.reserve(away + (all ? more : 0));
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-        if (!(deep[i] == 1 || (deep[i] == 2 && all))) continue;
-        nodes_[std::size_t(leaves[i])].block = kOneCell;
+        if (deep[i] == 0 || (deep[i] == 2 && !all)) continue;
+        if (deep[i] == 2) nodes_[std::size_t(leaves[i])].block = kOneCell;
         block_leaves_.push_back(leaves[i]);
     }
 }

@@ -272,8 +272,7 @@ BoxBending CurvatureTree::bending_in(const DerivativeQuery<2, 3>& surface, const
         const bool fits = !variation && !is_small && is_fitted(surface, box);
         BoxBending out = fits ? bending_by_fit(surface, box, knows_normals, middle)
                               : bending_of(surface, box, knows_normals, middle, variation);
-        if (fits && !out.full.is_finite())
-            out = bending_of(surface, box, knows_normals, middle, variation);
+        if (fits && !out.full.is_finite()) out = bending_of(surface, box, knows_normals, middle, variation);
         return out;
     }
     const ConeFace::Bends bends = cone_->bends(surface, box);

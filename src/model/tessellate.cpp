@@ -211,7 +211,10 @@ std::vector<std::size_t> Tessellator::faces_to_mend() {
     for (std::size_t f = 0; f < faces(); ++f) {
         if (is_refused(f)) continue;
         const FaceMesh& mesh = meshes_[f];
+        const auto last = std::find_if(mesh.point.rbegin(), mesh.point.rend(), [](int p) { return p >= 0; });
+        const int end = int(mesh.point.rend() - last);  // behind the corners on edges, which come first
         for (const auto& t : mesh.triangles) {
+            if (std::min({t[0], t[1], t[2]}) >= end) continue;
             for (int k = 0; k < 3; ++k) {
                 const int u = t[std::size_t(k)], v = t[std::size_t((k + 1) % 3)];
                 // Poles have more corners than the polygon knows.
