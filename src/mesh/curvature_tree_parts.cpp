@@ -73,6 +73,7 @@ std::optional<Refusal> CurvatureTree::Grower::grow_parts(std::vector<Item> items
         part.columns_ = tree_.columns_;
         part.rows_ = tree_.rows_;
         part.reserve(task_.expected_nodes);
+        part.bendings_.use(tree_.bendings_.room());
         part.nodes_.add(tree_.nodes_[std::size_t(items[i].node)]);
         std::vector<Item> own{items[i]};
         own.front().node = own.front().outer = 0;
