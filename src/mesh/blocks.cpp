@@ -110,17 +110,15 @@ private:
     void list_leaves() {
         for (const auto& c : tree_.corners()) table_.number(c.at);
         leaves_.reserve(tree_.block_count());
-        for (std::size_t i = 0; i < tree_.block_count(); ++i) {
+        for (std::size_t i = tree_.many_cells_count(); i < tree_.block_count(); ++i) {
             const auto block = tree_.block(i);
-            if (block.first_part >= 0) continue;
             Leaf& l = leaves_.emplace_back(Leaf{std::uint32_t(i)});
             for (std::size_t k = 0; k < 4; ++k) l.corner[k] = table_.number(corner_of(block.box, k));
         }
     }
 
     void take_all() {
-        for (std::size_t i = 0; i < tree_.block_count(); ++i)
-            if (const auto block = tree_.block(i); block.first_part >= 0) take(block, judged_[i]);
+        for (std::size_t i = 0; i < tree_.many_cells_count(); ++i) take(tree_.block(i), judged_[i]);
         std::erase_if(leaves_, [&](Leaf& l) {
             const JudgedBlock& j = judged(l);
             l.is_plain = !std::isfinite(j.halves);
@@ -292,9 +290,9 @@ private:
         });
         outline_.needs_foot.assign(outline_.points.size(), 0);
         const auto mark = [&](std::span<const int> border, bool needs_foot) {
+            if (!needs_foot) return;
             for (const int at : border)
-                if (const int p = number_[std::size_t(at)]; needs_foot && p >= 0)
-                    outline_.needs_foot[std::size_t(p)] = 1;
+                if (const int p = number_[std::size_t(at)]; p >= 0) outline_.needs_foot[std::size_t(p)] = 1;
         };
         for (const Block& b : blocks_) mark(b.border, b.needs_foot);
         for (const Leaf& l : leaves_) mark(border_of(l), needs_foot(l));

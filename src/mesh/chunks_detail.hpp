@@ -16,8 +16,8 @@ class Chunks {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
 public:
-    // One piece of memory for many chunks, of several sequences and threads: it is asked for and given back at
-    // once, which costs as much as all the work on some ten thousand elements if it is done bit by bit.
+    // One piece of memory for many chunks, of several sequences and threads: it is asked for and given back
+    // at once, which costs as much as all the work on some ten thousand elements if it is done bit by bit.
     class Room {
     public:
         explicit Room(std::size_t elements)

@@ -270,7 +270,8 @@ bool CurvatureTree::is_deep(int leaf, const Border* border) const {
     return true;
 }
 
-// The boundary is looked for while the grid is planned. Leaves are marked by who has just looked at them.
+// The boundary is looked for and the grid planned while leaves are listed. These are marked by who has just
+// looked at them.
 void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const std::array<int, 2>> segments,
                                 bool is_shared) {
     std::vector<int> leaves;
@@ -281,9 +282,12 @@ void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const
             if (n.child >= 0 || n.is_block() || !n.inside || n.has_columns() || meets_kink(n.box)) return;
             leaves.push_back(int(i));
         });
-        if (leaves.size() >= kManyLeaves) border.emplace(*this, polygon, segments);
     };
-    parallel_for(2, is_shared ? 1 : 2, [&](std::size_t k) { k == 0 ? list() : plan_grid(); });
+    const auto plan = [&] {
+        plan_grid();
+        if (nodes_.count() >= kManyLeaves) border.emplace(*this, polygon, segments);
+    };
+    parallel_for(2, is_shared ? 1 : 2, [&](std::size_t k) { k == 0 ? list() : plan(); });
     const int groups = is_shared ? kGroupsOfGrid : 1;
     parallel_for(std::size_t(groups), 1, [&](std::size_t k) { fill_grid(int(k), groups); });
     std::vector<char> deep(leaves.size());
@@ -295,7 +299,7 @@ void CurvatureTree::take_leaves(std::span<const Vec<2>> polygon, std::span<const
         });
     };
     look(nullptr);
-    if (border) look(&*border);
+    if (leaves.size() >= kManyLeaves) look(&*border);
     const std::size_t away = std::size_t(std::ranges::count(deep, 1)),
                       more = std::size_t(std::ranges::count(deep, 2));
     const bool all = double(more) <= kFewMore * double(leaves.size());

@@ -337,6 +337,7 @@ public:
     };
     // First those of more than one cell.
     std::size_t block_count() const { return blocks_.size() + block_leaves_.size(); }
+    std::size_t many_cells_count() const { return blocks_.size(); }
     Block block(std::size_t i) const {
         if (i < blocks_.size()) return blocks_[i];
         const int leaf = block_leaves_[i - blocks_.size()];

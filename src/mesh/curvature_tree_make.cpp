@@ -36,7 +36,7 @@ constexpr std::size_t kLeavesCounted = 256;  // at once
 constexpr double kNodesOfTriangle = 1.5;     // expected
 constexpr double kMostNodes = 1 << 20;       // expected: 80 MiB
 constexpr std::size_t kManyNodes = 1 << 13;  // likewise
-constexpr double kLeavesOfNode = 0.5;       // that share what is known of them with no other leaf
+constexpr double kLeavesOfNode = 0.5;        // that share what is known of them with no other leaf
 constexpr double kSmallPart = 0x1p-9;        // of a piece: there bounds of derivatives lose little
 constexpr long long kFewNumbers = 96;        // of a piece: asking them is as cheap as a sample
 
@@ -305,7 +305,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     const std::size_t nodes = expected_nodes(demands);
     if (demands.is_shared && is_serial()) tree.reserve(nodes);
     if (demands.is_shared && !kIsSerialBuild && nodes >= kManyNodes)
-        tree.bendings_.use(std::make_shared<Chunks<Bending>::Room>(std::size_t(kLeavesOfNode * double(nodes))));
+        tree.bendings_.use(
+            std::make_shared<Chunks<Bending>::Room>(std::size_t(kLeavesOfNode * double(nodes))));
     tree.nodes_.add({root, 0});
     if (!tree.cone_ || tree.cone_->is_sphere()) tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, segments, demands.tolerance))
