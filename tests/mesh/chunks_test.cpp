@@ -1,6 +1,8 @@
 #include "mesh/chunks_detail.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -38,6 +40,36 @@ TEST(Chunks, another_one_is_taken_up_as_it_is) {
                 EXPECT_EQ(&all[places[std::size_t(own)]], first);
             }
         }
+}
+
+// Chunks of two sequences from one piece of memory while there are any, which stays as long as one of them.
+TEST(Chunks, one_room_serves_several) {
+    using Ints = Chunks<int, 4>;
+    auto room = std::make_shared<Ints::Room>(30);  // 8 chunks
+    std::weak_ptr<Ints::Room> known = room;
+    Ints all, other;
+    all.use(room), other.use(std::move(room));
+    std::vector<const int*> addresses;
+    std::vector<std::size_t> places, of_other;
+    for (int i = 0; i < 25; ++i) {
+        places.push_back(all.add(i)), of_other.push_back(other.add(100 + i));
+        addresses.push_back(&all[places.back()]), addresses.push_back(&other[of_other.back()]);
+    }
+    std::vector<const int*> within = addresses;
+    std::sort(within.begin(), within.end());
+    int together = 0;
+    for (const int* a : addresses) together += a - addresses.front() < 32 && a >= addresses.front();
+    EXPECT_EQ(together, 32) << "all of the room is used";
+    EXPECT_EQ(std::adjacent_find(within.begin(), within.end()), within.end()) << "by one each";
+    const std::size_t shift = all.take(std::move(other));
+    other = Ints();
+    for (std::size_t i = 0; i < 25; ++i) {
+        EXPECT_EQ(all[places[i]], int(i));
+        EXPECT_EQ(all[of_other[i] + shift], 100 + int(i));
+    }
+    EXPECT_FALSE(known.expired());
+    all = Ints();
+    EXPECT_TRUE(known.expired());
 }
 
 }  // namespace
