@@ -1,6 +1,7 @@
 // The document as a picture: control polygons and nets, curves, surfaces.
 
 import { curve, lattice, net, polygon, surface } from "../explore/draw";
+import { edges } from "../kernel/edges";
 import { arena } from "../kernel/module";
 import { Space } from "../views/space";
 import type { View } from "../views/view";
@@ -24,7 +25,9 @@ export function show(view: View, document: Document, chosen: ReadonlySet<number>
                 lattice(view, Array.from({ length: shape.size[0] ?? 0 }, (_, k) => points.slice(k * columns, (k + 1) * columns)), { colour: lit ? "hot" : "control", width: 1 });
             } else if (view instanceof Space && shape.type !== "volume") {
                 const mesh = shape.mesh({ tolerance: 0.003 * size });
-                sheets.set(view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "lit" : "surface" }), i);
+                if (mesh.indices.length > 0) sheets.set(view.surface({ points: mesh.positions, normals: mesh.normals, indices: mesh.indices, origin: mesh.origin }, { colour: lit ? "lit" : "surface" }), i);
+                // Of what has no triangles the edges are all that there is to see.
+                else view.runs(edges(shape, mesh, size), { colour: lit ? "hot" : "ink", width: lit ? 2.5 : 1.5 });
             }
         });
     });

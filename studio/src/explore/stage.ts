@@ -4,7 +4,7 @@
 import { arena, type DocumentJson, type Make } from "../kernel/module";
 import { calm, coalesced, h, shown } from "../ui/dom";
 import { say, t, type Text } from "../ui/language";
-import { refusal } from "../ui/toast";
+import { kindNamed, refusal } from "../ui/toast";
 import type { Handle, HandleEvents } from "../views/handles";
 import { Plane, type PlaneOptions } from "../views/plane";
 import { Space } from "../views/space";
@@ -181,7 +181,7 @@ export class Stage {
         } catch (error) {
             const { kind, where, message } = refusal(error);
             this.status.classList.add("refused");
-            this.status.replaceChildren(h("strong", {}, kind), where === "" ? ": " : ` (${where}): `, message);
+            this.status.replaceChildren(h("strong", {}, kindNamed(kind)), where === "" ? ": " : ` (${where}): `, message);
         }
     }
 }

@@ -109,7 +109,7 @@ export function draw(space: Space, model: Model, showing: Showing, before?: Draw
     const objects = same ? before.objects : surfaces(space, model, showing, painting);
     for (const shape of model.shapes) lines(space, shape, showing);
     // Of what has no triangles the edges are all that there is to see.
-    model.meshes.forEach((mesh, i) => { if (showing.knots || showing.isolines > 0 || mesh.indices.length === 0) edges(space, model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
+    model.meshes.forEach((mesh, i) => { if (showing.knots || showing.isolines > 0 || mesh.indices.length === 0) space.runs(model.edges[i] ?? [], { colour: "ink", width: 1.4 }); });
     if (showing.joints && model.continuity) joints(space, model, model.continuity);
     return { objects, of, scale: painting?.scale, section: showing.section ? section(space, model) : undefined };
 }
@@ -129,7 +129,7 @@ function surfaces(space: Space, model: Model, showing: Showing, painting: Painti
 }
 
 /** What is known of the section. */
-export const section = (space: Space, model: Model): ReturnType<Space["segments"]> => edges(space, model.section ?? [], { colour: "hot", width: 4 });
+export const section = (space: Space, model: Model): ReturnType<Space["segments"]> => space.runs(model.section ?? [], { colour: "hot", width: 4 });
 
 function lines(space: Space, shape: Shape, showing: Showing): void {
     if (shape.type === "curve") {
@@ -152,13 +152,6 @@ function lines(space: Space, shape: Shape, showing: Showing): void {
     }
 }
 
-/** Many lines as one object: a model has thousands. */
-function edges(space: Space, all: readonly Float64Array[], style: Style): ReturnType<Space["segments"]> {
-    const ends: number[] = [];
-    for (const line of all) for (let k = 3; k < line.length; k += 3) ends.push(...line.subarray(k - 3, k + 3));
-    return space.segments(ends, style);
-}
-
 /** Lines where faces meet, in the colour of the order that they reach. */
 function joints(space: Space, { shapes, solid, edges: all }: Model, found: Continuity): void {
     const style = (order: number): Style => ({ colour: order < 1 ? "hot" : order < 2 ? "gold" : "aux", width: 3.5 });
@@ -172,7 +165,7 @@ function joints(space: Space, { shapes, solid, edges: all }: Model, found: Conti
         const shape = shapes[i];
         if (!shape) return;
         const own = all[solid.indexOf(shape)] ?? [];
-        for (const order of new Set(meeting.map((x) => x.g_order))) edges(space, meeting.flatMap((x) => (x.g_order === order ? own[x.edge] ?? [] : [])), style(order));
+        for (const order of new Set(meeting.map((x) => x.g_order))) space.runs(meeting.flatMap((x) => (x.g_order === order ? own[x.edge] ?? [] : [])), style(order));
         if (shape.type === "surface") axes.forEach((knots, axis) => { for (const { at, c_order: order } of knots) isoline(space, shape, axis === 0 ? 0 : 1, at, style(order)); });
     });
 }

@@ -1,7 +1,7 @@
 // Messages at the lower edge. Refusals stay until they are closed and show what kind, where and why.
 
 import { h, set } from "./dom";
-import { say, t } from "./language";
+import { say, t, type Text } from "./language";
 
 const kTexts = {
     close: t("Schließen", "Close"),
@@ -9,6 +9,27 @@ const kTexts = {
     messages: t("Meldungen", "messages"),
     lacking: t("ausgelassen", "left out"),
 };
+
+/** The kinds of refusals, as the library and the pages name them. */
+const kKinds: Readonly<Record<string, Text>> = {
+    invalid: t("ungültig", "invalid"),
+    nonfinite: t("keine endliche Zahl", "nonfinite"),
+    out_of_domain: t("außerhalb des Definitionsbereichs", "out of domain"),
+    unreadable: t("unlesbar", "unreadable"),
+    unsupported: t("nicht unterstützt", "unsupported"),
+    unavailable: t("nicht vorhanden", "unavailable"),
+    limit: t("Grenze erreicht", "limit"),
+    not_converged: t("nicht konvergiert", "not converged"),
+    ill_conditioned: t("schlecht konditioniert", "ill-conditioned"),
+    no_answer: t("keine Antwort", "no answer"),
+    io: t("Lesen und Schreiben", "reading and writing"),
+    "left out": kTexts.lacking,
+    usage: t("Bedienung", "usage"),
+    error: t("Fehler", "error"),
+};
+
+/** In the language of the page; what has no name here stays. */
+export const kindNamed = (kind: string): string => (Object.hasOwn(kKinds, kind) ? say(kKinds[kind] ?? t(kind, kind)) : kind);
 
 const kMostTold = 5;
 
@@ -39,7 +60,7 @@ export function refusal(error: unknown): Refusal {
 export function refuse(error: unknown): void {
     const { kind, where, message } = refusal(error);
     const element = h("div", { class: "toast refused", role: "alert" },
-        h("div", {}, h("strong", {}, kind), where !== "" && h("span", { class: "where" }, `${say(kTexts.where)}: ${where}`)),
+        h("div", {}, h("strong", {}, kindNamed(kind)), where !== "" && h("span", { class: "where" }, `${say(kTexts.where)}: ${where}`)),
         h("p", {}, message));
     element.append(h("button", { class: "close", "aria-label": say(kTexts.close), onclick: () => { element.remove(); } }, "×"));
     add(element);

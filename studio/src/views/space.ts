@@ -11,7 +11,7 @@ import { calm, coalesced, h, s } from "../ui/dom";
 import { onTheme } from "../ui/theme";
 import { Handles } from "./handles";
 import { disc, discard, material, paint, type SurfaceStyle } from "./materials";
-import { box, local, type Point, type Run, type Style, type View } from "./view";
+import { box, distanceFor, local, type Point, type Run, type Style, type View } from "./view";
 
 export type { Look, SurfaceStyle } from "./materials";
 
@@ -27,6 +27,8 @@ export interface Triangles {
 
 /** Milliseconds without a movement after which all triangles are drawn again. */
 const kStill = 250;
+/** Pixels that are kept free around everything. */
+const kMargin = 12;
 
 export class Space implements View {
     readonly element: HTMLElement;
@@ -155,6 +157,13 @@ export class Space implements View {
             if ([...a, ...b].every(Number.isFinite)) ends.push(...a, ...b);
         }
         this.segments(ends, style);
+    }
+
+    /** Many lines as one object, points after each other: a model has thousands. */
+    runs(all: readonly Float64Array[], style: Style): THREE.Object3D | undefined {
+        const ends: number[] = [];
+        for (const line of all) for (let k = 3; k < line.length; k += 3) ends.push(...line.subarray(k - 3, k + 3));
+        return this.segments(ends, style);
     }
 
     /** Segments between pairs of points, three numbers each. */
@@ -291,7 +300,14 @@ export class Space implements View {
         const narrow = Math.min(1, this.element.clientWidth / Math.max(1, this.element.clientHeight));
         const distance = radius / Math.sin((this.eye.fov * Math.PI) / 360) / narrow;
         this.controls.target.copy(centre);
-        this.camera.position.copy(centre).addScaledVector(away.normalize(), distance * 0.9);
+        away.normalize();
+        // Much of the ball around a box is empty, as a rule; but no corner is cut off.
+        const { clientWidth, clientHeight } = this.element, tall = Math.tan((this.eye.fov * Math.PI) / 360);
+        const right = this.camera.up.clone().cross(away), up = away.clone().cross(right.length() > 0 ? right.normalize() : right.set(1, 0, 0));
+        const free = Math.max(0.5, 1 - (2 * kMargin) / Math.max(1, Math.min(clientWidth, clientHeight)));
+        const slopes = [free * tall * (clientWidth / Math.max(1, clientHeight)), free * tall] as const;
+        const needed = distanceFor(upper.clone().sub(lower).toArray(), away.toArray(), up.toArray(), slopes);
+        this.camera.position.copy(centre).addScaledVector(away, Math.max(distance * 0.9, needed));
         this.eye.near = distance / 200;
         this.eye.far = distance * 20;
         this.eye.updateProjectionMatrix();

@@ -62,6 +62,19 @@ export function box(points: readonly Point[]): { lower: number[]; upper: number[
     return { lower: lower.map((x) => (Number.isFinite(x) ? x : -1)), upper: upper.map((x) => (Number.isFinite(x) ? x : 1)) };
 }
 
+/** How far from the middle of a box the eye has to be, looking along -`back`, to see all corners: `slopes` are half the
+    width and half the height of what it sees at the distance 1. Enough for parallel rays that show as much there. */
+export function distanceFor(size: Point, back: Point, up: Point, slopes: readonly [number, number]): number {
+    const at = (v: Point, k: number): number => v[k] ?? 0;
+    const right = [0, 1, 2].map((k) => at(up, (k + 1) % 3) * at(back, (k + 2) % 3) - at(up, (k + 2) % 3) * at(back, (k + 1) % 3));
+    let most = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+        const along = (v: Point): number => [0, 1, 2].reduce((sum, k) => sum + ((corner >> k) & 1 ? 0.5 : -0.5) * at(size, k) * at(v, k), 0);
+        most = Math.max(most, Math.max(0, along(back)) + Math.max(Math.abs(along(right)) / slopes[0], Math.abs(along(up)) / slopes[1]));
+    }
+    return most;
+}
+
 /** A round number near `x` from below: 1, 2 or 5 times a power of ten. */
 export function round125(x: number): number {
     const power = 10 ** Math.floor(Math.log10(x));

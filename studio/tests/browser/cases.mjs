@@ -1068,6 +1068,47 @@ export const cases = [
         await picture("wireframe");
         assert.ok(drawn(await ink(page)) > 500, "a circle is seen");
     }],
+    ["edit: a model without faces is drawn as its edges", async ({ page, url, picture }) => {
+        await go(page, url, "#/inspect", ".view.space");
+        await drop(page, ".stage", "ring.step", ring("2."));
+        await page.waitForSelector("text=ring.step");
+        await until(page, () => document.querySelector("progress").hidden && document.querySelector(".view.space").dataset.triangles === "0");
+        await page.locator(".bar").getByRole("button", { name: "Edit" }).click();
+        await page.getByLabel("Export as").waitFor();
+        await page.getByRole("button", { name: "Fit" }).click();
+        await settle(page);
+        await picture("edit-wireframe");
+        assert.ok(drawn(await ink(page)) > 500, "a circle is seen");
+        assert.equal(await refused(page), "");
+    }],
+    ["edit: everything is in the picture, however long it is and wherever it is seen from", async ({ page, url, write, picture }) => {
+        await go(page, url, "#/edit", ".view");
+        const points = [0, 1].flatMap((i) => [[-1, -1, 40 * i], [1, -1, 40 * i], [1, 1, 40 * i], [-1, 1, 40 * i]]);
+        await file(page, write("tall.json", JSON.stringify({ freiform: 1, objects: [{ type: "curve", degree: 1, knots: [0, 0, 1, 2, 3, 4, 5, 6, 7, 7], points }] })));
+        for (const key of ["0", "1", "3"]) {
+            await page.locator(".view.space").focus();
+            await page.keyboard.press(key);
+            await page.getByRole("button", { name: "Fit" }).click();
+            await settle(page);
+            if (key === "0") await picture("edit-fit-tall");
+            const out = await page.evaluate(() => {
+                const view = document.querySelector(".view.space").getBoundingClientRect();
+                return [...document.querySelectorAll(".view.space .handle")].map((e) => e.getBoundingClientRect()).filter((r) => { const x = r.x + r.width / 2, y = r.y + r.height / 2; return !(x >= view.x + 8 && x <= view.right - 8 && y >= view.y + 8 && y <= view.bottom - 8); }).length;
+            });
+            assert.equal(out, 0, `points outside of the picture seen with key ${key}`);
+            assert.ok(await page.locator(".view.space .handle").count() >= 8);
+        }
+    }],
+    ["refusals name their kind in the language of the page", async ({ page, url }) => {
+        for (const [language, word] of [["de", "unlesbar"], ["en", "unreadable"]]) {
+            await page.addInitScript((language) => { localStorage.setItem("freiform.language", language); }, language);
+            await go(page, url, "#/inspect", ".view.space");
+            await page.reload();
+            await page.waitForSelector(".view.space");
+            await drop(page, ".stage", "broken.step", "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=");
+            assert.match(await toast(page), new RegExp(`^${word}`));
+        }
+    }],
     ["inspect: after Cancel nothing of another file or tolerance stands under the name", async ({ page, url, picture }) => {
         // A worker that never begins takes as long as one has to press Cancel.
         await page.addInitScript(() => {
