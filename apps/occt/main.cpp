@@ -4,7 +4,7 @@
 // standard output. A process of its own, because the reader may crash, hang or eat the memory on a damaged
 // file: whoever calls it sets the limits. What it has to say is one line on standard error,
 //     refusal TAB kind TAB where TAB message
-// with exit status 3; status 0 means that OUTPUT is whole.
+// with exit status 3; status 0 means that OUTPUT is whole. STEP files are read by freiform-occt-import-step.
 #include "convert.hpp"
 #include "verify.hpp"
 
@@ -106,6 +106,18 @@ void limit_threads() {
     ::mallopt(M_ARENA_MAX, 2);
 #endif
 }
+
+#ifndef FREIFORM_OCCT_STEP
+// What reads STEP is beside this program, as its libraries take long to load. Comes back if it is not there.
+int give_to_step_reader(char** values) {
+    std::string path(4096, '\0');
+    const ssize_t length = ::readlink("/proc/self/exe", path.data(), path.size());
+    path.resize(std::size_t(std::max<ssize_t>(length, 0)));
+    path += "-step";
+    ::execv(path.c_str(), values);
+    return say({RefusalKind::unavailable, path, std::strerror(errno)});
+}
+#endif
 
 // Whether the address space was nearly used up at some time. The reader takes the failure of an allocation
 // for a fault of the file.
@@ -226,6 +238,9 @@ int main(int count, char** values) {
         std::cerr << "usage: freiform-occt-import INPUT OUTPUT [--format step|iges|brep] [--verify]\n";
         return 2;
     }
+#ifndef FREIFORM_OCCT_STEP
+    if (arguments->format == occt::Format::step) return give_to_step_reader(values);
+#endif
     // The reader prints to standard output now and then; only the model may go there.
     const int output = ::dup(STDOUT_FILENO);
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
