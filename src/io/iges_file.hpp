@@ -8,6 +8,7 @@
 #include <freiform/spline/in_space.hpp>
 
 #include <array>
+#include <map>
 
 namespace freiform::detail {
 
@@ -16,13 +17,18 @@ inline std::string at_right(std::string_view s, std::size_t width) {
 }
 
 // Whether others are made of the entity, and what it is for: columns of the status number.
-enum class IgesUse { alone, part, parameters };
+enum class IgesUse { alone, part, parameters, definition, property };
+
+// The entities that say the colour and the name of another one; 0: there are none.
+struct IgesLook {
+    int colour = 0, name = 0;
+};
 
 class IgesFile {
 public:
     // They return the number of the directory entry.
     template <class P>
-    Result<int> add(const Curve<P>& given, IgesUse use = IgesUse::alone) {
+    Result<int> add(const Curve<P>& given, IgesUse use = IgesUse::alone, IgesLook look = {}) {
         const auto c = cut(in_space(given));
         if (!c) return std::unexpected(c.error());
         const BSplineBasis& b = c->basis();
@@ -33,11 +39,11 @@ public:
         for (const auto& p : all) point(p);
         interval(b.domain());
         for (int i = 0; i < 3; ++i) values_.emplace_back("0.");  // no normal of a plane is claimed
-        return entity("126", use);
+        return entity("126", use, 0, 0, look);
     }
 
     template <class P>
-    Result<int> add(const Surface<P>& given, IgesUse use = IgesUse::alone) {
+    Result<int> add(const Surface<P>& given, IgesUse use = IgesUse::alone, IgesLook look = {}) {
         auto s = cut(in_space(given));
         if (!s) return std::unexpected(s.error());
         const BSplineBasis &u = s->basis(0), &v = s->basis(1);
@@ -59,7 +65,7 @@ public:
         each([&](const auto& p) { weight(p); });
         each([&](const auto& p) { point(p); });
         interval(u.domain()), interval(v.domain());
-        return entity("128", use);
+        return entity("128", use, 0, 0, look);
     }
 
     bool is_empty() const { return entities_ == 0; }
@@ -111,9 +117,31 @@ public:
     // The entity of these values; `form` says which kind of its type, `placed` the transformation matrix that
     // takes it to where it is.
     int entity(std::string_view type, IgesUse use, std::vector<std::string> values, int form = 0,
-               int placed = 0) {
+               int placed = 0, IgesLook look = {}) {
         values_ = std::move(values);
-        return entity(type, use, form, placed);
+        return entity(type, use, form, placed, look);
+    }
+
+    // A colour is written once, in percent of red, green and blue; nothing says how opaque it is.
+    IgesLook look(const std::optional<Colour>& colour, std::string_view name) {
+        IgesLook out;
+        if (colour) {
+            const std::array<double, 3> rgb{colour->r, colour->g, colour->b};
+            int& known = colours_[rgb];
+            if (known == 0) {
+                values_.clear();
+                for (const double x : rgb) number(100 * x);
+                known = entity("314", IgesUse::definition);
+            }
+            out.colour = known;
+        }
+        if (!name.empty()) {
+            std::string words(name);
+            for (char& c : words)
+                if (c >= 0 && c < ' ') c = ' ';
+            out.name = entity("406", IgesUse::property, {"1", text(words.size(), "H", words)}, 15);
+        }
+        return out;
     }
 
     // Open: closed patches are cut at their seam.
@@ -134,13 +162,18 @@ private:
                     at_right(text(number), 7), "\n");
     }
 
-    // Values with commas between them, a semicolon at the end, none of them on two lines.
+    // Values with commas between them, a semicolon at the end, none of them on two lines but long strings.
     static std::vector<std::string> lines(const std::vector<std::string>& values, std::size_t width) {
         std::vector<std::string> all{""};
         for (std::size_t i = 0; i < values.size(); ++i) {
             const std::string word = values[i] + (i + 1 < values.size() ? "," : ";");
             if (all.back().size() + word.size() > width) all.emplace_back();
             all.back() += word;
+            while (all.back().size() > width) {
+                std::string rest = all.back().substr(width);
+                all.back().resize(width);
+                all.push_back(std::move(rest));
+            }
         }
         return all;
     }
@@ -158,9 +191,12 @@ private:
         for (int i = 0; i < 3; ++i) number(x[i]);
     }
 
-    int entity(std::string_view type, IgesUse use, int form = 0, int placed = 0) {
-        static constexpr std::string_view kStatus[] = {"00000000", "00010000", "00010500"};
+    int entity(std::string_view type, IgesUse use, int form = 0, int placed = 0, IgesLook look = {}) {
+        static constexpr std::string_view kStatus[] = {"00000000", "00010000", "00010500", "00000200",
+                                                       "00010300"};
         values_.insert(values_.begin(), std::string(type));
+        if (look.name != 0)  // behind no associativity
+            values_.insert(values_.end(), {"0", "1", text(look.name)});
         const int first = rows_ + 1, entry = 2 * entities_ + 1;
         for (const std::string& line : lines(values_, 64)) {
             const std::string padded = line + std::string(64 - line.size(), ' ');
@@ -175,8 +211,9 @@ private:
         directory_ += card(fields({kind, text(first), "0", "0", "0", "0", text(placed), "0",
                                    std::string(kStatus[int(use)])}),
                            'D', entry);
-        directory_ += card(fields({kind, "0", "0", text(rows_ - first + 1), text(form), "", "", "", "0"}),
-                           'D', entry + 1);
+        directory_ += card(
+            fields({kind, "0", text(-look.colour), text(rows_ - first + 1), text(form), "", "", "", "0"}),
+            'D', entry + 1);
         ++entities_;
         return entry;
     }
@@ -184,6 +221,7 @@ private:
     std::vector<std::string> values_;  // of the entity at hand
     std::string directory_, parameters_;
     int entities_ = 0, rows_ = 0;
+    std::map<std::array<double, 3>, int> colours_;
 };
 
 // The solids of the model as B-rep objects (186), its other shells as 514.

@@ -1,4 +1,6 @@
 // Solids of STEP files that are said by what sweeps them, beside their volumes, which are known.
+#include <freiform/io/step.hpp>
+
 #include <cmath>
 #include <support/solids.hpp>
 #include <support/step_items.hpp>

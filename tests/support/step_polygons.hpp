@@ -2,6 +2,7 @@
 #pragma once
 #include <freiform/core/result.hpp>
 
+#include <gtest/gtest.h>
 #include <string>
 #include <string_view>
 #include <vector>
