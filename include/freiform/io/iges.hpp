@@ -15,7 +15,9 @@ namespace freiform {
 // surface with several outer loops becomes several. Refuses, with the object, what is neither a curve nor a
 // surface of two or three coordinates nor a model (unsupported; of models faces without loops, and offsets of
 // surfaces that have no normal where they begin and end), images of degrees above 25, several outer loops
-// with holes, and documents without objects (no_answer).
+// with holes, and documents without objects (no_answer). Names of objects, bodies and faces are properties
+// (406, form 15), colours of bodies and faces definitions (314) without opacity; layers, and names and
+// colours of edges, are not written.
 Result<std::string> write_iges(const Document& document);
 
 }  // namespace freiform
