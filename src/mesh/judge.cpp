@@ -12,7 +12,8 @@ namespace {
 constexpr double kLittleTilt = 0.1;  // of normals: cheap bounds say about as much as sharp ones
 constexpr double kMargin = 0.125;    // of the box of the face: what is looked at beyond it
 
-constexpr double kGrow = 1 + 1e-14;  // roundings of bounds over cells
+constexpr double kGrow = 1 + 1e-14;        // roundings of bounds over cells
+constexpr double kNoUnderflow = 0x1p-900;  // products that are larger have all of their digits
 
 }  // namespace
 
@@ -116,7 +117,9 @@ bool Judge::bends_evenly_around(const Bending& at, const Box<2>& box, double e) 
     const Box<2> around{box.lo - reach, box.hi + reach};
     if (tree_.meets_kink(around) || !is_within_limits(around)) return false;
     const auto near = tree_.about(around);
-    return near && bend_of_lengths(at, *near) <= (kBeyond - 0x1p-40) * bend_of_lengths(at, at.full);
+    const double own = bend_of_lengths(at, at.full);
+    return near && own > kNoUnderflow && own < kInfinity &&
+           bend_of_lengths(at, *near) <= (kBeyond - 0x1p-40) * own;
 }
 
 double Judge::halves(const Bending& at, const Box<2>& box, double error, double proven,

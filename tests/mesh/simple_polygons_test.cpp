@@ -12,7 +12,7 @@ namespace {
 using test::Random;
 using Segments = std::vector<Triangulation::Segment>;
 
-Segments ring(int n, int first = 0) {
+Segments sides_around(int n, int first = 0) {
     Segments s;
     for (int i = 0; i < n; ++i) s.push_back({first + i, first + (i + 1) % n});
     return s;
@@ -29,7 +29,7 @@ TEST(SimplePolygons, are_never_refused_by_the_triangulation) {
             const Vec<2> p{{double(random.integer(0, side)), double(random.integer(0, side))}};
             if (seen.insert(p.c).second) points.push_back(p);
         }
-        const Segments segments = ring(int(points.size()));
+        const Segments segments = sides_around(int(points.size()));
         const bool fine = Triangulation::attempt(points, segments).has_value();
         const bool answer = are_simple_polygons(points, segments);
         EXPECT_TRUE(fine || !answer);
@@ -46,8 +46,8 @@ TEST(SimplePolygons, are_seen_as_such) {
         for (int i = 0; i < 100; ++i) points.push_back({{scale, scale * i / 100}});
         points.push_back({{scale, scale}});
         points.push_back({{0, scale}});
-        Segments segments = ring(int(points.size()));
-        for (const auto& s : ring(50, int(points.size()))) segments.push_back(s);
+        Segments segments = sides_around(int(points.size()));
+        for (const auto& s : sides_around(50, int(points.size()))) segments.push_back(s);
         for (int i = 0; i < 50; ++i)
             points.push_back(
                 {{scale * (0.5 + 0.3 * std::cos(i * 0.1256)), scale * (0.5 + 0.3 * std::sin(i * 0.1256))}});
@@ -59,15 +59,15 @@ TEST(SimplePolygons, are_seen_as_such) {
 
 TEST(SimplePolygons, are_not_claimed_where_the_form_is_another) {
     const std::vector<Vec<2>> square{{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}};
-    EXPECT_TRUE(are_simple_polygons(square, ring(4)));
+    EXPECT_TRUE(are_simple_polygons(square, sides_around(4)));
     EXPECT_FALSE(are_simple_polygons(square, Segments{}));
-    EXPECT_FALSE(are_simple_polygons(square, ring(3)));  // a point by itself
-    Segments twice = ring(4);
+    EXPECT_FALSE(are_simple_polygons(square, sides_around(3)));  // a point by itself
+    Segments twice = sides_around(4);
     twice.push_back({0, 1});
     EXPECT_FALSE(are_simple_polygons(square, twice));
-    EXPECT_FALSE(are_simple_polygons(std::vector<Vec<2>>{{{0, 0}}, {{1, 1}}, {{2, 2}}}, ring(3)));
-    EXPECT_FALSE(are_simple_polygons(std::vector<Vec<2>>{{{0, 0}}, {{1, 0}}, {{2, 0}}}, ring(3)));
-    EXPECT_FALSE(are_simple_polygons(std::vector<Vec<2>>{{{0, 0}}, {{1, 0}}, {{NAN, 1}}}, ring(3)));
+    EXPECT_FALSE(are_simple_polygons(std::vector<Vec<2>>{{{0, 0}}, {{1, 1}}, {{2, 2}}}, sides_around(3)));
+    EXPECT_FALSE(are_simple_polygons(std::vector<Vec<2>>{{{0, 0}}, {{1, 0}}, {{2, 0}}}, sides_around(3)));
+    EXPECT_FALSE(are_simple_polygons(std::vector<Vec<2>>{{{0, 0}}, {{1, 0}}, {{NAN, 1}}}, sides_around(3)));
 }
 
 }  // namespace
