@@ -75,7 +75,7 @@ Document collect(IGESControl_Reader& reader, std::string unit) {
         const auto entity = Handle(IGESData_IGESEntity)::DownCast(model->Value(i));
         const TopoDS_Shape shape =
             entity.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(process, entity);
-        if (shape.IsNull()) continue;
+        if (shape.IsNull() || shape.ShapeType() > TopAbs_FACE) continue;  // edges have neither
         Entity e{label_of(model, entity), entity->HasName() ? words(entity->NameValue()) : std::string(),
                  colour_of(entity)};
         entities.Bind(shape.Located(TopLoc_Location()), std::move(e));

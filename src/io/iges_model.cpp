@@ -229,7 +229,6 @@ private:
 
     void add(const Body& b, const std::vector<int>& faces) {
         std::vector<int> shells;
-        const IgesLook look = file_.look(b.colour, b.name), of_shell = b.solid ? IgesLook{} : look;
         for (const int s : b.shells) {
             const Shell& shell = m_.shells[std::size_t(s)];
             std::vector<std::string> values = {text(shell.faces.size())};
@@ -238,13 +237,15 @@ private:
                 values.push_back(text(faces[f]));
                 values.emplace_back(m_.faces[f].reversed != u.reversed ? "0" : "1");
             }
+            const IgesLook look = b.solid ? IgesLook{} : file_.look(b.colour, b.name);
             shells.push_back(file_.entity("514", b.solid ? IgesUse::part : IgesUse::alone, values,
-                                          b.solid ? 1 : 2, 0, of_shell));
+                                          b.solid ? 1 : 2, 0, look));
         }
         if (!b.solid || shells.empty()) return;
         std::vector<std::string> values = {text(shells[0]), "1", text(shells.size() - 1)};
         for (std::size_t i = 1; i < shells.size(); ++i)
             values.push_back(text(shells[i])), values.emplace_back("1");
+        const IgesLook look = file_.look(b.colour, b.name);
         file_.entity("186", IgesUse::alone, values, 0, 0, look);
     }
 

@@ -60,13 +60,14 @@ Result<int> iges_loop(IgesFile& file, const std::vector<CurveGeometry<2>>& curve
 }
 
 // One for each outer loop; holes go to the only one.
-Result<int> iges_trimmed(IgesFile& file, const TrimmedSurface& t, IgesLook look) {
+Result<int> iges_trimmed(IgesFile& file, const TrimmedSurface& t, const std::string& name) {
     const auto turned = detail::oriented_loops(t);
     if (!turned) return std::unexpected(turned.error());
+    const auto look = [&] { return file.look(std::nullopt, name); };  // of each entity its own
     const bool is_whole = turned->loops.empty();
     const auto surface = visit_one(
         [&](const auto& s) {
-            return file.add(s, is_whole ? IgesUse::alone : IgesUse::part, is_whole ? look : IgesLook{});
+            return is_whole ? file.add(s, IgesUse::alone, look()) : file.add(s, IgesUse::part);
         },
         t.surface);
     if (!surface || is_whole) return surface;
@@ -84,7 +85,8 @@ Result<int> iges_trimmed(IgesFile& file, const TrimmedSurface& t, IgesLook look)
     for (const int o : outer) {
         std::vector<std::string> values = {text(*surface), "1", text(holes.size()), text(o)};
         for (const int h : holes) values.push_back(text(h));
-        last = file.entity("144", IgesUse::alone, values, 0, 0, look);
+        const IgesLook own = look();
+        last = file.entity("144", IgesUse::alone, values, 0, 0, own);
     }
     return last;
 }
@@ -95,18 +97,17 @@ Result<std::string> write_iges(const Document& document) {
     IgesFile file;
     for (std::size_t i = 0; i < document.objects.size(); ++i) {
         const Object& o = document.objects[i];
-        const auto look = [&] { return file.look(std::nullopt, o.name); };
         const auto done = visit_one(
             [&](const auto& s) -> Result<int> {
                 using S = std::remove_cvref_t<decltype(s)>;
-                if constexpr (std::same_as<S, TrimmedSurface>) return iges_trimmed(file, s, look());
+                if constexpr (std::same_as<S, TrimmedSurface>) return iges_trimmed(file, s, o.name);
                 if constexpr (std::same_as<S, Model>) {
                     const auto model = detail::add_model(file, s);
                     return model ? Result<int>(0) : std::unexpected(model.error());
                 }
                 if constexpr (TensorPatch<S>)
                     if constexpr (S::kParams <= 2 && (S::Point::kCoords == 2 || S::Point::kCoords == 3))
-                        return file.add(s, IgesUse::alone, look());
+                        return file.add(s, IgesUse::alone, file.look(std::nullopt, o.name));
                 return refuse(RefusalKind::unsupported, "",
                               text("is a ", type_name(o.shape),
                                    "; IGES files are written of models, and of curves and surfaces of two or "

@@ -1,6 +1,6 @@
 // What bounds of second derivatives are made of: bending.cpp.
 #pragma once
-#include "curvature_tree_detail.hpp"
+#include "curvature_detail.hpp"
 
 #include <freiform/core/constants.hpp>
 

@@ -17,7 +17,7 @@ class Chunks {
 
 public:
     // One piece of memory for many chunks, of several sequences and threads: it is asked for and given back
-    // at once, which costs as much as all the work on some ten thousand elements if it is done bit by bit.
+    // at once. Bit by bit that took a tenth of the time where one large face was meshed after the other.
     class Room {
     public:
         explicit Room(std::size_t elements)

@@ -36,9 +36,11 @@ constexpr std::size_t kLeavesCounted = 256;  // at once
 constexpr double kNodesOfTriangle = 1.5;     // expected
 constexpr double kMostNodes = 1 << 20;       // expected: 80 MiB
 constexpr std::size_t kManyNodes = 1 << 13;  // likewise
-constexpr double kLeavesOfNode = 0.5;        // that share what is known of them with no other leaf
-constexpr double kSmallPart = 0x1p-9;        // of a piece: there bounds of derivatives lose little
-constexpr long long kFewNumbers = 96;        // of a piece: asking them is as cheap as a sample
+// Of a node: about twice as many as there are, as what is not touched costs nothing, and as allocators keep
+// about as much for the next face as the largest piece that they were given back. At most 60 MiB.
+constexpr double kBendingsOfNode = 0.5, kMostBendings = 1 << 17;
+constexpr double kSmallPart = 0x1p-9;  // of a piece: there bounds of derivatives lose little
+constexpr long long kFewNumbers = 96;  // of a piece: asking them is as cheap as a sample
 
 std::size_t expected_nodes(const FaceDemands& demands) {
     const double nodes = kNodesOfTriangle * demands.expected_triangles;
@@ -305,8 +307,8 @@ Result<CurvatureTree> CurvatureTree::make(const DerivativeQuery<2, 3>& surface,
     const std::size_t nodes = expected_nodes(demands);
     if (demands.is_shared && is_serial()) tree.reserve(nodes);
     if (demands.is_shared && !kIsSerialBuild && nodes >= kManyNodes)
-        tree.bendings_.use(
-            std::make_shared<Chunks<Bending>::Room>(std::size_t(kLeavesOfNode * double(nodes))));
+        tree.bendings_.use(std::make_shared<Chunks<Bending>::Room>(
+            std::size_t(std::min(kBendingsOfNode * double(nodes), kMostBendings))));
     tree.nodes_.add({root, 0});
     if (!tree.cone_ || tree.cone_->is_sphere()) tree.plan_columns(surface, demands.tolerance);
     if (auto torn = tree.torn_place(surface, polygon, segments, demands.tolerance))

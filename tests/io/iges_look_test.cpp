@@ -111,6 +111,29 @@ TEST_F(IgesLook, what_is_written_comes_back) {
     for (std::size_t f = 3; f < back.faces.size(); ++f) EXPECT_FALSE(back.faces[f].colour) << f;
 }
 
+// Curves and surfaces by themselves, a surface without loops among them, which is no part of anything then.
+TEST_F(IgesLook, names_of_objects_come_back_with_them) {
+    const auto basis = *BSplineBasis::clamped_uniform(1, 2);
+    const auto flat = [&](double z) {
+        return must(Surface<Vec<3>>::make(
+            {basis, basis}, Net<2, Vec<3>>({2, 2}, {{{0, 0, z}}, {{0, 1, z}}, {{2, 0, z}}, {{2, 1, z}}})));
+    };
+    Document d;
+    d.unit = "mm";
+    d.objects.push_back({"first", flat(0)});
+    d.objects.push_back({"second", TrimmedSurface{flat(5), {}}});
+    const std::string file = must(write_iges(d));
+    int independent = 0;
+    for (const std::string& line : section(file, 'D'))
+        independent += line.substr(0, 8) == "     128" && line.substr(64, 8) == "00000000";
+    EXPECT_EQ(independent, 2);
+    const Model back = read(file);
+    ASSERT_EQ(back.bodies.size(), 2u);
+    EXPECT_EQ(back.bodies[0].name, "first");
+    EXPECT_EQ(back.bodies[1].name, "second");
+    EXPECT_EQ(back.faces.size(), 2u);
+}
+
 TEST_F(IgesLook, colours_that_the_standard_numbers_are_read) {
     const Colour expected[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
                                {1, 1, 0}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
