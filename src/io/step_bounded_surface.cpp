@@ -80,7 +80,7 @@ Result<void> ShapeReader::add_boundary_curve(std::uint32_t i, const Chart& chart
         const Edge& e = out_.model.edges[std::size_t(made->edge)];
         for (int k = 0; k <= 4; ++k) box.add(jet<0>(*e.curve, e.range.lo + e.range.length() * k / 4).value());
     }
-    const double joint = std::max(2 * tolerance_, 1e-6 * box.diagonal());
+    const double joint = std::max(2 * tolerance_, kDigits * box.diagonal());
     const auto apart = [&](int a, int b) {
         const auto& v = out_.model.vertices;
         return norm(v[std::size_t(a)].point - v[std::size_t(b)].point);

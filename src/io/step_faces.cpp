@@ -86,7 +86,7 @@ Result<Use> ShapeReader::use_of(const EdgeMade& made, std::span<const CurveGeome
         if (auto plain = trace(chart, *e.curve, e.range, t->gap, rough, images);
             plain && plain->gap <= kPlain * t->gap)
             t = std::move(plain);
-    if (strict_ && is_beside(t->gap, size) && t->gap > 2 * off_sphere(*strict_, *e.curve, e.range))
+    if (strict_ && !t->cut && is_beside(t->gap, size) && t->gap > 2 * off_sphere(*strict_, *e.curve, e.range))
         return refuse(RefusalKind::ill_conditioned, "parameter curve",
                       "runs too near to a pole to be followed");
     if (size > 0 && !(t->gap < kHopeless * size))

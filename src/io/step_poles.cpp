@@ -4,6 +4,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/core/visit.hpp>
+#include <freiform/spline/hull_box.hpp>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +21,8 @@ constexpr double kSingularCrossing = 1e-10;
 constexpr double kSidesApart = 1e-3;
 // Nor is a side a point that is not much shorter than the surface is wide elsewhere.
 constexpr double kShrunk = 0.1;
+// Of the size of a profile: its last digits leave an end that is on the axis so far beside it.
+constexpr double kOnAxis = 1e-4;
 
 // Those of a t^2 + b t + c, where they touch one between; `scale`: what a is small against. What there is not
 // is not finite.
@@ -78,15 +81,15 @@ void Chart::profile_traits(const CurveGeometry<3>& profile, int axis) {
 }
 
 void Chart::poles_of(const Revolution& s, double close) {
-    const auto add = [&](double v) {
+    const auto add = [&](double v, double near) {
         if (!std::isfinite(v)) return;
         const Vec<3> p = jet<0>(s.profile, v).value();
-        if (norm(across(p - s.origin, s.axis)) <= close)
+        if (norm(across(p - s.origin, s.axis)) <= near)
             poles_.push_back({1, v, s.origin + dot(p - s.origin, s.axis) * s.axis});
     };
     if (const auto* l = std::get_if<Line<3>>(&s.profile)) {
         const Vec<3> d = across(l->direction, s.axis), o = across(l->origin - s.origin, s.axis);
-        if (dot(d, d) > 0) add(-dot(o, d) / dot(d, d));
+        if (dot(d, d) > 0) add(-dot(o, d) / dot(d, d), close);
     } else if (const auto* c = std::get_if<Conic<3>>(&s.profile)) {
         AxisCrossing at = crossing(s, *c, close);
         if (!at.any) return;
@@ -94,10 +97,12 @@ void Chart::poles_of(const Revolution& s, double close) {
             whole_[1] = {at.middle - at.half, at.middle + at.half};
             at.roots = {whole_[1].lo, whole_[1].hi};
         }
-        for (const double v : at.roots) add(v);
+        for (const double v : at.roots) add(v, close);
     } else {
-        add(whole_[1].lo);
-        add(whole_[1].hi);
+        const auto box = hull_box(s.profile, {whole_[1]});
+        const double near = std::max(close, box ? kOnAxis * box->diagonal() : 0.0);
+        add(whole_[1].lo, near);
+        add(whole_[1].hi, near);
     }
 }
 

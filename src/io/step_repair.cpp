@@ -92,7 +92,7 @@ Result<void> ShapeReader::close_loop(std::uint32_t loop, std::vector<Use>& uses,
         if (from == to) continue;
         const double apart =
             norm(out_.model.vertices[std::size_t(from)].point - out_.model.vertices[std::size_t(to)].point);
-        if (apart <= std::max(tolerance_, 1e-6 * size)) {
+        if (apart <= std::max(tolerance_, kDigits * size)) {
             join_vertices(from, to);
             continue;
         }

@@ -186,6 +186,8 @@ private:
     void take(std::uint32_t item, SweptModel made);
     // step_repair.cpp: what contradicts itself beyond the tolerance, refused or made right.
     void turn_edges(std::vector<Oriented>& loop);
+    // Of the size of a face: gaps between its edges that the last digits of a file leave. They are told.
+    static constexpr double kDigits = 1e-4;
     Result<void> close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart, double size,
                             int loosely);
     Result<void> accept_gap(std::uint32_t edge, const Use& use, const Chart& chart, double size);

@@ -27,7 +27,8 @@ constexpr double kApart = 1e-6;   // of the range: places where pieces begin
 // of what is asked for, and so many times as far as the place before.
 constexpr double kMiddles[] = {0.46875, 0.21875, 0.78125, 0.09375, 0.90625};
 constexpr double kNear = 10, kFarther = 2;
-constexpr double kOnSeam = 1e-9;  // of the period
+constexpr double kRougher = 10, kDigits = 1e-2;  // of what is rough: the most of all, and what digits leave
+constexpr double kOnSeam = 1e-9;                 // of the period
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
 int spans_of(const CurveGeometry<3>& c) {
@@ -57,11 +58,17 @@ public:
         if (auto flat = trace_on_plane(chart_.surface(), c_, on_)) return *flat;
         auto t = on_curved();
         if (t && chart_.has_pole_across(t->curve, on_)) t = through_pole();
+        // Beside a pole what follows an edge well may run around the pole all the same.
+        const bool follows = t && t->gap <= kNear * accuracy_;
+        if (!follows || t->fitted)
+            if (auto ended =
+                    trace_up_to_poles(chart_, c_, on_, accuracy_, follows ? kDigits * rough_ : rough_))
+                t = *std::move(ended);
         if (!(t && t->gap <= kNear * accuracy_))
             if (auto told = nearest_image(t ? t->gap : rough_)) return *told;
         if (!t)
             // Of spheres there are others, with other poles.
-            if (auto feet = polygon_of_feet(chart_, c_, on_, rough_);
+            if (auto feet = polygon_of_feet(chart_, c_, on_, kRougher * rough_);
                 feet && !(chart_.is_sphere() && chart_.has_pole_across(feet->curve, on_)))
                 return *feet;
         return t;

@@ -17,6 +17,7 @@ struct Trace {
     double gap = 0;       // the largest distance from the edge that was seen
     bool fitted = false;  // a spline that follows the edge, and not a curve of closed form
     bool told = false;    // of the file
+    bool cut = false;     // ends at a pole, beside the end of the edge (trace_up_to_poles)
 };
 
 // The curve over `on` whose image on the surface follows `c` with the same parameter, as near as the surface
@@ -59,6 +60,10 @@ std::vector<double> places_along(const CurveGeometry<D>& c, Interval on, int par
     sort(all);
     return all;
 }
+
+// Of an edge that goes on beyond a pole by no more than `rough`: a curve that ends there. Else nothing.
+std::optional<Trace> trace_up_to_poles(const Chart& chart, const CurveGeometry<3>& c, Interval on,
+                                       double accuracy, double rough);
 
 // As few corners on a parameter curve `fine` of the edge, moved into the surface where that ends, as keep the
 // polygon through them within `accuracy` of the edge, if some do. What the edge does within `beside` of its
