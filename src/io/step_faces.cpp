@@ -216,6 +216,9 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
                 options.factor = 2;
                 options.max_samples = 4000;
                 const EdgeGap gap = edge_gap(*query, u.coedge.curve, *e.curve, e.range, options);
+                // What closes a loop may move a parameter curve.
+                if (size > 0 && !options_.repair && is_far(gap.found, size))
+                    return far_beside("edge", gap.found, size);
                 const double found = std::max(u.gap, gap.found);
                 const bool proven = std::isfinite(gap.bound);
                 const double distance = proven ? gap.bound : kMargin * found;

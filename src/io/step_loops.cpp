@@ -23,8 +23,11 @@ namespace freiform::step {
 
 namespace {
 
-constexpr double kNearPole = 1e-6;          // of a parameter, of its period or domain
-constexpr double kBesidePole = 1e-2;        // likewise
+constexpr double kNearPole = 1e-6;    // of a parameter, of its period or domain
+constexpr double kBesidePole = 1e-2;  // likewise
+constexpr double kAlongSide = 1e-3;   // likewise: a way along a side
+constexpr double kShortSide = 1e-4;   // of the edges that meet there: how far a side is from a point
+constexpr int kLooksAtSide = 8;
 constexpr int kOutline = 32;                // points of an edge
 constexpr std::size_t kMostInOrder = 2000;  // edges: pairs of them are looked at
 
@@ -86,6 +89,8 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b, double close)
 // is the first one, and stays where it is.
 void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing) {
     const Pole* pole = pole_at(last.end, next.start);
+    if (pole == nullptr && is_short_side(last, next))
+        return done.push_back(degenerate(last.to, last.end, next.start));
     if (pole == nullptr) return corner_between(done, last, next);
     const int o = 1 - pole->axis;
     const double turn = chart_.period(o);
@@ -112,6 +117,32 @@ void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& nex
     }
     if (std::abs(to[o] - last.end[o]) <= 1e-9 * scale_of(chart_, o)) return;
     done.push_back(degenerate(last.to, last.end, to));
+}
+
+// Whether both end on one side of a spline, far from each other in its parameters, and the side between them
+// is so short that what their vertex stands for is all of it. It is no pole: files have edges along such
+// sides.
+bool LoopBuilder::is_short_side(const Use& last, const Use& next) const {
+    const Vec<2>&a = last.end, &b = next.start;
+    const auto way = [&](const Use& u) { return norm(chart_.point(u.start) - chart_.point(u.end)); };
+    const double most = kShortSide * std::min(way(last), way(next));
+    for (int k = 0; k < 2; ++k) {
+        const int o = 1 - k;
+        if (!chart_.is_spline(k) || chart_.period(k) > 0 || chart_.period(o) > 0) continue;
+        const Interval on = chart_.whole()[std::size_t(k)];
+        const double slip = kNearPole * on.length();
+        const auto at_end = [&](double end) {
+            return std::abs(a[k] - end) <= slip && std::abs(b[k] - end) <= slip;
+        };
+        if (!at_end(on.lo) && !at_end(on.hi)) continue;
+        if (!(std::abs(a[o] - b[o]) > kAlongSide * scale_of(chart_, o))) continue;
+        const Vec<3>& at = model_.vertices[std::size_t(last.to)].point;
+        bool near = true;
+        for (int i = 0; i <= kLooksAtSide && near; ++i)
+            near = norm(chart_.point(a + (double(i) / kLooksAtSide) * (b - a)) - at) <= most;
+        if (near) return true;
+    }
+    return false;
 }
 
 // Where two neighbouring sides are one point, along both of them.

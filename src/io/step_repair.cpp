@@ -114,8 +114,7 @@ Result<void> ShapeReader::close_loop(std::uint32_t loop, std::vector<Use>& uses,
 }
 
 Result<void> ShapeReader::accept_gap(std::uint32_t edge, const Use& use, const Chart& chart, double size) {
-    const double most = std::max(tolerance_, kFar * size);
-    if (!(use.gap > most)) return {};
+    if (!is_far(use.gap, size)) return {};
     // On planes the gap is that of control points: too large.
     const Edge& e = out_.model.edges[std::size_t(use.coedge.edge)];
     double seen = 0;
@@ -124,14 +123,19 @@ Result<void> ShapeReader::accept_gap(std::uint32_t edge, const Use& use, const C
         seen = std::max(seen,
                         norm(chart.point(jet<0>(use.coedge.curve, t).value()) - jet<0>(*e.curve, t).value()));
     }
-    if (!(seen > most)) return {};
-    if (!options_.repair)
-        return refuse(RefusalKind::ill_conditioned, f_.label(edge),
-                      text("lies ", seen, " beside the surface; the face has a size of ", size,
-                           ", and the file says at most ", tolerance_,
-                           "; a repair (--repair) takes it with that tolerance"));
+    if (!is_far(seen, size)) return {};
+    if (!options_.repair) return far_beside(f_.label(edge), seen, size);
     repaired(edge, "lies beside the surface of a face; that is its tolerance now", seen);
     return {};
+}
+
+bool ShapeReader::is_far(double gap, double size) const { return gap > std::max(tolerance_, kFar * size); }
+
+std::unexpected<Refusal> ShapeReader::far_beside(std::string edge, double gap, double size) const {
+    return refuse(RefusalKind::ill_conditioned, std::move(edge),
+                  text("lies ", gap, " beside the surface; the face has a size of ", size,
+                       ", and the file says at most ", tolerance_,
+                       "; a repair (--repair) takes it with that tolerance"));
 }
 
 void ShapeReader::tell_turn(std::uint32_t face, const LoopBuilder& loops) {

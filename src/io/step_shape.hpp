@@ -190,6 +190,8 @@ private:
     static constexpr double kDigits = 1e-4;
     Result<void> close_loop(std::uint32_t loop, std::vector<Use>& uses, const Chart& chart, double size,
                             int loosely);
+    bool is_far(double gap, double size) const;
+    std::unexpected<Refusal> far_beside(std::string edge, double gap, double size) const;
     Result<void> accept_gap(std::uint32_t edge, const Use& use, const Chart& chart, double size);
     void tell_turn(std::uint32_t face, const LoopBuilder& loops);
     void settle_turned(const Shell& shell);

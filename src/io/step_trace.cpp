@@ -27,6 +27,7 @@ constexpr double kApart = 1e-6;   // of the range: places where pieces begin
 // of what is asked for, and so many times as far as the place before.
 constexpr double kMiddles[] = {0.46875, 0.21875, 0.78125, 0.09375, 0.90625};
 constexpr double kNear = 10, kFarther = 2;
+constexpr double kNearer = 0.9;                  // than the point that a path led to: one elsewhere
 constexpr double kRougher = 10, kDigits = 1e-2;  // of what is rough: the most of all, and what digits leave
 constexpr double kOnSeam = 1e-9;                 // of the period
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
@@ -388,7 +389,7 @@ private:
         // Where the surface bends sharply beside the edge, the nearest point is elsewhere.
         const auto j = jet<1>(c_, t);
         const Foot f = foot_by_images(chart_, j.d[0], j.d[1], t, on_, accuracy_, images_);
-        if (f.regular && near(f.at, from.at) && !(found && out.gap <= f.distance)) {
+        if (f.regular && near(f.at, from.at) && !(found && kNearer * out.gap <= f.distance)) {
             out.t = t, found = true;
             place(f, out);
         }

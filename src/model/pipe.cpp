@@ -100,7 +100,7 @@ public:
         const double misses = norm(last.to - runs_.front().from);
         const double most = joint_ + kNothing * (far + radius);
         closed_ = misses <= most && (runs_.size() > 1 || last.turns);
-        Vec<3> e = any_across(runs_.front().along);
+        Vec<3> e = first_across();
         for (std::size_t i = 0; i <= runs_.size(); ++i) {
             const bool at_end = i == runs_.size();
             const Run* before = i > 0 ? &runs_[i - 1] : nullptr;
@@ -155,6 +155,15 @@ public:
     }
 
 private:
+    // Along the axis of the first bend, so that the seam is where its torus changes from curved like a sphere
+    // to curved like a saddle, and halves of it are either: up to a third fewer triangles than elsewhere.
+    Vec<3> first_across() const {
+        const Vec<3>& t = runs_.front().along;
+        const auto bend = std::ranges::find_if(runs_, &Run::turns);
+        if (bend == runs_.end()) return any_across(t);
+        const Vec<3> e = bend->axis - dot(bend->axis, t) * t;
+        return norm(e) > 0.5 ? unit(e) : any_across(t);
+    }
     // The edges around joints, one of each circle. Those of the larger radius come first.
     int circle_of(std::size_t joint) const { return circles_ + int(joint % joints_.size()); }
     int vertex_of(std::size_t joint) const { return vertices_ + int(joint % joints_.size()); }
