@@ -194,9 +194,9 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
         if (spline) {
             const bool closes =
                 norm(jet<0>(c->curve, whole.lo).value() - jet<0>(c->curve, whole.hi).value()) <= tolerance_;
-            // Where it closes, its ends are one point.
-            if (closes && at_end(whole.lo, a) <= tolerance_) lo = whole.lo;
-            if (closes && at_end(whole.hi, b) <= tolerance_) hi = whole.hi;
+            // Where it closes, its ends are one point: as near to a vertex as what is nearest.
+            if (closes && at_end(whole.lo, a) <= off_a + tolerance_) lo = whole.lo;
+            if (closes && at_end(whole.hi, b) <= off_b + tolerance_) hi = whole.hi;
             if (!closes && end[0] == end[1] && !(lo < hi)) {
                 const double length = chord_length(c->curve, whole);
                 const double off = std::max(at_end(whole.lo, a), at_end(whole.hi, a));
@@ -216,8 +216,8 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
             }
             if (closes && !(lo < hi)) {
                 // Over the end of the curve: one spline from there on.
-                hi += whole.length();
-                if (auto longer = continued(c->curve, hi, tolerance_)) {
+                if (auto longer = continued(c->curve, hi + whole.length(), tolerance_)) {
+                    hi += whole.length();
                     Edge e;
                     e.curve = std::move(*longer);
                     e.range = {lo, hi};

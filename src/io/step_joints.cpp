@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace freiform::step {
 
@@ -52,8 +53,21 @@ void LoopBuilder::end_at_poles(Use& u) const {
     }
 }
 
+// The same end of another use of the edge there, too: they run to and fro on one way.
+void LoopBuilder::end_both_at(Chain& c, Use& u, bool last, const Vec<2>& to) const {
+    const Vec<2> old = last ? u.end : u.start;
+    end_at(u, last, to);
+    for (Use& v : c.uses)
+        if (&v != &u && v.coedge.edge == u.coedge.edge && v.coedge.reversed != u.coedge.reversed &&
+            (last ? v.start : v.end) == old)
+            end_at(v, !last, to);
+}
+
 void LoopBuilder::close_joints(Chain& c) const {
     const std::size_t n = c.uses.size();
+    std::map<int, int> times;  // that an edge is used
+    for (const Use& u : c.uses) ++times[u.coedge.edge];
+    const auto is_twice = [&](const Use& u) { return times[u.coedge.edge] > 1; };
     for (std::size_t k = 0; k < n && (n > 1 || !c.uses[0].fitted); ++k) {
         Use &a = c.uses[k], &b = c.uses[(k + 1) % n];
         Vec<2> turns{};  // by which b is to be moved to follow a
@@ -64,13 +78,15 @@ void LoopBuilder::close_joints(Chain& c) const {
         if (from == to || n == 1) continue;
         const double apart = norm(chart_.point(from) - chart_.point(to));
         const auto stated = [&](const Use& u) { return model_.edges[std::size_t(u.coedge.edge)].tolerance; };
-        if (!(apart <= 2 * std::max({close_, stated(a), stated(b), a.gap, b.gap}))) continue;
+        // Where an edge runs to and fro its ends have to be the same both times, as far as their vertex says.
+        const double corner = is_twice(a) || is_twice(b) ? model_.vertices[std::size_t(a.to)].tolerance : 0;
+        if (!(apart <= 2 * std::max({close_, stated(a), stated(b), a.gap, b.gap, corner}))) continue;
         // What follows an edge gives way to what has a closed form.
         const bool a_first = can_move(a) && (!can_move(b) || !is_straight(a) || is_straight(b));
         if (a_first)
-            end_at(a, true, to);
+            end_both_at(c, a, true, to);
         else if (can_move(b))
-            end_at(b, false, from - turns);
+            end_both_at(c, b, false, from - turns);
     }
 }
 

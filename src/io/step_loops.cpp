@@ -77,7 +77,8 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b, double close)
         // point.
         const auto is_there = [&](const Vec<2>& x) {
             const double d = x[p.axis] - p.at, off = std::abs(turn > 0 ? d - std::round(d / turn) * turn : d);
-            return off <= near || (off <= kBesidePole * scale_of(chart_, p.axis) &&
+            const bool ends = turn > 0 || std::isfinite(chart_.whole()[std::size_t(p.axis)].length());
+            return off <= near || ((!ends || off <= kBesidePole * scale_of(chart_, p.axis)) &&
                                    norm(chart_.point(x) - p.point) <= std::max(close, close_));
         };
         if (is_there(a) && is_there(b)) return &p;

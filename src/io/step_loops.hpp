@@ -82,6 +82,7 @@ private:
     void move(Chain& c, const Vec<2>& by) const;
     void close_joints(Chain& c) const;
     void end_at(Use& u, bool last, const Vec<2>& to) const;
+    void end_both_at(Chain& c, Use& u, bool last, const Vec<2>& to) const;
     void end_at_poles(Use& u) const;
     static constexpr int kBegins = 64;  // of a closed surface, to find one with no hole across
     void turn_to(Chain& c, std::size_t first) const;
