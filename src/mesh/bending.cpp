@@ -92,13 +92,16 @@
 // S(b - h) = 2 S(b) - S(b + h) in one direction, which has continuous first derivatives and three times the
 // second ones at most. G goes there only from the boundary's own zone, and D does not reach there. Rounding:
 // first derivatives of a piece of degree p and side w are differences of points times p / w, off by at most
-// some 4 p / w times what points are off by. Asked for is that this is below 1e-9 of a w, so a, b and n have
-// relative errors below 1e-7 (p <= 25); 1e-6 is added.
+// some 4 p / w times what points are off by. What is turned or moved on has no pieces along that: its first
+// derivative is a vector from the axis, off by what points are, or given; so are those of lines and ellipses.
+// Asked for is that this is below 1e-7 of a, so a, b and n have relative errors below that; 1e-6 is added.
 //
 // References: [Milnor 1965] for degrees. Why not all of |S - L|: the wall of a frustum needs a hundred times
 // as many triangles. Why not distances from planes: where the foot leaves a triangle its neighbour has to be
 // looked at.
 #include "bending_detail.hpp"
+
+#include <freiform/core/visit.hpp>
 
 namespace freiform {
 
@@ -176,6 +179,30 @@ bool matters_what_is_beside(const DerivativeQuery<2, 3>& surface, const std::arr
            std::abs(uv) * hu + std::abs(vv) * hv > kMuchTurn * b;
 }
 
+// What first derivatives along an axis are off by, of what points are, times the width of pieces.
+double steepness(const SurfaceGeometry& surface, int axis) {
+    const auto of_profile = [](const CurveGeometry<3>& c) {
+        return visit_one(
+            [](const auto& g) {
+                if constexpr (requires { g.net(); })
+                    return 4.0 * g.basis().degree();
+                else
+                    return 1.0;
+            },
+            c);
+    };
+    return visit_one(
+        [&](const auto& s) {
+            if constexpr (requires { s.net(); })
+                return 4.0 * s.basis(axis).degree();
+            else if constexpr (requires { s.base; })
+                return 4.0 * kMaxDegree;
+            else
+                return axis == (requires { s.axis; } ? 1 : 0) ? of_profile(s.profile) : 1.0;
+        },
+        surface);
+}
+
 }  // namespace
 
 std::optional<Vec<3>> normal_in(const DerivativeQuery<2, 3>& surface, const std::array<Interval, 2>& on,
@@ -183,9 +210,12 @@ std::optional<Vec<3>> normal_in(const DerivativeQuery<2, 3>& surface, const std:
     const double a = norm(u), b = norm(v);
     const Vec<3> m = cross(u, v);
     if (!(a * b > 0) || !(norm(m) > kBendingRounding * a * b)) return std::nullopt;
-    const double side = std::min(a * std::min(on[0].length() / 2, surface.thinnest_piece(0)),
-                                 b * std::min(on[1].length() / 2, surface.thinnest_piece(1)));
-    if (!(surface.value_error(on) <= 1e-9 * side)) return std::nullopt;
+    const double error = surface.value_error(on);
+    for (int d = 0; d < 2; ++d) {
+        const double half = on[std::size_t(d)].length() / 2, steep = steepness(surface.geometry(), d);
+        const double width = steep == 1 ? std::max(half, 1.0) : std::min(half, surface.thinnest_piece(d));
+        if (!(steep * error <= 1e-7 * width * (d == 0 ? a : b))) return std::nullopt;
+    }
     return unit(m);
 }
 

@@ -355,4 +355,41 @@ TEST(TessellateEconomy, knots_that_are_kinks_by_the_digits_of_a_file_cost_nothin
     EXPECT_GE(triangles(bow(2, 1e-4), 1e-3), 1.25 * rounded) << "kinks that matter are still kinks";
 }
 
+// What numbers far from zero are rounded by is small beside what surfaces bend: normals are known there.
+TEST(TessellateEconomy, far_from_the_origin_there_are_no_more_triangles) {
+    std::mt19937 rng(5);
+    const Surface<Vec<3>> sheet = landscape(rng, 3, 14, 0.6);
+    double size = 0;
+    for (const Vec<3>& p : sheet.net().flat()) size = std::max(size, norm(p));
+    const auto moved_torus = [](const Vec<3>& by) {
+        Model m = torus(10, 2);
+        for (Vertex& v : m.vertices) v.point += by;
+        for (Edge& e : m.edges) std::get<Conic<3>>(*e.curve).centre += by;
+        auto& s = std::get<Revolution>(m.faces[0].surface);
+        s.origin += by, std::get<Conic<3>>(s.profile).centre += by;
+        return m;
+    };
+    const auto moved_sheet = [&](const Vec<3>& by) {
+        Net<2, Vec<3>> net = sheet.net();
+        for (Vec<3>& p : net.flat()) p += by;
+        ModelBuilder builder;
+        EXPECT_TRUE(builder.add(*Surface<Vec<3>>::make(sheet.bases(), net)));
+        return *std::move(builder).finish();
+    };
+    const auto count = [&](const Model& m, double tolerance) {
+        const auto t = tessellate(m, {.tolerance = tolerance});
+        EXPECT_TRUE(t && t->refused.empty());
+        const auto d = deviation(m, t->mesh, {.enough = tolerance, .max_parts = 40});
+        EXPECT_TRUE(d && d->measured <= t->error_bound + t->boundary_gap);
+        return double(t->mesh.triangles.size());
+    };
+    const double here = count(moved_torus({}), 0.05), sheet_here = count(moved_sheet({}), 4e-3 * size);
+    for (const double far : {1e3, 1e5}) {
+        EXPECT_LT(count(moved_torus(far * Vec<3>{{7, -6, 4}}), 0.05), 1.02 * here) << far;
+        EXPECT_LT(count(moved_sheet((0.002 * far * size) * Vec<3>{{7, -6, 4}}), 4e-3 * size),
+                  1.02 * sheet_here)
+            << far;
+    }
+}
+
 }  // namespace
