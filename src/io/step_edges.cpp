@@ -186,7 +186,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
         // Trimmed, where its vertices are: where the curve meets itself, they say less.
         lo = part.lo, hi = part.hi;
         off_a = at_end(lo, a), off_b = at_end(hi, b);
-    } else if (spline && at_end(whole.lo, a) <= tolerance_ && at_end(whole.hi, b) <= tolerance_) {
+    } else if (spline && at_end(whole.lo, a) <= off_a + tolerance_ && at_end(whole.hi, b) <= tolerance_) {
         lo = whole.lo, hi = whole.hi;
         off_a = at_end(lo, a), off_b = at_end(hi, b);
     } else {
@@ -197,6 +197,17 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
             // Where it closes, its ends are one point: as near to a vertex as what is nearest.
             if (closes && at_end(whole.lo, a) <= off_a + tolerance_) lo = whole.lo;
             if (closes && at_end(whole.hi, b) <= off_b + tolerance_) hi = whole.hi;
+            if (!closes && end[0] != end[1] && lo > hi) {
+                // One that nearly closes has a vertex beside both its ends, and the sense of the edge says
+                // which.
+                const double far_a = at_end(whole.lo, a), far_b = at_end(whole.hi, b);
+                if (std::min(far_a, far_b) <= kNearlyClosed * chord_length(c->curve, whole)) {
+                    if (far_b <= far_a)
+                        hi = whole.hi, off_b = far_b;
+                    else
+                        lo = whole.lo, off_a = far_a;
+                }
+            }
             if (!closes && end[0] == end[1] && !(lo < hi)) {
                 const double length = chord_length(c->curve, whole);
                 const double off = std::max(at_end(whole.lo, a), at_end(whole.hi, a));

@@ -7,8 +7,10 @@
 #include <freiform/model/swept_solid.hpp>
 #include <freiform/model/tessellate.hpp>
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <support/corpus.hpp>
 #include <support/random.hpp>
@@ -59,6 +61,46 @@ std::string rounded(const std::string& file, const Turn& turn, int decimals) {
         at = close;
     }
     return out;
+}
+
+// Every vertex beside its place, by up to so much along each axis; curves and surfaces stay.
+std::string with_moved_vertices(const std::string& file, Random& random, double by) {
+    const auto number = [&](std::size_t& at) {
+        std::size_t n = 0;
+        while (at < file.size() && std::isdigit(static_cast<unsigned char>(file[at])))
+            n = 10 * n + std::size_t(file[at++] - '0');
+        return n;
+    };
+    std::map<std::size_t, Vec<3>> points;
+    std::size_t last = 0;
+    for (std::size_t at = 0; (at = file.find("\n#", at)) != file.npos;) {
+        const std::size_t i = number(at += 2);
+        last = std::max(last, i);
+        const std::size_t end = file.find(';', at), open = file.find("',(", at);
+        Vec<3> p{};
+        if (file.compare(file.find_first_not_of(" =", at), 16, "CARTESIAN_POINT(") == 0 && open < end &&
+            std::sscanf(file.c_str() + open + 3, "%lf,%lf,%lf", &p[0], &p[1], &p[2]) == 3)
+            points[i] = p;
+    }
+    std::string out, more;
+    std::size_t done = 0;
+    for (std::size_t at = 0; (at = file.find("VERTEX_POINT(", at)) != file.npos;) {
+        std::size_t of = file.find('#', at);
+        out += file.substr(done, of + 1 - done);
+        const auto p = points.find(number(++of));
+        EXPECT_NE(p, points.end());
+        out += text(++last);
+        more += text("#", last, "=CARTESIAN_POINT('',(");
+        for (int k = 0; k < 3; ++k) {
+            char coordinate[40];
+            std::snprintf(coordinate, sizeof coordinate, "%.17f", p->second[k] + random.real(-by, by));
+            more += (k > 0 ? "," : "") + std::string(coordinate);
+        }
+        more += "));\n";
+        at = done = of;
+    }
+    out += file.substr(done);
+    return out.insert(out.rfind("ENDSEC;"), more);
 }
 
 struct Meshed {
@@ -116,6 +158,24 @@ TEST(StepDigits, turned_solids_with_poles_are_closed_whatever_their_points_are_r
         }
 }
 
+TEST(StepDigits, turned_solids_with_poles_are_closed_though_vertices_lie_beside_the_ends_of_edges) {
+    Random random(43);
+    for (const char* region :
+         {"M0 0 L20 0 L0 30 Z", "M0 -15 A15 15 0 0 1 0 15 Z", "M0 -12 A12 12 0 0 1 12 0 L0 25 Z"})
+        for (const double angle : {kPi, 1.9})
+            for (const double by : {1e-5, 1e-3, 0.02}) {
+                const std::string file = written(turned(region, angle));
+                const Meshed exact = meshed(file, 0.05),
+                             m = meshed(with_moved_vertices(file, random, by), 0.05);
+                SCOPED_TRACE(text(region, ", ", angle, ", ", by));
+                EXPECT_TRUE(m.refused.empty()) << m.refused[0];
+                EXPECT_EQ(topology(m.mesh.mesh).open_edges, 0);
+                EXPECT_EQ(topology(m.mesh.mesh).misoriented_edges, 0);
+                EXPECT_LT(m.mesh.boundary_gap, 4 * by);
+                EXPECT_LT(m.mesh.mesh.triangles.size(), 1.6 * double(exact.mesh.mesh.triangles.size()));
+            }
+}
+
 // Corners of a square of side 3, each given twice, with the second one beside the first.
 TEST(StepDigits, segments_that_end_beside_each_other_by_some_digits_are_one_boundary_and_it_is_told) {
     const auto file = [](double beside) {
@@ -143,6 +203,40 @@ TEST(StepDigits, segments_that_end_beside_each_other_by_some_digits_are_one_boun
     ASSERT_TRUE(!open || open->faces.empty());
 }
 
+// Two edges on one spline that closes, or nearly: the first vertex is nearest to its end, or to its
+// beginning.
+TEST(StepDigits, edges_on_a_spline_that_closes_begin_and_end_as_their_sense_says) {
+    const auto file = [](double open, double vertex) {
+        return flat_file(
+            text("#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+                 "#12=ADVANCED_FACE('',(#13),#7,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
+                 "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#14=EDGE_LOOP('',(#15,#16));\n"
+                 "#15=ORIENTED_EDGE('',*,*,#40,.T.);\n#16=ORIENTED_EDGE('',*,*,#41,.T.);\n"
+                 "#40=EDGE_CURVE('',#17,#18,#19,.T.);\n#41=EDGE_CURVE('',#18,#17,#19,.T.);\n"
+                 "#17=VERTEX_POINT('',#30);\n#18=VERTEX_POINT('',#22);\n"
+                 "#19=B_SPLINE_CURVE_WITH_KNOTS('',1,(#20,#21,#22,#23,#24),.UNSPECIFIED.,.F.,.F.,"
+                 "(2,1,1,1,2),(0.,1.,2.,3.,4.),.UNSPECIFIED.);\n#20=CARTESIAN_POINT('',(0.,0.,0.));\n"
+                 "#21=CARTESIAN_POINT('',(2.,0.,0.));\n#22=CARTESIAN_POINT('',(2.,2.,0.));\n"
+                 "#23=CARTESIAN_POINT('',(0.,2.,0.));\n#24=CARTESIAN_POINT('',(0.,",
+                 open, ",0.));\n#30=CARTESIAN_POINT('',(0.,", vertex, ",0.));\n"));
+    };
+    for (const double open : {0.0, -1e-5, -4e-4, 4e-4})
+        for (const double vertex : {0.0, -1e-3, 1e-3}) {
+            SCOPED_TRACE(text(open, ", ", vertex));
+            const Model m = must(read_step(file(open, vertex)));
+            ASSERT_EQ(m.faces.size(), 1u) << m.refused[0].message;
+            EXPECT_TRUE(m.refused.empty());
+            EXPECT_EQ(m.edges.size(), 2u);
+            EXPECT_NEAR(area_of(m, 1e-3), 4, 4e-3);
+            // One edge, all around.
+            const Model whole =
+                must(read_step(replaced(replaced(file(open, vertex), "(#15,#16)", "(#15)"),
+                                        "#40=EDGE_CURVE('',#17,#18", "#40=EDGE_CURVE('',#17,#17")));
+            ASSERT_EQ(whole.faces.size(), 1u) << whole.refused[0].message;
+            EXPECT_EQ(whole.edges.at(0).range.length(), 4);
+        }
+}
+
 // Real models, with as many digits as others have written. One has a hole that touches the circle around it,
 // and crosses that then.
 TEST(StepDigits, models_of_the_corpus_lose_no_face_with_their_digits) {
@@ -163,6 +257,26 @@ TEST(StepDigits, models_of_the_corpus_lose_no_face_with_their_digits) {
         EXPECT_LE(m.refused.size(), of.refused) << of.name;
         EXPECT_LT(m.mesh.mesh.triangles.size(), 1.3 * double(as_it_is)) << of.name;
         EXPECT_EQ(topology(m.mesh.mesh).misoriented_edges, 0) << of.name;
+    }
+}
+
+// A closed spline whose vertex is beside it; half cones; a way to and fro between a hole and the outline.
+TEST(StepDigits, models_of_the_corpus_lose_no_face_with_vertices_beside_their_edges) {
+    struct Of {
+        const char* name;
+        double by, tolerance;
+    };
+    for (const Of& of :
+         {Of{"step/t4mec.stp", 1.7e-5, 0.0017}, Of{"step/nist_ctc_04_asme1_ap242-e1.stp", 0.02, 2},
+          Of{"step_micro/ap214_keyhole_loop.stp", 1e-4, 0.01}}) {
+        FF_CORPUS_OR_SKIP(path, of.name);
+        const std::string file = must(read_file(path.string(), 1u << 24));
+        Random random(7);
+        const Meshed exact = meshed(file, of.tolerance),
+                     m = meshed(with_moved_vertices(file, random, of.by), of.tolerance);
+        EXPECT_EQ(m.refused.size(), exact.refused.size()) << of.name << m.refused[0];
+        EXPECT_LT(m.mesh.mesh.triangles.size(), 1.3 * double(exact.mesh.mesh.triangles.size())) << of.name;
+        EXPECT_LT(m.mesh.boundary_gap, 4 * of.by + exact.mesh.boundary_gap) << of.name;
     }
 }
 
