@@ -88,9 +88,10 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b, double close)
 
 // Puts `next` behind what is done, with an edge along the pole between them if there is one. Closing: `next`
 // is the first one, and stays where it is.
-void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing) {
+void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing,
+                               double extent) {
     const Pole* pole = pole_at(last.end, next.start);
-    if (pole == nullptr && is_short_side(last, next))
+    if (pole == nullptr && is_short_side(last, next, kShortSide * extent))
         return done.push_back(degenerate(last.to, last.end, next.start));
     if (pole == nullptr) return corner_between(done, last, next);
     const int o = 1 - pole->axis;
@@ -123,10 +124,8 @@ void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& nex
 // Whether both end on one side of a spline, far from each other in its parameters, and the side between them
 // is so short that what their vertex stands for is all of it. It is no pole: files have edges along such
 // sides.
-bool LoopBuilder::is_short_side(const Use& last, const Use& next) const {
+bool LoopBuilder::is_short_side(const Use& last, const Use& next, double most) const {
     const Vec<2>&a = last.end, &b = next.start;
-    const auto way = [&](const Use& u) { return norm(chart_.point(u.start) - chart_.point(u.end)); };
-    const double most = kShortSide * std::min(way(last), way(next));
     for (int k = 0; k < 2; ++k) {
         const int o = 1 - k;
         if (!chart_.is_spline(k) || chart_.period(k) > 0 || chart_.period(o) > 0) continue;
@@ -204,11 +203,17 @@ int LoopBuilder::turns(const Vec<2>& by, int k) const {
 
 LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     Chain c;
-    for (Use& u : uses) end_at_poles(u);
+    Box<3> box;
+    for (Use& u : uses) {
+        end_at_poles(u);
+        box.add(chart_.point(u.start));
+        box.add(chart_.point(u.end));
+    }
+    const double extent = box.diagonal();
     for (Use& u : uses) {
         if (!c.uses.empty()) {
             const Use last = c.uses.back();
-            pole_between(c.uses, last, u, false);
+            pole_between(c.uses, last, u, false, extent);
         }
         attach(c.uses, std::move(u));
     }
@@ -217,7 +222,7 @@ LoopBuilder::Chain LoopBuilder::chain(std::vector<Use> uses) {
     const auto winding_of = [&] {
         for (int k = 0; k < 2; ++k) c.winding[std::size_t(k)] = turns(c.uses.back().end - first.start, k);
     };
-    pole_between(c.uses, last, first, true);
+    pole_between(c.uses, last, first, true, extent);
     winding_of();
     // Which way to turn about a pole between two uses of one edge, and whether at all, only the whole loop
     // tells.

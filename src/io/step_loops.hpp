@@ -73,8 +73,8 @@ private:
     };
 
     void attach(std::vector<Use>& done, Use next) const;
-    void pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing);
-    bool is_short_side(const Use& last, const Use& next) const;
+    void pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing, double extent);
+    bool is_short_side(const Use& last, const Use& next, double most) const;
     void corner_between(std::vector<Use>& done, const Use& last, const Use& next);
     const Pole* pole_at(const Vec<2>& a, const Vec<2>& b, double close = 0) const;
     Use degenerate(int vertex, const Vec<2>& from, const Vec<2>& to);

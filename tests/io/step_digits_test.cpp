@@ -237,6 +237,41 @@ TEST(StepDigits, edges_on_a_spline_that_closes_begin_and_end_as_their_sense_says
         }
 }
 
+// A patch between a bow of width 4 and a side at the tip, across `tip`, where two straight edges meet in the
+// middle: nearer to each corner of that side than the stated tolerance, or not.
+TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
+    const auto file = [](double tip) {
+        const auto at = [](int i, double x, double y, double z) {
+            return text("#", i, "=CARTESIAN_POINT('',(", x, ",", y, ",", z, "));\n");
+        };
+        return flat_file(text(
+            "#10=SHELL_BASED_SURFACE_MODEL('',(#11));\n#11=OPEN_SHELL('',(#12));\n"
+            "#12=ADVANCED_FACE('',(#13),#70,.T.);\n#13=FACE_OUTER_BOUND('',#14,.T.);\n"
+            "#8=SHAPE_REPRESENTATION('',(#10),#1);\n#14=EDGE_LOOP('',(#15,#16,#17));\n"
+            "#15=ORIENTED_EDGE('',*,*,#40,.T.);\n#16=ORIENTED_EDGE('',*,*,#41,.T.);\n"
+            "#17=ORIENTED_EDGE('',*,*,#42,.F.);\n#20=VERTEX_POINT('',#30);\n#21=VERTEX_POINT('',#33);\n"
+            "#22=VERTEX_POINT('',#38);\n#40=EDGE_CURVE('',#20,#21,#50,.T.);\n"
+            "#41=EDGE_CURVE('',#21,#22,#51,.T.);\n#42=EDGE_CURVE('',#20,#22,#52,.T.);\n",
+            at(30, -2, 0, 0), at(31, -0.7, 0, 1), at(32, 0.7, 0, 1), at(33, 2, 0, 0), at(34, -tip / 2, 6, 0),
+            at(35, -tip / 6, 6, tip), at(36, tip / 6, 6, tip), at(37, tip / 2, 6, 0), at(38, 0, 6, 0),
+            "#50=B_SPLINE_CURVE_WITH_KNOTS('',3,(#30,#31,#32,#33),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),"
+            ".UNSPECIFIED.);\n"
+            "#51=LINE('',#33,#53);\n#53=VECTOR('',#54,1.);\n#54=DIRECTION('',(-2.,6.,0.));\n"
+            "#52=LINE('',#30,#55);\n#55=VECTOR('',#56,1.);\n#56=DIRECTION('',(2.,6.,0.));\n"
+            "#70=B_SPLINE_SURFACE_WITH_KNOTS('',3,1,((#30,#34),(#31,#35),(#32,#36),(#33,#37)),.UNSPECIFIED.,"
+            ".F.,.F.,.F.,(4,4),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.);\n"));
+    };
+    Random random(3);
+    for (const double tip : {1e-6, 1e-4, 4e-4})
+        for (int i = 0; i < 6; ++i) {
+            SCOPED_TRACE(text(tip, ", ", i));
+            const Meshed m = meshed(rounded(file(tip), random_turn(random), 12), 0.01);
+            EXPECT_TRUE(m.refused.empty()) << m.refused[0];
+            EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
+            EXPECT_LE(m.mesh.boundary_gap, 1.2 * tip);
+        }
+}
+
 // Real models, with as many digits as others have written. One has a hole that touches the circle around it,
 // and crosses that then.
 TEST(StepDigits, models_of_the_corpus_lose_no_face_with_their_digits) {
