@@ -237,8 +237,8 @@ TEST(StepDigits, edges_on_a_spline_that_closes_begin_and_end_as_their_sense_says
         }
 }
 
-// A patch between a bow of width 4 and a side at the tip, across `tip`, where two straight edges meet in the
-// middle: nearer to each corner of that side than the stated tolerance, or not.
+// A patch between a bow of width 4 and a side at the tip, across `tip` and bent by ten times as much, where
+// two straight edges meet, as far from both its corners.
 TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
     const auto file = [](double tip) {
         const auto at = [](int i, double x, double y, double z) {
@@ -253,7 +253,8 @@ TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
             "#22=VERTEX_POINT('',#38);\n#40=EDGE_CURVE('',#20,#21,#50,.T.);\n"
             "#41=EDGE_CURVE('',#21,#22,#51,.T.);\n#42=EDGE_CURVE('',#20,#22,#52,.T.);\n",
             at(30, -2, 0, 0), at(31, -0.7, 0, 1), at(32, 0.7, 0, 1), at(33, 2, 0, 0), at(34, -tip / 2, 6, 0),
-            at(35, -tip / 6, 6, tip), at(36, tip / 6, 6, tip), at(37, tip / 2, 6, 0), at(38, 0, 6, 0),
+            at(35, -tip / 6, 6, 10 * tip), at(36, tip / 6, 6, 10 * tip), at(37, tip / 2, 6, 0),
+            at(38, 0, 6, 0),
             "#50=B_SPLINE_CURVE_WITH_KNOTS('',3,(#30,#31,#32,#33),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),"
             ".UNSPECIFIED.);\n"
             "#51=LINE('',#33,#53);\n#53=VECTOR('',#54,1.);\n#54=DIRECTION('',(-2.,6.,0.));\n"
@@ -262,14 +263,23 @@ TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
             ".F.,.F.,.F.,(4,4),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.);\n"));
     };
     Random random(3);
-    for (const double tip : {1e-6, 1e-4, 4e-4})
+    for (const double tip : {1e-7, 2e-5, 6e-5})
         for (int i = 0; i < 6; ++i) {
             SCOPED_TRACE(text(tip, ", ", i));
-            const Meshed m = meshed(rounded(file(tip), random_turn(random), 12), 0.01);
+            const Meshed m = meshed(i == 0 ? file(tip) : rounded(file(tip), random_turn(random), 12), 0.01);
             EXPECT_TRUE(m.refused.empty()) << m.refused[0];
             EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
-            EXPECT_LE(m.mesh.boundary_gap, 1.2 * tip);
+            EXPECT_LE(m.mesh.boundary_gap, tip + 1e-9);
         }
+}
+
+// One whose edges end as near to either corner of the side, to the last bit.
+TEST(StepDigits, edges_end_at_the_corner_that_they_came_to) {
+    FF_CORPUS_OR_SKIP(path, "step_micro/ap203_near_degenerate_nurbs_pole.stp");
+    const Meshed m = meshed(must(read_file(path.string(), 1u << 24)), 1);
+    EXPECT_TRUE(m.refused.empty());
+    EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
+    EXPECT_LE(m.mesh.boundary_gap, 0.01);
 }
 
 // Real models, with as many digits as others have written. One has a hole that touches the circle around it,
