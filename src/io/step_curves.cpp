@@ -7,6 +7,7 @@
 // surfaces, replicas) are taken off one by one, in a loop and not on the stack.
 //
 // References: ISO 10303-42:2014, 4.4 (placements, curves).
+#include "step_knots.hpp"
 #include "step_shape.hpp"
 
 #include <freiform/core/constants.hpp>
@@ -21,66 +22,7 @@ namespace {
 
 constexpr int kMostWrappings = 100;
 
-// The knots that subtypes imply. Empty: none is of this type.
-std::vector<double> implied_knots(const File& f, std::uint32_t i, std::string_view kind, int degree,
-                                  int size) {
-    const bool curve = kind == "CURVE";
-    const auto has = [&](Type c, Type s) { return f.is(i, curve ? c : s); };
-    std::vector<double> t;
-    if (has(Type::BEZIER_CURVE, Type::BEZIER_SURFACE)) {
-        if ((size - 1) % degree != 0) return t;
-        const int pieces = (size - 1) / degree;
-        t.push_back(0);
-        for (int k = 0; k <= pieces; ++k) t.insert(t.end(), std::size_t(degree), k);
-        t.push_back(pieces);
-    } else if (has(Type::QUASI_UNIFORM_CURVE, Type::QUASI_UNIFORM_SURFACE)) {
-        t.assign(std::size_t(degree), 0);
-        for (int k = 0; k <= size - degree; ++k) t.push_back(k);
-        t.insert(t.end(), std::size_t(degree), size - degree);
-    } else if (has(Type::UNIFORM_CURVE, Type::UNIFORM_SURFACE)) {
-        for (int k = 0; k <= size + degree; ++k) t.push_back(k - degree);
-    }
-    return t;
-}
-
 }  // namespace
-
-// Knots with their multiplicities written out. `what`: "CURVE" or "SURFACE", whose subtypes imply knots.
-Result<BSplineBasis> knots_of(const File& f, std::uint32_t i, const Fields* with_knots, int multiplicities,
-                              int knots, std::string_view what, int degree, int size) {
-    if (degree < 1 || degree > kMaxDegree)
-        return refuse(degree > kMaxDegree ? RefusalKind::unsupported : RefusalKind::invalid, f.label(i),
-                      text("has the degree ", degree, "; 1 to ", kMaxDegree, " are read"));
-    std::vector<double> t;
-    if (with_knots != nullptr) {
-        const auto m = with_knots->integers(multiplicities, "multiplicities");
-        if (!m) return std::unexpected(m.error());
-        const auto k = with_knots->numbers(knots, "knots");
-        if (!k) return std::unexpected(k.error());
-        if (m->size() != k->size())
-            return with_knots->refused(text("has ", m->size(), " multiplicities for ", k->size(), " knots"),
-                                       RefusalKind::invalid);
-        for (std::size_t j = 0; j < k->size(); ++j) {
-            if ((*m)[j] < 1 || (*m)[j] > degree + 1)
-                return with_knots->refused(
-                    text("has a knot of multiplicity ", (*m)[j], " with degree ", degree),
-                    RefusalKind::invalid);
-            t.insert(t.end(), std::size_t((*m)[j]), (*k)[j]);
-        }
-    } else {
-        t = implied_knots(f, i, what, degree, size);
-        if (t.empty())
-            return refuse(RefusalKind::invalid, f.label(i),
-                          "is a spline that neither has knots nor implies them");
-    }
-    auto basis = BSplineBasis::make(degree, std::move(t));
-    if (!basis)
-        return refuse(basis.error().kind, f.label(i), text(basis.error().where, ": ", basis.error().message));
-    if (basis->size() != size)
-        return refuse(RefusalKind::invalid, f.label(i),
-                      text("has ", size, " control points; its knots ask for ", basis->size()));
-    return basis;
-}
 
 Result<CurveGeometry<3>> GeometryReader::conic(std::uint32_t i, Type type) const {
     const bool one = type == Type::CIRCLE || type == Type::PARABOLA;
@@ -101,7 +43,17 @@ Result<CurveGeometry<3>> GeometryReader::conic(std::uint32_t i, Type type) const
                     *b * p->y};
 }
 
-Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) const {
+// Ends of pieces that are so far apart are one, if that is no more than the tolerance.
+Result<void> GeometryReader::join(std::uint32_t spline, double apart) {
+    if (!(apart <= tolerance))
+        return refuse(RefusalKind::invalid, f_.label(spline),
+                      text("has a knot that is repeated more than degree + 1 times, where its pieces are ",
+                           apart, " apart"));
+    if (apart > 0) approximated.push_back({spline, apart});
+    return {};
+}
+
+Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) {
     constexpr Type kNamed[] = {Type::B_SPLINE_CURVE_WITH_KNOTS, Type::BEZIER_CURVE, Type::UNIFORM_CURVE,
                                Type::QUASI_UNIFORM_CURVE, Type::B_SPLINE_CURVE};
     const bool complex = f_.type(i) == Type::unknown;
@@ -129,6 +81,9 @@ Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) const {
         if (!p) return std::unexpected(p.error());
         points.push_back(*p);
     }
+    const std::array<std::size_t, 2> extent{points.size(), 1};
+    if (auto ok = join(i, apart_of(points, extent, 0, *basis)); !ok) return std::unexpected(ok.error());
+    points = kept_of(points, extent, 0, basis->kept);
     const int size = int(points.size());
     const auto within = [&](Refusal r) {
         return refuse(r.kind, f_.label(i), text(r.where, ": ", r.message));
@@ -137,13 +92,16 @@ Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) const {
         const Fields g(f_, i, rational);
         const auto w = g.numbers(g.size() - 1, "weights");
         if (!w) return std::unexpected(w.error());
-        auto net = make_rational<3>(points, *w);
+        if (w->size() != extent[0])
+            return g.refused(text("has ", w->size(), " weights for ", extent[0], " control points"),
+                             RefusalKind::invalid);
+        auto net = make_rational<3>(points, kept_of(*w, extent, 0, basis->kept));
         if (!net) return within(net.error());
-        auto made = Curve<Hom<3>>::make({std::move(*basis)}, Net<1, Hom<3>>({size}, std::move(*net)));
+        auto made = Curve<Hom<3>>::make({std::move(basis->basis)}, Net<1, Hom<3>>({size}, std::move(*net)));
         if (!made) return within(made.error());
         return CurveGeometry<3>(std::move(*made));
     }
-    auto made = Curve<Vec<3>>::make({std::move(*basis)}, Net<1, Vec<3>>({size}, std::move(points)));
+    auto made = Curve<Vec<3>>::make({std::move(basis->basis)}, Net<1, Vec<3>>({size}, std::move(points)));
     if (!made) return within(made.error());
     return CurveGeometry<3>(std::move(*made));
 }

@@ -82,7 +82,8 @@ private:
     Result<Vec<3>> vector(std::uint32_t i) const;
     Result<BoundedCurve> basic_curve(std::uint32_t i);
     Result<BoundedCurve> composite(std::uint32_t i);
-    Result<CurveGeometry<3>> spline_curve(std::uint32_t i) const;
+    Result<void> join(std::uint32_t spline, double apart);
+    Result<CurveGeometry<3>> spline_curve(std::uint32_t i);
     Result<CurveGeometry<3>> conic(std::uint32_t i, Type type) const;
     Result<BoundedCurve> unwrapped_curve(std::uint32_t i);
     Result<BoundedCurve> wrapped_curve(std::uint32_t wrapping, BoundedCurve basis) const;
@@ -90,7 +91,7 @@ private:
     Result<BoundedCurve> offset_of(std::uint32_t i, Type type, BoundedCurve basis) const;
     Result<SurfaceGeometry> basic_surface(std::uint32_t i);
     Result<SurfaceGeometry> elementary(std::uint32_t i, Type type, double offset) const;
-    Result<SurfaceGeometry> spline_surface(std::uint32_t i) const;
+    Result<SurfaceGeometry> spline_surface(std::uint32_t i);
     Result<CurveGeometry<3>> profile(std::uint32_t i);
 
     const File& f_;

@@ -12,6 +12,7 @@
 //
 // References: ISO 10303-42:2014, 4.5 (surfaces).
 #include "step_geometry.hpp"
+#include "step_knots.hpp"
 
 #include <freiform/core/constants.hpp>
 #include <freiform/make/revolve.hpp>
@@ -21,9 +22,6 @@
 #include <numbers>
 
 namespace freiform::step {
-
-Result<BSplineBasis> knots_of(const File& f, std::uint32_t i, const Fields* with_knots, int multiplicities,
-                              int knots, std::string_view what, int degree, int size);
 
 namespace {
 
@@ -103,7 +101,7 @@ Result<SurfaceGeometry> GeometryReader::elementary(std::uint32_t i, Type type, d
                       SurfaceKind::torus};
 }
 
-Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) const {
+Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) {
     constexpr Type kNamed[] = {Type::B_SPLINE_SURFACE_WITH_KNOTS, Type::BEZIER_SURFACE, Type::UNIFORM_SURFACE,
                                Type::QUASI_UNIFORM_SURFACE, Type::B_SPLINE_SURFACE};
     const bool complex = f_.type(i) == Type::unknown;
@@ -136,11 +134,21 @@ Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) const {
     const std::uint32_t list = f_.part(i, Type::B_SPLINE_SURFACE_WITH_KNOTS);
     const std::optional<Fields> with =
         list == kMissing ? std::nullopt : std::optional<Fields>(Fields(f_, i, list));
-    const int k = complex ? 0 : 8, nu = int(rows->size()), nv = int(columns);
+    const int k = complex ? 0 : 8;
+    int nu = int(rows->size()), nv = int(columns);
     auto u = knots_of(f_, i, with ? &*with : nullptr, k, k + 2, "SURFACE", *p, nu);
     if (!u) return std::unexpected(u.error());
     auto v = knots_of(f_, i, with ? &*with : nullptr, k + 1, k + 3, "SURFACE", *q, nv);
     if (!v) return std::unexpected(v.error());
+    const std::array<std::size_t, 2> extent{rows->size(), columns};
+    if (auto ok = join(i, apart_of(points, extent, 0, *u) + apart_of(points, extent, 1, *v)); !ok)
+        return std::unexpected(ok.error());
+    const auto kept = [&](const auto& net) {
+        const auto some = kept_of(net, extent, 0, u->kept);
+        return kept_of(some, {u->kept.empty() ? extent[0] : u->kept.size(), extent[1]}, 1, v->kept);
+    };
+    points = kept(points);
+    nu = u->basis.size(), nv = v->basis.size();
     const auto within = [&](Refusal r) {
         return refuse(r.kind, f_.label(i), text(r.where, ": ", r.message));
     };
@@ -154,15 +162,19 @@ Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) const {
             if (!more) return std::unexpected(more.error());
             w.insert(w.end(), more->begin(), more->end());
         }
-        auto net = make_rational<3>(points, w);
+        if (w.size() != extent[0] * extent[1])
+            return g.refused(
+                text("has ", w.size(), " weights for ", extent[0] * extent[1], " control points"),
+                RefusalKind::invalid);
+        auto net = make_rational<3>(points, kept(w));
         if (!net) return within(net.error());
-        auto made =
-            Surface<Hom<3>>::make({std::move(*u), std::move(*v)}, Net<2, Hom<3>>({nu, nv}, std::move(*net)));
+        auto made = Surface<Hom<3>>::make({std::move(u->basis), std::move(v->basis)},
+                                          Net<2, Hom<3>>({nu, nv}, std::move(*net)));
         if (!made) return within(made.error());
         return SurfaceGeometry(std::move(*made));
     }
-    auto made =
-        Surface<Vec<3>>::make({std::move(*u), std::move(*v)}, Net<2, Vec<3>>({nu, nv}, std::move(points)));
+    auto made = Surface<Vec<3>>::make({std::move(u->basis), std::move(v->basis)},
+                                      Net<2, Vec<3>>({nu, nv}, std::move(points)));
     if (!made) return within(made.error());
     return SurfaceGeometry(std::move(*made));
 }

@@ -30,8 +30,9 @@ namespace freiform::step {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi, kRoundings = 8, kMoved = 64;
-constexpr double kAll = 1e-6;   // of its parameters: a row is asked for from end to end
-constexpr double kFine = 1e-7;  // of the size: walls that are splines are not asked to be nearer
+constexpr double kAll = 1e-6;        // of its parameters: a row is asked for from end to end
+constexpr double kTurnsMiss = 1e-5;  // radians: an angle that is a turn but for its digits
+constexpr double kFine = 1e-7;       // of the size: walls that are splines are not asked to be nearer
 
 // Coordinates, without those that are but the rounding of zero.
 Vec<3> seen_from(const Placement& frame, const Vec<3>& d) {
@@ -214,7 +215,8 @@ Result<ShapeReader::SweptModel> ShapeReader::swept_by(const Fields& f, bool turn
     const double leaves = std::abs(axis.origin[2]) + std::abs(axis.direction[2]) * reach,
                  misses = std::abs(angle - kTurn) * reach;
     if (leaves > 0 && leaves <= tolerance_) axis.origin[2] = axis.direction[2] = 0, out.off += 2.5 * leaves;
-    if (misses > 0 && misses <= tolerance_) angle = kTurn, out.off += misses;
+    // An angle of few digits may be more than a turn.
+    if (misses > 0 && misses <= std::max(tolerance_, kTurnsMiss * reach)) angle = kTurn, out.off += misses;
     auto made = solid_of_revolution(region->loops, axis, angle);
     if (!made) return named(made.error());
     out.model = *std::move(made);

@@ -221,5 +221,59 @@ TEST(StepEntities, colours_are_numbers_or_names) {
     EXPECT_EQ(named->b, 0);
 }
 
+// Between knots that few digits have made one there is nothing: functions there are left out, and what ends
+// and begins inside a spline at one place is joined.
+TEST(StepEntities, knots_that_are_one_leave_out_what_was_between_them) {
+    const auto curve = [](std::string_view points, std::string_view knots, std::string_view weights = "") {
+        if (weights.empty())
+            return only_curve(text("#20=B_SPLINE_CURVE_WITH_KNOTS('',3,(", points, "),.UNSPECIFIED.,.F.,.F.,",
+                                   knots, ",.UNSPECIFIED.);\n"));
+        return only_curve(
+            text("#20=(BOUNDED_CURVE()B_SPLINE_CURVE(3,(", points,
+                 "),.UNSPECIFIED.,.F.,.F.)B_SPLINE_CURVE_WITH_KNOTS(", knots,
+                 ",.UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE((", weights,
+                 "))REPRESENTATION_ITEM(''));\n"));
+    };
+    // At both ends: the first and the last two points count for nothing.
+    EXPECT_EQ(curve("#36,#30,#31,#32,#33,#34,#30,#36", "(4,1,1,2,4),(0.,0.,0.5,1.,1.)").curve,
+              curve("#30,#31,#32,#33,#34", "(4,1,4),(0.,0.5,1.)").curve);
+    EXPECT_EQ(curve("#36,#30,#31,#32,#33", "(4,1,4),(0.,0.,1.)", "9.,1.,2.,3.,1.").curve,
+              curve("#30,#31,#32,#33", "(4,4),(0.,1.)", "1.,2.,3.,1.").curve);
+    // Inside: one corner is left of two.
+    EXPECT_EQ(curve("#30,#31,#32,#33,#36,#33,#34,#35,#36", "(4,3,2,4),(0.,0.5,0.5,1.)").curve,
+              curve("#30,#31,#32,#33,#34,#35,#36", "(4,3,4),(0.,0.5,1.)").curve);
+    // If those two are not one, nothing says where the curve is.
+    const std::string jump = item_file(
+        "#10",
+        "#10=GEOMETRIC_CURVE_SET('',(#20));\n"
+        "#20=B_SPLINE_CURVE_WITH_KNOTS('',3,(#30,#31,#32,#33,#36,#34,#34,#35,#36),.UNSPECIFIED.,.F.,.F.,"
+        "(4,3,2,4),(0.,0.5,0.5,1.),.UNSPECIFIED.);\n");
+    expect_refusal(read_step(jump), RefusalKind::invalid, "#20 B_SPLINE_CURVE_WITH_KNOTS",
+                   "has a knot that is repeated more than degree + 1 times, where its pieces are 1.414");
+    // One that is beside it by less than the tolerance is told.
+    const Model near = must(read_step(item_file(
+        "#10",
+        "#10=GEOMETRIC_CURVE_SET('',(#20));\n#40=CARTESIAN_POINT('',(3.00001,1.,0.));\n"
+        "#20=B_SPLINE_CURVE_WITH_KNOTS('',3,(#30,#31,#32,#33,#36,#40,#34,#35,#36),.UNSPECIFIED.,.F.,.F.,"
+        "(4,3,2,4),(0.,0.5,0.5,1.),.UNSPECIFIED.);\n")));
+    ASSERT_EQ(near.approximations.size(), 1u);
+    EXPECT_NEAR(near.approximations[0].bound.value_or(0), 1e-5, 1e-12);
+}
+
+TEST(StepEntities, surfaces_lose_rows_and_columns_between_knots_that_are_one) {
+    const auto surface = [](std::string_view rows, std::string_view knots) {
+        return std::get<Surface<Vec<3>>>(
+            only_surface(text("#20=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,(", rows,
+                              "),.UNSPECIFIED.,.F.,.F.,.F.,", knots,
+                              ",.UNSPECIFIED.);\n#50=CARTESIAN_POINT('',(0.,0.,3.));\n"
+                              "#51=CARTESIAN_POINT('',(2.,0.,3.));\n#52=CARTESIAN_POINT('',(4.,0.,3.));\n"))
+                .surface);
+    };
+    // A row at an end, a column inside.
+    EXPECT_EQ(surface("(#36,#36,#36,#36,#36),(#30,#32,#36,#32,#34),(#50,#51,#31,#51,#52)",
+                      "(2,1,2),(2,2,1,2),(0.,0.,1.),(0.,1.,1.,2.)"),
+              surface("(#30,#32,#34),(#50,#51,#52)", "(2,2),(2,1,2),(0.,1.),(0.,1.,2.)"));
+}
+
 }  // namespace
 }  // namespace freiform::test

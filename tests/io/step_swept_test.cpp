@@ -94,18 +94,19 @@ TEST(StepSwept, profiles_beside_their_plane_are_told_with_their_distance) {
 
 TEST(StepSwept, faces_are_extruded_and_turned) {
     // The unit square #12 of z = 0, beside the axis x = -1, or at it.
-    const auto square = [](std::string_view item, std::string_view more) {
+    const auto square = [](std::string_view item, std::string_view more, std::size_t told = 0) {
         std::string s = polygon_file({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, more);
         s.replace(s.find("(#10),#1)"), 9, "(#80),#1)");
         s.insert(s.find("ENDSEC;\nEND-ISO"), text("#80=", item, ";\n"));
         const Model m = must(read_step(s));
         EXPECT_TRUE(m.refused.empty()) << m.refused[0].message;
-        EXPECT_TRUE(m.approximations.empty());
+        EXPECT_EQ(m.approximations.size(), told);
         return m;
     };
     constexpr std::string_view kAxis =
         "#90=DIRECTION('',(0.,0.,-1.));\n#91=AXIS1_PLACEMENT('',#92,#93);\n#93=DIRECTION('',(0.,1.,0.));\n"
-        "#92=CARTESIAN_POINT('',(-1.,7.,0.));\n#94=AXIS1_PLACEMENT('',#6,#93);\n";
+        "#92=CARTESIAN_POINT('',(-1.,7.,0.));\n#94=AXIS1_PLACEMENT('',#6,#93);\n"
+        "#95=AXIS1_PLACEMENT('',#96,#93);\n#96=CARTESIAN_POINT('',(-30.,0.,0.));\n";
     expect_volume(square("EXTRUDED_FACE_SOLID('',#12,#90,3.)", kAxis), 3);
     expect_volume(square("REVOLVED_FACE_SOLID('',#12,#91,6.283185307179586)", kAxis), 3 * kPi);
     expect_volume(square("REVOLVED_FACE_SOLID('',#12,#91,1.)", kAxis), 1.5);
@@ -113,6 +114,10 @@ TEST(StepSwept, faces_are_extruded_and_turned) {
     const Model whole = square("REVOLVED_FACE_SOLID('',#12,#94,6.2831853071)", kAxis);
     expect_volume(whole, kPi);
     EXPECT_EQ(whole.faces.size(), 3u);
+    // One with fewer, which is more than a turn.
+    const Model more = square("REVOLVED_FACE_SOLID('',#12,#95,6.28319)", kAxis, 1);
+    expect_volume(more, 61 * kPi);
+    EXPECT_EQ(more.faces.size(), 4u);
     // Counter-clockwise about +y: from x to -z.
     const Box<3> box = box_of(square("REVOLVED_FACE_SOLID('',#12,#91,1.)", kAxis));
     EXPECT_NEAR(box.lo[2], -2 * std::sin(1.0), kNear);
