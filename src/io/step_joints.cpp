@@ -13,7 +13,7 @@ namespace freiform::step {
 
 namespace {
 
-constexpr double kBeside = 1e-3;  // of edges: how far their vertex is beside their ends, at most
+constexpr double kBesideCorner = 1e-3;  // of edges: how far their vertex is beside their ends, at most
 
 bool is_straight(const Use& u) { return std::holds_alternative<Line<2>>(u.coedge.curve); }
 bool can_move(const Use& u) {
@@ -82,10 +82,10 @@ void LoopBuilder::close_joints(Chain& c) const {
         const auto stated = [&](const Use& u) { return model_.edges[std::size_t(u.coedge.edge)].tolerance; };
         // Where an edge runs to and fro its ends have to be the same both times, as far as their vertex says.
         const auto way = [&](const Use& u) { return norm(chart_.point(u.start) - chart_.point(u.end)); };
-        const double corner =
-            is_twice(a) || is_twice(b)
-                ? std::min(model_.vertices[std::size_t(a.to)].tolerance, kBeside * std::min(way(a), way(b)))
-                : 0;
+        const double corner = is_twice(a) || is_twice(b)
+                                  ? std::min(model_.vertices[std::size_t(a.to)].tolerance,
+                                             kBesideCorner * std::min(way(a), way(b)))
+                                  : 0;
         if (!(apart <= 2 * std::max({close_, stated(a), stated(b), a.gap, b.gap, corner}))) continue;
         // What follows an edge gives way to what has a closed form.
         const bool a_first = can_move(a) && (!can_move(b) || !is_straight(a) || is_straight(b));

@@ -11,7 +11,7 @@ namespace freiform::step {
 namespace {
 
 constexpr int kNewton = 20;
-constexpr int kLooks = 64;
+constexpr int kPlacesLookedAt = 64;
 constexpr double kAround = 8;  // times as far as the edge passes the pole: directions mean little there
 
 // Where an edge is left that passes `p` beside its end: so far from it that the direction there is that of an
@@ -92,8 +92,8 @@ std::optional<Trace> trace_up_to_poles(const Chart& chart, const CurveGeometry<3
     if (!curve || chart.has_pole_across(*curve, on)) return std::nullopt;
     part->curve = *std::move(curve);
     part->cut = true;
-    for (int i = 0; i <= kLooks; ++i) {
-        const double t = i == kLooks ? on.hi : on.lo + on.length() * i / kLooks;
+    for (int i = 0; i <= kPlacesLookedAt; ++i) {
+        const double t = i == kPlacesLookedAt ? on.hi : on.lo + on.length() * i / kPlacesLookedAt;
         part->gap =
             std::max(part->gap, norm(chart.point(jet<0>(part->curve, t).value()) - jet<0>(c, t).value()));
     }

@@ -29,7 +29,7 @@ namespace freiform::step {
 
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi, kRoundings = 8, kMoved = 64;
+constexpr double kWholeTurn = 2 * std::numbers::pi, kRoundings = 8, kMoved = 64;
 constexpr double kAll = 1e-6;        // of its parameters: a row is asked for from end to end
 constexpr double kTurnsMiss = 1e-5;  // radians: an angle that is a turn but for its digits
 constexpr double kFine = 1e-7;       // of the size: walls that are splines are not asked to be nearer
@@ -129,7 +129,7 @@ CurveGeometry<2> segment(const Vec<2>& a, const Vec<2>& b) {
 Result<std::vector<CurveGeometry<2>>> circle_about(const Vec<2>& centre, double radius) {
     const auto made = circle(centre, radius);
     if (!made) return std::unexpected(made.error());
-    const auto arc = conic_arc(*made, {0, kTurn});
+    const auto arc = conic_arc(*made, {0, kWholeTurn});
     if (!arc) return std::unexpected(arc.error());
     return std::vector<CurveGeometry<2>>{arc->curve};
 }
@@ -213,10 +213,11 @@ Result<ShapeReader::SweptModel> ShapeReader::swept_by(const Fields& f, bool turn
     // What leaves the plane by less than the tolerance is in it. Turns about two axes through a point differ
     // by (1 + sqrt 2) times what their directions do, and by twice what the axes are apart.
     const double leaves = std::abs(axis.origin[2]) + std::abs(axis.direction[2]) * reach,
-                 misses = std::abs(angle - kTurn) * reach;
+                 misses = std::abs(angle - kWholeTurn) * reach;
     if (leaves > 0 && leaves <= tolerance_) axis.origin[2] = axis.direction[2] = 0, out.off += 2.5 * leaves;
     // An angle of few digits may be more than a turn.
-    if (misses > 0 && misses <= std::max(tolerance_, kTurnsMiss * reach)) angle = kTurn, out.off += misses;
+    if (misses > 0 && misses <= std::max(tolerance_, kTurnsMiss * reach))
+        angle = kWholeTurn, out.off += misses;
     auto made = solid_of_revolution(region->loops, axis, angle);
     if (!made) return named(made.error());
     out.model = *std::move(made);
@@ -288,7 +289,7 @@ Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item,
                                            : Interval{given.lo + on.lo, given.lo + on.hi};
         const bool is_whole = goes_round && !c->range;
         c->range = given;
-        if (is_whole && on.length() <= kTurn + slack)  // from anywhere, over the seam
+        if (is_whole && on.length() <= kWholeTurn + slack)  // from anywhere, over the seam
             c->range = on;
         else if (fits(on) && !c->reversed)
             c->range = {std::max(on.lo, given.lo), std::min(on.hi, given.hi)};
@@ -302,7 +303,7 @@ Result<BoundedCurve> ShapeReader::directrix(const Fields& f, std::uint32_t item,
     }
     if (!std::isfinite(c->range->length()) || !(c->range->lo < c->range->hi))
         return f.refused("has a directrix without an end", RefusalKind::invalid);
-    if (goes_round) c->range->hi = std::min(c->range->hi, c->range->lo + kTurn);
+    if (goes_round) c->range->hi = std::min(c->range->hi, c->range->lo + kWholeTurn);
     return c;
 }
 

@@ -27,9 +27,10 @@ constexpr double kApart = 1e-6;   // of the range: places where pieces begin
 // of what is asked for, and so many times as far as the place before.
 constexpr double kMiddles[] = {0.46875, 0.21875, 0.78125, 0.09375, 0.90625};
 constexpr double kNear = 10, kFarther = 2;
-constexpr double kNearer = 0.9;                  // than the point that a path led to: one elsewhere
-constexpr double kRougher = 10, kDigits = 1e-2;  // of what is rough: the most of all, and what digits leave
-constexpr double kOnSeam = 1e-9;                 // of the period
+constexpr double kNearer = 0.9;  // than the point that a path led to: one elsewhere
+constexpr double kRougher = 10,
+                 kLastDigits = 1e-2;  // of what is rough: the most of all, and what digits leave
+constexpr double kOnSeam = 1e-9;      // of the period
 constexpr double kPlacesOfLine[] = {0, 0.07, 0.23, 0.38, 0.62, 0.81, 0.94, 1};
 
 int spans_of(const CurveGeometry<3>& c) {
@@ -63,7 +64,7 @@ public:
         const bool follows = t && t->gap <= kNear * accuracy_;
         if (!follows || t->fitted)
             if (auto ended =
-                    trace_up_to_poles(chart_, c_, on_, accuracy_, follows ? kDigits * rough_ : rough_))
+                    trace_up_to_poles(chart_, c_, on_, accuracy_, follows ? kLastDigits * rough_ : rough_))
                 t = *std::move(ended);
         if (!(t && t->gap <= kNear * accuracy_))
             if (auto told = nearest_image(t ? t->gap : rough_)) return *told;

@@ -15,12 +15,12 @@ namespace {
 constexpr int kCoarsest = 16, kFinest = 512;  // nodes in each direction
 constexpr double kReach = 2.5;                // of corners, and how far distances matter; in cells, as all
 constexpr double kOverlap = 0.25;             // of discs
-constexpr double kApart = 0.25;               // of straight parts from outlines
+constexpr double kApartOnWay = 0.25;          // of straight parts from outlines
 constexpr double kFarthest = 1e6;             // of x and y: others are no parameters of faces
 constexpr std::size_t kMostSegments = 100000;
-constexpr double kMostCells = 3e7;                    // that outlines are near to
-constexpr double kSame = 1e-7;                        // of corners
-constexpr std::array<double, 2> kBeside{0.37, 0.41};  // of nodes, so that they are on no outline
+constexpr double kMostCells = 3e7;                       // that outlines are near to
+constexpr double kSameOnWay = 1e-7;                      // of corners
+constexpr std::array<double, 2> kBesideWay{0.37, 0.41};  // of nodes, so that they are on no outline
 
 using Segment = std::array<Vec<2>, 2>;
 
@@ -100,7 +100,7 @@ private:
     std::size_t number(int i, int k) const {
         return std::size_t((i % n_ + n_) % n_) * std::size_t(n_) + std::size_t(k);
     }
-    static Vec<2> place(int i, int k) { return {{i + kBeside[0], k + kBeside[1]}}; }
+    static Vec<2> place(int i, int k) { return {{i + kBesideWay[0], k + kBesideWay[1]}}; }
 
     void add(const Segment& s) {
         outlines_.push_back(s);
@@ -130,8 +130,8 @@ private:
         const Vec<2> by{{std::floor(p[0] / n_) * n_, 0}};
         const auto is_apart = [&](const Segment& s, int k) {
             const auto [lo, hi] = std::minmax({p[k] - by[k], q[k] - by[k]});
-            return (s[0][k] < lo - kApart && s[1][k] < lo - kApart) ||
-                   (s[0][k] > hi + kApart && s[1][k] > hi + kApart);
+            return (s[0][k] < lo - kApartOnWay && s[1][k] < lo - kApartOnWay) ||
+                   (s[0][k] > hi + kApartOnWay && s[1][k] > hi + kApartOnWay);
         };
         return std::ranges::none_of(outlines_, [&](const Segment& s) {
             return !is_apart(s, 0) && !is_apart(s, 1) && is_across(Segment{s[0] + by, s[1] + by});
@@ -139,16 +139,17 @@ private:
     }
     bool is_free(const Vec<2>& a, const Vec<2>& b) const {
         return std::abs(a[0] - b[0]) < n_ && none_along(a, b, [&](const Segment& s) {
-                   return distance(Segment{a, b}, s) < kApart;
+                   return distance(Segment{a, b}, s) < kApartOnWay;
                });
     }
     // From a corner, where outlines meet.
     bool can_leave(const Vec<2>& corner, const Vec<2>& to) const {
         const Vec<2> middle = 0.5 * (corner + to);
         return std::abs(corner[0] - to[0]) < n_ && none_along(corner, to, [&](const Segment& s) {
-                   const bool meets = norm(s[0] - corner) <= kSame * n_ || norm(s[1] - corner) <= kSame * n_;
-                   return distance(Segment{middle, to}, s) < (meets ? 0.5 * kApart : kApart) ||
-                          (!meets && distance(Segment{corner, to}, s) <= kSame * n_);
+                   const bool meets =
+                       norm(s[0] - corner) <= kSameOnWay * n_ || norm(s[1] - corner) <= kSameOnWay * n_;
+                   return distance(Segment{middle, to}, s) < (meets ? 0.5 * kApartOnWay : kApartOnWay) ||
+                          (!meets && distance(Segment{corner, to}, s) <= kSameOnWay * n_);
                });
     }
 

@@ -21,6 +21,7 @@
 #include "knot_window_detail.hpp"
 
 #include <freiform/core/constants.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +35,8 @@ using detail::span_before;
 constexpr int kMostOrders = 100;  // 170! is the largest factorial that a double holds
 
 template <class P>
-CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
-                    const ContinuityOptions& options) {
+CurveSide expansion_of(const Curve<P>& curve, double at, int span, bool after,
+                       const ContinuityOptions& options) {
     constexpr int D = Space<P>::kDim;
     const BSplineBasis& basis = curve.basis();
     const int p = basis.degree();
@@ -97,6 +98,24 @@ CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
     if (const int r = detail::first_order(side); r > 1)
         expand_to(std::max(side.orders, std::min(r * options.orders, kMostOrders)));
     return side;
+}
+
+template <class P>
+CurveSide expansion(const Curve<P>& curve, double at, int span, bool after,
+                    const ContinuityOptions& options) {
+    if constexpr (detail::kIsWidened<P>) {
+        CurveSide side = expansion_of(detail::widened(curve), at, span, after, options);
+        const auto dimension = std::size_t(Space<P>::kDim), wide = std::size_t(side.dimension);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < side.derivatives.size(); ++i)
+            if (i % wide < dimension) side.derivatives[kept++] = side.derivatives[i];
+        side.derivatives.resize(kept);
+        side.origin.resize(dimension);
+        side.dimension = Space<P>::kDim;
+        return side;
+    } else {
+        return expansion_of(curve, at, span, after, options);
+    }
 }
 
 std::unexpected<Refusal> no_end() {

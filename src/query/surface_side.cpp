@@ -16,6 +16,7 @@
 
 #include <freiform/core/constants.hpp>
 #include <freiform/query/surface_continuity.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -96,8 +97,8 @@ void add_pieces(const BSplineBasis& basis, const Rows& rows, SurfaceSide& side) 
 }
 
 template <class P>
-SurfaceSide side_of(const Surface<P>& s, int axis, double at, int span, bool after,
-                    const ContinuityOptions& options) {
+SurfaceSide whole_side_of(const Surface<P>& s, int axis, double at, int span, bool after,
+                          const ContinuityOptions& options) {
     FF_REQUIRE(axis == 0 || axis == 1);
     constexpr int D = Space<P>::kDim;
     const BSplineBasis &across = s.basis(axis), &along = s.basis(1 - axis);
@@ -138,6 +139,27 @@ SurfaceSide side_of(const Surface<P>& s, int axis, double at, int span, bool aft
         for (SurfaceSide::Piece& x : side.pieces)
             for (int k = 1; k <= side.orders; ++k) x.derivative[std::size_t(k * (D + 1) + D)].clear();
     return side;
+}
+
+template <class P>
+SurfaceSide side_of(const Surface<P>& s, int axis, double at, int span, bool after,
+                    const ContinuityOptions& options) {
+    if constexpr (detail::kIsWidened<P>) {
+        SurfaceSide side = whole_side_of(detail::widened(s), axis, at, span, after, options);
+        const auto dimension = std::size_t(Space<P>::kDim), wide = std::size_t(side.dimension);
+        for (SurfaceSide::Piece& p : side.pieces) {
+            std::size_t kept = 0;
+            for (std::size_t r = 0; r < p.derivative.size(); ++r)
+                if (const std::size_t c = r % (wide + 1); c < dimension || c == wide)
+                    std::swap(p.derivative[kept++], p.derivative[r]);
+            p.derivative.resize(kept);
+        }
+        side.origin.resize(dimension);
+        side.dimension = Space<P>::kDim;
+        return side;
+    } else {
+        return whole_side_of(s, axis, at, span, after, options);
+    }
 }
 
 }  // namespace
