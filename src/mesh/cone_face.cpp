@@ -60,6 +60,7 @@ constexpr double kBeyondPole = 0x1p-28;  // of the radius: what files with ten d
 constexpr int kSamples = 9;
 constexpr double kLessThanTurn = 3.2;  // from pole to pole, with roundings
 constexpr double kWorth = 0.25;        // of second derivatives, what bends lines across: edges need as much
+constexpr double kStraight = 1e-3;     // of a way, what its first derivative varies by
 
 bool is_on_one_side(const Apex& apex, const Box<2>& face) {
     const Interval on = face.side(apex.ruled);
@@ -207,7 +208,7 @@ bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box
     }
     if (!is_on_one_side(apex, face)) return false;
     const double far = lines.hi - apex.at >= apex.at - lines.lo ? lines.hi : lines.lo;
-    double seen = 0, all = 0;
+    double seen = 0, all = 0, way = 0;
     for (int k = 0; k < kSamples; ++k) {
         std::array<double, 2> at{};
         at[std::size_t(apex.ruled)] = far;
@@ -216,9 +217,10 @@ bool is_worth_a_cone(const Apex& apex, const SurfaceGeometry& surface, const Box
         const auto [first, second] =
             apex.ruled == 1 ? std::pair{j(1, 0), j(2, 0)} : std::pair{j(0, 1), j(0, 2)};
         if (norm(first) > 0) seen += norm(cross(unit(first), second));
-        all += norm(second);
+        all += norm(second), way += norm(first);
     }
-    return seen > kWorth * all;
+    // Of straight lines that run evenly, which are flat, second derivatives are what digits leave of them.
+    return seen > kWorth * all || all * on.length() <= kStraight * way;
 }
 
 }  // namespace freiform

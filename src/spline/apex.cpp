@@ -179,8 +179,10 @@ std::optional<Apex> apex_of_rows(int axis, Interval on, Row near, Row far, doubl
     double from = on.lo, to = on.hi;
     if (of_near > of_far)
         std::swap(near, far), std::swap(a, b), std::swap(from, to), std::swap(of_near, of_far);
-    const double k = both / of_far;
+    double k = both / of_far;
     if (!std::isfinite(k)) return std::nullopt;
+    // Lines that cross just before the end of their row cross at it, but for a slip.
+    if (k < 0 && k >= -kMostSlip) k = 0;
     const bool is_cylinder = k > kFarApex;
     const Vec<3> apex = is_cylinder ? b : (1 / (1 - k)) * (a - k * b);
     const Vec<3> by = is_cylinder ? a - b : Vec<3>{};

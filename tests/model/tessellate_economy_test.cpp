@@ -4,7 +4,9 @@
 #include "support/shapes.hpp"
 #include "support/solids.hpp"
 
+#include <freiform/basis/greville.hpp>
 #include <freiform/model/deviation.hpp>
+#include <freiform/spline/apex.hpp>
 
 #include <gtest/gtest.h>
 
@@ -353,6 +355,43 @@ TEST(TessellateEconomy, knots_that_are_kinks_by_the_digits_of_a_file_cost_nothin
     const double one = triangles(bow(1, 0), 1e-3), rounded = triangles(bow(2, 1e-7), 1e-3);
     EXPECT_LE(rounded, 2.3 * one);
     EXPECT_GE(triangles(bow(2, 1e-4), 1e-3), 1.25 * rounded) << "kinks that matter are still kinks";
+}
+
+// Lines from a point to points that are on a straight one but for some digits, or that cross a little before
+// it: a flat fan.
+Surface<Vec<3>> fan(double digits, double beyond) {
+    const auto basis = *BSplineBasis::clamped_uniform(3, 8);
+    const Vec<3> apex{{1, 1.5, 0}};
+    std::mt19937 rng(9);
+    std::vector<Vec<3>> c;
+    for (int i = 0; i < 8; ++i) {
+        Vec<3> p{{2 * greville(basis, i), 0, 0}};
+        for (int k = 0; k < 3; ++k) p[k] += digits * uniform(rng, -1, 1);
+        c.push_back(p), c.push_back(apex - beyond * (p - apex));
+    }
+    return *Surface<Vec<3>>::make({basis, *BSplineBasis::bezier(1)}, Net<2, Vec<3>>({8, 2}, c));
+}
+
+TEST(TessellateEconomy, flat_fans_of_few_digits_take_a_triangle_for_each_chord) {
+    for (const double digits : {0.0, 1e-9, 1e-6, 8e-6}) {
+        ModelBuilder builder;
+        ASSERT_TRUE(builder.add(fan(digits, 0)));
+        const auto t = tessellate(*std::move(builder).finish(), {.tolerance = 1e-3});
+        ASSERT_TRUE(t && t->refused.empty());
+        EXPECT_LE(t->error_bound, 1e-3);
+        EXPECT_LE(t->mesh.triangles.size(), 4u) << digits;
+    }
+}
+
+TEST(TessellateEconomy, lines_that_cross_just_before_the_end_of_their_row_cross_at_it) {
+    for (const double beyond : {1e-12, 1e-8, 1e-6}) {
+        const auto apex = apex_of(fan(0, beyond));
+        ASSERT_TRUE(apex) << beyond;
+        EXPECT_EQ(apex->at, 1) << beyond;
+        EXPECT_GE(apex->slip, beyond * 1.4);
+        EXPECT_LE(apex->slip, beyond * 6 + 1e-12);
+    }
+    EXPECT_FALSE(apex_of(fan(0, 1e-2)) && apex_of(fan(0, 1e-2))->at == 1);
 }
 
 // What numbers far from zero are rounded by is small beside what surfaces bend: normals are known there.
