@@ -33,6 +33,7 @@
 #include "spline_system_detail.hpp"
 
 #include <freiform/fit/interpolate.hpp>
+#include <freiform/spline/wide.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -218,11 +219,23 @@ Result<Interpolant<N, D>> through(std::span<const Vec<D>> points, Index<N> exten
     return out;
 }
 
+template <std::size_t N, int D>
+Result<Interpolant<N, D>> interpolant(std::span<const Vec<D>> points, const Index<N>& extent,
+                                      const std::array<AxisSpline, N>& axes) {
+    if constexpr (detail::kIsWidened<Vec<D>>) {
+        const auto wide = through<N, detail::kWidest>(detail::widened(points), extent, axes);
+        if (!wide) return std::unexpected(wide.error());
+        return Interpolant<N, D>{detail::narrowed<D>(wide->patch), wide->bound, wide->condition_estimate};
+    } else {
+        return through<N, D>(points, extent, axes);
+    }
+}
+
 }  // namespace
 
 template <std::size_t N, int D>
 Result<Interpolant<N, D>> interpolate(const Net<N, Vec<D>>& points, const std::array<AxisSpline, N>& axes) {
-    return through<N, D>(points.flat(), points.extent(), axes);
+    return interpolant<N, D>(points.flat(), points.extent(), axes);
 }
 
 template <int D>
@@ -238,13 +251,13 @@ Result<Interpolant<1, D>> interpolate(std::span<const Vec<D>> points, const Axis
             return refuse(RefusalKind::invalid, name,
                           text(given, given == 1 ? " derivative, " : " derivatives, ", name_of(axis.ends),
                                " ends of degree ", axis.degree, " take ", wanted));
-    if (wanted == 0) return through<1, D>(points, {int(points.size())}, {axis});
+    if (wanted == 0) return interpolant<1, D>(points, {int(points.size())}, {axis});
     std::vector<Vec<D>> layers;
     layers.reserve(points.size() + 2 * wanted);
     layers.insert(layers.end(), start.rbegin(), start.rend());
     layers.insert(layers.end(), points.begin(), points.end());
     layers.insert(layers.end(), end.begin(), end.end());
-    return through<1, D>(layers, {int(layers.size())}, {axis});
+    return interpolant<1, D>(layers, {int(layers.size())}, {axis});
 }
 
 #define FF_INTERPOLATE(D)                                                                                    \

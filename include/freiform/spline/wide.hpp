@@ -50,11 +50,11 @@ Vec<D> narrowed(const Vec<kWidest>& x) {
     for (int i = 0; i < D; ++i) out[i] = x[i];
     return out;
 }
-template <int D>
-Curve<Vec<D>> narrowed(const Curve<Vec<kWidest>>& curve) {
-    Net<1, Vec<D>> net(curve.net().extent());
-    for (std::size_t i = 0; i < net.flat().size(); ++i) net.flat()[i] = narrowed<D>(curve.net().flat()[i]);
-    return Curve<Vec<D>>::trusted(curve.bases(), std::move(net));
+template <int D, std::size_t N>
+Patch<N, Vec<D>> narrowed(const Patch<N, Vec<kWidest>>& patch) {
+    Net<N, Vec<D>> net(patch.net().extent());
+    for (std::size_t i = 0; i < net.flat().size(); ++i) net.flat()[i] = narrowed<D>(patch.net().flat()[i]);
+    return Patch<N, Vec<D>>::trusted(patch.bases(), std::move(net));
 }
 
 }  // namespace freiform::detail
