@@ -186,7 +186,7 @@ Result<ShapeReader::EdgeMade> ShapeReader::make_edge(std::uint32_t i) {
         // Trimmed, where its vertices are: where the curve meets itself, they say less.
         lo = part.lo, hi = part.hi;
         off_a = at_end(lo, a), off_b = at_end(hi, b);
-    } else if (spline && at_end(whole.lo, a) <= off_a + tolerance_ && at_end(whole.hi, b) <= tolerance_) {
+    } else if (spline && at_end(whole.lo, a) <= tolerance_ && at_end(whole.hi, b) <= tolerance_) {
         lo = whole.lo, hi = whole.hi;
         off_a = at_end(lo, a), off_b = at_end(hi, b);
     } else {

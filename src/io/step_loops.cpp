@@ -26,7 +26,7 @@ namespace {
 constexpr double kNearPole = 1e-6;    // of a parameter, of its period or domain
 constexpr double kBesidePole = 1e-2;  // likewise
 constexpr double kAlongSide = 1e-3;   // likewise: a way along a side
-constexpr double kShortSide = 1e-4;   // of the edges that meet there: how far a side is from a point
+constexpr double kShortSide = 1e-4;   // of the extent of a loop: how far a side is from a point
 constexpr int kLooksAtSide = 8;
 constexpr int kOutline = 32;                // points of an edge
 constexpr std::size_t kMostInOrder = 2000;  // edges: pairs of them are looked at

@@ -86,7 +86,7 @@ std::optional<Trace> trace_up_to_poles(const Chart& chart, const CurveGeometry<3
             if (const auto t = before_pole(c, on, at_hi, p.point, rough, accuracy); t && !ends[at_hi])
                 ends[at_hi] = p, (at_hi ? kept.hi : kept.lo) = *t;
     if (!(ends[0] || ends[1]) || !(kept.lo < kept.hi)) return std::nullopt;
-    auto part = trace(chart, c, kept, accuracy, rough);
+    auto part = trace(chart, c, kept, accuracy, rough, {}, false);
     if (!part) return std::nullopt;
     auto curve = continued(part->curve, kept, on, ends);
     if (!curve || chart.has_pole_across(*curve, on)) return std::nullopt;

@@ -56,13 +56,13 @@ public:
            std::span<const CurveGeometry<3>> images)
         : chart_(chart), c_(c), on_(on), accuracy_(accuracy), rough_(rough), images_(images) {}
 
-    Result<Trace> run() {
+    Result<Trace> run(bool to_poles) {
         if (auto flat = trace_on_plane(chart_.surface(), c_, on_)) return *flat;
         auto t = on_curved();
         if (t && chart_.has_pole_across(t->curve, on_)) t = through_pole();
         // Beside a pole what follows an edge well may run around the pole all the same.
         const bool follows = t && t->gap <= kNear * accuracy_;
-        if (!follows || t->fitted)
+        if (to_poles && (!follows || t->fitted))
             if (auto ended =
                     trace_up_to_poles(chart_, c_, on_, accuracy_, follows ? kLastDigits * rough_ : rough_))
                 t = *std::move(ended);
@@ -426,8 +426,8 @@ private:
 }  // namespace
 
 Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough,
-                    std::span<const CurveGeometry<3>> images) {
-    return Tracer(chart, c, on, accuracy, rough, images).run();
+                    std::span<const CurveGeometry<3>> images, bool to_poles) {
+    return Tracer(chart, c, on, accuracy, rough, images).run(to_poles);
 }
 
 }  // namespace freiform::step
