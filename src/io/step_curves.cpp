@@ -43,13 +43,13 @@ Result<CurveGeometry<3>> GeometryReader::conic(std::uint32_t i, Type type) const
                     *b * p->y};
 }
 
-// Ends of pieces that are so far apart are one, if that is no more than the tolerance.
-Result<void> GeometryReader::join(std::uint32_t spline, double apart) {
-    if (!(apart <= tolerance))
+// Pieces of a spline are joined where that moves it by no more than the tolerance.
+Result<void> GeometryReader::join(std::uint32_t spline, double moved) {
+    if (!(moved <= tolerance))
         return refuse(RefusalKind::invalid, f_.label(spline),
                       text("has a knot that is repeated more than degree + 1 times, where its pieces are ",
-                           apart, " apart"));
-    if (apart > 0) approximated.push_back({spline, apart});
+                           moved, " apart"));
+    if (moved > 0) approximated.push_back({spline, moved});
     return {};
 }
 
@@ -82,9 +82,12 @@ Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) {
         points.push_back(*p);
     }
     const std::array<std::size_t, 2> extent{points.size(), 1};
-    if (auto ok = join(i, apart_of(points, extent, 0, *basis)); !ok) return std::unexpected(ok.error());
-    points = kept_of(points, extent, 0, basis->kept);
-    const int size = int(points.size());
+    const int size = basis->basis.size();
+    const auto joined = [&](const std::vector<double>& weights) {
+        auto ok = join(i, moved_by_joining(points, weights, extent, 0, *basis));
+        points = kept_of(points, extent, 0, basis->kept);
+        return ok;
+    };
     const auto within = [&](Refusal r) {
         return refuse(r.kind, f_.label(i), text(r.where, ": ", r.message));
     };
@@ -95,12 +98,14 @@ Result<CurveGeometry<3>> GeometryReader::spline_curve(std::uint32_t i) {
         if (w->size() != extent[0])
             return g.refused(text("has ", w->size(), " weights for ", extent[0], " control points"),
                              RefusalKind::invalid);
+        if (auto ok = joined(*w); !ok) return std::unexpected(ok.error());
         auto net = make_rational<3>(points, kept_of(*w, extent, 0, basis->kept));
         if (!net) return within(net.error());
         auto made = Curve<Hom<3>>::make({std::move(basis->basis)}, Net<1, Hom<3>>({size}, std::move(*net)));
         if (!made) return within(made.error());
         return CurveGeometry<3>(std::move(*made));
     }
+    if (auto ok = joined({}); !ok) return std::unexpected(ok.error());
     auto made = Curve<Vec<3>>::make({std::move(basis->basis)}, Net<1, Vec<3>>({size}, std::move(points)));
     if (!made) return within(made.error());
     return CurveGeometry<3>(std::move(*made));

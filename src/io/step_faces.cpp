@@ -202,7 +202,9 @@ Result<Face> ShapeReader::close_face(Face face, LoopBuilder& loops, const Chart&
     std::optional<DerivativeQuery<2, 3>> query;
     if (prove) query.emplace(face.surface);
     out_.released.insert(out_.released.end(), loops.released.begin(), loops.released.end());
-    if (!loops.note.empty()) report(-1, text(f_.label(i), ": ", loops.note), 0.0, 0);
+    if (!loops.note.empty())
+        report(-1, text(f_.label(i), ": ", loops.note),
+               loops.note_off > 0 ? std::nullopt : std::optional(0.0), loops.note_off);
     for (auto& uses : *made) {
         Loop loop;
         for (Use& u : uses) {

@@ -82,7 +82,7 @@ private:
     Result<Vec<3>> vector(std::uint32_t i) const;
     Result<BoundedCurve> basic_curve(std::uint32_t i);
     Result<BoundedCurve> composite(std::uint32_t i);
-    Result<void> join(std::uint32_t spline, double apart);
+    Result<void> join(std::uint32_t spline, double moved);
     Result<CurveGeometry<3>> spline_curve(std::uint32_t i);
     Result<CurveGeometry<3>> conic(std::uint32_t i, Type type) const;
     Result<BoundedCurve> unwrapped_curve(std::uint32_t i);

@@ -1,12 +1,16 @@
 // Knots that a file has with few digits may be one that were two. Functions between them have nothing to be
 // on, whatever their control points are. Inside of a spline two functions are left that end and begin there,
 // and their control points are where the pieces of the spline end and begin: as near to each other as what
-// was between them was long. One of them is taken for both, which moves the spline by no more than that.
+// was between them was long. One of them, P with the weight w, is taken for both. Instead of a point Q that
+// is a part N w / W <= 1 of the spline it moves that by |P - Q| at most; instead of a weight v, by |w - v| N
+// / W' |P - C| with W' >= w N, that is |w - v| / w times the size of the net, which the spline C does not
+// leave.
 #include "step_knots.hpp"
 
 #include <freiform/core/constants.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <ranges>
 
@@ -105,17 +109,25 @@ Result<Knots> knots_of(const File& f, std::uint32_t i, const Fields* with_knots,
     return Knots{*std::move(basis), std::move(kept), std::move(joined)};
 }
 
-double apart_of(const std::vector<Vec<3>>& net, std::array<std::size_t, 2> extent, int axis,
-                const Knots& knots) {
-    double apart = 0;
-    for (const auto& [a, b] : knots.joined)
+double moved_by_joining(const std::vector<Vec<3>>& net, const std::vector<double>& weights,
+                        std::array<std::size_t, 2> extent, int axis, const Knots& knots) {
+    if (knots.joined.empty()) return 0;
+    Box<3> box;
+    for (const Vec<3>& p : net) box.add(p);
+    double apart = 0, uneven = 0;
+    for (const auto& [a, b] : knots.joined) {
+        double most = 0;
         for (std::size_t k = 0; k < extent[std::size_t(1 - axis)]; ++k) {
-            const auto at = [&](int row) -> const Vec<3>& {
-                return net[axis == 0 ? std::size_t(row) * extent[1] + k : k * extent[1] + std::size_t(row)];
+            const auto at = [&](int row) {
+                return axis == 0 ? std::size_t(row) * extent[1] + k : k * extent[1] + std::size_t(row);
             };
-            apart = std::max(apart, norm(at(a) - at(b)));
+            apart = std::max(apart, norm(net[at(a)] - net[at(b)]));
+            if (!weights.empty())
+                most = std::max(most, std::abs(weights[at(a)] - weights[at(b)]) / weights[at(a)]);
         }
-    return apart;
+        uneven += most;
+    }
+    return (apart + uneven * box.diagonal()) * (1 + 64 * kUnitRoundoff);
 }
 
 }  // namespace freiform::step

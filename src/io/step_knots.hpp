@@ -23,8 +23,7 @@ struct Knots {
 Result<Knots> knots_of(const File& f, std::uint32_t i, const Fields* with_knots, int multiplicities,
                        int knots, std::string_view what, int degree, int size);
 
-// The rows of a net with these extents that are kept along an axis. `apart`: how far two that are one are
-// from each other, at most.
+// The rows of a net with these extents that are kept along an axis.
 template <class T>
 std::vector<T> kept_of(const std::vector<T>& net, std::array<std::size_t, 2> extent, int axis,
                        const std::vector<int>& kept) {
@@ -36,7 +35,8 @@ std::vector<T> kept_of(const std::vector<T>& net, std::array<std::size_t, 2> ext
                               (axis == 1 ? std::size_t(kept[c]) : c)]);
     return out;
 }
-double apart_of(const std::vector<Vec<3>>& net, std::array<std::size_t, 2> extent, int axis,
-                const Knots& knots);
+// Bound of what joining moves the spline by. Without weights: `weights` is empty.
+double moved_by_joining(const std::vector<Vec<3>>& net, const std::vector<double>& weights,
+                        std::array<std::size_t, 2> extent, int axis, const Knots& knots);
 
 }  // namespace freiform::step

@@ -91,8 +91,13 @@ const Pole* LoopBuilder::pole_at(const Vec<2>& a, const Vec<2>& b, double close)
 void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing,
                                double extent) {
     const Pole* pole = pole_at(last.end, next.start);
-    if (pole == nullptr && is_short_side(last, next, kShortSide * extent))
-        return done.push_back(degenerate(last.to, last.end, next.start));
+    if (pole == nullptr)
+        if (const auto off = short_side(last, next, kShortSide * extent)) {
+            note =
+                "a side of its surface, which is hardly longer than its edges lie beside it, closes its loop";
+            note_off = std::max(note_off, *off);
+            return done.push_back(degenerate(last.to, last.end, next.start));
+        }
     if (pole == nullptr) return corner_between(done, last, next);
     const int o = 1 - pole->axis;
     const double turn = chart_.period(o);
@@ -122,9 +127,9 @@ void LoopBuilder::pole_between(std::vector<Use>& done, const Use& last, Use& nex
 }
 
 // Whether both end on one side of a spline, far from each other in its parameters, and the side between them
-// is so short that what their vertex stands for is all of it. It is no pole: files have edges along such
-// sides.
-bool LoopBuilder::is_short_side(const Use& last, const Use& next, double most) const {
+// is so short that what their vertex stands for is all of it: how far it is from that, as seen. It is no
+// pole: files have edges along such sides.
+std::optional<double> LoopBuilder::short_side(const Use& last, const Use& next, double most) const {
     const Vec<2>&a = last.end, &b = next.start;
     for (int k = 0; k < 2; ++k) {
         const int o = 1 - k;
@@ -137,12 +142,12 @@ bool LoopBuilder::is_short_side(const Use& last, const Use& next, double most) c
         if (!at_end(on.lo) && !at_end(on.hi)) continue;
         if (!(std::abs(a[o] - b[o]) > kAlongSide * scale_of(chart_, o))) continue;
         const Vec<3>& at = model_.vertices[std::size_t(last.to)].point;
-        bool near = true;
-        for (int i = 0; i <= kLooksAtSide && near; ++i)
-            near = norm(chart_.point(a + (double(i) / kLooksAtSide) * (b - a)) - at) <= most;
-        if (near) return true;
+        double off = 0;
+        for (int i = 0; i <= kLooksAtSide; ++i)
+            off = std::max(off, norm(chart_.point(a + (double(i) / kLooksAtSide) * (b - a)) - at));
+        if (off <= most) return off;
     }
-    return false;
+    return std::nullopt;
 }
 
 // Where two neighbouring sides are one point, along both of them.

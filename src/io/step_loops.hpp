@@ -56,6 +56,7 @@ public:
     // something in the file had to be understood against its letter.
     Result<std::vector<std::vector<Use>>> finish();
     std::string note;
+    double note_off = 0;        // what that moves, about; 0: nothing
     std::vector<int> released;  // seams of the file that bound nothing any more
 
     // Where the surface ends, or goes on for ever, and the largest loop is a hole, the loops run the wrong
@@ -74,7 +75,7 @@ private:
 
     void attach(std::vector<Use>& done, Use next) const;
     void pole_between(std::vector<Use>& done, const Use& last, Use& next, bool closing, double extent);
-    bool is_short_side(const Use& last, const Use& next, double most) const;
+    std::optional<double> short_side(const Use& last, const Use& next, double most) const;
     void corner_between(std::vector<Use>& done, const Use& last, const Use& next);
     const Pole* pole_at(const Vec<2>& a, const Vec<2>& b, double close = 0) const;
     Use degenerate(int vertex, const Vec<2>& from, const Vec<2>& to);

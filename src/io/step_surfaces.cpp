@@ -135,20 +135,22 @@ Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) {
     const std::optional<Fields> with =
         list == kMissing ? std::nullopt : std::optional<Fields>(Fields(f_, i, list));
     const int k = complex ? 0 : 8;
-    int nu = int(rows->size()), nv = int(columns);
-    auto u = knots_of(f_, i, with ? &*with : nullptr, k, k + 2, "SURFACE", *p, nu);
+    auto u = knots_of(f_, i, with ? &*with : nullptr, k, k + 2, "SURFACE", *p, int(rows->size()));
     if (!u) return std::unexpected(u.error());
-    auto v = knots_of(f_, i, with ? &*with : nullptr, k + 1, k + 3, "SURFACE", *q, nv);
+    auto v = knots_of(f_, i, with ? &*with : nullptr, k + 1, k + 3, "SURFACE", *q, int(columns));
     if (!v) return std::unexpected(v.error());
     const std::array<std::size_t, 2> extent{rows->size(), columns};
-    if (auto ok = join(i, apart_of(points, extent, 0, *u) + apart_of(points, extent, 1, *v)); !ok)
-        return std::unexpected(ok.error());
     const auto kept = [&](const auto& net) {
         const auto some = kept_of(net, extent, 0, u->kept);
         return kept_of(some, {u->kept.empty() ? extent[0] : u->kept.size(), extent[1]}, 1, v->kept);
     };
-    points = kept(points);
-    nu = u->basis.size(), nv = v->basis.size();
+    const auto joined = [&](const std::vector<double>& weights) {
+        auto ok = join(i, moved_by_joining(points, weights, extent, 0, *u) +
+                              moved_by_joining(points, weights, extent, 1, *v));
+        points = kept(points);
+        return ok;
+    };
+    const int nu = u->basis.size(), nv = v->basis.size();
     const auto within = [&](Refusal r) {
         return refuse(r.kind, f_.label(i), text(r.where, ": ", r.message));
     };
@@ -166,6 +168,7 @@ Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) {
             return g.refused(
                 text("has ", w.size(), " weights for ", extent[0] * extent[1], " control points"),
                 RefusalKind::invalid);
+        if (auto ok = joined(w); !ok) return std::unexpected(ok.error());
         auto net = make_rational<3>(points, kept(w));
         if (!net) return within(net.error());
         auto made = Surface<Hom<3>>::make({std::move(u->basis), std::move(v->basis)},
@@ -173,6 +176,7 @@ Result<SurfaceGeometry> GeometryReader::spline_surface(std::uint32_t i) {
         if (!made) return within(made.error());
         return SurfaceGeometry(std::move(*made));
     }
+    if (auto ok = joined({}); !ok) return std::unexpected(ok.error());
     auto made = Surface<Vec<3>>::make({std::move(u->basis), std::move(v->basis)},
                                       Net<2, Vec<3>>({nu, nv}, std::move(points)));
     if (!made) return within(made.error());

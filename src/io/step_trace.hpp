@@ -22,10 +22,10 @@ struct Trace {
 
 // The curve over `on` whose image on the surface follows `c` with the same parameter, as near as the surface
 // comes to it, plus `accuracy`. It is continuous where parameters are periodic. Refuses where it runs through
-// a pole or fold and a polygon of nearest points is further off than `rough`. Where the surface has several
-// points that are as near, as one that folds has, it is where one of the `images` is: curves that are said to
-// be this one in the parameters, wherever they are, their third coordinate being 0.
-// `to_poles`: what ends beside a pole is followed up to it (trace_up_to_poles).
+// a pole or fold and a polygon of nearest points is further off than ten times `rough`. Where the surface has
+// several points that are as near, as one that folds has, it is where one of the `images` is: curves that are
+// said to be this one in the parameters, wherever they are, their third coordinate being 0. `to_poles`: what
+// ends beside a pole is followed up to it (trace_up_to_poles).
 Result<Trace> trace(const Chart& chart, const CurveGeometry<3>& c, Interval on, double accuracy, double rough,
                     std::span<const CurveGeometry<3>> images = {}, bool to_poles = true);
 

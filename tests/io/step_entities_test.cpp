@@ -250,6 +250,19 @@ TEST(StepEntities, knots_that_are_one_leave_out_what_was_between_them) {
         "(4,3,2,4),(0.,0.5,0.5,1.),.UNSPECIFIED.);\n");
     expect_refusal(read_step(jump), RefusalKind::invalid, "#20 B_SPLINE_CURVE_WITH_KNOTS",
                    "has a knot that is repeated more than degree + 1 times, where its pieces are 1.414");
+    // Nor if their weights are not: with one or the other it is another curve.
+    const auto weights = [](std::string_view w) {
+        return item_file("#10",
+                         text("#10=GEOMETRIC_CURVE_SET('',(#20));\n#20=(BOUNDED_CURVE()B_SPLINE_CURVE(1,"
+                              "(#30,#31,#32,#31,#34),.UNSPECIFIED.,.F.,.F.)B_SPLINE_CURVE_WITH_KNOTS("
+                              "(2,1,2,2),(0.,1.,1.,2.),.UNSPECIFIED.)CURVE()GEOMETRIC_REPRESENTATION_ITEM()"
+                              "RATIONAL_B_SPLINE_CURVE((",
+                              w, "))REPRESENTATION_ITEM(''));\n"));
+    };
+    EXPECT_TRUE(must(read_step(weights("1.,2.,1.,2.,1."))).approximations.empty());
+    const auto uneven = read_step(weights("1.,2.,1.,1.,1."));
+    ASSERT_FALSE(uneven);
+    EXPECT_NE(uneven.error().message.find("repeated more than degree + 1 times"), std::string::npos);
     // One that is beside it by less than the tolerance is told.
     const Model near = must(read_step(item_file(
         "#10",

@@ -34,6 +34,19 @@ TEST(Pipe, has_the_volume_that_guldin_says_and_looks_outwards) {
     }
 }
 
+TEST(Pipe, rings_take_as_many_triangles_in_any_position) {
+    const auto count = [](const Vec<3>& x, const Vec<3>& y) {
+        const RailPart ring{Conic<3>{ConicKind::ellipse, {}, 4.0 * x, 4.0 * y}, {0, 2 * kPi}};
+        return double(closed_tessellation(must(pipe(std::span(&ring, 1), 1)), 0.017).mesh.triangles.size());
+    };
+    const double flat = count({{1, 0, 0}}, {{0, 1, 0}});
+    for (int i = 1; i < 8; ++i) {
+        const Vec<3> x = unit(Vec<3>{{std::cos(i), std::sin(i), 0.3 * i}}),
+                     y = unit(cross(Vec<3>{{1, 0.1 * i, -2}}, x));
+        EXPECT_NEAR(count(x, y), flat, 0.02 * flat) << i;
+    }
+}
+
 TEST(Pipe, walls_are_as_far_from_the_rail_as_the_radius) {
     const auto rail = must(bent_polyline(kCorners, 2));
     const Model m = must(pipe(rail, 0.5));
