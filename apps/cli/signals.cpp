@@ -2,6 +2,7 @@
 // and a computation that has to look at a clock would look too rarely or too often.
 #include "signals.hpp"
 
+#include <freiform/core/heap.hpp>
 #include <freiform/io/file.hpp>
 
 #include <csignal>
@@ -71,6 +72,7 @@ void enforce(const Context& context) {
         const rlimit all{rlim_t(limits.max_memory), rlim_t(limits.max_memory)};
         ::setrlimit(RLIMIT_DATA, &all);
     }
+    use_large_pages();
     if (limits.timeout > 0) {
         prepare(out_of_time, "--timeout",
                 text("more time is needed than the limit of ", limits.timeout, " seconds"), context.json);

@@ -8,6 +8,7 @@
 #include "convert.hpp"
 #include "verify.hpp"
 
+#include <freiform/core/heap.hpp>
 #include <freiform/core/parallel.hpp>
 #include <freiform/io/file.hpp>
 #include <freiform/io/model_binary.hpp>
@@ -246,6 +247,7 @@ int main(int count, char** values) {
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
     Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_Printer));
     limit_threads();
+    use_large_pages();
     try {
         return run(*arguments, output);
     } catch (const Standard_OutOfMemory&) {

@@ -40,9 +40,9 @@ auto failed(const std::string& path, std::string_view what, int error) {
 enum SlotState { kFree, kOpening, kLive };
 struct Slot {
     std::atomic<int> state{kFree};
-    char path[PATH_MAX];
+    char path[PATH_MAX] = {};
 };
-std::array<Slot, 64> slots;
+constinit std::array<Slot, 64> slots;
 std::atomic<bool> stopping{false};
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 

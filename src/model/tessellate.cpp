@@ -169,15 +169,28 @@ bool Tessellator::halve(std::size_t f, int u, int v) {
 }
 
 // A point in the triangle across this side of a triangle without area, which is then seen from its third
-// corner: the side goes.
+// corner: the side goes. At a pole the one across may be left out, as two of its corners are one point: it is
+// beside one that goes on from there.
 bool Tessellator::look_across(std::size_t f, int u, int v) {
     const FaceMesh& mesh = meshes_[f];
-    const auto at = [&](int i) { return mesh.uv[std::size_t(i)]; };
+    const auto add_towards = [&](int w) {  // no farther than its middle, and than half of the side
+        const Vec<2>&p = mesh.uv[std::size_t(u)], &q = mesh.uv[std::size_t(v)], middle = 0.5 * (p + q),
+              way = mesh.uv[std::size_t(w)] - middle;
+        return add_extra(f, middle + std::min(1.0 / 3, norm(q - p) / (2 * norm(way))) * way);
+    };
+    const auto are_one = [&](int a, int b) {
+        const int point = mesh.point[std::size_t(a)];
+        return point >= 0 && point == mesh.point[std::size_t(b)];
+    };
+    int beyond = -1;
     for (const auto& t : mesh.triangles)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (t[k] == v && t[(k + 1) % 3] == u)
-                return add_extra(f, (1.0 / 3) * (at(u) + at(v) + at(t[(k + 2) % 3])));
-    return false;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const int a = t[k], b = t[(k + 1) % 3];
+            if (a == v && b == u) return add_towards(t[(k + 2) % 3]);
+            if (b == u && are_one(a, v)) beyond = a;
+            if (a == v && are_one(b, u)) beyond = b;
+        }
+    return beyond >= 0 && add_towards(beyond);
 }
 
 // The longest side of a triangle of three boundary points on a line: a straight edge whose parameter curve

@@ -271,6 +271,14 @@ TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
             EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
             EXPECT_LE(m.mesh.boundary_gap, tip + 1e-9);
         }
+    // Three points of a straight edge, where the side is one of them, enclose nothing.
+    for (const double tip : {1e-5, 2e-5, 6e-5})
+        for (const double of_bend : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02}) {
+            SCOPED_TRACE(text(tip, ", ", of_bend));
+            const Meshed m = meshed(file(tip), 10 * of_bend * tip);
+            EXPECT_TRUE(m.refused.empty()) << m.refused[0];
+            EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
+        }
 }
 
 // One whose edges end as near to either corner of the side, to the last bit.
@@ -278,10 +286,12 @@ TEST(StepDigits, edges_end_at_the_corner_that_they_came_to) {
     FF_CORPUS_OR_SKIP(path, "step_micro/ap203_near_degenerate_nurbs_pole.stp");
     const std::string file = must(read_file(path.string(), 1u << 24));
     EXPECT_EQ(times_told(must(read_step(file)), "closes its loop"), 1);
-    const Meshed m = meshed(file, 1);
-    EXPECT_TRUE(m.refused.empty());
-    EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
-    EXPECT_LE(m.mesh.boundary_gap, 0.01);
+    for (const double tolerance : {1.0, 0.1, 0.07, 0.03, 0.01}) {
+        const Meshed m = meshed(file, tolerance);
+        EXPECT_TRUE(m.refused.empty());
+        EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
+        EXPECT_LE(m.mesh.boundary_gap, tolerance < 1 ? 0.075 + 1e-9 : 0.01);
+    }
 }
 
 // Real models, with as many digits as others have written. One has a hole that touches the circle around it,

@@ -22,7 +22,7 @@ HEADER_EXCEPTIONS = {
     "poly/exact": ARITHMETIC, "poly/form": ARITHMETIC, "poly/integer": ARITHMETIC, "poly/integer_roots": ARITHMETIC,
     "poly/series": ARITHMETIC, "path/forward_differences": ARITHMETIC,
     "core/constants": CPP, "core/decimal": CPP, "core/scan": CPP, "core/sort": CPP, "core/tuples": CPP,
-    "core/visit": CPP,
+    "core/visit": CPP, "core/heap": "of the whole process, which is the interpreter's",
     "core/utf8": CPP,
     "make/boolean_sum": CPP,
     "mesh/chord_triangles": CPP, "mesh/face_mesh": CPP, "mesh/grid": CPP, "mesh/normal_cone": CPP,
