@@ -237,10 +237,10 @@ TEST(StepDigits, edges_on_a_spline_that_closes_begin_and_end_as_their_sense_says
         }
 }
 
-// A patch between a bow of width 4 and a side at the tip, across `tip` and bent by ten times as much, where
-// two straight edges meet, as far from both its corners.
+// A patch between a bow of width 6, or a line, and a side at the tip, across `tip` and bent by ten times as
+// much, where two straight edges meet, as far from both its corners.
 TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
-    const auto file = [](double tip) {
+    const auto file = [](double tip, double bow, double bend) {
         const auto at = [](int i, double x, double y, double z) {
             return text("#", i, "=CARTESIAN_POINT('',(", x, ",", y, ",", z, "));\n");
         };
@@ -252,13 +252,13 @@ TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
             "#17=ORIENTED_EDGE('',*,*,#42,.F.);\n#20=VERTEX_POINT('',#30);\n#21=VERTEX_POINT('',#33);\n"
             "#22=VERTEX_POINT('',#38);\n#40=EDGE_CURVE('',#20,#21,#50,.T.);\n"
             "#41=EDGE_CURVE('',#21,#22,#51,.T.);\n#42=EDGE_CURVE('',#20,#22,#52,.T.);\n",
-            at(30, -2, 0, 0), at(31, -0.7, 0, 1), at(32, 0.7, 0, 1), at(33, 2, 0, 0), at(34, -tip / 2, 6, 0),
-            at(35, -tip / 6, 6, 10 * tip), at(36, tip / 6, 6, 10 * tip), at(37, tip / 2, 6, 0),
+            at(30, -3, 0, 0), at(31, -1, 0, bow), at(32, 1, 0, bow), at(33, 3, 0, 0), at(34, -tip / 2, 6, 0),
+            at(35, -tip / 6, 6, bend * tip), at(36, tip / 6, 6, bend * tip), at(37, tip / 2, 6, 0),
             at(38, 0, 6, 0),
             "#50=B_SPLINE_CURVE_WITH_KNOTS('',3,(#30,#31,#32,#33),.UNSPECIFIED.,.F.,.F.,(4,4),(0.,1.),"
             ".UNSPECIFIED.);\n"
-            "#51=LINE('',#33,#53);\n#53=VECTOR('',#54,1.);\n#54=DIRECTION('',(-2.,6.,0.));\n"
-            "#52=LINE('',#30,#55);\n#55=VECTOR('',#56,1.);\n#56=DIRECTION('',(2.,6.,0.));\n"
+            "#51=LINE('',#33,#53);\n#53=VECTOR('',#54,1.);\n#54=DIRECTION('',(-3.,6.,0.));\n"
+            "#52=LINE('',#30,#55);\n#55=VECTOR('',#56,1.);\n#56=DIRECTION('',(3.,6.,0.));\n"
             "#70=B_SPLINE_SURFACE_WITH_KNOTS('',3,1,((#30,#34),(#31,#35),(#32,#36),(#33,#37)),.UNSPECIFIED.,"
             ".F.,.F.,.F.,(4,4),(2,2),(0.,1.),(0.,1.),.UNSPECIFIED.);\n"));
     };
@@ -266,16 +266,17 @@ TEST(StepDigits, sides_that_edges_hardly_miss_close_a_loop_along_themselves) {
     for (const double tip : {1e-7, 2e-5, 6e-5})
         for (int i = 0; i < 6; ++i) {
             SCOPED_TRACE(text(tip, ", ", i));
-            const Meshed m = meshed(i == 0 ? file(tip) : rounded(file(tip), random_turn(random), 12), 0.01);
+            const Meshed m =
+                meshed(i == 0 ? file(tip, 1, 10) : rounded(file(tip, 1, 10), random_turn(random), 12), 0.01);
             EXPECT_TRUE(m.refused.empty()) << m.refused[0];
             EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
             EXPECT_LE(m.mesh.boundary_gap, tip + 1e-9);
         }
     // Three points of a straight edge, where the side is one of them, enclose nothing.
-    for (const double tip : {1e-5, 2e-5, 6e-5})
-        for (const double of_bend : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02}) {
-            SCOPED_TRACE(text(tip, ", ", of_bend));
-            const Meshed m = meshed(file(tip), 10 * of_bend * tip);
+    for (const double tip : {6e-5, 1.2e-4})
+        for (const double of_tip : {10.0, 5.0, 3.5, 2.5, 1.5, 1.0, 0.5}) {
+            SCOPED_TRACE(text(tip, ", ", of_tip));
+            const Meshed m = meshed(file(tip, 0, 5), of_tip * tip);
             EXPECT_TRUE(m.refused.empty()) << m.refused[0];
             EXPECT_EQ(topology(m.mesh.mesh).degenerate_triangles, 0);
         }
