@@ -20,6 +20,7 @@ constexpr double kLittleError = 1.0 / 64;     // of the tolerance: triangles wit
 constexpr std::size_t kTrianglesAtOnce = 32;  // that a thread judges
 constexpr std::size_t kJudgedAtOnce = 1024;   // by all threads
 constexpr std::size_t kPatienceForAngles = 32;  // times the points to begin with
+constexpr double kAboutAsLong = 0.75;           // of a given side: what is left to halve
 constexpr double kNearPoint = 1e-3;             // of a leaf: likewise, for other points
 constexpr double kLeastLength = 1e-9;           // of the box of the face: shorter is rounding
 constexpr double kLeastWidth = 0x1p-60;         // likewise: only near 0 do doubles go on from there
@@ -78,12 +79,17 @@ std::pair<double, int> Filler::longest_side(int triangle) {
 
 Filler::LongestSide Filler::longest_of_all(int triangle) {
     LongestSide out;
+    double given = 0, free = 0;
     const auto v = t_.vertices(triangle);
     for (std::size_t e = 0; e < 3; ++e) {
         const double length = norm(position(v[(e + 2) % 3]) - position(v[(e + 1) % 3]));
-        if (length > out.longest)
-            out.longest = length, out.edge = t_.is_constrained(triangle, int(e)) ? -1 : int(e);
+        if (t_.is_constrained(triangle, int(e)))
+            given = std::max(given, length);
+        else if (length > free)
+            free = length, out.edge = int(e);
     }
+    out.longest = std::max(given, free);
+    if (free < kAboutAsLong * given) out.edge = -1;
     return out;
 }
 

@@ -48,7 +48,7 @@ private:
     Vec<3> looked_up(int vertex) const;
     struct LongestSide {
         double longest = 0;
-        int edge = -1;  // the longest one; -1 if it is part of the boundary
+        int edge = -1;  // the longest but for the boundary; -1 if a side of that is clearly longer
     };
     LongestSide longest_of_all(int triangle);
     bool is_narrow_or_at_pole(const std::array<Vec<2>, 3>& corner, double longest) const;
