@@ -110,8 +110,8 @@ bool Filler::is_narrow_or_at_pole(const std::array<Vec<2>, 3>& corner, double lo
     return false;
 }
 
-// Sides of the boundary are given, and a triangle between them and inner points as near as they are long
-// cannot turn less by further points.
+// Sides of the boundary are given, and a triangle between them and inner points that are clearly nearer than
+// they are long cannot turn less by further points.
 int Filler::turning_side(int triangle) {
     if (!std::isfinite(demands_.max_angle)) return -1;
     const LongestSide s = longest_of_all(triangle);

@@ -38,7 +38,7 @@ inline __attribute__((always_inline)) void each_of(int count, F f) {
     else for (int i = 0; i < count; ++i) f(i);
 }
 
-// blossom_step, with both quotients at once: they take most of the time.
+// blossom_step, bit for bit, with both quotients at once: they take most of the time.
 template <class B>
 inline void quick_step(const B& basis, int span, int k, double x, double* b) {
 #if defined(__GNUC__) && !defined(__wasm__)
@@ -85,31 +85,16 @@ inline void weights_with(const B& basis, int span, double u, int order, std::ptr
 template <Basis B>
 void weights_up_to(const B& basis, int span, double u, int order, std::ptrdiff_t stride, double* w) {
 #if !defined(__wasm__)  // for size
-    const auto with = [&]<int P>() {
-        weights_with<P>(KnotsAround<P>(basis, span), KnotsAround<P>::kSpan, u, order, stride, w);
-    };
-    switch (basis.degree()) {
-        case 1:
-            return with.template operator()<1>();
-        case 2:
-            return with.template operator()<2>();
-        case 3:
-            return with.template operator()<3>();
-        case 4:
-            return with.template operator()<4>();
-        case 5:
-            return with.template operator()<5>();
-        case 6:
-            return with.template operator()<6>();
-        case 7:
-            return with.template operator()<7>();
-        case 8:
-            return with.template operator()<8>();
-        case 9:
-            return with.template operator()<9>();
-        case 10:
-            return with.template operator()<10>();
+    constexpr int kUnrolled = 10;
+    const bool done = [&]<int... Less>(std::integer_sequence<int, Less...>) {
+        const auto with = [&]<int P>(const KnotsAround<P>& around) {
+            weights_with<P>(around, KnotsAround<P>::kSpan, u, order, stride, w);
+            return true;
+        };
+        return ((basis.degree() == Less + 1 && with(KnotsAround<Less + 1>(basis, span))) || ...);
     }
+    (std::make_integer_sequence<int, kUnrolled>{});
+    if (done) return;
 #endif
     weights_with<-1>(basis, span, u, order, stride, w);
 }

@@ -64,6 +64,17 @@ TEST(TessellateShapes, normals_turn_by_no_more_than_asked_for) {
     }
 }
 
+// Beside a seam, the chords of which may be a little longer than the leaves are wide.
+TEST(TessellateShapes, normals_turn_as_little_beside_given_sides_at_any_tolerance) {
+    const Model m = torus(3, 1);
+    for (int i = -20; i <= 20; ++i) {
+        const double tolerance = summary(m).box.diagonal() / 200 * (1 + 0.005 * i);
+        const auto t = tessellate(m, {.tolerance = tolerance, .max_angle = 14 * kDegree});
+        ASSERT_TRUE(t) << t.error().message;
+        EXPECT_EQ(t->angle_exceeded, 0) << tolerance;
+    }
+}
+
 // As large as the model: the angle alone says what the triangles are.
 TEST(TessellateShapes, angles_are_kept_within_tolerances_that_are_coarse) {
     std::mt19937 rng(5);
