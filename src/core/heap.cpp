@@ -12,6 +12,7 @@
 #if defined(__linux__)
 #include <cstdint>
 #include <cstdlib>
+#include <initializer_list>
 #include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
