@@ -78,7 +78,7 @@ wasm:
 	step "Packages" tools/setup.sh wasm; \
 	step "Configure" cmake --preset wasm --log-level=WARNING; \
 	step "Build" cmake --build --preset wasm; \
-	step "Test in node" node --test bindings/wasm/test/order.test.js bindings/wasm/test/module.test.js
+	step "Test in node" node --test bindings/wasm/test/order.test.js bindings/wasm/test/pack.test.js bindings/wasm/test/module.test.js
 
 wasm-tests: wasm
 	@source tools/steps.sh; \

@@ -23,7 +23,7 @@ module() {
 if [ ! -e "$page" ]; then
     [ "${PAGE:-}" != no ] || without "PAGE is no."
     command -v npm >/dev/null || without "npm is not there."
-    if [ ! -e bindings/wasm/freiform.wasm ]; then
+    if [ ! -e bindings/wasm/freiform.packed ]; then
         command -v clang++-22 >/dev/null || without "clang-22, which makes its WebAssembly module, is not there."
         [ -e "$(clang++-22 -Wno-deprecated --target=wasm32-wasi -print-file-name=libc++.a)" ] ||
             without "the C++ library for WebAssembly (libc++-22-dev-wasm32) is not there."

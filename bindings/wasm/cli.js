@@ -43,7 +43,7 @@ for (const word of args) {
   else take(name);
 }
 const folder = process.env.FREIFORM_WASM;
-const ff = await load(folder ? readFileSync(join(folder, 'freiform.wasm')) : undefined);
+const ff = await load(folder ? readFileSync(join(folder, 'freiform.packed')) : undefined);
 const { code, stdout, stderr, files: made } = ff.command(args, files);
 let ended = code;
 for (const [name, bytes] of Object.entries(made)) {

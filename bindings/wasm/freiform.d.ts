@@ -222,6 +222,7 @@ export interface Freiform {
 // Where a STEP file says that parts of it may be: paths from its folder, those that it names and the same without folders.
 export function filesNamedIn(content: string | Uint8Array): string[];
 
-// Without a source: freiform.wasm beside this file. Modules can be posted to workers: `load(ff.module)`.
+// Without a source: freiform.packed beside this file. Modules may be packed or not, which their bytes say; those that are
+// damaged are refused ('unreadable'). Modules can be posted to workers: `load(ff.module)`.
 export function load(source?: string | URL | BufferSource | WebAssembly.Module | Response | Promise<Response>):
   Promise<Freiform & { readonly module: WebAssembly.Module }>;

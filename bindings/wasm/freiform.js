@@ -4,6 +4,8 @@
 // are made while `load` is awaited: browsers refuse to make one of a large module at once in a page. A refusal leaves
 // the module as an exception of the function `refuse` that it imports, so the stack pointer is put back by hand.
 
+import { Damaged, isPacked, unpack } from './unpack.js';
+
 export class FreiformError extends Error {
   constructor(kind, where, message) {
     super(where ? `${where}: ${message}` : message);
@@ -493,14 +495,24 @@ class Freiform {
 
 // Loading
 
+function unpackedOf(source) {
+  const bytes = ArrayBuffer.isView(source) ? new Uint8Array(source.buffer, source.byteOffset, source.byteLength) : new Uint8Array(source);
+  if (!isPacked(bytes)) return source;
+  try {
+    return unpack(bytes);
+  } catch (error) {
+    throw error instanceof Damaged ? new FreiformError('unreadable', '', error.message) : error;
+  }
+}
+
 async function compiled(source) {
   if (source instanceof WebAssembly.Module) return source;
-  if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
+  if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(unpackedOf(source));
   if (typeof source === 'string' || source instanceof URL) {
     const url = new URL(source, import.meta.url);
     if (url.protocol === 'file:' && typeof process !== 'undefined') {
       const { readFile } = await import(/* @vite-ignore */ 'node:fs/promises');
-      return WebAssembly.compile(await readFile(url));
+      return compiled(await readFile(url));
     }
     return compiled(await fetch(url));
   }
@@ -509,12 +521,12 @@ async function compiled(source) {
   // While it arrives, where the server says what it is.
   const type = response.headers.get('content-type') ?? '';
   if (type.startsWith('application/wasm') && WebAssembly.compileStreaming) return WebAssembly.compileStreaming(response);
-  return WebAssembly.compile(await response.arrayBuffer());
+  return compiled(await response.arrayBuffer());
 }
 
 const hasCommands = (module) => WebAssembly.Module.exports(module).some(({ name }) => name === 'ff_command');
 
-export async function load(source = new URL('./freiform.wasm', import.meta.url)) {
+export async function load(source = new URL('./freiform.packed', import.meta.url)) {
   const module = await compiled(source);
   return new Freiform(module, await Instance.make(module), hasCommands(module) ? await Instance.make(module) : undefined);
 }

@@ -26,11 +26,12 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { deflateRawSync, gzipSync } from 'node:zlib';
+import { follows, kBytes } from './unpack.js';
 
 const kRun = 6, kCommon = 400, kWindow = 25500, kLooked = 60, kNear = 0.75, kPowers = [0.65, 0.7];
 const kTypes = [0x7f, 0x7c, 0x7e, 0x7d, 0x7b];  // i32 and f64, which are most, then i64, f32, v128
 
-class Bytes {
+export class Bytes {
   constructor(bytes) { this.bytes = bytes; this.at = 0; }
   byte() { return this.bytes[this.at++]; }
   // LEB128; of signed numbers only the length is right.
@@ -56,30 +57,19 @@ function leb(value) {
 // Goes over an instruction; `call` is told where the number of a function stands, `hint` where an alignment does,
 // `local` where that of a local does.
 function instruction(code, { call = () => {}, hint = () => {}, local = () => {} }) {
-  const op = code.byte();
-  const memory = () => (hint(code.at), code.numbers(2));
-  if (op === 0x10 || op === 0x12 || op === 0xd2) call(code.at, code.number(), code.at);
-  else if (op >= 0x20 && op <= 0x22) local(code.at, code.number(), code.at);
-  else if (op === 0x0e) code.numbers(code.number() + 1);
-  else if (op === 0x11 || op === 0x13) code.numbers(2);
-  else if (op >= 0x28 && op <= 0x3e) memory();
-  else if (op >= 0x02 && op <= 0x04 || op === 0x0c || op === 0x0d || op >= 0x23 && op <= 0x26 ||
-    op >= 0x3f && op <= 0x42 || op === 0xd0) code.number();
-  else if (op === 0x43) code.at += 4;
-  else if (op === 0x44) code.at += 8;
-  else if (op === 0x1c) code.at += code.number();
-  else if (op === 0xfc) {
-    const more = code.number();
-    if (more > 17) throw new Error(`no instruction: 0xfc ${more}`);
-    code.numbers(more < 8 ? 0 : more === 8 || more === 10 || more === 12 || more === 14 ? 2 : 1);
-  } else if (op === 0xfd) {
-    const more = code.number();
-    if (more < 12 || more === 92 || more === 93) memory();
-    else if (more < 14) code.at += 16;
-    else if (more > 20 && more < 35) code.at += 1;
-    else if (more > 83 && more < 92) memory(), code.at += 1;
-  } else if (!(op < 2 || op === 0x05 || op === 0x0b || op === 0x0f || op === 0x1a || op === 0x1b || op === 0xd1 ||
-    op >= 0x45 && op <= 0xc4)) throw new Error(`no instruction: 0x${op.toString(16)}`);
+  const op = code.byte(), more = op === 0xfc || op === 0xfd ? code.number() : '', letters = follows(op, more);
+  if (letters === undefined) throw new Error(`no instruction: 0x${op.toString(16)} ${more}`);
+  for (const letter of letters) {
+    const at = code.at;
+    if (kBytes[letter]) code.at += kBytes[letter];
+    else {
+      const number = code.number();
+      if (letter === 'c') call(at, number, code.at);
+      else if (letter === 'l') local(at, number, code.at);
+      else if (letter === 'a') hint(at);
+      else if (letter === 's' || letter === 't') code.numbers(number + (letter === 't'));
+    }
+  }
 }
 
 // The same with its locals of each type in the order in which they are used most, then first; those that nothing uses

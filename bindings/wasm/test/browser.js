@@ -28,7 +28,7 @@ import { speed } from '/test/speed.js';
 const tell = (body) => fetch('/answer', { method: 'POST', body: JSON.stringify(body) });
 try {
   const { documents, questions, wantsSpeed, filter } = await (await fetch('/task')).json();
-  const ff = await load('/freiform.wasm'), failed = [], answers = {};
+  const ff = await load('/freiform.packed'), failed = [], answers = {};
   for (const [name, run] of Object.entries(tests))
     try { run(ff); } catch (error) { failed.push(name + ': ' + error.stack); }
   for (const [name, content] of Object.entries(documents))
@@ -50,9 +50,9 @@ const server = createServer((request, reply) => {
   const send = (type, body) => reply.writeHead(200, { 'Content-Type': type }).end(body);
   const script = 'text/javascript';
   if (request.url === '/') return send('text/html', page);
-  if (request.url === '/freiform.js') return send(script, readFileSync(join(root, 'bindings/wasm/freiform.js')));
+  if (/^\/(freiform|unpack)\.js$/.test(request.url)) return send(script, readFileSync(join(root, 'bindings/wasm', request.url)));
   if (/^\/test\/\w+\.js$/.test(request.url)) return send(script, readFileSync(join(root, 'bindings/wasm', request.url)));
-  if (request.url === '/freiform.wasm') return send('application/wasm', readFileSync(join(modules, 'freiform.wasm')));
+  if (request.url === '/freiform.packed') return send('application/octet-stream', readFileSync(join(modules, 'freiform.packed')));
   const corpus = join(modules, 'freiform-tests.wasm');
   if (request.url === '/freiform-tests.wasm' && existsSync(corpus)) return send('application/wasm', readFileSync(corpus));
   if (request.url === '/task') return send('application/json', JSON.stringify({ documents, questions, wantsSpeed, filter: process.env.FREIFORM_GTEST_FILTER ?? '*' }));

@@ -1,7 +1,7 @@
 // The library, loaded once. Every point that the studio draws was computed there.
 
 import { FreiformError, load, type CommandName, type Construction, type Freiform, type Mesh, type MeshOptions, type Options, type Shape, type Source } from "freiform";
-import wasm from "freiform/freiform.wasm?url";
+import packed from "freiform/freiform.packed?url";
 import type { Curvatures, Places } from "./curvature";
 import Worker from "./worker?worker";
 
@@ -12,7 +12,7 @@ let module: (Freiform & { readonly module: WebAssembly.Module }) | undefined;
 
 /** Loads the module; the page waits for it once. */
 export async function start(): Promise<Freiform> {
-    module ??= await load(fetch(wasm));
+    module ??= await load(fetch(packed));
     return module;
 }
 
