@@ -73,19 +73,24 @@ accuracy:
 	step "Build" cmake --build --preset release --target bench-accuracy bench-accuracy-occt bench-accuracy-sisl; \
 	step "Compare" tools/accuracy_report.py
 
+WASM_IN_NODE := node --test bindings/wasm/test/order.test.js bindings/wasm/test/pack.test.js bindings/wasm/test/module.test.js
+
 wasm:
 	@source tools/steps.sh; \
 	step "Packages" tools/setup.sh wasm; \
 	step "Configure" cmake --preset wasm --log-level=WARNING; \
 	step "Build" cmake --build --preset wasm; \
-	step "Test in node" node --test bindings/wasm/test/order.test.js bindings/wasm/test/pack.test.js bindings/wasm/test/module.test.js
+	step "Test in node" $(WASM_IN_NODE)
 
-wasm-tests: wasm
+# Built with the modules: while functions of one are put in order, which one processor does, others compile.
+wasm-tests:
 	@source tools/steps.sh; \
+	step "Packages" tools/setup.sh wasm; \
 	step "Packages" tools/setup.sh test; \
 	step "Configure" cmake --preset wasm --log-level=WARNING; \
-	step "Build" cmake --build --preset wasm --target freiform-tests; \
-	step "Test in node" node bindings/wasm/test/corpus.js
+	step "Build" cmake --build --preset wasm --target all freiform-tests; \
+	step "Test in node" $(WASM_IN_NODE); \
+	step "C++ tests in node" node bindings/wasm/test/corpus.js
 
 studio: wasm
 	@source tools/steps.sh; \
