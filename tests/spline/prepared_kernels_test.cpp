@@ -25,10 +25,12 @@ protected:
         if (on == "here") return;
         const std::string_view command = on == "neon" ? FREIFORM_ARM_KERNELS : FREIFORM_WASM_KERNELS;
         if (command.empty())
-            GTEST_SKIP() << (on == "neon"
-                                 ? "aarch64-linux-gnu-g++ and qemu-aarch64 were not there (tools/setup.sh ci)"
-                                 : "clang++-22 with what it takes for WebAssembly, and node, were not there "
-                                   "(tools/setup.sh ci)");
+            GTEST_SKIP()
+                << (on == "neon"
+                        ? "aarch64-linux-gnu-g++ and qemu-aarch64 were not there (tools/setup.sh ci), or "
+                          "FREIFORM_QUICK leaves them out"
+                        : "clang++-22 with what it takes for WebAssembly, and node, were not there "
+                          "(tools/setup.sh ci), or FREIFORM_QUICK leaves them out");
         std::vector<std::string> words(1);
         for (const char c : command) {
             if (c == '|')

@@ -8,7 +8,8 @@
 
 namespace freiform::test {
 
-// Sanitizers have measures of their own.
+// Sanitizers have measures of their own, and a process of theirs takes long to copy: what goes wrong ends the
+// test with their report.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kIsMeasured = false;
 #elif defined(__has_feature)
@@ -32,6 +33,7 @@ inline constexpr unsigned kMostSeconds = 60;
 // those after which it is ended, so that others on the machine do not matter.
 template <class F>
 Effort effort_of(F&& f) {
+    if (!kIsMeasured) return {.ended = f()};
     const pid_t child = fork();
     if (child == 0) {
         const rlimit most{kMostSeconds, kMostSeconds};
