@@ -56,117 +56,108 @@ export function sumOf(bytes) {
 const kMatch = 0, kRep = 12, kRep0 = 24, kRep1 = 36, kRep2 = 48, kRep0Long = 60, kSlot = 72, kSpecial = kSlot + 256,
   kAlign = kSpecial + 128, kLength = kAlign + 16, kRepLength = kLength + 274, kLiteral = kRepLength + 274;
 
-// The arithmetic code. What a bit is told by stands in a typed array: numbers up to 2^32 in fields of objects are slow.
-class Chances {
-  constructor(bytes, high) {
-    this.bytes = bytes, this.at = 5, this.state = new Uint32Array(2);
-    let code = 0;
-    for (let i = 1; i < 5; ++i) code = code << 8 | bytes[i];
-    this.state[0] = 0xffffffff, this.state[1] = code;
-    this.chance = new Uint16Array(kLiteral + (0x300 << high)).fill(1024);
-  }
-  bit(i) {
-    const { chance, state } = this, p = chance[i], range = state[0], code = state[1], bound = (range >>> 11) * p;
-    const one = code >= bound, left = one ? range - bound : bound, rest = one ? code - bound : code;
-    chance[i] = one ? p - (p >> 5) : p + (2048 - p >> 5);
-    if (left >= 0x1000000) state[0] = left, state[1] = rest;
-    else state[0] = left << 8, state[1] = rest << 8 | this.bytes[this.at++];
-    return one ? 1 : 0;
-  }
-  // `bits` bits, the high one first.
-  tree(from, bits) { return this.bits(from, 1, 1 << bits) - (1 << bits); }
-  // Appends bits to `m` until it is `end` or more.
-  bits(from, m, end) {
-    const { chance, state, bytes } = this;
-    let range = state[0], code = state[1];
-    while (m < end) {
-      const p = chance[from + m], bound = (range >>> 11) * p;
-      if (code < bound) range = bound, chance[from + m] = p + (2048 - p >> 5), m = m << 1;
-      else range -= bound, code -= bound, chance[from + m] = p - (p >> 5), m = m << 1 | 1;
-      if (range < 0x1000000) range = range << 8 >>> 0, code = (code << 8 | bytes[this.at++]) >>> 0;
-    }
-    state[0] = range, state[1] = code;
-    return m;
-  }
-  // The low one first.
-  reversed(from, bits) {
-    let m = 1, value = 0;
-    for (let i = 0; i < bits; ++i) m = this.bits(from, m, 2 << i), value |= (m & 1) << i;
-    return value;
-  }
-  even(bits) {
-    const { state, bytes } = this;
-    let value = 0, range = state[0], code = state[1];
-    for (; bits > 0; --bits) {
-      range = range >>> 1;
-      value = value << 1;
-      if (code >= range) code -= range, value |= 1;
-      if (range < 0x1000000) range = range << 8 >>> 0, code = (code << 8 | bytes[this.at++]) >>> 0;
-    }
-    state[0] = range, state[1] = code;
-    return value;
-  }
-  length(from) {
-    if (this.bit(from) === 0) return 2 + this.tree(from + 2, 3);
-    if (this.bit(from + 1) === 0) return 10 + this.tree(from + 10, 3);
-    return 18 + this.tree(from + 18, 8);
-  }
-  // Beside the byte that stood here last time it differs from the first bit that does.
-  literal(from, match) {
-    let m = 1;
-    for (let i = 7; i >= 0 && match >= 0; --i) {
-      const like = match >> i & 1;
-      m = this.bits(from + 0x100 + (like << 8), m, 2 << 7 - i);
-      if ((m & 1) !== like) break;
-    }
-    return this.bits(from, m, 0x100) & 255;
-  }
-  distance(length) {
-    const slot = this.tree(kSlot + (Math.min(length - 2, 3) << 6), 6), bits = (slot >> 1) - 1;
-    if (slot < 4) return slot;
-    const distance = (2 | slot & 1) << bits;
-    if (slot < 14) return distance + this.reversed(kSpecial + distance - slot, bits);
-    return distance + (this.even(bits - 4) << 4) + this.reversed(kAlign, 4);
-  }
-}
+// What is asked next.
+const [kIsMatch, kLike, kLiterally, kIsRep, kIsOther0, kIsLong, kIsOther1, kIsOther2, kLength0, kLength1, kLengthIs, kSlotIs,
+  kDistanceIs, kAlignIs] = Array.from({ length: 14 }, (_, i) => i);
 
+// All in one loop over bits, whose variables an engine keeps in registers. Bits are appended to `m`, told by the chances from
+// `base` on, until it is `end` or more; then it answers what was asked.
 function unpacked(packed, size, high) {
   const out = new Uint8Array(size);
   if (size === 0) return out;
-  const bits = new Chances(packed, high);
-  let state = 0, rep0 = 0, rep1 = 0, rep2 = 0, rep3 = 0;
-  for (let at = 0; at < size;) {
-    if (bits.bit(kMatch + state) === 0) {
-      const before = at > 0 ? out[at - 1] >> 8 - high : 0;
-      out[at] = bits.literal(kLiteral + 0x300 * before, state > 6 ? out[at - rep0 - 1] : -1);
-      ++at, state = state < 4 ? 0 : state < 10 ? state - 3 : state - 6;
-      continue;
-    }
-    let length;
-    if (bits.bit(kRep + state) === 0) {
-      rep3 = rep2, rep2 = rep1, rep1 = rep0;
-      length = bits.length(kLength), rep0 = bits.distance(length), state = state < 7 ? 7 : 10;
-    } else {
-      const nearest = bits.bit(kRep0 + state) === 0;
-      if (nearest && bits.bit(kRep0Long + state) === 0) {
-        length = 1, state = state < 7 ? 9 : 11;
-      } else {
-        if (!nearest) {
-          let again = rep1;
-          if (bits.bit(kRep1 + state) !== 0) {
-            again = rep2;
-            if (bits.bit(kRep2 + state) !== 0) again = rep3, rep3 = rep2;
-            rep2 = rep1;
-          }
-          rep1 = rep0, rep0 = again;
+  const chance = new Uint16Array(kLiteral + (0x300 << high)).fill(1024);
+  let range = 0xffffffff, code = 0, from = 5;
+  for (let i = 1; i < 5; ++i) code = (code << 8 | packed[i]) >>> 0;
+  let at = 0, state = 0, rep0 = 0, rep1 = 0, rep2 = 0, rep3 = 0;
+  let asked = kIsMatch, base = kMatch - 1, m = 1, end = 2;
+  let literal = 0, match = 0, lengths = kLength, length = 0, distance = 0, bits = 0;
+  for (;;) {
+    const p = chance[base + m], bound = Math.imul(range >>> 11, p) >>> 0;
+    if (code < bound) range = bound, chance[base + m] = p + (2048 - p >> 5), m = m << 1;
+    else range = range - bound >>> 0, code = code - bound >>> 0, chance[base + m] = p - (p >> 5), m = m << 1 | 1;
+    if (range < 0x1000000) range = range << 8 >>> 0, code = (code << 8 | packed[from++]) >>> 0;
+    if (m < end) continue;
+
+    const bit = m & 1;
+    length = 0;
+    switch (asked) {
+      case kIsMatch:
+        if (bit === 1) { asked = kIsRep, base = kRep + state - 1, m = 1; continue; }
+        literal = kLiteral + 0x300 * (at > 0 ? out[at - 1] >> 8 - high : 0), m = 1;
+        if (state < 7) { asked = kLiterally, base = literal, end = 0x100; continue; }
+        match = out[at - rep0 - 1], asked = kLike, base = literal + (match & 0x80 ? 0x200 : 0x100);
+        continue;
+      case kLike:  // as the byte that the last copy would go on with; from the first bit on that differs, by itself
+        if (m >= 0x100) break;
+        match <<= 1;
+        if (bit === (match >> 8 & 1)) { base = literal + (match & 0x80 ? 0x200 : 0x100), end = m << 1; continue; }
+        asked = kLiterally, base = literal, end = 0x100;
+        continue;
+      case kLiterally:
+        break;
+      case kIsRep:
+        m = 1;
+        if (bit === 1) { asked = kIsOther0, base = kRep0 + state - 1; continue; }
+        rep3 = rep2, rep2 = rep1, rep1 = rep0, lengths = kLength, asked = kLength0, base = lengths - 1;
+        continue;
+      case kIsOther0:
+        asked = bit === 0 ? kIsLong : kIsOther1, base = (bit === 0 ? kRep0Long : kRep1) + state - 1, m = 1;
+        continue;
+      case kIsLong:
+        if (bit === 0) { length = 1, state = state < 7 ? 9 : 11; break; }
+        lengths = kRepLength, asked = kLength0, base = lengths - 1, m = 1;
+        continue;
+      case kIsOther1:
+      case kIsOther2:
+        m = 1;
+        if (bit === 1 && asked === kIsOther1) { asked = kIsOther2, base = kRep2 + state - 1; continue; }
+        const again = asked === kIsOther1 ? rep1 : bit === 0 ? rep2 : rep3;
+        if (asked === kIsOther2) rep3 = bit === 0 ? rep3 : rep2, rep2 = rep1;
+        rep1 = rep0, rep0 = again;
+        lengths = kRepLength, asked = kLength0, base = lengths - 1;
+        continue;
+      case kLength0:
+        m = 1;
+        if (bit === 1) { asked = kLength1, base = lengths; continue; }
+        asked = kLengthIs, base = lengths + 2, end = 8, bits = 2 - 8;
+        continue;
+      case kLength1:
+        m = 1, asked = kLengthIs, base = lengths + (bit === 0 ? 10 : 18), end = bit === 0 ? 8 : 256, bits = bit === 0 ? 10 - 8 : 18 - 256;
+        continue;
+      case kLengthIs:
+        length = m + bits;
+        if (lengths === kRepLength) { state = state < 7 ? 8 : 11; break; }
+        state = state < 7 ? 7 : 10, distance = length;  // until the distance is known
+        asked = kSlotIs, base = kSlot + (Math.min(length - 2, 3) << 6), m = 1, end = 64;
+        continue;
+      case kSlotIs: {
+        const slot = m - 64;
+        length = distance, m = 1;
+        if (slot < 4) { rep0 = slot; break; }
+        bits = (slot >> 1) - 1, rep0 = (2 | slot & 1) << bits, end = 1 << bits;
+        if (slot < 14) { asked = kDistanceIs, base = kSpecial + rep0 - slot; continue; }
+        for (let i = bits - 1; i >= 4; --i) {
+          range = range >>> 1;
+          if (code >= range) code = code - range >>> 0, rep0 += 1 << i;
+          if (range < 0x1000000) range = range << 8 >>> 0, code = (code << 8 | packed[from++]) >>> 0;
         }
-        length = bits.length(kRepLength), state = state < 7 ? 8 : 11;
+        asked = kAlignIs, base = kAlign, end = 16, bits = 4;
+        continue;
       }
+      default:  // the low bit came first
+        length = distance;
+        for (let i = bits - 1; i >= 0; --i, m >>= 1) rep0 += (m & 1) << i;
     }
-    if (rep0 < 0 || rep0 >= at || length > size - at) damaged('a copy of what is not there');
-    for (const end = at + length; at < end; ++at) out[at] = out[at - rep0 - 1];
+
+    if (length === 0) out[at++] = m, state = state < 4 ? 0 : state < 10 ? state - 3 : state - 6;
+    else {
+      if (rep0 < 0 || rep0 >= at || length > size - at) damaged('a copy of what is not there');
+      for (const past = at + length; at < past; ++at) out[at] = out[at - rep0 - 1];
+    }
+    if (at === size) break;
+    asked = kIsMatch, base = kMatch + state - 1, m = 1, end = 2;
   }
-  if (bits.at > packed.length) damaged('it ends too early');
+  if (from > packed.length) damaged('it ends too early');
   return out;
 }
 
@@ -211,7 +202,7 @@ class Code {
     for (let n = this.number(kLocals); n > 0; --n) this.number(kLocals), this.byte(kLocals);
     const { out, streams, read } = this, ops = streams[kOps];
     for (let depth = 1; depth > 0;) {
-      const op = this.byte(kOps);
+      const op = out[this.at++] = ops[read[kOps]++];  // where there are no more, there is no instruction `undefined`
       if (op > 1 && op < 5) ++depth;
       else if (op === 0x0b) --depth;
       const places = op === 0xfc || op === 0xfd ? placesOf(follows(op, this.number(kOps))) : kAfterOne[op];
