@@ -14,7 +14,7 @@ help:
 	@echo "make build   build the program: build/bin/freiform"
 	@echo "make python  build the Python package: build/python (PYTHONPATH=build/python python3 -c 'import freiform')"
 	@echo "make wasm    build the WebAssembly modules and test them in node (bindings/wasm/)"
-	@echo "make wasm-tests  1,400 C++ tests, from core to model, as WebAssembly, in node"
+	@echo "make wasm-tests  1,630 C++ tests, from core to model, as WebAssembly, in node"
 	@echo "make studio  build the page that freiform view serves (studio/dist); make build then puts it into the program"
 	@echo "make setup   install the Debian packages that are missing (the other targets do it too)"
 	@echo "make format  format the C++ files"

@@ -154,10 +154,6 @@ function(freiform_isa)
         if(file MATCHES "/src/kernel/evaluate_")
             list(APPEND flags -ffp-contract=fast)
         endif()
-        if(FREIFORM_QUICK AND file MATCHES "/src/kernel/evaluate_")
-            # With it these three files take clang 200 s of a processor, and what they read and write is looked at all the same.
-            list(APPEND flags -fno-sanitize=pointer-overflow)
-        endif()
         # Modules are compiled for size (-Oz); what evaluates a little less so. With -O3 scattered points take 3 to 14 % less
         # time, grids and meshes as much, and the module is 25 kB larger after gzip.
         if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32 AND file MATCHES "/src/(kernel|spline/prepared[a-z_]*\\.cpp)")

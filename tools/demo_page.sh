@@ -25,6 +25,7 @@ if [ ! -e "$page" ]; then
     command -v npm >/dev/null || without "npm is not there."
     if [ ! -e bindings/wasm/freiform.packed ]; then
         command -v clang++-22 >/dev/null || without "clang-22, which makes its WebAssembly module, is not there."
+        command -v xz >/dev/null || without "xz, which packs its WebAssembly module, is not there."
         [ -e "$(clang++-22 -Wno-deprecated --target=wasm32-wasi -print-file-name=libc++.a)" ] ||
             without "the C++ library for WebAssembly (libc++-22-dev-wasm32) is not there."
         ends=$(($(date +%s) + kModule / $(nproc) + kRest))

@@ -108,7 +108,7 @@ function unpacked(packed, size, high) {
         lengths = kRepLength, asked = kLength0, base = lengths - 1, m = 1;
         continue;
       case kIsOther1:
-      case kIsOther2:
+      case kIsOther2: {
         m = 1;
         if (bit === 1 && asked === kIsOther1) { asked = kIsOther2, base = kRep2 + state - 1; continue; }
         const again = asked === kIsOther1 ? rep1 : bit === 0 ? rep2 : rep3;
@@ -116,6 +116,7 @@ function unpacked(packed, size, high) {
         rep1 = rep0, rep0 = again;
         lengths = kRepLength, asked = kLength0, base = lengths - 1;
         continue;
+      }
       case kLength0:
         m = 1;
         if (bit === 1) { asked = kLength1, base = lengths; continue; }

@@ -13,15 +13,15 @@ const size = (n) => n < 128 ? [n] : [n % 128 | 128, n >> 7];
 const section = (id, ...bytes) => [id, ...size(bytes.length), ...bytes];
 const name = (s) => [s.length, ...Buffer.from(s)];
 
-// A function of a number, with every kind of what can follow an instruction.
+// A function of a number, with every kind of what can follow an instruction. Where bytes end it is 7: there is no such instruction.
 const code = [
   2, 2, 0x7f, 1, 0x7b,                                              // locals: two i32, a v128
   0x02, 0x40, 0x02, 0x40, 0x20, 0, 0x0e, 2, 0, 1, 1, 0x0b, 0x0b,    // br_table
-  0x43, 0, 0, 0x80, 0x3f, 0x1a, 0x44, 0, 0, 0, 0, 0, 0, 0x0b, 0x40, 0x1a,  // f32.const, f64.const with what looks like `end`
-  0xfd, 12, ...Array(16).fill(0x0b), 0x22, 3, 0xfd, 21, 15, 0x1a,   // v128.const, i8x16.extract_lane_s
+  0x43, 0, 0, 0x80, 7, 0x1a, 0x44, 0, 0, 0, 0, 0, 0, 0x0b, 7, 0x1a,  // f32.const, f64.const with what looks like `end`
+  0xfd, 12, ...Array(16).fill(0x0b), 0x22, 3, 0xfd, 21, 7, 0x1a,    // v128.const, i8x16.extract_lane_s
   0x20, 3, 0x20, 3, 0xfd, 13, ...Array(16).fill(5), 0x1a,           // i8x16.shuffle
   0x41, 8, 0x41, 0xff, 0, 0x3a, 0, 3,                               // i32.store8 of 127 at 8 + 3
-  0x41, 8, 0x20, 3, 0xfd, 88, 0, 16, 1, 0x41, 0, 0x41, 32, 0x41, 4, 0xfc, 10, 0, 0,  // v128.store8_lane, memory.copy
+  0x41, 8, 0x20, 3, 0xfd, 88, 0, 16, 7, 0x41, 0, 0x41, 32, 0x41, 4, 0xfc, 10, 0, 0,  // v128.store8_lane, memory.copy
   0x42, 0x80, 0x80, 0x80, 0x80, 0x10, 0xa7, 0x1a,                   // i64.const
   0x20, 0, 0x41, 5, 0x41, 0, 0x1c, 1, 0x7f, 0x21, 1,                // select of a type
   0x20, 0, 0x41, 0, 0x11, 0, 0, 0x41, 8, 0x2d, 0, 3, 0x6a, 0x0b,    // call_indirect; i32.load8_u
